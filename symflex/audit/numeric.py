@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from flint import acb, arb, ctx
 
 from symflex.algebra import LAPLACE
-from symflex.expressions import Call, Expression, Name, Negative, Number, Power, Product, Quotient, Sum
+from symflex.expressions import Expression, fold
 from symflex.model import ExactValue
 from symflex.transfer import bind
 from symflex.transfer.balls import ball, rational_value
@@ -161,43 +161,18 @@ def compare(numbers: Numbers) -> Comparison:
 
 
 def _value(expression: Expression, known: Mapping[str, acb]) -> acb:
-    match expression:
-        case Number(value):
-            return acb(ball(value))
-        case Name(name):
-            return known[name]
-        case Negative(operand):
-            return -_value(operand, known)
-        case Sum(terms):
-            return sum((_value(t, known) for t in terms), acb(0))
-        case Product(factors):
-            product = acb(1)
-            for factor in factors:
-                product = product * _value(factor, known)
-            return product
-        case Quotient(numerator, denominator):
-            return _value(numerator, known) / _value(denominator, known)
-        case Power(base, exponent):
-            power = rational_value(exponent, {}) or Fraction(0)
-            inner = _value(base, known)
-            return inner ** int(power) if power.denominator == 1 else inner ** acb(ball(power))
-        case Call(name, argument):
-            return _FUNCTIONS[name](_value(argument, known))
-    message = f"unexpected expression {type(expression).__name__}"
-    raise TypeError(message)
+    return fold(
+        expression,
+        number=lambda value: acb(ball(value)),
+        name=lambda name: known[name],
+        power=_power,
+        call=lambda call, argument: acb(getattr(argument, call.name)()),
+    )
 
 
-_FUNCTIONS = {
-    "sqrt": acb.sqrt,
-    "exp": acb.exp,
-    "log": acb.log,
-    "sin": acb.sin,
-    "cos": acb.cos,
-    "tan": acb.tan,
-    "sinh": acb.sinh,
-    "cosh": acb.cosh,
-    "tanh": acb.tanh,
-}
+def _power(base: acb, exponent: Expression) -> acb:
+    power = rational_value(exponent, {}) or Fraction(0)
+    return acb(base ** int(power) if power.denominator == 1 else base ** acb(ball(power)))
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,7 +26,7 @@ from symflex.expressions.nodes import (
 )
 from symflex.expressions.parse import parse, parse_equation
 from symflex.expressions.slips import FUNCTIONS
-from symflex.expressions.walk import measured, names, nodes, replace_values, substitute
+from symflex.expressions.walk import fold, measured, names, nodes, replace_values, substitute
 
 __all__ = [
     "FUNCTIONS",
@@ -46,6 +46,7 @@ __all__ = [
     "Product",
     "Quotient",
     "Sum",
+    "fold",
     "format_expression",
     "is_number",
     "measured",

@@ -1,8 +1,11 @@
-"""Walks over a tree, none of them recursive."""
+"""Walks over a tree: parts are listed, replaced, and folded into a value."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from fractions import Fraction
+from functools import reduce
+from operator import add, mul, neg, truediv
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from symflex.expressions.nodes import (
     Attribute,
@@ -13,6 +16,7 @@ from symflex.expressions.nodes import (
     Measured,
     Name,
     Negative,
+    Number,
     Power,
     Product,
     Quotient,
@@ -21,6 +25,8 @@ from symflex.expressions.nodes import (
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
+
+Value = TypeVar("Value")
 
 
 def names(expression: Expression) -> tuple[Name | Attribute | Call | Derivative, ...]:
@@ -60,6 +66,76 @@ def nodes(expression: Expression) -> list[Expression]:
         found.append(node)
         pending.extend(reversed(node.children))
     return found
+
+
+def fold(
+    expression: Expression,
+    *,
+    number: Callable[[Fraction], Value],
+    name: Callable[[str], Value],
+    power: Callable[[Value, Expression], Value],
+    call: Callable[[Call, Value], Value],
+    negative: Callable[[Any], Value] = neg,
+    total: Callable[[Sequence[Value]], Value] | None = None,
+    product: Callable[[Sequence[Value]], Value] | None = None,
+    quotient: Callable[[Value, Value], Value] = truediv,
+) -> Value:
+    """Return the value of an expression in some arithmetic, made from the values of its parts.
+
+    What is not given is done with Python's operators, sums from zero and products from one.
+
+    Parameters
+    ----------
+    number : callable
+        Of the value of a number.
+    name : callable
+        Of a name, or of ``owner.name`` for an attribute.
+    power : callable
+        Of the base's value and the exponent, which is left as it is written.
+    call : callable
+        Of a call and its argument's value.
+    negative, total, product, quotient : callable, optional
+        Of values.
+
+    Raises
+    ------
+    TypeError
+        On what has no value by itself, such as an equation.
+
+    Examples
+    --------
+    >>> x = Name("x")
+    >>> fold(Sum((Power(x, Number(Fraction(2))), Negative(x))), number=Fraction, name={"x": Fraction(3)}.get,
+    ...      power=lambda base, exponent: base**exponent.value, call=lambda call, argument: argument)
+    Fraction(6, 1)
+    """
+
+    def value(node: Expression) -> Value:
+        match node:
+            case Number(exact):
+                return number(exact)
+            case Name(own):
+                return name(own)
+            case Attribute(owner, own):
+                return name(f"{owner}.{own}")
+            case Negative(operand):
+                return negative(value(operand))
+            case Sum(terms):
+                values = [value(t) for t in terms]
+                return total(values) if total is not None else reduce(add, values, number(Fraction(0)))
+            case Product(factors):
+                values = [value(f) for f in factors]
+                return product(values) if product is not None else reduce(mul, values, number(Fraction(1)))
+            case Quotient(above, below):
+                return quotient(value(above), value(below))
+            case Power(base, exponent):
+                return power(value(base), exponent)
+            case Call(_, argument):
+                return call(node, value(argument))
+        message = f"unexpected expression {type(node).__name__}"
+        raise TypeError(message)
+
+    return value(expression)
 
 
 def substitute(expression: Expression, mapping: Mapping[str, Expression]) -> Expression:

@@ -7,20 +7,7 @@ from typing import TYPE_CHECKING
 import sympy
 
 from symflex.algebra import LAPLACE
-from symflex.expressions import (
-    FUNCTIONS,
-    Attribute,
-    Call,
-    Expression,
-    Name,
-    Negative,
-    Number,
-    Power,
-    Product,
-    Quotient,
-    Sum,
-    substitute,
-)
+from symflex.expressions import FUNCTIONS, Call, Expression, fold
 from symflex.model.units import exact_expression
 from symflex.state_space import not_rational
 from symflex.transfer import BoundTransferFunction
@@ -59,33 +46,23 @@ def to_sympy(expression: Expression, symbols: Mapping[str, sympy.Symbol]) -> sym
     >>> to_sympy(Sum((Name("a"), Name("b"))), {})
     a + b
     """
-    match expression:
-        case Number(value):
-            return sympy.Rational(value.numerator, value.denominator)
-        case Name("pi"):
-            return sympy.pi
-        case Name(name):
-            return symbols[name] if name in symbols else sympy.Symbol(name)
-        case Attribute(owner, name):
-            return sympy.Symbol(f"{owner}.{name}")
-        case Negative(operand):
-            return -to_sympy(operand, symbols)
-        case Sum(terms):
-            return sympy.Add(*(to_sympy(t, symbols) for t in terms))
-        case Product(factors):
-            return sympy.Mul(*(to_sympy(f, symbols) for f in factors))
-        case Quotient(numerator, denominator):
-            return to_sympy(numerator, symbols) / to_sympy(denominator, symbols)
-        case Power(base, exponent):
-            return to_sympy(base, symbols) ** to_sympy(exponent, symbols)
-        case Call(name, argument) if name in FUNCTIONS:
-            return getattr(sympy, name)(to_sympy(argument, symbols))
-        case Call(name, argument, order):
-            point, x = to_sympy(argument, symbols), sympy.Dummy("x")
-            function = sympy.Function(name)
-            return sympy.Subs(function(x).diff(x, order), x, point) if order else function(point)
-    message = f"{type(expression).__name__} has no SymPy counterpart"
-    raise TypeError(message)
+    known = {**symbols, "pi": sympy.pi}
+
+    def called(call: Call, argument: sympy.Expr) -> sympy.Expr:
+        if call.name in FUNCTIONS:
+            return getattr(sympy, call.name)(argument)
+        function, x = sympy.Function(call.name), sympy.Dummy("x")
+        return sympy.Subs(function(x).diff(x, call.order), x, argument) if call.order else function(argument)
+
+    return fold(
+        expression,
+        number=lambda value: sympy.Rational(value.numerator, value.denominator),
+        name=lambda name: known[name] if name in known else sympy.Symbol(name),
+        power=lambda base, exponent: base ** to_sympy(exponent, symbols),
+        call=called,
+        total=lambda terms: sympy.Add(*terms),
+        product=lambda factors: sympy.Mul(*factors),
+    )
 
 
 def sympy_system(function: TransferFunction | BoundTransferFunction) -> SympyTransferFunction:

@@ -7,25 +7,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from math import inf, isfinite, nan, prod
+from math import inf, isfinite, nan
 from typing import TYPE_CHECKING, TypeVar
 
 from flint import acb, acb_series, arb, ctx, fmpq
 
 from symflex.algebra import FUNCTIONS
 from symflex.errors import Diagnostic, ModelError
-from symflex.expressions import (
-    Call,
-    Expression,
-    Name,
-    Negative,
-    Number,
-    Power,
-    Product,
-    Quotient,
-    Sum,
-    format_expression,
-)
+from symflex.expressions import Expression, fold, format_expression
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -78,29 +67,19 @@ def rational_value(expression: Expression, values: Mapping[str, ExactValue]) -> 
     >>> rational_value(Quotient(Number(Fraction(8)), Number(Fraction(6))), {})
     Fraction(4, 3)
     """
-    match expression:
-        case Number(value):
-            return value
-        case Name(name):
-            known = values.get(name)
-            return known.rational if known is not None and known.pi_power == 0 else None
-        case Negative(operand):
-            inner = rational_value(operand, values)
-            return None if inner is None else -inner
-        case Sum(terms) | Product(terms):
-            parts = [rational_value(t, values) for t in terms]
-            known_parts = [p for p in parts if p is not None]
-            if len(known_parts) < len(parts):
-                return None
-            return (
-                sum(known_parts, Fraction(0))
-                if isinstance(expression, Sum)
-                else prod(known_parts, start=Fraction(1))
-            )
-        case Quotient(numerator, denominator):
-            above, below = rational_value(numerator, values), rational_value(denominator, values)
-            return above / below if above is not None and below else None
-    return None
+
+    def named(name: str) -> Fraction:
+        if values[name].pi_power:
+            raise KeyError(name)
+        return values[name].rational
+
+    def none(*_: object) -> Fraction:
+        raise KeyError
+
+    try:
+        return fold(expression, number=Fraction, name=named, power=none, call=none)
+    except (KeyError, ZeroDivisionError):
+        return None
 
 
 def enclosure(value: ExactValue) -> Callable[[], arb]:
@@ -143,30 +122,13 @@ def enclose(expression: Expression, values: Mapping[str, Callable[[], arb]]) -> 
 
 
 def _enclose(expression: Expression, values: Mapping[str, Callable[[], arb]]) -> arb:
-    match expression:
-        case Number(value):
-            return ball(value)
-        case Name("pi"):
-            return arb.pi()
-        case Name(name):
-            return values[name]()
-        case Negative(operand):
-            return -_enclose(operand, values)
-        case Sum(terms):
-            return sum((_enclose(t, values) for t in terms), arb(0))
-        case Product(factors):
-            product = arb(1)
-            for factor in factors:
-                product = product * _enclose(factor, values)
-            return product
-        case Quotient(numerator, denominator):
-            return _enclose(numerator, values) / _enclose(denominator, values)
-        case Power(base, exponent):
-            return _enclose(base, values) ** _enclose(exponent, values)
-        case Call(name, argument):
-            return FUNCTIONS[name].evaluate(_enclose(argument, values))
-    message = f"unexpected expression {type(expression).__name__}"
-    raise TypeError(message)
+    return fold(
+        expression,
+        number=ball,
+        name=lambda name: arb.pi() if name == "pi" else values[name](),
+        power=lambda base, exponent: base ** _enclose(exponent, values),
+        call=lambda call, argument: FUNCTIONS[call.name].evaluate(argument),
+    )
 
 
 Value = acb | acb_series

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from flint import acb, acb_series, arb, arb_series
 
 from symflex.algebra import FUNCTIONS, LAPLACE, PolynomialMemo
-from symflex.expressions import Call, Expression, Name, Negative, Number, Power, Product, Quotient, Sum
+from symflex.expressions import Call, Expression, fold
 from symflex.transfer.balls import ball, plan
 from symflex.transfer.enclose_kernels import fundamental_functions
 
@@ -190,39 +190,31 @@ def constant_tangent(expression: Expression, values: Mapping[str, arb_series]) -
 
     Examples
     --------
+    >>> from symflex.expressions import Name
     >>> root = Call("sqrt", Name("k"))
     >>> constant_tangent(root, {"k": first_order(arb(4), 1)})
     2.00000000000000 + 0.250000000000000*x + O(x^2)
     """
-    match expression:
-        case Number(value):
-            return first_order(ball(value))
-        case Name("pi"):
-            return first_order(arb.pi())
-        case Name(name):
-            return values[name]
-        case Negative(operand):
-            return -constant_tangent(operand, values)
-        case Sum(terms):
-            return sum((constant_tangent(t, values) for t in terms), first_order(arb(0)))
-        case Product(factors):
-            product = first_order(arb(1))
-            for factor in factors:
-                product = product * constant_tangent(factor, values)
-            return product
-        case Quotient(numerator, denominator):
-            above, below = constant_tangent(numerator, values), constant_tangent(denominator, values)
-            quotient = above[0] / below[0]
-            return first_order(quotient, (above[1] - quotient * below[1]) / below[0])
-        case Power(base, exponent):
-            return _real_power(constant_tangent(base, values), constant_tangent(exponent, values))
-        case Call(name, argument):
-            inner, function = constant_tangent(argument, values), FUNCTIONS[name]
-            # A constant argument has no slope, also where the function has none.
-            slope = arb(0) if inner[1].is_zero() else function.derivative(inner[0]) * inner[1]
-            return first_order(function.evaluate(inner[0]), slope)
-    message = f"unexpected expression {type(expression).__name__}"
-    raise TypeError(message)
+    return fold(
+        expression,
+        number=lambda value: first_order(ball(value)),
+        name=lambda name: first_order(arb.pi()) if name == "pi" else values[name],
+        power=lambda base, exponent: _real_power(base, constant_tangent(exponent, values)),
+        call=_called,
+        quotient=_quotient,
+    )
+
+
+def _called(call: Call, argument: arb_series) -> arb_series:
+    function = FUNCTIONS[call.name]
+    # A constant argument has no slope, also where the function has none.
+    slope = arb(0) if argument[1].is_zero() else function.derivative(argument[0]) * argument[1]
+    return first_order(function.evaluate(argument[0]), slope)
+
+
+def _quotient(above: arb_series, below: arb_series) -> arb_series:
+    quotient = above[0] / below[0]
+    return first_order(quotient, (above[1] - quotient * below[1]) / below[0])
 
 
 def _real_power(base: arb_series, exponent: arb_series) -> arb_series:

@@ -21,7 +21,7 @@ from symflex.codegen.program.polynomials import RingValues, degree_of, evaluate_
 from symflex.codegen.program.recurrence import express, plan_recurrences
 from symflex.codegen.program.schedule import schedule
 from symflex.errors import BudgetError, Diagnostic
-from symflex.expressions import Call, Expression, Name, Negative, Number, Power, Product, Quotient, Sum
+from symflex.expressions import Expression, fold
 from symflex.model.linearity import integer_exponent
 
 if TYPE_CHECKING:
@@ -198,35 +198,30 @@ class Generators:
 def constant_of(forge: Forge, model: Model, expression: Expression) -> int:
     """Return an expression of constants as the model writes it."""
 
-    def made(inner: Expression) -> int:
-        return constant_of(forge, model, inner)
+    def named(name: str) -> int:
+        if name == PI:
+            return forge.constant(1, 1)
+        inner = next((e for n, e in _every_definition(model) if n == name), None)
+        if inner is None or any(p.name == name for p in model.parameters):
+            return forge.parameter(name)
+        return forge.label(constant_of(forge, model, inner), name)
 
-    match expression:
-        case Number(value):
-            return forge.constant(value)
-        case Name(name):
-            if name == PI:
-                return forge.constant(1, 1)
-            inner = next((e for n, e in _every_definition(model) if n == name), None)
-            if inner is None or any(p.name == name for p in model.parameters):
-                return forge.parameter(name)
-            return forge.label(made(inner), name)
-        case Negative(operand):
-            return forge.negate(made(operand))
-        case Sum(terms):
-            return forge.add([made(t) for t in terms])
-        case Product(factors):
-            return forge.multiply([made(f) for f in factors])
-        case Quotient(numerator, denominator):
-            return forge.divide(made(numerator), made(denominator))
-        case Power(base, exponent):
-            power = integer_exponent(exponent) or 0
-            raised = forge.power(made(base), abs(power))
-            return raised if power >= 0 else forge.divide(forge.constant(1), raised)
-        case Call(name, argument):
-            return forge.apply(name, made(argument))
-    message = f"unexpected expression {type(expression).__name__}"
-    raise TypeError(message)
+    def power(base: int, exponent: Expression) -> int:
+        order = integer_exponent(exponent) or 0
+        raised = forge.power(base, abs(order))
+        return raised if order >= 0 else forge.divide(forge.constant(1), raised)
+
+    return fold(
+        expression,
+        number=forge.constant,
+        name=named,
+        power=power,
+        call=lambda call, argument: forge.apply(call.name, argument),
+        negative=forge.negate,
+        total=forge.add,
+        product=forge.multiply,
+        quotient=forge.divide,
+    )
 
 
 def _every_definition(model: Model) -> Iterator[tuple[str, Expression]]:
