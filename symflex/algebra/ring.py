@@ -18,7 +18,7 @@ from symflex.algebra.sparse import SparseContext, SparsePolynomial
 from symflex.errors import BudgetError, Diagnostic
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from symflex.algebra.sparse import Monomial
 
@@ -197,18 +197,16 @@ def highest_degree(polynomial: fmpz_mpoly) -> int:
     return max(map(int, polynomial.degrees()))
 
 
-def terms_of(polynomial: fmpz_mpoly) -> Iterator[tuple[Monomial, int]]:
-    """Yield the terms in lexicographic order: positions of generators with exponents, and the coefficient.
+def terms_of(polynomial: fmpz_mpoly) -> list[tuple[Monomial, int]]:
+    """Return the terms in lexicographic order: positions of generators with exponents, and the coefficient.
 
     Examples
     --------
     >>> ring = Ring(("s", "m", "b"))
     >>> s, m, b = (ring.generator(n) for n in ring.names)
-    >>> list(terms_of(m * s**2 - 3 * b))
+    >>> terms_of(m * s**2 - 3 * b)
     [(((0, 2), (1, 1)), 1), (((2, 1),), -3)]
     """
     if (sparse := _sparse(polynomial)) is not None:
-        yield from sparse.terms()
-        return
-    for monomial, coefficient in polynomial.terms():
-        yield tuple((i, int(e)) for i, e in enumerate(monomial) if e), int(coefficient)
+        return sparse.ordered()
+    return [(tuple((i, int(e)) for i, e in enumerate(m) if e), int(c)) for m, c in polynomial.terms()]

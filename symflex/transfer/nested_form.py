@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING, Any
 from flint import acb, arb, ctx
 
 from symflex.algebra import LAPLACE
+from symflex.algebra.straight_line import Step, StraightLine
 from symflex.budget import spend
-from symflex.equations.elimination import Step, StraightLine, eliminate
+from symflex.equations.elimination import eliminate
 from symflex.errors import Diagnostic, ModelError
 from symflex.expressions import Name, names
 from symflex.transfer.balls import FIRST_BITS, ball, double_value, enclosure, later

@@ -11,10 +11,10 @@ from math import inf
 from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE
+from symflex.algebra.straight_line import Step
 from symflex.codegen.program.build import PI, constant_of
 from symflex.codegen.program.forge import Forge
 from symflex.codegen.program.schedule import schedule
-from symflex.equations.elimination import Step
 from symflex.errors import BudgetError, Diagnostic
 from symflex.print.forms import step_names
 

@@ -10,19 +10,14 @@ from symflex.equations.elimination.closing import (
 from symflex.equations.elimination.determinants import Determinants, Minors, expanded_terms, expansion_order
 from symflex.equations.elimination.singular import explain_singular, is_singular, unreached
 from symflex.equations.elimination.star_mesh import Elimination, eliminate
-from symflex.equations.elimination.straight_line import ONE, Step, StraightLine, Workbench
 
 __all__ = [
-    "ONE",
     "ClosedSystem",
     "Closure",
     "Determinants",
     "Elimination",
     "Minors",
     "ReducedSystem",
-    "Step",
-    "StraightLine",
-    "Workbench",
     "close",
     "eliminate",
     "eliminate_unit_pivots",

@@ -27,10 +27,10 @@ from math import inf, log
 from typing import TYPE_CHECKING, Generic, TypeVar
 
 from symflex.algebra import LAPLACE, Ring, terms_of
+from symflex.algebra.straight_line import Step
 from symflex.budget import spend
 from symflex.equations.elimination.closing import ClosedSystem, ReducedSystem, close, eliminate_unit_pivots
 from symflex.equations.elimination.singular import explain_singular
-from symflex.equations.elimination.straight_line import Step
 from symflex.errors import BudgetError, Diagnostic
 
 if TYPE_CHECKING:

@@ -32,9 +32,9 @@ from heapq import heapify, heappop, heappush
 from typing import TYPE_CHECKING
 
 from symflex.algebra import uncollected
+from symflex.algebra.straight_line import ONE, ZERO, Step, StraightLine, Workbench
 from symflex.budget import spend
 from symflex.equations.elimination.singular import explain_singular
-from symflex.equations.elimination.straight_line import ONE, ZERO, Step, StraightLine, Workbench
 from symflex.errors import Diagnostic, ModelError
 
 if TYPE_CHECKING:

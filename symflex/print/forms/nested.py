@@ -12,8 +12,8 @@ from itertools import count
 from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE
+from symflex.algebra.straight_line import ONE, Step
 from symflex.budget import spend
-from symflex.equations.elimination import ONE, Step
 from symflex.expressions import Expression, Name, Negative, Number, Power, Product, Quotient, Sum, number
 from symflex.print.forms.notation import names_of
 from symflex.print.forms.printed import PrintedForm

@@ -8,8 +8,8 @@ from types import SimpleNamespace
 import pytest
 
 from symflex.algebra import Factored, Ring
+from symflex.algebra.straight_line import Step
 from symflex.equations.elimination.determinants import LARGEST, _forests, _monomials, expanded_terms
-from symflex.equations.elimination.straight_line import Step
 
 RING = Ring(("s", "k", "m", "pi"))
 S, K, M, PI = (RING.generator(name) for name in RING.names)

@@ -11,9 +11,9 @@ from flint import fmpq, fmpq_mat
 from benchmarks.networks import NETWORKS, chain, ladder, network, ring, tree
 from symflex import pipeline
 from symflex.algebra.ring import terms_of
+from symflex.algebra.straight_line import ONE, ZERO, Step, Workbench
 from symflex.equations import assemble
-from symflex.equations.elimination import Step, Workbench, eliminate, expanded_terms, is_singular
-from symflex.equations.elimination.straight_line import ONE, ZERO
+from symflex.equations.elimination import eliminate, expanded_terms, is_singular
 from symflex.errors import ModelError
 
 

@@ -17,17 +17,20 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import IntEnum
 from fractions import Fraction
+from functools import reduce
 from random import Random
 from typing import TYPE_CHECKING
 
-from symflex.algebra import PRIME, terms_of
+from symflex.algebra.memo import PolynomialMemo
+from symflex.algebra.residue import PRIME
+from symflex.algebra.ring import terms_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from flint import fmpz_mpoly
 
-    from symflex.algebra import Factored
+    from symflex.algebra.factored import Factored
 
 Key = tuple[int, ...]
 
@@ -106,14 +109,9 @@ class StraightLine:
 class Workbench:
     """Makes steps; equal ones get the same number, and what is zero is seen to be.
 
-    Every step carries its value at a random point of a prime field. A value other than zero proves that the
-    step is not zero as a function; a step with value zero is taken for zero (for a function of degree d the
-    odds of being wrong are d in 2^61).
-
-    Parameters
-    ----------
-    names : sequence of str
-        Generators.
+    What is made without a minus sign is not zero as a function. A sum with one is not where its value at a
+    random point of a prime field is not zero; where that is zero it is taken for zero (for a function of
+    degree d the odds of being wrong are d in 2^61).
 
     Examples
     --------
@@ -129,24 +127,55 @@ class Workbench:
         self.point = [random.getrandbits(60) + 1 for _ in names]
         self.kinds: list[int] = [_NUMBER, _NUMBER]
         self.operands: list[Key] = [(0, 1), (1, 1)]
-        self.residues: list[int] = [0, 1]
         self.roles: dict[int, str] = {}
+        self.polynomial = PolynomialMemo(self._polynomial)
         self._known: dict[Key | int, int] = {(_NUMBER, 0, 1): 0, (_NUMBER, 1, 1): 1}
-        self._polynomials: dict[int, int] = {}
-        self._inverses: dict[int, int] = {}
+        self._residues: dict[int, int] = {}
+        # Steps with a minus sign somewhere inside.
+        self._mixed: set[int] = set()
         self._defined: dict[int, int] = {}
 
     def finished(self) -> StraightLine:
         """Return the program."""
         return StraightLine(self.names, self.kinds, self.operands, self.roles)
 
-    def _make(self, kind: int, operands: Key, key: Key | int, residue: int) -> int:
+    def _make(self, kind: int, operands: Key, key: Key | int) -> int:
         step = len(self.kinds)
         self.kinds.append(kind)
         self.operands.append(operands)
-        self.residues.append(residue)
         self._known[key] = step
+        if self._mixed and not self._mixed.isdisjoint(operands):
+            self._mixed.add(step)
         return step
+
+    def residue(self, step: int) -> int:
+        """Return the value of a step at the random point; only few are ever asked for."""
+        known, program, pending = self._residues, self.finished(), [step]
+        while pending:
+            i = pending[-1]
+            missing = [x for x in program.inner(i) if x not in known]
+            if missing:
+                pending += missing
+                continue
+            pending.pop()
+            kind, operands = self.kinds[i], self.operands[i]
+            match kind:
+                case Step.GENERATOR:
+                    value = self.point[operands[0]]
+                case Step.NUMBER:
+                    value = operands[0] * pow(operands[1], -1, PRIME)
+                case Step.ADD:
+                    value = sum(known[x] for x in operands)
+                case Step.MULTIPLY:
+                    value = reduce(lambda x, y: x * y % PRIME, [known[x] for x in operands])
+                case Step.DIVIDE:
+                    value = known[operands[0]] * pow(known[operands[1]], -1, PRIME)
+                case Step.NEGATE:
+                    value = -known[operands[0]]
+                case _:
+                    value = pow(known[operands[0]], operands[1], PRIME)
+            known[i] = value % PRIME
+        return known[step]
 
     def generator(self, position: int) -> int:
         """Return a generator, or what the definition of that name stands for."""
@@ -157,7 +186,7 @@ class Workbench:
         known = self._known.get(key)
         if known is not None:
             return known
-        return self._make(_GENERATOR, (position,), key, self.point[position])
+        return self._make(_GENERATOR, (position,), key)
 
     def define(self, position: int, value: int) -> None:
         """Let a generator stand for a value, under its own name."""
@@ -171,8 +200,7 @@ class Workbench:
         key = (_NUMBER, abs(exact.numerator), exact.denominator)
         step = self._known.get(key)
         if step is None:
-            residue = key[1] * pow(key[2], -1, PRIME) % PRIME
-            step = self._make(_NUMBER, key[1:], key, residue)
+            step = self._make(_NUMBER, key[1:], key)
         return self.negate(step) if exact < 0 else step
 
     def negate(self, x: int) -> int:
@@ -183,7 +211,7 @@ class Workbench:
             return self.operands[x][0]
         key = (_NEGATE, x)
         known = self._known.get(key)
-        return self._make(_NEGATE, (x,), key, PRIME - self.residues[x]) if known is None else known
+        return self._make(_NEGATE, (x,), key) if known is None else known
 
     def add(self, terms: Sequence[int]) -> int:
         """Return a sum; equal terms are counted, and opposite ones cancel."""
@@ -203,14 +231,14 @@ class Workbench:
         known = self._known.get(key)
         if known is not None:
             return known
-        residues = self.residues
-        residue = sum([residues[t] for t in kept]) % PRIME
-        if not residue:
-            return ZERO
         kinds = self.kinds
-        if any(kinds[t] == _NEGATE for t in kept):
-            return self._signed_sum(kept, key, residue)
-        return self._make(_ADD, kept, key, residue)
+        is_signed = any([kinds[t] == _NEGATE for t in kept])
+        if (is_signed or not self._mixed.isdisjoint(kept)) and self._vanishes(kept):
+            return ZERO
+        return self._signed_sum(kept, key) if is_signed else self._make(_ADD, kept, key)
+
+    def _vanishes(self, terms: Key) -> bool:
+        return sum([self.residue(t) for t in terms]) % PRIME == 0
 
     def _pair(self, x: int, y: int) -> int:
         """Return the sum of two different steps without sign: most sums are of this kind."""
@@ -218,8 +246,10 @@ class Workbench:
         known = self._known.get(key)
         if known is not None:
             return known
-        residue = (self.residues[x] + self.residues[y]) % PRIME
-        return self._make(_ADD, (x, y), key, residue) if residue else ZERO
+        terms = (x, y)
+        if not self._mixed.isdisjoint(terms) and self._vanishes(terms):
+            return ZERO
+        return self._make(_ADD, terms, key)
 
     def _counted(self, terms: Key) -> Key:
         counts: dict[int, int] = {}
@@ -227,14 +257,16 @@ class Workbench:
             counts[term] = counts.get(term, 0) + 1
         return tuple(t if n == 1 else self.multiply(self.number(n), t) for t, n in counts.items())
 
-    def _signed_sum(self, terms: Key, key: Key | int, residue: int) -> int:
+    def _signed_sum(self, terms: Key, key: Key | int) -> int:
         opposite = {self.operands[t][0] for t in terms if self.kinds[t] == _NEGATE}.intersection(terms)
         if opposite:
             gone = opposite | {self.negate(t) for t in opposite}
             return self.add([t for t in terms if t not in gone])
         if all(self.kinds[t] == _NEGATE for t in terms):
             return self.negate(self.add([self.operands[t][0] for t in terms]))
-        return self._make(_ADD, terms, key, residue)
+        step = self._make(_ADD, terms, key)
+        self._mixed.add(step)
+        return step
 
     def multiply(self, x: int, y: int) -> int:
         """Return a product."""
@@ -253,7 +285,7 @@ class Workbench:
         known = self._known.get(key)
         if known is not None:
             return known
-        return self._make(_MULTIPLY, (x, y), key, self.residues[x] * self.residues[y] % PRIME)
+        return self._make(_MULTIPLY, (x, y), key)
 
     def product(self, factors: Sequence[int]) -> int:
         """Return a product of positive factors as one step."""
@@ -264,10 +296,7 @@ class Workbench:
         known = self._known.get(key)
         if known is not None:
             return known
-        residue = 1
-        for factor in kept:
-            residue = residue * self.residues[factor] % PRIME
-        return self._make(_MULTIPLY, kept, key, residue)
+        return self._make(_MULTIPLY, kept, key)
 
     def divide(self, x: int, y: int) -> int:
         """Return a quotient.
@@ -297,10 +326,7 @@ class Workbench:
         known = self._known.get(key)
         if known is not None:
             return known
-        inverse = self._inverses.get(y)
-        if inverse is None:
-            inverse = self._inverses[y] = pow(self.residues[y], -1, PRIME)
-        return self._make(_DIVIDE, (x, y), key, self.residues[x] * inverse % PRIME)
+        return self._make(_DIVIDE, (x, y), key)
 
     def power(self, x: int, exponent: int) -> int:
         """Return a non-negative integer power of a positive step."""
@@ -317,22 +343,15 @@ class Workbench:
         known = self._known.get(key)
         if known is not None:
             return known
-        return self._make(_POWER, (x, exponent), key, pow(self.residues[x], exponent, PRIME))
+        return self._make(_POWER, (x, exponent), key)
 
     def fraction(self, x: int) -> Fraction:
         """Return the value of a number."""
         above, below = self.operands[x]
         return Fraction(above, below)
 
-    def polynomial(self, polynomial: fmpz_mpoly) -> int:
-        """Return a polynomial of the generators.
-
-        The engine's polynomials have no hash, so an object is known again by its address: it must outlive the
-        workbench, as the equations' entries do.
-        """
-        known = self._polynomials.get(id(polynomial))
-        if known is not None:
-            return known
+    def _polynomial(self, polynomial: fmpz_mpoly) -> int:
+        """Return a polynomial of the generators."""
         terms: list[int] = []
         for monomial, coefficient in terms_of(polynomial):
             if coefficient == 1 and len(monomial) == 1 and monomial[0][1] == 1:
@@ -342,7 +361,7 @@ class Workbench:
             if abs(coefficient) != 1:
                 step = self.multiply(self.number(abs(coefficient)), step)
             terms.append(self.negate(step) if coefficient < 0 else step)
-        value = self._polynomials[id(polynomial)] = self.add(terms)
+        value = self.add(terms)
         if len(terms) > 1:
             self.roles.setdefault(value, "w")
         return value
@@ -366,11 +385,10 @@ class Workbench:
         factors = value.factors
         above, below = ONE, ONE
         if len(factors) == 1 and factors[0][1] == 1:
-            known = self._polynomials.get(id(factors[0][0]))
-            above = self.polynomial(factors[0][0]) if known is None else known
+            above = self.polynomial(factors[0][0])
         else:
             for factor, exponent in factors:
-                step = self._polynomials.get(id(factor)) or self.polynomial(factor)
+                step = self.polynomial(factor)
                 if exponent > 0:
                     above = self.multiply(above, step if exponent == 1 else self.power(step, exponent))
                 else:
