@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import sympy
 
 from symflex.algebra import LAPLACE
-from symflex.expressions import FUNCTIONS, Call, Expression, fold
+from symflex.expressions import FUNCTIONS, Call, Expression, Name, fold, substitute
 from symflex.model.units import exact_expression
 from symflex.state_space import not_rational
 from symflex.transfer import BoundTransferFunction
