@@ -47,8 +47,6 @@ def _in_order_of_definition(form: PrintedForm) -> list[tuple[str, Expression]]:
     return [(name, lines[name]) for name in TopologicalSorter(graph).static_order()]
 
 
-def derive_document(
-    entries: Sequence[tuple[AnyTransferFunction, PrintedForm]],
-) -> dict[str, object]:
+def derive_document(entries: Sequence[tuple[AnyTransferFunction, PrintedForm]]) -> dict[str, object]:
     """Return the document ``symflex derive --json`` prints."""
     return {"schema": SCHEMA, "transfer_functions": [derive_json(tf, form) for tf, form in entries]}

@@ -31,7 +31,6 @@ if TYPE_CHECKING:
 Place = Literal["origin", "imaginary axis", "real axis", "plane"]
 
 SCHEMA: Final = "symflex.report-facts/1"
-TRUNCATED_MODES: Final = 5
 
 
 @dataclass(frozen=True, slots=True)
@@ -254,7 +253,6 @@ class ModelFacts:
     source: str = ""
     compliances: tuple[Compliance, ...] = ()  # what gives way in it
     is_distributed: bool = False  # it has infinitely many modes
-    has_signals: bool = False  # it holds signals, blocks or sources besides its structure
     functions: tuple[TransferFacts, ...] = ()  # of its transfer functions that could be bound to numbers
     # Printed formulas, "OUT/IN", their verdicts, and what should be changed in them, in words.
     audits: tuple[tuple[str, str, str], ...] = ()
@@ -302,14 +300,7 @@ def _loop_json(loop: LoopFacts) -> dict[str, object]:
 
 def bare_facts(stem: str, model: Model) -> ModelFacts:
     """Return what a model says of itself, without anything computed."""
-    return ModelFacts(
-        stem,
-        model.title,
-        model.source,
-        compliances(model),
-        is_distributed=model.is_distributed,
-        has_signals=bool(model.signals or model.blocks),
-    )
+    return ModelFacts(stem, model.title, model.source, compliances(model), model.is_distributed)
 
 
 def facts_of(study: Study) -> ModelFacts:

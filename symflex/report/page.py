@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import html
 import re
+from importlib import resources
 from typing import TYPE_CHECKING, Final, assert_never
 
 from symflex.print.mathml import math_element
@@ -26,7 +27,6 @@ from symflex.report.document import (
     Section,
     Table,
 )
-from symflex.report.style import STYLE
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -53,6 +53,7 @@ _NAMESPACES: Final = re.compile(r'\sxmlns(?::\w+)?="[^"]*"')
 
 def report_page(report: Report) -> str:
     """Return a report as HTML."""
+    style = resources.files("symflex.report").joinpath("page.css").read_text(encoding="utf-8")
     byline = " · ".join(filter(None, (report.subtitle, report.date)))
     parts = [
         "<!DOCTYPE html>",
@@ -65,7 +66,7 @@ def report_page(report: Report) -> str:
         '<meta http-equiv="Content-Security-Policy" content="default-src \'none\'; style-src '
         "'unsafe-inline'\">",
         f"<title>{_escape(report.title)}</title>",
-        f"<style>{STYLE}</style>",
+        f"<style>\n{style}</style>",
         "</head>",
         '<body id="top">',
         '<a class="skip" href="#models">To the results</a>',

@@ -15,14 +15,7 @@ from time import monotonic
 from typing import TYPE_CHECKING, Final
 
 from symflex.budget import TIME_OVER, Budget, entered_budget
-from symflex.errors import (
-    BudgetError,
-    Diagnostic,
-    SpecError,
-    SymflexError,
-    UncertifiedError,
-    UsageError,
-)
+from symflex.errors import BudgetError, Diagnostic, SpecError, SymflexError, UncertifiedError, UsageError
 from symflex.errors.diagnostic import printable
 from symflex.report.chapter import Chapter, chapter_of, failed_chapter
 from symflex.report.claims import CLAIMS, claim_section, is_claims, publication_of, read_claims
@@ -388,12 +381,7 @@ def _overview(
         else:
             mark = Badge("not certified", "bad") if functions else Badge("no numbers", "quiet")
         rows.append(
-            (
-                (PageLink(c.section.title, f"#{c.stem}"),),
-                (c.facts.source or "–",),
-                (mark,),
-                (_stability(c),),
-            )
+            ((PageLink(c.section.title, f"#{c.stem}"),), (c.facts.source or "–",), (mark,), (_stability(c),))
         )
     heads = columns("Model", "Source", ("Poles and zeros", "plain"), ("Stability", "plain"))
     blocks.append(Table(heads, tuple(rows)))

@@ -15,7 +15,7 @@ from symflex.print.forms.hyperbolic import hyperbolic_form
 from symflex.print.forms.kept import with_definitions
 from symflex.print.forms.nested import nested_form, step_names
 from symflex.print.forms.polynomial import constant_form, factored_form, monic_form, polynomial_form
-from symflex.print.forms.printed import Arrange, PrintedForm, counts_of, forms_of
+from symflex.print.forms.printed import Arrange, PrintedForm, counts_of, forms_of, require
 from symflex.transfer import NestedTransferFunction
 
 if TYPE_CHECKING:
@@ -27,9 +27,10 @@ if TYPE_CHECKING:
 def _later(name: str) -> Arrange:
     """Return a form whose module is imported when it is asked for, as few prints need these."""
 
-    def form(tf: TransferFunction, digits: int) -> PrintedForm:
+    def form(*arguments: object) -> PrintedForm:
+        """Arrange a transfer function as the function of that name in its module says."""
         made: Arrange = getattr(import_module(f"symflex.print.forms.{name}"), f"{name}_form")
-        return made(tf, digits)
+        return made(*arguments)
 
     return form
 
@@ -47,6 +48,8 @@ FORMS: dict[str, Arrange] = {
     "frequency": _later("frequency"),
 }
 
+DECIMAL_FORMS = ("zpk",)
+"""Those that print decimals, of so many digits as they are told."""
 LARGE = 300
 """Number of expanded terms from which only the closed form is tried: no expanded print is shorter."""
 CANDIDATES = ("definitions", "factored", "polynomial")
@@ -84,7 +87,9 @@ def print_form(tf: AnyTransferFunction, form: str | None = None, digits: int = 6
 
 
 def _made(tf: TransferFunction, form: str, digits: int) -> PrintedForm:
-    return with_definitions(tf, FORMS[form](tf, digits))
+    require(tf, form)
+    arguments = (tf, digits) if form in DECIMAL_FORMS else (tf,)
+    return with_definitions(tf, FORMS[form](*arguments))
 
 
 def print_forms(

@@ -335,9 +335,7 @@ def _terms(polynomial: fmpz_mpoly) -> dict[tuple[int, ...], int]:
     return {tuple(map(int, m)): int(c) for m, c in polynomial.terms()}
 
 
-def _pull_content(
-    terms: dict[tuple[int, ...], int],
-) -> tuple[tuple[int, ...], dict[tuple[int, ...], int]]:
+def _pull_content(terms: dict[tuple[int, ...], int]) -> tuple[tuple[int, ...], dict[tuple[int, ...], int]]:
     """Return the common monomial and the terms without it."""
     content = tuple(min(column) for column in zip(*terms, strict=True))
     return content, {tuple(map(sub, m, content)): n for m, n in terms.items()}

@@ -22,14 +22,13 @@ SMALL = 200
 """Number of terms up to which every arrangement is tried."""
 
 
-def definitions_form(tf: TransferFunction, digits: int) -> PrintedForm:
+def definitions_form(tf: TransferFunction) -> PrintedForm:
     """Return the shortest print that keeps sums of the network and definitions closed.
 
     Numerator and denominator each have two candidates, and the shorter one is taken: the elimination's own
     closed form, and the expanded polynomial rewritten in the definitions by exact division. Functions with
     kernels are printed as in the hyperbolic form.
     """
-    del digits
     if tf.is_distributed:
         return in_kernels(tf, "definitions", tf.ratio)
     if tf.closed is not None and _is_large(tf):

@@ -39,7 +39,7 @@ from symflex.print.forms.notation import (
     speed_squared,
     wave_times_length,
 )
-from symflex.print.forms.printed import PrintedForm, require_formula
+from symflex.print.forms.printed import PrintedForm
 from symflex.print.forms.products import ProductPrinter, shortest_sides
 
 if TYPE_CHECKING:
@@ -53,15 +53,12 @@ LONGEST_ARGUMENT = 10
 """Characters of what is printed within cosh, sinh, cos and sin: ``beta_2*l_2``, ``beta*l/2``."""
 
 
-def frequency_form(tf: TransferFunction, digits: int) -> PrintedForm:
+def frequency_form(tf: TransferFunction) -> PrintedForm:
     """Return the function of ``omega = s/j``, each sum split into its real and its imaginary part.
 
     The expression grammar has no imaginary unit: it stands as a name, ``j`` where that is free, with the line
-    ``j = sqrt(-1)``. With the line of omega the form holds for every complex s, as every form does. Raises
-    UsageError: SF902 where the exponents of field equations have no formula.
+    ``j = sqrt(-1)``. With the line of omega the form holds for every complex s, as every form does.
     """
-    del digits
-    require_formula(tf, "frequency")
     page = _FrequencyPage(tf)
     return page.form()
 

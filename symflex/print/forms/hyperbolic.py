@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from symflex.print.forms.arrange import Arranger
 from symflex.print.forms.kept import KeptDefinitions
 from symflex.print.forms.notation import Naming, Notation, constant_symbols, notation_of, wavenumber_laws
-from symflex.print.forms.printed import PrintedForm, require_kernels
+from symflex.print.forms.printed import PrintedForm
 from symflex.print.forms.products import ProductPrinter, shortest_sides
 
 if TYPE_CHECKING:
@@ -15,13 +15,8 @@ if TYPE_CHECKING:
     from symflex.transfer import TransferFunction
 
 
-def hyperbolic_form(tf: TransferFunction, digits: int) -> PrintedForm:
-    """Return the function in cosh, sinh, cos and sin of ``q = mu*l``; delays are exponentials.
-
-    Raises UsageError: SF902 for a rational function.
-    """
-    del digits
-    require_kernels(tf, "hyperbolic")
+def hyperbolic_form(tf: TransferFunction) -> PrintedForm:
+    """Return the function in cosh, sinh, cos and sin of ``q = mu*l``; delays are exponentials."""
     return in_kernels(tf, "hyperbolic", tf.ratio)
 
 

@@ -19,7 +19,7 @@ from symflex.print.forms.notation import (
     reachable,
     wavenumber_laws,
 )
-from symflex.print.forms.printed import PrintedForm, require_kernels
+from symflex.print.forms.printed import PrintedForm
 from symflex.print.forms.products import ProductPrinter, shortest_sides
 
 if TYPE_CHECKING:
@@ -27,16 +27,13 @@ if TYPE_CHECKING:
     from symflex.transfer import TransferFunction
 
 
-def krylov_form(tf: TransferFunction, digits: int) -> PrintedForm:
+def krylov_form(tf: TransferFunction) -> PrintedForm:
     """Return the function in ``K_0, K_1, ...`` of the lengths, solutions along x for unit initial data.
 
     For a beam ``K_0 = cosh(q)*cos(q)``, ``K_1 = (cosh(q)*sin(q) + sinh(q)*cos(q))/(2*mu)``, ...; for a rod
     ``K_0 = cosh(q)``, ``K_1 = sinh(q)/gamma``. Where the exponents of field equations have no formula, the
-    solutions and their derivatives at the ends stand as ``h(l)``, ``h'(l)``. Raises UsageError: SF902 for a
-    rational function.
+    solutions and their derivatives at the ends stand as ``h(l)``, ``h'(l)``.
     """
-    del digits
-    require_kernels(tf, "krylov")
     if tf.is_nameless:
         return in_kernels(tf, "krylov", tf.ratio)
     change, value = in_krylov_functions(tf.ratio.ring, tf.kernels, tf.ratio)

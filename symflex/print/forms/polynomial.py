@@ -11,7 +11,7 @@ from symflex.print.forms.arrange import Arranger, coefficients
 from symflex.print.forms.hyperbolic import collected_form, in_kernels
 from symflex.print.forms.kept import KeptDefinitions
 from symflex.print.forms.notation import constant_symbols
-from symflex.print.forms.printed import PrintedForm, require_rational
+from symflex.print.forms.printed import PrintedForm
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -21,14 +21,13 @@ if TYPE_CHECKING:
     from symflex.transfer import TransferFunction
 
 
-def polynomial_form(tf: TransferFunction, digits: int) -> PrintedForm:
+def polynomial_form(tf: TransferFunction) -> PrintedForm:
     """Return numerator and denominator by descending powers of s, coefficients collected and factored.
 
     Functions of s stand among the coefficients.
     """
     if tf.is_distributed:
         return collected_form(tf)
-    del digits
     arranger = _arranger(tf)
     return PrintedForm(
         "polynomial",
@@ -42,28 +41,21 @@ def _arranger(tf: TransferFunction) -> Arranger:
     return Arranger.plain(ring, constant_symbols(tf), (), KeptDefinitions.of(tf, ring))
 
 
-def monic_form(tf: TransferFunction, digits: int) -> PrintedForm:
-    """Return the polynomial form divided by the denominator's leading coefficient.
-
-    Raises UsageError: SF902 for a function with kernels.
-    """
-    del digits
+def monic_form(tf: TransferFunction) -> PrintedForm:
+    """Return the polynomial form divided by the denominator's leading coefficient."""
     return _normalised(tf, "monic", max)
 
 
-def constant_form(tf: TransferFunction, digits: int) -> PrintedForm:
+def constant_form(tf: TransferFunction) -> PrintedForm:
     """Return the polynomial form divided by the coefficient of the denominator's lowest power of s.
 
-    Without poles at 0 the denominator's constant term is 1, and that of the numerator the static gain. Raises
-    UsageError: SF902 for a function with kernels.
+    Without poles at 0 the denominator's constant term is 1, and that of the numerator the static gain.
     """
-    del digits
     return _normalised(tf, "constant", min)
 
 
 def _normalised(tf: TransferFunction, name: str, choose: Callable[[Iterable[int]], int]) -> PrintedForm:
     """Return the polynomial form divided by the coefficient of one of the denominator's powers of s."""
-    require_rational(tf, name)
     ring = tf.ratio.ring
     arranger = _arranger(tf)
     den = tf.ratio.denominator().expand()
@@ -90,12 +82,11 @@ def _divided(arranger: Arranger, ring: Ring, polynomial: fmpz_mpoly, divisor: fm
     return sum_of(terms) if terms else number(0)
 
 
-def factored_form(tf: TransferFunction, digits: int) -> PrintedForm:
+def factored_form(tf: TransferFunction) -> PrintedForm:
     """Return numerator and denominator as products of irreducible factors over the rationals.
 
     Of functions with kernels the trigonometric factors too.
     """
-    del digits
     if tf.is_distributed:
         from symflex.print.forms.irreducible import irreducible_kernels  # only with beams
 

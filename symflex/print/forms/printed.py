@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, Protocol
+from typing import TYPE_CHECKING, Final
 
 from symflex.algebra import LAPLACE
 from symflex.errors import Diagnostic, UsageError
@@ -51,13 +52,8 @@ class PrintedForm:
         return name if self.argument == S else f"{name}({format_expression(self.argument)})"
 
 
-class Arrange(Protocol):
-    """A function that arranges a transfer function."""
-
-    def __call__(self, tf: TransferFunction, digits: int) -> PrintedForm:
-        """Return the arranged form; ``digits`` is used by forms that print decimals."""
-        ...
-
+Arrange = Callable[..., PrintedForm]
+"""A function that arranges a transfer function; one that prints decimals takes their digits, too."""
 
 RATIONAL = ("definitions", "factored", "polynomial", "monic", "constant", "zpk", "frequency")
 """The forms of a rational function."""
@@ -65,6 +61,8 @@ DISTRIBUTED = ("hyperbolic", "factored", "krylov", "vaughan", "frequency", "poly
 """The forms of a function with kernels of wavenumbers that have a formula."""
 WITHOUT_FORMULA = ("hyperbolic", "krylov", "factored", "polynomial")
 """The forms of a function whose wavenumbers have none."""
+KERNELS_ONLY, RATIONAL_ONLY = ("hyperbolic", "krylov", "vaughan"), ("monic", "constant", "zpk")
+FORMULA_ONLY = ("vaughan", "frequency")
 
 
 def forms_of(tf: TransferFunction) -> tuple[str, ...]:
@@ -74,37 +72,21 @@ def forms_of(tf: TransferFunction) -> tuple[str, ...]:
     return WITHOUT_FORMULA if tf.is_nameless else DISTRIBUTED
 
 
-def refuse(tf: TransferFunction, form: str, reason: str) -> UsageError:
-    """Return the error to raise."""
+def require(tf: TransferFunction, form: str) -> None:
+    """Refuse a form that a transfer function has not.
+
+    Raises UsageError: SF902.
+    """
+    if form in KERNELS_ONLY and not tf.is_distributed:
+        reason = "it is a rational function of s"
+    elif form in RATIONAL_ONLY and tf.is_distributed:
+        reason = "it is not a rational function of s"
+    elif form in FORMULA_ONLY and tf.is_nameless:
+        reason = "the exponents of its field equations have no formula"
+    else:
+        return
     hint = f"forms of {tf.name}: " + ", ".join(forms_of(tf))
-    return UsageError(Diagnostic("SF902", f"{tf.name} has no {form} form: {reason}", None, hint))
-
-
-def require_kernels(tf: TransferFunction, form: str) -> None:
-    """Refuse a rational function.
-
-    Raises UsageError SF902.
-    """
-    if not tf.is_distributed:
-        raise refuse(tf, form, "it is a rational function of s")
-
-
-def require_rational(tf: TransferFunction, form: str) -> None:
-    """Refuse a function with kernels.
-
-    Raises UsageError SF902.
-    """
-    if tf.is_distributed:
-        raise refuse(tf, form, "it is not a rational function of s")
-
-
-def require_formula(tf: TransferFunction, form: str) -> None:
-    """Refuse a function whose wavenumbers have no formula.
-
-    Raises UsageError SF902.
-    """
-    if tf.is_nameless:
-        raise refuse(tf, form, "the exponents of its field equations have no formula")
+    raise UsageError(Diagnostic("SF902", f"{tf.name} has no {form} form: {reason}", None, hint))
 
 
 def counts_of(tf: TransferFunction) -> tuple[int | None, int | None]:

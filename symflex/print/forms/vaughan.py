@@ -40,7 +40,7 @@ from symflex.print.forms.notation import (
     wave_times_length,
     wavenumber_laws,
 )
-from symflex.print.forms.printed import PrintedForm, require_formula, require_kernels
+from symflex.print.forms.printed import PrintedForm
 from symflex.print.forms.products import ProductPrinter, Sides, length
 
 if TYPE_CHECKING:
@@ -55,16 +55,12 @@ TRADE = 4
 """Characters that writing c_0 for a power of the wavenumber must save."""
 
 
-def vaughan_form(tf: TransferFunction, digits: int) -> PrintedForm:
+def vaughan_form(tf: TransferFunction) -> PrintedForm:
     """Return the function in ``S = exp(-q)*sin(q)`` and ``C = exp(-q)*cos(q)`` of ``q = sqrt(T*p)``.
 
     Here ``T = l^2/2`` and ``p = s/a``; with losses p is ``sqrt(c_0)``, which then takes the place of ``s/a``.
-    Rods, shafts, strings and beams with shear or axial force are written in ``D = exp(-gamma*l)``. Raises
-    UsageError: SF902 for a rational function, and where the exponents of field equations have no formula.
+    Rods, shafts, strings and beams with shear or axial force are written in ``D = exp(-gamma*l)``.
     """
-    del digits
-    require_kernels(tf, "vaughan")
-    require_formula(tf, "vaughan")
     page = _DecayingPage(tf)
     _, sides = min(
         ((cost + length(sides := page.sides(value)), sides) for value, cost in page.variants()),

@@ -9,7 +9,7 @@ from flint import arb, fmpz
 
 from symflex.algebra import LAPLACE
 from symflex.expressions import Expression, Name, number, power, product_of, sum_of
-from symflex.print.forms.printed import PrintedForm, require_rational
+from symflex.print.forms.printed import PrintedForm
 from symflex.transfer import EnclosedTransferFunction, bind
 
 if TYPE_CHECKING:
@@ -25,11 +25,10 @@ BITS_PER_DIGIT = 4
 def zpk_form(tf: TransferFunction, digits: int) -> PrintedForm:
     """Return gain times real first- and second-order factors, in decimals of the given digits.
 
-    Raises ModelError: SF229 when a parameter has no value; UsageError: SF902 for a function with kernels.
+    Raises ModelError: SF229 when a parameter has no value.
     """
     from symflex.roots.locate import locate  # imports numpy
 
-    require_rational(tf, "zpk")
     bound = bind(tf)
     if bound.ratio.is_zero:
         return PrintedForm("zpk", number(0), number(1))

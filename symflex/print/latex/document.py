@@ -16,14 +16,7 @@ from symflex.print.forms import counts_of, with_hidden
 from symflex.print.latex.equation import equation_label, form_labels, ratio_latex, transfer_function_latex
 from symflex.print.latex.expression import Writer
 from symflex.print.latex.page import COLUMNS_MM, preamble
-from symflex.print.latex.table import (
-    KINDS,
-    VALUE_DIGITS,
-    mode_table,
-    parameter_table,
-    root_table,
-    roots_of,
-)
+from symflex.print.latex.table import KINDS, VALUE_DIGITS, mode_table, parameter_table, root_table, roots_of
 from symflex.print.latex.text import escape_text
 from symflex.print.latex.units import unit_latex
 from symflex.print.text import region_text
@@ -199,7 +192,6 @@ def _blocks(
         yield _table(mode_table(maps, width_mm=width_mm), "modes", "Modes")
 
 
-_PROVED: Final = "Every pole and zero listed is enclosed to the digits printed, and their count is proved."
 _BEFORE_TABLE: Final = "\n\n\\nopagebreak\\medskip\n"
 
 

@@ -87,11 +87,7 @@ def ratio_latex(tf: AnyTransferFunction) -> str:
 
 
 def transfer_function_latex(
-    tf: AnyTransferFunction,
-    form: PrintedForm,
-    *,
-    width_mm: float | None,
-    label: str = "",
+    tf: AnyTransferFunction, form: PrintedForm, *, width_mm: float | None, label: str = ""
 ) -> str:
     r"""Return a transfer function as a numbered display, with its definitions in ``where`` lines.
 
@@ -212,11 +208,7 @@ def _right_side(form: PrintedForm, writer: Writer) -> tuple[str, float]:
 
 
 def _formula(
-    tf: AnyTransferFunction,
-    form: PrintedForm,
-    writer: Writer,
-    width: float | None,
-    name: str,
+    tf: AnyTransferFunction, form: PrintedForm, writer: Writer, width: float | None, name: str
 ) -> str:
     left, left_width = _left_side(tf, form, writer)
     right, right_width = _right_side(form, writer)

@@ -176,14 +176,7 @@ class _Filler:
         self._room = self._rest(glue.depth) - glue.start_width
 
     def _split(
-        self,
-        glue: Glue,
-        left: Edge,
-        node: Expression,
-        bare: Written,
-        right: Edge,
-        depth: int,
-        hang: int,
+        self, glue: Glue, left: Edge, node: Expression, bare: Written, right: Edge, depth: int, hang: int
     ) -> None:
         match node:
             case Sum(terms=terms):

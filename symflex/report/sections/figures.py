@@ -21,10 +21,7 @@ MOST_CURVES: Final = 4
 WORDS: Final = {"bode": "Bode plot", "poles_zeros": "Poles and zeros", "modes": "Mode shapes"}
 
 
-LOOP_WORDS: Final = {
-    "locus": "Root locus for the gain",
-    "nyquist": "Nyquist plot of the loop with the gain",
-}
+LOOP_WORDS: Final = {"locus": "Root locus for the gain", "nyquist": "Nyquist plot of the loop with the gain"}
 
 
 def figure_section(study: Study) -> ChapterPart | None:
