@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from symflex.analysis.modes import DistributedShape, EnclosedModeShape
     from symflex.model import Model, PlacedElement
 
-TURNING: Final = ("shaft",)
-INERTIAS: Final = ("mass", "inertia", "rigid_body")
 AT_REST: Final = 1e-9
 
 
@@ -108,7 +106,7 @@ def _runs_of_elements(model: Model, parts: dict[str, DistributedShape]) -> Itera
     carrying = {
         reference.node
         for use in model.elements
-        if use.element.type_name in INERTIAS
+        if use.element.is_inertia
         for _, references in use.nodes
         for reference in references
     }
@@ -125,8 +123,8 @@ def _runs_of_elements(model: Model, parts: dict[str, DistributedShape]) -> Itera
             loaded += [(n, x) for n, x in ((first, offset), (second, offset + length)) if n in carrying]
             offset += length
             ends.append(offset)
-        kind = chain[0][0].element.type_name
-        yield Run(tuple(segments), tuple(ends), tuple(dict.fromkeys(loaded)), kind in TURNING)
+        is_turning = chain[0][0].element.ports[0].domain == "rotation"
+        yield Run(tuple(segments), tuple(ends), tuple(dict.fromkeys(loaded)), is_turning)
 
 
 def _chain(first: PlacedElement, lines: Sequence[PlacedElement]) -> list[tuple[PlacedElement, bool]]:
@@ -143,7 +141,7 @@ def _chain(first: PlacedElement, lines: Sequence[PlacedElement]) -> list[tuple[P
         if node == "ground" or len(others) != 1:
             return None
         is_folded = _ends(others[0]).index(node) == _ends(use).index(node)
-        return None if is_folded and kind == "beam" else others[0]
+        return None if is_folded and use.element.compliance == "bending" else others[0]
 
     start, node = first, _ends(first)[0]
     seen = {start.name}

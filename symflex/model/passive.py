@@ -17,14 +17,6 @@ if TYPE_CHECKING:
 
     from symflex.model.model import ExactValue, Model, PlacedElement
 
-PASSIVE = frozenset(
-    "mass spring damper inertia torsion_spring rotary_damper rigid_body rigid_link massless_beam fixed "
-    "slider pin beam rod shaft string resistor inductor capacitor dc_motor transformer gyrator".split()
-)
-SOURCES = frozenset("force_source torque_source voltage_source current_source".split())
-OF_ANY_SIGN = frozenset({"cg", "length", "ratio", "k_t", "k_e"})
-"""Levers and couplings: what goes in at one side comes out at the other."""
-
 
 def is_passive(model: Model, values: Iterable[tuple[str, ExactValue]]) -> bool:
     """Tell whether it is proved that a model supplies no energy.
@@ -61,13 +53,14 @@ def is_passive(model: Model, values: Iterable[tuple[str, ExactValue]]) -> bool:
 
 def _is_passive(use: PlacedElement, line: Line, inputs: set[str]) -> bool:
     element, given = use.element, dict(use.values)
-    if element.type_name in SOURCES:
+    if element.is_source:
         # One that follows an input alone is a support or a free node where the input rests.
         known = inputs | {"pi", *line.values}
         return all(
             isinstance(each, Name) and each.name in known for value in given.values() for each in names(value)
         )
-    if element.type_name not in PASSIVE or given.get("k_t") != given.get("k_e"):
+    law = element.passive
+    if law is None or any(given[name] != given[law.equal[0]] for name in law.equal):
         return False
     signs = {name: line.sign(value) for name, value in given.items()}
-    return all(sign is not None and (sign >= 0 or name in OF_ANY_SIGN) for name, sign in signs.items())
+    return all(sign is not None and (sign >= 0 or name in law.of_any_sign) for name, sign in signs.items())

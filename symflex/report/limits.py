@@ -15,7 +15,6 @@ from symflex import pipeline
 from symflex.algebra import LAPLACE
 from symflex.expressions import Name, product_of
 from symflex.model import ModelParameter, with_numbers
-from symflex.report.structure import STIFFNESS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -33,7 +32,6 @@ RigidCounts = tuple[int | None, int]
 """The same; no zeros are counted where the function itself vanishes, or grows without bound."""
 
 RESONANCES: Final = frozenset(("omega_p", "omega_z"))
-DAMPERS: Final = frozenset(("damper", "rotary_damper"))
 
 
 def rigid_counts(model: Model) -> Mapping[tuple[str, str], RigidCounts]:
@@ -69,8 +67,7 @@ def rigid_counts(model: Model) -> Mapping[tuple[str, str], RigidCounts]:
     """
 
     def stiffened(use: PlacedElement) -> frozenset[str]:
-        key = STIFFNESS.get(use.element.type_name)
-        return frozenset((key,)) if key else frozenset()
+        return frozenset(filter(None, (use.element.stiffness,)))
 
     def tuned(use: PlacedBlock) -> frozenset[str]:
         is_resonance = use.block is not None and use.block.type_name == "resonance"
@@ -86,7 +83,7 @@ def undamped_counts(model: Model) -> Mapping[tuple[str, str], Counts]:
     """
 
     def lossy(use: PlacedElement) -> frozenset[str]:
-        return frozenset("b") if use.element.type_name in DAMPERS else frozenset()
+        return frozenset(filter(None, (use.element.damping,)))
 
     found = _limits(model, lossy, lambda _: frozenset(), min)
     return {pair: (zeros, poles) for pair, (zeros, poles) in found.items() if zeros is not None}

@@ -22,17 +22,12 @@ if TYPE_CHECKING:
     from symflex.algebra import Ring
     from symflex.analysis.explanation import ZeroExplanation
     from symflex.expressions import Expression
+    from symflex.model import PlacedElement
     from symflex.transfer import TransferFunction
 
 Kind = Literal["always", "never", "if positive", "as given", "unknown"]
 Sign = Literal["positive", "negative", "indefinite"]
 
-_PASSIVE: Final = frozenset(
-    (
-        "beam damper fixed inertia mass massless_beam pin rigid_body rigid_link rod rotary_damper shaft "
-        "slider spring string torsion_spring transformer"
-    ).split()
-)
 _QUADRATIC: Final = 2
 
 
@@ -149,9 +144,15 @@ def _is_passive(model: Model) -> bool:
         not model.signals
         and not model.blocks
         and not model.fields
-        and all(use.element.type_name in _PASSIVE for use in model.elements)
+        and all(map(_is_passive_mechanism, model.elements))
         and all(p.assume != "real" for p in model.parameters)
     )
+
+
+def _is_passive_mechanism(use: PlacedElement) -> bool:
+    """Tell whether an element supplies no energy for any positive values of its parameters."""
+    element = use.element
+    return element.passive is not None and all(port.domain != "electrical" for port in element.ports)
 
 
 def _has_one_scale(tf: TransferFunction) -> bool:

@@ -21,12 +21,6 @@ if TYPE_CHECKING:
 Place = Literal["base", "transmission", "link", "contact"]
 PLACES: Final[tuple[Place, ...]] = ("base", "transmission", "link", "contact")
 BENDING_ORDER: Final = 4
-STIFFNESS: Final = {"spring": "k", "torsion_spring": "k", "massless_beam": "EI"}
-"""Types of elements that give way without mass, and the parameter that says how little."""
-
-_BENDING: Final = frozenset(("beam", "massless_beam"))
-_COMPLIANT: Final = _BENDING | {"spring", "torsion_spring", "rod", "shaft", "string"}
-_RIGID: Final = frozenset(("rigid_link", "transformer", "gyrator", "dc_motor"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,8 +50,8 @@ def compliances(model: Model) -> tuple[Compliance, ...]:
     """
     found = []
     for use in model.elements:
-        if use.element.type_name in _COMPLIANT:
-            is_bending = use.element.type_name in _BENDING
+        if use.element.compliance:
+            is_bending = use.element.compliance == "bending"
             is_grounded = any(r.is_ground for _, references in use.nodes for r in references)
             place = _place(is_bending, is_grounded=is_grounded)
             if is_grounded and _is_felt(model, use):
@@ -81,7 +75,7 @@ def is_colocated(model: Model, output: Output, source: Input) -> bool | None:
     if not starts or not ends:
         return None
     joined = set(starts)
-    groups = [_places(use) for use in model.elements if use.element.type_name in _RIGID]
+    groups = [_places(use) for use in model.elements if use.element.moves_as_one]
     groups += [{_place_of(model, value) for value in group} for group in joined_values(model)]
     grown = True
     while grown:

@@ -195,6 +195,24 @@ def test_every_quantity_it_offers_can_be_an_output(kind):
         assert output.dimension == unit_of(wanted).dimension
 
 
+@pytest.mark.parametrize("kind", [kind for kind, element in ELEMENTS.items() if element.passive])
+def test_what_is_called_passive_only_takes_energy_in(kind):
+    """A passive port's flow over effort has no negative real part where Re(s) > 0 (Brune 1931)."""
+    (tf,) = pipeline.derive_all(pipeline.loads(element_model(kind)))
+    bound = pipeline.bind(tf)
+    for s in (0.1 + 0.3j, 1 + 2j, 3 - 1j, 0.01 + 5j, 0.5 + 0j):
+        flow = complex(bound(s)) * (1 if MODELS[kind][1] == "current" else s)
+        assert flow.real >= -1e-12 * abs(flow)
+
+
+@EVERY
+def test_what_is_said_of_its_parameters_names_them(kind):
+    element = ELEMENTS[kind]
+    law = element.passive
+    said = {element.stiffness, element.damping, *(law.of_any_sign + law.equal if law else ())} - {""}
+    assert said <= {p.name for p in element.parameters}
+
+
 @EVERY
 def test_the_command_line_lists_it_with_every_key(kind, capsys):
     assert run(["elements"]) == 0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from symflex.library.elements.element import Port
+from symflex.library.elements.element import Passivity, Port
 from symflex.library.elements.line import LineElement
 from symflex.library.parameter import ParameterPort
 
@@ -29,6 +29,8 @@ class Rod(LineElement):
     )
     through = ("f",)
     ends = ("across",)
+    passive = Passivity()
+    compliance = "stretching"
 
 
 class Shaft(LineElement):
@@ -54,6 +56,8 @@ class Shaft(LineElement):
     )
     through = ("tau",)
     ends = ("across",)
+    passive = Passivity()
+    compliance = "stretching"
 
 
 class String(LineElement):
@@ -77,3 +81,5 @@ class String(LineElement):
     )
     through = ("f",)
     ends = ("across",)
+    passive = Passivity()
+    compliance = "stretching"

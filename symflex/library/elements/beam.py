@@ -11,6 +11,7 @@ from symflex.library.elements.element import (
     EquationRow,
     Injection,
     LinearForm,
+    Passivity,
     Port,
     Stamp,
 )
@@ -54,6 +55,8 @@ class Beam(LineElement):
     choices = (Choice("theory", THEORIES, THEORIES[0], "a beam theory"),)
     through = ("f", "tau")
     ends = ("y", "theta")
+    passive = Passivity()
+    compliance = "bending"
 
     def theory(self, choices: Mapping[str, str]) -> str:
         """Return the field theory chosen."""
@@ -77,6 +80,9 @@ class MasslessBeam(Element):
         ParameterPort("l", "m", "a length"),
     )
     through = ("f", "tau")
+    passive = Passivity()
+    compliance = "bending"
+    stiffness = "EI"
 
     def stamp(self, use: ElementUse) -> Stamp:
         """Contribute the end force and moment and the two flexibility rows."""

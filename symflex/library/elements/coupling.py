@@ -12,6 +12,7 @@ from symflex.library.elements.element import (
     EquationRow,
     Injection,
     LinearForm,
+    Passivity,
     Port,
     Stamp,
 )
@@ -48,6 +49,8 @@ class Transformer(TwoPort):
     type_name = "transformer"
     summary = "Gear, rack, screw, lever or electrical transformer: to = ratio * from"
     parameters = (ParameterPort("ratio", "", "a transformer ratio"),)
+    passive = Passivity(of_any_sign=("ratio",))
+    moves_as_one = True
 
     def unit_of(self, quantity: str, domains: Mapping[str, Placing]) -> str:
         """Return the ratio's unit, that of ``to`` over that of ``from``."""
@@ -88,6 +91,8 @@ class Gyrator(TwoPort):
     type_name = "gyrator"
     summary = "Gyrator: effort at one port proportional to flow at the other"
     parameters = (ParameterPort("ratio", "", "a gyrator ratio"),)
+    passive = Passivity(of_any_sign=("ratio",))
+    moves_as_one = True
 
     def unit_of(self, quantity: str, domains: Mapping[str, Placing]) -> str:
         """Return the ratio's unit, effort at ``from`` over flow at ``to``."""

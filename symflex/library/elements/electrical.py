@@ -10,6 +10,7 @@ from symflex.library.elements.element import (
     EquationRow,
     Injection,
     LinearForm,
+    Passivity,
     Port,
     Stamp,
     two_terminal,
@@ -46,6 +47,7 @@ class Resistor(Element):
     ports = (Port("between", 2, "electrical", "the two terminals"),)
     parameters = (ParameterPort("R", "Ohm", "a resistance"),)
     through = ("i",)
+    passive = Passivity()
 
     def stamp(self, use: ElementUse) -> Stamp:
         """Contribute the current and its row ``R*i = v_a - v_b``."""
@@ -60,6 +62,7 @@ class Inductor(Element):
     ports = (Port("between", 2, "electrical", "the two terminals"),)
     parameters = (ParameterPort("L", "H", "an inductance"),)
     through = ("i",)
+    passive = Passivity()
 
     def stamp(self, use: ElementUse) -> Stamp:
         """Contribute the current and its row ``L*s*i = v_a - v_b``."""
@@ -74,6 +77,7 @@ class Capacitor(Element):
     ports = (Port("between", 2, "electrical", "the two terminals"),)
     parameters = (ParameterPort("C", "F", "a capacitance"),)
     through = ("i",)
+    passive = Passivity()
 
     def stamp(self, use: ElementUse) -> Stamp:
         """Contribute one branch, ``i = C*s*(v_a - v_b)``."""

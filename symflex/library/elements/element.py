@@ -159,6 +159,16 @@ class Choice:
 
 
 @dataclass(frozen=True, slots=True)
+class Passivity:
+    """What keeps an element from supplying energy: parameters that are not negative."""
+
+    # Parameters that may be negative, too: of levers and couplings, which give at one side what they take at
+    # the other.
+    of_any_sign: tuple[str, ...] = ()
+    equal: tuple[str, ...] = ()  # parameters that must be the same
+
+
+@dataclass(frozen=True, slots=True)
 class PortTerminal:
     """The across variables of one attached node, ``None`` where it is the reference.
 
@@ -201,7 +211,11 @@ class ElementUse:
 
 
 class Element(ABC):
-    """Base of every element. Subclasses are final, stateless and registered in ``ELEMENTS``."""
+    """Base of every element. Subclasses are final, stateless and registered in ``ELEMENTS``.
+
+    Proofs, reports and figures read here what they may take for granted of it, and where nothing is said they
+    take nothing for granted.
+    """
 
     type_name: ClassVar[str]
     summary: ClassVar[str]
@@ -209,6 +223,19 @@ class Element(ABC):
     parameters: ClassVar[tuple[ParameterPort, ...]] = ()
     choices: ClassVar[tuple[Choice, ...]] = ()
     through: ClassVar[tuple[str, ...]] = ()
+    passive: ClassVar[Passivity | None] = None
+    """``None`` where it is not known to be passive."""
+    is_source: ClassVar[bool] = False
+    """It supplies what its value says, and nothing where that rests."""
+    is_inertia: ClassVar[bool] = False
+    moves_as_one: ClassVar[bool] = False
+    """Where one of its nodes is, the others are."""
+    compliance: ClassVar[Literal["", "stretching", "bending"]] = ""
+    """How it gives way; torsion is stretching about an axis."""
+    stiffness: ClassVar[str] = ""
+    """Of what gives way without mass, the parameter with which it becomes rigid."""
+    damping: ClassVar[str] = ""
+    """Of a damper, the parameter without which there is none."""
 
     def unit_of(self, quantity: str, domains: Mapping[str, Placing]) -> str:
         """Return the SI unit of a parameter or through quantity, given the ports' domains."""

@@ -14,6 +14,7 @@ from symflex.library.elements.element import (
     EquationRow,
     Injection,
     LinearForm,
+    Passivity,
     Port,
     Stamp,
 )
@@ -41,6 +42,8 @@ class RigidBody(Element):
         ParameterPort("cg", "m", "a distance", "0"),
     )
     through = ("f", "tau")
+    passive = Passivity(of_any_sign=("cg",))
+    is_inertia = True
 
     def stamp(self, use: ElementUse) -> Stamp:
         """Contribute the inertial force and moment of the body."""
@@ -71,6 +74,8 @@ class RigidLink(Element):
     ports = (Port("between", 2, "planar", "the two ends, the second one 'length' further along x"),)
     parameters = (ParameterPort("length", "m", "a length"),)
     through = ("f", "tau")
+    passive = Passivity(of_any_sign=("length",))
+    moves_as_one = True
 
     def stamp(self, use: ElementUse) -> Stamp:
         """Contribute the force and moment carried and the two kinematic rows."""
@@ -118,6 +123,7 @@ class Fixed(Element):
     summary = "Support: the node does not move (planar: y = 0 and theta = 0)"
     ports = (Port("at", 1, "whole", "node that is held"),)
     through = ("f", "tau", "i")
+    passive = Passivity()
 
     def quantities(self, domains: Mapping[str, Placing]) -> tuple[str, ...]:
         """Return the reactions, by what the node is."""
@@ -139,6 +145,7 @@ class Slider(Element):
     summary = "Support: theta = 0, y free"
     ports = (Port("at", 1, "planar", "node whose slope is held"),)
     through = ("tau",)
+    passive = Passivity()
 
     def stamp(self, use: ElementUse) -> Stamp:
         """Contribute the reaction torque and the row ``theta = 0``."""
@@ -153,6 +160,7 @@ class Pin(Element):
     summary = "Support: y = 0, theta free"
     ports = (Port("at", 1, "planar", "node whose deflection is held"),)
     through = ("f",)
+    passive = Passivity()
 
     def stamp(self, use: ElementUse) -> Stamp:
         """Contribute the reaction force and the row ``y = 0``."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from symflex.library.elements.element import Element, ElementUse, Port, Stamp, two_terminal
+from symflex.library.elements.element import Element, ElementUse, Passivity, Port, Stamp, two_terminal
 from symflex.library.parameter import ParameterPort
 
 
@@ -14,6 +14,8 @@ class Inertia(Element):
     ports = (Port("at", 1, "rotation", "node that turns with the inertia"),)
     parameters = (ParameterPort("J", "kg*m^2", "a moment of inertia"),)
     through = ("tau",)
+    passive = Passivity()
+    is_inertia = True
 
     def stamp(self, use: ElementUse) -> Stamp:
         """Contribute one branch, ``tau = J*s^2*theta``."""
@@ -28,6 +30,9 @@ class TorsionSpring(Element):
     ports = (Port("between", 2, "rotation", "the two ends"),)
     parameters = (ParameterPort("k", "N*m/rad", "a torsional stiffness"),)
     through = ("tau",)
+    passive = Passivity()
+    compliance = "stretching"
+    stiffness = "k"
 
     def stamp(self, use: ElementUse) -> Stamp:
         """Contribute one branch, ``tau = k*(theta_a - theta_b)``."""
@@ -42,6 +47,8 @@ class RotaryDamper(Element):
     ports = (Port("between", 2, "rotation", "the two ends"),)
     parameters = (ParameterPort("b", "N*m*s/rad", "a rotary damping coefficient"),)
     through = ("tau",)
+    passive = Passivity()
+    damping = "b"
 
     def stamp(self, use: ElementUse) -> Stamp:
         """Contribute one branch, ``tau = b*s*(theta_a - theta_b)``."""

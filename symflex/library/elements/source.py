@@ -23,6 +23,8 @@ def _delivered(use: ElementUse, form: LinearForm) -> tuple[Injection, ...]:
 class ThroughSource(Element):
     """Base of the sources whose value is what they deliver."""
 
+    is_source = True
+
     def stamp(self, use: ElementUse) -> Stamp:
         """Contribute one injection, and its reaction where there is a second node."""
         (quantity,) = self.through
@@ -68,6 +70,7 @@ class VoltageSource(Element):
     ports = (Port("at", 1, "electrical", "node held at the voltage", pair="between"),)
     parameters = (ParameterPort("v", "V", "a voltage", signal=True),)
     through = ("i",)
+    is_source = True
 
     def stamp(self, use: ElementUse) -> Stamp:
         """Contribute the delivered current and the row ``v_node = v``."""

@@ -8,6 +8,7 @@ from symflex.library.elements.element import (
     EquationRow,
     Injection,
     LinearForm,
+    Passivity,
     Port,
     Stamp,
 )
@@ -34,6 +35,8 @@ class DcMotor(Element):
         ParameterPort("k_e", "V*s/rad", "a back-emf constant", "k_t"),
     )
     through = ("i", "tau")
+    passive = Passivity(of_any_sign=("k_t", "k_e"), equal=("k_t", "k_e"))
+    moves_as_one = True
 
     def stamp(self, use: ElementUse) -> Stamp:
         """Contribute the winding current, its row, and the torque on the shaft."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from symflex.library.elements.element import Element, ElementUse, Port, Stamp, two_terminal
+from symflex.library.elements.element import Element, ElementUse, Passivity, Port, Stamp, two_terminal
 from symflex.library.parameter import ParameterPort
 
 
@@ -14,6 +14,8 @@ class Mass(Element):
     ports = (Port("at", 1, "translation", "node that moves with the mass"),)
     parameters = (ParameterPort("m", "kg", "a mass"),)
     through = ("f",)
+    passive = Passivity()
+    is_inertia = True
 
     def stamp(self, use: ElementUse) -> Stamp:
         """Contribute one branch, ``f = m*s^2*x``."""
@@ -28,6 +30,9 @@ class Spring(Element):
     ports = (Port("between", 2, "translation", "the two ends"),)
     parameters = (ParameterPort("k", "N/m", "a stiffness"),)
     through = ("f",)
+    passive = Passivity()
+    compliance = "stretching"
+    stiffness = "k"
 
     def stamp(self, use: ElementUse) -> Stamp:
         """Contribute one branch, ``f = k*(x_a - x_b)``."""
@@ -42,6 +47,8 @@ class Damper(Element):
     ports = (Port("between", 2, "translation", "the two ends"),)
     parameters = (ParameterPort("b", "N*s/m", "a damping coefficient"),)
     through = ("f",)
+    passive = Passivity()
+    damping = "b"
 
     def stamp(self, use: ElementUse) -> Stamp:
         """Contribute one branch, ``f = b*s*(x_a - x_b)``."""
