@@ -8,13 +8,14 @@ length are the kernels. Both are generators of the ring, with exact definitions 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 if TYPE_CHECKING:
-    from collections.abc import Container, Iterable
+    from collections.abc import Callable, Container, Iterable, Sequence
 
     from symflex.algebra.factored import Factored
 
+Value = TypeVar("Value", bound=Any)
 DispersionKind = Literal["exponential", "wave", "bending", "pair", "general"]
 KernelFunction = Literal["cosh", "sinh", "cos", "sin", "exp", "fundamental"]
 
@@ -42,6 +43,23 @@ class Dispersion:
     def order(self) -> int:
         """Order of the scalar differential equation in x."""
         return max(len(self.characteristic), 1)
+
+    def roots(self, c: Sequence[Value], square_root: Callable[[Value], Value]) -> dict[str, Value]:
+        """Return the wavenumbers by their names, given ``c_0, ...``, numbers or series.
+
+        Every branch of the square root serves, because functions are symmetric in them.
+        """
+        found: tuple[Value, ...] = ()
+        match self.kind:
+            case "wave":
+                found = (square_root(-c[0]),)
+            case "bending":
+                found = (square_root(square_root(c[0] / 4)),)
+            case "pair":
+                middle = -c[2] / 2
+                root = square_root(middle * middle - c[0])
+                found = (square_root(middle + root), square_root(middle - root))
+        return dict(zip(self.wavenumbers, found, strict=True))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

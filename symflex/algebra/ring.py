@@ -109,6 +109,14 @@ class Ring:
         check_expansion(polynomial, images, min(term_limit, memory_limit // self.bytes_of(1)))
         return polynomial.compose(*images, ctx=self.context)
 
+    def coefficients(self, polynomial: fmpz_mpoly, generator: int = 0) -> list[fmpz_mpoly]:
+        """Return the coefficients of ascending powers of one generator, over the same ring."""
+        parts: list[dict[tuple[int, ...], int]] = [{} for _ in range(degree_in(polynomial, generator) + 1)]
+        for monomial, coefficient in polynomial.terms():
+            rest = tuple(0 if i == generator else int(e) for i, e in enumerate(monomial))
+            parts[int(monomial[generator])][rest] = int(coefficient)
+        return [self.context.from_dict(part) for part in parts]
+
 
 def expanded_length(polynomial: fmpz_mpoly, lengths: Sequence[int]) -> int | None:
     """Return a bound on the terms of a polynomial whose generators are sums of some lengths.

@@ -104,7 +104,7 @@ def characteristic_loop(
     factors += [(h.polynomial, h.multiplicity, True) for h in tf.hidden]
     found: list[GainPolynomial] = []
     for factor, exponent, is_hidden in factors:
-        pieces = bind_polynomials(tf, bound, coefficients_of(factor, position, tf))
+        pieces = bind_polynomials(tf, bound, tuple(tf.ratio.ring.coefficients(factor, position)))
         found.append(GainPolynomial(pieces, exponent, is_hidden))
     return Loop(bound, gain, _rational(nominal), tuple(found))
 
@@ -129,15 +129,6 @@ def _bound(tf: TransferFunction, gain: ModelParameter, given: dict[str, Given]) 
 
 def _rational(value: ExactValue | None) -> Fraction | None:
     return None if value is None or value.pi_power else value.rational
-
-
-def coefficients_of(polynomial: fmpz_mpoly, position: int, tf: TransferFunction) -> tuple[fmpz_mpoly, ...]:
-    """Return the coefficients of the powers of one generator, over the same ring."""
-    parts: list[dict[tuple[int, ...], int]] = [{} for _ in range(degree_in(polynomial, position) + 1)]
-    for monomial, coefficient in polynomial.terms():
-        place = tuple(0 if i == position else int(e) for i, e in enumerate(monomial))
-        parts[int(monomial[position])][place] = int(coefficient)
-    return tuple(tf.ratio.ring.context.from_dict(part) for part in parts)
 
 
 def pick_gain(parameters: Sequence[ModelParameter], name: str) -> ModelParameter:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -168,23 +168,11 @@ def mirror_images(roots: Sequence[Root], *, even: bool) -> list[Root]:
         for root in roots:
             images = [root]
             if not root.is_real:
-                images.append(_image(root, root.re, -root.im))
+                images.append(replace(root, im=-root.im))
             if even and not root.on_imaginary_axis:
-                images += [_image(root, -image.re, image.im) for image in images]
+                images += [replace(image, re=-image.re) for image in images]
             found += images
     return found
-
-
-def _image(root: Root, re: arb, im: arb) -> Root:
-    return Root(
-        re,
-        im,
-        root.multiplicity,
-        on_imaginary_axis=root.on_imaginary_axis,
-        is_real=root.is_real,
-        certified=root.certified,
-        on_boundary=root.on_boundary,
-    )
 
 
 def exact_fraction(number: arb) -> Fraction:

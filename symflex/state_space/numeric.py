@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from importlib import import_module
 from math import inf, isfinite
 from sys import float_info
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from flint import acb, acb_mat, arb, ctx
@@ -92,10 +93,7 @@ class BoundStateSpace:
 
         SF902 when python-control is not installed.
         """
-        try:
-            import control
-        except ImportError:
-            raise not_installed("control") from None
+        control = installed("control")
         system = control.StateSpace(
             *(m.copy() for m in (self.A, self.B, self.C, self.D)),
             0,
@@ -113,11 +111,7 @@ class BoundStateSpace:
 
         SF902 when scipy is not installed.
         """
-        try:
-            from scipy.signal import StateSpace
-        except ImportError:
-            raise not_installed("scipy") from None
-        system = StateSpace(*(m.copy() for m in (self.A, self.B, self.C, self.D)))
+        system = installed("scipy.signal").StateSpace(*(m.copy() for m in (self.A, self.B, self.C, self.D)))
         system.metadata = {"name": self.name, **self.metadata, **(facts or {})}
         return system
 
@@ -149,9 +143,13 @@ PIP = {
 }
 
 
-def not_installed(package: str) -> UsageError:
-    """Return the error for a program that is asked for and not there."""
-    return UsageError(Diagnostic("SF902", f"{package} is not installed", None, PIP[package]))
+def installed(module: str) -> Any:  # noqa: ANN401 (these libraries have no types)
+    """Return a module of a program that is asked for; SF902 where it is not there."""
+    try:
+        return import_module(module)
+    except ImportError:
+        package = module.partition(".")[0]
+        raise UsageError(Diagnostic("SF902", f"{package} is not installed", None, PIP[package])) from None
 
 
 FIRST_BITS, LAST_BITS = 128, 4096

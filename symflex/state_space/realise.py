@@ -267,12 +267,8 @@ def _row(ring: Ring, form: LinearForm, columns: Mapping[Variable, int]) -> Row:
 
 def _powers(ring: Ring, value: Factored) -> dict[int, FieldElement]:
     """Return the coefficients of the powers of s in a polynomial."""
-    parts: dict[int, dict[tuple[int, ...], int]] = {}
-    for monomial, coefficient in value.expand().terms():
-        rest = (0, *(int(e) for e in monomial[1:]))
-        parts.setdefault(int(monomial[0]), {})[rest] = int(coefficient)
-    one = ring.constant(1)
-    return {power: FieldElement(ring.context.from_dict(part), one) for power, part in parts.items()}
+    parts = enumerate(ring.coefficients(value.expand()))
+    return {power: FieldElement(part, ring.constant(1)) for power, part in parts if not part.is_zero()}
 
 
 def _weights(rows: _Rows, model: Model, shown: set[str]) -> list[tuple[int, int]]:

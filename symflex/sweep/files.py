@@ -17,7 +17,7 @@ from symflex.errors import DataError, Diagnostic, UsageError
 from symflex.files import write
 from symflex.model.spec.read import read_bytes
 from symflex.sweep.points import MARGINS
-from symflex.sweep.sweep import DRAW, FREQUENCY, MODE, SCHEMA, Labelled, Sweep, missing_library
+from symflex.sweep.sweep import DRAW, FREQUENCY, MODE, SCHEMA, Labelled, Sweep, extra
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -133,11 +133,7 @@ def _texts(column: Array) -> Iterator[str]:
 
 def parquet_bytes(sweep: Sweep) -> bytes:
     """Return the same table as Apache Parquet; SF914 when pyarrow is not installed."""
-    try:
-        import pyarrow  # an extra
-        from pyarrow import parquet
-    except ImportError:
-        raise missing_library("pyarrow", "Parquet") from None
+    pyarrow, parquet = extra("pyarrow", "Parquet"), extra("pyarrow.parquet", "Parquet")
     names, columns = _table(sweep)
     table = pyarrow.table(dict(zip(names, columns, strict=True)))
     table = table.replace_schema_metadata(dict(sweep.attributes))
@@ -181,10 +177,7 @@ def check_writable(path: Path) -> None:
     if path.suffix.lower() not in WRITERS:
         raise UsageError(Diagnostic("SF902", f"'{path.name}' must end in {', '.join(WRITERS)}"))
     if path.suffix.lower() == ".parquet":
-        try:
-            import pyarrow  # noqa: F401 (an extra)
-        except ImportError:
-            raise missing_library("pyarrow", "Parquet") from None
+        extra("pyarrow", "Parquet")
     write.check_writable(path)
 
 

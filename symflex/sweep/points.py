@@ -244,6 +244,19 @@ def _rows(found: Sequence[PointRoots]) -> Rows:
     }
 
 
+def _each(points: Sequence[Point], solve: Callable[[int, Point], PointStatus]) -> Rows:
+    """Solve points by number; return their status, and the codes of those that fail."""
+    status, codes = np.zeros(len(points), np.int8), [""] * len(points)
+    for i, point in enumerate(points):
+        spend()
+        try:
+            status[i] = solve(i, point)
+        except SymflexError as error:
+            spend()  # that the time is over says nothing of a point
+            status[i], codes[i] = PointStatus.FAILED, error.diagnostics[0].code
+    return {"point_status": status, "code": codes_of(codes)}
+
+
 def solve_response(task: Task) -> Solver:
     """Return what evaluates the task's transfer function to double precision; ``inf + nan*1j`` at a pole."""
     tf = derived(task)
@@ -251,21 +264,14 @@ def solve_response(task: Task) -> Solver:
 
     def solve(points: Sequence[Point]) -> Rows:
         values = np.full((len(points), len(omega)), complex(nan, nan))
-        status, codes = np.zeros(len(points), np.int8), [""] * len(points)
-        for i, point in enumerate(points):
-            spend()
-            try:
-                bound = bind(tf, dict(zip(task.names, point, strict=True)))
-                values[i] = [bound(complex(0, w)) for w in omega]
-            except SymflexError as error:
-                spend()  # that the time is over says nothing of a point
-                status[i], codes[i] = PointStatus.FAILED, error.diagnostics[0].code
-        return {
-            "re": values.real.copy(),
-            "im": values.imag.copy(),
-            "point_status": status,
-            "code": codes_of(codes),
-        }
+
+        def one(i: int, point: Point) -> PointStatus:
+            bound = bind(tf, dict(zip(task.names, point, strict=True)))
+            values[i] = [bound(complex(0, w)) for w in omega]
+            return PointStatus.CERTIFIED
+
+        told = _each(points, one)
+        return {"re": values.real.copy(), "im": values.imag.copy(), **told}
 
     return solve
 
@@ -284,27 +290,17 @@ def solve_margins(task: Task) -> Solver:
         values = {name: np.full(len(points), np.nan) for name in MARGINS}
         radii = {name: np.full(len(points), np.nan) for name in MARGINS}
         stable = np.full(len(points), -1, np.int8)
-        status, codes = np.zeros(len(points), np.int8), [""] * len(points)
-        for i, point in enumerate(points):
-            spend()
-            try:
-                loop = characteristic_loop(tf, parameter, dict(zip(task.names, point, strict=True)))
-                found = find_stable_gains(loop)
-            except SymflexError as error:
-                spend()
-                status[i], codes[i] = PointStatus.FAILED, error.diagnostics[0].code
-                continue
-            status[i] = PointStatus.CERTIFIED if found.certified else PointStatus.NOT_CERTIFIED
+
+        def one(i: int, point: Point) -> PointStatus:
+            loop = characteristic_loop(tf, parameter, dict(zip(task.names, point, strict=True)))
+            found = find_stable_gains(loop)
             stable[i] = -1 if found.is_stable is None else int(found.is_stable)
             for name, (centre, radius) in _margins_of(found).items():
                 values[name][i], radii[name][i] = centre, radius
-        return {
-            **values,
-            **{f"{name}_radius": radii[name] for name in MARGINS},
-            "stable": stable,
-            "point_status": status,
-            "code": codes_of(codes),
-        }
+            return PointStatus.CERTIFIED if found.certified else PointStatus.NOT_CERTIFIED
+
+        told = _each(points, one)
+        return {**values, **{f"{name}_radius": radii[name] for name in MARGINS}, "stable": stable, **told}
 
     return solve
 

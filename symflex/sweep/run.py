@@ -7,11 +7,10 @@ import pickle
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, ProcessPoolExecutor, wait
 from contextlib import contextmanager
 from hashlib import sha256
-from importlib import import_module
 from multiprocessing import connection, get_context, parent_process
 from threading import Thread
 from time import monotonic
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -19,7 +18,7 @@ from symflex.budget import Silent
 from symflex.errors import BudgetError, Diagnostic, UsageError
 from symflex.sweep.design import fingerprint, points_between, written
 from symflex.sweep.points import PointStatus, solve_chunk
-from symflex.sweep.sweep import assembled, missing_library
+from symflex.sweep.sweep import assembled, extra
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -78,10 +77,7 @@ def _exit_after(sentinel: int) -> None:
 
 @contextmanager
 def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
-    try:
-        distributed: Any = import_module("distributed")  # an extra; it has no types
-    except ImportError:
-        raise missing_library("distributed", "a cluster") from None
+    distributed = extra("distributed", "a cluster")
     # 'with' closes the client; its finalizer would wait in vain for one that a bad address left half made.
     client_class = type("Client", (distributed.Client,), {"__del__": lambda _: None})
     try:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -102,10 +103,7 @@ class Sweep:
 
         SF914 when xarray is not installed.
         """
-        try:
-            import xarray  # an extra
-        except ImportError:
-            raise missing_library("xarray", "a labelled dataset") from None
+        xarray = extra("xarray", "a labelled dataset")
         arrays = {v.name: (v.dims, v.values, _described(v)) for v in self.variables}
         if "re" in arrays:
             name = "response" if self.of == "response" else "s"
@@ -119,10 +117,13 @@ class Sweep:
         )
 
 
-def missing_library(name: str, purpose: str) -> UsageError:
-    """Return the error that says how to install what an extra brings."""
-    message = f"{purpose} needs the library {name}, which is not installed"
-    return UsageError(Diagnostic("SF914", message, None, "pip install 'symflex[sweep]'"))
+def extra(name: str, purpose: str) -> Any:  # noqa: ANN401 (these libraries have no types)
+    """Return a module that an extra brings; SF914 says how to install it."""
+    try:
+        return import_module(name)
+    except ImportError:
+        message = f"{purpose} needs the library {name.partition('.')[0]}, which is not installed"
+        raise UsageError(Diagnostic("SF914", message, None, "pip install 'symflex[sweep]'")) from None
 
 
 def _described(each: Labelled) -> dict[str, str]:

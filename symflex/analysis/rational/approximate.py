@@ -11,9 +11,9 @@ import numpy as np
 
 from symflex.analysis.rational.approximation import RationalApproximation, scan_error
 from symflex.analysis.rational.forms import FORMS
+from symflex.analysis.rational.toolboxes import check_form
 from symflex.analysis.response import default_band
 from symflex.errors import Diagnostic, ModelError, UsageError
-from symflex.errors.diagnostic import nearest
 from symflex.roots import Band, Everything, Modes, Position
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import locate
@@ -166,9 +166,7 @@ def approximate(
     >>> print(f"{abs(R(0.5) / bound(0.5)) - 1:.4f}")
     0.0024
     """
-    if form not in FORMS:
-        hint = nearest(form, FORMS) or "forms: " + ", ".join(FORMS)
-        raise UsageError(Diagnostic("SF902", f"there is no form '{form[:64]}'", None, hint))
+    check_form(form, tuple(FORMS))
     if band is not None and not 0 < band[0] < band[1] < float("inf"):
         message = f"a band runs from a positive to a higher frequency, not from {band[0]:g} to {band[1]:g} Hz"
         raise UsageError(Diagnostic("SF227", message))

@@ -22,7 +22,7 @@ from symflex.errors import Diagnostic, ModelError
 from symflex.roots.verdict import NOT_EXAMINED, StabilityVerdict
 from symflex.state_space import Channel
 from symflex.state_space.cascade import cascade
-from symflex.state_space.numeric import BoundState, BoundStateSpace, not_installed
+from symflex.state_space.numeric import BoundState, BoundStateSpace, installed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -410,11 +410,10 @@ class RationalApproximation(RationalFunction):
         UsageError
             SF902 when SymPy is not installed.
         """
-        try:
-            import sympy
-            from sympy.physics.control import TransferFunction
-        except ImportError:
-            raise not_installed("sympy") from None
+        installed("sympy")
+        import sympy
+        from sympy.physics.control import TransferFunction
+
         s = sympy.Symbol("s")
 
         def polynomial(coefficients: tuple[mpmath.mpf, ...]) -> sympy.Expr:

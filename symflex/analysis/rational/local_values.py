@@ -60,10 +60,13 @@ def local_values(
         for law in evaluator.table.dispersions:
             found = tuple(evaluator.value(c, plain) for c in law.characteristic)
             laws[law] = (found, evaluator.value(law.shift, plain))
-            roots = _wavenumbers(law, [_inflated(c, branches, terms) for c in found])
-            if roots is None:
+            try:
+                roots: dict[str, acb_series] = law.roots(
+                    [_inflated(c, branches, terms) for c in found], square_root
+                )
+            except ArithmeticError:
                 return None
-            values.update(zip(law.wavenumbers, roots, strict=True))
+            values.update(roots)
         fundamental: dict[tuple[Dispersion, Factored], tuple[acb_series, ...]] = {}
         for kernel in evaluator.table.kernels:
             length = at_centre(evaluator.value(kernel.length, plain))
@@ -92,8 +95,8 @@ def _inflated(value: Value, branches: int, terms: int) -> acb_series:
     return acb_series(spread, min(terms, value.prec * branches))
 
 
-def square_root(series: acb_series) -> acb_series | None:
-    """Return a square root of a series that begins with an even power, ``None`` of any other.
+def square_root(series: acb_series) -> acb_series:
+    """Return a square root of a series that begins with an even power; ArithmeticError for any other.
 
     The branch is chosen by the leading coefficient's midpoint: a ball across a branch cut does no harm.
 
@@ -105,33 +108,13 @@ def square_root(series: acb_series) -> acb_series | None:
     """
     coefficients = series.coeffs()
     first = next((i for i, c in enumerate(coefficients) if c != 0), None)
-    if first is None or first % 2:
-        return None
-    lead = coefficients[first].mid()
-    if lead == 0:
-        return None
+    lead = acb(0) if first is None else coefficients[first].mid()
+    if first is None or first % 2 or lead == 0:
+        message = "the series has no square root that is one"
+        raise ArithmeticError(message)
     rest = acb_series([c / lead for c in coefficients[first:]], series.prec - first).sqrt() * lead.sqrt()
     half = first // 2
     return acb_series([*[acb(0)] * half, *rest.coeffs()], series.prec - half)
-
-
-def _wavenumbers(law: Dispersion, c: Sequence[acb_series]) -> tuple[acb_series, ...] | None:
-    """Return the roots by their names; every branch serves, because functions are symmetric in them."""
-    roots: list[acb_series | None] = []
-    match law.kind:
-        case "wave":
-            roots = [square_root(-c[0])]
-        case "bending":
-            square = square_root(c[0] / 4)
-            roots = [None if square is None else square_root(square)]
-        case "pair":
-            middle = -c[2] / 2
-            root = square_root(middle * middle - c[0])
-            if root is None:
-                return None
-            roots = [square_root(middle + root), square_root(middle - root)]
-    found = tuple(root for root in roots if root is not None)
-    return found if len(found) == len(roots) else None
 
 
 def _kernel(kernel: Kernel, argument: Value) -> Value:

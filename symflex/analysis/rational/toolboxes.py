@@ -26,7 +26,7 @@ from symflex.model import with_numbers
 from symflex.roots.locate import locate
 from symflex.roots.multiprecision import to_complex_mpmath
 from symflex.state_space import minimal, not_rational, realise, realise_quotient
-from symflex.state_space.numeric import BoundStateSpace, Rounding, bound_state_space, not_installed
+from symflex.state_space.numeric import BoundStateSpace, Rounding, bound_state_space, installed
 from symflex.state_space.popov import FieldElement
 
 if TYPE_CHECKING:
@@ -35,7 +35,6 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     from flint import fmpz_mpoly
 
-    from symflex.algebra import Ring
     from symflex.transfer import BoundTransferFunction, TransferFunction
     from symflex.transfer.bind import Enclosed
 
@@ -108,11 +107,8 @@ class RationalFunction(ABC):
         to it. SF902 when python-control is not installed, and for an unknown form; SF233 when a coefficient
         is too large or too small for double precision; SF236 as :meth:`state_space`.
         """
-        _check(form, CONTROL_FORMS)
-        try:
-            import control
-        except ImportError:
-            raise not_installed("control") from None
+        check_form(form, CONTROL_FORMS)
+        control = installed("control")
         if form == STATE_SPACE:
             return self.state_space().to_control(self.metadata())
         names = {"inputs": [self.source.input.name], "outputs": [self.source.output.name]}
@@ -138,12 +134,8 @@ class RationalFunction(ABC):
         ``form`` is ``zeros-poles-gain``, which keeps the digits that coefficients lose, ``transfer-function``
         or ``state-space``.
         """
-        _check(form, SCIPY_FORMS)
-        try:
-            from scipy.signal import TransferFunction as Polynomials
-            from scipy.signal import ZerosPolesGain as Roots
-        except ImportError:
-            raise not_installed("scipy") from None
+        check_form(form, SCIPY_FORMS)
+        signal = installed("scipy.signal")
         if form == STATE_SPACE:
             return self.state_space().to_scipy(self.metadata())
         more: dict[str, object] = {}
@@ -156,9 +148,9 @@ class RationalFunction(ABC):
                 if not num.any():
                     # It finds nothing but zeros suspicious.
                     warnings.simplefilter("ignore")
-                system, more = Polynomials(num, den), self.loss_of_digits()
+                system, more = signal.TransferFunction(num, den), self.loss_of_digits()
         else:
-            system = Roots(*self.zeros_poles_gain())
+            system = signal.ZerosPolesGain(*self.zeros_poles_gain())
         system.metadata = {"name": self.label(), **self.metadata(), **more}
         return system
 
@@ -221,9 +213,8 @@ class ExactFunction(RationalFunction):
     def _parts(self) -> tuple[list[fmpz_mpoly], list[fmpz_mpoly]]:
         """Numerator and denominator, polynomials free of s in descending powers of s."""
         ratio = self._bound.ratio
-        return _descending(ratio.numerator().expand(), ratio.ring), _descending(
-            ratio.denominator().expand(), ratio.ring
-        )
+        above, below = (side.expand() for side in (ratio.numerator(), ratio.denominator()))
+        return ratio.ring.coefficients(above)[::-1], ratio.ring.coefficients(below)[::-1]
 
     def _rounded(self, numerators: Sequence[fmpz_mpoly]) -> npt.NDArray[np.float64]:
         """Return coefficients over the denominator's first one as doubles."""
@@ -273,10 +264,7 @@ def frequency_response_data(
     ``omega`` [rad/s] increases and is nowhere negative. SF902 when python-control is not installed, for other
     frequencies, and at a pole.
     """
-    try:
-        import control
-    except ImportError:
-        raise not_installed("control") from None
+    control = installed("control")
     grid = np.atleast_1d(np.array(omega, dtype=np.float64))
     is_increasing = grid.ndim == 1 and bool(np.all(np.diff(grid) > 0))
     if not (is_increasing and grid.size and np.isfinite(grid).all() and grid[0] >= 0):
@@ -304,17 +292,8 @@ def end_units(source: TransferFunction) -> dict[str, object]:
     }
 
 
-def _descending(polynomial: fmpz_mpoly, ring: Ring) -> list[fmpz_mpoly]:
-    """Return the coefficients of descending powers of s."""
-    parts: dict[int, dict[tuple[int, ...], int]] = {}
-    for monomial, coefficient in polynomial.terms():
-        rest = (0, *(int(e) for e in monomial[1:]))
-        parts.setdefault(int(monomial[0]), {})[rest] = int(coefficient)
-    powers = range(max(parts, default=0), -1, -1)
-    return [ring.context.from_dict(parts.get(power, {})) for power in powers]
-
-
-def _check(form: str, forms: Sequence[str]) -> None:
+def check_form(form: str, forms: Sequence[str]) -> None:
+    """Raise SF902 for a form that is not one of these."""
     if form not in forms:
         hint = nearest(form, forms) or "forms: " + ", ".join(forms)
         raise UsageError(Diagnostic("SF902", f"there is no form '{form[:64]}'", None, hint))

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from flint import arb_series, fmpz_mpoly
 
-    from symflex.algebra import Dispersion, Factored, Kernel
+    from symflex.algebra import Factored, Kernel
     from symflex.model import ExactValue
     from symflex.transfer import TransferFunction
     from symflex.transfer.balls import EvaluationPlan
@@ -75,7 +75,7 @@ class Tangents:
         for law in self.tf.kernels.dispersions:
             coefficients = [self.product(c, point) for c in law.characteristic]
             shift = self.product(law.shift, point)
-            point.update(zip(law.wavenumbers, _wavenumbers(law, coefficients), strict=True))
+            point.update(law.roots(coefficients, _root))
             solutions: dict[Factored, tuple[acb_series, ...]] = {}
             for kernel in self.tf.kernels.kernels_of(law):
                 length = self.product(kernel.length, point)
@@ -138,19 +138,6 @@ def _root(value: acb_series) -> acb_series:
     middle = value[0].mid()
     root = (value[0] / middle).sqrt() * middle.sqrt()
     return _series(root, value[1] / (2 * root))
-
-
-def _wavenumbers(law: Dispersion, c: Sequence[acb_series]) -> tuple[acb_series, ...]:
-    match law.kind:
-        case "wave":
-            return (_root(-c[0]),)
-        case "bending":
-            return (_root(_root(c[0] / 4)),)
-        case "pair":
-            middle = -c[2] / 2
-            root = _root(middle * middle - c[0])
-            return (_root(middle + root), _root(middle - root))
-    return ()
 
 
 def _kernel(kernel: Kernel, argument: acb_series) -> acb_series:

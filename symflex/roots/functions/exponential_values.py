@@ -209,7 +209,7 @@ class DoubleSums:
         """Return the values of s and of wavenumbers, and the arguments of exponentials."""
         values = {"s": np.exp(z)}
         for law, coefficients in self._laws:
-            values.update(_wavenumbers(law, [c.value(values) for c in coefficients]))
+            values.update(law.roots([c.value(values) for c in coefficients], np.sqrt))
         arguments = np.empty((len(self._arguments), len(z)), dtype=np.complex128)
         for i, (wavenumber, rate, length) in enumerate(self._arguments):
             arguments[i] = (values[wavenumber] if rate is None else -rate.value(values)) * length
@@ -276,17 +276,3 @@ class _SampledTerms:
         total = terms.sum(axis=0)
         size = np.abs(total)
         return SampledSum(scale + np.log(size), np.angle(total), size / np.abs(terms).sum(axis=0))
-
-
-def _wavenumbers(law: Dispersion, c: Sequence[Numbers]) -> dict[str, Numbers]:
-    """Return the roots by their names; every branch serves, because functions are symmetric in them."""
-    match law.kind:
-        case "wave":
-            found = [np.sqrt(-c[0])]
-        case "bending":
-            found = [np.sqrt(np.sqrt(c[0] / 4))]
-        case _:
-            middle = -c[2] / 2
-            root = np.sqrt(middle * middle - c[0])
-            found = [np.sqrt(middle + root), np.sqrt(middle - root)]
-    return dict(zip(law.wavenumbers, found, strict=True))

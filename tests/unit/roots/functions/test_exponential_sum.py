@@ -10,8 +10,9 @@ import pytest
 from flint import acb, acb_series, arb
 from mpmath import mp, mpc
 
+from symflex.algebra import Dispersion
 from symflex.algebra.exponential_sum import MOST_EXPONENTIALS, arguments_of, exponential_sum, spread
-from symflex.roots.functions.exponential_values import DoubleSums, ExponentialValues, _wavenumbers
+from symflex.roots.functions.exponential_values import DoubleSums, ExponentialValues
 from symflex.roots.precision import precision
 from symflex.transfer.balls import expansion
 from tests.unit.roots.distributed_models import DELAY_LOOP, ROD, SLIDING_FREE, bound
@@ -242,7 +243,7 @@ def test_without_exponentials_nothing_is_fast():
 )
 def test_wavenumbers_in_doubles_solve_their_equations(kind, c, names):
     law = SimpleNamespace(kind=kind, wavenumbers=tuple(names))
-    found = _wavenumbers(law, [np.array([each], dtype=complex) for each in c])
+    found = Dispersion.roots(law, [np.array([each], dtype=complex) for each in c], np.sqrt)
     assert list(found) == list(names)
     # q^2 + c = 0, 4 q^4 = c, q^4 + c_2 q^2 + c_0 = 0
     for (q,) in found.values():
