@@ -140,12 +140,8 @@ class ExponentialSum:
     def turned(self, unit: Gaussian, degrees: Sequence[int]) -> ExponentialSum:
         """Return the sum with a multiple of the first generator in its place.
 
-        Parameters
-        ----------
-        unit : (int, int)
-            What it is multiplied with.
-        degrees : sequence of int
-            Of every argument, to which power of the generator it is proportional.
+        ``unit`` is what it is multiplied with; ``degrees`` says of every argument to which power of the
+        generator it is proportional.
         """
         found: dict[Exponent, Amplitude] = {}
         for exponent, amplitude in self.terms.items():
@@ -159,11 +155,6 @@ class ExponentialSum:
         """Return real terms for real arguments, if all terms times one number come in conjugate pairs.
 
         ``2 e^q cos(q)`` comes from ``e^((1 + j) q) + e^((1 - j) q)``; ``None`` for one of these alone.
-
-        Parameters
-        ----------
-        arguments : int
-            How many there are.
         """
         pairs: dict[tuple[Multiples, Multiples], Amplitude] = {}
         for exponent, amplitude in self.terms.items():

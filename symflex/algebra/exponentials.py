@@ -109,15 +109,8 @@ class Exponentials:
     def restore(self, polynomial: fmpz_mpoly) -> tuple[Factored, tuple[int, ...]]:
         """Return a polynomial over the coordinates in kernels, and the powers of E that were divided out.
 
-        Parameters
-        ----------
-        polynomial : fmpz_mpoly
-            Of even degree in every angle (see :meth:`parity`), not divisible by any E.
-
-        Returns
-        -------
-        tuple
-            ``f`` and per hyperbolic angle ``n`` with ``polynomial = f * prod(E^n)``.
+        The polynomial is of even degree in every angle (see :meth:`parity`) and not divisible by any E; it is
+        ``f * prod(E^n)``, and returned are f and n per hyperbolic angle.
         """
         source = self.coordinates
         center = [int(polynomial.degrees()[source.index[a.coordinates[0]]]) // 2 for a in self.angles]
@@ -153,11 +146,8 @@ class Exponentials:
     def restore_halved(self, polynomial: fmpz_mpoly) -> tuple[fmpz_mpoly, tuple[int, ...]]:
         """Return a polynomial over the coordinates in kernels of half the length, of whatever parity it is.
 
-        Returns
-        -------
-        tuple
-            ``f`` over the ring, whose kernels now stand for half their length, and per hyperbolic angle
-            ``n`` with ``polynomial = f * prod(E^(n/2))``.
+        Returned are f over the ring, whose kernels now stand for half their length, and per hyperbolic angle
+        n with ``polynomial = f * prod(E^(n/2))``.
         """
         source = self.coordinates
         places = [tuple(source.index[c] for c in a.coordinates) for a in self.angles]

@@ -146,12 +146,8 @@ class Factored:
     def expand(self) -> fmpz_mpoly:
         """Return the product multiplied out.
 
-        Raises
-        ------
-        ValueError
-            When the unit is not an integer or an exponent is negative.
-        BudgetError
-            SF501 when the product could exceed the size limit.
+        Raises ValueError when the unit is not an integer or an exponent is negative; BudgetError: SF501 when
+        the product could exceed the size limit.
         """
         return self._expand_scaled(1)
 

@@ -16,13 +16,8 @@ if TYPE_CHECKING:
 def irreducible_factors(polynomial: fmpz_mpoly) -> tuple[int, list[tuple[fmpz_mpoly, int]]]:
     """Return a nonzero polynomial as a number times powers of polynomials irreducible over the rationals.
 
-    Returns
-    -------
-    number : int
-        With the sign.
-    factors : list of (fmpz_mpoly, int)
-        Of content 1 and with positive leading coefficients, each with its exponent; ordered by exponents,
-        then by terms.
+    The number bears the sign; factors have content 1 and positive leading coefficients, and are ordered by
+    exponents, then by terms.
 
     Examples
     --------

@@ -21,12 +21,7 @@ Ball = TypeVar("Ball", arb, acb)
 def stays_inside(step: arb | acb, reach: arb) -> bool:
     """Tell whether a step ``f(m)/f'(X)`` proves the one root of a box that reaches so far from m.
 
-    Parameters
-    ----------
-    step : arb or acb
-        Enclosure of the step, for all slopes on the box.
-    reach : arb
-        Exact half side of the box.
+    The step is enclosed for all slopes on the box; ``reach`` is its exact half side.
 
     Examples
     --------
@@ -41,16 +36,8 @@ def stays_inside(step: arb | acb, reach: arb) -> bool:
 def narrowed(root: Ball, newton: Callable[[Ball], Ball], steps: int, share: float) -> Ball:
     """Return a smaller box about a root, by steps of an operator as long as they are worth it.
 
-    Parameters
-    ----------
-    root : arb or acb
-        A box that holds one root.
-    newton : callable
-        Newton's operator N on a box: where that holds the root, N of it does.
-    steps : int
-        At most so many.
-    share : float
-        Of a box's size: the last step is one that leaves more.
+    Where a box holds the root, so does Newton's operator of it. The last of at most so many steps is the
+    first that leaves more than a share of the box.
 
     Examples
     --------

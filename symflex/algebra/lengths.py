@@ -36,12 +36,7 @@ class LengthBase:
 def length_base(lengths: Sequence[Factored], *, positive: bool = False) -> LengthBase:
     """Return base lengths for the given ones; these themselves where they suffice.
 
-    Parameters
-    ----------
-    lengths : sequence of Factored
-        Over one ring, not zero; earlier ones are preferred as base lengths.
-    positive : bool
-        Prefer a base in which no coordinate is negative.
+    None is zero; earlier ones are preferred, and with ``positive`` those of which no coordinate is negative.
 
     Examples
     --------

@@ -22,21 +22,8 @@ if TYPE_CHECKING:
 def lift(ring: Ring, polynomial: fmpz_mpoly, angle: KernelPair, n: int) -> Factored | None:
     """Return a polynomial in normal form with an angle's kernels standing for n times its argument.
 
-    Parameters
-    ----------
-    ring : Ring
-        Of the polynomial; the result is over the same generators.
-    polynomial : fmpz_mpoly
-        Of degree at most one in the odd kernel.
-    angle : KernelPair
-        Which kernels.
-    n : int
-        The multiple.
-
-    Returns
-    -------
-    Factored or None
-        ``None`` when the polynomial is not one in kernels of the multiple.
+    It is of degree one at most in the odd kernel; ``None`` when it is not a polynomial in kernels of the
+    multiple.
     """
     even, odd = ring.index[angle.even.generator], ring.index[angle.odd.generator]
     parts: dict[tuple[int, int], dict[tuple[int, ...], int]] = {}

@@ -30,16 +30,8 @@ TRIALS = 4
 class OriginSeries:
     """Orders at s = 0, or where another polynomial in s and parameters vanishes, of functions over one ring.
 
-    Parameters
-    ----------
-    ring : Ring
-        s first; with the table's generators.
-    table : KernelTable
-        Wavenumbers and kernels; general dispersions are not covered.
-    at : fmpz_mpoly, optional
-        What vanishes instead of s; linear in s or in a parameter.
-    terms : int
-        Length of the series in the fourth root of s; higher orders are not found.
+    General dispersions are not covered. With ``at``, linear in s or in a parameter, that vanishes instead of
+    s. Orders above ``terms``, in the fourth root of s, are not found.
     """
 
     def __init__(
@@ -95,16 +87,8 @@ def find_point(
 ) -> tuple[TaylorField, dict[str, nmod_poly]] | None:
     """Return values for all generators that satisfy every relation, in a field where the wavenumbers exist.
 
-    Parameters
-    ----------
-    ring : Ring
-        With the table's generators.
-    table : KernelTable
-        Kernels of general dispersions get random values.
-    terms : int
-        Length of the series; one for numbers.
-    prepare : callable
-        Sets values that are not random; False asks for other random ones.
+    Kernels of general dispersions get random values. Series have so many terms, one for numbers; ``prepare``
+    sets values that are not random, and returns False to ask for other random ones.
     """
     random = Random(11)
     for prime in primes():

@@ -131,12 +131,8 @@ WAVENUMBER_NAMES = {"wave": ("gamma",), "bending": ("mu",), "pair": ("lambda_1",
 def propagate(base: Ring, demands: Sequence[tuple[Dispersion, Sequence[Factored]]]) -> Propagation:
     """Return generators for the fundamental functions of every dispersion at every length.
 
-    Parameters
-    ----------
-    base : Ring
-        Where the dispersions' coefficients and the lengths live.
-    demands : sequence of (Dispersion, sequence of Factored)
-        Each dispersion once, without wavenumber names, with the lengths it is needed at.
+    Each dispersion is demanded once, without wavenumber names, with the lengths it is needed at; both live
+    over the base.
     """
     dispersions: list[Dispersion] = []
     kernels: list[Kernel] = []

@@ -27,10 +27,7 @@ def random_point(names: Sequence[str]) -> dict[str, int]:
 def residue(value: Factored, point: Mapping[str, int]) -> int:
     """Return a factored rational function at a point, modulo ``PRIME``.
 
-    Raises
-    ------
-    ZeroDivisionError
-        When its denominator is zero there.
+    Raises ZeroDivisionError when its denominator is zero there.
 
     Examples
     --------

@@ -98,10 +98,8 @@ class Ring:
     ) -> fmpz_mpoly:
         """Replace every generator of ``polynomial``'s ring by its image in this ring.
 
-        Raises
-        ------
-        BudgetError
-            SF501 when the result could exceed the limits, terms and bytes; SF502 in a sparse ring.
+        Raises BudgetError: SF501 when the result could exceed the limits, terms and bytes; SF502 in a sparse
+        ring.
         """
         if self.is_sparse:
             message = f"nothing is multiplied out with {len(self.names)} names"
@@ -146,17 +144,7 @@ def expanded_length(polynomial: fmpz_mpoly, lengths: Sequence[int]) -> int | Non
 def check_expansion(polynomial: fmpz_mpoly, images: Sequence[fmpz_mpoly], most: int) -> None:
     """Refuse a substitution whose result could have more than so many terms.
 
-    Parameters
-    ----------
-    polynomial, images
-        See :meth:`Ring.compose`.
-    most : int
-        Number of terms.
-
-    Raises
-    ------
-    BudgetError
-        SF501, before any work is done.
+    See :meth:`Ring.compose`. Raises BudgetError: SF501, before any work is done.
     """
     lengths = [len(image) for image in images]
     degrees = [int(image.total_degree()) if len(image) else 0 for image in images]

@@ -22,13 +22,6 @@ class SparsePolynomial:
 
     The operations are those of ``fmpz_mpoly`` that equations are assembled with, under the same names.
 
-    Parameters
-    ----------
-    context : SparseContext
-        Names the generators.
-    parts : mapping of Monomial to int
-        Without zeros.
-
     Examples
     --------
     >>> ring = SparseContext(("s", "k", "b"))
@@ -162,13 +155,7 @@ class SparsePolynomial:
 
 
 class SparseContext:
-    """The generators of sparse polynomials.
-
-    Parameters
-    ----------
-    names : sequence of str
-        What they are called.
-    """
+    """The generators of sparse polynomials."""
 
     __slots__ = ("_generators", "names")
 

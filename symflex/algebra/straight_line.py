@@ -301,10 +301,7 @@ class Workbench:
     def divide(self, x: int, y: int) -> int:
         """Return a quotient.
 
-        Raises
-        ------
-        ZeroDivisionError
-            When the divisor is zero.
+        Raises ZeroDivisionError when the divisor is zero.
         """
         if x == ZERO or y == ONE:
             return x

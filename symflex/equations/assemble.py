@@ -57,27 +57,13 @@ def assemble(
 ) -> Equations:
     """Stamp every element and signal of a model into one linear system.
 
-    Parameters
-    ----------
-    model : Model
-        Resolved.
-    nested : callable, optional
-        Returns the transfer function of a ``model`` block over a given ring.
-    is_nameless : bool
-        True to give no wavenumber a name: a quotient with named and nameless ones has no form in which what
-        cancels is seen.
-    is_sparse : bool
-        True for a ring of any number of names, in which nothing is expanded; not for distributed models. Rows
-        are not cleared of denominators then.
-    is_joined : bool
-        True to take line elements of one law that meet as one, see :mod:`symflex.equations.distributed`.
-
-    Raises
-    ------
-    ModelError
-        SF224 division by zero, SF910 a function of s; with positions, all at once.
-    BudgetError
-        SF502 when there are more names or more unknowns than can be computed with exactly.
+    ``nested`` returns the transfer function of a ``model`` block over a given ring. With ``is_nameless`` no
+    wavenumber has a name: a quotient with named and nameless ones has no form in which what cancels is seen.
+    With ``is_sparse`` the ring has any number of names, nothing is expanded, and rows are not cleared of
+    denominators; not for distributed models. With ``is_joined`` line elements of one law that meet are taken
+    as one, see :mod:`symflex.equations.distributed`. Raises ModelError: SF224 division by zero, SF910 a
+    function of s; with positions, all at once; BudgetError: SF502 when there are more names or more unknowns
+    than can be computed with exactly.
     """
     constants = _constant_functions(model)
     count = len(model.parameters) + len(model.definitions) + len(constants)
@@ -373,10 +359,7 @@ class _Assembly:
     def _ordered_blocks(self) -> list[PlacedBlock]:
         """Return the blocks so that each uses only earlier ones, directly or through definitions.
 
-        Raises
-        ------
-        ModelError
-            SF215 when blocks refer to each other in a circle.
+        Raises ModelError: SF215 when blocks refer to each other in a circle.
         """
         by_name = {b.name: b for b in self.model.blocks}
         expressions = {d.name: [d.expression] for d in self.model.definitions}

@@ -186,23 +186,9 @@ def survey(
 ) -> Distributed | None:
     """Return the distributed parts of a model, ``None`` when it has none.
 
-    Parameters
-    ----------
-    model : Model
-        Resolved.
-    evaluator : ExactEvaluator
-        Over the ring without kernels, with the rational blocks.
-    expressions : iterable of Expression
-        Everything in which a field may be evaluated at a point.
-    is_nameless : bool
-        True to give no wavenumber a name.
-    is_joined : bool
-        True to take line elements of one law that meet as one.
-
-    Raises
-    ------
-    ModelError
-        SF305 when the highest derivatives of a field are not determined, and what evaluation raises.
+    The evaluator is over the ring without kernels, with the rational blocks; a field may be evaluated at a
+    point in any of the expressions. For the two flags see :func:`symflex.equations.assemble.assemble`. Raises
+    ModelError: SF305 when the highest derivatives of a field are not determined, and what evaluation raises.
     """
     demands = _Demands()
     problems: list[Diagnostic] = []
@@ -407,15 +393,7 @@ class ChainEnd:
 
 
 def find_links(model: Model, lines: Mapping[str, tuple[FieldSystem, Factored]]) -> tuple[ChainEnd, ...]:
-    """Return the links of all chains, those with the longest lengths first.
-
-    Parameters
-    ----------
-    model : Model
-        Resolved.
-    lines : mapping of str to (FieldSystem, Factored)
-        Every line element's equations and length.
-    """
+    """Return the links of all chains, those with the longest lengths first."""
     touched = Counter(r.node for use in model.elements for _, references in use.nodes for r in references)
     driven = {r.node for given in model.inputs for r in given.nodes}
     ends = {use.name: _ends(use) for use in model.elements if isinstance(use.element, LineElement)}

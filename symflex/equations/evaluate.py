@@ -69,12 +69,8 @@ class ExactEvaluator:
     def constant(self, expression: Expression) -> Factored:
         """Return the value of an expression without unknowns.
 
-        Raises
-        ------
-        ModelError
-            SF224 when it divides by zero.
-        BudgetError
-            SF501 when it would expand beyond the limits.
+        Raises ModelError: SF224 when it divides by zero; BudgetError: SF501 when it would expand beyond the
+        limits.
         """
         value = self._value(expression)
         if isinstance(value, LinearForm):
@@ -222,10 +218,7 @@ class Opener:
     def open(self, call: Call) -> Call:
         """Return a function call whose argument contains no definition.
 
-        Raises
-        ------
-        ModelError
-            SF103 when the opened argument would be unreasonably large.
+        Raises ModelError: SF103 when the opened argument would be unreasonably large.
         """
         used = set(self._used(call))
         for name in reversed(tuple(self.definitions)):
@@ -304,14 +297,7 @@ def written_denominator(expression: Expression, evaluator: ExactEvaluator) -> Fa
     """Return the denominator in s of an expression before anything cancels.
 
     A product of blocks has the poles of every factor, also where a zero of the next one cancels them; a sum
-    needs those of each term once.
-
-    Parameters
-    ----------
-    expression : Expression
-        As written; it has been evaluated without error before.
-    evaluator : ExactEvaluator
-        For blocks and constant parts.
+    needs those of each term once. The expression has been evaluated without error before.
     """
     one = Factored.number(evaluator.ring, 1)
     match expression:

@@ -95,17 +95,8 @@ def later(expression: Expression, values: Mapping[str, Callable[[], arb]]) -> Ca
 def enclose(expression: Expression, values: Mapping[str, Callable[[], arb]]) -> arb:
     """Return a ball that contains the value of an expression at the current precision.
 
-    Parameters
-    ----------
-    expression : Expression
-        Of numbers, ``pi``, named constants and elementary functions.
-    values : mapping of str to callable
-        The named constants, evaluated at the current precision.
-
-    Raises
-    ------
-    ModelError
-        SF228 when the value is not a finite real number.
+    It is one of numbers, ``pi``, named constants and elementary functions. Raises ModelError: SF228 when the
+    value is not a finite real number.
 
     Examples
     --------
@@ -186,22 +177,9 @@ NEAR = (200, 220)
 def double_value(enclosed: Callable[[int], Ball], first: Ball, s: complex, patience: int | None) -> complex:
     """Return a function's value at one complex frequency [rad/s] to double precision.
 
-    Parameters
-    ----------
-    enclosed : callable
-        Returns the function in balls at a number of bits.
-    first : callable
-        The same at ``FIRST_BITS``.
-    s : complex
-        [rad/s].
-    patience : int or None
-        How often the precision is doubled before a value that is not a number is sought as a limit; None for
-        never, where only a pole has none.
-
-    Returns
-    -------
-    complex
-        Nan where ``s`` is not finite, ``inf + nan*1j`` at a pole.
+    ``first`` is what ``enclosed`` returns at ``FIRST_BITS``. After ``patience`` doublings of the precision a
+    value that is not a number is sought as a limit; never with None, where only a pole has none. The value is
+    nan where ``s`` is not finite, and ``inf + nan*1j`` at a pole.
     """
     if not (isfinite(s.real) and isfinite(s.imag)):
         return complex(nan, nan)

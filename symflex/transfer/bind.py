@@ -280,14 +280,8 @@ def read_values(
 ) -> tuple[tuple[str, ExactValue], ...]:
     """Return every parameter's exact value, the given ones instead of the declared ones.
 
-    A float counts as the shortest decimal that prints it, so ``0.1`` is 1/10.
-
-    Raises
-    ------
-    UsageError
-        SF902 for an unknown name or a value that is not a finite number.
-    ModelError
-        SF229 when a parameter has no value.
+    A float counts as the shortest decimal that prints it, so ``0.1`` is 1/10. Raises UsageError: SF902 for an
+    unknown name or a value that is not a finite number; ModelError: SF229 when a parameter has no value.
     """
     names = [p.name for p in parameters]
     for name in given:
@@ -363,19 +357,8 @@ def _read_value(
 def bind(tf: TransferFunction, values: Mapping[str, Given] | None = None) -> BoundTransferFunction:
     """Return the transfer function with the declared values, or the given ones in their place.
 
-    Parameters
-    ----------
-    tf : TransferFunction
-        Derived.
-    values : mapping of str to number or quantity, optional
-        Replacements, in SI units or with a unit ("0.8 m").
-
-    Raises
-    ------
-    ModelError
-        SF229 a parameter without value; SF231 the denominator vanishes for these values.
-    UsageError
-        SF902 an unknown parameter.
+    Values are in SI units or have a unit ("0.8 m"). Raises ModelError: SF229 a parameter without value,
+    SF231 the denominator vanishes for these values; UsageError: SF902 an unknown parameter.
     """
     used = (*tf.parameters, *(p for p in tf.hidden_parameters if p not in tf.parameters))
     exact = values_for(tf.model, used, dict(values or {}))
@@ -433,12 +416,7 @@ def bind_polynomials(
 ) -> tuple[Factored, ...]:
     """Return polynomials over a transfer function's ring with the values a bound one has.
 
-    Parameters
-    ----------
-    tf, bound : TransferFunction, BoundTransferFunction
-        The same function, and with numbers.
-    polynomials : sequence of fmpz_mpoly
-        Over the ring of ``tf``, such as the coefficients of a gain in its denominator.
+    Such are the coefficients of a gain in its denominator.
     """
     ring, values = bound.ratio.ring, dict(bound.values)
     images = _Substitution(ring, tf.ratio.ring, values, _rational_squares(tf, ring, values))
@@ -522,10 +500,7 @@ class _Substitution:
     def apply_factored(self, value: Factored) -> Factored:
         """Return a rational function over s, pi and functions of constants.
 
-        Raises
-        ------
-        ModelError
-            SF231 when its denominator vanishes for these values.
+        Raises ModelError: SF231 when its denominator vanishes for these values.
         """
         result = Factored.number(self.ring, value.unit)
         for factor, exponent in value.factors:

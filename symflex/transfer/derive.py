@@ -35,19 +35,8 @@ if TYPE_CHECKING:
 def derive(equations: Equations, output: str, source: str) -> TransferFunction:
     """Return one transfer function.
 
-    Parameters
-    ----------
-    equations : Equations
-        Assembled.
-    output, source : str
-        Names of an output and an input.
-
-    Raises
-    ------
-    ModelError
-        SF30x when the equations are singular, with the reason.
-    BudgetError
-        SF50x when the closed form would be too large.
+    Raises ModelError: SF30x when the equations are singular, with the reason; BudgetError: SF50x when the
+    closed form would be too large.
     """
     return derive_all(equations, ((output, source),))[0]
 
@@ -230,10 +219,7 @@ def _integer_content(polynomial: fmpz_mpoly) -> fmpz:
 def nested_transfer(block: PlacedBlock, ring: Ring) -> Factored:
     """Return the transfer function of a ``model`` block over the outer model's ring.
 
-    Raises
-    ------
-    ModelError
-        SF910 when the block stands for a distributed system.
+    Raises ModelError: SF910 when the block stands for a distributed system.
     """
     if block.submodel is None or block.tf is None:
         message = f"block '{block.name}' holds no model"

@@ -71,16 +71,9 @@ class ReducedQuotient:
 class KernelReduction:
     """Reduces quotients over one ring of kernels.
 
-    Parameters
-    ----------
-    ring : Ring
-        s, parameters, pi, functions of constants, wavenumbers, kernels.
-    table : KernelTable
-        Over the same ring.
-    parameters : sequence of str
-        Which generators are parameters: one may be expressed by a wavenumber while common factors are sought.
-    coordinates : sequence
-        Per dispersion and length that was asked for, its multiples of the table's base lengths.
+    The ring has s, parameters, pi, functions of constants, wavenumbers and kernels; one of the ``parameters``
+    may be expressed by a wavenumber while common factors are sought. ``coordinates`` has, per dispersion and
+    length that was asked for, its multiples of the table's base lengths.
     """
 
     def __init__(
@@ -120,13 +113,8 @@ class KernelReduction:
     def reduce(self, num: Factored, den: Factored, cancelled: Factored) -> ReducedQuotient | None:
         """Return a quotient in lowest terms, ``None`` when the denominator is zero by the kernels' relations.
 
-        Parameters
-        ----------
-        num, den : Factored
-            Over the ring.
-        cancelled : Factored
-            The common factor that was cancelled before, over what rows were multiplied by to clear
-            denominators.
+        ``cancelled`` is the common factor that was cancelled before, over what rows were multiplied by to
+        clear denominators.
         """
         if max(sum(len(f) for f, _ in v.factors) for v in (num, den)) > TERM_LIMIT:
             message = f"the closed form comes from one with more than {TERM_LIMIT} terms in kernels"

@@ -50,14 +50,9 @@ class KernelValues:
     def at(self, s: Value, near: Mapping[str, Value] | None = None) -> dict[str, Value]:
         """Return the values of all generators at ``s`` [rad/s], and characteristic roots without names.
 
-        Where the roots of a dispersion can be told apart, they stand for its fundamental functions.
-
-        Parameters
-        ----------
-        s : acb or acb_series
-            A point, a ball, or a series about either.
-        near : mapping of str to acb or acb_series, optional
-            Values at a ball that holds ``s``: wavenumbers take the same branch.
+        Where the roots of a dispersion can be told apart, they stand for its fundamental functions. It is a
+        point, a ball, or a series about either; wavenumbers take the same branch as ``near``, values at a
+        ball that holds ``s``.
         """
         values: dict[str, Value] = {"s": s, **self._numbers}
         coefficients: dict[Dispersion, tuple[Value, ...]] = {}
@@ -346,15 +341,9 @@ def characteristic_roots(
 ) -> tuple[Value, ...] | None:
     """Return enclosures of all roots of ``x^n + ... + c_0``, ``None`` where they cannot be told apart.
 
-    Parameters
-    ----------
-    coefficients : sequence of acb or acb_series
-        ``c_0`` first.
-    centred : sequence of acb, optional
-        On a wide ball of s, ``c_k(m)`` in its middle, and then ``c_k'(S) (S - m)``: together they say how
-        the coefficients move with each other.
-    even : bool
-        Odd coefficients are zero: the roots come in pairs x, -x, one after the other.
+    ``c_0`` comes first. On a wide ball of s, ``centred`` has ``c_k(m)`` in its middle, and then
+    ``c_k'(S) (S - m)``: together they say how the coefficients move with each other. With ``even`` odd
+    coefficients are zero, and roots come in pairs x, -x, one after the other.
     """
     half = len(coefficients)
     middle, drift = (None, None) if centred is None else (centred[:half], centred[half:])

@@ -87,10 +87,7 @@ class Opening:
     def __call__(self, closed: fmpz_mpoly) -> Factored:
         """Return a closed polynomial over the plain ring.
 
-        Raises
-        ------
-        BudgetError
-            SF501 when it would be too large.
+        Raises BudgetError: SF501 when it would be too large.
         """
         for known, opened in self._known:
             if known == closed:
@@ -112,14 +109,7 @@ if TYPE_CHECKING:
 def compose_rational(ring: Ring, factor: fmpz_mpoly, images: Sequence[Factored | None]) -> Factored:
     """Return ``factor`` over ``ring`` with the images in place of its generators.
 
-    Parameters
-    ----------
-    ring : Ring
-        Where the images live.
-    factor : fmpz_mpoly
-        Over any ring with as many generators as there are images.
-    images : sequence of Factored or None
-        ``None`` where a generator does not occur.
+    An image is ``None`` where a generator does not occur.
     """
     degrees = [int(d) for d in factor.degrees()]
     if _is_small(factor, images):

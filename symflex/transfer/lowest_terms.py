@@ -154,16 +154,8 @@ Image = tuple["fmpz_mpoly", int]
 class DeterminantsOnLine:
     """The determinants of one system on a line.
 
-    Parameters
-    ----------
-    determinants : Determinants
-        Over the closed ring.
-    plain : Ring
-        Generators without sums and definitions.
-    definitions : mapping of str to Factored
-        Each over ``plain``.
-    along : str, optional
-        The only generator that varies; all do by default.
+    Definitions are over ``plain``, the ring without sums and definitions; only the generator ``along``
+    varies, all do by default.
     """
 
     def __init__(

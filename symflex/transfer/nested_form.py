@@ -138,17 +138,7 @@ def derive_nested(
 ) -> tuple[NestedTransferFunction, ...]:
     """Return transfer functions in nested form.
 
-    Parameters
-    ----------
-    equations : Equations
-        Of a lumped model.
-    pairs : sequence of (str, str)
-        Output and input.
-
-    Raises
-    ------
-    ModelError
-        SF30x when the equations are singular; SF910 for a distributed model.
+    Raises ModelError: SF30x when the equations are singular; SF910 for a distributed model.
 
     Examples
     --------
@@ -386,18 +376,7 @@ def bind_nested(
 ) -> BoundNested:
     """Return a nested transfer function with the declared values, or the given ones in their place.
 
-    Parameters
-    ----------
-    tf : NestedTransferFunction
-        Derived.
-    values : mapping of str to number or quantity, optional
-        Replacements, in SI units or with a unit ("0.8 m").
-
-    Raises
-    ------
-    ModelError
-        SF229 a parameter without value.
-    UsageError
-        SF902 an unknown parameter.
+    Values are in SI units or have a unit ("0.8 m"). Raises ModelError: SF229 a parameter without value;
+    UsageError: SF902 an unknown parameter.
     """
     return BoundNested(tf, values_for(tf.model, tf.parameters, dict(values or {})))

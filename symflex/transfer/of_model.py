@@ -40,10 +40,7 @@ NEVER_LARGE = 20
 def pick_pairs(model: Model, names: Sequence[str]) -> tuple[tuple[str, str], ...]:
     """Return the (output, input) pairs named "OUT/IN", all of them when no name is given.
 
-    Raises
-    ------
-    UsageError
-        SF902 for a name the model does not have.
+    Raises UsageError: SF902 for a name the model does not have.
     """
     known = {"/".join(pair): pair for pair in model.transfer_functions}
     for name in names:
@@ -116,25 +113,9 @@ def derive_as(
 ) -> tuple[tuple[AnyTransferFunction, ...], str]:
     """Return transfer functions in one of the two exact representations, and why in that one.
 
-    Parameters
-    ----------
-    model : Model
-        Resolved.
-    pairs : sequence of (str, str)
-        Output and input.
-    representation : str
-        ``expanded``: quotients of polynomials; ``nested``: straight-line programs; ``auto``: expanded, unless
-        that would explode.
-
-    Returns
-    -------
-    tuple
-        The functions, all in the same representation, and a sentence when ``auto`` took the nested one.
-
-    Raises
-    ------
-    BudgetError
-        SF501, SF502 when they are too large expanded, and there is no nested form.
+    ``expanded``: quotients of polynomials; ``nested``: straight-line programs; ``auto``: expanded, unless
+    that would explode, and then a sentence says why it is not. Raises BudgetError: SF501, SF502 when they are
+    too large expanded, and there is no nested form.
     """
     if representation == "nested":
         return derive_nested(model, pairs), ""
@@ -159,11 +140,7 @@ def derive_as(
 def derive_bound(model: Model, pairs: Sequence[tuple[str, str]]) -> tuple[BoundTransferFunction, ...]:
     """Return transfer functions with the declared values, derived with numbers from the start.
 
-    What needs no symbols, such as poles and zeros, reaches far larger models this way.
-
-    Raises
-    ------
-    ModelError
-        SF229 when a parameter that occurs has no value.
+    What needs no symbols, such as poles and zeros, reaches far larger models this way. Raises ModelError:
+    SF229 when a parameter that occurs has no value.
     """
     return tuple(bind(tf) for tf in derive_all(with_numbers(model), pairs))

@@ -66,10 +66,7 @@ class ClosedForm:
     def ratio(self) -> Factored:
         """The function with all sums and definitions opened.
 
-        Raises
-        ------
-        BudgetError
-            SF501 when it would be too large.
+        Raises BudgetError: SF501 when it would be too large.
         """
         return self.opening(self.num) / self.opening(self.den)
 

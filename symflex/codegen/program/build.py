@@ -49,10 +49,7 @@ PI = "pi"
 def build_program(tf: TransferFunction, form: str | None = None) -> Piecewise:
     """Return the program of one form, ``closed`` or ``factors``; by default the first there is.
 
-    Raises
-    ------
-    BudgetError
-        SF503 when the program would be too large.
+    Raises BudgetError: SF503 when the program would be too large.
 
     Examples
     --------

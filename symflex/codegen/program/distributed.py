@@ -93,18 +93,8 @@ def reaches_of(tf: TransferFunction) -> tuple[float, ...]:
 def build_piecewise(tf: TransferFunction, reach: float | None = None) -> Piecewise:
     """Return the program for complex s.
 
-    Parameters
-    ----------
-    tf : TransferFunction
-        With kernels.
-    reach : float
-        Size of the largest exponent below which series are used; by default the first of
-        :func:`reaches_of`.
-
-    Raises
-    ------
-    BudgetError
-        SF503 when the program would be too large.
+    Series are used up to ``reach``, a size of the largest exponent; see :func:`reaches_of`. Raises
+    BudgetError: SF503 when the program would be too large.
     """
     if tf.length > TERM_LIMIT:
         message = f"a program for {tf.name} would have more than {TERM_LIMIT} terms"
@@ -117,13 +107,6 @@ def build_real(tf: TransferFunction, reach: float = REACHES[0]) -> Piecewise | N
     """Return the program of the response at an angular frequency in real arithmetic.
 
     ``None`` with losses, and where it would be very long.
-
-    Parameters
-    ----------
-    tf : TransferFunction
-        With kernels of waves and bending.
-    reach : float
-        As for :func:`build_piecewise`.
     """
     if tf.length > REAL_TERMS:
         return None
@@ -735,16 +718,8 @@ def _longer_and_shorter(
 ) -> tuple[int, int] | None:
     """Return which length is to be cut by which, ``None`` where the denominator's largest term is largest.
 
-    Parameters
-    ----------
-    sums : sequence of KernelSum
-        Numerator and denominator.
-    families : sequence of int
-        Those that share the lengths.
-    matrix : sequence of sequence of int
-        The sums' lengths in multiples of these.
-    values : sequence of float
-        The declared values of these.
+    Of numerator and denominator in some families that share lengths; ``matrix`` has these in multiples of
+    those with the declared ``values``.
     """
     count = range(len(values))
     for i in families:

@@ -80,13 +80,8 @@ def cases_of(program: Piecewise) -> tuple[Cases, ...]:
 def places_of(program: Piecewise, values: Mapping[str, float]) -> tuple[complex, ...]:
     """Return for every piece an argument at which it is regular, some way from where others take over.
 
-    Parameters
-    ----------
-    program : Piecewise
-        The program.
-    values : mapping of str to float
-        Parameters' values, as far as there are any; 1 stands for others. Places need not be exact: between
-        a piece's overflow and its loss of all digits lie many orders of magnitude.
+    Parameters without a value count as 1: places need not be exact, since between a piece's overflow and its
+    loss of all digits lie many orders of magnitude.
     """
     given = {name: values.get(name, 1.0) for name in program.parameters}
     directions = np.array([1.0]) if program.is_real else DIRECTIONS

@@ -47,17 +47,7 @@ class GeneralSeries:
     def coefficients(self, polynomial: fmpz_mpoly, size: float) -> tuple[Factored, ...]:
         """Return the terms of the series, without leading zeros, as far as an exponent of a size needs.
 
-        Parameters
-        ----------
-        polynomial : fmpz_mpoly
-            Over the ring.
-        size : float
-            Largest exponent at which the series is used.
-
-        Raises
-        ------
-        BudgetError
-            SF503 when it has too many terms.
+        Raises BudgetError: SF503 when it has too many terms.
         """
         count = LEADING
         while taylor_term(size, count) > SERIES_ERROR:

@@ -40,12 +40,7 @@ class LocalBasis:
     def series(self, solution: int, size: float) -> tuple[Fraction, ...]:
         """Return the coefficients of powers of ``(w x)^step`` in a solution over ``x^solution``.
 
-        Parameters
-        ----------
-        solution : int
-            From 0.
-        size : float
-            Largest exponent at which the series is used.
+        It is used up to an exponent of some size.
         """
         whole = [c.get((0, 0), 0) for c in self.coefficients]
         derivatives = [int(i == solution) for i in range(self.order)]

@@ -68,18 +68,9 @@ def declared_length(tf: TransferFunction, length: Factored) -> float:
 def build_modal(tf: TransferFunction, reach: float) -> Piecewise:
     """Return the program for complex s.
 
-    Parameters
-    ----------
-    tf : TransferFunction
-        With fundamental functions for kernels, and decays at most.
-    reach : float
-        Size of the largest exponent below which series are used, or matrix exponentials where series have too
-        many terms.
-
-    Raises
-    ------
-    BudgetError
-        SF503 when the sums have too many exponentials.
+    Kernels are fundamental functions, and decays at most. Up to ``reach``, a size of the largest exponent,
+    series are used, or matrix exponentials where these have too many terms. Raises BudgetError: SF503 when
+    the sums have too many exponentials.
     """
     return _ModalWorkshop(tf, reach).program()
 

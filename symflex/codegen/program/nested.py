@@ -29,10 +29,7 @@ OPERATION_LIMIT = 100_000
 def build_nested(tf: NestedTransferFunction) -> Piecewise:
     """Return the program of a nested transfer function.
 
-    Raises
-    ------
-    BudgetError
-        SF503 when it would be too large.
+    Raises BudgetError: SF503 when it would be too large.
 
     Examples
     --------

@@ -80,20 +80,9 @@ def plan_recurrences(
 ) -> RecurrencePlan:
     """Return how to compute several polynomials of a ring with few operations.
 
-    Parameters
-    ----------
-    ring : Ring
-        Its first generator is s.
-    polynomials : sequence of fmpz_mpoly
-        Not zero.
-    splits_s : bool
-        True to split by s like by any other generator. Where every element has parameters of its own, s runs
-        through all of them and parts nothing; where elements share parameters it may be what parts them.
-
-    Raises
-    ------
-    BudgetError
-        SF503 when they have so little structure that looking for it takes too long.
+    With ``splits_s`` they are split by s as by any other generator. Where every element has parameters of its
+    own, s runs through all of them and parts nothing; where elements share parameters it may be what parts
+    them. Raises BudgetError: SF503 when they have so little structure that looking for it takes too long.
     """
     planner = _Planner(ring, splits_s)
     roots = planner.plan_all([_Terms.of(polynomial) for polynomial in polynomials])

@@ -170,17 +170,8 @@ def eliminate_unit_pivots(
 ) -> ReducedSystem:
     """Eliminate unknowns by unit pivots, the cheapest first (Markowitz 1957).
 
-    Parameters
-    ----------
-    rows, outputs : tuple of dict
-        Sparse rows; columns below ``unknowns`` are unknowns, the others inputs.
-    unknowns : int
-        Number of unknowns.
-
-    Returns
-    -------
-    ReducedSystem
-        The quotient of bordered determinant and determinant is that of the full system.
+    Columns of the sparse rows below ``unknowns`` are unknowns, the others inputs. The quotient of bordered
+    determinant and determinant stays that of the full system.
     """
     live: dict[int, SparseRow] = {i: dict(r) for i, r in enumerate(rows)}
     goals = [dict(r) for r in outputs]

@@ -58,12 +58,8 @@ class Determinants:
     def of(equations: Equations) -> Determinants:
         """Return the determinants of a system.
 
-        Raises
-        ------
-        ModelError
-            SF30x when the equations are singular, with the reason.
-        BudgetError
-            SF502 when the determinant would be too large.
+        Raises ModelError: SF30x when the equations are singular, with the reason; BudgetError: SF502 when the
+        determinant would be too large.
         """
         system = close(equations)
         reduced = eliminate_unit_pivots(system.rows, system.outputs, len(system.unknowns))
@@ -115,10 +111,7 @@ Value = TypeVar("Value")
 class LaplaceExpansion(ABC, Generic[Entry, Value]):
     """Values of all minors of some rows, each found once from smaller ones.
 
-    Raises
-    ------
-    BudgetError
-        SF502 when the expansion exceeds its limits.
+    Raises BudgetError: SF502 when the expansion exceeds its limits.
     """
 
     rows: tuple[Mapping[int, Entry], ...]  # sparse rows, in the order of expansion
@@ -180,17 +173,8 @@ class LaplaceExpansion(ABC, Generic[Entry, Value]):
 class Minors(LaplaceExpansion["fmpz_mpoly", "fmpz_mpoly"]):
     """The minors of polynomial rows over any set of columns, each computed once.
 
-    Parameters
-    ----------
-    rows : tuple of dict
-        Sparse rows, in the order of expansion.
-    ring : Ring
-        Where the entries live.
-
-    Raises
-    ------
-    BudgetError
-        SF502 when the expansion exceeds its limits.
+    Rows are sparse, in the order of expansion. Raises BudgetError: SF502 when the expansion exceeds its
+    limits.
     """
 
     ring: Ring = field(kw_only=True)

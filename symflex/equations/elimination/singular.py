@@ -231,13 +231,8 @@ def is_singular(equations: Equations) -> bool:
 def unreached(equations: Equations) -> tuple[Diagnostic, ...]:
     """Return a warning for every input that reaches nothing, output that stays zero, and idle element.
 
-    The equations must not be singular.
-
-    Returns
-    -------
-    tuple of Diagnostic
-        SF652 an input whose transfer functions are all zero, SF653 an output that no input reaches, SF654 an
-        element without which every transfer function is the same.
+    The equations must not be singular. SF652: an input whose transfer functions are all zero; SF653: an
+    output that no input reaches; SF654: an element without which every transfer function is the same.
     """
     model = equations.model
     prime, value = numbers_at_random(equations)

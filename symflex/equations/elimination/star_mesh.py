@@ -94,17 +94,8 @@ class _SolvedUnknown:
 def eliminate(equations: Equations, pairs: Sequence[tuple[str, str]]) -> Elimination:
     """Return transfer functions, by name of output and input, as quotients of nested expressions.
 
-    Parameters
-    ----------
-    equations : Equations
-        Of a lumped model; over a ring of either kind.
-    pairs : sequence of (str, str)
-        Output and input.
-
-    Raises
-    ------
-    ModelError
-        SF30x when the equations are singular.
+    The model is lumped; its equations are over a ring of either kind. Raises ModelError: SF30x when the
+    equations are singular.
     """
     if len(equations.rows) != len(equations.unknowns):
         raise _singular(equations, ())
