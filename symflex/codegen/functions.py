@@ -26,7 +26,6 @@ class PrivateFunctions(ABC):
 
     printer: ClassVar[type[InfixPrinter]]
     longest: ClassVar[int | None] = None  # characters of an identifier
-    step: ClassVar[str] = "    "  # what statements are indented by
 
     program: Piecewise  # what they compute
     name: str  # identifier of the public function
@@ -39,8 +38,8 @@ class PrivateFunctions(ABC):
         return "omega" if self.program.is_real else "s"
 
     @abstractmethod
-    def statement(self, target: str, value: str, indent: str) -> list[str]:
-        """Return the lines of an assignment."""
+    def statement(self, target: str, value: str, depth: int = 1) -> list[str]:
+        """Return the lines of an assignment, indented by so many steps."""
 
     @abstractmethod
     def blocks(self) -> list[str]:
@@ -62,7 +61,7 @@ class PrivateFunctions(ABC):
         """Return the lines of assignments."""
         lines: list[str] = []
         for a in assignments:
-            lines += self.statement(printer.locals[a.name], printer.print(a.value), self.step * depth)
+            lines += self.statement(printer.locals[a.name], printer.print(a.value), depth)
         return lines
 
 
@@ -82,7 +81,7 @@ class NumberFunctions(PrivateFunctions):
 
     def returned(self, value: str, depth: int = 1) -> list[str]:
         """Return the statement that ends a function; by default ``return``, written as an assignment is."""
-        return self.statement("return", value, self.step * depth)
+        return self.statement("return", value, depth)
 
     def blocks(self) -> list[str]:
         """Return the functions, each as text that ends with a line end."""
@@ -107,7 +106,7 @@ class NumberFunctions(PrivateFunctions):
         if far is not None:
             one = printer.quotient(ONE, Laplace())
             body = [
-                *self.statement(inverse, one, self.step * 2),
+                *self.statement(inverse, one, 2),
                 *self.assigned(late, printer, 2),
                 *self.returned(printer.print(far.values[0]), 2),
             ]
@@ -124,7 +123,7 @@ class NumberFunctions(PrivateFunctions):
             lines += self.branch(f"signbit({variable})", self.returned(f"conj({negative})", 2))
         lines += self.assigned(assignments, printer)
         if program.conditions:
-            lines += self.statement(number, printer.piece_number(program), self.step)
+            lines += self.statement(number, printer.piece_number(program))
         served = {k: [n for n, own in enumerate(program.pieces) if own == k] for k in set(program.pieces)}
         *others, last = sorted(served)
         for k in others:
@@ -146,7 +145,7 @@ class NumberFunctions(PrivateFunctions):
         lines = []
         for s in place:
             printer = replace(printer, variable=s)
-            lines += self.statement(s, f"complex(0.0, {variable})", self.step)
+            lines += self.statement(s, f"complex(0.0, {variable})")
         lines += self.assigned(assignments, printer)
         whole = printer.quotient(*piece.code.values)
         if program.is_real and not piece.is_complex:

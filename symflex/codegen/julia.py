@@ -92,21 +92,6 @@ def _tuple(numbers: Sequence[int]) -> str:
     return repr(tuple(n + 1 for n in numbers))
 
 
-def statement(target: str, value: str, indent: str = "    ") -> list[str]:
-    """Return ``target = value``, or ``return value``, in parentheses where it takes several lines.
-
-    Examples
-    --------
-    >>> statement("x", "1.0 * y")
-    ['    x = 1.0 * y']
-    """
-    opening = f"{indent}{target} " if target == "return" else f"{indent}{target} = "
-    if len(opening) + len(value) <= WIDTH:
-        return [opening + value]
-    lines = in_lines(value, WIDTH - len(indent) - 4)
-    return [f"{opening}(", *(f"{indent}    {line}" for line in lines), f"{indent})"]
-
-
 def head(name: str, arguments: Sequence[str]) -> list[str]:
     """Return the first lines of a function.
 
@@ -129,9 +114,14 @@ class JuliaFunctions(NumberFunctions):
 
     printer: ClassVar = JuliaPrinter
 
-    def statement(self, target: str, value: str, indent: str) -> list[str]:
-        """Return ``target = value``, or ``return value``."""
-        return statement(target, value, indent)
+    def statement(self, target: str, value: str, depth: int = 1) -> list[str]:
+        """Return ``target = value``, or ``return value``, in parentheses where it takes several lines."""
+        indent = "    " * depth
+        opening = f"{indent}{target} " if target == "return" else f"{indent}{target} = "
+        if len(opening) + len(value) <= WIDTH:
+            return [opening + value]
+        lines = in_lines(value, WIDTH - len(indent) - 4)
+        return [f"{opening}(", *(f"{indent}    {line}" for line in lines), f"{indent})"]
 
     def branch(self, test: str, body: Sequence[str]) -> list[str]:
         """Return statements that are executed where a test holds."""

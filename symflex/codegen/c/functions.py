@@ -2,19 +2,41 @@
 
 Input: the programs of a transfer function and identifiers.
 Output: text of C functions. What depends on parameters alone is computed once per call, before the loop over
-frequencies.
+frequencies. Where it can be, that loop has a fixed number of turns and neither branches nor calls, so that
+compilers make it work on several values at once: in lanes.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from symflex.codegen.c.choice import choose, conditions_of
-from symflex.codegen.c.expression import Kind, Term, complex_term, quotient
-from symflex.codegen.c.lanes import fits_lanes, is_rational_in_lanes, lanes, rational_lanes
-from symflex.codegen.c.scope import AXIS, POSITIVE, STEP, WIDTH, Body, S
-from symflex.codegen.program import CodePiece, Piecewise
+from symflex.codegen.c.body import (
+    AXIS,
+    AXIS_LANE,
+    LANE,
+    POSITIVE,
+    STEP,
+    WIDTH,
+    Body,
+    S,
+    choose,
+    conditions_of,
+    limit_text,
+)
+from symflex.codegen.c.expression import LANE_FUNCTIONS, Kind, Term, complex_term, quotient
+from symflex.codegen.program import (
+    Apply,
+    Assigned,
+    CodeNode,
+    CodePiece,
+    Divide,
+    Piecewise,
+    Roots,
+    Solutions,
+    Straight,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -58,16 +80,18 @@ class Functions:
                 lines[-1] += f", {argument}"
         return "\n".join(lines) + ")"
 
-    def text(self) -> tuple[str, int]:
-        """Return the definitions, and the largest order of a differential equation they solve."""
-        orders: set[int] = set()
-        blocks: list[list[str]] = []
-        if self.program.is_lumped:
-            blocks.append(self._lumped_value(self.program))
-        else:
-            blocks += self._pieces(self.program, orders)
-        blocks.append(self._frequency_response(orders))
-        return "\n\n".join("\n".join(block) for block in blocks) + "\n", max(orders, default=0)
+    def text(self) -> str:
+        """Return the definitions."""
+        program = self.program
+        blocks = [self._lumped_value(program)] if program.is_lumped else self._pieces(program)
+        return "\n\n".join("\n".join(block) for block in (*blocks, self._frequency_response())) + "\n"
+
+    @property
+    def order(self) -> int:
+        """The largest order of a differential equation, or degree of a polynomial, they solve; 0 for none."""
+        codes = [c for p in (self.program, self.axis) if p for c in (p.tests, *(x.code for x in p.code))]
+        solving = (n for code in codes for n in code.nodes() if isinstance(n, Solutions | Roots))
+        return max((len(n.coefficients) for n in solving), default=0)
 
     # ------------------------------------------------------------------------------------- at a complex s
 
@@ -96,13 +120,12 @@ class Functions:
             "#endif",
         ]
 
-    def _pieces(self, program: Piecewise, orders: set[int]) -> list[list[str]]:
+    def _pieces(self, program: Piecewise) -> list[list[str]]:
         blocks = []
         for number, piece in enumerate(program.code):
-            blocks += self._piece(f"piece_{number}_of_{self.name}", piece, orders)
+            blocks += self._piece(f"piece_{number}_of_{self.name}", piece)
         scope = Body.of(self.members, S)
         conditions = conditions_of(program, scope)
-        orders |= scope.orders
 
         def call(k: int, inner: Body) -> None:
             inner.say("return", f"piece_{k}_of_{self.name}(s, p)")
@@ -111,7 +134,7 @@ class Functions:
         blocks.append(self._wrapped_value(self._ends(scope, self._head(f"value_of_{self.name}"))))
         return blocks
 
-    def _piece(self, name: str, piece: CodePiece, orders: set[int]) -> list[list[str]]:
+    def _piece(self, name: str, piece: CodePiece) -> list[list[str]]:
         scope = Body.of(self.members, S)
         code = piece.code.needed(piece.code.values)
         scope.assign((*code.constants, *code.assignments))
@@ -119,18 +142,16 @@ class Functions:
         if not piece.circle:
             num, den = values
             scope.say("return", complex_term(quotient(num, den)).text)
-            orders |= scope.orders
             return [self._ends(scope, self._head(name))]
         for i, value in enumerate(values):
             scope.say(f"value[{i}] =", complex_term(value).text)
-        orders |= scope.orders
         parts = [f"static void parts_of_{name}(cx s, const {self.structure} *p, cx *value)", "{"]
         whole = f"{STEP}return cx_circle(parts_of_{name}, s, p, {piece.circle});"
         return [self._ends(scope, parts), [*self._head(name), whole, "}"]]
 
     # -------------------------------------------------------------------------------- frequency response
 
-    def _frequency_response(self, orders: set[int]) -> list[str]:
+    def _frequency_response(self) -> list[str]:
         if self.axis is not None and fits_lanes(self.axis):
             return [*self.freq_prototype.split("\n"), "{", *lanes(self.axis, self.members), "}"]
         program = self.axis or self.program
@@ -144,7 +165,6 @@ class Functions:
             _lumped(program, outer, self._store, inner)
         else:
             self._axis_pieces(program, outer, inner)
-        orders |= outer.orders
         w = "fabs(omega[i])" if is_axis else "omega[i]"
         varies = any(_mentions(line, "w") for line in inner.lines)
         is_odd = any(_mentions(line, "sign") for line in inner.lines)
@@ -237,16 +257,185 @@ def _lumped(
         store(inner, inner.term(near.values[0]))
         return
     size = "cx_abs(s)" if inner.s.kind is Kind.COMPLEX else f"fabs({inner.s.text})"
-    inner.lines.append(f"{STEP * inner.depth}if ({size} > {program.limit!r}) {{")
+    opening = f"if ({size} > {program.limit!r}) {{"
     block = inner.within()
     block.assign(program.late)
     store(block, block.term(far.values[0]))
-    inner.lines += block.lines
     if varying is None:
-        inner.lines.append(f"{STEP * inner.depth}}}")
+        inner.enclose(opening, block.lines)
         store(inner, inner.term(near.values[0]))
         return
-    inner.lines.append(f"{STEP * inner.depth}}} else {{")
-    block = inner.within()
-    store(block, block.term(near.values[0]))
-    inner.lines += [*block.lines, f"{STEP * inner.depth}}}"]
+    other = inner.within()
+    store(other, other.term(near.values[0]))
+    inner.enclose(opening, [*block.lines, f"{STEP * inner.depth}}} else {{", *other.lines])
+
+
+LOOP = "for (int j = 0; j < LANES; j++) {"
+
+PADDING = """\
+const size_t count = n - i < LANES ? n - i : LANES;
+const double *x = omega + i;
+double *re = real + i, *im = imag + i;
+if (count < LANES) {    /* the last ones: made up to LANES */
+    for (size_t j = 0; j < LANES; j++) {
+        padded[0][j] = omega[j < count ? i + j : i];
+    }
+    x = padded[0];
+    re = padded[1];
+    im = padded[2];
+}"""
+
+UNPADDING = """\
+if (count < LANES) {
+    for (size_t j = 0; j < count; j++) {
+        real[i + j] = re[j];
+        imag[i + j] = im[j];
+    }
+}"""
+
+
+def fits_lanes(program: Piecewise) -> bool:
+    """Tell whether a program in real arithmetic has two pieces, one for small frequencies."""
+    return (
+        len(program.conditions) == 1
+        and bool(program.conditions[0].limit)
+        and len(set(program.pieces)) > 1
+        and not any(p.is_complex or p.circle for p in program.code)
+    )
+
+
+def is_rational_in_lanes(program: Piecewise) -> bool:
+    """Tell whether a program varies, has one branch, and calls no function of s."""
+    near = program.near
+    values = (*(a.value for a in near.assignments), *near.values)
+    calls = (n for value in values for n in value.walk() if isinstance(n, Apply | Solutions))
+    return program.varies and program.far is None and not any(calls)
+
+
+def lanes(program: Piecewise, members: Mapping[str, str]) -> list[str]:
+    """Return the body of the function that computes the frequency response, where :func:`fits_lanes`.
+
+    ``members`` are the structure's, by the parameters' names.
+    """
+    outer = Body.of(members, LANE)
+    (condition,) = program.conditions
+    fixed = program.tests.needed([condition.scale])
+    outer.assign(fixed.constants)
+    limit = limit_text(condition, outer)
+    tested = program.tests.needed([condition.quantity])
+    outer.assign(tested.constants)
+    tests = outer.within(3)
+    pieces: list[tuple[Straight, dict[str, Term]]] = []
+    for k in program.pieces:
+        code = program.code[k].code.needed(program.code[k].code.values)
+        outer.known = {}
+        outer.assign(code.constants)
+        pieces.append((code, outer.known))
+
+    tests.assign(tested.assignments)
+    size = tests.term(condition.quantity)
+    tests.add(f"is_near[j] = {size.text if size == LANE else f'fabs({size.text})'} < {limit};")
+    tests.add("near += is_near[j];")
+    loop = outer.within()
+    is_odd = bool(program.turn)
+    loop.add("double padded[3][LANES], w[LANES], g[LANES] = {0.0};", "int near = 0, is_near[LANES];")
+    loop.add(*(["double sign[LANES];"] if is_odd else []), *PADDING.split("\n"))
+    loop.add(LOOP, f"{STEP}w[j] = fabs(x[j]);")
+    loop.add(*([f"{STEP}sign[j] = copysign(1.0, x[j]);"] if is_odd else []), "}")
+    loop.enclose(LOOP, tests.lines)
+    for (code, known), opening in zip(pieces, ("near < LANES", "near > 0"), strict=True):
+        block = loop.within()
+        block.known = dict(known)
+        _stages(code, block, "is_near[j]" if opening == "near > 0" else "")
+        loop.enclose(f"if ({opening}) {{", block.lines)
+    value, zero = ("sign[j] * g[j]", "0.0") if is_odd else ("g[j]", "0.0")
+    real, imag = (zero, value) if is_odd else (value, zero)
+    loop.add(LOOP, f"{STEP}re[j] = {real};", "}", LOOP, f"{STEP}im[j] = {imag};", "}")
+    loop.add(*UNPADDING.split("\n"))
+    return _looped(outer, loop, members)
+
+
+def rational_lanes(program: Piecewise, members: Mapping[str, str]) -> list[str]:
+    """Return the body of the function that computes the response, where :func:`is_rational_in_lanes`.
+
+    ``members`` are the structure's, by the parameters' names.
+    """
+    outer = Body.of(members, AXIS_LANE)
+    outer.assign(program.near.constants)
+    block = outer.within(3)
+    block.assign(program.near.assignments)
+    value = block.term(program.near.values[0])
+    parts = {"re": "0.0", "im": "0.0"}
+    if value.kind is Kind.COMPLEX:
+        block.say("const cx g =", value.text)
+        parts = {"re": "g.re", "im": "g.im"}
+    else:
+        parts["re" if value.kind is Kind.REAL else "im"] = value.text
+    varying = {name: text for name, text in parts.items() if text != "0.0"}
+    arrays = {name: block.name(f"g_{name}") for name in varying}
+    for name, text in varying.items():
+        block.say(f"{arrays[name]}[j] =", text)
+    loop = outer.within()
+    loop.add(f"double padded[3][LANES], w[LANES], {', '.join(f'{a}[LANES]' for a in arrays.values())};")
+    loop.add(*PADDING.split("\n"))
+    # Copied, since the arrays outside might overlap for all that a compiler knows.
+    loop.add(LOOP, f"{STEP}w[j] = x[j];", "}")
+    loop.enclose(LOOP, block.lines)
+    for name in parts:
+        stored = f"{arrays[name]}[j]" if name in arrays else "0.0"
+        loop.add(LOOP, f"{STEP}{name}[j] = {stored};", "}")
+    loop.add(*UNPADDING.split("\n"))
+    return _looped(outer, loop, members)
+
+
+def _looped(outer: Body, loop: Body, members: Mapping[str, str]) -> list[str]:
+    head = [*outer.opening(members), *outer.lines, f"{STEP}for (size_t i = 0; i < n; i += LANES) {{"]
+    return [*head, *loop.lines, f"{STEP}}}"]
+
+
+def _stages(code: Straight, scope: Body, condition: str) -> None:
+    """Print loops that compute a quotient; expressions that call the library are in loops of their own."""
+    values = [*(a.value for a in code.assignments), Divide(*code.values)]
+    stages = [0]
+    for before, value in pairwise(values):
+        stages.append(stages[-1] + (_calls(value) is not _calls(before)))
+    arrays = {
+        assignment.name: scope.name(assignment.name)
+        for assignment, stage in zip(code.assignments, stages, strict=False)
+        if _is_used_later(assignment.name, stage, values, stages)
+    }
+    if arrays:
+        scope.add(f"double {', '.join(f'{array}[LANES]' for array in arrays.values())};")
+    inner = scope.within()
+    for stage in range(stages[-1] + 1):
+        inner.lines = []
+        for assignment, own in zip(code.assignments, stages, strict=False):
+            if own != stage:
+                continue
+            if assignment.name not in arrays:
+                inner.assign([assignment])
+                continue
+            term = inner.printer.whole(assignment.value)
+            place = f"{arrays[assignment.name]}[j]"
+            inner.say(f"{place} =", term.text)
+            inner.known[assignment.name] = Term(place, term.kind, varies=True)
+        if stage == stages[-1]:
+            num, den = (inner.term(v) for v in code.values)
+            target = inner.within() if condition else inner
+            target.say("g[j] =", quotient(num, den).text)
+            if condition:
+                inner.enclose(f"if ({condition}) {{", target.lines)
+        scope.enclose(LOOP, inner.lines)
+
+
+def _is_used_later(name: str, stage: int, values: Sequence[CodeNode], stages: Sequence[int]) -> bool:
+    return any(
+        other > stage and any(isinstance(n, Assigned) and n.name == name for n in value.walk())
+        for value, other in zip(values, stages, strict=True)
+    )
+
+
+def _calls(root: CodeNode) -> bool:
+    """Tell whether an expression has a function that there is only in the library."""
+    others = ("abs", *LANE_FUNCTIONS)
+    return any(isinstance(node, Apply) and node.function not in others for node in root.walk())

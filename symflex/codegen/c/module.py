@@ -9,10 +9,9 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from symflex.codegen.c.body import KEYWORDS, PARTS, RESERVED, WIDTH
 from symflex.codegen.c.expression import LANE_FUNCTIONS
 from symflex.codegen.c.functions import Functions
-from symflex.codegen.c.names import KEYWORDS, PARTS, RESERVED
-from symflex.codegen.c.scope import WIDTH
 from symflex.codegen.export import Export, Language
 from symflex.codegen.module_text import (
     COST,
@@ -234,9 +233,9 @@ class _Files:
     def _source(self) -> str:
         printed = {key: functions.text() for key, functions in self.functions.items()}
         # Comments tell nothing about which functions are called.
-        called = "\n".join(text for text, _ in printed.values())
-        below = helpers(called, self.structure, max((order for _, order in printed.values()), default=1))
-        code = "\n".join("\n".join([*comment([inert(key)]), "", text]) for key, (text, _) in printed.items())
+        order = max((f.order for f in self.functions.values()), default=1)
+        below = helpers("\n".join(printed.values()), self.structure, order)
+        code = "\n".join("\n".join([*comment([inert(key)]), "", text]) for key, text in printed.items())
         signs = {"float": "FLT_EVAL_METHOD", "math": "", "stdint": "uint64_t", "string": "memcpy("}
         includes = "".join(f"#include <{name}.h>\n" for name, sign in signs.items() if sign in below)
         parts = [includes, self._defaults(), below, code]
@@ -256,14 +255,7 @@ class _Files:
 def helpers(code: str, parameters: str, order: int) -> str:
     """Return the functions that some code calls.
 
-    Parameters
-    ----------
-    code : str
-        What calls them.
-    parameters : str
-        Name of the type that holds the parameters.
-    order : int
-        The largest order of a differential equation solved.
+    ``parameters`` is the name of the type that holds these, ``order`` the largest of a differential equation.
     """
     always, others = ["cx"], ""
     if re.search(r"\bLANES\b", code):

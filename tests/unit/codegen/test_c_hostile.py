@@ -10,7 +10,7 @@ import pytest
 
 from symflex import pipeline
 from symflex.codegen.c import C99
-from symflex.codegen.c.names import FUNCTIONS, KEYWORDS, LOCALS, MACROS, RESERVED
+from symflex.codegen.c.body import FUNCTIONS, KEYWORDS, LOCALS, MACROS, RESERVED
 from tests.unit.codegen.test_numpy_hostile import HOSTILE, NAMES, SPEC, model_of, renamed, ring_takes
 
 IN_COMMENTS = [

@@ -10,8 +10,7 @@ import pytest
 import symflex
 from symflex.codegen.infix import in_lines
 from symflex.codegen.julia import JULIA, module_name
-from symflex.codegen.matlab import MATLAB, main_name
-from symflex.codegen.matlab.function_file import NAMES
+from symflex.codegen.matlab import MATLAB, NAMES, main_name
 from symflex.codegen.program import identifiers
 from tests.house.repository import slow_ones
 from tests.unit.codegen.exportable import DERIVATIONS, derived

@@ -1,0 +1,397 @@
+"""The body of a C function while it is printed: its variables, the statements that make them, branches.
+
+Input: assignments and conditions of a program.
+Output: lines. What a name of a model cannot be called in C stands here too, and how a sum of exponentials of
+characteristic roots becomes a table of numbers that C code follows.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from itertools import count
+from textwrap import TextWrapper
+from typing import TYPE_CHECKING
+
+from symflex.codegen.c.expression import CPrinter, Kind, Term, complex_term, product
+from symflex.codegen.program import (
+    Assignment,
+    CodeNode,
+    Condition,
+    ModalValue,
+    ModeValues,
+    Piecewise,
+    RealNumber,
+    Roots,
+    Solutions,
+    identifiers,
+)
+from symflex.codegen.source_parts import parts_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from symflex.codegen.program.nodes import Frames
+
+
+PARTS = parts_of("c.c")
+
+KEYWORDS = frozenset(
+    """
+    auto break case char const continue default do double else enum extern float for goto if inline int long
+    register restrict return short signed sizeof static struct switch typedef union unsigned void volatile
+    while asm fortran typeof near far huge interrupt
+    alignas alignof bool constexpr false nullptr static_assert thread_local true typeof_unqual
+    and and_eq bitand bitor catch char16_t char32_t char8_t class co_await co_return co_yield compl concept
+    const_cast consteval constinit decltype delete dynamic_cast explicit export final friend import module
+    mutable namespace new noexcept not not_eq operator or or_eq override private protected public
+    reinterpret_cast requires static_cast template this throw try typeid typename using virtual wchar_t xor
+    xor_eq
+    """.split()
+)
+"""Of C up to C23, of C++, whose programs include the header, and of compilers for small machines."""
+
+MACROS = frozenset(
+    """
+    I J complex imaginary CMPLX CMPLXF CMPLXL NULL offsetof errno EDOM ERANGE EILSEQ assert NDEBUG EOF stdin
+    stdout stderr BUFSIZ RAND_MAX CLOCKS_PER_SEC INFINITY NAN HUGE HUGE_VAL HUGE_VALF HUGE_VALL MAXFLOAT
+    FP_FAST_FMA FP_ILOGB0 FP_ILOGBNAN FP_INFINITE FP_NAN FP_NORMAL FP_SUBNORMAL FP_ZERO MATH_ERRNO
+    MATH_ERREXCEPT math_errhandling DOMAIN SING OVERFLOW UNDERFLOW PLOSS TLOSS X_TLOSS
+    M_E M_LOG2E M_LOG10E M_LN2 M_LN10 M_PI M_PI_2 M_PI_4 M_1_PI M_2_PI M_2_SQRTPI M_SQRT2 M_SQRT1_2 M_TWOPI
+    PI TWO_PI HALF_PI EULER DEG_TO_RAD RAD_TO_DEG HIGH LOW INPUT OUTPUT DEFAULT F
+    FLT_EVAL_METHOD FLT_RADIX FLT_ROUNDS DECIMAL_DIG SIZE_MAX PTRDIFF_MAX PTRDIFF_MIN WCHAR_MAX WCHAR_MIN
+    SIG_ATOMIC_MAX SIG_ATOMIC_MIN WINT_MAX WINT_MIN UINT8_C UINT16_C UINT32_C UINT64_C INT8_C INT16_C INT32_C
+    INT64_C INTMAX_C UINTMAX_C LANES ROUNDER
+    unix linux i386 i486 i586 i686 sun vax mips hpux sgi arm pdp11 m68k sparc BSD
+    min max small hyper interface pascal cdecl stdcall IN OUT OPTIONAL CONST VOID FAR NEAR TRUE FALSE ERROR
+    BOOL DELETE STRICT
+    fpclassify isfinite isgreater isgreaterequal isinf isless islessequal islessgreater isnan isnormal
+    isunordered signbit signgam
+    """.split()
+    + [
+        f"{kind}_{limit}"
+        for kind in ("FLT", "DBL", "LDBL")
+        for limit in "DIG EPSILON MANT_DIG MAX MAX_10_EXP MAX_EXP MIN MIN_10_EXP MIN_EXP".split()
+    ]
+    + [
+        f"{sign}INT{kind}_{limit}"
+        for sign in ("", "U")
+        for kind in ("MAX", "PTR", *(f"{k}{n}" for k in ("", "_FAST", "_LEAST") for n in (8, 16, 32, 64)))
+        for limit in ("MAX", "MIN")
+    ]
+)
+"""Of the headers that the code includes, of compilers that define names without underscores, and of headers
+that firmware and Windows programs often include first."""
+
+FUNCTIONS = frozenset(
+    """
+    main size_t ptrdiff_t
+    sqrt exp log log2 ldexp ceil fmax fmin sin cos tan sinh cosh tanh fabs hypot pow copysign
+    creal cimag
+    memcpy uint64_t
+    """.split()
+).union(*PARTS)
+"""What the code calls, and the types it uses."""
+
+LOCALS = frozenset("s p omega n i j w x g re im real imag sign value padded near is_near count".split())
+"""Arguments and variables that every function has under these names."""
+
+RESERVED = KEYWORDS | MACROS
+"""What a member of the structure of parameters cannot be called."""
+
+TAKEN = RESERVED | FUNCTIONS | LOCALS
+"""What a variable cannot be called besides."""
+
+
+WIDTH = 88
+"""Columns of generated C."""
+
+STEP = "    "
+
+S = Term("s", Kind.COMPLEX, varies=True)
+AXIS = Term("w", Kind.IMAGINARY, varies=True)
+POSITIVE = Term("w", Kind.REAL, varies=True)
+LANE = Term("w[j]", Kind.REAL, varies=True)
+AXIS_LANE = Term("w[j]", Kind.IMAGINARY, varies=True)
+"""What s is: complex; j w; the frequency w of a response in real arithmetic; the last two, one of several."""
+
+_NUMBERED = re.compile(r"[a-z]_\d{1,9}")
+
+
+def statement(opening: str, value: str, depth: int) -> list[str]:
+    """Return ``opening value;`` on as many lines as it needs.
+
+    Examples
+    --------
+    >>> statement("return", "a + b", 1)
+    ['    return a + b;']
+    """
+    indent = STEP * depth
+    line = f"{indent}{opening} {value};"
+    if len(line) <= WIDTH:
+        return [line]
+    # Only between operators: an identifier longer than a line stays whole.
+    wrapper = TextWrapper(
+        width=WIDTH,
+        initial_indent=indent,
+        subsequent_indent=indent + STEP,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+    return wrapper.wrap(f"{opening} {value};")
+
+
+@dataclass
+class Body:
+    """The variables of one C function, and the statements that make them."""
+
+    # Identifiers of the variables that hold parameters, by the names in the model.
+    parameters: Mapping[str, str]
+    s: Term  # what s is
+    depth: int = 1  # how far statements are indented
+    lines: list[str] = field(default_factory=list)  # the statements so far
+    known: dict[str, Term] = field(default_factory=dict)  # assigned values by their names in the program
+    used: set[str] = field(default_factory=set)  # names of the parameters in use
+    _taken: set[str] = field(default_factory=set)
+    _shared: dict[tuple[str, Kind], Term] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, members: Mapping[str, str], s: Term) -> Body:
+        """Return the scope of a function of parameters that are members of a structure."""
+        own = cls(identifiers(members, TAKEN), s)
+        own._taken |= {*TAKEN, *own.parameters.values()}
+        return own
+
+    def within(self, depth: int | None = None) -> Body:
+        """Return the scope of a block: it sees these variables, and what it makes stays known to itself."""
+        return replace(self, depth=depth or self.depth + 1, lines=[], known=dict(self.known))
+
+    def name(self, wanted: str) -> str:
+        """Return an identifier that nothing else in the function has."""
+        found = wanted
+        if not _NUMBERED.fullmatch(wanted):
+            found = identifiers({"": wanted}, self._taken)[""]
+        elif wanted in self._taken:
+            stem, _, number = wanted.partition("_")
+            others = (f"{stem}_{n}" for n in count(int(number)))
+            found = next(other for other in others if other not in self._taken)
+        self._taken.add(found)
+        return found
+
+    @property
+    def printer(self) -> CPrinter:
+        """Prints expressions of these variables."""
+        in_lanes = self.s in (LANE, AXIS_LANE)
+        return CPrinter(self._parameter, self.known, self.s, self._array, self._hold, in_lanes)
+
+    def term(self, node: CodeNode) -> Term:
+        """Return an expression of these variables."""
+        return self.printer.print(node)
+
+    def say(self, opening: str, value: str) -> None:
+        """Add a statement."""
+        self.lines += statement(opening, value, self.depth)
+
+    def add(self, *lines: str) -> None:
+        """Add lines as they are, indented."""
+        self.lines += [STEP * self.depth + line for line in lines]
+
+    def enclose(self, opening: str, lines: Sequence[str]) -> None:
+        """Add a block: what opens it, statements as they are, and a brace."""
+        self.lines += [STEP * self.depth + opening, *lines, f"{STEP * self.depth}}}"]
+
+    def assign(self, assignments: Sequence[Assignment]) -> None:
+        """Make variables; what is free of s and made already is not made again."""
+        for assignment in assignments:
+            if isinstance(assignment.value, Solutions | Roots | ModeValues | ModalValue):
+                self.known[assignment.name] = self._array(assignment.value, assignment.name)
+                continue
+            term = self.printer.whole(assignment.value)
+            key = (term.text, term.kind)
+            if term.varies:
+                self.known[assignment.name] = self.hold(assignment.name, term)
+                continue
+            if key not in self._shared:
+                self._shared[key] = self.hold(assignment.name, term)
+            self.known[assignment.name] = self._shared[key]
+
+    def hold(self, wanted: str, term: Term) -> Term:
+        """Make a variable with a value."""
+        name = self.name(wanted)
+        self.say(f"const {term.kind.type} {name} =", term.text)
+        return Term(name, term.kind, term.varies)
+
+    def opening(self, members: Mapping[str, str]) -> list[str]:
+        """Return the lines that take the parameters in use out of their structure."""
+        lines = [
+            f"{STEP}const double {variable} = p->{members[name]};"
+            for name, variable in self.parameters.items()
+            if name in self.used
+        ]
+        return lines or [f"{STEP}(void)p;"]
+
+    def _hold(self, term: Term) -> Term:
+        return self.hold("t_1" if term.varies else "c_1", term)
+
+    def _parameter(self, name: str) -> str:
+        self.used.add(name)
+        return self.parameters[name]
+
+    def _array(self, node: CodeNode, wanted: str = "solutions") -> Term:
+        match node:
+            case Solutions(coefficients, count):
+                given, order, varies = self._given(coefficients)
+                found = self.name(wanted)
+                call = (
+                    f"cx_series({given}, {order}, {count}," if count else f"cx_propagated({given}, {order},"
+                )
+                self.add(f"cx {found}[{order}];", f"{call} {found});")
+                return Term(found, Kind.COMPLEX, varies)
+            case Roots(coefficients):
+                given, order, varies = self._given(coefficients)
+                found = self.name(wanted)
+                self.add(f"cx {found}[{order + 1}];", f"cx_roots({given}, {order}, {found});")
+                return Term(found, Kind.COMPLEX, varies, real_at=order)
+            case ModeValues(roots, length):
+                held, scale = self.printer.listed(roots), complex_term(self.term(length))
+                found = self.name(wanted)
+                self.add(f"cx_mode {found};")
+                self.say(f"cx_modes({held.text}, {held.real_at},", f"{scale.text}, &{found})")
+                return Term(found, Kind.COMPLEX, held.varies or scale.varies)
+            case ModalValue():
+                return self._modal(node, wanted)
+        message = f"no text for {type(node).__name__}"
+        raise TypeError(message)
+
+    def _given(self, nodes: Sequence[CodeNode]) -> tuple[str, int, bool]:
+        """Declare an array of coefficients; return its name, its length and whether it depends on s."""
+        terms = [complex_term(self.term(c)) for c in nodes]
+        given = self.name("coefficients")
+        self.say(f"const cx {given}[{len(terms)}] =", f"{{{', '.join(t.text for t in terms)}}}")
+        return given, len(terms), any(t.varies for t in terms)
+
+    def _modal(self, node: ModalValue, wanted: str) -> Term:
+        modes = [self.printer.listed(mode) for mode in node.modes]
+        given, _, varies = self._given(node.coefficients)
+        plan, most = modal_plan(node.frames)
+        names = [self.name(x) for x in ("modes", "plan", "sums", wanted)]
+        self.say(f"const cx_mode *const {names[0]}[] =", f"{{{', '.join(f'&{m.text}' for m in modes)}}}")
+        self.say(f"static const int {names[1]}[] =", f"{{{', '.join(map(str, plan))}}}")
+        self.add(f"cx {names[2]}[{most}], {names[3]}[2];")
+        self.say(f"cx_modal({names[0]}, {given}, {names[1]},", f"{names[2]}, {names[3]})")
+        return Term(names[3], Kind.COMPLEX, varies or any(m.varies for m in modes), real_at=1)
+
+
+def modal_plan(frames: Frames) -> tuple[list[int], int]:
+    """Return a sum as a table of numbers in the order in which ``cx_modal`` reads them, and its partial sums.
+
+    What :func:`~symflex.algebra.modal_sum.modal_amplitudes` finds out as it goes, which terms come together
+    after each slot, is in the table; so many partial sums are kept at a time.
+
+    Examples
+    --------
+    Two terms over the two roots of one mode, c_0 h + c_1 h':
+
+    >>> modal_plan((((0,), (((0,), 0), ((1,), 1)), (((0,), 1), ((1,), 1))),))
+    ([1, 1, 0, 2, 1, 0, 0, 1, 0, 2, 0, 1, 2, 0, 1, 1, 1], 3)
+    """
+    plan, most = [len(frames)], 0
+    for slots, terms, keys in frames:
+        plan += [len(slots), *slots]
+        left = [orders for orders, _ in terms]
+        kept = len(left)
+        for _ in slots:
+            rest = list(dict.fromkeys(orders[1:] for orders in left))
+            places = {orders: i for i, orders in enumerate(rest)}
+            plan += [len(left), len(rest)]
+            for orders in left:
+                plan += [orders[0], places[orders[1:]]]
+            left = rest
+            kept += len(left)
+        most = max(most, kept)
+        plan += [len(terms), *(i for _, i in terms), len(keys)]
+        for key, divisor in keys:
+            plan += [*key, divisor]
+    return plan, most
+
+
+def conditions_of(program: Piecewise, scope: Body, varying: Body | None = None) -> list[str]:
+    """Print what conditions need, and return the conditions; limits go to the outer scope."""
+    inner = varying or scope
+    fixed = program.tests.needed([c.scale for c in program.conditions])
+    scope.assign(fixed.constants)
+    limits = [limit_text(c, scope) for c in program.conditions]
+    varied = program.tests.needed([c.quantity for c in program.conditions])
+    scope.assign(varied.constants)
+    if varying is not None:
+        inner.known = dict(scope.known)
+    inner.assign(varied.assignments)
+    conditions = []
+    for condition, limit in zip(program.conditions, limits, strict=True):
+        quantity = inner.term(condition.quantity)
+        if not condition.limit:
+            left = product(inner.term(condition.scale), quantity)
+            text = {Kind.COMPLEX: f"{left.text}.re", Kind.REAL: left.text, Kind.IMAGINARY: "0.0"}[left.kind]
+            conditions.append(f"{text} < 0.0")
+            continue
+        size = {
+            Kind.COMPLEX: f"cx_abs({quantity.text})",
+            Kind.REAL: quantity.text if quantity == POSITIVE else f"fabs({quantity.text})",
+            Kind.IMAGINARY: f"fabs({quantity.text})",
+        }[quantity.kind]
+        conditions.append(f"{size} < {limit}")
+    return conditions
+
+
+def limit_text(condition: Condition, scope: Body) -> str:
+    """Return the text of a limit, a variable unless it is a number."""
+    if not condition.limit or condition.scale == RealNumber(Fraction(1)):
+        return repr(condition.limit)
+    scale = scope.term(condition.scale)
+    size = f"cx_abs({scale.text})" if scale.kind is Kind.COMPLEX else f"fabs({scale.text})"
+    return scope.hold("limit", Term(f"{condition.limit!r} / {size}", Kind.REAL)).text
+
+
+def choose(
+    program: Piecewise,
+    conditions: Sequence[str],
+    scope: Body,
+    body: Callable[[int, Body], None],
+) -> None:
+    """Print the choice among pieces: test i adds ``2**i`` to the number of the piece."""
+    indent = STEP * scope.depth
+    if len(set(program.pieces)) == 1:
+        body(program.pieces[0], scope)
+        return
+    if len(conditions) == 1:
+        near, far = scope.within(), scope.within()
+        body(program.pieces[1], near)
+        body(program.pieces[0], far)
+        scope.enclose(f"if ({conditions[0]}) {{", [*near.lines, f"{indent}}} else {{", *far.lines])
+        return
+    names = []
+    for i, test in enumerate(conditions):
+        name = scope.name(f"test_{i}")
+        scope.say(f"const int {name} =", test)
+        names.append(f"{2**i} * {name}" if i else name)
+    scope.lines.append(f"{indent}switch ({' + '.join(names)}) {{")
+    default = program.pieces[0]
+    for k in sorted({*program.pieces} - {default}):
+        scope.lines += [f"{indent}case {n}:" for n, piece in enumerate(program.pieces) if piece == k]
+        _case(k, scope, body)
+    scope.lines.append(f"{indent}default:")
+    _case(default, scope, body)
+    scope.lines.append(f"{indent}}}")
+
+
+def _case(k: int, scope: Body, body: Callable[[int, Body], None]) -> None:
+    indent = STEP * scope.depth
+    block = scope.within()
+    body(k, block)
+    returns = block.lines and block.lines[-1].lstrip().startswith("return")
+    if returns and len(block.lines) == 1:
+        scope.lines += block.lines
+        return
+    scope.lines[-1] += " {"
+    scope.lines += [*block.lines, *([] if returns else [f"{indent}{STEP}break;"]), f"{indent}}}"]

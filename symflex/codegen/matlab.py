@@ -1,0 +1,527 @@
+"""Transfer functions as one function file that MATLAB and Octave run: everything that is printed in MATLAB.
+
+Input: the contents of a file.
+Output: its text. Read from the top: names, expressions, local functions that compute with columns, the file.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, ClassVar
+
+from symflex.codegen.export import Export, Language
+from symflex.codegen.functions import PrivateFunctions
+from symflex.codegen.infix import InfixPrinter, in_lines
+from symflex.codegen.module_text import (
+    COST,
+    default_value,
+    described,
+    formula_lines,
+    headline,
+    origin_lines,
+)
+from symflex.codegen.program import identifiers, inert, wrapped
+from symflex.codegen.rational_system import RationalSystem
+from symflex.codegen.source_parts import called_parts, parts_of
+from symflex.expressions import Name, format_expression, substitute
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from symflex.codegen.export import Contents, Member
+    from symflex.codegen.program import CodeNode, CodePiece, Piecewise
+    from symflex.codegen.program.nodes import Frames
+    from symflex.expressions import Expression
+
+
+WIDTH = 88
+"""Columns of generated MATLAB."""
+
+LONGEST = 63
+"""Characters that MATLAB tells identifiers apart by."""
+
+KEYWORDS = frozenset(
+    "__FILE__ __LINE__ arguments break case catch classdef continue do else elseif end end_try_catch "
+    "end_unwind_protect endarguments endclassdef endenumeration endevents endfor endfunction endif "
+    "endmethods endparfor "
+    "endproperties endspmd endswitch endwhile enumeration events for function global if methods "
+    "otherwise parfor persistent properties return spmd switch try until unwind_protect "
+    "unwind_protect_cleanup while".split()
+)
+"""Of both languages."""
+
+FUNCTIONS = frozenset(
+    "i j pi e eps Inf inf NaN nan NA ans true false end nargin nargout varargin varargout exp log sqrt sin "
+    "cos tan sinh cosh tanh abs real imag conj complex any all size zeros ones reshape numel unique isempty "
+    "isnumeric islogical isreal isscalar isstruct isfield isa ischar char double error cell cellfun "
+    "fieldnames struct2cell mod max min find repmat eye eig diag ceil log2 isfinite sum struct".split()
+)
+"""What generated code uses, and constants that a reader would miss."""
+
+WORDS = frozenset({"s", "G", "given", "value"})
+"""Variables of the generated code; parameters leave them to it."""
+
+TOOLBOX = frozenset({"tf", "zpk", "ss", "frd", "roots"})
+"""What no function of the file may hide."""
+
+PARTS = parts_of("matlab.m")
+
+NAMES = frozenset({"default_parameters"}.union(*PARTS))
+"""Names of the functions that others call."""
+
+RESERVED = KEYWORDS | FUNCTIONS | NAMES | WORDS
+
+TITLE_LENGTH = 30
+"""Characters of a title that a function is named by."""
+
+LONGEST_STEM = 64
+"""Characters of a file's name that a message shows."""
+
+EXPANSION = (
+    "s and parameters are expanded against each other, as operators expand them. "
+    "Values are not finite at poles."
+)
+
+_LINK = re.compile(r"<(?=[A-Za-z/])")
+
+ROOM = WIDTH - 4
+"""Columns of help texts."""
+
+OTHER_FIELDS = frozenset(
+    "parameters units descriptions transfer_functions frequency_responses systems coefficients".split()
+)
+"""Of the struct that the main function returns."""
+
+SYSTEM_ROLES = ("system", "coefficients")
+"""Of the two functions of a rational transfer function."""
+
+
+# ------------------------------------------------------------------------------------------- expressions
+
+
+@dataclass(frozen=True)
+class MatlabPrinter(InfixPrinter):
+    """Prints expressions whose values are numbers or columns."""
+
+    times: ClassVar[str] = ".*"
+    over: ClassVar[str] = "./"
+
+    def to_complex(self, operand: CodeNode) -> tuple[str, int]:
+        """Return the number itself: a square root needs no complex operand to be complex."""
+        return self._print(operand)
+
+    def complex_number(self, real: float, imaginary: float) -> str:
+        """Return a number as text that needs no parentheses."""
+        if not imaginary:
+            return repr(real) if real >= 0 else f"({real!r})"
+        return (
+            f"({real!r} {'-' if imaginary < 0 else '+'} {abs(imaginary)!r}i)" if real else f"({imaginary!r}i)"
+        )
+
+    def power(self, base: str, exponent: int) -> str:
+        """Return a power of text that needs no parentheses."""
+        return f"{base}.^{exponent}"
+
+    def listed(self, texts: Iterable[str]) -> str:
+        """Return a cell array."""
+        return f"{{{', '.join(texts)}}}"
+
+    def item(self, values: str, position: int) -> str:
+        """Return one value of a cell array, counted from 0."""
+        return f"{values}{{{position + 1}}}"
+
+    def call(self, function: str, arguments: Sequence[str]) -> str:
+        """Return a call of a run-time function."""
+        return f"{function}({', '.join(arguments)})"
+
+    def frames(self, frames: Frames) -> str:
+        """Return a cell per frame: slots, orders and coefficients of terms, roots and divisors of keys."""
+        texts = []
+        for slots, terms, keys in frames:
+            parts = [
+                _matrix([slots], 1),
+                _matrix([orders for orders, _ in terms], 1),
+                _matrix([[i for _, i in terms]], 1),
+                _matrix([key for key, _ in keys], 1),
+                _matrix([[divisor for _, divisor in keys]], 0),
+            ]
+            texts.append(self.listed(parts))
+        return self.listed(texts)
+
+
+def _matrix(rows: Sequence[Sequence[int]], shift: int) -> str:
+    if not rows or not rows[0]:
+        return f"zeros({len(rows)}, 0)"
+    return f"[{'; '.join(', '.join(str(x + shift) for x in row) for row in rows)}]"
+
+
+def continued(text: str, indent: str) -> list[str]:
+    """Return one statement, without strings that hold blanks, continued over lines where it is long."""
+    if len(indent) + len(text) <= WIDTH:
+        return [indent + text]
+    more = indent + "    "
+    lines = in_lines(text, WIDTH - len(more) - 4)
+    broken = [f"{line} ..." for line in lines[:-1]]
+    return [f"{more if i else indent}{line}" for i, line in enumerate([*broken, lines[-1]])]
+
+
+@dataclass(frozen=True)
+class LocalFunctions(PrivateFunctions):
+    """Prints the local functions that compute with columns."""
+
+    printer: ClassVar = MatlabPrinter
+    longest: ClassVar = LONGEST
+
+    names: Mapping[str, str]  # identifiers of these functions, by their roles
+
+    def statement(self, target: str, value: str, depth: int = 1) -> list[str]:
+        """Return ``target = value``."""
+        return continued(f"{target} = {value};", "  " * depth)
+
+    def call(self) -> list[str]:
+        """Return the statement that computes the value of ``s``, or ``omega``, and ``given``."""
+        if self.program.is_lumped:
+            return self.statement("value", f"everywhere(@{self.names['value']}, s, given)")
+        pieces = ", ".join(f"@{self.names[str(i)]}" for i in self.program.pieces)
+        arguments = f"@{self.names['number']}, {{{pieces}}}, {self.variable}, given"
+        if not self.program.is_real:
+            return self.statement("value", f"in_pieces({arguments})")
+        return self.statement(
+            "value", f"in_real_pieces({arguments}, {'true' if self.program.turn else 'false'})"
+        )
+
+    def blocks(self) -> list[str]:
+        """Return the functions, each as text that ends with a line end."""
+        if self.program.is_lumped:
+            return [self._lumped(self.program)]
+        blocks = [self._number(self.program)]
+        for i, piece in enumerate(self.program.code):
+            blocks += self._piece(i, piece)
+        return blocks
+
+    # ------------------------------------------------------------------------------------------- functions
+
+    def _function(self, outputs: str, role: str, variable: str, body: Sequence[str]) -> str:
+        given = ", ".join(self.arguments(variable))
+        head = continued(f"function {outputs} = {self.names[role]}({given})", "")
+        return "\n".join([*head, *body, "end", ""])
+
+    def _lumped(self, program: Piecewise) -> str:
+        near, far, late = program.near, program.far, program.late
+        early = (*near.constants, *near.assignments)
+        if far is None:
+            printer, (s, value) = self.scope(early, "s", "value")
+            lines = [*self.assigned(early, printer), *self.statement(value, printer.print(near.values[0]))]
+            return self._function(value, "value", s, lines)
+        words = ("s", "value", "limit", "is_far", "far_value", "inverse")
+        printer, (s, value, limit, is_far, far_value, inverse) = self.scope((*early, *late), *words)
+        lines = [
+            *self.assigned(early, printer),
+            *self.statement(value, printer.print(near.values[0])),
+            *self.statement(limit, repr(program.limit)),
+            *self.statement(is_far, f"abs({s}) > {limit}"),
+            f"  if any({is_far})",
+            *self.statement(inverse, f"1.0 ./ {s}", 2),
+            *self.assigned(late, printer, 2),
+            *self.statement(far_value, printer.print(far.values[0]), 2),
+            *self.statement(f"{value}({is_far})", f"{far_value}({is_far})", 2),
+            "  end",
+        ]
+        return self._function(value, "value", s, lines)
+
+    def _number(self, program: Piecewise) -> str:
+        """Return the function that tells which piece serves."""
+        assignments = (*program.tests.constants, *program.tests.assignments)
+        printer, (variable, number) = self.scope(assignments, self.variable, "number")
+        lines = [
+            *self.assigned(assignments, printer),
+            *self.statement(number, printer.piece_number(program) or "0"),
+        ]
+        return self._function(number, "number", variable, lines)
+
+    def _piece(self, number: int, piece: CodePiece) -> list[str]:
+        assignments = (*piece.code.constants, *piece.code.assignments)
+        if piece.circle:
+            words = (self.variable, "num", "den", "growth", "radius")
+            printer, (variable, *results) = self.scope(assignments, *words)
+            lines = self.assigned(assignments, printer)
+            for name, node in zip(results, piece.code.values, strict=True):
+                lines += self.statement(name, printer.print(node))
+            parts = self._function(f"[{', '.join(results)}]", f"{number}_parts", variable, lines)
+            return [parts, self._mean(number, piece.circle)]
+        wanted = [self.variable, "value", "num", "den", *(["s"] if piece.is_complex else [])]
+        printer, (variable, value, num, den, *place) = self.scope(assignments, *wanted)
+        lines = []
+        for s in place:
+            printer = replace(printer, variable=s)
+            lines += self.statement(s, f"1i .* {variable}")
+        lines += self.assigned(assignments, printer)
+        above, below = piece.code.values
+        if not self.program.is_real:
+            lines += self.statement(value, printer.quotient(above, below))
+            return [self._function(value, str(number), variable, lines)]
+        text = printer.print(above)
+        if piece.is_complex and self.program.turn:
+            # The factor that the real pieces leave out comes after.
+            text = f"(-1.0i) .* ({text})"
+        lines += [*self.statement(num, text), *self.statement(den, printer.print(below))]
+        return [self._function(f"[{num}, {den}]", str(number), variable, lines)]
+
+    def _mean(self, number: int, points: int) -> str:
+        _, (variable, value, z) = self.scope((), self.variable, "value", "z")
+        given = ", ".join(self.arguments(z))
+        whole = f"mean_over_circle(@({z}) {self.names[f'{number}_parts']}({given}), {variable}, {points})"
+        return self._function(value, str(number), variable, self.statement(value, whole))
+
+
+# -------------------------------------------------------------------------------------------------- text
+
+
+def main_name(text: str) -> str:
+    """Return a text as the name of a function file: the text itself where it can be one.
+
+    Examples
+    --------
+    >>> main_name("six_mass"), main_name("exp"), main_name("2 masses, joined"), main_name("")
+    ('six_mass', 'exp_', 'p_2_masses__joined', 'model')
+    """
+    short = text if re.fullmatch(r"[A-Za-z]\w*", text, re.ASCII) else text[:TITLE_LENGTH].strip()
+    return identifiers({"main": short or "model"}, RESERVED, LONGEST)["main"]
+
+
+def _helped(first: str, lines: Sequence[str] = ()) -> list[str]:
+    """Return a help text: a first line, and others, which hold no line end, with a blank before them."""
+    return [*wrapped(f"%{first}", WIDTH, "", "%   "), *(f"%   {line}".rstrip() for line in lines)]
+
+
+def _disarmed(text: str) -> str:
+    """Return text in which links are not links, and no mark asks for Texinfo."""
+    return _LINK.sub("< ", text).replace("-*-", "- * -")
+
+
+def _text(text: str) -> str:
+    """Return text on one line without what MATLAB or Octave would obey in a help text or on the screen."""
+    return inert(_disarmed(text))
+
+
+def _string(text: str) -> str:
+    """Return a string literal: inert text, quotes doubled."""
+    return "'" + _text(text).replace("'", "''") + "'"
+
+
+def _given(names: Iterable[str]) -> list[str]:
+    """Return the statement that reads the values of some parameters."""
+    quoted = ", ".join(f"'{name}'" for name in names)
+    return continued(f"given = numbers(varargin, {{{quoted}}});", "  ")
+
+
+def _function(*lines: str) -> str:
+    return "\n".join([*lines, "end", ""])
+
+
+# -------------------------------------------------------------------------------------------------- file
+
+
+def matlab_function_file(contents: Contents) -> Export:
+    """Return a function file; the struct that its main function returns has a handle per transfer function.
+
+    Its main function is called as the file is, or from the model's title. A warning says so when MATLAB
+    cannot call a file of that name.
+    """
+    return _File(contents).made()
+
+
+class _File:
+    """The file, and the names of everything in it."""
+
+    def __init__(self, contents: Contents) -> None:
+        self.model, self.members, self.digits = contents.model, contents.members, contents.digits
+        self.stem = contents.stem
+        self.main = main_name(self.stem or self.model.title)
+        wanted = {m.key: m.wanted for m in self.members}
+        self.fields = identifiers(wanted, RESERVED | OTHER_FIELDS, LONGEST)
+        self.public = identifiers(self.fields, RESERVED | {self.main} | TOOLBOX, LONGEST)
+        self.taken = {*RESERVED, self.main, *self.public.values()}
+        own = ((m, RationalSystem.of(m.tf)) for m in self.members if not m.program.is_real)
+        self.systems = {m.key: system for m, system in own if system is not None}
+        # Private functions, by member and role.
+        roles = {
+            (m.key, role): f"{self.public[m.key]}_{role}" for m in self.members for role in self._roles(m)
+        }
+        joined = identifiers({"\n".join(pair): text for pair, text in roles.items()}, self.taken, LONGEST)
+        self.private = dict(zip(roles, joined.values(), strict=True))
+        self.taken |= set(self.private.values())
+        names = {p.name: p.name for p in self.model.parameters}
+        self.parameters = identifiers(names, self.taken, LONGEST)
+
+    def _roles(self, member: Member) -> list[str]:
+        """Return what the private functions of a member are for; their names end so."""
+        program = member.program
+        roles = ["value"] if program.is_lumped else ["number"]
+        for i, piece in enumerate(() if program.is_lumped else program.code):
+            roles += [f"{i}_parts", str(i)] if piece.circle else [str(i)]
+        return [*roles, *(SYSTEM_ROLES if member.key in self.systems else ())]
+
+    def made(self) -> Export:
+        blocks, code = [self._main(), self._defaults()], ""
+        for m in self.members:
+            own = {role: self.private[m.key, role] for role in self._roles(m)}
+            functions = LocalFunctions(
+                m.program, self.public[m.key], self.parameters, self.taken - WORDS, own
+            )
+            local = functions.blocks()
+            blocks += [self._handle(m, functions), *local]
+            code += "\n".join([*functions.call(), *local])
+            if m.key in self.systems:
+                blocks += self._system_functions(self.systems[m.key], own)
+        blocks += called_parts(code, PARTS, ("numbers", "columns", *(["system_of"] if self.systems else [])))
+        shown = inert(self.stem[:LONGEST_STEM])
+        warning = f"MATLAB cannot call a file '{shown}.m': name it '{self.main}.m', as its function"
+        is_other = self.stem and self.main != self.stem
+        return Export("\n".join(blocks), (warning,) if is_other else (), name=self.main)
+
+    def _main(self) -> str:
+        parameters = self.model.parameters
+        title = _text(self.model.title).strip()
+        first = f"{self.main.upper()}  Transfer functions of{f': {title}' if title else ' a linear system.'}"
+        lines = [f"function G = {self.main}()", *_helped(first), *_helped("", self._usage()), ""]
+        lines += [f"  G.{self.fields[m.key]} = @{self.public[m.key]};" for m in self.members]
+        for group, role in (("systems", "system"), ("coefficients", "coefficients")):
+            lines += [f"  G.{group} = struct();"] if self.systems else []
+            lines += [f"  G.{group}.{self.fields[key]} = @{self.private[key, role]};" for key in self.systems]
+        lines.append("  G.parameters = default_parameters();")
+        for field, texts in (
+            ("units", {p.name: p.unit for p in parameters}),
+            ("descriptions", {p.name: p.doc for p in parameters}),
+        ):
+            lines.append(f"  G.{field} = struct();")
+            lines += [f"  G.{field}.{self.parameters[n]} = {_string(text)};" for n, text in texts.items()]
+        for field, is_real in (("transfer_functions", False), ("frequency_responses", True)):
+            rows = [m for m in self.members if m.program.is_real == is_real]
+            lines.append(f"  G.{field} = cell({len(rows)}, 2);")
+            for i, m in enumerate(rows, 1):
+                lines.append(f"  G.{field}({i}, :) = {{{_string(m.tf.name)}, '{self.fields[m.key]}'}};")
+        return _function(*lines)
+
+    def _usage(self) -> list[str]:
+        """Return the body of the help text."""
+        lines: list[str] = []
+        if self.members:
+            first = f"G = {self.main.upper()}() is a struct of functions and of the model's parameters."
+            lines += [first, "", *self._examples(), "", *wrapped(EXPANSION, ROOM), "", "Functions"]
+        for m in self.members:
+            said = _disarmed(headline(m.tf, is_real=m.program.is_real))
+            lines += wrapped(f"{self.fields[m.key]}: {said}", ROOM, "  ", "      ")
+            lines += wrapped(_text(m.verification.text(self.digits)), ROOM, "      ")
+        lines += ["", "Parameters"] if self.model.parameters else []
+        for p in self.model.parameters:
+            name, value = self.parameters[p.name], default_value(p) or "no value"
+            lines += wrapped(f"{name} = {value}: {_disarmed(described(p, name))}", ROOM, "  ", "      ")
+        if self.model.source.strip():
+            lines += ["", *wrapped(f"Source: {_text(self.model.source)}", ROOM)]
+        return [*lines, "", "Written by symflex."]
+
+    def _examples(self) -> list[str]:
+        """Return lines of code with what is said of each beside it."""
+        member = self.members[0]
+        field = self.fields[member.key]
+        rows = [(f"G = {self.main}();", ""), (f"G.{field}(s)", "s: Laplace variable [rad/s], of any size")]
+        for p in member.tf.parameters[:1]:
+            name, value = self.parameters[p.name], default_value(p) or "1.0"
+            rows += [
+                (f"G.{field}(s, '{name}', {value})", "another value, or an array of values"),
+                ("p = G.parameters;", "in SI units, [] where there is none"),
+                (f"p.{name} = {value};", ""),
+                (f"G.{field}(s, p)", "a struct of values, all or some"),
+            ]
+        for m in [m for m in self.members if m.program.is_real][:1]:
+            rows.append((f"G.{self.fields[m.key]}(omega)", "at s = 1i*omega, in real arithmetic"))
+        rows += [
+            ("w = 2*pi*logspace(0, 3, 1000);", "[rad/s]"),
+            (f"H = frd(G.{field}(1i*w), w);", "for the Control System Toolbox"),
+        ]
+        more = [
+            row
+            for rational in [self.fields[key] for key in self.systems][:1]
+            for row in (
+                (f"H = G.systems.{rational}();", "a tf; parameters may follow"),
+                (f"H = G.systems.{rational}('zpk');", "or 'ss'"),
+                (f"[num, den] = G.coefficients.{rational}();", "without any toolbox"),
+            )
+        ]
+        lines: list[str] = []
+        for group in (rows, more):
+            width = min(max((len(code) for code, _ in group), default=0), WIDTH // 2)
+            lines += [f"  {code.ljust(width)}   {said}".rstrip() for code, said in group]
+        return lines
+
+    def _defaults(self) -> str:
+        names = self.parameters
+        return _function(
+            "function p = default_parameters()",
+            "%DEFAULT_PARAMETERS  Values of the model, in SI units.",
+            "  p = struct();",
+            *(f"  p.{names[p.name]} = {default_value(p) or '[]'};" for p in self.model.parameters),
+        )
+
+    def _handle(self, member: Member, functions: LocalFunctions) -> str:
+        """Return the function behind a handle."""
+        tf, name = member.tf, functions.name
+        help_text = ["", *(_disarmed(line) for line in formula_lines(tf, ROOM)), ""]
+        if origin := origin_lines(tf.model, ROOM):
+            help_text += [*(_disarmed(line) for line in origin), ""]
+        help_text += wrapped(_text(member.verification.text(self.digits)), ROOM)
+        help_text += wrapped(COST, ROOM) if member.program.solves else []
+        first = f"{name.upper()}  {_disarmed(headline(tf, is_real=member.program.is_real))}"
+        return _function(
+            f"function value = {name}({functions.variable}, varargin)",
+            *_helped(first, help_text),
+            *_given(self.parameters[p] for p in member.program.parameters),
+            *functions.call(),
+        )
+
+    def _system_functions(self, system: RationalSystem, names: Mapping[str, str]) -> list[str]:
+        """Return the function of the coefficients, and the one that makes a system of them."""
+        tf, (made, read) = system.tf, (names[role] for role in SYSTEM_ROLES)
+        used = [self.parameters[p.name] for p in tf.parameters]
+        taken = {*self.taken, *self.parameters.values()}
+        local = identifiers({n: n for n in ("num", "den", "delay")}, taken).values()
+        renamed: dict[str, Expression] = {name: Name(own) for name, own in self.parameters.items()}
+
+        def text(expression: Expression) -> str:
+            return format_expression(substitute(expression, renamed))
+
+        rows = [f"[{', '.join(map(text, row))}]" for row in (system.num, system.den)]
+        lines = [
+            *continued(f"function [{', '.join(local)}] = {read}(varargin)", ""),
+            *_helped(f"{read.upper()}  Coefficients by descending powers of s, dead time [s]."),
+            *_given(used),
+            *(continued(f"[{', '.join(used)}] = given{{:}};", "  ") if used else ()),
+        ]
+        for name, value in zip(local, (*rows, text(system.delay)), strict=True):
+            lines += continued(f"{name} = {value};", "  ")
+        ends = (tf.input, tf.output)
+        units = ("" if end.dimension is None else str(end.dimension) for end in ends)
+        more = [
+            *continued(f"function value = {made}(varargin)", ""),
+            *_helped(f"{made.upper()}  A system of kind 'tf', or of that named first: 'zpk', 'ss'."),
+            "  kind = 'tf';",
+            "  if mod(numel(varargin), 2) == 1 && ischar(varargin{1})",
+            "    kind = varargin{1};",
+            "    varargin(1) = [];",
+            "  end",
+            *continued(f"[num, den, delay] = {read}(varargin{{:}});", "  "),
+            # Strings are not broken over lines.
+            f"  ends = {{{', '.join(_string(end.name) for end in ends)}}};",
+            f"  units = {{{', '.join(map(_string, units))}}};",
+            "  value = system_of(kind, num, den, delay, ends, units);",
+        ]
+        return [_function(*lines), _function(*more)]
+
+
+MATLAB = Language(
+    ".m",
+    "MATLAB and Octave function file, a handle per transfer function, verified likewise",
+    matlab_function_file,
+)
