@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
 DEFAULT_MODES = 5
 STEPS = 120
+"""Gains in all, close at the beginning: a step is then 10 % longer than the last."""
 FIRST_SHARE = 1e-5
 """The first step, of the whole range."""
 NEWTON_STEPS = 25

@@ -12,8 +12,7 @@ from symflex.budget import Budget, entered_budget
 from symflex.errors import BudgetError
 from symflex.roots.engines import proposers_for
 from symflex.roots.polynomials.discs import Disc, connected
-from symflex.roots.polynomials.isolation import first_bits, isolations
-from symflex.roots.polynomials.singly import differs_from_zero, prove_singly
+from symflex.roots.polynomials.isolation import differs_from_zero, first_bits, isolations, prove_singly
 from symflex.roots.polynomials.squarefree import Splitting, SquareFreePart, split
 from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.root import GUARD_BITS, Root

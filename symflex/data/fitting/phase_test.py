@@ -45,6 +45,7 @@ SMOOTHED_LINES = 5
 SHORTEST_RUN, LONGEST_GAP = 4, 10
 """Lines that a band where phases part has at least, and has between two that are one."""
 STEPS = 100
+"""Evaluations, as in :mod:`symflex.data.fitting.least_squares`."""
 CAP = 0.05
 """Added to the noise, as in :mod:`symflex.data.fitting.least_squares`."""
 LOWEST_DAMPING = 1e-4

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from symflex.data.measurement.array_files import read_archive
-from symflex.data.measurement.matlab_file import NewerFileError, read_variables
+from symflex.data.measurement.array_files import NewerFileError, read_archive, read_variables
 from symflex.data.measurement.measured_response import (
     MAX_BYTES,
     MAX_RESPONSES,

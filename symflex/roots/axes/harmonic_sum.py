@@ -1,21 +1,27 @@
-"""Functions without losses as functions of x, the square root of s.
+"""Functions without losses as functions of x, the square root of s, and how far their argument turns on arcs.
 
 Where every wavenumber is a root of a multiple of s^2, those of bending are proportional to x and those of
 waves to x^2, and a polynomial in kernels is a sum of ``c(x) exp(p x + q x^2)``. On the real axis of s, x is
 t; on the imaginary one it is (1 + j) t, and the sum is real but for a constant factor: growing, decaying and
 oscillating terms with real coefficients.
+
+On an arc of x from 0 to 45 degrees, away from directions in which two terms are equally large, one outweighs
+all others together, and its own argument is known, however far it turns. Next to those directions, which for
+functions without losses are the ends of the arc, lie layers as thin as the arc is long: only these are
+followed in steps.
 """
 
 from __future__ import annotations
 
+from cmath import phase, rect
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import exp, isfinite
+from math import exp, inf, isfinite, log, pi, sqrt
 from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
-from symflex.roots.axes.arc_sum import ArcSum, ArcTerm
+from symflex.roots.argument import ROOM, deviation
 from symflex.roots.axes.axis_function import (
     FLOAT_BITS,
     IMAGINARY,
@@ -25,6 +31,7 @@ from symflex.roots.axes.axis_function import (
     AxisFunction,
     Enclosures,
 )
+from symflex.roots.counting.stepping import SPREAD, WIDENED, total_turn
 from symflex.roots.precision import precision
 from symflex.transfer.balls import at_centre
 
@@ -45,6 +52,253 @@ if TYPE_CHECKING:
     from symflex.roots.functions.kernel_function import KernelFunction
     from symflex.transfer import BoundTransferFunction
     from symflex.transfer.balls import Value
+
+
+EIGHTH = pi / 4
+BESIDE = 0.3
+"""How far from the ends the largest terms are looked for, in x."""
+OUTWEIGHED = 0.8
+"""Most that all other terms may amount to, of the largest; less than 1."""
+FALL = 4.0
+"""By how much, over their number, other terms have to have fallen behind at the edge of a layer."""
+MARGIN = 1.1
+"""Of the width of a layer, because terms do not fall behind evenly."""
+FIRST_STEP = 0.5
+"""Of the arc that is followed in steps."""
+SHORTEST = 1e-12
+"""Share of the arc; a step that would have to be shorter says that a root lies on it."""
+
+
+@dataclass(frozen=True, slots=True)
+class ArcTerm:
+    """Terms ``c x^n`` before one exponential."""
+
+    # linear and square: rates p of x and q of x^2.
+    linear: acb
+    square: acb
+    powers: tuple[tuple[int, acb], ...]  # n and c
+
+
+@dataclass(frozen=True, slots=True)
+class _Size:
+    """One term in doubles."""
+
+    linear: complex
+    square: complex
+    power: int
+    coefficient: complex
+    log_size: float
+
+
+@dataclass(frozen=True, eq=False)
+class ArcSum:
+    """A sum of exponentials."""
+
+    terms: tuple[ArcTerm, ...]  # what is summed
+
+    @cached_property
+    def _sizes(self) -> tuple[_Size, ...]:
+        """Per exponential the power that is the largest far from 0."""
+        found = []
+        for term in self.terms:
+            n, c = max(term.powers, key=lambda power: power[0])
+            number = complex(c)
+            size = log(abs(number)) if number else -inf
+            found.append(_Size(complex(term.linear), complex(term.square), n, number, size))
+        return tuple(found)
+
+    @cached_property
+    def _power(self) -> int | None:
+        """The only power of x in the sum, ``None`` where there is more to it."""
+        (first, *others) = self.terms
+        if others or len(first.powers) > 1 or first.linear != 0 or first.square != 0:
+            return None
+        return first.powers[0][0]
+
+    @cached_property
+    def reach(self) -> float:
+        """Some abs(x) up to which no exponential turns by more than once."""
+        return min((_reach(abs(size.linear), abs(size.square)) for size in self._sizes), default=inf)
+
+    def turn(self, radius: arb) -> arb:
+        """Return how far the argument turns on the arc of a radius: proved.
+
+        RootOnPathError where a root lies on the arc, or too close to it.
+        """
+        if self._power is not None:
+            return self._power * arb.pi() / 4
+        return _Arc(self.terms, self._sizes, radius).turn_between(0.0, 1.0)
+
+    def estimate(self, radius: float) -> float:
+        """Return about how far it turns [rad], from the largest terms."""
+        if self._power is not None:
+            return self._power * EIGHTH
+        aside = BESIDE / (1 + radius)
+        start, end = (self._largest(radius * rect(1.0, angle)) for angle in (aside, EIGHTH - aside))
+        return end - start
+
+    def _largest(self, x: complex) -> float:
+        """Return the argument of the largest term, its turns included."""
+        length, angle, square = log(abs(x)), phase(x), x * x
+        best, argument = -inf, 0.0
+        for term in self._sizes:
+            exponent = term.linear * x + term.square * square
+            size = exponent.real + term.power * length + term.log_size
+            if size > best:
+                best = size
+                argument = exponent.imag + term.power * angle + phase(term.coefficient)
+        return argument
+
+
+def _reach(linear: float, square: float) -> float:
+    """Return r with ``linear r + square r^2`` of one turn, infinity where both are zero."""
+    below = linear + sqrt(linear * linear + 8 * pi * square)
+    return 4 * pi / below if below else inf
+
+
+class _Arc:
+    """A sum on the arc of one radius; places on it are shares t of its length."""
+
+    def __init__(self, terms: Sequence[ArcTerm], sizes: Sequence[_Size], radius: arb) -> None:
+        self._terms = terms
+        self._radius = radius
+        self._eighth = arb.pi() / 4
+        reach = float(radius.mid())
+        length = log(reach)
+        self._growths = [
+            (size.linear * reach, size.square * reach * reach, size.log_size + size.power * length)
+            for size in sizes
+        ]
+        self._powers = [size.power for size in sizes]
+        self._points: dict[float, acb] = {}
+        self._ratios: dict[tuple[float, int], acb] = {}
+        self._rates: dict[int, list[tuple[acb, acb]]] = {}
+
+    def turn_between(self, start: float, end: float) -> arb:
+        """Return how far the argument turns from one place to another."""
+        largest = self._largest_at((start + end) / 2)
+        first, last = self._between_layers(start, end, largest)
+        if last - first < (end - start) / 2 or not self._outweighs(first, last, largest):
+            return self._stepwise(start, end)
+        total = self._turn_of_largest(first, last, largest)
+        for one, other in ((start, first), (last, end)):
+            if one < other:
+                total += self.turn_between(one, other)
+        return total
+
+    def _largest_at(self, t: float) -> int:
+        unit = rect(1.0, EIGHTH * t)
+        sizes = [(p * unit + q * unit * unit).real + c for p, q, c in self._growths]
+        return sizes.index(max(sizes))
+
+    def _between_layers(self, start: float, end: float, largest: int) -> tuple[float, float]:
+        """Return about where a term begins and ends to outweigh all others, seen from places beyond."""
+        own_p, own_q, own_c = self._growths[largest]
+        needed = log(FALL * len(self._growths))
+        depths = []
+        for place, inward in ((start, EIGHTH), (end, -EIGHTH)):
+            unit = rect(1.0, EIGHTH * place)
+            depth = 0.0
+            for i, (p, q, c) in enumerate(self._growths):
+                along, twice = (p - own_p) * unit, (q - own_q) * unit * unit
+                missing = needed + along.real + twice.real + c - own_c
+                if i != largest and missing > 0:
+                    fall = (along.imag + 2 * twice.imag) * inward
+                    depth = max(depth, missing / fall * MARGIN) if fall > 0 else end - start
+            depths.append(depth)
+        return start + depths[0], end - depths[1]
+
+    def _outweighs(self, start: float, end: float, largest: int) -> bool:
+        """Tell whether one power of one exponential outweighs the rest of the sum: proved."""
+        middle, angle = (start + end) / 2, self._eighth * arb((end - start) / 2 * WIDENED + SPREAD)
+        x = self._point(middle)
+        once, twice = angle.sin_cos(), (2 * angle).sin_cos()
+        square = x * x
+        power = self._powers[largest]
+        total, own = arb(0), arb(0)
+        for i, (p, q) in enumerate(self._differences(largest)):
+            size = arb(0)
+            for n, c in self._terms[i].powers:
+                if i == largest and n == power:
+                    own = abs(c)
+                else:
+                    size += abs(c) * self._radius ** (n - power)
+            if i != largest:
+                size *= (_most(p * x, once) + _most(q * square, twice)).exp()
+            total += size
+        return bool(total < OUTWEIGHED * own)
+
+    def _turn_of_largest(self, start: float, end: float, largest: int) -> arb:
+        """Return how far the argument turns where one term outweighs all others.
+
+        The ratio of the sum to that term keeps to the right of 0.
+        """
+        turned = self._powers[largest] * self._eighth * (arb(end) - arb(start))
+        ratio = self._ratio_at(end, largest) / self._ratio_at(start, largest)
+        return self._turn_of_exponential(start, end, largest) + turned + (ratio / acb(0, turned).exp()).arg()
+
+    def _turn_of_exponential(self, start: float, end: float, largest: int) -> arb:
+        term = self._terms[largest]
+        here, there = self._point(start), self._point(end)
+        return (term.linear * (there - here) + term.square * (there * there - here * here)).imag
+
+    def _stepwise(self, start: float, end: float) -> arb:
+        def place(share: float) -> float:
+            return end if share == 1 else start + (end - start) * share
+
+        def change(one: float, other: float) -> tuple[float, arb]:
+            return self._change(place(one), place(other))
+
+        return total_turn(change, FIRST_STEP, SHORTEST / (end - start))
+
+    def _change(self, start: float, end: float) -> tuple[float, arb]:
+        """Return how far the argument may turn from the middle of a step, and how far it does in all."""
+        middle, half = (start + end) / 2, (end - start) / 2
+        largest = self._largest_at(middle)
+        ball = self._radius * acb(0, self._eighth * arb(middle, half * WIDENED + SPREAD)).exp()
+        off = deviation(self._ratio(ball, largest))
+        if off > ROOM:
+            return off, arb(0)
+        turned = self._ratio_at(end, largest) / self._ratio_at(start, largest)
+        return off, self._turn_of_exponential(start, end, largest) + turned.arg()
+
+    def _point(self, t: float) -> acb:
+        if t not in self._points:
+            self._points[t] = self._radius * acb(0, self._eighth * arb(t)).exp()
+        return self._points[t]
+
+    def _differences(self, largest: int) -> list[tuple[acb, acb]]:
+        """Return the rates of all exponentials less those of one."""
+        if largest not in self._rates:
+            own = self._terms[largest]
+            self._rates[largest] = [
+                (term.linear - own.linear, term.square - own.square) for term in self._terms
+            ]
+        return self._rates[largest]
+
+    def _ratio_at(self, t: float, largest: int) -> acb:
+        if (t, largest) not in self._ratios:
+            self._ratios[t, largest] = self._ratio(self._point(t), largest)
+        return self._ratios[t, largest]
+
+    def _ratio(self, x: acb, largest: int) -> acb:
+        """Return the sum divided by one of its exponentials."""
+        square = x * x
+        total = acb(0)
+        for i, (p, q) in enumerate(self._differences(largest)):
+            amplitude = acb(0)
+            for n, c in self._terms[i].powers:
+                amplitude += c * x**n if n else c
+            total += amplitude if i == largest else amplitude * (p * x + q * square).exp()
+        return total
+
+
+def _most(value: acb, turn: tuple[arb, arb]) -> arb:
+    """Return an upper bound of the real part, turned by up to an angle with this sine and cosine."""
+    sine, cosine = turn
+    along = value.real
+    return (along * cosine if along < 0 else abs(along)) + abs(value.imag) * sine
+
 
 LOSSLESS: Mapping[str, int] = {"bending": LINEAR, "wave": QUADRATIC}
 """Power of x that wavenumbers are proportional to, by kind of dispersion."""

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from symflex.roots import precision
-from symflex.sweep.rounding import doubles, rounded
+from symflex.sweep.points import doubles, rounded
 
 
 def test_an_exact_zero_has_no_radius():

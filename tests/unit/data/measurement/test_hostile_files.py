@@ -11,9 +11,8 @@ import numpy as np
 import pytest
 import scipy.io
 
-from symflex.data.measurement.array_files import read_archive, read_netcdf
+from symflex.data.measurement.array_files import read_archive, read_netcdf, read_variables
 from symflex.data.measurement.arrays import read_mat, read_npz
-from symflex.data.measurement.matlab_file import read_variables
 from symflex.errors import DataError
 
 ARRAYS = {"f": np.arange(1.0, 5), "H": np.array([1, 1j, -1, 2 + 1j]), "tf": "X/F"}

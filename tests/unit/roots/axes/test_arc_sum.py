@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from flint import acb, arb
 
-from symflex.roots.axes.arc_sum import ArcSum, ArcTerm, _Arc, _most
+from symflex.roots.axes.harmonic_sum import ArcSum, ArcTerm, _Arc, _most
 from symflex.roots.counting.winding import RootOnPathError
 from symflex.roots.precision import precision
 

@@ -11,9 +11,9 @@ from mpmath import exp, findroot, mp, mpf, sin
 
 from symflex.algebra.exponential_sum import AxisWave
 from symflex.roots import Mode, Modes
-from symflex.roots.axes.arc_sum import ArcSum, ArcTerm
 from symflex.roots.axes.axis_function import IMAGINARY, REAL, AxisFunction, Enclosures
 from symflex.roots.axes.axis_root import AxisNewton, bits_of, bracketed, changes_sign
+from symflex.roots.axes.harmonic_sum import ArcSum, ArcTerm
 from symflex.roots.counting.winding import RootOnPathError
 from symflex.roots.precision import precision
 from tests.unit.roots.distributed_models import FREE, PINNED_IN_THE_MIDDLE, ROD, SLIDING_FREE, bound

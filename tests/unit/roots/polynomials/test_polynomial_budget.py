@@ -21,7 +21,7 @@ from symflex.roots import (
     find_polynomial_roots,
     precision,
 )
-from symflex.roots.polynomials.singly import differs_from_zero, prove_singly
+from symflex.roots.polynomials.isolation import differs_from_zero, prove_singly
 from tests.unit.roots.root_problems import problem, problem_of
 
 DEGREE = 40

@@ -10,9 +10,9 @@ from flint import acb, acb_poly, arb, arb_poly, fmpz_poly
 from symflex.budget import Budget
 from symflex.errors import BudgetError
 from symflex.roots import precision
-from symflex.roots.polynomials import singly
+from symflex.roots.polynomials import isolation
 from symflex.roots.polynomials.discs import LevelPolynomial
-from symflex.roots.polynomials.singly import _holds_one, _single, differs_from_zero, prove_singly
+from symflex.roots.polynomials.isolation import _holds_one, _single, differs_from_zero, prove_singly
 from symflex.roots.problem import PolynomialInS
 
 
@@ -63,7 +63,7 @@ def test_in_the_square_discs_are_small_enough_for_the_roots_digits():
 
 def test_no_disc_is_returned_of_roots_that_are_not_told_apart(monkeypatch):
     monkeypatch.setattr(
-        singly, "guess_by_laguerre", lambda value, budget: iter([acb(1.01), acb(0.99), acb(5.1)])
+        isolation, "guess_by_laguerre", lambda value, budget: iter([acb(1.01), acb(0.99), acb(5.1)])
     )
     discs = list(prove_singly(with_roots(real(1), real(5)), 10, Budget(), in_square=False))
     assert [round(float(d.centre.real.mid()), 6) for d in discs] == [1, 5]
@@ -71,7 +71,7 @@ def test_no_disc_is_returned_of_roots_that_are_not_told_apart(monkeypatch):
 
 def test_a_guess_that_leads_nowhere_is_left_out(monkeypatch):
     # Between both roots the slope vanishes.
-    monkeypatch.setattr(singly, "guess_by_laguerre", lambda value, budget: iter([acb(3), acb(5.1)]))
+    monkeypatch.setattr(isolation, "guess_by_laguerre", lambda value, budget: iter([acb(3), acb(5.1)]))
     discs = list(prove_singly(with_roots(real(1), real(5)), 10, Budget(), in_square=False))
     assert [round(float(d.centre.real.mid()), 6) for d in discs] == [5]
 
