@@ -126,6 +126,17 @@ class KernelTable:
         """Return the kernels of one dispersion, in order."""
         return tuple(k for k in self.kernels if k.dispersion is dispersion)
 
+    @property
+    def pairs(self) -> tuple[tuple[Kernel, Kernel], ...]:
+        """The even and the odd function, cosh and sinh or cos and sin, of every argument."""
+        odd = {"cosh": "sinh", "cos": "sin"}
+        known: dict[tuple[str, str, Factored], Kernel] = {
+            (k.function, k.wavenumber, k.length): k for k in self.kernels
+        }
+        return tuple(
+            (k, known[odd[k.function], k.wavenumber, k.length]) for k in self.kernels if k.function in odd
+        )
+
     def embedded(self, images: Iterable[tuple[Factored, Factored]]) -> KernelTable:
         """Return the table with its values replaced, by identity."""
         found = dict(images)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Literal
 
 from symflex.algebra.dispersion import Kernel, KernelTable
 from symflex.algebra.factored import Factored
-from symflex.algebra.ring import Ring
+from symflex.algebra.ring import Ring, coefficients_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -43,16 +43,12 @@ class Exponentials:
     def angles(self) -> tuple[KernelPair, ...]:
         """The pairs of kernels."""
         found = []
-        kernels = {(k.function, k.wavenumber, k.length): k for k in self.table.kernels}
-        for kernel in self.table.kernels:
-            if kernel.function in ("cosh", "cos"):
-                odd_function = "sinh" if kernel.function == "cosh" else "sin"
-                odd = kernels[odd_function, kernel.wavenumber, kernel.length]  # type: ignore[index]
-                tail = kernel.generator.partition("[")[2]
-                if kernel.function == "cosh":
-                    found.append(KernelPair("hyperbolic", kernel, odd, (f"E[{tail}",)))
-                else:
-                    found.append(KernelPair("circular", kernel, odd, (f"t[{tail}", f"u[{tail}")))
+        for even, odd in self.table.pairs:
+            tail = even.generator.partition("[")[2]
+            if even.function == "cosh":
+                found.append(KernelPair("hyperbolic", even, odd, (f"E[{tail}",)))
+            else:
+                found.append(KernelPair("circular", even, odd, (f"t[{tail}", f"u[{tail}")))
         return tuple(found)
 
     @cached_property
@@ -212,14 +208,9 @@ class Exponentials:
 
 def split_content(ring: Ring, polynomial: fmpz_mpoly, free: int) -> tuple[fmpz_mpoly, fmpz_mpoly]:
     """Return a polynomial as one in the first so many generators times the rest."""
-    parts: dict[tuple[int, ...], dict[tuple[int, ...], int]] = {}
-    for monomial, coefficient in polynomial.terms():
-        exponents = tuple(int(e) for e in monomial)
-        key = exponents[free:]
-        parts.setdefault(key, {})[(*exponents[:free], *(0 for _ in key))] = int(coefficient)
     content = ring.constant(0)
-    for terms in parts.values():
-        content = content.gcd(ring.context.from_dict(terms))
+    for part in coefficients_of(ring, polynomial, range(free, len(ring.names))).values():
+        content = content.gcd(part)
         if content.is_one():
             break
     return content, polynomial / content

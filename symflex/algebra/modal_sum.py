@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 from symflex.algebra.factored import Factored, common_denominator
 from symflex.algebra.memo import PolynomialMemo
 from symflex.algebra.normal_form import split
-from symflex.algebra.ring import Ring
+from symflex.algebra.ring import Ring, coefficients_of
 from symflex.errors import BudgetError, Diagnostic
 
 if TYPE_CHECKING:
@@ -155,19 +155,16 @@ class ModalSums:
         return PolynomialMemo(self._made)
 
     def _made(self, polynomial: fmpz_mpoly) -> ModalSum:
-        collected: dict[tuple[tuple[int, int], ...], dict[tuple[int, ...], int]] = {}
-        for monomial, number in polynomial.terms():
-            exponents = [int(e) for e in monomial]
-            functions: list[tuple[int, int]] = []
-            for position, mode, order in self.kernels:
-                functions += [(mode, order)] * exponents[position]
-                exponents[position] = 0
-            collected.setdefault(tuple(sorted(functions)), {})[tuple(exponents)] = int(number)
         by_slots: dict[tuple[int, ...], dict[tuple[int, ...], fmpz_mpoly]] = {}
-        for monomial_of_functions, terms in collected.items():
-            slots = tuple(mode for mode, _ in monomial_of_functions)
-            orders = tuple(order for _, order in monomial_of_functions)
-            by_slots.setdefault(slots, {})[orders] = self.ring.context.from_dict(terms)
+        positions = [position for position, _, _ in self.kernels]
+        for powers, part in coefficients_of(self.ring, polynomial, positions).items():
+            functions = sorted(
+                (mode, order)
+                for (_, mode, order), power in zip(self.kernels, powers, strict=True)
+                for _ in range(power)
+            )
+            slots, orders = (tuple(f[i] for f in functions) for i in (0, 1))
+            by_slots.setdefault(slots, {})[orders] = part
         coefficients: list[fmpz_mpoly] = []
         frames = []
         for slots, own in by_slots.items():

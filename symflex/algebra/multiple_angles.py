@@ -11,6 +11,7 @@ from math import comb
 from typing import TYPE_CHECKING
 
 from symflex.algebra.factored import Factored
+from symflex.algebra.ring import coefficients_of
 
 if TYPE_CHECKING:
     from flint import fmpz_mpoly
@@ -26,19 +27,14 @@ def lift(ring: Ring, polynomial: fmpz_mpoly, angle: KernelPair, n: int) -> Facto
     multiple.
     """
     even, odd = ring.index[angle.even.generator], ring.index[angle.odd.generator]
-    parts: dict[tuple[int, int], dict[tuple[int, ...], int]] = {}
-    for monomial, coefficient in polynomial.terms():
-        exponents = [int(e) for e in monomial]
-        key = (exponents[even], exponents[odd])
-        exponents[even] = exponents[odd] = 0
-        parts.setdefault(key, {})[tuple(exponents)] = int(coefficient)
+    parts = coefficients_of(ring, polynomial, (even, odd))
     highest = max((k + o for k, o in parts), default=0)
     zero = ring.constant(0)
     harmonics: dict[tuple[int, int], fmpz_mpoly] = {}
-    for (k, o), terms in parts.items():
+    for (k, o), coefficient in parts.items():
         if o > 1:
             return None
-        part = ring.context.from_dict(terms) * 2 ** (highest - k)
+        part = coefficient * 2 ** (highest - k)
         for i, o_i, weight in _harmonics(k, o):
             if o_i and not i:
                 continue

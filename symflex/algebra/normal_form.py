@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from flint import Ordering, fmpz_mpoly_ctx
 
 from symflex.algebra.factored import Factored, common_denominator
+from symflex.algebra.ring import coefficients_of
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic
 
@@ -30,11 +31,7 @@ PAIR_TERMS = 60_000
 
 def split(ring: Ring, polynomial: fmpz_mpoly, index: int) -> dict[int, fmpz_mpoly]:
     """Return the coefficient of every power of one generator, over the same ring."""
-    parts: dict[int, dict[tuple[int, ...], int]] = {}
-    for monomial, coefficient in polynomial.to_dict().items():
-        own = parts.setdefault(int(monomial[index]), {})
-        own[(*monomial[:index], 0, *monomial[index + 1 :])] = int(coefficient)
-    return {power: ring.context.from_dict(terms) for power, terms in parts.items()}
+    return {power: part for (power,), part in coefficients_of(ring, polynomial, (index,)).items()}
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,15 +45,10 @@ class NormalForm:
     def _squares(self) -> tuple[tuple[int, fmpz_mpoly], ...]:
         """Positions of sinh and sin with what their squares are."""
         found = []
-        by_key = {(k.function, k.wavenumber, k.length): k for k in self.table.kernels}
-        for kernel in self.table.kernels:
-            partner = {"sinh": "cosh", "sin": "cos"}.get(kernel.function)
-            if partner is None:
-                continue
-            even = by_key[partner, kernel.wavenumber, kernel.length]  # type: ignore[index]
+        for even, odd in self.table.pairs:
             c = self.ring.generator(even.generator)
-            square = c * c - 1 if partner == "cosh" else 1 - c * c
-            found.append((self.ring.index[kernel.generator], square))
+            square = c * c - 1 if even.function == "cosh" else 1 - c * c
+            found.append((self.ring.index[odd.generator], square))
         return tuple(found)
 
     def reduce(self, polynomial: fmpz_mpoly, *, pairs: bool = True) -> Factored:

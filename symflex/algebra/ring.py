@@ -193,6 +193,30 @@ def highest_degree(polynomial: fmpz_mpoly) -> int:
     return max(map(int, polynomial.degrees()))
 
 
+def coefficients_of(
+    ring: Ring, polynomial: fmpz_mpoly, positions: Sequence[int]
+) -> dict[tuple[int, ...], fmpz_mpoly]:
+    """Return the coefficient of every product of powers of some generators, over the same ring.
+
+    Keys are exponents, in the order in which they first occur.
+
+    Examples
+    --------
+    >>> ring = Ring(("s", "m", "b"))
+    >>> s, m, b = (ring.generator(n) for n in ring.names)
+    >>> coefficients_of(ring, m * s**2 - 3 * b * s + m * b * s, (0, 2))
+    {(2, 0): m, (1, 1): m - 3}
+    """
+    parts: dict[tuple[int, ...], dict[tuple[int, ...], int]] = {}
+    for monomial, coefficient in polynomial.to_dict().items():
+        rest = list(monomial)
+        for i in positions:
+            rest[i] = 0
+        key = tuple([int(monomial[i]) for i in positions])
+        parts.setdefault(key, {})[tuple(rest)] = int(coefficient)
+    return {key: ring.context.from_dict(terms) for key, terms in parts.items()}
+
+
 def terms_of(polynomial: fmpz_mpoly) -> list[tuple[Monomial, int]]:
     """Return the terms in lexicographic order: positions of generators with exponents, and the coefficient.
 

@@ -13,11 +13,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache, reduce
 from itertools import product
+from math import prod
 from operator import mul
 from typing import TYPE_CHECKING
 
 from symflex.algebra import Factored
 from symflex.algebra.exponential_sum import expanded, times
+from symflex.algebra.ring import coefficients_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -72,21 +74,21 @@ def families_of(ring: Ring, table: KernelTable) -> tuple[Family, ...]:
 
 def expand(ring: Ring, polynomial: fmpz_mpoly, families: Sequence[Family]) -> tuple[KernelSum, Factored]:
     """Return a polynomial in kernels as a sum whose coefficients share no factor, and that factor."""
-    halved = {i for family in families for own in family.kernels for f, i in own if f != "exp"}
-    positions = halved | {i for family in families for own in family.kernels for _, i in own}
-    degree = max(sum(int(m[i]) for i in halved) for m in polynomial.monoms())
-    collected: dict[Key, dict[tuple[int, ...], int]] = {}
-    for monomial, coefficient in polynomial.terms():
-        exponents = [int(e) for e in monomial]
-        rest = tuple(0 if i in positions else e for i, e in enumerate(exponents))
-        number = int(coefficient) << (degree - sum(exponents[i] for i in halved))
+    kernels = [(f, i) for family in families for own in family.kernels for f, i in own]
+    parts = coefficients_of(ring, polynomial, [i for _, i in kernels])
+    halved = [n for n, (f, _) in enumerate(kernels) if f != "exp"]
+    degree = max(sum(key[n] for n in halved) for key in parts)
+    found: KernelSum = {}
+    for exponents, part in parts.items():
+        scaled = part * 2 ** (degree - sum(exponents[n] for n in halved))
+        of = {i: e for (_, i), e in zip(kernels, exponents, strict=True)}
         for chosen in product(
-            *(_terms(tuple(tuple((f, exponents[i]) for f, i in own) for own in x.kernels)) for x in families)
+            *(_terms(tuple(tuple((f, of[i]) for f, i in own) for own in x.kernels)) for x in families)
         ):
-            terms = collected.setdefault(tuple(t for t, _ in chosen), {})
-            terms[rest] = terms.get(rest, 0) + reduce(mul, (n for _, n in chosen), number)
-    whole = ((key, {m: x for m, x in terms.items() if x}) for key, terms in collected.items())
-    found = {key: ring.context.from_dict(terms) for key, terms in whole if terms}
+            key = tuple(t for t, _ in chosen)
+            term = scaled * prod(n for _, n in chosen)
+            found[key] = found[key] + term if key in found else term
+    found = {key: p for key, p in found.items() if len(p)}
     common = reduce(lambda x, y: x.gcd(y), found.values())
     if int(common.leading_coefficient()) < 0:
         common = -common
