@@ -67,10 +67,7 @@ class NormalForm:
 
     def reduce_factored(self, value: Factored, *, pairs: bool = True) -> Factored:
         """Return a product with every factor, and its powers of wavenumbers, in normal form."""
-        result = Factored.number(self.ring, value.unit)
-        for factor, exponent in value.factors:
-            result = result * self.reduce(factor, pairs=pairs) ** exponent
-        return self.balance(result)
+        return self.balance(value.map_factors(self.ring, lambda f: self.reduce(f, pairs=pairs)))
 
     def balance(self, value: Factored) -> Factored:
         """Return a product with the powers of single wavenumbers between 0 and their relation's degree."""

@@ -195,13 +195,10 @@ class _CramerQuotients:
         gens = ring.context.gens()
         zero = ring.constant(0)
         images = [gens[i] if i < len(gens) else zero for i in range(len(self._expansion.ring.names))]
-        count = len(gens)
-        result = Factored.number(ring, value.unit)
-        for factor, exponent in value.factors:
-            if not any(int(d) for d in factor.degrees()[count:]):
-                plain = Factored.polynomial(ring, factor.compose(*images, ctx=ring.context))
-                result = result * plain**exponent
-        return result
+        plain = value.filter(lambda f: not any(int(d) for d in f.degrees()[len(gens) :])) * value.unit
+        return plain.map_factors(
+            ring, lambda f: Factored.polynomial(ring, f.compose(*images, ctx=ring.context))
+        )
 
     def _hidden(self, value: Factored, table: KernelTable = NO_KERNELS) -> tuple[HiddenFactor, ...]:
         """Return the factors that depend on s, directly or through a kernel."""

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 from symflex.algebra import (
@@ -122,13 +122,15 @@ class KernelReduction:
             raise BudgetError(Diagnostic("SF502", message, None, hint))
         # Where parameters follow from the wavenumbers, that alone makes equal functions equal.
         pairs = not self._is_solved
-        above, below = (self._solved_for(self.normal.reduce_factored(v, pairs=pairs)) for v in (num, den))
+        above, below = (
+            _solved_for(self.normal.reduce_factored(v, pairs=pairs), self.solved) for v in (num, den)
+        )
         if below.is_zero:
             return None
         if above.is_zero:
             one, modes = Factored.number(self.ring, 1), self.normal.reduce_factored(den * cancelled)
             return ReducedQuotient(one * 0, one, self._modes(modes), self.table)
-        before = self._solved_for(cancelled)
+        before = _solved_for(cancelled, self.solved)
         if self._are_apart(above, below):
             table, quotient, shared = self.table, *self._lowest(above, below, before, self._kernel_content)
         else:
@@ -226,13 +228,12 @@ class KernelReduction:
         With the parameters the wavenumbers determine expressed by them both are unique; fewer terms decide.
         """
         pairs = any(d.kind == "pair" for d in self.table.dispersions)
-        result = Factored.number(self.ring, value.unit)
-        for factor, exponent in value.factors:
-            found = [self.normal.reduce(factor, pairs=False)]
-            if pairs:
-                found.append(self.normal.reduce(factor))
-            result = result * min(found, key=_terms) ** exponent
-        return self.normal.balance(result)
+
+        def shortest(factor: fmpz_mpoly) -> Factored:
+            found = [self.normal.reduce(factor, pairs=p) for p in ((False, True) if pairs else (False,))]
+            return min(found, key=_terms)
+
+        return self.normal.balance(value.map_factors(self.ring, shortest))
 
     def _modes(self, value: Factored) -> Factored:
         """Return the factors that are modes.
@@ -257,12 +258,6 @@ class KernelReduction:
             if not rest.is_constant():
                 result = result * Factored.polynomial(self.ring, rest) ** exponent
         return result
-
-    def _solved_for(self, value: Factored) -> Factored:
-        """Return a value with the parameters that wavenumbers determine expressed by them."""
-        for name, formula in self.solved:
-            value = value.map_factors(self.ring, lambda f, n=name, g=formula: _substitute(self.ring, f, n, g))  # type: ignore[misc]
-        return value
 
     def _in_exponentials(self, value: Factored) -> Factored:
         return value.map_factors(self.coordinates.coordinates, self.coordinates.transform)
@@ -457,9 +452,7 @@ def _solve_in_turn(
 ) -> tuple[tuple[str, Factored], ...]:
     solved: list[tuple[str, Factored]] = []
     for relation in relations:
-        value = relation
-        for name, formula in solved:
-            value = value.map_factors(ring, lambda f, n=name, g=formula: _substitute(ring, f, n, g))  # type: ignore[misc]
+        value = _solved_for(relation, solved)
         if value.is_zero:
             continue
         polynomial = value.numerator().expand()
@@ -482,9 +475,16 @@ def _solve_in_turn(
     return tuple(solved)
 
 
+def _solved_for(value: Factored, solved: Sequence[tuple[str, Factored]]) -> Factored:
+    """Return a value with the parameters that wavenumbers determine expressed by them."""
+    for name, formula in solved:
+        value = value.map_factors(value.ring, partial(_substitute, value.ring, name, formula))
+    return value
+
+
 def _stays_finite(ring: Ring, value: Factored, name: str, formula: Factored) -> bool:
     """Tell whether a rational function has no denominator that a substitution makes zero."""
-    return not any(_substitute(ring, f, name, formula).is_zero for f, e in value.factors if e < 0)
+    return not any(_substitute(ring, name, formula, f).is_zero for f, e in value.factors if e < 0)
 
 
 def _at_zero(ring: Ring, polynomial: fmpz_mpoly, index: int) -> fmpz_mpoly:
@@ -505,7 +505,7 @@ def _relations(ring: Ring, dispersion: Dispersion) -> list[Factored]:
     return []
 
 
-def _substitute(ring: Ring, factor: fmpz_mpoly, name: str, formula: Factored) -> Factored:
+def _substitute(ring: Ring, name: str, formula: Factored, factor: fmpz_mpoly) -> Factored:
     """Return a polynomial with a rational function in place of a generator."""
     index = ring.index[name]
     if not degree_in(factor, index):

@@ -21,6 +21,7 @@ from symflex.algebra.normal_form import NormalForm
 from symflex.budget import spend
 from symflex.codegen.program.build import TERM_LIMIT
 from symflex.codegen.program.exponents import (
+    RealAxis,
     derivative_at_zero,
     expand,
     families_of,
@@ -38,7 +39,6 @@ from symflex.codegen.program.local_basis import (
 )
 from symflex.codegen.program.modal import CIRCLE, MODAL_REACHES, build_modal, declared_length
 from symflex.codegen.program.nodes import CodePiece, Condition, Piecewise
-from symflex.codegen.program.real_axis import RealAxis
 from symflex.codegen.program.schedule import straight
 from symflex.codegen.program.site import Site
 from symflex.errors import BudgetError, Diagnostic

@@ -18,10 +18,18 @@ if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
     from symflex.algebra import Dispersion, Factored, Kernel
-    from symflex.codegen.program.exponents import Family, KernelSum, Key, Term
+    from symflex.codegen.program.exponents import (
+        Family,
+        KernelSum,
+        Key,
+        RealAxis,
+        RealKey,
+        RealSum,
+        RealTerm,
+        Term,
+    )
     from symflex.codegen.program.forge import Forge
     from symflex.codegen.program.local_basis import LocalBasis
-    from symflex.codegen.program.real_axis import RealAxis, RealKey, RealSum, RealTerm
     from symflex.transfer import TransferFunction
 
 MINUS_J = (0, -1)
