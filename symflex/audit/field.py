@@ -245,7 +245,8 @@ class Arithmetic:
         if total.denominator == 1:
             return Factored.polynomial(self.ring, factor) ** int(total)
         if len(factor) == 1:
-            self._grow_for_root(self._generator_of(factor), total.denominator)
+            name = self.ring.names[next(i for i, e in enumerate(factor.monoms()[0]) if e)]
+            self._grow_for_root(name, total.denominator)
         parts = self._parts(factor)
         if parts is None:
             message = "it takes a root that is not one of s and the parameters"
@@ -275,9 +276,6 @@ class Arithmetic:
                     key.append((name, Fraction(int(exponent), self._order_of(name))))
             terms.append((tuple(key), int(coefficient)))
         return 1, [(tuple(sorted(terms)), 1)]
-
-    def _generator_of(self, factor: fmpz_mpoly) -> str:
-        return self.ring.names[next(i for i, e in enumerate(factor.monoms()[0]) if e)]
 
     def _grow_for_root(self, name: str, denominator: int) -> NoReturn:
         """Raise what is needed for a root of one generator to be in the field."""
@@ -355,7 +353,8 @@ class Arithmetic:
             return cosine if name == "cos" else sine if name == "sin" else sine / cosine
         if name in CIRCULAR:  # cos x = cosh ix, sin x = sinh ix/i
             real, imaginary = [(w, -n) for w, n in imaginary], real
-        grown, decayed = self._exponential(real, imaginary), self._exponential(*_opposite(real, imaginary))
+        grown = self._exponential(real, imaginary)
+        decayed = self._exponential([(w, -n) for w, n in real], [(w, -n) for w, n in imaginary])
         if name == "exp":
             return grown
         even, odd = (grown + decayed) / 2, (grown - decayed) / 2
@@ -534,10 +533,6 @@ def _recipe_of_plain(names: Sequence[str], part: fmpz_mpoly) -> Recipe:
 
 def _negated(recipe: Recipe) -> Recipe:
     return tuple((key, -coefficient) for key, coefficient in recipe)
-
-
-def _opposite(real: Multiples, imaginary: Multiples) -> tuple[Multiples, Multiples]:
-    return [(w, -n) for w, n in real], [(w, -n) for w, n in imaginary]
 
 
 def ground_of(parameters: Sequence[tuple[str, bool]]) -> Ground:

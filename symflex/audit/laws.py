@@ -16,8 +16,7 @@ from typing import TYPE_CHECKING, Literal
 from flint import acb, arb, ctx
 
 from symflex.algebra import LAPLACE, Factored
-from symflex.audit.factors import LowestTerms, full_angles, lowest_terms
-from symflex.audit.limits import behaviour_at_zero
+from symflex.audit.factors import LowestTerms, behaviour_at_zero, full_angles, lowest_terms
 from symflex.audit.notation import factor_expression, monomial_expression, polynomial_expression
 from symflex.expressions import Expression, format_expression, quotient
 

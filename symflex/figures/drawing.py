@@ -66,6 +66,11 @@ class Canvas:
     title: str | None = None  # printed as it is
     width: float | None = None  # [inches]; by default what suits the figure
 
+    def band_of(self, tf: TransferFunction) -> Limits | None:
+        """Return the band asked for, else that of a model [Hz]."""
+        band = tf.model.analysis.band
+        return self.band_hz or (None if band is None else (float(band[0]), float(band[1])))
+
 
 Drawing = Callable[["Sequence[TransferFunction]", "Sequence[BoundTransferFunction]", Canvas], "Figure"]
 """A function that draws transfer functions; :func:`symflex.figures.draw` sets the style."""

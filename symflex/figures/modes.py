@@ -181,13 +181,9 @@ def _curves(panel: Run, shape: EnclosedModeShape) -> list[Curve]:
     return found
 
 
-def _stem_values(panel: Stems, shape: EnclosedModeShape) -> npt.NDArray[np.complex128]:
-    return np.array([complex(shape.motion(name).value.mid()) for name in panel.names])
-
-
 def _amplitudes(panel: Panel, shape: EnclosedModeShape) -> npt.NDArray[np.complex128]:
     if isinstance(panel, Stems):
-        return _stem_values(panel, shape)
+        return np.array([complex(shape.motion(name).value.mid()) for name in panel.names])
     return np.concatenate([values for _, values in _curves(panel, shape)])
 
 

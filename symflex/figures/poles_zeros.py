@@ -100,7 +100,9 @@ def draw_poles_zeros(
         if is_asked:
             axes.set_aspect("auto")
         else:
-            _name_the_rest(axes, marks, view, panel_width)
+            panel = Panel(view, panel_width, tuple(mark.s for mark in marks if view.shows(mark)))
+            for group in leaving(marks, view):
+                _point_outside(axes, group, panel)
         axes.set_title(label_of_tf(tf), pad=4)
         axes.set_xlabel(r"$\mathrm{Re}(s)$ [rad/s]", labelpad=2)
         if column == 0:
@@ -143,13 +145,6 @@ def _draw_panel(axes: Axes, marks: Sequence[RootMark], view: View, width: float,
     for mark in inside:
         if mark.multiplicity > 1:
             _number(axes, mark, panel)
-
-
-def _name_the_rest(axes: Axes, marks: Sequence[RootMark], view: View, width: float) -> None:
-    """Name at the border what lies outside."""
-    panel = Panel(view, width, tuple(mark.s for mark in marks if view.shows(mark)))
-    for group in leaving(marks, view):
-        _point_outside(axes, group, panel)
 
 
 def _said_of_rest(found: PoleZeroMap, view: View) -> str:

@@ -123,7 +123,9 @@ def choose_view(marks: Sequence[RootMark], high_hz: float | None, ratios: tuple[
     (True, False, True)
     """
     points = {mark.s for mark in marks}
-    shown = _within(points, 2 * pi * high_hz) if high_hz is not None else _belonging_together(points)
+    shown = _belonging_together(points)
+    if high_hz is not None:
+        shown = {s for s in points if abs(s) <= 2 * pi * high_hz}
     size = max((abs(s) for s in shown), default=0.0) or 1.0
     unstable = {m.s for m in marks if m.kind == "pole" and m.s.real > 0 and abs(m.s) <= UNSTABLE_REACH * size}
     shown |= unstable
@@ -172,10 +174,6 @@ def _belonging_together(points: set[complex]) -> set[complex]:
     radius = _first_run([abs(s) for s in resonant or points if s])
     reach = REAL_REACH * radius if resonant else radius
     return {s for s in points if abs(s) <= (radius if s.imag else reach)}
-
-
-def _within(points: set[complex], radius: float) -> set[complex]:
-    return {s for s in points if abs(s) <= radius}
 
 
 def _first_run(sizes: Iterable[float]) -> float:

@@ -365,12 +365,9 @@ def _magnitude_band(axes: Axes, sweep: Sweep, modes: int | None) -> None:
 
 def _set_magnitude_axes(axes: Axes, frequency: Doubles, sweep: Sweep) -> None:
     set_frequency_axis(axes, float(frequency[0]), float(frequency[-1]))
-    axes.set_ylabel(f"$|{_quotient(sweep)}|$ [dB]")
+    ratio = "/".join(label_of_name(end) for end in sweep.attribute("tf").split("/"))
+    axes.set_ylabel(f"$|{ratio}|$ [dB]")
     axes.grid(visible=True)
-
-
-def _quotient(sweep: Sweep) -> str:
-    return "/".join(label_of_name(end) for end in sweep.attribute("tf").split("/"))
 
 
 MARGIN_LABELS: Final = {"phase_margin": "phase margin [deg]", "gain_margin_up": "gain margin, factor"}

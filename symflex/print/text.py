@@ -20,7 +20,7 @@ from symflex.print.forms import PrintedForm, with_hidden
 from symflex.transfer import NestedTransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Sequence
 
     from symflex.roots import PoleZeroMap, Region, Root
     from symflex.transfer import AnyTransferFunction
@@ -67,7 +67,7 @@ def derive_text(tf: AnyTransferFunction, form: PrintedForm, width: int = WIDTH) 
         lines += [INDENT + _placed(line, bar, alone=len(den) == 1) for line in den]
     lines.append("")
     form, hidden = with_hidden(tf, form)
-    for word, (name, expression) in zip(_where_words(), form.where, strict=False):
+    for word, (name, expression) in zip(chain(["where"], repeat("     ")), form.where, strict=False):
         first, *more = wrapped(expression, width - len(word) - len(name) - 6)
         lines.append(f"{INDENT}{word} {name} = {first}")
         lines += [" " * (len(word) + len(name) + 6) + line for line in more]
@@ -110,10 +110,6 @@ def law_lines(name: str, law: Equation) -> list[str]:
     return [format_expression(law), f"{start}{name}{chr(39) * (order - 1)}(0) = 1"]
 
 
-def _where_words() -> Iterator[str]:
-    return chain(["where"], repeat("     "))
-
-
 def _placed(line: str, width: int, *, alone: bool) -> str:
     return line.center(width).rstrip() if alone else line
 
@@ -131,10 +127,10 @@ def _lay_out(text: str, width: int, hanging: int) -> list[str]:
     """Return ``text`` in lines; the terms of a broken sum are indented by ``hanging`` after the first."""
     if len(text) <= width or width < NARROWEST:
         return [text]
-    terms = _split(text, _at_sign)
+    terms = _split(text, lambda i: text[i] in "+-" and text[i - 1] == " ")
     if len(terms) > 1:
         return _lay_out_sum(terms, width, hanging)
-    factors = _split(text, _at_factor)
+    factors = _split(text, lambda i: text[i - 1] == "*" or text[i] == "/")
     if len(factors) > 1:
         return _lay_out_product(factors, width)
     group = _group(text)
@@ -190,13 +186,13 @@ def _lay_out_product(factors: Sequence[str], width: int) -> list[str]:
     return lines
 
 
-def _split(text: str, breaks: Callable[[str, int], bool]) -> list[str]:
+def _split(text: str, breaks: Callable[[int], bool]) -> list[str]:
     """Return the parts of a text between the places outside parentheses where it may break."""
     depth, start = 0, 0
     parts: list[str] = []
     for found in _STOPS.finditer(text):
         i = found.start()
-        if not depth and i > start and breaks(text, i):
+        if not depth and i > start and breaks(i):
             parts.append(text[start:i].rstrip())
             start = i
         depth += {"(": 1, ")": -1}.get(text[i], 0)
@@ -205,14 +201,6 @@ def _split(text: str, breaks: Callable[[str, int], bool]) -> list[str]:
 
 _STOPS = compile_pattern(r"[()+\-/]|(?<=\*).")
 """Where a text may break, and what opens and closes a group."""
-
-
-def _at_sign(text: str, i: int) -> bool:
-    return text[i] in "+-" and text[i - 1] == " "
-
-
-def _at_factor(text: str, i: int) -> bool:
-    return text[i - 1] == "*" or text[i] == "/"
 
 
 def roots_text(found: PoleZeroMap, digits: int, width: int = WIDTH) -> str:

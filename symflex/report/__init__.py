@@ -11,8 +11,7 @@ What a report says about each model is in :data:`symflex.report.sections.SECTION
 from symflex.files.write import check_folder
 from symflex.report.article import report_article
 from symflex.report.page import report_page
-from symflex.report.pdf import compile_pdf, has_compiler
-from symflex.report.published import PublishedReport, publish, write_tree, written
+from symflex.report.published import PublishedReport, compile_pdf, has_compiler, publish, write_tree, written
 from symflex.report.report import (
     Report,
     compose,

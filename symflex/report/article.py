@@ -177,7 +177,7 @@ def _table(table: Table) -> str:
     layout = f"@{{}}{f'@{{{separator}}}'.join(formats)}@{{}}"
     # Space after a row of paragraphs is lost in their depth; a line of its own keeps it.
     rows = " \\\\\n\\addlinespace[2.5pt]\n".join(
-        " & ".join(_cell(cell) for cell in row) for row in table.rows
+        " & ".join(_runs(cell) or "~" for cell in row) for row in table.rows
     )
     return (
         f"{caption}{{\\footnotesize\n\\begin{{longtable}}{{{layout}}}\n\\toprule\n{head} \\\\\n\\midrule\n"
@@ -224,10 +224,6 @@ def _lines(cell: Cell) -> list[list[tuple[str, float]]]:
                 case _:
                     lines[-1] += [(word, text_width(word)) for word in re.split("(?<= )", piece.text)]
     return [line or [("", 0.0)] for line in lines]
-
-
-def _cell(cell: Cell) -> str:
-    return _runs(cell) or "~"
 
 
 def _runs(runs: Sequence[Run] | Iterable[Run]) -> str:

@@ -315,6 +315,7 @@ def facts_of(study: Study) -> ModelFacts:
         pair = (tf.output.name, tf.input.name)
         # A function of numbers alone says nothing about other values.
         condition = minimum_phase(tf, explained) if study.has_symbols else PhaseCondition("unknown", "")
+        bracket = condition.expression
         functions.append(
             TransferFacts(
                 tf=tf.name,
@@ -332,8 +333,8 @@ def facts_of(study: Study) -> ModelFacts:
                 reason=condition.reason,
                 truncation=_truncation(study, tf, found),
                 stability=found.verdict.word,
-                bracket="" if condition.expression is None else format_expression(condition.expression),
-                bracket_mathematics=_bracket(condition, tf),
+                bracket="" if bracket is None else format_expression(bracket),
+                bracket_mathematics=None if bracket is None else mathematics(bracket, tf.model),
             )
         )
     return replace(
@@ -395,10 +396,6 @@ def _changes(audit: Audit) -> str:
     ]
     shown += [f"violated: {law.law}" for law in audit.laws if not law.kept]
     return "; ".join(shown)
-
-
-def _bracket(condition: PhaseCondition, tf: TransferFunction) -> Mathematics | None:
-    return None if condition.expression is None else mathematics(condition.expression, tf.model)
 
 
 def _root_facts(found: PoleZeroMap, kind: Literal["poles", "zeros"]) -> tuple[RootFact, ...]:

@@ -11,7 +11,7 @@ import itertools
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Literal
 
-from symflex.algebra import LAPLACE, irreducible_factors
+from symflex.algebra import LAPLACE, degree_in, irreducible_factors
 from symflex.model import Model
 from symflex.print.forms import Arranger
 from symflex.print.forms.arrange import coefficients
@@ -72,7 +72,8 @@ def minimum_phase(tf: TransferFunction, explained: ZeroExplanation) -> PhaseCond
             return PhaseCondition("as given", reason)
         return PhaseCondition("unknown", "")
     ring = tf.ratio.ring
-    found = [_of_factor(f, ring, tf) for f, e in tf.ratio.factors if e > 0 and _degree(f, ring)]
+    s = ring.index[LAPLACE]
+    found = [_of_factor(f, ring, tf) for f, e in tf.ratio.factors if e > 0 and degree_in(f, s)]
     never = [c for c in found if c.kind == "never"]
     if never:
         return never[0]
@@ -95,7 +96,7 @@ def _of_factor(factor: fmpz_mpoly, ring: Ring, tf: TransferFunction) -> PhaseCon
         if len(definite) == 1:
             kind: Kind = "always" if top <= _QUADRATIC else "unknown"
             return PhaseCondition(kind, "")
-        changes = _sign_changes([signs[power] for power in sorted(signs)])
+        changes = sum(a != b for a, b in itertools.pairwise(signs[power] for power in sorted(signs)))
         if changes % 2:
             reason = "the coefficients of a factor of the numerator change sign: it has a positive real zero"
             return PhaseCondition("never", reason)
@@ -129,14 +130,6 @@ def _sign(polynomial: fmpz_mpoly, ring: Ring, tf: TransferFunction) -> Sign:
     if all(v > 0 for v in values):
         return "positive"
     return "negative" if all(v < 0 for v in values) else "indefinite"
-
-
-def _sign_changes(signs: list[Sign]) -> int:
-    return sum(a != b for a, b in itertools.pairwise(signs))
-
-
-def _degree(factor: fmpz_mpoly, ring: Ring) -> int:
-    return int(factor.degrees()[ring.index[LAPLACE]])
 
 
 def _is_passive(model: Model) -> bool:

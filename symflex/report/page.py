@@ -195,15 +195,11 @@ def _table(table: Table) -> str:
 
 
 def _row(row: Iterable[tuple[Run, ...]], columns: Iterable[PageColumn]) -> str:
-    cells = "".join(
-        f'<td class="{c.side}" data-head="{_escape(_plain(c.head))}">{_runs(cell)}</td>'
-        for cell, c in zip(row, columns, strict=True)
-    )
+    cells = ""
+    for cell, c in zip(row, columns, strict=True):
+        head = "".join(run for run in c.head if isinstance(run, str))
+        cells += f'<td class="{c.side}" data-head="{_escape(head)}">{_runs(cell)}</td>'
     return f"<tr>{cells}</tr>"
-
-
-def _plain(runs: Iterable[Run]) -> str:
-    return "".join(run for run in runs if isinstance(run, str))
 
 
 def _runs(runs: Iterable[Run]) -> str:

@@ -1,17 +1,20 @@
-"""A report as files in a folder, and nowhere else: page, article, its PDF where that can be made, data."""
+"""A report as files in a folder, and nowhere else: page, article, its PDF, figures, code and data."""
 
 from __future__ import annotations
 
+import os
+import shutil
+import subprocess
+import tempfile
 from dataclasses import dataclass, replace
 from datetime import UTC, date, datetime
 from pathlib import Path, PurePosixPath
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from symflex.errors import Diagnostic, SymflexError, UsageError
 from symflex.files.write import check_folder, write_atomically
 from symflex.report.article import report_article
 from symflex.report.page import report_page
-from symflex.report.pdf import HOW_TO, compile_pdf, has_compiler
 from symflex.report.report import (
     compose,
     find_claims,
@@ -83,17 +86,14 @@ def publish(report: Report, folder: Path, progress: Progress, *, pdf: bool | Non
     progress.report(0.92, "pdflatex")
     figures = {name: data for name, data in report.files.items() if name.startswith("figures/")}
     try:
-        made = compile_pdf(tex, figures, _epoch(report.date))
+        # The day printed is that of the file's own metadata.
+        day = date.fromisoformat(report.date or "1970-01-02")
+        midnight = datetime(day.year, day.month, day.day, tzinfo=UTC)
+        made = compile_pdf(tex, figures, int(midnight.timestamp()))
     except SymflexError as error:
         return PublishedReport(page, None, str(error), error.exit_code)
     write_tree(folder, {"report.pdf": made})
     return PublishedReport(page, folder / "report.pdf", "", 0)
-
-
-def _epoch(shown: str) -> int:
-    """Return the seconds since 1970 of the day printed, for the file's own metadata."""
-    day = date.fromisoformat(shown) if shown else date(1970, 1, 2)
-    return int(datetime(day.year, day.month, day.day, tzinfo=UTC).timestamp())
 
 
 def write_tree(folder: Path, files: Mapping[str, bytes]) -> None:
@@ -132,3 +132,53 @@ def _make(folder: Path, *, is_root: bool) -> None:
 
 def _unwritable(name: str, reason: str) -> UsageError:
     return UsageError(Diagnostic("SF903", f"cannot write into '{name}': {reason}"))
+
+
+COMPILER: Final = "pdflatex"
+RUNS: Final = 3
+SECONDS: Final = 300
+HOW_TO: Final = (
+    "pdflatex comes with TeX Live and MiKTeX (Debian: apt install texlive-latex-extra texlive-science; "
+    "macOS: brew install --cask mactex); then: pdflatex report.tex, three times"
+)
+_LAST_LINES: Final = 12
+BY_HAND: Final = "report.tex is written: compile it by hand, or ask for --no-pdf"
+
+
+def has_compiler() -> bool:
+    """Tell whether the computer has pdflatex."""
+    return shutil.which(COMPILER) is not None
+
+
+def compile_pdf(tex: str, figures: Mapping[str, bytes], epoch: int | None) -> bytes:
+    r"""Return a LaTeX document as PDF.
+
+    Commands that would run programs are refused, and files outside its folder are neither read nor written;
+    it includes ``figures`` by their paths beside it. ``epoch`` is the time it is given, in seconds since
+    1970; equal documents then give equal bytes. Raises SymflexError: SF912 when it does not compile, with the
+    last lines of the log.
+    """
+    environment = {**os.environ, "openout_any": "p", "openin_any": "p", "TEXMFOUTPUT": ""}
+    if epoch is not None:
+        environment |= {"SOURCE_DATE_EPOCH": str(epoch), "FORCE_SOURCE_DATE": "1"}
+    with tempfile.TemporaryDirectory(prefix="symflex-report-") as name:
+        folder = Path(name)
+        (folder / "report.tex").write_text(tex, encoding="ascii")
+        for path, content in figures.items():
+            target = folder / path
+            target.parent.mkdir(exist_ok=True)
+            target.write_bytes(content)
+        command = [COMPILER, "-no-shell-escape", "-interaction=nonstopmode", "-halt-on-error", "report.tex"]
+        for _ in range(RUNS):
+            try:
+                done = subprocess.run(
+                    command, cwd=folder, env=environment, capture_output=True, check=False, timeout=SECONDS
+                )
+            except (OSError, subprocess.TimeoutExpired) as error:
+                message = f"pdflatex did not finish: {error}"
+                raise SymflexError(Diagnostic("SF912", message, None, BY_HAND)) from None
+            if done.returncode:
+                log = done.stdout.decode(errors="replace").splitlines()[-_LAST_LINES:]
+                message = "pdflatex failed: " + " / ".join(log)
+                raise SymflexError(Diagnostic("SF912", message, None, BY_HAND))
+        return (folder / "report.pdf").read_bytes()

@@ -19,7 +19,7 @@ from symflex.errors import BudgetError, Diagnostic, SpecError, SymflexError, Unc
 from symflex.errors.diagnostic import printable
 from symflex.report.chapter import Chapter, chapter_of, failed_chapter
 from symflex.report.claims import CLAIMS, claim_section, is_claims, publication_of, read_claims
-from symflex.report.claims.section import claims_json, judge_all
+from symflex.report.claims.claim import claims_json, judge_all
 from symflex.report.comparison import comparison_section
 from symflex.report.document import Badge, Code, PageLink, Section, Table, columns, counted, text
 from symflex.report.sections.roots import stability_mark

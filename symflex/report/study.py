@@ -17,7 +17,7 @@ from symflex.model import with_numbers
 from symflex.options import ColocationOptions
 from symflex.print.forms import print_forms
 from symflex.report.facts import facts_of
-from symflex.report.limits import rigid_counts, undamped_counts
+from symflex.report.structure import rigid_counts, undamped_counts
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from symflex.model import Model
     from symflex.print.forms import PrintedForm
     from symflex.report.facts import ModelFacts
-    from symflex.report.limits import Counts, RigidCounts
+    from symflex.report.structure import Counts, RigidCounts
     from symflex.roots import PoleZeroMap
     from symflex.transfer import BoundTransferFunction, TransferFunction
 
@@ -160,13 +160,13 @@ class Study:
 
     @cached_property
     def rigid_counts(self) -> Mapping[tuple[str, str], RigidCounts]:
-        """Zeros and poles with rigid compliances; see :func:`symflex.report.limits.rigid_counts`."""
+        """Zeros and poles with rigid compliances; see :func:`symflex.report.structure.rigid_counts`."""
         found = attempt(lambda: rigid_counts(self.model))
         return {} if isinstance(found, SymflexError) else found
 
     @cached_property
     def undamped_counts(self) -> Mapping[tuple[str, str], Counts]:
-        """Zeros and poles without dampers; see :func:`symflex.report.limits.undamped_counts`."""
+        """Zeros and poles without dampers; see :func:`symflex.report.structure.undamped_counts`."""
         found = attempt(lambda: undamped_counts(self.model))
         return {} if isinstance(found, SymflexError) else found
 
@@ -199,9 +199,9 @@ class Study:
     def loops(self) -> tuple[StabilityMap | SymflexError, ...]:
         """Stable values of every gain that a figure names, or why there are none."""
         gains = dict.fromkeys(figure.gain for figure in self.model.figures if figure.gain)
-        return tuple(attempt(lambda gain=gain: self._stability(gain)) for gain in gains)  # type: ignore[misc]
+        return tuple(attempt(partial(self._stable_gains, gain)) for gain in gains)
 
-    def _stability(self, gain: str) -> StabilityMap:
+    def _stable_gains(self, gain: str) -> StabilityMap:
         return find_stable_gains(self.loop(gain), budget=entered_budget())
 
     def loop(self, gain: str) -> Loop:
@@ -232,13 +232,12 @@ class Study:
         for tf, _, told in self.located:
             joint = joints.get((tf.input.name, tf.quantity, tf.unit))
             if told.kind != "colocated" and joint is not None:
-                one = attempt(self._colocation(tf.name, joint.name))
+                one = attempt(
+                    partial(pipeline.colocation, self.model, ColocationOptions(tf.name, joint.name))
+                )
                 if not isinstance(one, SymflexError):
                     found.append(one)
         return tuple(found)
-
-    def _colocation(self, name: str, joint: str) -> Callable[[], DynamicColocation]:
-        return lambda: pipeline.colocation(self.model, ColocationOptions(name, joint))
 
     def rational(self, tf: TransferFunction) -> RationalApproximation | None:
         """Return the product of the lowest modes of a function, None where there is no such approximation."""

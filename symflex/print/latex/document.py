@@ -166,7 +166,10 @@ def _blocks(
             message = f"poles and zeros of '{found.tf[:64]}', which is not among the transfer functions"
             raise UsageError(Diagnostic("SF902", message))
     if model.parameters:
-        yield _Block(f"\\section{{Parameters}}\n\n{_about_values(model)}{_BEFORE_TABLE}")
+        values = f"Values have {VALUE_DIGITS} significant digits where they are not shorter."
+        if all(p.value is None for p in model.parameters):
+            values = "All parameters are symbolic."
+        yield _Block(f"\\section{{Parameters}}\n\n{values}{_BEFORE_TABLE}")
         yield _table(parameter_table(model, width_mm=width_mm), "parameters", "Parameters")
     if tfs:
         yield _Block("\\section{Transfer functions}\n\n")
@@ -221,12 +224,6 @@ def _heading(model: Model) -> str:
     if source:
         lines += [r"\medskip", source]
     return "\n".join((*lines, r"\end{center}"))
-
-
-def _about_values(model: Model) -> str:
-    if all(p.value is None for p in model.parameters):
-        return "All parameters are symbolic."
-    return f"Values have {VALUE_DIGITS} significant digits where they are not shorter."
 
 
 def _introduction(tf: AnyTransferFunction) -> str:

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Final
 from symflex.algebra import LAPLACE
 from symflex.expressions import Call, Derivative, Expression, Name, Negative, is_number, names, number
 from symflex.print.label import labels_of, symbol
-from symflex.print.latex.expression import Writer
-from symflex.print.latex.lines import break_lines
+from symflex.print.latex.expression import Writer, break_lines
 from symflex.print.latex.page import NARROWEST_MM
 from symflex.print.width import EM_MM, FRACTION_EDGES, MINUS, QUAD, RELATION
 from symflex.print.writer import ExpressionWriter, Style, Written
@@ -100,7 +99,7 @@ def transfer_function_latex(
     width = None if width_mm is None else max(width_mm, NARROWEST_MM) / EM_MM
     parts = [_formula(tf, form, writer, width, label or equation_label(tf.name))]
     if form.where or form.laws:
-        parts.append(_where(form, writer, width))
+        parts.append(_align(_where_rows(form, writer, width), "align*", ""))
     return "\n".join(parts)
 
 
@@ -273,10 +272,6 @@ def free_names(form: PrintedForm, writer: ExpressionWriter) -> tuple[str, str]:
     taken = {writer.label(name).latex for name in sorted(used)}
     free = [pair for pair in _NUMERATORS if not taken & set(pair)]
     return free[0] if free else _NUMERATORS[-1]
-
-
-def _where(form: PrintedForm, writer: Writer, width: float | None) -> str:
-    return _align(_where_rows(form, writer, width), "align*", "")
 
 
 def _where_rows(form: PrintedForm, writer: Writer, width: float | None) -> list[_DisplayRow]:

@@ -1,21 +1,53 @@
-r"""Expressions as LaTeX mathematics: the notation of :mod:`symflex.print.writer` for paper.
+"""Expressions as LaTeX mathematics: the notation of :mod:`symflex.print.writer` for paper, in lines that fit.
 
-Factors follow each other without a sign except where two numbers would meet.
+Factors follow each other without a sign except where two numbers would meet. A line ends before a plus or
+minus; a term too long for a whole line is broken between its factors, inside their parentheses, at the slash
+of a quotient, and at last inside a number. What continues inside parentheses is indented, and so are the
+factors of a term that stands in a sum.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from symflex.algebra.functions import FUNCTIONS
+from symflex.expressions import Call, Expression, Negative, Number, Power, Product, Quotient, Sum
+from symflex.expressions.format import number_text
 from symflex.print.label import symbol
-from symflex.print.width import CDOT_SIZES, NOTHING, THIN_SIZES, Width
-from symflex.print.writer import FENCES, MOST_PRIMES, ExpressionWriter, Shape, Spelling, Style, Written
+from symflex.print.width import (
+    BIG_FENCES,
+    BIGGER_FENCES,
+    CDOT,
+    CDOT_SIZES,
+    DIGIT,
+    MINUS,
+    NOTHING,
+    OPERATOR,
+    QUAD,
+    SCRIPT_SPACE,
+    SLASH,
+    THIN_SIZES,
+    TIMES,
+    Width,
+)
+from symflex.print.writer import (
+    FENCES,
+    MOST_PRIMES,
+    ExpressionWriter,
+    Shape,
+    Spelling,
+    Style,
+    Written,
+    is_half,
+    numbers_first,
+    operator_size,
+)
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from symflex.expressions import Expression
+    from symflex.print.writer import Written
 
 
 def latex_expression(expression: Expression, labels: Mapping[str, str], style: Style = Style.DISPLAY) -> str:
@@ -83,3 +115,283 @@ LATEX: Final = Spelling(
     between=_between,
     function_power=lambda head, call, exponent: f"{head}^{{{exponent}}}{call.removeprefix(head)}",
 )
+
+
+DEEPEST_INDENT: Final = 3
+# In proportion to a line: the width from which a factor is broken rather than moved, and those of what may
+# stand before and after its parentheses.
+_LONG: Final = 0.5
+_LONGEST_LEAD: Final = 0.25
+_LONGEST_TAIL: Final = 0.15
+_SQUARE_ROOT: Final = 1.26
+"""The exponent 1/2."""
+
+
+class Glue(NamedTuple):
+    """What joins an item to the one before it: on the same line, or at the start of the next.
+
+    ``depth`` is how far that next line is indented.
+    """
+
+    latex: str = ""
+    width: float = 0.0
+    start: str = ""
+    start_width: float = 0.0
+    depth: int = 0
+
+
+class Edge(NamedTuple):
+    """What stands at an item's edge and may not be parted from it, such as a parenthesis."""
+
+    latex: str = ""
+    width: float = 0.0
+
+
+_NOTHING: Final = Glue()
+_PLUS: Final = Glue(" + ", OPERATOR, "{}+ ", OPERATOR)
+_MINUS: Final = Glue(" - ", OPERATOR, "{}- ", OPERATOR)
+_SLASH: Final = Glue("/", SLASH, "{}/ ", SLASH)
+_TIMES: Final = r"{}\times "
+_DOT: Final = r"{}\cdot "
+
+
+def break_lines(expression: Expression, writer: Writer, first: float, others: float) -> list[str]:
+    r"""Return an expression as lines for display.
+
+    ``first`` and ``others`` are the room in the first line and in those that continue it [em]; none of these
+    is used beyond the first's. Each line begins with its indentation, and all but the first with their
+    operator.
+
+    Examples
+    --------
+    >>> from symflex.expressions import Name
+    >>> from symflex.print.latex.expression import Writer
+    >>> letters = Sum(tuple(map(Name, "abcdef")))
+    >>> break_lines(letters, Writer({}), 6.0, 6.0)
+    ['a + b + c + d', '{}+ e + f']
+    """
+    # What has no room in the first line may then stand in no other, and so need not leave it empty.
+    filler = _Filler(writer, first, min(first, others))
+    filler.place(_NOTHING, Edge(), expression, as_is, Edge(), 0)
+    return filler.finish()
+
+
+def as_is(piece: Written) -> Written:
+    """Return a piece that stands alone."""
+    return piece
+
+
+class _Filler:
+    """Fills lines from left to right."""
+
+    def __init__(self, writer: Writer, first: float, others: float) -> None:
+        self._writer = writer
+        self._others = others
+        self._lines: list[str] = []
+        self._parts: list[str] = []
+        self._room = first
+
+    def finish(self) -> list[str]:
+        """Return the lines."""
+        return [*self._lines, "".join(self._parts)]
+
+    def place(
+        self,
+        glue: Glue,
+        left: Edge,
+        node: Expression,
+        fence: Callable[[Written], Written],
+        right: Edge,
+        depth: int,
+        hang: int = 0,
+    ) -> None:
+        """Set one item whole, on this line or the next, or in parts; those of a term hang below its sign."""
+        bare = self._writer.piece(node)
+        piece = fence(bare)
+        width = left.width + piece.width + right.width
+        if self._append(glue, f"{left.latex}{piece.markup}{right.latex}", width):
+            return
+        # A slash binds less tightly than the fraction bar it replaces.
+        is_looser = bare.shape is Shape.FRACTION and fence in (self._writer.as_factor, self._as_denominator)
+        if piece is not bare or is_looser:
+            # Fences round what is broken have one size, chosen by what they hold.
+            size = r"\Big" if bare.is_tall else r"\big"
+            kind = bare.nesting % len(FENCES)
+            opening, closing = FENCES[kind]
+            width = (BIGGER_FENCES if bare.is_tall else BIG_FENCES)[kind]
+            left = Edge(f"{left.latex}{size}l{opening} ", left.width + width)
+            right = Edge(f" {size}r{closing}{right.latex}", right.width + width)
+            depth += 1
+        self._split(glue, left, node, bare, right, depth, 0 if piece is not bare else hang)
+
+    def _append(self, glue: Glue, latex: str, width: float) -> bool:
+        """Set something unbroken if this line or the next has room for it."""
+        if self._parts and glue.width + width <= self._room:
+            self._parts.append(f"{glue.latex}{latex}")
+            self._room -= glue.width + width
+            return True
+        if not self._parts and not self._lines and width <= self._room:
+            self._parts.append(latex)
+            self._room -= width
+            return True
+        if glue.start_width + width <= self._rest(glue.depth):
+            self._start(glue)
+            self._parts.append(latex)
+            self._room -= width
+            return True
+        return False
+
+    def _force(self, glue: Glue, latex: str, width: float) -> None:
+        """Set something that cannot be broken, on a line of its own and less far in if it must be."""
+        while glue.depth and glue.start_width + width > self._rest(glue.depth):
+            glue = glue._replace(depth=glue.depth - 1)
+        if not self._append(glue, latex, width):
+            self._start(glue)
+            self._parts.append(latex)
+            self._room -= width
+
+    def _rest(self, depth: int) -> float:
+        return self._others - QUAD * min(depth, DEEPEST_INDENT)
+
+    def _start(self, glue: Glue) -> None:
+        if self._parts:
+            self._lines.append("".join(self._parts))
+        self._parts = [r"\quad " * min(glue.depth, DEEPEST_INDENT) + glue.start]
+        self._room = self._rest(glue.depth) - glue.start_width
+
+    def _split(
+        self, glue: Glue, left: Edge, node: Expression, bare: Written, right: Edge, depth: int, hang: int
+    ) -> None:
+        match node:
+            case Sum(terms=terms):
+                self._split_sum(glue, left, terms, right, depth)
+            case Product(factors=factors):
+                self._split_product(glue, left, numbers_first(factors), right, depth, hang)
+            case Negative(operand=operand):
+                minus = Edge(f"{left.latex}-", left.width + MINUS)
+                self.place(glue, minus, operand, self._writer.as_term, right, depth, hang)
+            case Quotient(numerator=above, denominator=below):
+                self.place(glue, left, above, self._writer.as_numerator, Edge(), depth)
+                self.place(
+                    _SLASH._replace(depth=depth + hang),
+                    Edge(),
+                    below,
+                    self._as_denominator,
+                    right,
+                    depth + hang,
+                )
+            case Power(base=base, exponent=exponent):
+                raised = self._raised(exponent)
+                after = Edge(f"{raised.latex}{right.latex}", raised.width + right.width)
+                self.place(glue, left, base, self._writer.as_base, after, depth)
+            case Call(name=name, argument=argument):
+                self._split_call(glue, left, name, argument, right, depth)
+            case Number():
+                self._split_number(glue, left, node, right, depth)
+            case _:
+                self._force(
+                    glue, f"{left.latex}{bare.markup}{right.latex}", left.width + bare.width + right.width
+                )
+
+    def _split_sum(
+        self, glue: Glue, left: Edge, terms: tuple[Expression, ...], right: Edge, depth: int
+    ) -> None:
+        for index, term in enumerate(terms):
+            if index and self._writer.piece(term).width > self._rest(depth):
+                # A term of several lines begins its own.
+                self._room = 0.0
+            sign = glue if index == 0 else _PLUS._replace(depth=depth)
+            before = left if index == 0 else Edge()
+            after = right if index == len(terms) - 1 else Edge()
+            if isinstance(term, Negative):
+                if index:
+                    sign = _MINUS._replace(depth=depth)
+                else:
+                    before = Edge(f"{left.latex}-", left.width + MINUS)
+                self.place(sign, before, term.operand, self._writer.as_term, after, depth, 1)
+            else:
+                self.place(sign, before, term, self._writer.as_term, after, depth, 1)
+
+    def _split_product(
+        self, glue: Glue, left: Edge, factors: list[Expression], right: Edge, depth: int, hang: int
+    ) -> None:
+        pieces = [self._writer.as_factor(self._writer.piece(factor)) for factor in factors]
+        long = [i for i, piece in enumerate(pieces) if piece.width > _LONG * self._others]
+        if len(long) == 1 and factors[long[0]].children:
+            # Short factors stay with the parentheses of the one that is broken.
+            (k,) = long
+            before, after = self._beside(pieces[: k + 1]), self._beside(pieces[k:], leading=True)
+            if before.width <= _LONGEST_LEAD * self._others and after.width <= _LONGEST_TAIL * self._others:
+                left = Edge(f"{left.latex}{before.latex}", left.width + before.width)
+                right = Edge(f"{after.latex}{right.latex}", after.width + right.width)
+                self.place(glue, left, factors[k], self._writer.as_factor, right, depth)
+                return
+        for index, (factor, piece) in enumerate(zip(factors, pieces, strict=True)):
+            sign, edge = glue, left
+            if index:
+                between, gap = self._writer.between(pieces[index - 1], piece)
+                start, start_width = (_DOT, CDOT) if gap == CDOT_SIZES else (_TIMES, TIMES)
+                sign, edge = Glue(between, gap.text, start, start_width, depth + hang), Edge()
+            inner = depth + hang if index else depth
+            self.place(
+                sign,
+                edge,
+                factor,
+                self._writer.as_factor,
+                right if index == len(factors) - 1 else Edge(),
+                inner,
+            )
+
+    def _split_call(
+        self, glue: Glue, left: Edge, name: str, argument: Expression, right: Edge, depth: int
+    ) -> None:
+        if name == "sqrt":
+            after = Edge(f"^{{1/2}}{right.latex}", _SQUARE_ROOT + right.width)
+            self.place(glue, left, argument, self._writer.fenced, after, depth)
+            return
+        head = Edge(f"{left.latex}{FUNCTIONS[name].latex}", left.width + operator_size(name).text)
+        self.place(glue, head, argument, self._writer.fenced, right, depth)
+
+    def _split_number(self, glue: Glue, left: Edge, node: Number, right: Edge, depth: int) -> None:
+        above, _, below = number_text(node.value).partition("/")
+        if below:
+            self._split_digits(glue, left, above, Edge(), depth)
+            self._split_digits(_SLASH._replace(depth=depth), Edge(), below, right, depth)
+        else:
+            self._split_digits(glue, left, above, right, depth)
+
+    def _split_digits(self, glue: Glue, left: Edge, text: str, right: Edge, depth: int) -> None:
+        """Set a number too long for a line: its digits go on in the next."""
+        depth = max(depth, glue.depth)
+        edges = left.width + right.width + glue.start_width
+        if "e" in text or DIGIT * len(text) + edges <= self._rest(depth):
+            piece = self._writer.number(text)
+            width = left.width + piece.width + right.width
+            self._force(glue, f"{left.latex}{piece.markup}{right.latex}", width)
+            return
+        count = max(1, int((self._rest(depth) - edges) / DIGIT))
+        for start in range(0, len(text), count):
+            chunk = text[start : start + count]
+            before = left if start == 0 else Edge()
+            after = right if start + count >= len(text) else Edge()
+            self._start(glue if start == 0 else Glue(depth=depth))
+            self._parts.append(f"{before.latex}{chunk}{after.latex}")
+            self._room -= before.width + DIGIT * len(chunk) + after.width
+
+    def _raised(self, exponent: Expression) -> Edge:
+        if is_half(exponent):
+            return Edge("^{1/2}", _SQUARE_ROOT)
+        piece = self._writer.exponent(exponent)
+        return Edge(f"^{{{piece.markup}}}", piece.size.script + SCRIPT_SPACE.text)
+
+    def _beside(self, pieces: Sequence[Written], *, leading: bool = False) -> Edge:
+        """Return all pieces but the last, or the first, side by side as they stand next to it."""
+        if len(pieces) == 1:
+            return Edge()
+        alone = pieces[0] if leading else pieces[-1]
+        parts, extra = self._writer.joined(pieces)
+        rest = "".join(parts[1:] if leading else parts[:-1])
+        return Edge(rest, sum(piece.width for piece in pieces) - alone.width + extra.text)
+
+    def _as_denominator(self, piece: Written) -> Written:
+        return piece if piece.shape >= Shape.FRACTION else self._writer.fenced(piece)

@@ -1,8 +1,14 @@
 """MathML Core: expressions and transfer functions for web pages that need no script to set them."""
 
 from symflex.print.mathml.element import label_mathml, math_element
-from symflex.print.mathml.equation import WIDEST_FRACTION, MathRow, ratio_mathml, transfer_function_mathml
-from symflex.print.mathml.expression import MathmlWriter, mathml_expression
+from symflex.print.mathml.expression import (
+    WIDEST_FRACTION,
+    MathmlWriter,
+    MathRow,
+    mathml_expression,
+    ratio_mathml,
+    transfer_function_mathml,
+)
 
 __all__ = [
     "WIDEST_FRACTION",

@@ -5,10 +5,9 @@ words stands in a ``claims.toml`` beside the specifications: quotations with che
 registry, applied to the specifications whose ``source`` begins with the publication's name.
 """
 
-from symflex.report.claims.claim import Claim, Finding, Models, Publication
+from symflex.report.claims.claim import Claim, Finding, Models, Publication, claim_section, publication_of
 from symflex.report.claims.predicates import PREDICATES
 from symflex.report.claims.read import CLAIMS, is_claims, read_claims
-from symflex.report.claims.section import claim_section, publication_of
 
 __all__ = [
     "CLAIMS",

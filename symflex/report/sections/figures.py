@@ -13,7 +13,7 @@ from symflex.report.study import attempt
 
 if TYPE_CHECKING:
     from symflex.report.document import Block, PageFigure
-    from symflex.report.study import DataComparison, Study
+    from symflex.report.study import Study
     from symflex.transfer import BoundTransferFunction
 
 
@@ -99,6 +99,7 @@ def data_section(study: Study) -> ChapterPart | None:
             caption = f"{measured.name}: the model over {kind} of {measured.values.size} lines."
             blocks.append(picture(f"{study.stem}_data_{i + 1}", drawn, caption, files))
         band = f"{measured.frequency_hz[0]:.4g} to {measured.frequency_hz[-1]:.4g} Hz"
+        whose = "the synthetic" if measured.is_synthetic else "the measured"
         misfit = f"{found.decibels:.3g} dB and {found.degrees:.3g} degrees rms"
         blocks.append(
             text(
@@ -106,11 +107,7 @@ def data_section(study: Study) -> ChapterPart | None:
                 band,
                 ", ",
                 Code(measured.name),
-                f" is off {_kind(found)} by {misfit}, all lines alike.",
+                f" is off {whose} data by {misfit}, all lines alike.",
             )
         )
     return ChapterPart("Data", tuple(blocks), files) if blocks else None
-
-
-def _kind(found: DataComparison) -> str:
-    return "the synthetic data" if found.measured.is_synthetic else "the measured data"

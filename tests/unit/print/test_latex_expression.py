@@ -20,8 +20,7 @@ from symflex.expressions import (
     sum_of,
 )
 from symflex.print.latex import latex_expression
-from symflex.print.latex.expression import Writer
-from symflex.print.latex.lines import break_lines
+from symflex.print.latex.expression import Writer, break_lines
 
 
 def tree(text):

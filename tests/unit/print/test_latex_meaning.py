@@ -11,8 +11,7 @@ from hypothesis import strategies as st
 
 from symflex.expressions import Name, Negative, Number, Power, Product, Quotient, Sum
 from symflex.print.latex import latex_expression
-from symflex.print.latex.expression import Writer
-from symflex.print.latex.lines import break_lines
+from symflex.print.latex.expression import Writer, break_lines
 
 VALUES = {"a": Fraction(3, 7), "b": Fraction(5, 11), "c": Fraction(13, 17), "s": Fraction(19, 23)}
 TOKEN = re.compile(r"\\frac|\\times|\\cdot|[0-9.]+|[a-z]|[-+/^(){}\[\]]|\\[{}]")

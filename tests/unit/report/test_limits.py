@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from symflex import pipeline
-from symflex.report.limits import rigid_counts, undamped_counts
+from symflex.report.structure import rigid_counts, undamped_counts
 
 UNDAMPED = "loss = "
 
