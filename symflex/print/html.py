@@ -7,14 +7,15 @@ from typing import TYPE_CHECKING, Final
 
 from symflex.print.forms import print_form
 from symflex.print.latex import model_labels, notebook_latex
-from symflex.print.latex.table import damping_text, decimal_text, frequency_text, one_of_each_pair
+from symflex.print.latex.table import decimal_text
+from symflex.print.roots import PAGE_COLUMNS, one_of_each_pair, roots_of
 from symflex.print.text import region_text
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symflex.model import Model, ModelParameter
-    from symflex.print.latex.table import PrintedRoot
+    from symflex.print.roots import PrintedRoot
     from symflex.roots import PoleZeroMap
     from symflex.transfer import BoundTransferFunction
 
@@ -144,16 +145,6 @@ def bound_html(bound: BoundTransferFunction) -> str:
 DIGITS: Final = 10
 """Significant digits shown at most; fewer where the enclosure does not certify them."""
 
-HEAD: Final = (
-    "",
-    "Re s [rad/s]",
-    "Im s [rad/s]",
-    "radius [rad/s]",
-    "frequency [Hz]",
-    "damping ratio",
-    "multiplicity",
-)
-
 
 def roots_html(found: PoleZeroMap) -> str:
     """Return poles, zeros and hidden modes as a table with the certificate above it."""
@@ -166,27 +157,17 @@ def roots_html(found: PoleZeroMap) -> str:
         caption += f"<br>shown: {escape_html(shown)}"
     if found.excluded:
         caption += f"<br>{len(found.excluded)} neighbourhoods where roots accumulate are left out"
-    rows = []
-    for word, roots in (
-        ("pole", found.all_poles),
-        ("zero", found.zeros),
-        ("hidden", tuple(h.root for h in found.hidden)),
-    ):
-        rows += [_root_cells(word, entry) for entry in one_of_each_pair(roots)]
-    return html_table(HEAD, (TEXT, *[NUMBER] * (len(HEAD) - 1)), rows, caption)
+    rows = [
+        _root_cells(word, entry)
+        for kind, word in (("poles", "pole"), ("zeros", "zero"), ("hidden", "hidden"))
+        for entry in one_of_each_pair(roots_of(found, kind))
+    ]
+    head = ("", *(column.head for column in PAGE_COLUMNS))
+    return html_table(head, (TEXT, *[NUMBER] * len(PAGE_COLUMNS)), rows, caption)
 
 
 def _root_cells(word: str, entry: PrintedRoot) -> tuple[str, ...]:
-    root = entry.root
-    printed = root.decimal(DIGITS)
-    mark = ("" if root.certified else " ?") + (" |" if root.on_boundary else "")
-    sign = "&pm;" if entry.is_pair else ""
-    return (
-        f"{word}{mark}",
-        printed.re.replace("-", "\u2212"),
-        sign + printed.im.replace("-", "\u2212"),
-        printed.radius,
-        frequency_text(root, DIGITS),
-        damping_text(root, DIGITS),
-        str(root.multiplicity),
-    )
+    mark = ("" if entry.root.certified else " ?") + (" |" if entry.root.on_boundary else "")
+    shown = [cell.replace("-", "\u2212") for cell in entry.cells(PAGE_COLUMNS, DIGITS)]
+    signs = ["&pm;" if entry.is_pair and column.is_mirrored else "" for column in PAGE_COLUMNS]
+    return (f"{word}{mark}", *map(str.__add__, signs, shown))

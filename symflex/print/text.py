@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import chain, repeat
 from re import compile as compile_pattern
 from textwrap import wrap
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from symflex.expressions import (
     Derivative,
@@ -17,12 +17,14 @@ from symflex.expressions import (
     names,
 )
 from symflex.print.forms import PrintedForm, with_hidden
+from symflex.print.roots import one_of_each_pair
 from symflex.transfer import NestedTransferFunction
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from symflex.roots import PoleZeroMap, Region, Root
+    from symflex.roots.root import RootDecimals
     from symflex.transfer import AnyTransferFunction
 
 Row = tuple[str, ...]
@@ -268,20 +270,33 @@ def _counted(title: str, roots: Sequence[Root]) -> str:
     return f"{INDENT}{title}: {sum(root.multiplicity for root in roots) or 'none'}"
 
 
+def _zeta(root: Root, printed: RootDecimals) -> str:
+    zeta = root.damping_ratio()
+    return "" if zeta is None else "~0" if printed.re.startswith("0e") else f"{zeta:.6g}"
+
+
+_ABOUT: Final[tuple[tuple[str, Callable[[Root, RootDecimals], str]], ...]] = (
+    ("radius", lambda root, printed: printed.radius),
+    ("f [Hz]", lambda root, printed: f"{root.frequency_hz():.6g}"),
+    ("zeta", _zeta),
+)
+"""Columns after real and imaginary part."""
+
+
 def _root_table(roots: Sequence[Root], digits: int, width: int) -> list[str]:
     """Return a line per real root or conjugate pair, or two where one is too long."""
     if not roots:
         return []
     rows: list[Row] = _root_rows(roots, digits)
-    head: Row = ("", "Re [rad/s]", "Im [rad/s]", "radius", "f [Hz]", "zeta")
-    lines = aligned([head, *rows])
+    heads = [head for head, _ in _ABOUT]
+    lines = aligned([("", "Re [rad/s]", "Im [rad/s]", *heads), *rows])
     if max(map(len, lines)) <= width:
         return lines
-    stacked: list[Row] = [("", "Re, Im [rad/s]", *head[3:])]
+    stacked: list[Row] = [("", "Re, Im [rad/s]", *heads)]
     for flags, re, im, *rest in rows:
         stacked.append((flags, f"{re}  ", *rest))
         if im != "0":
-            stacked.append(("", f"{im} j", "", "", ""))
+            stacked.append(("", f"{im} j", *("" for _ in rest)))
     lines = aligned(stacked)
     if max(map(len, lines)) <= width:
         return lines
@@ -289,31 +304,25 @@ def _root_table(roots: Sequence[Root], digits: int, width: int) -> list[str]:
 
 
 def _root_rows(roots: Sequence[Root], digits: int) -> list[Row]:
-    """Return flags, real and imaginary part, radius, natural frequency and damping ratio.
-
-    Both members of a conjugate pair stand in the row of the upper one.
-    """
-    printed = [root.decimal(digits) for root in roots]
-    parts = {(p.re, p.im) for p in printed}
+    """Return flags, real and imaginary part and what stands beside them; a conjugate pair is one row."""
     rows: list[Row] = []
-    for root, p in zip(roots, printed, strict=True):
-        mirrored = (p.re, p.im.removeprefix("-") if root.im < 0 else f"-{p.im}") in parts and p.im != "0"
-        if mirrored and root.im < 0:
-            continue
+    for entry in one_of_each_pair(roots):
+        root, printed = entry.root, entry.root.decimal(digits)
         times = f"x{root.multiplicity}" if root.multiplicity > 1 else ""
         flags = times + ("" if root.certified else "?") + ("|" if root.on_boundary else "")
-        zeta = root.damping_ratio()
-        shown_zeta = "" if zeta is None else "~0" if p.re.startswith("0e") else f"{zeta:.6g}"
-        im = f"+-{p.im}" if mirrored else p.im
-        rows.append((flags, p.re, im, p.radius, f"{root.frequency_hz():.6g}", shown_zeta))
+        im = f"+-{printed.im}" if entry.is_pair else printed.im
+        rows.append((flags, printed.re, im, *(text(root, printed) for _, text in _ABOUT)))
     return rows
 
 
 def _root_paragraph(row: Row) -> list[str]:
     """Return a root whose digits fill lines of their own."""
-    flags, re, im, radius, frequency, zeta = row
-    about = [f"radius {radius}", f"f {frequency} Hz", f"zeta {zeta}" if zeta else "", flags]
-    lines = (f"Re {re}", f"Im {im}", ", ".join(filter(None, about)))
+    flags, re, im, *rest = row
+    about = []
+    for (head, _), cell in zip(_ABOUT, rest, strict=True):
+        name, _, unit = head.removesuffix("]").partition(" [")
+        about.append(f"{name} {cell} {unit}".rstrip() if cell else "")
+    lines = (f"Re {re}", f"Im {im}", ", ".join(filter(None, (*about, flags))))
     return [*(2 * INDENT + line for line in lines), ""]
 
 

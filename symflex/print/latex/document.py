@@ -16,9 +16,10 @@ from symflex.print.forms import counts_of, with_hidden
 from symflex.print.latex.equation import equation_label, form_labels, ratio_latex, transfer_function_latex
 from symflex.print.latex.expression import Writer
 from symflex.print.latex.page import COLUMNS_MM, preamble
-from symflex.print.latex.table import KINDS, VALUE_DIGITS, mode_table, parameter_table, root_table, roots_of
+from symflex.print.latex.table import VALUE_DIGITS, mode_table, parameter_table, root_table
 from symflex.print.latex.text import escape_text
 from symflex.print.latex.units import unit_latex
+from symflex.print.roots import KINDS, roots_of
 from symflex.print.text import region_text
 from symflex.print.width import EM_MM
 from symflex.transfer import NestedTransferFunction

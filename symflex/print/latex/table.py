@@ -3,11 +3,8 @@ r"""Tables of parameters, poles, zeros and modes, with booktabs and siunitx, as 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Final
-
-from flint import arb
 
 from symflex.print.label import symbol
 from symflex.print.latex.equation import model_labels
@@ -23,13 +20,15 @@ from symflex.print.latex.tabular import (
 )
 from symflex.print.latex.text import escape_text, text_width
 from symflex.print.latex.units import quantity_latex, siunitx_unit, unit_latex
+from symflex.print.roots import MODE_COLUMNS, PAPER_COLUMNS, one_of_each_pair, roots_of
 from symflex.print.width import EM_MM
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Iterable, Sequence
 
     from symflex.model import ExactValue, Model, ModelParameter
-    from symflex.roots import PoleZeroMap, Root
+    from symflex.print.roots import PrintedRoot, RootColumn
+    from symflex.roots import PoleZeroMap
 
 VALUE_DIGITS: Final = 7
 """Significant digits of a value that is not a shorter decimal."""
@@ -40,16 +39,12 @@ ROOT_DIGITS: Final = 6
 LONGEST_MEANING: Final = 400
 """Characters of a description that a table prints; a row must fit a page."""
 
-KINDS: Final = {"poles": "pole", "zeros": "zero", "hidden": "hidden root"}
-"""What a :class:`~symflex.roots.PoleZeroMap` holds, and what one of it is called."""
-
 _FEWEST_DIGITS: Final = 3
 _PI: Final = Fraction("3.14159265358979323846264338327950288419716939937510582097494459230781640628620899")
 _LARGEST_PLAIN: Final = 5
 _SMALLEST_PLAIN: Final = -4
 _NARROWEST_MEANING: Final = 12.5
 _WRAPPED: Final = r">{{\raggedright\arraybackslash}}p{{{:.1f}mm}}"
-_FREQUENCY_BITS: Final = 256
 
 
 def parameter_table(model: Model, *, width_mm: float = COLUMNS_MM["a4"]) -> str:
@@ -110,23 +105,10 @@ def root_table(
     certifies, at most ``digits``; where a narrow column has no room for them fewer, but not less than three.
     Needs booktabs and siunitx.
 
-    ``kind`` is a key of :data:`KINDS`.
+    ``kind`` is a key of :data:`~symflex.print.roots.KINDS`.
     """
     entries = one_of_each_pair(roots_of(found, kind))
-    heads = (
-        (("Re $s$", r"(\unit{\radian\per\second})"), ("Re s", "(rad/s)"), _real_part),
-        (("Im $s$", r"(\unit{\radian\per\second})"), ("Im s", "(rad/s)"), _imaginary_part),
-        (("Frequency", r"(\unit{\hertz})"), ("Frequency", "(Hz)"), _frequency),
-        (("Damping", "ratio"), ("Damping", "ratio"), _damping),
-    )
-    return _table_of(entries, heads, digits, width_mm / EM_MM)
-
-
-def roots_of(found: PoleZeroMap, kind: str) -> tuple[Root, ...]:
-    """Return the roots that a table of one kind lists: poles in the right half plane wherever they lie."""
-    if kind == "hidden":
-        return tuple(h.root for h in found.hidden)
-    return found.all_poles if kind == "poles" else found.zeros
+    return _table_of(entries, PAPER_COLUMNS, digits, width_mm / EM_MM)
 
 
 def mode_table(
@@ -147,25 +129,17 @@ def mode_table(
             elif entry.root.multiplicity > modes[same[0]].root.multiplicity:
                 modes[same[0]] = entry
     modes.sort(key=lambda m: float(m.root.natural_frequency().mid()))
-    heads = (
-        (("Frequency", r"(\unit{\hertz})"), ("Frequency", "(Hz)"), _frequency),
-        (("Frequency", r"(\unit{\radian\per\second})"), ("Frequency", "(rad/s)"), _angular_frequency),
-        (("Damping", "ratio"), ("Damping", "ratio"), _damping),
-    )
     numbers, before = [], 0
     for mode in modes:
         # Rigid-body motions are number 0, as mode_shape() counts.
         numbers.append("0" if mode.root.is_zero else str(before + 1))
         before += 0 if mode.root.is_zero else mode.root.multiplicity
-    return _table_of(modes, heads, digits, width_mm / EM_MM, ("Mode", numbers))
-
-
-_Head = tuple[tuple[str, ...], tuple[str, ...], "Callable[[PrintedRoot, int], str]"]
+    return _table_of(modes, MODE_COLUMNS, digits, width_mm / EM_MM, ("Mode", numbers))
 
 
 def _table_of(
     entries: Sequence[PrintedRoot],
-    heads: Sequence[_Head],
+    shown: Sequence[RootColumn],
     digits: int,
     room: float,
     first: tuple[str, Sequence[str]] | None = None,
@@ -176,9 +150,10 @@ def _table_of(
         if first is not None:
             title, numbers = first
             columns.append(TabularColumn("r", (title,), (text_width(title),), tuple(numbers), 2.0))
-        for head, plain, cell in heads:
-            cells = [cell(entry, count) for entry in entries]
-            columns.append(number_column(head, tuple(map(text_width, plain)), cells))
+        rows = [entry.cells(shown, count) for entry in entries]
+        for i, column in enumerate(shown):
+            cells = [_cell(column, entry, row[i]) for entry, row in zip(entries, rows, strict=True)]
+            columns.append(_number_column(column, cells))
         if any(entry.root.multiplicity > 1 for entry in entries):
             times = tuple(str(entry.root.multiplicity) for entry in entries)
             head = ("Multi-", "plicity")
@@ -247,83 +222,16 @@ def _value_width(parameter: ModelParameter) -> float:
     return number_width(decimal_text(value)) + width
 
 
-@dataclass(frozen=True, slots=True)
-class PrintedRoot:
-    """A root to print, alone or for its conjugate pair."""
-
-    root: Root
-    is_pair: bool
+def _number_column(column: RootColumn, cells: Sequence[str]) -> TabularColumn:
+    unit, plain = siunitx_unit(column.unit), [line.replace("$", "") for line in column.paper]
+    head = (*column.paper, rf"(\unit{{{unit}}})") if column.unit else column.paper
+    return number_column(head, tuple(map(text_width, [*plain, f"({column.unit})"][: len(head)])), cells)
 
 
-def one_of_each_pair(roots: Sequence[Root]) -> list[PrintedRoot]:
-    """Return every root once, a conjugate pair as the member above the real axis."""
-    lower = [r for r in roots if r.im < 0]
-    entries = []
-    for root in roots:
-        if root.im > 0:
-            partner = next((r for r in lower if r.im.overlaps(-root.im) and r.re.overlaps(root.re)), None)
-            if partner is not None:
-                lower.remove(partner)
-            entries.append(PrintedRoot(root, partner is not None))
-        elif not root.im < 0:
-            entries.append(PrintedRoot(root, is_pair=False))
-    return entries + [PrintedRoot(root, is_pair=False) for root in lower]
-
-
-def _real_part(entry: PrintedRoot, digits: int) -> str:
-    root = entry.root
-    return _certified(root.decimal(digits).re, is_exact=root.on_imaginary_axis)
-
-
-def _imaginary_part(entry: PrintedRoot, digits: int) -> str:
-    root = entry.root
-    shown = _certified(root.decimal(digits).im, is_exact=root.is_real)
-    return rf"\pm {shown}" if entry.is_pair and not shown.startswith("{") else shown
-
-
-def _angular_frequency(entry: PrintedRoot, digits: int) -> str:
-    from symflex.roots import decimals  # imports numpy
-
-    return _certified(
-        decimals(entry.root.natural_frequency(), arb(0), digits).re, is_exact=entry.root.is_zero
-    )
-
-
-def _frequency(entry: PrintedRoot, digits: int) -> str:
-    return _certified(frequency_text(entry.root, digits), is_exact=entry.root.is_zero)
-
-
-def _damping(entry: PrintedRoot, digits: int) -> str:
-    shown = damping_text(entry.root, digits)
-    return _certified(shown, is_exact=entry.root.on_imaginary_axis) if shown else "{--}"
-
-
-def frequency_text(root: Root, digits: int) -> str:
-    """Return the natural frequency abs(s)/(2 pi) of a root [Hz] with at most so many certified digits."""
-    from symflex.roots import decimals, precision  # imports numpy
-
-    with precision(max(_FREQUENCY_BITS, root.working_bits())):
-        frequency = root.natural_frequency() / (2 * arb.pi())
-    return decimals(frequency, arb(0), digits).re
-
-
-def damping_text(root: Root, digits: int) -> str:
-    """Return ``-re/abs(s)`` with at most so many certified digits, empty at 0 and where s may be 0."""
-    from symflex.roots import decimals, precision  # imports numpy
-
-    frequency = root.natural_frequency()
-    if root.is_zero or not frequency > 0:
-        return ""
-    if root.on_imaginary_axis:
-        return "0"
-    if root.is_real:
-        return "1" if root.re < 0 else "-1"
-    with precision(max(_FREQUENCY_BITS, root.working_bits())):
-        ratio = -root.re / frequency
-    return decimals(ratio, arb(0), digits).re
-
-
-def _certified(decimal: str, *, is_exact: bool) -> str:
+def _cell(column: RootColumn, entry: PrintedRoot, decimal: str) -> str:
     """Return a decimal as a cell; a zero that is not exact is nearly zero."""
-    is_near_zero = decimal.partition("e")[0] == "0" and not is_exact
-    return r"{$\approx 0$}" if is_near_zero else decimal
+    if not decimal:
+        return "{--}"
+    if decimal.partition("e")[0] == "0" and not column.is_exact(entry.root):
+        return r"{$\approx 0$}"
+    return rf"\pm {decimal}" if entry.is_pair and column.is_mirrored else decimal

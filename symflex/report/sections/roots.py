@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 from symflex.analysis.explanation import explanation_paragraphs
 from symflex.errors import SymflexError
 from symflex.print.latex import ratio_latex, root_table
-from symflex.print.latex.table import KINDS, damping_text, frequency_text, one_of_each_pair, roots_of
+from symflex.print.roots import KINDS, PAGE_COLUMNS, one_of_each_pair, roots_of
 from symflex.print.text import region_text
 from symflex.report.document import Badge, Mathematics, Notice, Section, Table, columns, exponents, text
 from symflex.report.part import ChapterPart, code_of
@@ -17,21 +17,14 @@ from symflex.report.study import attempt, said
 
 if TYPE_CHECKING:
     from symflex.analysis.explanation import ZeroExplanation
-    from symflex.print.latex.table import PrintedRoot
+    from symflex.print.roots import PrintedRoot
     from symflex.report.document import Block, Cell, Tone
     from symflex.report.study import Study
     from symflex.roots import PoleZeroMap
 
 DIGITS: Final = 10
 LONGEST: Final = 80
-HEADS: Final = columns(
-    ("Re s [rad/s]", "number"),
-    ("Im s [rad/s]", "number"),
-    ("radius", "number"),
-    ("frequency [Hz]", "number"),
-    ("damping ratio", "number"),
-    ("times", "number"),
-)
+HEADS: Final = columns(*((column.head, "number") for column in PAGE_COLUMNS))
 
 
 def root_section(study: Study) -> ChapterPart:
@@ -118,14 +111,6 @@ def _told(told: ZeroExplanation) -> list[tuple[str, ...]]:
 
 
 def _row(entry: PrintedRoot) -> tuple[Cell, ...]:
-    root = entry.root
-    printed = root.decimal(DIGITS)
-    cells = (
-        exponents(printed.re),
-        ("±" if entry.is_pair else "") + exponents(printed.im),
-        exponents(printed.radius),
-        exponents(frequency_text(root, DIGITS)),
-        exponents(damping_text(root, DIGITS)),
-        str(root.multiplicity),
-    )
-    return tuple((cell,) for cell in cells)
+    signs = ["±" if entry.is_pair and column.is_mirrored else "" for column in PAGE_COLUMNS]
+    cells = map(exponents, entry.cells(PAGE_COLUMNS, DIGITS))
+    return tuple((sign + cell,) for sign, cell in zip(signs, cells, strict=True))
