@@ -13,11 +13,8 @@ from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 from functools import cache
-from importlib.resources import files
+from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple, NoReturn
-
-from lark import Lark, Token, Transformer, v_args
-from lark.exceptions import UnexpectedCharacters, UnexpectedToken
 
 from symflex.errors import Diagnostic, SpecError, Text
 from symflex.expressions.limits import (
@@ -53,6 +50,7 @@ from symflex.expressions.nodes import (
 from symflex.expressions.slips import FUNCTIONS, Slip, character_slip, end_slip, token_slip
 from symflex.expressions.walk import measured
 from symflex.quantities import parse_quantity
+from symflex.quantities.lalr import END, Grammar, Reading, Token, UnexpectedError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -151,8 +149,7 @@ class _Piece(NamedTuple):
     reading: _Reading
 
 
-@v_args(inline=True)
-class _TreeBuilder(Transformer[Token, _Piece]):
+class _TreeBuilder:
     """The parser's callbacks, one for each rule of the grammar; they hold no state."""
 
     def equation(self, left: _Piece, _equal: Token, right: _Piece) -> _Piece:
@@ -185,7 +182,7 @@ class _TreeBuilder(Transformer[Token, _Piece]):
         return _product(pieces)
 
     def signed(self, sign: Token, operand: _Piece) -> _Piece:
-        start, _ = _extent(sign)
+        start = sign.start
         if sign == "+":
             return operand._replace(start=start)
         reading = operand.reading
@@ -204,7 +201,7 @@ class _TreeBuilder(Transformer[Token, _Piece]):
 
     def number(self, token: Token) -> _Piece:
         reading = _reading(token)
-        start, end = _extent(token)
+        start, end = token.start, token.end
         # Decimal is exact here and, unlike int, reads numbers of any length.
         value = Fraction(Decimal(str(token)))
         node = Number(value, span=reading.text.at(start, end))
@@ -212,7 +209,7 @@ class _TreeBuilder(Transformer[Token, _Piece]):
 
     def measured(self, token: Token, unit: Token) -> _Piece:
         reading = _reading(token)
-        start, end = _extent(token)[0], _extent(unit)[1]
+        start, end = token.start, unit.end
         span = reading.text.at(start, end)
         quantity = parse_quantity(Text(f"{token} {unit}", span))
         if quantity.pi_power or quantity.cycles:
@@ -222,18 +219,18 @@ class _TreeBuilder(Transformer[Token, _Piece]):
 
     def name(self, token: Token) -> _Piece:
         reading = _reading(token)
-        start, end = _extent(token)
+        start, end = token.start, token.end
         return _Piece(Name(str(token), span=reading.text.at(start, end)), start, end, SIZE_OF_NAME, reading)
 
     def attribute(self, owner: Token, _dot: Token, name: Token) -> _Piece:
         reading = _reading(owner)
-        start, end = _extent(owner)[0], _extent(name)[1]
+        start, end = owner.start, name.end
         node = Attribute(str(owner), str(name), span=reading.text.at(start, end))
         return _Piece(node, start, end, SIZE_OF_NAME, reading)
 
     def derivative(self, name: Token, primes: Token) -> _Piece:
         reading = _reading(name)
-        start, end = _extent(name)[0], _extent(primes)[1]
+        start, end = name.start, primes.end
         node = Derivative(str(name), len(primes), span=reading.text.at(start, end))
         return _Piece(node, start, end, SIZE_OF_NAME, reading)
 
@@ -261,7 +258,7 @@ class _TreeBuilder(Transformer[Token, _Piece]):
         return _called(owner, len(primes), argument, right, name)
 
     def group(self, left: Token, inner: _Piece, right: Token) -> _Piece:
-        return inner._replace(start=_extent(left)[0], end=_extent(right)[1])
+        return inner._replace(start=left.start, end=right.end)
 
 
 def _flat(pieces: Sequence[_Piece], kind: type[Expression]) -> tuple[tuple[Expression, ...], list[Size]]:
@@ -280,7 +277,7 @@ def _flat(pieces: Sequence[_Piece], kind: type[Expression]) -> tuple[tuple[Expre
 
 def _called(name: Token, order: int, argument: _Piece, right: Token, quantity: Token | None = None) -> _Piece:
     reading = argument.reading
-    start, end = _extent(name)[0], _extent(right)[1]
+    start, end = name.start, right.end
     whole = str(name) if quantity is None else f"{name}.{quantity}"
     if whole in FUNCTIONS and (lengths := measured(argument.node)):
         message = f"a number with a unit in the argument of {whole}"
@@ -325,36 +322,29 @@ def _reading(token: Token) -> _Reading:
     return reading
 
 
-def _extent(token: Token) -> tuple[int, int]:
-    assert token.start_pos is not None
-    return token.start_pos, token.start_pos + len(token)
-
-
 @cache
-def _grammar() -> Lark:
-    grammar = files("symflex.expressions").joinpath("grammar.lark").read_text(encoding="utf-8")
-    return Lark(grammar, parser="lalr", lexer="basic", start=["sum", "equation"], transformer=_TreeBuilder())
+def _grammar() -> Grammar:
+    return Grammar(Path(__file__).with_name("grammar.json"), _TreeBuilder(), is_contextual=False)
 
 
 def _read(text: Text, limits: Limits, start: str) -> _Piece:
     reading = _Reading(text, limits)
     _check_extent(reading, start)
-    parser = _grammar().parse_interactive(text.value, start=start)
+    words = Reading(_grammar(), text.value, start)
     recent: deque[Token] = deque(maxlen=4)
     try:
-        for token in parser.iter_parse():
+        for token in words.words():
             _check_token(reading, token)
             recent.append(token)
             token.value = reading
-            if len(parser.parser_state.value_stack) > STACK_PER_LEVEL * (limits.depth + limits.parentheses):
-                _refuse_depth(reading, *_extent(token))
-        piece = parser.feed_token(Token.new_borrow_pos("$END", "", recent[-1]))
-    except UnexpectedCharacters:
-        end = _extent(recent[-1])[1] if recent else 0
-        slip = character_slip(text.value, len(text.value) - len(text.value[end:].lstrip(BLANKS)))
-    except UnexpectedToken as error:
+            if len(words.values) > STACK_PER_LEVEL * (limits.depth + limits.parentheses):
+                _refuse_depth(reading, token.start, token.end)
+        piece = words.end()
+    except UnexpectedError as error:
         is_equation = start == "equation"
-        if error.token.type == "$END":
+        if error.token is None:
+            slip = character_slip(text.value, error.start)
+        elif error.token.type == END:
             slip = end_slip(text.value, recent[-1], error.expected, is_equation=is_equation)
         else:
             slip = token_slip(text.value, tuple(recent), error.expected, is_equation=is_equation)
@@ -387,7 +377,7 @@ def _check_extent(reading: _Reading, start: str) -> None:
 
 def _check_token(reading: _Reading, token: Token) -> None:
     limits = reading.limits
-    start, end = _extent(token)
+    start, end = token.start, token.end
     if token.type == "NAME" and len(token) > NAME_LENGTH:
         message = f"this name has {len(token)} characters; at most {NAME_LENGTH} are allowed"
         reading.refuse(start, end, "SF112", message)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
-    from lark import Token
+    from symflex.quantities.lalr import Token
 
 FUNCTIONS = ("sqrt", "exp", "log", "sin", "cos", "tan", "sinh", "cosh", "tanh")
 """The functions of the language, each of one argument."""
@@ -89,8 +89,8 @@ def _character_hint(character: str, value: str, position: int) -> str | None:
 def end_slip(value: str, last: Token, expected: Collection[str], *, is_equation: bool) -> Slip:
     """Explain a text that ends too early; ``last`` is its last word."""
     opening = _open_parenthesis(value, len(value))
-    start = last.start_pos or 0
-    end = start + len(last)
+    start = last.start
+    end = last.end
     if "NUMBER" in expected or "NAME" in expected:
         what = "equation" if is_equation else "expression"
         message = f"the {what} ends after {_quoted(last)}; expected {_wanted(expected, opening, '')}"
@@ -103,7 +103,7 @@ def end_slip(value: str, last: Token, expected: Collection[str], *, is_equation:
 def token_slip(value: str, recent: Sequence[Token], expected: Collection[str], *, is_equation: bool) -> Slip:
     """Explain a word that cannot stand where it stands; it is the last of ``recent``."""
     token = recent[-1]
-    start = token.start_pos or 0
+    start = token.start
     opening = _open_parenthesis(value, start)
     wants_operand = "NUMBER" in expected or "NAME" in expected
     if token.type == "EQUAL" and opening is not None and not wants_operand and is_equation:
@@ -135,7 +135,7 @@ def _token_hint(
 def _equal_hint(value: str, token: Token, *, is_equation: bool) -> str:
     if not is_equation:
         return "an expression has no '='; only the equations and conditions of a field do"
-    start = token.start_pos or 0
+    start = token.start
     if not value[:start].strip():
         return "something must stand to the left of '='"
     return "write a single '='" if value[:start].endswith("=") else "an equation has one '='"
@@ -157,7 +157,7 @@ def _neighbour_hint(value: str, recent: Sequence[Token]) -> str | None:
         return "a length with its unit stands alone, or in a sum"
     left, right = _short(_operand(recent[:-1], types)), _short(token)
     cure = f"write {_quoted(f'{left}*{right}')}" if left and right else "write '*' to multiply"
-    spaced = (before.start_pos or 0) + len(before) < (token.start_pos or 0)
+    spaced = before.end < token.start
     if before.type == "NUMBER" and token.type == "NAME" and spaced:
         return f"{cure} to multiply; a number with a unit belongs in [parameters]"
     return cure

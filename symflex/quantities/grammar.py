@@ -13,10 +13,10 @@ import functools
 import re
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Final, TypeVar, cast
+from pathlib import Path
+from typing import Final, TypeVar
 
-from lark import Lark, Token, Transformer, UnexpectedInput, UnexpectedToken, v_args
-
+from symflex.quantities.lalr import END, Grammar, Reading, Token, UnexpectedError
 from symflex.quantities.units import Unit, unit_hint, unit_named
 
 MAXIMUM_CHARACTERS: Final = 200
@@ -36,7 +36,7 @@ _SYMBOL: Final = rf"(?:\u00b0[A-Za-z]*|%|(?![{_SUPERSCRIPTS}])[^\W\d_](?:(?![{_S
 # Plain, no-break, thin and narrow no-break spaces: what a typeset number carries.
 SPACES: Final = " \t\u00a0\u2009\u202f"
 
-_GRAMMAR: Final = rf"""
+GRAMMAR: Final = rf"""
     quantity: sum                          -> bare_quantity
             | sum chain                    -> quantity
     unit:     chain                        -> lone_unit
@@ -165,9 +165,11 @@ def evaluate(value: str, kind: str) -> tuple[Constant, PlacedUnit]:
         raise RejectedError("SF202", f"the {kind} is empty", 0, len(value), hint)
     _check_nesting(value)
     try:
-        # Lark types a parse as a tree; with an embedded transformer it is the start rule's value.
-        result: object = _parser().parse(value, start=kind)
-    except UnexpectedInput as unexpected:
+        reading = Reading(_grammar(), value, kind)
+        for _ in reading.words():
+            pass
+        result: object = reading.end()
+    except UnexpectedError as unexpected:
         raise _syntax_rejection(unexpected, value, kind) from None
     assert isinstance(result, tuple)
     constant, placed = result
@@ -192,12 +194,11 @@ def _check_nesting(value: str) -> None:
             raise RejectedError("SF103", message, place, place + 1, "write the value of what is inside")
 
 
-def _syntax_rejection(unexpected: UnexpectedInput, value: str, kind: str) -> RejectedError:
-    # Lark declares the attribute without a type.
-    start = cast("int | None", unexpected.pos_in_stream)
-    if start is None or (isinstance(unexpected, UnexpectedToken) and unexpected.token.type == "$END"):
+def _syntax_rejection(unexpected: UnexpectedError, value: str, kind: str) -> RejectedError:
+    start, token = unexpected.start, unexpected.token
+    if token is not None and token.type == END:
         return RejectedError("SF202", f"the {kind} '{value}' ends too early", len(value), len(value))
-    found = str(unexpected.token) if isinstance(unexpected, UnexpectedToken) else value[start]
+    found = value[start] if token is None else str(token)
     hint = _syntax_hint(value[:start].strip(SPACES), value[start:].strip(SPACES), found)
     message = f"unexpected '{found}' in the {kind} '{value}'"
     return RejectedError("SF202", message, start, start + len(found), hint)
@@ -216,9 +217,8 @@ def _syntax_hint(before: str, after: str, found: str) -> str | None:
 
 
 @functools.cache
-def _parser() -> Lark:
-    # The transformer runs inside the parser: no tree, and no recursion that a nested text could deepen.
-    return Lark(_GRAMMAR, parser="lalr", start=["quantity", "unit"], transformer=_Evaluator())
+def _grammar() -> Grammar:
+    return Grammar(Path(__file__).with_name("grammar.json"), _Evaluator(), is_contextual=True)
 
 
 def _checked(constant: Constant) -> Constant:
@@ -245,8 +245,7 @@ def _checked_unit(placed: PlacedUnit) -> PlacedUnit:
     return placed
 
 
-@v_args(inline=True)
-class _Evaluator(Transformer[Token, _Result]):
+class _Evaluator:
     """The value of each grammar rule, computed while parsing."""
 
     def bare_quantity(self, constant: Constant) -> _Result:
@@ -263,31 +262,31 @@ class _Evaluator(Transformer[Token, _Result]):
 
     def number_one(self, number: Token) -> _Result:
         _require_one(number)
-        return _NO_CONSTANT, PlacedUnit(_NO_UNIT, _start(number), _end(number))
+        return _NO_CONSTANT, PlacedUnit(_NO_UNIT, number.start, number.end)
 
     def number(self, number: Token) -> Constant:
         mantissa, _, exponent = number.lower().partition("e")
         if sum(character != "." for character in mantissa) > MAXIMUM_DIGITS:
             message = f"a number of more than {MAXIMUM_DIGITS} digits"
-            raise RejectedError("SF103", message, _start(number), _end(number), "leave out the last digits")
+            raise RejectedError("SF103", message, number.start, number.end, "leave out the last digits")
         if exponent and abs(int(exponent)) > MAXIMUM_DECIMAL_EXPONENT:
             message = f"a decimal exponent beyond {MAXIMUM_DECIMAL_EXPONENT}"
-            raise RejectedError("SF103", message, _start(number), _end(number), NEARER)
-        return Constant(Fraction(str(number)), 0, _start(number), _end(number))
+            raise RejectedError("SF103", message, number.start, number.end, NEARER)
+        return Constant(Fraction(str(number)), 0, number.start, number.end)
 
     def pi(self, token: Token) -> Constant:
-        return Constant(Fraction(1), 1, _start(token), _end(token))
+        return Constant(Fraction(1), 1, token.start, token.end)
 
     def parenthesis(self, left: Token, inner: _Placed, right: Token) -> _Placed:
         if isinstance(inner, Constant):
-            return Constant(inner.magnitude, inner.pi_power, _start(left), _end(right))
-        return PlacedUnit(inner.unit, _start(left), _end(right))
+            return Constant(inner.magnitude, inner.pi_power, left.start, right.end)
+        return PlacedUnit(inner.unit, left.start, right.end)
 
     def negate(self, sign: Token, operand: Constant) -> Constant:
-        return Constant(-operand.magnitude, operand.pi_power, _start(sign), operand.end)
+        return Constant(-operand.magnitude, operand.pi_power, sign.start, operand.end)
 
     def confirm(self, sign: Token, operand: Constant) -> Constant:
-        return Constant(operand.magnitude, operand.pi_power, _start(sign), operand.end)
+        return Constant(operand.magnitude, operand.pi_power, sign.start, operand.end)
 
     def add(self, left: Constant, right: Constant) -> Constant:
         if left.magnitude and right.magnitude and left.pi_power != right.pi_power:
@@ -325,8 +324,8 @@ class _Evaluator(Transformer[Token, _Result]):
         unit = unit_named(str(symbol))
         if unit is None:
             message = f"unknown unit '{symbol}'"
-            raise RejectedError("SF201", message, _start(symbol), _end(symbol), unit_hint(str(symbol)))
-        return PlacedUnit(unit, _start(symbol), _end(symbol))
+            raise RejectedError("SF201", message, symbol.start, symbol.end, unit_hint(str(symbol)))
+        return PlacedUnit(unit, symbol.start, symbol.end)
 
     def raise_unit(self, base: PlacedUnit, exponent: _Exponent) -> PlacedUnit:
         above, degree = exponent.value.numerator, exponent.value.denominator
@@ -343,11 +342,11 @@ class _Evaluator(Transformer[Token, _Result]):
 
     def raise_superscript(self, base: PlacedUnit, superscript: Token) -> PlacedUnit:
         digits = superscript.translate(_PLAIN_DIGITS)
-        return self.raise_unit(base, _Exponent(Fraction(digits), _start(superscript), _end(superscript)))
+        return self.raise_unit(base, _Exponent(Fraction(digits), superscript.start, superscript.end))
 
     def integer(self, *tokens: Token) -> _Exponent:
         number = tokens[-1]
-        start, end = _start(tokens[0]), _end(number)
+        start, end = tokens[0].start, number.end
         if not _INTEGER.fullmatch(number):
             hint = "a root is written 'm^(1/2)'"
             raise RejectedError("SF202", "a unit's power is an integer", start, end, hint)
@@ -357,13 +356,13 @@ class _Evaluator(Transformer[Token, _Result]):
         return exponent
 
     def enclosed_exponent(self, left: Token, exponent: _Exponent, right: Token) -> _Exponent:
-        return _Exponent(exponent.value, _start(left), _end(right))
+        return _Exponent(exponent.value, left.start, right.end)
 
     def broken_exponent(self, left: Token, above: _Exponent, below: Token, right: Token) -> _Exponent:
         divisor = self.integer(below).value
         if not divisor:
-            raise RejectedError("SF202", "division by zero", above.start, _end(below))
-        return _Exponent(above.value / divisor, _start(left), _end(right))
+            raise RejectedError("SF202", "division by zero", above.start, below.end)
+        return _Exponent(above.value / divisor, left.start, right.end)
 
     def first_factor(self, placed: PlacedUnit) -> PlacedUnit:
         return placed
@@ -377,7 +376,7 @@ class _Evaluator(Transformer[Token, _Result]):
 
     def reciprocal(self, number: Token, right: PlacedUnit) -> PlacedUnit:
         _require_one(number)
-        return self.divide_units(PlacedUnit(_NO_UNIT, _start(number), _end(number)), right)
+        return self.divide_units(PlacedUnit(_NO_UNIT, number.start, number.end), right)
 
     def multiply_units(self, left: PlacedUnit, right: PlacedUnit) -> PlacedUnit:
         return _checked_unit(PlacedUnit(left.unit * right.unit, left.start, right.end))
@@ -396,13 +395,4 @@ _PLAIN_DIGITS: Final = str.maketrans(f"{_SUPERSCRIPTS}\u207a\u207b", "0123456789
 def _require_one(number: Token) -> None:
     if number != "1":
         message = f"the number '{number}' in a unit"
-        raise RejectedError("SF202", message, _start(number), _end(number), _ONE_NUMBER)
-
-
-def _start(token: Token) -> int:
-    assert token.start_pos is not None
-    return token.start_pos
-
-
-def _end(token: Token) -> int:
-    return _start(token) + len(token)
+        raise RejectedError("SF202", message, number.start, number.end, _ONE_NUMBER)

@@ -20,7 +20,7 @@ LIBRARIES = {
     "tree_sitter",
     "tree_sitter_toml",
 }
-READING = {"click", "flint", "lark", "tree_sitter", "tree_sitter_toml"}
+READING = {"click", "flint", "tree_sitter", "tree_sitter_toml"}
 LUMPED = "derivations/eppinger1988/rigid_body.toml"
 BEAM = "derivations/classics/pinned_pinned.toml"
 ALLOWED = [
