@@ -24,13 +24,6 @@ def to_mpmath(ball: arb) -> mpmath.mpf:
 
 
 def to_complex_mpmath(ball: acb) -> mpmath.mpc:
-    """Return the midpoint of a complex ball, exactly.
-
-    Examples
-    --------
-    >>> from flint import acb
-    >>> to_complex_mpmath(acb(0.5, -2))
-    mpc(real='0.5', imag='-2.0')
-    """
+    """Return the midpoint of a complex ball, exactly."""
     # mpmath.mpc(re, im) would round to the working precision.
     return mpmath.mp.make_mpc((to_mpmath(ball.real)._mpf_, to_mpmath(ball.imag)._mpf_))

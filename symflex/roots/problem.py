@@ -26,14 +26,7 @@ ZERO_TEST_BITS = (64, 256, 1024, 4096)
 
 @dataclass(frozen=True, slots=True)
 class RealConstant:
-    """A real number that exact steps treat as an independent symbol.
-
-    Examples
-    --------
-    >>> from flint import arb
-    >>> RealConstant("pi", arb.pi).name
-    'pi'
-    """
+    """A real number that exact steps treat as an independent symbol."""
 
     name: str  # such as ``pi`` or ``sqrt(2)``; equal names are the same constant
     evaluate: Callable[[], arb]  # returns the constant as a real ball at the current ``flint.ctx.prec``
@@ -135,13 +128,7 @@ def _evaluate(coefficient: fmpz_mpoly, values: tuple[arb, ...]) -> arb:
 
 @dataclass(frozen=True, slots=True)
 class RootProblem:
-    """The roots of a product of powers of polynomials.
-
-    Examples
-    --------
-    >>> RootProblem(((PolynomialInS.from_integers([1, 0, 1]), 3),)).degree
-    6
-    """
+    """The roots of a product of powers of polynomials."""
 
     # Polynomials with positive exponents; they need not be coprime nor square-free.
     factors: tuple[tuple[PolynomialInS, int], ...]

@@ -82,14 +82,7 @@ class Band:
 
 @dataclass(frozen=True, slots=True)
 class Rectangle:
-    """The closed rectangle re_low <= re s <= re_high, im_low <= im s <= im_high [rad/s].
-
-    Examples
-    --------
-    >>> from fractions import Fraction
-    >>> Rectangle(*(Fraction(x) for x in (-1, 0, -5, 5))).to_json_dict()
-    {'kind': 'rectangle', 're': [-1.0, 0.0], 'im': [-5.0, 5.0]}
-    """
+    """The closed rectangle re_low <= re s <= re_high, im_low <= im s <= im_high [rad/s]."""
 
     re_low: Fraction
     re_high: Fraction
@@ -131,11 +124,6 @@ class Modes:
 
     A conjugate pair or a real root is one mode; a root of multiplicity m counts as m modes and is kept whole.
     Roots of equal frequency that straddle the limit, as a pair +a and -a may, are all on the boundary.
-
-    Examples
-    --------
-    >>> Modes(5).to_json_dict()
-    {'kind': 'modes', 'count': 5}
     """
 
     count: int
@@ -156,13 +144,7 @@ class Modes:
 
 @dataclass(frozen=True, slots=True)
 class Mode:
-    """The mode of one number, from 1, in order of natural frequency; see :class:`Modes` for what is one mode.
-
-    Examples
-    --------
-    >>> Mode(1000).to_json_dict()
-    {'kind': 'mode', 'number': 1000}
-    """
+    """The mode of one number, from 1, in order of natural frequency; :class:`Modes` says what is one mode."""
 
     number: int
 

@@ -176,13 +176,7 @@ def mirror_images(roots: Sequence[Root], *, even: bool) -> list[Root]:
 
 
 def exact_fraction(number: arb) -> Fraction:
-    """Return the midpoint of a ball as the rational number it is.
-
-    Examples
-    --------
-    >>> exact_fraction(arb(0.75))
-    Fraction(3, 4)
-    """
+    """Return the midpoint of a ball as the rational number it is."""
     mantissa, exponent = number.mid().man_exp()
     return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
 

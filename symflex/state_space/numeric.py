@@ -176,22 +176,6 @@ def rounded(system: StateSpace, values: Mapping[str, ExactValue] | None = None) 
 
     SF229 for a parameter without value, SF231 when these values divide by zero, SF233 when an entry is too
     large or too small for double precision, SF401 when it cannot be told whether an entry is zero.
-
-    Examples
-    --------
-    >>> from symflex import pipeline
-    >>> from symflex.model import with_numbers
-    >>> from symflex.state_space.realise import realise
-    >>> model = pipeline.loads('''
-    ... symflex = 1
-    ... parameters = {m = "3 kg", b = "1 N*s/m"}
-    ... elements.body = {type = "mass", at = "x", m = "m"}
-    ... elements.loss = {type = "damper", between = ["x", "ground"], b = "b"}
-    ... inputs.F = {force = "x"}
-    ... outputs.X = "x"
-    ... ''')
-    >>> rounded(realise(with_numbers(model), [("X", "F")])).a.tolist()
-    [[0.0, 1.0], [0.0, -0.3333333333333333]]
     """
     rounding = rounding_of(system, values)
     arrays = []

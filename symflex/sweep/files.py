@@ -42,13 +42,7 @@ ARRAYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
 
 
 def archive(arrays: Mapping[str, Array]) -> bytes:
-    """Return arrays as the content of an .npz file without dates.
-
-    Examples
-    --------
-    >>> archive({"a": np.arange(3)}) == archive({"a": np.arange(3)})
-    True
-    """
+    """Return arrays as the content of an .npz file without dates."""
     buffer = BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_STORED) as file:
         for name, values in arrays.items():
@@ -187,14 +181,7 @@ def sweep_bytes(sweep: Sweep, suffix: str) -> bytes:
 
 
 def read_sweep(path: str | Path) -> Sweep:
-    """Read a sweep that was written as netCDF or .npz; SF901 no such file, SF915 it holds no sweep.
-
-    Examples
-    --------
-    >>> read_sweep("no.nc")
-    Traceback (most recent call last):
-    symflex.errors.exceptions.UsageError: error[SF901]: cannot read 'no.nc': ...
-    """
+    """Read a sweep that was written as netCDF or .npz; SF901 no such file, SF915 it holds no sweep."""
     file = Path(path)
     try:
         data = read_bytes(os.fspath(file), SIZE_LIMIT)

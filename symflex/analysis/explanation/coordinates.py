@@ -60,19 +60,6 @@ def acting(model: Model, source: Input) -> Coordinates:
     """Return where a force, torque or current acts; nothing for other inputs.
 
     A free signal acts where it is all that drives a source.
-
-    Examples
-    --------
-    >>> from symflex import pipeline
-    >>> model = pipeline.loads('''
-    ... symflex = 1
-    ... elements.body = { type = "mass", at = "x", m = 1 }
-    ... elements.coil = { type = "force_source", at = "x", f = "3*u" }
-    ... inputs.u = {}
-    ... outputs.y = "x"
-    ... ''')
-    >>> [(str(v), sign) for v, sign in acting(model, model.inputs[0])]
-    [('x', 1)]
     """
     kind = INPUT_KINDS.get(source.kind)
     if kind is not None and not kind.is_imposed:

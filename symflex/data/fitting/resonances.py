@@ -43,14 +43,7 @@ class Free:
 
 @dataclass(frozen=True, eq=False)
 class Resonances:
-    """Parameters of n resonances in m responses that share their poles.
-
-    Examples
-    --------
-    >>> one = Resonances.of([(10.0, 0.05, 11.0, 0.05)])
-    >>> abs(one.factor(0, np.array([1e-6])))
-    array([1.])
-    """
+    """Parameters of n resonances in m responses that share their poles."""
 
     # omega_p and zeta_p: shape (n,): Natural frequencies [rad/s], ascending, and damping ratios of the poles.
     omega_p: Real

@@ -254,13 +254,7 @@ def averages_of(text: str, file: str, span: Span | None = None) -> float:
 
 
 def unit_of(text: str, file: str, span: Span | None = None) -> str:
-    """Return the unit of the values, checked; empty when there is none, SF602 when it is not a unit.
-
-    Examples
-    --------
-    >>> unit_of(" m/N", "a.csv")
-    'm/N'
-    """
+    """Return the unit of the values, checked; empty when there is none, SF602 when it is not a unit."""
     unit = text.strip()
     if not unit:
         return ""

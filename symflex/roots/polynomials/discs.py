@@ -171,11 +171,6 @@ def real_symmetric_roots(polynomial: acb_poly) -> tuple[acb, ...] | None:
     """Return the roots of a real polynomial in the closed upper half plane, as midpoints.
 
     None when the current precision does not separate the roots.
-
-    Examples
-    --------
-    >>> sorted(f"{float(r.imag):.12f}" for r in real_symmetric_roots(acb_poly([-2, 1, -2, 1])))
-    ['0.000000000000', '1.000000000000']
     """
     try:
         roots = polynomial.roots()
@@ -198,11 +193,6 @@ def overlapping_pairs(discs: Sequence[Disc]) -> list[tuple[int, int]]:
 
     Double precision clears the pairs that are far apart, with a margin that covers its rounding; balls
     decide the others at the current precision.
-
-    Examples
-    --------
-    >>> overlapping_pairs([Disc(acb(0), arb(1)), Disc(acb(3), arb(1)), Disc(acb(4), arb(0.5))])
-    [(1, 2)]
     """
     x = np.array([float(d.centre.real.mid()) for d in discs])
     y = np.array([float(d.centre.imag.mid()) for d in discs])

@@ -109,14 +109,7 @@ def isolations(
 
 
 def first_bits(polynomial: PolynomialInS, digits: int) -> int:
-    """Return the precision to begin with, for so many digits.
-
-    Examples
-    --------
-    >>> from symflex.roots.problem import PolynomialInS
-    >>> first_bits(PolynomialInS.from_integers([-2, 0, 1]), 10)
-    118
-    """
+    """Return the precision to begin with, for so many digits."""
     return bits_for_digits(digits) + 2 * polynomial.degree + EXTRA_BITS
 
 
@@ -124,12 +117,6 @@ def goal_of(digits: int, *, in_square: bool) -> Goal:
     """Return the largest radius about z that leaves each component of s the digits wanted.
 
     For s = sqrt(z) an error e of z moves s by e / (2 abs(s)), and abs(im z) = 2 abs(re s) abs(im s).
-
-    Examples
-    --------
-    >>> from flint import acb
-    >>> goal_of(1, in_square=False)(acb(4, 5))
-    [0.00400000000000000 +/- ...]
     """
 
     def goal(z: acb) -> arb:
@@ -292,15 +279,7 @@ def _holds_one(bend: arb_poly, centre: acb, slope: acb, step: acb, radius: arb) 
 
 
 def differs_from_zero(polynomial: PolynomialInS, box: acb, bits: int) -> bool:
-    """Tell whether a polynomial is proved to have no root in a box.
-
-    Examples
-    --------
-    >>> from symflex.roots.problem import PolynomialInS
-    >>> polynomial = PolynomialInS.from_integers([2, -3, 1])
-    >>> [differs_from_zero(polynomial, acb(arb(x, 0.01)), 64) for x in (1.5, 1.005)]
-    [True, False]
-    """
+    """Tell whether a polynomial is proved to have no root in a box."""
     with precision(bits):
         value = acb_poly(polynomial.enclosure())
         centre, radius = box.mid(), (box - box.mid()).abs_upper()
