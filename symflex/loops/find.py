@@ -194,7 +194,8 @@ class _GainSearch:
         boundaries, intervals = [], []
         start: arb | None = ends[0]
         for i, (gain, group) in enumerate(zip(gains, groups, strict=True)):
-            if counts[i] == counts[i + 1] and not _is_touching(counts[i], group):
+            # A stable loop is not stable at one gain alone where poles touch the axis and turn back.
+            if counts[i] == counts[i + 1] and not (counts[i].is_stable and group):
                 continue
             intervals.append(GainInterval(start, gain, counts[i]))
             boundaries.append(Boundary(gain, tuple(group)))
@@ -210,11 +211,6 @@ class _GainSearch:
         if self.distributed is not None:
             total = total + self.distributed.count(gain)
         return total
-
-
-def _is_touching(count: PoleCount, group: Sequence[Crossing]) -> bool:
-    """Tell whether a stable loop is not stable at one gain alone: poles touch the axis and turn back."""
-    return count.is_stable and bool(group)
 
 
 def _ball(value: Fraction) -> arb:

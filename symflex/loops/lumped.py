@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 W, K = 0, 1
 """Positions of omega squared and of the gain in the ring of E and O."""
 SPARE_DIGITS = 10
+COUNT_DIGITS = 15
+"""Of squares whose sign alone matters."""
 DOUBLINGS = 8
 
 
@@ -81,7 +83,7 @@ class LumpedFactor:
         if degree_in(whole[0], K) == 0 and degree_in(whole[1], K) == 0:
             return []
         if degree_in(whole[0], W) or len(whole[1]):
-            for gain in self._gains([_lowest(self.ring, whole[0])], digits, budget):
+            for gain in self._gains(self.ring.coefficients(whole[0], W)[:1], digits, budget):
                 found.append(Crossing(gain, (arb(0),)))
         for gain in self._gains([self._leading(whole)], digits, budget):
             found.append(Crossing(gain, (), is_infinite=True))
@@ -113,10 +115,7 @@ class LumpedFactor:
 
     def _on_axis(self, digits: int, budget: Budget) -> list[Crossing]:
         """Return where E and O vanish together at a positive w."""
-        even, odd = (
-            [_coefficient(self.ring, f, K, i) for i in range(degree_in(f, K) + 1)]
-            for f in (self.even, self.odd)
-        )
+        even, odd = (self.ring.coefficients(f, K) for f in (self.even, self.odd))
         if not len(self.odd) or len(even) == len(odd) == 1:
             return []
         if max(len(even), len(odd)) <= 2:  # noqa: PLR2004 (affine)
@@ -172,7 +171,7 @@ class LumpedFactor:
         even, odd = parts
         high, higher = degree_in(even, W), degree_in(odd, W)
         chosen, power = (odd, higher) if len(odd) and 2 * higher + 1 > 2 * high else (even, high)
-        return _coefficient(self.ring, chosen, W, power)
+        return self.ring.coefficients(chosen, W)[power]
 
     def _gains(self, polynomials: Sequence[fmpz_mpoly], digits: int, budget: Budget) -> list[arb]:
         return [root.re for f in polynomials for root in self._real_roots(f, K, digits, budget)]
@@ -181,16 +180,8 @@ class LumpedFactor:
         """Return the real roots of a polynomial in one of w and K; each once."""
         if degree_in(polynomial, variable) == 0:
             return []
-        problem = RootProblem(((self._in_one(polynomial, variable), 1),))
-        return [root for root in find_polynomial_roots(problem, digits, budget=budget) if _is_real(root)]
-
-    def _in_one(self, polynomial: fmpz_mpoly, variable: int) -> PolynomialInS:
-        ring = Ring(("z", *self.ring.names[2:]))
-        parts: list[dict[tuple[int, ...], int]] = [{} for _ in range(degree_in(polynomial, variable) + 1)]
-        for monomial, number in polynomial.terms():
-            parts[int(monomial[variable])][tuple(int(e) for e in monomial[2:])] = int(number)
-        small = Ring(ring.names[1:])
-        return PolynomialInS(tuple(small.context.from_dict(p) for p in parts), small.context, self.constants)
+        problem = RootProblem(((self._polynomial(self.ring.coefficients(polynomial, variable)), 1),))
+        return [root for root in find_polynomial_roots(problem, digits, budget=budget) if root.is_real]
 
     def count(self, gain: Fraction, budget: Budget) -> PoleCount:
         """Return how many poles lie right of the axis and on it for a gain that is not a crossing.
@@ -202,15 +193,15 @@ class LumpedFactor:
         even, odd, common = (_at(self.ring, f, gain, degree) for f in (self.even, self.odd, self.common))
         coefficients: list[fmpz_mpoly] = []
         for f, is_odd in ((even, 0), (odd, 1)):
-            for i in range(degree_in(f, W) + 1 if len(f) else 0):
+            for i, coefficient in enumerate(self.ring.coefficients(f, W) if len(f) else ()):
                 place = 2 * i + is_odd
                 coefficients += [self.ring.constant(0)] * (place + 1 - len(coefficients))
-                coefficients[place] = _coefficient(self.ring, f, W, i) * (-1) ** i
+                coefficients[place] = coefficient * (-1) ** i
         polynomial = self._polynomial(coefficients)
         if polynomial.degree:
             right += self._right_of_axis(polynomial, budget)
         if degree_in(common, W):
-            squares = self._real_roots_at(common, budget)
+            squares = self._real_roots(common, W, COUNT_DIGITS, budget)
             on_axis = sum(root.multiplicity for root in squares if root.re > 0)
             axis += 2 * on_axis
             right += degree_in(common, W) - on_axis
@@ -234,36 +225,12 @@ class LumpedFactor:
         message = "it cannot be told on which side of the imaginary axis a pole lies"
         raise UncertifiedError(Diagnostic("SF802", message))
 
-    def _real_roots_at(self, common: fmpz_mpoly, budget: Budget) -> list[Root]:
-        problem = RootProblem(((self._in_one(common, W), 1),))
-        return [root for root in find_polynomial_roots(problem, 15, budget=budget) if _is_real(root)]
-
-
-def _is_real(root: Root) -> bool:
-    return root.is_real
-
-
-def _coefficient(ring: Ring, polynomial: fmpz_mpoly, variable: int, power: int) -> fmpz_mpoly:
-    """Return the coefficient of a power of one generator, over the same ring."""
-    return ring.context.from_dict(
-        {
-            tuple(0 if i == variable else int(e) for i, e in enumerate(m)): int(n)
-            for m, n in polynomial.terms()
-            if int(m[variable]) == power
-        }
-    )
-
-
-def _lowest(ring: Ring, even: fmpz_mpoly) -> fmpz_mpoly:
-    return _coefficient(ring, even, W, 0)
-
 
 def _at(ring: Ring, polynomial: fmpz_mpoly, gain: Fraction, degree: int) -> fmpz_mpoly:
     """Return a polynomial at a rational gain, times the gain's denominator to the power of a degree."""
     total = ring.constant(0)
-    for i in range(degree + 1):
-        scale = gain.numerator**i * gain.denominator ** (degree - i)
-        total = total + _coefficient(ring, polynomial, K, i) * scale
+    for i, coefficient in enumerate(ring.coefficients(polynomial, K)):
+        total = total + coefficient * (gain.numerator**i * gain.denominator ** (degree - i))
     return total
 
 

@@ -82,13 +82,10 @@ def opened(equations: Equations, value: Factored) -> Factored:
     images = [Factored.generator(ring, name) for name in ring.names]
     names: list[str] = []
     for name, definition in equations.definitions:
-        images[ring.index[name]] = _composed(images, _embedded(equations, definition), names)
+        embedded = definition if equations.propagation is None else equations.propagation.embed(definition)
+        images[ring.index[name]] = _composed(images, embedded, names)
         names.append(name)
     return _composed(images, value, names)
-
-
-def _embedded(equations: Equations, value: Factored) -> Factored:
-    return value if equations.propagation is None else equations.propagation.embed(value)
 
 
 def _composed(images: Sequence[Factored], value: Factored, names: Sequence[str]) -> Factored:

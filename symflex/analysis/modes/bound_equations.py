@@ -15,7 +15,7 @@ from flint import acb, acb_mat, arb, arb_mat
 from symflex.algebra import LAPLACE
 from symflex.algebra.propagators import EXPONENTIAL
 from symflex.analysis.modes.shape import DistributedShape
-from symflex.transfer.balls import ball, enclose
+from symflex.transfer.balls import ball, enclose, enclosure
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -155,7 +155,7 @@ class BoundEquations:
         return SystemAt(tuple(columns), acb_mat(entries), continua)
 
     def _constants(self) -> Mapping[str, arb]:
-        later: dict[str, Callable[[], arb]] = {name: _enclosure(v) for name, v in self.values}
+        later: dict[str, Callable[[], arb]] = {name: enclosure(v) for name, v in self.values}
         found = {name: evaluate() for name, evaluate in later.items()}
         found["pi"] = arb.pi()
         for constant in self.equations.constants:
@@ -213,10 +213,6 @@ def evaluated(value: Factored, values: Mapping[str, acb]) -> acb:
             total = total + term
         result = result * total**exponent
     return result
-
-
-def _enclosure(value: ExactValue) -> Callable[[], arb]:
-    return lambda: ball(value.rational) * arb.pi() ** value.pi_power
 
 
 def _define(name: str, value: Factored, values: Values) -> bool:

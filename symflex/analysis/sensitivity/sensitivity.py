@@ -20,7 +20,7 @@ from symflex.loops import pick_gain
 from symflex.model import with_numbers
 from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.root import GUARD_BITS, decimals, exact_fraction
-from symflex.transfer.balls import ball
+from symflex.transfer.balls import enclosure
 from symflex.transfer.of_model import derive_all
 
 if TYPE_CHECKING:
@@ -101,7 +101,7 @@ class RootDerivative:
 
     def exact_value(self) -> arb:
         """Return the parameter's value at the current precision."""
-        return ball(self.value.rational) * arb.pi() ** self.value.pi_power
+        return enclosure(self.value)()
 
     @property
     def _bits(self) -> int:

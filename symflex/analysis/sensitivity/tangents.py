@@ -17,7 +17,7 @@ from flint import acb, acb_series, arb, arb_series
 
 from symflex.algebra import FUNCTIONS, LAPLACE, PolynomialMemo
 from symflex.expressions import Call, Expression, fold
-from symflex.transfer.balls import ball, plan
+from symflex.transfer.balls import ball, enclosure, plan
 from symflex.transfer.enclose_kernels import fundamental_functions
 
 if TYPE_CHECKING:
@@ -63,10 +63,7 @@ class Tangents:
         ``direction`` is ``"s"``, or a parameter. On a ball wavenumbers take one branch each; where one is
         zero, or two are equal, values are not finite.
         """
-        real = {
-            name: first_order(ball(v.rational) * arb.pi() ** v.pi_power, int(name == direction))
-            for name, v in self.values.items()
-        }
+        real = {name: first_order(enclosure(v)(), int(name == direction)) for name, v in self.values.items()}
         point = {LAPLACE: _series(s, acb(int(direction == LAPLACE))), "pi": _complex(first_order(arb.pi()))}
         point.update((name, _complex(value)) for name, value in real.items())
         for constant in self.tf.constants:

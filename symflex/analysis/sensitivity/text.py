@@ -38,7 +38,8 @@ def sensitivity_text(moved: Sequence[RootDerivative], width: int = WIDTH) -> str
     if not lines:
         return "\n  no root depends on a parameter"
     lines += ["", "  f = abs(s)/(2 pi), zeta = -Re(s)/abs(s); changes are per relative change of p"]
-    zeros = sorted({f"{m.parameter.name}{_per(m)}" for m in moved if _is_zero(m)})
+    about = [m.parameter for m in moved if _is_zero(m)]
+    zeros = sorted({p.name + (f" [{p.unit}]" if p.unit else "") for p in about})
     if zeros:
         lines.append(f"  * the parameter is 0: (1/f) df/dp and dzeta/dp, per unit: {', '.join(zeros)}")
     if any(m.derivative is not None for m in moved):
@@ -116,10 +117,6 @@ def _negated(text: str) -> str:
 
 def _is_zero(found: RootDerivative) -> bool:
     return found.value.rational == 0
-
-
-def _per(found: RootDerivative) -> str:
-    return f" [{found.parameter.unit}]" if found.parameter.unit else ""
 
 
 def sensitivity_formula(

@@ -6,7 +6,6 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from symflex.data.fitting.order import (
     CRITERIA,
@@ -24,7 +23,7 @@ from symflex.data.fitting.order import (
 )
 from symflex.data.fitting.phase_test import PhaseTest, judge_phase
 from symflex.data.fitting.problem import FitProblem, fit_problem, with_noise, with_rough_noise
-from symflex.data.fitting.resonances import MILLISECOND, Free
+from symflex.data.fitting.resonances import MILLISECOND, Complex, Free, Real
 from symflex.data.fitting.starts import with_delays
 from symflex.errors import DataError, Diagnostic, FitError, UsageError
 from symflex.errors.diagnostic import nearest
@@ -38,8 +37,6 @@ if TYPE_CHECKING:
     from symflex.data.fitting.resonances import Resonances
     from symflex.data.measurement import MeasuredResponse
 
-Real = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
 
 SLOPES = tuple(range(-4, 5))
 FEWEST_LINES = 8

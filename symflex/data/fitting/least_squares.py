@@ -24,18 +24,16 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 from scipy.optimize import least_squares
 
 from symflex.budget import spend
 from symflex.data.fitting.observation import score_covariance
+from symflex.data.fitting.resonances import Complex, Real
 
 if TYPE_CHECKING:
     from symflex.data.fitting.problem import FitProblem, FittedLines
     from symflex.data.fitting.resonances import Resonances
 
-Real = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
 
 STEPS = 100
 """Evaluations of each residual; a search that takes more has lost its way."""

@@ -15,10 +15,10 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 from scipy.optimize import least_squares
 
 from symflex.data.fitting.observation import observe
+from symflex.data.fitting.resonances import Complex, Real
 from symflex.errors import DataError, Diagnostic, FitError, Source, Span, Text, UsageError
 from symflex.quantities import parse_unit
 
@@ -29,8 +29,6 @@ if TYPE_CHECKING:
     from symflex.data.fitting.observation import Observation
     from symflex.data.measurement import MeasuredResponse
 
-Real = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
 
 STEP = 1e-6
 """Of the logarithms by which derivatives are taken."""

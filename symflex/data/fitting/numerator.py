@@ -13,13 +13,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from symflex.data.fitting.resonances import Resonances
+from symflex.data.fitting.resonances import Complex, Real, Resonances
 
 if TYPE_CHECKING:
     from symflex.data.fitting.problem import FitProblem
 
-Real = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
 
 TURNS, PER_TURN = 2.5, 8
 """Dead times tried on either side of that of the poles, in turns of the phase at the highest line."""

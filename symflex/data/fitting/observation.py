@@ -28,12 +28,12 @@ import numpy as np
 import numpy.typing as npt
 from scipy.sparse import csr_array
 
+from symflex.data.fitting.resonances import Complex, Real
+
 if TYPE_CHECKING:
     from symflex.data.fitting.problem import FittedLines
 
 
-Real = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
 Places = npt.NDArray[np.intp]
 
 STEPS_PER_LINE = 6

@@ -22,7 +22,7 @@ from scipy.stats import f
 from symflex.data.fitting.least_squares import STEPS, Refined, refine, refine_directly
 from symflex.data.fitting.numerator import STRANGE, over_poles, strange
 from symflex.data.fitting.problem import estimated
-from symflex.data.fitting.resonances import Resonances
+from symflex.data.fitting.resonances import Complex, Resonances
 from symflex.data.fitting.starts import (
     find_modes,
     poles_from_aaa,
@@ -35,11 +35,8 @@ from symflex.errors import Diagnostic, FitError
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
-    import numpy.typing as npt
-
     from symflex.data.fitting.problem import FitProblem
 
-    Complex = npt.NDArray[np.complex128]
 
 CRITERIA = ("bic", "aicc")
 MOST_MODES = 12

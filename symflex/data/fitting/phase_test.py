@@ -24,16 +24,15 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final, Literal
 
 import numpy as np
-import numpy.typing as npt
 from scipy.optimize import least_squares
 from scipy.signal import medfilt
+
+from symflex.data.fitting.resonances import Complex, Real
 
 if TYPE_CHECKING:
     from symflex.data.fitting.problem import FitProblem, FittedLines
     from symflex.data.fitting.resonances import Resonances
 
-Real = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
 Verdict = Literal["minimum", "undetermined", "nonminimum"]
 
 LIMIT_DEGREES = 10.0

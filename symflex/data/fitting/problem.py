@@ -15,9 +15,9 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from symflex.data.fitting.observation import Observation, observe
+from symflex.data.fitting.resonances import Complex, Real
 from symflex.data.fitting.starts import generous_fit
 
 if TYPE_CHECKING:
@@ -26,9 +26,6 @@ if TYPE_CHECKING:
     from symflex.data.fitting.resonances import Free, Resonances
     from symflex.data.measurement import MeasuredResponse
 
-
-Real = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
 
 FEWEST_FOR_SLOPE = 5
 """Lines from which a power of s is guessed."""

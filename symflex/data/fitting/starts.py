@@ -20,19 +20,15 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 from scipy.linalg import eig
 from scipy.signal import find_peaks, savgol_filter
 
 from symflex.budget import spend
-from symflex.data.fitting.resonances import Resonances
+from symflex.data.fitting.resonances import Complex, Real, Resonances
 
 if TYPE_CHECKING:
     from symflex.data.fitting.problem import FitProblem
 
-
-Real = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
 
 LEAST_PROMINENCE = 0.02
 """Of the logarithm of the magnitude: 0.2 dB, below the shoulders that close pairs leave."""
@@ -327,10 +323,6 @@ def _state_matrix(poles: Complex) -> tuple[Real, Real]:
     return a, b
 
 
-def _eigenvalues(matrix: Real) -> Complex:
-    return np.asarray(np.linalg.eigvals(matrix), np.complex128)
-
-
 def relocated(problem: FitProblem, poles: Complex, iterations: int = ITERATIONS) -> Complex:
     """Return the poles after relaxed vector fitting; pairs stay pairs, and stay stable."""
     quotients = [problem.quotient(r) for r in range(len(problem.lines))]
@@ -365,7 +357,8 @@ def relocated(problem: FitProblem, poles: Complex, iterations: int = ITERATIONS)
         solution = np.linalg.lstsq(matrix / norms, target, rcond=None)[0] / norms
         a, b = _state_matrix(poles)
         direct = solution[-1] if abs(solution[-1]) > SETTLED else SETTLED
-        moved = _upper(_eigenvalues(a - np.outer(b, solution[:-1]) / direct), poles.size)
+        eigenvalues = np.linalg.eigvals(a - np.outer(b, solution[:-1]) / direct)
+        moved = _upper(np.asarray(eigenvalues, np.complex128), poles.size)
         if moved.size < poles.size:
             break
         change = np.max(np.abs(moved - poles) / np.abs(poles))
