@@ -1,0 +1,60 @@
+"""What every column of tables of roots promises, whatever page it stands on."""
+
+from __future__ import annotations
+
+import functools
+
+import pytest
+
+from symflex import pipeline
+from symflex.print.html import roots_html
+from symflex.print.latex import root_table
+from symflex.print.roots import MODE_COLUMNS, PAGE_COLUMNS, PAPER_COLUMNS, one_of_each_pair
+from symflex.quantities import unit_of
+from symflex.report.sections.roots import HEADS
+
+# s^2 + 6 s + 25 has the roots -3 +- 4j; the servo's integrator adds one at 0.
+TEXT = """
+symflex = 1
+elements.body = { type = "mass", at = "x", m = 1 }
+elements.wall = { type = "spring", between = ["x", "ground"], k = 25 }
+elements.oil = { type = "damper", between = ["x", "ground"], b = 6 }
+inputs.F = { force = "x" }
+outputs.X = "x/s"
+"""
+PAGES = pytest.mark.parametrize("column", PAGE_COLUMNS, ids=lambda column: column.head)
+
+
+@functools.cache
+def found():
+    return pipeline.roots(pipeline.derive_bound(pipeline.loads(TEXT), [("X", "F")])[0])
+
+
+@pytest.mark.parametrize(
+    "column", dict.fromkeys((*PAGE_COLUMNS, *PAPER_COLUMNS, *MODE_COLUMNS)), ids=lambda column: column.head
+)
+def test_it_shows_a_number_in_a_unit_or_nothing(column):
+    assert not column.unit or unit_of(column.unit).scale
+    for entry in one_of_each_pair(found().poles):
+        (cell,) = entry.cells([column], 6)
+        assert cell == "" or float(cell) > -4
+
+
+@PAGES
+def test_a_column_of_pages_is_in_notebooks_and_in_reports(column):
+    assert f">{column.head}<" in roots_html(found())
+    assert (column.head,) in [head.head for head in HEADS]
+
+
+@pytest.mark.parametrize("column", PAPER_COLUMNS, ids=lambda column: column.head)
+def test_a_column_of_paper_is_in_its_table(column):
+    assert all(line in root_table(found(), "poles") for line in column.paper)
+
+
+def test_the_columns_of_a_known_pair_are_those_of_a_right_triangle():
+    (pair,) = [entry for entry in one_of_each_pair(found().poles) if entry.is_pair]
+    shown = dict(zip((c.head for c in PAGE_COLUMNS), pair.cells(PAGE_COLUMNS, 6), strict=True))
+    assert (shown["Re s [rad/s]"], shown["Im s [rad/s]"]) == ("-3.00000", "4.00000")
+    assert float(shown["damping ratio"]) == 0.6
+    assert float(shown["frequency [Hz]"]) == pytest.approx(5 / 6.283185307, rel=1e-5)
+    assert shown["multiplicity"] == "1"
