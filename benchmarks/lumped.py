@@ -25,7 +25,7 @@ from benchmarks.generated import FLAGS, imported, loaded, pointer
 from benchmarks.measure import Claim, Measurement, fastest
 from symflex import pipeline
 from symflex.codegen.c import C99
-from symflex.codegen.program import measure_values
+from symflex.codegen.program.verify import measure_values
 from symflex.codegen.python import NUMPY
 
 if TYPE_CHECKING:

@@ -11,14 +11,15 @@ from dataclasses import dataclass, field, replace
 from math import isfinite
 from typing import TYPE_CHECKING, Protocol
 
-from symflex.codegen.program import choose_programs, identifiers
-from symflex.codegen.program.verify import SAMPLES
+from symflex.codegen.program.identifiers import identifiers
+from symflex.codegen.program.verify import SAMPLES, choose_programs
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
     from fractions import Fraction
 
-    from symflex.codegen.program import Piecewise, Verification
+    from symflex.codegen.program.nodes import Piecewise
+    from symflex.codegen.program.verify import Verification
     from symflex.model import Model
     from symflex.transfer import AnyTransferFunction
 

@@ -10,14 +10,14 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar
 
-from symflex.codegen.program import Laplace, identifiers
-from symflex.codegen.program.nodes import ONE
+from symflex.codegen.program.identifiers import identifiers
+from symflex.codegen.program.nodes import ONE, Laplace
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
     from symflex.codegen.infix import InfixPrinter
-    from symflex.codegen.program import Assignment, CodePiece, Piecewise
+    from symflex.codegen.program.nodes import Assignment, CodePiece, Piecewise
 
 
 @dataclass(frozen=True)

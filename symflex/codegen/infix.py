@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from textwrap import TextWrapper
 from typing import TYPE_CHECKING, ClassVar
 
-from symflex.codegen.program import (
+from symflex.codegen.program.evaluate import nearest_double
+from symflex.codegen.program.nodes import (
     Add,
     Apply,
     Assigned,
@@ -28,14 +29,12 @@ from symflex.codegen.program import (
     Roots,
     Solutions,
     ToComplex,
-    nearest_double,
 )
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from symflex.codegen.program import Condition, Piecewise
-    from symflex.codegen.program.nodes import Frames
+    from symflex.codegen.program.nodes import Condition, Frames, Piecewise
 
 _SUM, _PRODUCT, _SIGN, _POWER, LEAF = range(5)
 

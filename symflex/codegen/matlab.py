@@ -21,7 +21,8 @@ from symflex.codegen.module_text import (
     headline,
     origin_lines,
 )
-from symflex.codegen.program import identifiers, inert, wrapped
+from symflex.codegen.program.identifiers import identifiers
+from symflex.codegen.program.prose import inert, wrapped
 from symflex.codegen.rational_system import RationalSystem
 from symflex.codegen.source_parts import called_parts, parts_of
 from symflex.expressions import Name, format_expression, substitute
@@ -30,8 +31,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from symflex.codegen.export import Contents, Member
-    from symflex.codegen.program import CodeNode, CodePiece, Piecewise
-    from symflex.codegen.program.nodes import Frames
+    from symflex.codegen.program.nodes import CodeNode, CodePiece, Frames, Piecewise
     from symflex.expressions import Expression
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symflex.codegen.program import inert, nearest_double, wrapped
+from symflex.codegen.program.evaluate import nearest_double
+from symflex.codegen.program.prose import inert, wrapped
 from symflex.expressions import Quotient, format_expression, is_number
 from symflex.print.forms import print_form
 from symflex.print.latex.table import decimal_text

@@ -15,7 +15,8 @@ from textwrap import TextWrapper
 from typing import TYPE_CHECKING
 
 from symflex.codegen.c.expression import CPrinter, Kind, Term, complex_term, product
-from symflex.codegen.program import (
+from symflex.codegen.program.identifiers import identifiers
+from symflex.codegen.program.nodes import (
     Assignment,
     CodeNode,
     Condition,
@@ -25,7 +26,6 @@ from symflex.codegen.program import (
     RealNumber,
     Roots,
     Solutions,
-    identifiers,
 )
 from symflex.codegen.source_parts import parts_of
 

@@ -12,7 +12,8 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from typing import TYPE_CHECKING
 
-from symflex.codegen.program import (
+from symflex.codegen.program.evaluate import nearest_double
+from symflex.codegen.program.nodes import (
     Add,
     Apply,
     Assigned,
@@ -29,7 +30,6 @@ from symflex.codegen.program import (
     ParameterValue,
     RealNumber,
     ToComplex,
-    nearest_double,
 )
 
 if TYPE_CHECKING:

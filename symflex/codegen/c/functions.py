@@ -26,7 +26,7 @@ from symflex.codegen.c.body import (
     limit_text,
 )
 from symflex.codegen.c.expression import LANE_FUNCTIONS, Kind, Term, complex_term, quotient
-from symflex.codegen.program import (
+from symflex.codegen.program.nodes import (
     Apply,
     Assigned,
     CodeNode,

@@ -54,7 +54,7 @@ def cases_of(program: Piecewise) -> tuple[Cases, ...]:
 
     Examples
     --------
-    >>> from symflex.codegen.program import Condition, Laplace, Straight
+    >>> from symflex.codegen.program.nodes import Condition, Laplace, Straight
     >>> piece = CodePiece(Straight((), (), (ONE, ONE)))
     >>> test = Condition(Laplace(), 1.0, ONE)
     >>> cases_of(Piecewise((), Straight((), (), ()), (test, test), (0, 0, 0, 1), (piece, piece)))

@@ -11,8 +11,8 @@ from textwrap import TextWrapper
 from typing import TYPE_CHECKING, Any
 
 from symflex.codegen.infix import InfixPrinter
-from symflex.codegen.program import Apply, CodeNode, LargerRoot
 from symflex.codegen.program.evaluate import NUMPY_FUNCTIONS, number_of
+from symflex.codegen.program.nodes import Apply, CodeNode, LargerRoot
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

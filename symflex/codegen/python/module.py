@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 
 from symflex.codegen.export import Export, Language
 from symflex.codegen.module_text import COST, ITERATED, default_value
-from symflex.codegen.program import identifiers, nearest_double
+from symflex.codegen.program.evaluate import nearest_double
+from symflex.codegen.program.identifiers import identifiers
 from symflex.codegen.python.dialects import ARRAY_API_DIALECT, JAX_DIALECT, NUMPY_DIALECT
 from symflex.codegen.python.expression import statement
 from symflex.codegen.python.pieces import BlockText, TracedText

@@ -13,7 +13,11 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from symflex.codegen.program import (
+from symflex.codegen.program.evaluate import number_of
+from symflex.codegen.program.everywhere import cases_of, in_pieces, places_of
+from symflex.codegen.program.identifiers import identifiers
+from symflex.codegen.program.nodes import (
+    ONE,
     Apply,
     Assignment,
     CodeNode,
@@ -23,11 +27,7 @@ from symflex.codegen.program import (
     Multiply,
     Piecewise,
     Straight,
-    identifiers,
 )
-from symflex.codegen.program.evaluate import number_of
-from symflex.codegen.program.everywhere import cases_of, in_pieces, places_of
-from symflex.codegen.program.nodes import ONE
 from symflex.codegen.python.expression import WIDTH, ArrayPrinter, PythonPrinter, statement
 
 if TYPE_CHECKING:

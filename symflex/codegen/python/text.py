@@ -9,14 +9,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from symflex.codegen.module_text import default_value, described, formula_lines, headline, origin_lines
-from symflex.codegen.program import identifiers, inert, wrapped
+from symflex.codegen.program.identifiers import identifiers
+from symflex.codegen.program.prose import inert, wrapped
 from symflex.codegen.python.expression import WIDTH
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
     from symflex.codegen.export import Member
-    from symflex.codegen.program import Verification
+    from symflex.codegen.program.verify import Verification
     from symflex.model import Model
     from symflex.transfer import AnyTransferFunction
 

@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from symflex.algebra import irreducible_factors
-from symflex.codegen.program import inert
+from symflex.codegen.program.prose import inert
 from symflex.expressions import (
     Expression,
     Name,

@@ -13,7 +13,9 @@ import numpy as np
 
 from symflex.codegen.export import Export, shortfalls
 from symflex.codegen.module_text import default_value, described
-from symflex.codegen.program import (
+from symflex.codegen.program.evaluate import evaluate, nearest_double
+from symflex.codegen.program.identifiers import identifiers
+from symflex.codegen.program.nodes import (
     Add,
     Apply,
     CodeNode,
@@ -24,15 +26,10 @@ from symflex.codegen.program import (
     ParameterValue,
     RealNumber,
     Straight,
-    Verification,
-    evaluate,
-    identifiers,
-    inert,
     lumped,
-    measure_values,
-    nearest_double,
-    wrapped,
 )
+from symflex.codegen.program.prose import inert, wrapped
+from symflex.codegen.program.verify import Verification, measure_values
 from symflex.codegen.python.dialects import NUMPY_DIALECT
 from symflex.codegen.python.expression import WIDTH, PythonPrinter, statement
 from symflex.codegen.python.text import docstring, literal, origin, parameter_table

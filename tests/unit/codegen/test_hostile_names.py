@@ -19,7 +19,7 @@ from symflex.codegen.c import C99
 from symflex.codegen.exporters import EXPORTERS
 from symflex.codegen.julia import JULIA
 from symflex.codegen.matlab import MATLAB
-from symflex.codegen.program import choose_programs
+from symflex.codegen.program.verify import choose_programs
 from symflex.codegen.python import ARRAY_API, JAX, NUMPY
 from symflex.codegen.state_space.module import state_space_module
 from tests.house.repository import slow_ones

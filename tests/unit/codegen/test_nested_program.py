@@ -6,7 +6,9 @@ import pytest
 from benchmarks.networks import chain, network
 from symflex import pipeline
 from symflex.codegen.module_text import formula_lines
-from symflex.codegen.program import build_nested, choose_program, evaluate
+from symflex.codegen.program.evaluate import evaluate
+from symflex.codegen.program.nested import build_nested
+from symflex.codegen.program.verify import choose_program
 from symflex.codegen.python import NUMPY
 from symflex.errors import BudgetError
 from symflex.expressions import Product, Sum, format_expression

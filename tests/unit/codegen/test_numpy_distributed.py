@@ -15,7 +15,9 @@ import numpy as np
 import pytest
 
 from symflex import pipeline
-from symflex.codegen.program import build_piecewise, evaluate, modal
+from symflex.codegen.program import modal
+from symflex.codegen.program.distributed import build_piecewise
+from symflex.codegen.program.evaluate import evaluate
 from symflex.codegen.program.verify import doubles
 from symflex.codegen.python import NUMPY
 from symflex.transfer import bind

@@ -19,7 +19,9 @@ import pytest
 from flint import acb
 
 from symflex import pipeline
-from symflex.codegen.program import build_program, choose_program, evaluate
+from symflex.codegen.program.build import build_program
+from symflex.codegen.program.evaluate import evaluate
+from symflex.codegen.program.verify import choose_program
 from symflex.codegen.python import NUMPY
 from symflex.errors import ModelError
 from tests.house.repository import specifications

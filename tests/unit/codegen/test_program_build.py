@@ -12,16 +12,9 @@ import numpy as np
 import pytest
 
 from symflex import pipeline
-from symflex.codegen.program import (
-    Assigned,
-    Laplace,
-    RealNumber,
-    available_forms,
-    build_program,
-    evaluate,
-    lumped,
-    nearest_double,
-)
+from symflex.codegen.program.build import available_forms, build_program
+from symflex.codegen.program.evaluate import evaluate, nearest_double
+from symflex.codegen.program.nodes import Assigned, Laplace, RealNumber, lumped
 from symflex.errors import BudgetError, ModelError
 from tests.house.repository import specifications
 

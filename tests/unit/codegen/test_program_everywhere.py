@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from symflex import pipeline
-from symflex.codegen.program import build_piecewise, build_program, evaluate
-from symflex.codegen.program.evaluate import numbers_of_pieces, value_of_piece
+from symflex.codegen.program.build import build_program
+from symflex.codegen.program.distributed import build_piecewise
+from symflex.codegen.program.evaluate import evaluate, numbers_of_pieces, value_of_piece
 from symflex.codegen.program.everywhere import cases_of, in_pieces, places_of
 from symflex.codegen.program.verify import doubles
 from tests.unit.codegen.test_numpy_distributed import DELAY, SPECS, specification

@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from symflex.codegen.program import identifiers, inert, wrapped
+from symflex.codegen.program.identifiers import identifiers
+from symflex.codegen.program.prose import inert, wrapped
 
 RESERVED = frozenset({*keyword.kwlist, "np", "s"})
 

@@ -11,19 +11,14 @@ import pytest
 from flint import acb, acb_poly
 
 from symflex import pipeline
-from symflex.codegen.program import (
-    Multiply,
-    RealNumber,
-    References,
-    available_forms,
-    build_program,
-    choose_program,
-    lumped,
-)
+from symflex.codegen.program.build import available_forms, build_program
+from symflex.codegen.program.nodes import Multiply, RealNumber, lumped
 from symflex.codegen.program.verify import (
     DEFAULT_BAND,
+    References,
     Verification,
     _roots,
+    choose_program,
     frequency_text,
     sample_frequencies,
 )
