@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from symflex.codegen.state_space.equations import StateEquations
+from symflex.codegen.state_space import StateEquations
 from symflex.print.sympy import symbols_of, to_sympy
 from symflex.transfer.bind import read_values
 

@@ -93,8 +93,8 @@ def command(spec: Specification, given: ExportOptions) -> int:
 
 def _chosen(exporter: Exporter, given: ExportOptions) -> Exporter:
     """Return an exporter with the options that are its own."""
+    from symflex.codegen.state_space import StateSpaceExporter
     from symflex.codegen.targets.latex import LatexExporter
-    from symflex.codegen.targets.state_space import StateSpaceExporter
     from symflex.print.latex import column_width
 
     if isinstance(exporter, LatexExporter):

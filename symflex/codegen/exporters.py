@@ -8,8 +8,8 @@ from symflex.codegen.c import C99
 from symflex.codegen.julia import JULIA
 from symflex.codegen.matlab import MATLAB
 from symflex.codegen.python import ARRAY_API, JAX, NUMPY
+from symflex.codegen.state_space import StateSpaceExporter
 from symflex.codegen.targets.latex import LatexExporter
-from symflex.codegen.targets.state_space import StateSpaceExporter
 
 if TYPE_CHECKING:
     from symflex.codegen.export import Exporter

@@ -13,9 +13,7 @@ import pytest
 
 from symflex import pipeline
 from symflex.codegen.exporters import EXPORTERS
-from symflex.codegen.state_space.equations import StateEquations
-from symflex.codegen.state_space.module import state_space_module
-from symflex.codegen.targets.state_space import StateSpaceExporter
+from symflex.codegen.state_space import StateEquations, StateSpaceExporter, state_space_module
 from symflex.errors import BudgetError, ModelError
 from tests.unit.codegen.test_numpy_hostile import HOSTILE, NAMES, SPEC, loaded, renamed, ring_takes, skeleton
 
@@ -145,13 +143,13 @@ def test_a_beam_has_none():
 
 
 def test_a_module_that_would_be_megabytes_is_refused(monkeypatch):
-    monkeypatch.setattr("symflex.codegen.state_space.module.TERM_LIMIT", 10)
+    monkeypatch.setattr("symflex.codegen.state_space.TERM_LIMIT", 10)
     with pytest.raises(BudgetError, match="SF503"):
         exported(pipeline.load(PAPER / "two_mass.toml"))
 
 
 def test_the_printed_equations_of_large_systems_end_with_how_many_are_left(monkeypatch):
-    monkeypatch.setattr("symflex.codegen.state_space.module.EQUATION_LINES", 3)
+    monkeypatch.setattr("symflex.codegen.state_space.EQUATION_LINES", 3)
     assert "... and 5 equations more." in exported(pipeline.load(PAPER / "two_mass.toml")).text
 
 

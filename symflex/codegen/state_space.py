@@ -1,16 +1,19 @@
-"""State equations as one self-contained Python module that imports numpy only.
+"""State equations: as expressions, as lines of text, and as one Python module that imports numpy only.
 
-Input: a realisation, and the transfer functions it is measured against.
+Input: a :class:`symflex.state_space.StateSpace`, and the transfer functions it is measured against.
 Output: an :class:`Export`, the module's text and how well its numbers agree with ball arithmetic.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from symflex.algebra import irreducible_factors
 from symflex.codegen.export import Export, shortfalls
 from symflex.codegen.module_text import default_value, described
 from symflex.codegen.program.evaluate import evaluate, nearest_double
@@ -32,8 +35,7 @@ from symflex.codegen.program.prose import inert, wrapped
 from symflex.codegen.program.verify import Verification, measure_values
 from symflex.codegen.python.dialects import NUMPY_DIALECT
 from symflex.codegen.python.expression import WIDTH, PythonPrinter, statement
-from symflex.codegen.python.text import docstring, literal, origin, parameter_table
-from symflex.codegen.state_space.equations import StateEquations
+from symflex.codegen.python.module import docstring, literal, origin, parameter_table
 from symflex.errors import BudgetError, Diagnostic
 from symflex.expressions import (
     Call,
@@ -47,17 +49,115 @@ from symflex.expressions import (
     Sum,
     format_expression,
     names,
+    number,
+    product_of,
+    quotient,
+    sum_of,
 )
 from symflex.model.linearity import integer_exponent
+from symflex.print.forms.arrange import Arranger
+from symflex.state_space import minimal, realise
 from symflex.state_space.numeric import Arrays, response
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     import numpy.typing as npt
+    from flint import fmpz_mpoly
 
-    from symflex.state_space import StateSpace
+    from symflex.codegen.export import Export
+    from symflex.model import Model
+    from symflex.state_space import State, StateSpace
+    from symflex.state_space.popov import FieldElement, Vector
     from symflex.transfer import AnyTransferFunction
+
+
+ZERO = "0"
+
+
+class StateEquations:
+    r"""The equations of one exact realisation, for print.
+
+    Examples
+    --------
+    >>> from symflex import pipeline
+    >>> model = pipeline.loads('''
+    ... symflex = 1
+    ... parameters = {m = "2 kg", b = "3 N*s/m", k = "8 N/m"}
+    ... elements.body = {type = "mass", at = "x", m = "m"}
+    ... elements.loss = {type = "damper", between = ["x", "ground"], b = "b"}
+    ... elements.wall = {type = "spring", between = ["x", "ground"], k = "k"}
+    ... inputs.F = {force = "x"}
+    ... outputs.X = "x"
+    ... ''')
+    >>> print("\n".join(StateEquations(pipeline.state_space(model)).lines()))
+    s*x = x_dot
+    s*x_dot = -k/m*x - b/m*x_dot + 1/m*F
+    X = x
+    """
+
+    def __init__(self, system: StateSpace) -> None:
+        self.system = system
+        self._arranger = Arranger.plain(system.ring, {c.generator: c.expression for c in system.constants})
+        self._known: dict[tuple[str, str], Expression] = {}
+
+    def entry(self, value: FieldElement) -> Expression:
+        """Return an entry, numerator and denominator factored."""
+        if value.is_zero:
+            return number(0)
+        key = (str(value.num), str(value.den))
+        if key not in self._known:
+            above, below = (self._arranger.coefficient(part) for part in (value.num, value.den))
+            self._known[key] = quotient(above, below)
+        return self._known[key]
+
+    def lines(self) -> list[str]:
+        """Return one equation per state and per output."""
+        system = self.system
+        names = [*(x.name for x in system.states), *(x.name for x in system.inputs)]
+        count = len(system.states)
+
+        def right(states: Vector, inputs: Vector) -> str:
+            parts = {**states, **{count + j: value for j, value in inputs.items()}}
+            terms = [product_of([self.entry(value), Name(names[j])]) for j, value in sorted(parts.items())]
+            return format_expression(sum_of(terms))
+
+        derivatives = zip(system.states, system.a, system.b, strict=True)
+        results = zip(system.outputs, system.c, system.d, strict=True)
+        return [
+            *(f"s*{state.name} = {right(a, b)}" for state, a, b in derivatives),
+            *(f"{output.name} = {right(c, d)}" for output, c, d in results),
+        ]
+
+    def grid(self, rows: tuple[Vector, ...], shape: tuple[int, int]) -> list[str]:
+        """Return a matrix as lines of aligned entries."""
+        height, width = shape
+        texts = [
+            [inert(format_expression(self.entry(rows[i][j]))) if j in rows[i] else ZERO for j in range(width)]
+            for i in range(height)
+        ]
+        sizes = [max((len(texts[i][j]) for i in range(height)), default=1) for j in range(width)]
+        return [
+            "[" + "  ".join(t.rjust(size) for t, size in zip(row, sizes, strict=True)) + "]" for row in texts
+        ]
+
+    def meaning(self, state: State) -> Expression:
+        """Return what a state is, in quantities of the model."""
+        return sum_of([product_of([self.entry(value), quantity]) for quantity, value in state.terms])
+
+    @cached_property
+    def divisors(self) -> tuple[Expression, ...]:
+        """What entries are divided by: the equations hold where none of it is zero."""
+        system = self.system
+        found: dict[str, fmpz_mpoly] = {}
+        for _, rows, _ in system.matrices:
+            for row in rows:
+                for value in row.values():
+                    if not value.den.is_constant():
+                        for factor, _ in irreducible_factors(value.den)[1]:
+                            found.setdefault(str(factor), factor)
+        return tuple(self._arranger.coefficient(factor) for factor in found.values())
+
 
 PI = "pi"
 TERM_LIMIT = 20_000
@@ -95,27 +195,10 @@ def state_space_module(
 ) -> Export:
     """Return a module with a function ``state_space(*, parameter=default, ...)`` that returns A, B, C, D.
 
-    ``STATES``, ``INPUTS`` and ``OUTPUTS`` list names and units in the order of rows and columns.
-
-    Parameters
-    ----------
-    system : StateSpace
-        With symbols.
-    tfs : sequence of TransferFunction
-        Those of its outputs over its inputs that are measured.
-    band_hz : tuple of Fraction, optional
-        Where [Hz]; by default the model's ``[analysis]`` band, else 0.1 Hz to 10 kHz.
-    samples : int
-        Number of frequencies, besides those around poles and zeros; fewer for large systems.
-    digits : int
-        Significant digits of the printed error.
-
-    Raises
-    ------
-    BudgetError
-        SF503 when the text would be too long.
-    ModelError
-        SF233 when a number does not fit in double precision.
+    ``STATES``, ``INPUTS`` and ``OUTPUTS`` list names and units in the order of rows and columns. The system
+    has symbols; its functions are measured at some ``samples`` in ``band_hz`` [Hz], by default the model's
+    ``[analysis]`` band, else 0.1 Hz to 10 kHz. SF503 when the text would be too long, SF233 when a number
+    does not fit in double precision.
 
     Examples
     --------
@@ -155,14 +238,8 @@ class _Module:
             }
             for letter, rows, _ in system.matrices
         }
-        used = {
-            n.name
-            for _, rows, _ in system.matrices
-            for row in rows
-            for value in row.values()
-            for n in names(equations.entry(value))
-            if isinstance(n, Name)
-        }
+        values = [value for _, rows, _ in system.matrices for row in rows for value in row.values()]
+        used = {n.name for v in values for n in names(equations.entry(v)) if isinstance(n, Name)}
         self._parameters = [p for p in system.model.parameters if p.name in used]
         self._names = identifiers({p.name: p.name for p in system.model.parameters}, NUMPY_DIALECT.reserved)
         taken = {*NUMPY_DIALECT.reserved, *self._names.values()}
@@ -334,3 +411,20 @@ def _node(expression: Expression) -> CodeNode:
             return Apply(name, _node(argument))
     message = f"unexpected expression {type(expression).__name__}"
     raise TypeError(message)
+
+
+@dataclass(frozen=True, slots=True)
+class StateSpaceExporter:
+    """State equations as a function of the parameters, in one numpy module."""
+
+    is_minimal: bool = False  # leave out what no input reaches or no output shows
+
+    suffix = ".py"
+    summary = "numpy module with A, B, C, D as a function of the parameters, states named"
+
+    def export(
+        self, model: Model, tfs: Sequence[AnyTransferFunction], stem: str = "", *, is_alone: bool = True
+    ) -> Export:
+        """Return the module; accuracy that was not reached is a warning."""
+        system = realise(model, [(tf.output.name, tf.input.name) for tf in tfs])
+        return state_space_module(minimal(system) if self.is_minimal else system, tfs, model.analysis.band)

@@ -1,1 +1,0 @@
-"""State equations as modules."""
