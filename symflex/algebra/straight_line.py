@@ -18,21 +18,26 @@ from dataclasses import dataclass
 from enum import IntEnum
 from fractions import Fraction
 from functools import reduce
+from operator import neg, truediv
 from random import Random
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from symflex.algebra.memo import PolynomialMemo
 from symflex.algebra.residue import PRIME
 from symflex.algebra.ring import terms_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from flint import fmpz_mpoly
 
     from symflex.algebra.factored import Factored
 
 Key = tuple[int, ...]
+
+
+Operation = tuple[int, int, Key, Key]
+"""Kind, step, operands, and the steps that nothing needs afterwards."""
 
 
 class Step(IntEnum):
@@ -82,6 +87,55 @@ class StraightLine:
                     found.add(operand)
                     pending.append(operand)
         return sorted(found)
+
+    def operations(self, steps: Iterable[int]) -> list[Operation]:
+        """Return steps as :meth:`values` takes them."""
+        return [(self.kinds[i], i, self.operands[i], ()) for i in steps]
+
+    def values(
+        self,
+        operations: Iterable[Operation],
+        *,
+        name: Callable[[int], Any],
+        number: Callable[[Fraction], Any],
+        negative: Callable[[Any], Any] = neg,
+        total: Callable[[list[Any]], Any] | None = None,
+        product: Callable[[list[Any]], Any] | None = None,
+        quotient: Callable[[Any, Any], Any] = truediv,
+        power: Callable[[Any, int], Any] = pow,
+        known: dict[int, Any] | None = None,
+    ) -> dict[int, Any]:
+        """Return the values of steps in some arithmetic, in order; what is not given is done by operators.
+
+        ``name`` is given the position of a generator; ``known`` are values of earlier steps.
+        """
+        values = {} if known is None else known
+        for kind, i, args, gone in operations:
+            if kind == _MULTIPLY and product is None:
+                value = values[args[0]]
+                for x in args[1:]:
+                    value = value * values[x]
+            elif kind == _ADD and total is None:
+                value = values[args[0]]
+                for x in args[1:]:
+                    value = value + values[x]
+            elif kind in (_ADD, _MULTIPLY):
+                gather = total if kind == _ADD else product
+                value = gather([values[x] for x in args]) if gather is not None else None
+            elif kind == _DIVIDE:
+                value = quotient(values[args[0]], values[args[1]])
+            elif kind == _GENERATOR:
+                value = name(args[0])
+            elif kind == _NEGATE:
+                value = negative(values[args[0]])
+            elif kind == _POWER:
+                value = power(values[args[0]], args[1])
+            else:
+                value = number(Fraction(*args))
+            values[i] = value
+            for x in gone:
+                del values[x]
+        return values
 
     def inner(self, step: int) -> Key:
         """Return the earlier steps a step is made of."""
@@ -150,31 +204,23 @@ class Workbench:
 
     def residue(self, step: int) -> int:
         """Return the value of a step at the random point; only few are ever asked for."""
-        known, program, pending = self._residues, self.finished(), [step]
+        known, program = self._residues, self.finished()
+        wanted, pending = {step} - known.keys(), [step]
         while pending:
-            i = pending[-1]
-            missing = [x for x in program.inner(i) if x not in known]
-            if missing:
-                pending += missing
-                continue
-            pending.pop()
-            kind, operands = self.kinds[i], self.operands[i]
-            match kind:
-                case Step.GENERATOR:
-                    value = self.point[operands[0]]
-                case Step.NUMBER:
-                    value = operands[0] * pow(operands[1], -1, PRIME)
-                case Step.ADD:
-                    value = sum(known[x] for x in operands)
-                case Step.MULTIPLY:
-                    value = reduce(lambda x, y: x * y % PRIME, [known[x] for x in operands])
-                case Step.DIVIDE:
-                    value = known[operands[0]] * pow(known[operands[1]], -1, PRIME)
-                case Step.NEGATE:
-                    value = -known[operands[0]]
-                case _:
-                    value = pow(known[operands[0]], operands[1], PRIME)
-            known[i] = value % PRIME
+            new = [x for x in program.inner(pending.pop()) if x not in known and x not in wanted]
+            wanted.update(new)
+            pending += new
+        program.values(
+            program.operations(sorted(wanted)),
+            name=self.point.__getitem__,
+            number=lambda x: x.numerator * pow(x.denominator, -1, PRIME) % PRIME,
+            negative=lambda x: -x % PRIME,
+            total=lambda terms: sum(terms) % PRIME,
+            product=lambda factors: reduce(lambda x, y: x * y % PRIME, factors),
+            quotient=lambda x, y: x * pow(y, -1, PRIME) % PRIME,
+            power=lambda x, n: pow(x, n, PRIME),
+            known=known,
+        )
         return known[step]
 
     def generator(self, position: int) -> int:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from flint import acb, arb, ctx
 
 from symflex.algebra import LAPLACE
-from symflex.algebra.straight_line import Step, StraightLine
+from symflex.algebra.straight_line import Operation, Step, StraightLine
 from symflex.budget import spend
 from symflex.equations.elimination import eliminate
 from symflex.errors import Diagnostic, ModelError
@@ -98,10 +98,10 @@ class NestedTransferFunction:
         return tuple(self.program.steps_of(self.num, self.den))
 
     @cached_property
-    def operations(self) -> tuple[_Operation, ...]:
+    def operations(self) -> tuple[Operation, ...]:
         """The steps with their operands, and with the steps that nothing needs after each."""
         program, kept = self.program, {self.num, self.den}
-        found: list[_Operation] = []
+        found: list[Operation] = []
         for i in reversed(self.steps):
             gone = tuple(x for x in dict.fromkeys(program.inner(i)) if x not in kept)
             kept.update(gone)
@@ -278,9 +278,6 @@ class EnclosedNested:
             return num / den, above / num - below / den
 
 
-_Operation = tuple[int, int, tuple[int, ...], tuple[int, ...]]
-"""Kind, step, operands, and the steps that nothing needs afterwards."""
-
 _GENERATOR, _NUMBER, _ADD, _MULTIPLY, _DIVIDE, _NEGATE, _POWER = map(int, Step)
 
 
@@ -288,30 +285,8 @@ def _values(
     tf: NestedTransferFunction, known: Mapping[str, Any], number: Callable[[Fraction], Any]
 ) -> tuple[Any, Any]:
     """Return numerator and denominator in whatever arithmetic the generators' values have."""
-    program = tf.program
-    values: dict[int, Any] = {}
-    for kind, i, args, gone in tf.operations:
-        if kind == _MULTIPLY:
-            value = values[args[0]]
-            for x in args[1:]:
-                value = value * values[x]
-        elif kind == _ADD:
-            value = values[args[0]]
-            for x in args[1:]:
-                value = value + values[x]
-        elif kind == _DIVIDE:
-            value = values[args[0]] / values[args[1]]
-        elif kind == _GENERATOR:
-            value = known[program.names[args[0]]]
-        elif kind == _NEGATE:
-            value = -values[args[0]]
-        elif kind == _POWER:
-            value = values[args[0]] ** args[1]
-        else:
-            value = number(program.fraction(i))
-        values[i] = value
-        for x in gone:
-            del values[x]
+    names = tf.program.names
+    values = tf.program.values(tf.operations, name=lambda position: known[names[position]], number=number)
     return values[tf.num], values[tf.den]
 
 

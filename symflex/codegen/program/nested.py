@@ -11,7 +11,6 @@ from math import inf
 from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE
-from symflex.algebra.straight_line import Step
 from symflex.codegen.program.build import PI, constant_of
 from symflex.codegen.program.forge import Forge
 from symflex.codegen.program.schedule import schedule
@@ -53,36 +52,26 @@ def build_nested(tf: NestedTransferFunction) -> Piecewise:
     program = tf.program
     parameters = {p.name for p in tf.model.parameters}
     constants = {c.generator: c.expression for c in tf.constants}
-    names = step_names(tf)
-    made: dict[int, int] = {}
 
-    def generator(name: str) -> int:
+    def generator(position: int) -> int:
+        name = program.names[position]
         if name == LAPLACE:
             return forge.s
         if name == PI:
             return forge.constant(1, 1)
         return forge.parameter(name) if name in parameters else constant_of(forge, tf.model, constants[name])
 
-    for i in tf.steps:
-        operands = program.operands[i]
-        match program.kinds[i]:
-            case Step.GENERATOR:
-                made[i] = generator(program.names[operands[0]])
-            case Step.NUMBER:
-                value = program.fraction(i)
-                above, below = forge.constant(value.numerator), forge.constant(value.denominator)
-                made[i] = forge.divide(above, below)
-            case Step.ADD:
-                made[i] = forge.add([made[x] for x in operands])
-            case Step.MULTIPLY:
-                made[i] = forge.multiply([made[x] for x in operands])
-            case Step.DIVIDE:
-                made[i] = forge.divide(made[operands[0]], made[operands[1]])
-            case Step.NEGATE:
-                made[i] = forge.negate(made[operands[0]])
-            case Step.POWER:
-                made[i] = forge.power(made[operands[0]], operands[1])
-        if i in names:
-            forge.label(forge.signed(made[i])[1], names[i])
+    made = program.values(
+        program.operations(tf.steps),
+        name=generator,
+        number=lambda x: forge.divide(forge.constant(x.numerator), forge.constant(x.denominator)),
+        negative=forge.negate,
+        total=forge.add,
+        product=forge.multiply,
+        quotient=forge.divide,
+        power=forge.power,
+    )
+    for i, name in step_names(tf).items():
+        forge.label(forge.signed(made[i])[1], name)
     whole = forge.divide(made[tf.num], made[tf.den])
     return schedule(forge, tuple(p.name for p in tf.parameters), whole, None, inf)

@@ -303,26 +303,16 @@ def expanded_terms(equations: Equations, elimination: Elimination) -> float:
 def _forests(elimination: Elimination) -> float:
     """Return the logarithm of the product of the pivots where every closed sum and generator is one."""
     program = elimination.program
-    values: list[float] = []
-    for i, (kind, args) in enumerate(zip(program.kinds, program.operands, strict=True)):
-        if kind == Step.GENERATOR or program.roles.get(i) == "w":
-            value = 1.0
-        elif kind == Step.NUMBER:
-            value = 1.0 if args[0] else 0.0
-        elif kind == Step.ADD:
-            value = sum(values[x] for x in args)
-        elif kind == Step.MULTIPLY:
-            value = 1.0
-            for x in args:
-                value *= values[x]
-        elif kind == Step.DIVIDE:
-            below = values[args[1]]
-            value = values[args[0]] / below if below else 1.0
-        elif kind == Step.NEGATE:
-            value = -values[args[0]]
-        else:
-            value = values[args[0]] ** args[1]
-        values.append(value)
+    operations = (
+        (Step.GENERATOR if program.roles.get(i) == "w" else kind, i, operands, gone)
+        for kind, i, operands, gone in program.operations(range(len(program.kinds)))
+    )
+    values = program.values(
+        operations,
+        name=lambda _: 1.0,
+        number=lambda value: 1.0 if value else 0.0,
+        quotient=lambda above, below: above / below if below else 1.0,
+    )
     return sum(log(abs(values[x])) for x in elimination.pivots if values[x])
 
 

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import pytest
 
 from symflex.algebra import Factored, Ring
-from symflex.algebra.straight_line import Step
+from symflex.algebra.straight_line import Step, StraightLine
 from symflex.equations.elimination.determinants import LARGEST, _forests, _monomials, expanded_terms
 
 RING = Ring(("s", "k", "m", "pi"))
@@ -17,9 +17,7 @@ S, K, M, PI = (RING.generator(name) for name in RING.names)
 
 def elimination(steps, *pivots, roles=None):
     kinds, operands = zip(*steps, strict=True)
-    return SimpleNamespace(
-        program=SimpleNamespace(kinds=kinds, operands=operands, roles=roles or {}), pivots=pivots
-    )
+    return SimpleNamespace(program=StraightLine(("a", "b"), kinds, operands, roles or {}), pivots=pivots)
 
 
 A, B, NONE, FIVE = (
