@@ -6,14 +6,13 @@ from typing import TYPE_CHECKING
 
 from symflex.expressions import Expression, format_expression, quotient
 from symflex.print.forms import print_form
-from symflex.print.text import WIDTH, wrapped
+from symflex.print.text import INDENT, WIDTH, hanging, wrapped
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symflex.audit.judge import Audit
 
-INDENT = "  "
 NOTHING = 1e-30
 NEGLIGIBLE = 1e-6
 """Decibels or degrees below which a deviation is rounding."""
@@ -131,16 +130,11 @@ def _places(line: str, text: str) -> list[int]:
 def _where(lines: Sequence[tuple[str, Expression]], scale: Expression | None, width: int) -> list[str]:
     found = []
     if scale is not None:
-        found += [2 * INDENT + line for line in _hanging("times ", scale, width - 2 * len(INDENT))]
+        found += [2 * INDENT + line for line in hanging("times ", scale, width - 2 * len(INDENT))]
     for i, (name, expression) in enumerate(lines):
         head = f"{'where' if i == 0 else '':<6}{name} = "
-        found += [2 * INDENT + line for line in _hanging(head, expression, width - 2 * len(INDENT))]
+        found += [2 * INDENT + line for line in hanging(head, expression, width - 2 * len(INDENT))]
     return found
-
-
-def _hanging(head: str, expression: Expression, width: int) -> list[str]:
-    first, *more = wrapped(expression, width - len(head))
-    return [head + first, *(" " * len(head) + line for line in more)]
 
 
 def _changes(audit: Audit) -> list[str]:

@@ -8,15 +8,14 @@ from typing import TYPE_CHECKING
 from flint import arb
 
 from symflex.loops import decibels, degrees, hertz
+from symflex.print.text import INDENT, aligned
 from symflex.roots import decimals
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
     from fractions import Fraction
 
     from symflex.loops import AllowedBandwidth, Boundary, GainInterval, StabilityMap
 
-INDENT = "  "
 SHORT_DIGITS = 6
 
 
@@ -33,7 +32,7 @@ def stability_text(found: StabilityMap) -> str:
     lines += [2 * INDENT + _between(interval, found) for interval in stable]
     lines += ["", f"{INDENT}boundaries: {len(found.boundaries) or 'none'}"]
     if found.boundaries:
-        lines += _aligned(
+        lines += aligned(
             [
                 (found.gain, "radius", "omega [rad/s]", "f [Hz]", "unstable poles"),
                 *(_boundary_row(found, i) for i in range(len(found.boundaries))),
@@ -45,7 +44,7 @@ def stability_text(found: StabilityMap) -> str:
         (_end(i.low, "-inf"), _end(i.high, "inf"), str(i.poles.right), str(i.poles.axis))
         for i in found.intervals
     ]
-    lines += _aligned(rows)
+    lines += aligned(rows)
     if found.gain_margins or found.phase_margins:
         lines += _margins(found)
     if found.bandwidth is not None:
@@ -141,7 +140,7 @@ def _margins(found: StabilityMap) -> list[str]:
         flag = ", the smallest" if each is worst and len(found.phase_margins) > 1 else ""
         shown = decimals(abs(angle), arb(0), SHORT_DIGITS).re
         rows.append(("phase", f"{shown} deg", direction, place + flag))
-    return lines + _aligned(rows)
+    return lines + aligned(rows)
 
 
 def bandwidth_text(gain: str, found: AllowedBandwidth) -> str:
@@ -163,11 +162,3 @@ def _end(value: arb | None, infinite: str) -> str:
 
 def _number(value: Fraction | None) -> str:
     return "" if value is None else f"{float(value):.{SHORT_DIGITS}g}"
-
-
-def _aligned(rows: Sequence[tuple[str, ...]]) -> list[str]:
-    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
-    return [
-        2 * INDENT + "  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
-        for row in rows
-    ]

@@ -70,9 +70,7 @@ def derive_text(tf: AnyTransferFunction, form: PrintedForm, width: int = WIDTH) 
     lines.append("")
     form, hidden = with_hidden(tf, form)
     for word, (name, expression) in zip(chain(["where"], repeat("     ")), form.where, strict=False):
-        first, *more = wrapped(expression, width - len(word) - len(name) - 6)
-        lines.append(f"{INDENT}{word} {name} = {first}")
-        lines += [" " * (len(word) + len(name) + 6) + line for line in more]
+        lines += hanging(f"{INDENT}{word} {name} = ", expression, width)
     for line in (line for law in form.laws for line in law_lines(*law)):
         word = "     " if form.where or lines[-1].startswith(f"{INDENT}where") else "where"
         first, *more = _lay_out(line, width - len(word) - 3, hanging=len(INDENT))
@@ -81,7 +79,7 @@ def derive_text(tf: AnyTransferFunction, form: PrintedForm, width: int = WIDTH) 
         lines.append("")
     for factor, multiplicity in hidden:
         times = f", {multiplicity} times" if multiplicity > 1 else ""
-        lines += _labelled(f"{INDENT}hidden: ", factor, f" cancelled{times}", width)
+        lines += hanging(f"{INDENT}hidden: ", factor, width, f" cancelled{times}")
     if isinstance(tf, NestedTransferFunction):
         lines += [f"{INDENT}hidden modes: not examined in this representation", ""]
     elif tf.hidden:
@@ -93,11 +91,11 @@ def _left_side(tf: AnyTransferFunction, form: PrintedForm) -> str:
     return f"{form.at(tf.output.name)}/{form.at(tf.input.name)}"
 
 
-def _labelled(head: str, expression: Expression, tail: str, width: int) -> list[str]:
-    """Return an expression after some words and before others, on lines of its own where it is long."""
+def hanging(head: str, expression: Expression, width: int, tail: str = "") -> list[str]:
+    """Return an expression after some words and before others, its further lines below its first."""
     room = width - len(head)
     rows = wrapped(expression, room)
-    if len(rows[-1]) + len(tail) > room:
+    if tail and len(rows[-1]) + len(tail) > room:
         rows.append("")
         tail = tail.lstrip()
     rows[-1] += tail

@@ -391,9 +391,35 @@ def inner_styles(node: Expression, style: Style) -> tuple[Style, ...]:
             return (style,) * len(node.children)
 
 
-def numbers_first(factors: Sequence[Expression]) -> list[Expression]:
-    """Return factors with the plain numbers before all others, otherwise in order."""
-    return sorted(factors, key=lambda factor: not isinstance(factor, Number))
+class Part(NamedTuple):
+    """A part of an expression that may begin a line, after a sign or nothing."""
+
+    sign: str  # ``+``, ``-``, ``*``, ``/`` or empty
+    node: Expression
+
+
+def parts_of(node: Expression) -> list[Part]:
+    """Return where an expression may be broken, in any notation; nothing of what has no such place.
+
+    A sum may be broken before its signs, a product between its factors, with plain numbers before all others,
+    and a quotient at the slash that takes the place of its bar.
+    """
+    match node:
+        case Sum(terms=terms):
+            signed = [
+                ("-", t.operand) if isinstance(t, Negative) else ("+" if i else "", t)
+                for i, t in enumerate(terms)
+            ]
+            return [Part(*each) for each in signed]
+        case Product(factors=factors):
+            ordered = sorted(factors, key=lambda factor: not isinstance(factor, Number))
+            return [Part("*" if i else "", factor) for i, factor in enumerate(ordered)]
+        case Negative(operand=operand):
+            return [Part("-", operand)]
+        case Quotient(numerator=above, denominator=below):
+            return [Part("", above), Part("/", below)]
+        case _:
+            return []
 
 
 def is_half(exponent: Expression) -> bool:

@@ -8,10 +8,9 @@ What a report says about each model is in :data:`symflex.report.sections.SECTION
 :data:`symflex.report.claims.PREDICATES`.
 """
 
-from symflex.files.write import check_folder
 from symflex.report.article import report_article
 from symflex.report.page import report_page
-from symflex.report.published import PublishedReport, compile_pdf, has_compiler, publish, write_tree, written
+from symflex.report.published import written
 from symflex.report.report import (
     Report,
     compose,
@@ -23,20 +22,14 @@ from symflex.report.report import (
 )
 
 __all__ = [
-    "PublishedReport",
     "Report",
-    "check_folder",
-    "compile_pdf",
     "compose",
     "find_claims",
     "find_measurements",
     "find_specifications",
-    "has_compiler",
     "name_specifications",
-    "publish",
     "report_article",
     "report_page",
     "write_chapters",
-    "write_tree",
     "written",
 ]

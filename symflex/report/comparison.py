@@ -5,7 +5,7 @@ A new column is a function of :class:`~symflex.report.facts.ModelFacts` and a li
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from math import inf
 from typing import TYPE_CHECKING, Final
@@ -28,7 +28,7 @@ from symflex.report.facts import ModelFacts
 from symflex.report.structure import PLACES
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from symflex.report.document import Run
     from symflex.report.facts import TransferFacts
@@ -42,15 +42,13 @@ def model_cell(facts: ModelFacts) -> Cell:
     return (PageLink(facts.stem, f"#{facts.stem}"),)
 
 
-def flexibility_cell(facts: ModelFacts) -> Cell:
+def flexibility_cell(facts: ModelFacts) -> Iterator[Run]:
     """Return which kinds of flexibility a model describes."""
-    runs: list[Run] = []
     for place in PLACES:
         parts = [c for c in facts.compliances if c.place == place]
         if parts:
             how = "bending" if all(c.is_bending for c in parts) else "axial or torsional"
-            runs += [place, " ", Aside(how), "\n"]
-    return tuple(runs[:-1]) if runs else (NONE,)
+            yield from (place, " ", Aside(how), "\n")
 
 
 def modes_cell(facts: ModelFacts) -> Cell:
@@ -60,7 +58,7 @@ def modes_cell(facts: ModelFacts) -> Cell:
     return (str(max((f.modes for f in facts.functions), default=0)),)
 
 
-def added_cell(facts: ModelFacts) -> Cell:
+def added_cell(facts: ModelFacts) -> Iterable[Run]:
     """Return the poles and zeros that each flexible mode adds to the rigid system."""
     runs: list[Run] = []
     for function in representatives(facts):
@@ -70,16 +68,14 @@ def added_cell(facts: ModelFacts) -> Cell:
         where = {True: ", colocated", False: ", noncolocated", None: ""}[function.colocated]
         runs += [_per_mode(poles, zeros, function), "\n", Aside(function.tf + where), "\n"]
     if not runs and any(f.modes and f.is_still_when_rigid for f in facts.functions):
-        runs = [NONE, "\n", Aside("no response when rigid"), "\n"]
-    return tuple(runs[:-1]) if runs else (NONE,)
+        return (NONE, "\n", Aside("no response when rigid"))
+    return runs
 
 
-def phase_cell(facts: ModelFacts) -> Cell:
+def phase_cell(facts: ModelFacts) -> Iterator[Run]:
     """Return which functions are minimum phase, and for which values of the parameters."""
-    runs: list[Run] = []
     for function in representatives(facts):
-        runs += [Code(function.tf), " ", *phase_runs(function), "\n"]
-    return tuple(runs[:-1]) if runs else (NONE,)
+        yield from (Code(function.tf), " ", *phase_runs(function), "\n")
 
 
 def both_cell(facts: ModelFacts) -> Cell:
@@ -90,36 +86,30 @@ def both_cell(facts: ModelFacts) -> Cell:
     return ("colocated only" if kinds == {True} else "noncolocated only" if kinds else NONE,)
 
 
-def together_cell(facts: ModelFacts) -> Cell:
+def together_cell(facts: ModelFacts) -> Iterator[Run]:
     """Return up to which frequency outputs elsewhere move with colocated ones."""
-    runs: list[Run] = []
     for found in facts.colocations:
         end = f"{found.bandwidth_hz:.4g} Hz" if found.bandwidth_hz else f"over {found.examined_hz:.4g} Hz"
-        runs += [end if found.is_together else "not at all", " ", Aside(found.tf), "\n"]
-    return tuple(runs[:-1]) if runs else (NONE,)
+        yield from (end if found.is_together else "not at all", " ", Aside(found.tf), "\n")
 
 
-def data_cell(facts: ModelFacts) -> Cell:
+def data_cell(facts: ModelFacts) -> Iterator[Run]:
     """Return how far a model is off measured responses."""
-    runs: list[Run] = []
     for found in facts.data:
-        kind = ", synthetic data" if found.is_synthetic else ""
-        runs += [f"{found.decibels:.3g} dB, {found.degrees:.3g}° rms", "\n", Aside(f"{found.tf}{kind}"), "\n"]
-    return tuple(runs[:-1]) if runs else (NONE,)
+        source = Aside(f"{found.tf}, synthetic data" if found.is_synthetic else found.tf)
+        yield from (f"{found.decibels:.3g} dB, {found.degrees:.3g}° rms", "\n", source, "\n")
 
 
-def loop_cell(facts: ModelFacts) -> Cell:
+def loop_cell(facts: ModelFacts) -> Iterator[Run]:
     """Return for which gains a loop is stable."""
-    runs: list[Run] = []
     for loop in facts.loops:
         for low, high in loop.stable:
             above = "" if not low else f"{_short(low)} < "
             unit = f" {loop.unit}" if loop.unit else ""
             below = "" if high is None else f" < {_short(high)}{unit}"
-            runs += [f"{above}{loop.gain}{below}" if above or below else f"all {loop.gain} > 0", "\n"]
+            yield from (f"{above}{loop.gain}{below}" if above or below else f"all {loop.gain} > 0", "\n")
         if not loop.stable:
-            runs += [f"no {loop.gain}", "\n"]
-    return tuple(runs[:-1]) if runs else (NONE,)
+            yield from (f"no {loop.gain}", "\n")
 
 
 def _short(value: float) -> str:
@@ -127,23 +117,21 @@ def _short(value: float) -> str:
     return f"{value:.0f}" if 1e4 <= abs(value) < 1e7 else f"{value:.4g}"  # noqa: PLR2004
 
 
-def bandwidth_cell(facts: ModelFacts) -> Cell:
+def bandwidth_cell(facts: ModelFacts) -> Iterator[Run]:
     """Return the bandwidth a loop allows with a gain margin of 6 dB."""
-    runs: list[Run] = []
     for loop in facts.loops:
         if loop.bandwidth_hz == inf:
-            runs += ["no limit", "\n"]
+            yield from ("no limit", "\n")
         elif loop.bandwidth_hz is not None:
             at_least = "" if loop.is_bandwidth_limited else "≥ "
-            runs += [f"{at_least}{loop.bandwidth_hz:.4g} Hz", "\n"]
-    return tuple(runs[:-1]) if runs else (NONE,)
+            yield from (f"{at_least}{loop.bandwidth_hz:.4g} Hz", "\n")
 
 
 @dataclass(frozen=True, slots=True)
 class ComparisonColumn:
     """A column of the comparison."""
 
-    cell: Callable[[ModelFacts], Cell]  # returns its cell in a model's row
+    cell: Callable[[ModelFacts], Iterable[Run]]  # returns its cell in a model's row, lines that end
     side: Side = "text"  # as in :class:`~symflex.report.document.Column`
 
 
@@ -215,8 +203,14 @@ def comparison_section(models: Sequence[ModelFacts]) -> Section | None:
 
 
 def _table(models: Sequence[ModelFacts], chosen: dict[str, ComparisonColumn]) -> Table:
-    rows = tuple(tuple(column.cell(facts) for column in chosen.values()) for facts in models)
+    rows = tuple(tuple(_cell(column.cell(facts)) for column in chosen.values()) for facts in models)
     return Table(columns(*((head, column.side) for head, column in chosen.items())), rows)
+
+
+def _cell(runs: Iterable[Run]) -> Cell:
+    """Return a cell without the end of its last line; a dash where there is nothing to say."""
+    found = tuple(runs)
+    return (found[:-1] if found[-1:] == ("\n",) else found) or (NONE,)
 
 
 def representatives(facts: ModelFacts) -> tuple[TransferFacts, ...]:

@@ -39,8 +39,8 @@ from symflex.print.writer import (
     Style,
     Written,
     is_half,
-    numbers_first,
     operator_size,
+    parts_of,
 )
 
 if TYPE_CHECKING:
@@ -148,9 +148,12 @@ class Edge(NamedTuple):
 
 
 _NOTHING: Final = Glue()
-_PLUS: Final = Glue(" + ", OPERATOR, "{}+ ", OPERATOR)
-_MINUS: Final = Glue(" - ", OPERATOR, "{}- ", OPERATOR)
 _SLASH: Final = Glue("/", SLASH, "{}/ ", SLASH)
+_GLUES: Final = {
+    "+": Glue(" + ", OPERATOR, "{}+ ", OPERATOR),
+    "-": Glue(" - ", OPERATOR, "{}- ", OPERATOR),
+    "/": _SLASH,
+}
 _TIMES: Final = r"{}\times "
 _DOT: Final = r"{}\cdot "
 
@@ -263,23 +266,10 @@ class _Filler:
         self, glue: Glue, left: Edge, node: Expression, bare: Written, right: Edge, depth: int, hang: int
     ) -> None:
         match node:
-            case Sum(terms=terms):
-                self._split_sum(glue, left, terms, right, depth)
-            case Product(factors=factors):
-                self._split_product(glue, left, numbers_first(factors), right, depth, hang)
-            case Negative(operand=operand):
-                minus = Edge(f"{left.latex}-", left.width + MINUS)
-                self.place(glue, minus, operand, self._writer.as_term, right, depth, hang)
-            case Quotient(numerator=above, denominator=below):
-                self.place(glue, left, above, self._writer.as_numerator, Edge(), depth)
-                self.place(
-                    _SLASH._replace(depth=depth + hang),
-                    Edge(),
-                    below,
-                    self._as_denominator,
-                    right,
-                    depth + hang,
-                )
+            case Sum() | Negative() | Quotient():
+                self._split_signed(glue, left, node, right, depth, hang)
+            case Product():
+                self._split_product(glue, left, [p.node for p in parts_of(node)], right, depth, hang)
             case Power(base=base, exponent=exponent):
                 raised = self._raised(exponent)
                 after = Edge(f"{raised.latex}{right.latex}", raised.width + right.width)
@@ -293,24 +283,24 @@ class _Filler:
                     glue, f"{left.latex}{bare.markup}{right.latex}", left.width + bare.width + right.width
                 )
 
-    def _split_sum(
-        self, glue: Glue, left: Edge, terms: tuple[Expression, ...], right: Edge, depth: int
+    def _split_signed(
+        self, glue: Glue, left: Edge, node: Expression, right: Edge, depth: int, hang: int
     ) -> None:
-        for index, term in enumerate(terms):
-            if index and self._writer.piece(term).width > self._rest(depth):
+        """Set the terms of a sum, or what stands before and after a slash."""
+        parts = parts_of(node)
+        for i, (sign, part) in enumerate(parts):
+            before, after = left if i == 0 else Edge(), right if i == len(parts) - 1 else Edge()
+            fence, inner, hanging = self._writer.as_term, depth, 1 if isinstance(node, Sum) else hang
+            if isinstance(node, Quotient):
+                fence = self._as_denominator if sign else self._writer.as_numerator
+                inner, hanging = depth + hang * i, 0
+            elif i and self._writer.piece(node.children[i]).width > self._rest(depth):
                 # A term of several lines begins its own.
                 self._room = 0.0
-            sign = glue if index == 0 else _PLUS._replace(depth=depth)
-            before = left if index == 0 else Edge()
-            after = right if index == len(terms) - 1 else Edge()
-            if isinstance(term, Negative):
-                if index:
-                    sign = _MINUS._replace(depth=depth)
-                else:
-                    before = Edge(f"{left.latex}-", left.width + MINUS)
-                self.place(sign, before, term.operand, self._writer.as_term, after, depth, 1)
-            else:
-                self.place(sign, before, term, self._writer.as_term, after, depth, 1)
+            if i == 0 and sign:
+                before = Edge(f"{left.latex}-", left.width + MINUS)
+            joint = _GLUES[sign]._replace(depth=inner) if i else glue
+            self.place(joint, before, part, fence, after, inner, hanging)
 
     def _split_product(
         self, glue: Glue, left: Edge, factors: list[Expression], right: Edge, depth: int, hang: int

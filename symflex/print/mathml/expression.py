@@ -47,7 +47,7 @@ from symflex.print.writer import (
     Style,
     Written,
     is_half,
-    numbers_first,
+    parts_of,
 )
 
 if TYPE_CHECKING:
@@ -116,33 +116,16 @@ class MathmlWriter(ExpressionWriter):
 
     def _parts(self, node: Expression) -> list[tuple[str, Expression, str]] | None:
         """Return the parts of a node, each with what stands before and after it; None of what has none."""
-        match node:
-            case Sum(terms=terms):
-                parts = []
-                for i, term in enumerate(terms):
-                    is_negative = isinstance(term, Negative)
-                    inner = term.operand if isinstance(term, Negative) else term
-                    sign = operator("-" if is_negative else "+", "infix" if i else "prefix")
-                    parts.append(self._fenced_part(sign if i or is_negative else "", inner, Sum, Negative))
-                return parts
-            case Product(factors=factors):
-                parts = []
-                for i, factor in enumerate(numbers_first(factors)):
-                    parts.append(self._fenced_part(INVISIBLE_TIMES if i else "", factor, Sum, Negative))
-                return _joined(parts, self)
-            case Negative(operand=operand):
-                return [self._fenced_part(operator("-", "prefix"), operand, Sum, Negative)]
-            case Quotient(numerator=above, denominator=below):
-                return [
-                    self._fenced_part("", above, Sum, Negative),
-                    self._fenced_part(operator("/"), below, Sum, Negative, Product, Quotient),
-                ]
-            case Power(base=Sum() as base, exponent=exponent) if not is_half(exponent):
-                opening, closing = fence_signs(self.piece(base).nesting)
-                raised = self.exponent(exponent).markup
-                return [(opening, base, f"<msup>{closing}{raised}</msup>")]
-            case _:
-                return None
+        if isinstance(node, Power) and isinstance(node.base, Sum) and not is_half(node.exponent):
+            opening, closing = fence_signs(self.piece(node.base).nesting)
+            return [(opening, node.base, f"<msup>{closing}{self.exponent(node.exponent).markup}</msup>")]
+        found = []
+        for i, (sign, part) in enumerate(parts_of(node)):
+            spelt = operator(sign, "" if sign == "/" else "infix" if i else "prefix") if sign else ""
+            looser = (Product, Quotient) if sign == "/" else ()
+            spelt = INVISIBLE_TIMES if sign == "*" else spelt
+            found.append(self._fenced_part(spelt, part, Sum, Negative, *looser))
+        return _joined(found, self) if isinstance(node, Product) else found or None
 
     def _fenced_part(
         self, before: str, node: Expression, *loose: type[Expression]
