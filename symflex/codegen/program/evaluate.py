@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import reduce
 from math import isfinite
+from operator import mul
 from sys import float_info
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from flint import arb, ctx, fmpq
@@ -37,6 +39,7 @@ from symflex.codegen.program.nodes import (
     ToComplex,
 )
 from symflex.codegen.program.runtime import (
+    Values,
     characteristic_roots,
     complex_exp,
     mean_over_circle,
@@ -95,19 +98,9 @@ def nearest_double(value: Fraction, pi_power: int = 0) -> float:
 def evaluate(program: Piecewise, s: ArrayLike, values: Mapping[str, ArrayLike]) -> NDArray[np.complex128]:
     """Return the values of a program, exactly those that the generated code returns.
 
-    Parameters
-    ----------
-    program : Piecewise
-        Of one transfer function.
-    s : array_like of complex
-        Laplace variable [rad/s]; the angular frequency for a program in real arithmetic.
-    values : mapping of str to array_like
-        Every parameter, by its name in the model; broadcast against ``s``.
-
-    Returns
-    -------
-    ndarray of complex
-        Of the shape that ``s`` and the parameters broadcast to. Poles and overflows are inf or nan.
+    ``s`` is the Laplace variable [rad/s], the angular frequency for a program in real arithmetic; ``values``
+    are all parameters, by their names in the model. They broadcast together. Poles and overflows are inf or
+    nan.
     """
     point = np.asarray(s, dtype=float if program.is_real else complex)[()]
     given = {name: _number(values[name]) for name in program.parameters}
@@ -131,15 +124,10 @@ def evaluate(program: Piecewise, s: ArrayLike, values: Mapping[str, ArrayLike]) 
     return result.reshape(shape)
 
 
-def numbers_of_pieces(program: Piecewise, point: Any, given: Mapping[str, Any]) -> NDArray[np.int64]:  # noqa: ANN401
-    """Return, for every value of s, the number that the conditions make of it.
+def numbers_of_pieces(program: Piecewise, point: Values, given: Mapping[str, Values]) -> NDArray[np.int64]:
+    """Return, for every value of the argument, the number that the conditions make of it.
 
-    Parameters
-    ----------
-    program : Piecewise
-        The program.
-    point, given
-        Its argument, and the parameters by name: numbers or arrays that broadcast.
+    It and the parameters, given by name, are numbers or arrays that broadcast.
     """
     run = _ProgramRun(point, given)
     run.assign(program.tests.constants)
@@ -155,18 +143,10 @@ def numbers_of_pieces(program: Piecewise, point: Any, given: Mapping[str, Any]) 
     return number
 
 
-def value_of_piece(piece: CodePiece, point: Any, given: Mapping[str, Any]) -> Any:  # noqa: ANN401
-    """Return the value that a piece computes, wherever its argument lies.
+def value_of_piece(piece: CodePiece, point: Values, given: Mapping[str, Values]) -> Values:
+    """Return the value that a piece computes, wherever its argument lies."""
 
-    Parameters
-    ----------
-    piece : CodePiece
-        Of a program.
-    point, given
-        As for :func:`numbers_of_pieces`.
-    """
-
-    def parts(s: Any) -> tuple[Any, ...]:  # noqa: ANN401
+    def parts(s: Values) -> tuple[Values, ...]:
         run = _ProgramRun(s, given)
         run.assign(piece.code.constants)
         run.assign(piece.code.assignments)
@@ -178,15 +158,10 @@ def value_of_piece(piece: CodePiece, point: Any, given: Mapping[str, Any]) -> An
     return num / den[0] if den else num
 
 
-def number_of(node: CodeNode, known: Mapping[str, Any]) -> Any:  # noqa: ANN401
+def number_of(node: CodeNode, known: Mapping[str, Values]) -> Values:
     """Return the value of an expression that depends on no argument, ``None`` for one that does.
 
-    Parameters
-    ----------
-    node : CodeNode
-        The expression.
-    known : mapping of str to number
-        Values of assignments that depend on no argument either.
+    ``known`` are the values of assignments that depend on no argument either.
 
     Examples
     --------
@@ -208,7 +183,7 @@ def number_of(node: CodeNode, known: Mapping[str, Any]) -> Any:  # noqa: ANN401
     return run.value(node)
 
 
-def _number(value: ArrayLike) -> Any:  # noqa: ANN401
+def _number(value: ArrayLike) -> Values:
     array = np.asarray(value)
     return array.astype(complex if array.dtype.kind == "c" else float)[()]
 
@@ -216,16 +191,16 @@ def _number(value: ArrayLike) -> Any:  # noqa: ANN401
 class _ProgramRun:
     """The values computed so far."""
 
-    def __init__(self, s: Any, parameters: Mapping[str, Any]) -> None:  # noqa: ANN401
+    def __init__(self, s: Values, parameters: Mapping[str, Values]) -> None:
         self._s = s
         self._parameters = parameters
-        self.assigned: dict[str, Any] = {}
+        self.assigned: dict[str, Values] = {}
 
     def assign(self, assignments: tuple[Assignment, ...]) -> None:
         for assignment in assignments:
             self.assigned[assignment.name] = self.value(assignment.value)
 
-    def value(self, node: CodeNode) -> Any:  # noqa: ANN401, PLR0912
+    def value(self, node: CodeNode) -> Values:
         """Return the value of an expression: a number, an array, or a list of these."""
         match node:
             case RealNumber(value, pi_power):
@@ -244,19 +219,10 @@ class _ProgramRun:
                 return self._s
             case InverseLaplace():
                 return 1.0 / self._s
-            case Add(terms):
-                total = self.value(terms[0])
-                for term in terms[1:]:
-                    if isinstance(term, Negate):
-                        total = total - self.value(term.operand)
-                    else:
-                        total = total + self.value(term)
-                return total
+            case Add((first, *rest)):
+                return reduce(self._plus, rest, self.value(first))
             case Multiply(factors):
-                product = self.value(factors[0])
-                for factor in factors[1:]:
-                    product = product * self.value(factor)
-                return product
+                return reduce(mul, map(self.value, factors))
             case Divide(numerator, denominator):
                 return self.value(numerator) / self.value(denominator)
             case IntegerPower(base, exponent):
@@ -267,6 +233,16 @@ class _ProgramRun:
                 return complex_exp(np.asarray(self.value(argument), dtype=complex)[()])
             case Apply(function, argument):
                 return getattr(np, NUMPY_FUNCTIONS[function])(self.value(argument))
+        return self._lists(node)
+
+    def _plus(self, total: Values, term: CodeNode) -> Values:
+        if isinstance(term, Negate):
+            return total - self.value(term.operand)
+        return total + self.value(term)
+
+    def _lists(self, node: CodeNode) -> Values:
+        """Return the value of what takes lists or gives them."""
+        match node:
             case Solutions(coefficients, terms):
                 given = [self.value(c) for c in coefficients]
                 return series_solutions(given, terms) if terms else propagated(given)

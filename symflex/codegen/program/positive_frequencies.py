@@ -36,6 +36,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
 
+TWO = RealNumber(Fraction(2))
+
+
 def for_positive(program: Piecewise) -> Piecewise:
     """Return a program of the angular frequency as one for positive ones, with no power of j above one.
 
@@ -93,7 +96,7 @@ def _positive(node: CodeNode) -> CodeNode:
     match node:
         case Apply("abs", Laplace()):
             return Laplace()
-        case Multiply((RealNumber(value, 0), Assigned() as x)) if value == 2:  # noqa: PLR2004
+        case Multiply((factor, Assigned() as x)) if factor == TWO:
             return Add((x, x))
         case Apply(function, Negate(Multiply((RealNumber() | ParameterValue() as first, *rest)))):
             return Apply(function, Multiply((Negate(first), *rest)))

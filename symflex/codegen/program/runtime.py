@@ -14,8 +14,11 @@ from symflex.algebra.modal_sum import modal_amplitudes
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+Values = Any
+"""A number, an array of numbers, or a list of these: what numpy calculates with, one way for all."""
 
-def complex_exp(z: Any) -> Any:  # noqa: ANN401
+
+def complex_exp(z: Values) -> Values:
     """Return exp(z); one tangent costs less than the cosine and sine in np.exp."""
     t = np.tan(0.5 * z.imag)
     square = t * t
@@ -29,7 +32,7 @@ def complex_exp(z: Any) -> Any:  # noqa: ANN401
     return value
 
 
-def series_solutions(coefficients: list[Any], terms: int) -> list[Any]:
+def series_solutions(coefficients: list[Values], terms: int) -> list[Values]:
     """Return the solutions of a linear differential equation at 1, by Taylor series.
 
     The equation is y^(n) + c_(n-1) y^(n-1) + ... + c_0 y = 0; solution k starts from
@@ -57,7 +60,7 @@ def series_solutions(coefficients: list[Any], terms: int) -> list[Any]:
     return found
 
 
-def propagated(coefficients: list[Any]) -> list[Any]:
+def propagated(coefficients: list[Values]) -> list[Values]:
     """Return h, h', ..., h^(n-1) at 1 for coefficients of any size.
 
     h solves h^(n) + c_(n-1) h^(n-1) + ... + c_0 h = 0 and starts from h^(n-1)(0) = 1 and
@@ -87,7 +90,7 @@ def propagated(coefficients: list[Any]) -> list[Any]:
     return [(grown[..., k, n - 1] * size ** (k - n + 1.0))[()] for k in range(n)]
 
 
-def characteristic_roots(coefficients: list[Any]) -> list[Any]:
+def characteristic_roots(coefficients: list[Values]) -> list[Values]:
     """Return the roots of x^n + c_(n-1) x^(n-1) + ... + c_0, and the least distance of two.
 
     Eigenvalues of the companion matrix, then steps of Aberth and Ehrlich, which give
@@ -122,7 +125,7 @@ def characteristic_roots(coefficients: list[Any]) -> list[Any]:
     return [*((x[..., i] * found)[()] for i in range(n)), least[()]]
 
 
-def modal_value(modes: list[Any], coefficients: list[Any], frames: Any) -> list[Any]:  # noqa: ANN401
+def modal_value(modes: list[Values], coefficients: list[Values], frames: Values) -> list[Values]:
     """Return a sum of exponentials over the largest one, and the logarithm of that."""
     found = modal_amplitudes(modes, coefficients, frames)
     growth = np.real(found[0][1])
@@ -135,7 +138,7 @@ def modal_value(modes: list[Any], coefficients: list[Any], frames: Any) -> list[
     return [total, growth]
 
 
-def mean_over_circle(parts: Callable[[Any], tuple[Any, ...]], s: Any, points: int) -> Any:  # noqa: ANN401
+def mean_over_circle(parts: Callable[[Values], tuple[Values, ...]], s: Values, points: int) -> Values:
     """Return numerator over denominator, each the mean of its values on a circle.
 
     Both are analytic, so the mean is the value at the center s, where the formula

@@ -187,21 +187,9 @@ def choose_program(
     Without values for all parameters nothing can be measured; recurrences are taken unless another form is
     much shorter.
 
-    Parameters
-    ----------
-    tf : TransferFunction or NestedTransferFunction
-        Derived.
-    band_hz : tuple of Fraction, optional
-        [Hz]; by default the band of the model's ``[analysis]``, else 0.1 Hz to 10 kHz.
-    samples : int
-        Number of frequencies, spaced evenly on a logarithmic scale; more are taken near poles and zeros.
-
-    Raises
-    ------
-    BudgetError
-        SF503 when every program would be too large.
-    ModelError
-        SF233 when a number does not fit in double precision.
+    The band is in Hz, by default that of the model's ``[analysis]``, else 0.1 Hz to 10 kHz; ``samples`` are
+    spaced evenly on a logarithmic scale, and more are taken near poles and zeros. SF503 when every program
+    would be too large, SF233 when a number does not fit in double precision.
     """
     return _choose(_gauge(tf, band_hz, samples))
 
@@ -213,17 +201,7 @@ def choose_programs(
 ) -> tuple[tuple[Piecewise, Verification], tuple[Piecewise, Verification] | None]:
     """Return what :func:`choose_program` does, and the same for the frequency response in real arithmetic.
 
-    The latter is there for lossless distributed systems only.
-
-    Parameters
-    ----------
-    tf, band_hz, samples
-        As for :func:`choose_program`.
-
-    Raises
-    ------
-    BudgetError, ModelError
-        As :func:`choose_program` does.
+    The latter is there for lossless distributed systems only; arguments and errors are the same.
     """
     gauge = _gauge(tf, band_hz, samples)
     return _choose(gauge), _choose_real(gauge)
@@ -238,16 +216,8 @@ def measure_values(
 ) -> Verification:
     """Return how well values that are computed in some other way agree with a transfer function.
 
-    Parameters
-    ----------
-    tf : TransferFunction
-        Derived.
-    values : callable
-        Takes an array of s [rad/s]; not called when nothing can be measured.
-    form : str
-        What the other way is called.
-    band_hz, samples
-        As for :func:`choose_program`.
+    ``values`` takes an array of s [rad/s]; it is not called when nothing can be measured. ``form`` is what
+    the other way is called; band and samples as for :func:`choose_program`.
     """
     gauge = _gauge(tf, band_hz, samples)
     if gauge.references is None:
@@ -484,16 +454,8 @@ def _roots(coefficients: Sequence[acb], *, is_scaled: bool = False) -> NDArray[n
 class References:
     """Enclosures of a bound transfer function at frequencies over a band.
 
-    Parameters
-    ----------
-    bound : BoundTransferFunction or BoundNested
-        With the declared values.
-    band_hz : tuple of Fraction
-        [Hz].
-    samples : int
-        Number of frequencies, besides those around poles and zeros.
-    is_plain : bool
-        True to take none around poles and zeros.
+    The function is bound to the declared values, the band is in Hz; there are so many samples besides those
+    around poles and zeros, of which there are none where ``is_plain``.
     """
 
     def __init__(
@@ -580,15 +542,7 @@ class References:
 
 
 class _Aside:
-    """What a program with numeric exponents is worth below a band, and above it.
-
-    Parameters
-    ----------
-    bound : BoundTransferFunction or BoundNested
-        With the declared values.
-    band_hz : tuple of Fraction
-        [Hz].
-    """
+    """What a program with numeric exponents is worth below a band, and above it."""
 
     def __init__(
         self, bound: BoundTransferFunction | BoundNested, band_hz: tuple[Fraction, Fraction]

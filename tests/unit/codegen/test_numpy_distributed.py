@@ -23,55 +23,41 @@ from symflex.codegen.python import NUMPY
 from symflex.transfer import bind
 from tests.unit.codegen import exportable
 
-BAR = 'E = "70 GPa"\nI = "1e-8 m^4"\nrho = "2700 kg/m^3"\nA = "1e-4 m^2"\nl = "1 m"\n'
-BEAM = 'type = "beam", E = "E", I = "I", rho = "rho", A = "A", l = "l"'
-
-SPECS = {
+BEAM = f'{exportable.BEAM}, l = "l"'
+BEAMS = {
     "sliding_free": (
-        BAR,
+        exportable.BAR,
         f'arm = {{ between = ["p", "q"], {BEAM} }}\nslide = {{ type = "slider", at = "p" }}',
         'F = { force = "p" }',
         'V_act = "s*p"\nV_tip = "s*q"',
     ),
     "tip_mass": (
-        BAR + 'm = "0.2 kg"\n',
+        exportable.BAR + 'm = "0.2 kg"\n',
         f'arm = {{ between = ["ground", "q"], {BEAM} }}\nload = {{ type = "mass", at = "q", m = "m" }}',
         'F = { force = "q" }',
         'X = "q"',
     ),
     "rod_tip_mass": (
-        BAR + 'm = "0.2 kg"\n',
+        exportable.BAR + 'm = "0.2 kg"\n',
         'bar = { type = "rod", between = ["ground", "x"], E = "E", A = "A", rho = "rho", l = "l" }\n'
         'load = { type = "mass", at = "x", m = "m" }',
         'F = { force = "x" }',
         'X = "x"',
     ),
     "timoshenko": (
-        BAR + 'G = "26 GPa"\nkappa = 0.85\n',
+        exportable.BAR + 'G = "26 GPa"\nkappa = 0.85\n',
         f'arm = {{ between = ["ground", "q"], theory = "timoshenko", kappa = "kappa", G = "G", {BEAM} }}',
         'F = { force = "q" }',
         'X = "q"',
     ),
     "kelvin_voigt": (
-        BAR + 'eta = "20 us"\n',
+        exportable.BAR + 'eta = "20 us"\n',
         f'arm = {{ between = ["ground", "q"], eta = "eta", {BEAM} }}',
         'F = { force = "q" }',
         'X = "q"',
     ),
-    "two_beams": (
-        BAR + 'I_2 = "3e-8 m^4"\nl_2 = "0.3 m"\n',
-        f'arm = {{ between = ["ground", "q"], {BEAM} }}\n'
-        'end = { type = "beam", between = ["q", "r"], E = "E", I = "I_2", rho = "rho", A = "A", l = "l_2" }',
-        'F = { force = "r" }',
-        'X = "r"',
-    ),
-    "tension": (
-        BAR + 'N = "500 N"\nk_f = "1 kN/m^2"\n',
-        f'arm = {{ between = ["ground", "q"], N = "N", k_f = "k_f", {BEAM} }}',
-        'F = { force = "q" }',
-        'X = "q"',
-    ),
 }
+SPECS = (*BEAMS, "two_beams", "tension")
 POINTS = [
     *(1j * np.logspace(-9, 5, 15)),
     *(np.logspace(-3, 5, 9) * np.exp(1j * np.linspace(0.1, 6.1, 9))),
@@ -79,7 +65,9 @@ POINTS = [
 
 
 def specification(name):
-    parameters, elements, inputs, outputs = SPECS[name]
+    if name not in BEAMS:
+        return exportable.SPECS[name]
+    parameters, elements, inputs, outputs = BEAMS[name]
     return (
         f"symflex = 1\n[parameters]\n{parameters}\n[elements]\n{elements}\n"
         f"[inputs]\n{inputs}\n[outputs]\n{outputs}\n"
@@ -89,7 +77,7 @@ def specification(name):
 SENSOR = f"""
 symflex = 1
 [parameters]
-{BAR}
+{exportable.BAR}
 x_s = "0.31 m"
 [inputs]
 F = {{}}
@@ -100,25 +88,6 @@ conditions = ["w'(0) = 0", "E*I*w'''(0) = F", "w''(l) = 0", "w'''(l) = 0"]
 [outputs]
 V_mid = "s*w(l/2)"
 V_s = "s*w(x_s)"
-"""
-
-DELAY = """
-symflex = 1
-[parameters]
-m = "2 kg"
-k = "300 N/m"
-g = "5 N*s/m"
-T_s = "5 ms"
-[blocks]
-D = { type = "delay", T = "T_s" }
-[elements]
-body = { type = "mass", at = "x", m = "m" }
-spring = { type = "spring", between = ["x", "ground"], k = "k" }
-feedback = { type = "force_source", at = "x", f = "-g*D*s*x" }
-[inputs]
-F = { force = "x" }
-[outputs]
-X = "x"
 """
 
 
@@ -238,12 +207,12 @@ def test_a_delay_in_a_loop_agrees_with_its_formula():
     def expected(s):
         return 1 / (2 * s**2 + 5 * s * mp.exp(-s * mp.mpf("0.005")) + 300)
 
-    assert max(relative_errors(module(DELAY, "delay").X_over_F, expected)) < 1e-14
+    assert max(relative_errors(module(exportable.DELAY, "delay").X_over_F, expected)) < 1e-14
 
 
 @pytest.mark.parametrize("s", [-1e7, -1e12, 1e7, 1e12, -1e9 + 1e9j])
 def test_a_delay_neither_over_nor_underflows_far_from_the_axis(s):
-    value = module(DELAY, "delay").X_over_F(s)
+    value = module(exportable.DELAY, "delay").X_over_F(s)
     assert np.isfinite(value)
 
 
