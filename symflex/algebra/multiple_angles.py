@@ -7,9 +7,9 @@ angle ``n x`` serves. Hyperbolic functions follow the same rules.
 from __future__ import annotations
 
 from fractions import Fraction
-from math import comb
 from typing import TYPE_CHECKING
 
+from symflex.algebra.exponential_sum import spread
 from symflex.algebra.factored import Factored
 from symflex.algebra.ring import coefficients_of
 
@@ -35,11 +35,8 @@ def lift(ring: Ring, polynomial: fmpz_mpoly, angle: KernelPair, n: int) -> Facto
         if o > 1:
             return None
         part = coefficient * 2 ** (highest - k)
-        for i, o_i, weight in _harmonics(k, o):
-            if o_i and not i:
-                continue
-            key = (i, o_i)
-            harmonics[key] = harmonics.get(key, zero) + part * weight
+        for i, weight in _harmonics(k, o):
+            harmonics[i, o] = harmonics.get((i, o), zero) + part * weight
     c, s = ring.generator(angle.even.generator), ring.generator(angle.odd.generator)
     total = zero
     for (i, o), part in harmonics.items():
@@ -52,22 +49,12 @@ def lift(ring: Ring, polynomial: fmpz_mpoly, angle: KernelPair, n: int) -> Facto
     return Factored.polynomial(ring, total) * Fraction(1, 2**highest)
 
 
-def _harmonics(k: int, odd: int) -> list[tuple[int, int, int]]:
-    """Return ``2^k cos^k`` or ``2^k sin cos^k`` as (multiple, odd or even, weight).
+def _harmonics(k: int, odd: int) -> list[tuple[int, int]]:
+    """Return ``2^k cos^k x``, or ``2^k sin x cos^k x``, by cosines, or sines, of multiples.
 
-    ``2^k cos^k x = sum_j C(k, j) cos((k - 2j) x)``; times ``sin x``, ``sin x cos(i x)`` is half of
-    ``sin((i + 1) x) - sin((i - 1) x)``.
+    Exponentials of opposite multiples make one cosine or sine.
     """
-    found = []
-    for j in range(k + 1):
-        i = k - 2 * j
-        if not odd:
-            found.append((abs(i), 0, comb(k, j)))
-        else:
-            # Pairs of j and k - j make each half a whole: the sum over all j of sin((i + 1) x).
-            multiple = i + 1
-            found.append((abs(multiple), 1, comb(k, j) if multiple > 0 else -comb(k, j)))
-    return found
+    return [(abs(i), weight) for i, weight in spread(k, odd).items() if i > 0 or not odd]
 
 
 def _multiple(ring: Ring, c: fmpz_mpoly, s: fmpz_mpoly, times: int) -> tuple[fmpz_mpoly, fmpz_mpoly]:

@@ -196,22 +196,17 @@ def power_of(base: Value, exponent: int) -> Value:
 
 def _wavenumbers(law: Dispersion, c: Sequence[Value], near: Mapping[str, Value] | None) -> dict[str, Value]:
     """Return the roots by their names; every branch serves, because functions are symmetric in them."""
-    found: tuple[Value, ...] = ()
-    match law.kind:
-        case "wave":
-            found = (square_root(-c[0]),)
-        case "bending":
-            found = (square_root(square_root(c[0] / 4)),)
-        case "pair":
-            middle = -c[2] / 2
-            root = square_root(middle * middle - c[0])
-            if near is not None:
-                first, second = (_middle(near[name]) for name in law.wavenumbers)
-                root = _closest((root, -root), (first * first - second * second) / 2)
-            found = (square_root(middle + root), square_root(middle - root))
-    named = dict(zip(law.wavenumbers, found, strict=True))
     if near is None:
-        return named
+        return law.roots(c, square_root)
+    if law.kind == "pair":
+        first, second = (_middle(near[name]) for name in law.wavenumbers)
+        middle = -c[2] / 2
+        root = square_root(middle * middle - c[0])
+        root = _closest((root, -root), (first * first - second * second) / 2)
+        found = (square_root(middle + root), square_root(middle - root))
+        named = dict(zip(law.wavenumbers, found, strict=True))
+    else:
+        named = law.roots(c, square_root)
     return {
         name: _closest(_turned(value, 4 if law.kind == "bending" else 2), _middle(near[name]))
         for name, value in named.items()

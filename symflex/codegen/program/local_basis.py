@@ -10,20 +10,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from math import factorial, inf, lgamma, log
+from math import factorial, inf, lgamma, log, prod
 from typing import TYPE_CHECKING
+
+from symflex.algebra.ring import Ring, coefficients_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
+
+    from flint import fmpz_mpoly
 
 SERIES_ERROR = log(1e-19)
 """Logarithm of the first term left out, over the largest."""
 
 Polynomial = tuple[int, ...]
 """Ascending integer coefficients."""
-
-Symmetric = dict[tuple[int, int], int]
-"""A polynomial in ``e = lambda_1^2 + lambda_2^2`` and ``f = lambda_1^2 lambda_2^2``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,53 +100,33 @@ def _basis(step: int, roots: Sequence[tuple[int, int]]) -> LocalBasis:
 def pair_basis(exponents: Iterable[Sequence[tuple[int, int]]]) -> LocalBasis:
     """Return the basis for exponents ``a*lambda_1 + b*lambda_2``."""
     orbits = sorted({tuple(sorted((abs(a), abs(b)), reverse=True)) for (a, _), (b, _) in exponents})
-    total: list[Symmetric] = [{(0, 0): 1}]
-    for a, b in orbits:
-        total = _times(total, _orbit(a, b))
-    return LocalBasis(1, len(total) - 1, tuple(total[:-1]))
+    whole = prod((_orbit(a, b) for a, b in orbits), start=SYMMETRIC.constant(1))
+    powers = coefficients_of(SYMMETRIC, whole, (0,))
+    order = max(n for (n,) in powers)
+    return LocalBasis(
+        1,
+        order,
+        tuple(
+            {(p, q): int(c) for (_, p, q), c in powers[n,].terms()} if (n,) in powers else {}
+            for n in range(order)
+        ),
+    )
 
 
-def _orbit(a: int, b: int) -> list[Symmetric]:
+SYMMETRIC = Ring(("x", "e", "f"))
+"""Of polynomials in x, ``e = lambda_1^2 + lambda_2^2`` and ``f = lambda_1^2 lambda_2^2``."""
+
+
+def _orbit(a: int, b: int) -> fmpz_mpoly:
     """Return the polynomial in x whose roots are all images of ``a*lambda_1 + b*lambda_2``."""
+    x, e, f = SYMMETRIC.context.gens()
     if a == 0:
-        return [{}, {(0, 0): 1}]
+        return x
     if b == 0:
         # (x^2 - a^2 lambda_1^2)(x^2 - a^2 lambda_2^2)
-        return [{(0, 1): a**4}, {}, {(1, 0): -(a**2)}, {}, {(0, 0): 1}]
+        return x**4 - a**2 * e * x**2 + a**4 * f
     if a == b:
-        # (x^2 - a^2 e)^2 - 4 a^4 f
-        return [{(2, 0): a**4, (0, 1): -4 * a**4}, {}, {(1, 0): -2 * a**2}, {}, {(0, 0): 1}]
-    q: list[Symmetric] = [
-        {(2, 0): a**2 * b**2, (0, 1): a**4 + b**4 - 2 * a**2 * b**2},
-        {},
-        {(1, 0): -(a**2 + b**2)},
-        {},
-        {(0, 0): 1},
-    ]
-    linear: list[Symmetric] = [{(1, 0): -(a**2 + b**2)}, {}, {(0, 0): 2}]
-    squares = _plus(_times(linear, linear), q, -2)
-    product = _plus(_times(q, q), [_scaled(c, (0, 1), 1) for c in squares], -4 * a**2 * b**2)
-    return _plus(product, [{(0, 2): 1}], 16 * a**4 * b**4)
-
-
-def _scaled(value: Symmetric, by: tuple[int, int], number: int) -> Symmetric:
-    return {(i + by[0], j + by[1]): x * number for (i, j), x in value.items()}
-
-
-def _plus(left: Sequence[Symmetric], right: Sequence[Symmetric], number: int) -> list[Symmetric]:
-    found = [dict(c) for c in left] + [{} for _ in range(len(right) - len(left))]
-    for i, c in enumerate(right):
-        for key, x in c.items():
-            found[i][key] = found[i].get(key, 0) + number * x
-    return [{k: x for k, x in c.items() if x} for c in found]
-
-
-def _times(left: Sequence[Symmetric], right: Sequence[Symmetric]) -> list[Symmetric]:
-    found: list[Symmetric] = [{} for _ in range(len(left) + len(right) - 1)]
-    for i, a in enumerate(left):
-        for j, b in enumerate(right):
-            for (p, q), x in a.items():
-                for (r, t), y in b.items():
-                    key = (p + r, q + t)
-                    found[i + j][key] = found[i + j].get(key, 0) + x * y
-    return [{k: x for k, x in c.items() if x} for c in found]
+        return (x**2 - a**2 * e) ** 2 - 4 * a**4 * f
+    squares = a**2 + b**2
+    q = x**4 - squares * e * x**2 + a**2 * b**2 * e**2 + (a**2 - b**2) ** 2 * f
+    return q**2 - 4 * a**2 * b**2 * f * ((2 * x**2 - squares * e) ** 2 - 2 * q) + 16 * a**4 * b**4 * f**2
