@@ -119,6 +119,23 @@ def set_round_ticks(axes: Axes, across: int, upwards: int) -> None:
         axis.set_major_locator(MaxNLocator(nbins=count, steps=[1, 2, 2.5, 5, 10]))
 
 
+def draw_points(
+    axes: Axes,
+    points: Sequence[complex],
+    look: tuple[str, str, float],
+    label: str | None = None,
+    *,
+    is_cut: bool = True,
+) -> None:
+    """Draw hollow marks of a shape, colour and size at points of the s plane, cut at its frame or not."""
+    shape, colour, size = look
+    across, upwards = [s.real for s in points], [s.imag for s in points]
+    axes.plot(
+        across, upwards, shape, color=colour, markersize=size, markeredgewidth=0.9, markerfacecolor="none",
+        clip_on=is_cut, zorder=3, label=label,
+    )  # fmt: skip
+
+
 def point_of(root: Root) -> complex:
     """Return the midpoint of a root's enclosure in double precision."""
     return complex(float(root.re.mid()), float(root.im.mid()))

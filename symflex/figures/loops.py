@@ -13,6 +13,7 @@ from matplotlib.patches import Circle
 from symflex.analysis.response import adaptive_grid, default_band, respond, roots_if_found
 from symflex.figures.axes import (
     RIGHT_HALF_PLANE,
+    draw_points,
     draw_zero_lines,
     drawable,
     label_s_plane,
@@ -95,17 +96,8 @@ def draw_locus(locus: RootLocus, canvas: Canvas) -> Figure:
         # Infinitely many zeros have no number that those listed could tell.
         outside = 0 if points is zeros and locus.start.is_infinite else len(points) - len(inside)
         if inside or (points and points is not zeros):
-            axes.plot(
-                [s.real for s in inside],
-                [s.imag for s in inside],
-                shape,
-                color=colour,
-                markersize=3.4 if shape == "s" else 5,
-                markeredgewidth=0.9,
-                markerfacecolor="none",
-                zorder=3,
-                label=f"{label} ({outside if inside else 'all'} outside)" if outside else label,
-            )
+            told = f"{label} ({outside if inside else 'all'} outside)" if outside else label
+            draw_points(axes, inside, (shape, colour, 3.4 if shape == "s" else 5), told)
     kinds = (
         (locus.branches, "-", None),
         (locus.entering, "--", "poles from infinity"),

@@ -36,7 +36,6 @@ DOTS_PER_INCH: Final = 72.0
 TEX_POINTS: Final = 72.27 / DOTS_PER_INCH
 FARTHEST: Final = 5000.0
 """TeX has no lengths beyond 16383 points."""
-
 _LINE_SPACING: Final = 1.2
 _DOLLAR: Final = re.compile(r"(?<!\\)\$")
 _DEFAULT_FONT: Final = re.compile(r"\\mathdefault\{([^{}]*)\}")

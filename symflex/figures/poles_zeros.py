@@ -6,7 +6,7 @@ from fractions import Fraction
 from math import ceil
 from typing import TYPE_CHECKING, Final
 
-from symflex.figures.axes import draw_zero_lines, set_round_ticks
+from symflex.figures.axes import draw_points, draw_zero_lines, set_round_ticks
 from symflex.figures.drawing import FREE
 from symflex.figures.labels import label_of_tf
 from symflex.figures.s_plane import Panel, RootMark, View, choose_view, leaving, marks_of, text_width
@@ -130,17 +130,7 @@ def _draw_panel(axes: Axes, marks: Sequence[RootMark], view: View, width: float,
     inside = [mark for mark in marks if view.shows(mark)]
     for kind, shape, size in (("zero", "o", 4.6), ("pole", "x", 4.8)):
         chosen = [mark.s for mark in inside if mark.kind == kind]
-        axes.plot(
-            [s.real for s in chosen],
-            [s.imag for s in chosen],
-            shape,
-            color=COLOUR_OF[kind],
-            markersize=size,
-            markeredgewidth=0.9,
-            markerfacecolor="none",
-            clip_on=False,
-            zorder=3,
-        )
+        draw_points(axes, chosen, (shape, COLOUR_OF[kind], size), is_cut=False)
     panel = Panel(view, width, tuple(mark.s for mark in inside))
     for mark in inside:
         if mark.multiplicity > 1:

@@ -50,7 +50,6 @@ FONTS: Final[dict[str, dict[str, object]]] = {
     "sans": {"font.family": ["DejaVu Sans"], "mathtext.fontset": "dejavusans"},
 }
 """Fonts of texts: STIX, at home next to Times; Computer Modern, that of LaTeX; one for slides."""
-
 DEFAULT_FONT: Final = "times"
 
 # Where Computer Modern has what ASCII and Latin-1 say; elsewhere its glyphs are others.

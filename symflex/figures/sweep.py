@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     from matplotlib.axes import Axes
     from matplotlib.axis import Axis
+    from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Colormap
     from matplotlib.figure import Figure
 
@@ -213,24 +214,20 @@ def _mode_lines(axes: Axes, sweep: Sweep, modes: int | None, values: Doubles) ->
     _set_parameter_axis(axes, parameter)
 
 
-def _frequency_lines(axes: Axes, sweep: Sweep, modes: int | None) -> None:
-    values = sweep["frequency_hz"]
-    _mode_lines(axes, sweep, modes, values)
-    if _spans_decades(values[..., :modes]):
-        axes.set_yscale("log")
-        _set_plain_ticks(axes.yaxis)
-    else:
-        axes.set_ylim(bottom=0)
-    axes.set_ylabel("natural frequency [Hz]")
+def _lines_of(name: str, label: str) -> Panel:
+    """Return what draws a quantity of all modes over a parameter."""
 
+    def draw(axes: Axes, sweep: Sweep, modes: int | None) -> None:
+        values = sweep[name]
+        _mode_lines(axes, sweep, modes, values)
+        if _spans_decades(values[..., :modes]):
+            axes.set_yscale("log")
+            _set_plain_ticks(axes.yaxis)
+        elif name == "frequency_hz":
+            axes.set_ylim(bottom=0)
+        axes.set_ylabel(label)
 
-def _damping_lines(axes: Axes, sweep: Sweep, modes: int | None) -> None:
-    values = sweep["damping_ratio"]
-    _mode_lines(axes, sweep, modes, values)
-    if _spans_decades(values[..., :modes]):
-        axes.set_yscale("log")
-        _set_plain_ticks(axes.yaxis)
-    axes.set_ylabel("damping ratio")
+    return draw
 
 
 def _frequency_bands(axes: Axes, sweep: Sweep, modes: int | None) -> None:
@@ -320,8 +317,7 @@ def _loci(axes: Axes, sweep: Sweep, modes: int | None) -> None:
         rightmost = max(float(np.max(re[there])), 0.0)
         axes.set_xlim(farthest, rightmost - 0.06 * farthest)
     label_s_plane(axes)
-    bar = axes.figure.colorbar(marks, ax=axes, pad=0.02, aspect=25)
-    bar.set_label(_label(parameter), fontsize=7)
+    _add_scale(axes, marks, parameter)
 
 
 def _magnitudes(sweep: Sweep) -> tuple[Doubles, Doubles]:
@@ -348,7 +344,12 @@ def _magnitude_lines(axes: Axes, sweep: Sweep, modes: int | None) -> None:
     axes.add_collection(lines)
     axes.autoscale_view()
     _set_magnitude_axes(axes, frequency, sweep)
-    bar = axes.figure.colorbar(lines, ax=axes, pad=0.02, aspect=25)
+    _add_scale(axes, lines, parameter)
+
+
+def _add_scale(axes: Axes, coloured: ScalarMappable, parameter: Labelled) -> None:
+    """Say beside a panel which value of a parameter has which colour."""
+    bar = axes.figure.colorbar(coloured, ax=axes, pad=0.02, aspect=25)
     bar.set_label(_label(parameter), fontsize=7)
 
 
@@ -406,8 +407,8 @@ def _margin_histogram(name: str) -> Panel:
 
 
 PANELS: Final = {
-    "frequency lines": _frequency_lines,
-    "damping lines": _damping_lines,
+    "frequency lines": _lines_of("frequency_hz", "natural frequency [Hz]"),
+    "damping lines": _lines_of("damping_ratio", "damping ratio"),
     "frequency bands": _frequency_bands,
     "loci": _loci,
     "magnitude lines": _magnitude_lines,

@@ -40,7 +40,6 @@ if TYPE_CHECKING:
 
 WIDEST_LABEL: Final = 12.0
 """Width in em beyond which a label gives way to the name in small type."""
-
 _GREEK: Final = frozenset(GREEK)
 _ACCENTS: Final = frozenset(ACCENTS)
 _FONTS: Final = frozenset(FONTS)
@@ -217,7 +216,6 @@ def _read(latex: str) -> Label | None:
 
 _STACKED: Final = 22
 """Characters in a line of a stacked name."""
-
 _TINY_SIZE: Final = 0.55
 _UNDERSCORE: Final = 0.5
 

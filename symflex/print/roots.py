@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
 KINDS: Final = {"poles": "pole", "zeros": "zero", "hidden": "hidden root"}
 """What a :class:`~symflex.roots.PoleZeroMap` holds, and what one of it is called."""
-
 _FREQUENCY_BITS: Final = 256
 
 

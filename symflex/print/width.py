@@ -83,16 +83,13 @@ def widest(*widths: Width) -> Width:
 
 EM_MM: Final = 10 * 25.4 / 72.27
 """One em of a ten point font [mm]."""
-
 SCRIPT: Final = 0.9
 """Width of a superscript in a table, in proportion to the full size."""
-
 NOTHING: Final = always(0.0)
 DIGIT_SIZES: Final = Width(0.501, 0.399, 0.341)
 THIN_SIZES: Final = Width(0.167, 0.137, 0.117)
 OPERATOR_SIZES: Final = Width(1.223, 0.626, 0.542)
 """A plus or minus between its operands."""
-
 RELATION_SIZES: Final = Width(1.334, 0.626, 0.542)
 COMMA_SIZES: Final = Width(0.445, 0.238, 0.23)
 CDOT_SIZES: Final = Width(0.723, 0.238, 0.23)
@@ -102,22 +99,16 @@ SLASH_SIZES: Final = Width(0.501, 0.41, 0.369)
 PRIME_SIZES: Final = Width(0.231, 0.23, 0.23)
 SCRIPT_SPACE: Final = always(0.05)
 """What follows a subscript or superscript."""
-
 FRACTION_EDGES: Final = always(0.241)
 """Beside a fraction."""
-
 FENCE_SIZES: Final = (Width(0.389, 0.313, 0.271), Width(0.278, 0.227, 0.202), Width(0.501, 0.41, 0.369))
 r"""A parenthesis, bracket and brace."""
-
 BIG_FENCES: Final = (0.459, 0.417, 0.584)
 r"""The same after ``\big``."""
-
 BIGGER_FENCES: Final = (0.598, 0.473, 0.667)
 r"""The same after ``\Big``."""
-
 TALL_FENCES: Final = tuple(always(em + 0.167) for em in (0.876, 0.667, 0.889))
 r"""The same after ``\left``, however tall, with the space that sets off what it encloses."""
-
 ROOT: Final = always(1.001)
 TALL_ROOT: Final = always(1.056)
 
@@ -132,7 +123,6 @@ QUAD: Final = 1.0
 SLASH: Final = SLASH_SIZES.text
 WIDEST: Final = 1.2
 """No character is wider; for those without an entry."""
-
 _LETTERS: Final = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
 
 
@@ -177,7 +167,6 @@ ITALIC: Final = Alphabet(
     Width(0.056, 0.044, 0.035),
 )
 """Math italic."""
-
 UPRIGHT: Final = Alphabet(
     _table(
         _LETTERS,
@@ -196,7 +185,6 @@ UPRIGHT: Final = Alphabet(
     Width(0.056, 0.044, 0.035),
 )
 """Roman."""
-
 TEXT_ITALIC: Final = Alphabet(
     _table(
         _LETTERS,
@@ -215,19 +203,16 @@ TEXT_ITALIC: Final = Alphabet(
     Width(0.052, 0.042, 0.03),
 )
 """Italic of running text, for words in mathematics."""
-
 _ANY: Final = {c: widest(ITALIC.widths[c], UPRIGHT.widths[c], TEXT_ITALIC.widths[c]) for c in ITALIC.widths}
 OTHER_ALPHABETS: Final = Alphabet(
     {c: width * 1.2 for c, width in _ANY.items()}, {**UPRIGHT.apart, **TEXT_ITALIC.apart}, UPRIGHT.kern * 1.2
 )
 """Bold, sans serif and calligraphic letters."""
-
 TYPEWRITER: Final = 0.53
 
 _SIGNS: Final = {c: 0.78 for c in punctuation} | {c: 0.39 for c in "()[].,:;'!`-"} | {" ": 0.34}
 ROMAN: Final = {c: width.text for c, width in UPRIGHT.widths.items()} | _SIGNS
 """Upright text and its signs at ten points."""
-
 _GREEK: Final = _table(
     (
         "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau upsilon "

@@ -36,7 +36,6 @@ if TYPE_CHECKING:
 
 OVERVIEW: Final = "models"
 """Anchor of the section that follows the table of contents on its page."""
-
 HEADINGS: Final = ("section", "subsection", "subsubsection", "paragraph")
 CONTENTS_DEPTH: Final = 1
 

@@ -144,13 +144,11 @@ COLUMNS: dict[str, ComparisonColumn] = {
     "Colocated or not": ComparisonColumn(both_cell),
 }
 """Of the structures, by their heads, in the order of the table."""
-
 DATA_COLUMNS: dict[str, ComparisonColumn] = {
     "Model": ComparisonColumn(model_cell, "plain"),
     "Off the data by": ComparisonColumn(data_cell),
 }
 """Of models that measured responses are there for."""
-
 LOOP_COLUMNS: dict[str, ComparisonColumn] = {
     "Model": ComparisonColumn(model_cell, "plain"),
     "Outputs together up to": ComparisonColumn(together_cell),

@@ -45,7 +45,6 @@ WAITING: Final = 0.9
 """Part of the time after which those that do not end are no longer waited for."""
 DATA_SUFFIXES: Final = frozenset((".csv", ".tsv", ".npz", ".mat", ".uff", ".unv"))
 """Of data files that are looked for in folders."""
-
 LIBRARIES: Final = ("python-flint", "numpy", "scipy", "sympy", "mpmath", "matplotlib")
 RESERVED: Final = frozenset(("comparison", "claims", "contents", "models", "provenance", "top"))
 

@@ -202,7 +202,6 @@ Counts = tuple[int, int]
 """Zeros and poles."""
 RigidCounts = tuple[int | None, int]
 """The same; no zeros are counted where the function itself vanishes, or grows without bound."""
-
 RESONANCES: Final = frozenset(("omega_p", "omega_z"))
 
 

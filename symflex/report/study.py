@@ -41,7 +41,6 @@ if TYPE_CHECKING:
 
 MOST_FUNCTIONS: Final = 24
 """Transfer functions of one model that a report shows; the number of those it leaves out is said."""
-
 DIGITS: Final = 15
 MODES: Final = 5
 T = TypeVar("T")

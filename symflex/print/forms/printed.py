@@ -54,7 +54,6 @@ class PrintedForm:
 
 Arrange = Callable[..., PrintedForm]
 """A function that arranges a transfer function; one that prints decimals takes their digits, too."""
-
 RATIONAL = ("definitions", "factored", "polynomial", "monic", "constant", "zpk", "frequency")
 """The forms of a rational function."""
 DISTRIBUTED = ("hyperbolic", "factored", "krylov", "vaughan", "frequency", "polynomial")

@@ -31,7 +31,6 @@ if TYPE_CHECKING:
 
 SMALL = 400
 """Number of terms up to which every arrangement of a sum is tried."""
-
 READABLE = 4
 """Depth of parentheses that reads easily."""
 

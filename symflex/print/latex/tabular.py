@@ -16,10 +16,8 @@ if TYPE_CHECKING:
 
 LINES_PER_PART: Final = 40
 """A table with more lines is set in parts."""
-
 SIZES: Final = (("", 1.0), (r"\small", 0.93), (r"\footnotesize", 0.86))
 """Commands, and how wide letters are then, of those of ten points."""
-
 _SETUP: Final = r"\sisetup{per-mode=symbol,group-digits=integer}"
 _GAP: Final = 1.21
 _NARROW_GAP: Final = 0.61

@@ -61,7 +61,6 @@ if TYPE_CHECKING:
 
 PIECE_EM: Final = 17.0
 """Width up to which a piece is not broken [em]: that of a narrow telephone's screen."""
-
 _MINUS: Final = operator("-", "prefix")
 
 
@@ -206,10 +205,8 @@ MATHML: Final = Spelling(
 
 WIDEST_FRACTION: Final = 42.0
 """Width [em] beyond which numerator and denominator get names and rows of their own."""
-
 LONGEST: Final = 400_000
 """Characters beyond which a page does not show a formula."""
-
 _LETTERS: Final = {r"\mathcal{N}": "𝒩", r"\mathcal{D}": "𝒟"}
 _ARGUMENT_OF_S: Final = (
     '<mo form="prefix" stretchy="false">(</mo><mi>s</mi><mo form="postfix" stretchy="false">)</mo>'

@@ -22,7 +22,6 @@ Models = Mapping[str, ModelFacts]
 
 Predicate = Callable[..., "Finding"]
 """What may be checked, with facts, the names of what is checked, and values by keyword."""
-
 WORST: Final[tuple[Verdict, ...]] = ("not examined", "does not hold", "holds with a condition", "holds")
 """Verdicts; of several checks the first one here counts."""
 

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
 TARGETS: Final = ("numpy", "c")
 """Keys of ``EXPORTERS`` that a report writes."""
-
 HEAD: Final = ("frequency_hz", "re", "im", "magnitude_db", "phase_deg")
 
 
