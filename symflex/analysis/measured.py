@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from symflex.analysis.response import respond
-from symflex.data.fitting import Base, fit_resonances
-from symflex.data.measurement import MeasurementPlan, synthesise
+from symflex.data.fitting import Base, ResonanceFit, fit_resonances
+from symflex.data.measurement import MeasuredResponse, MeasurementPlan, synthesise
 from symflex.errors import Diagnostic, UsageError
-from symflex.model import load_with
+from symflex.model import Model, load_with
 from symflex.model.spec import read
 from symflex.roots import Band
 from symflex.roots.locate import locate
@@ -23,9 +23,6 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
-    from symflex.data.fitting import ResonanceFit
-    from symflex.data.measurement import MeasuredResponse
-    from symflex.model import Model
     from symflex.options import FitOptions, MeasureOptions
     from symflex.transfer import BoundTransferFunction
 

@@ -12,14 +12,13 @@ from typing import TYPE_CHECKING
 from flint import arb
 
 from symflex.errors import BudgetError, Diagnostic
-from symflex.roots import precision
+from symflex.roots import Budget, precision
 from symflex.roots.precision import bits_for_digits
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from symflex.loops.loop import LoopFunction, LoopValue
-    from symflex.roots import Budget
 
 BITS = 96
 """Of intervals, whose ends are doubles."""

@@ -17,11 +17,11 @@ from flint import acb, arb
 from symflex.algebra import Factored
 from symflex.algebra.origin import OriginSeries
 from symflex.errors import Diagnostic, UncertifiedError
-from symflex.loops.axis import find_on_axis
-from symflex.loops.loop import LoopFunction, LoopValue
+from symflex.loops.axis import AxisRoots, find_on_axis
+from symflex.loops.loop import GainPolynomial, LoopFunction, LoopValue
 from symflex.loops.origin import LoopAtOrigin, loop_at_origin
 from symflex.loops.stability_map import Crossing, PoleCount
-from symflex.roots import Band, precision
+from symflex.roots import Band, Budget, precision
 from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.tail import right_tail
 from symflex.roots.counting.winding import Cell, RootOnPathError, Winding
@@ -35,9 +35,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from fractions import Fraction
 
-    from symflex.loops.axis import AxisRoots
-    from symflex.loops.loop import GainPolynomial
-    from symflex.roots import Budget
     from symflex.transfer import BoundTransferFunction
 
 BITS = 128

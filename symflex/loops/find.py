@@ -17,6 +17,7 @@ from symflex.loops.lumped import LumpedFactor
 from symflex.loops.margins import LoopGain, allowed_bandwidth
 from symflex.loops.stability_map import (
     Boundary,
+    Crossing,
     GainInterval,
     GainMargin,
     PhaseMargin,
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symflex.loops.loop import GainPolynomial, Loop
-    from symflex.loops.stability_map import Crossing
 
 RANGE_OF_NOMINAL = 100
 """How many times the nominal gain is examined of a loop with kernels: it may have boundaries without end."""

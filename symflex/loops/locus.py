@@ -15,16 +15,14 @@ from typing import TYPE_CHECKING
 from symflex.algebra import Factored
 from symflex.budget import Budget, entered_budget, spend
 from symflex.errors import Diagnostic, UncertifiedError, UsageError
-from symflex.loops.loop import LoopFunction
-from symflex.roots import Band, Modes, Position
+from symflex.loops.loop import Loop, LoopFunction
+from symflex.roots import Band, Modes, PoleZeroMap, Position, Region, Root
 from symflex.roots.locate import locate
 from symflex.roots.verdict import is_right
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.loops.loop import Loop
-    from symflex.roots import PoleZeroMap, Region, Root
     from symflex.roots.pole_zero_map import Exclusion
     from symflex.transfer import BoundTransferFunction
 

@@ -15,25 +15,20 @@ from functools import cached_property
 from math import lcm
 from typing import TYPE_CHECKING
 
-from flint import acb, acb_series, arb
+from flint import acb, acb_series, arb, fmpz_mpoly
 
 from symflex.algebra import Factored, degree_in
-from symflex.algebra.exponential_sum import arguments_of, exponential_sum
+from symflex.algebra.exponential_sum import Argument, ExponentialSum, arguments_of, exponential_sum
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.roots import precision
 from symflex.roots.functions.exponential_values import ExponentialValues
-from symflex.transfer import bind, bind_polynomials
-from symflex.transfer.balls import expansion
+from symflex.transfer import BoundTransferFunction, Given, TransferFunction, bind, bind_polynomials
+from symflex.transfer.balls import Value, expansion
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from flint import fmpz_mpoly
-
-    from symflex.algebra.exponential_sum import Argument, ExponentialSum
     from symflex.model import ExactValue, ModelParameter
-    from symflex.transfer import BoundTransferFunction, Given, TransferFunction
-    from symflex.transfer.balls import Value
     from symflex.transfer.enclose_kernels import KernelValues
 
 

@@ -13,20 +13,25 @@ from fractions import Fraction
 from math import lcm
 from typing import TYPE_CHECKING
 
-from flint import arb
+from flint import arb, fmpz_mpoly
 
 from symflex.algebra import Ring, degree_in
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.loops.stability_map import Crossing, PoleCount
-from symflex.roots import Budget, PolynomialInS, RealConstant, RootProblem, find_polynomial_roots, precision
+from symflex.roots import (
+    Budget,
+    PolynomialInS,
+    RealConstant,
+    Root,
+    RootProblem,
+    find_polynomial_roots,
+    precision,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from flint import fmpz_mpoly
-
     from symflex.loops.loop import GainPolynomial
-    from symflex.roots import Root
     from symflex.transfer import BoundTransferFunction
 
 W, K = 0, 1

@@ -14,19 +14,17 @@ from typing import TYPE_CHECKING, Final
 from flint import acb, arb
 
 from symflex.algebra import Factored
-from symflex.roots import RootProblem, find_polynomial_roots, precision
+from symflex.roots import Budget, RootProblem, find_polynomial_roots, precision
 from symflex.roots.counting.tail import right_tail
 from symflex.roots.problem import polynomial_in_s
 from symflex.transfer.balls import ball
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from fractions import Fraction
 
     from symflex.loops.distributed import DistributedFactors
     from symflex.loops.loop import GainPolynomial, LoopValue
     from symflex.loops.stability_map import GainInterval
-    from symflex.roots import Budget
     from symflex.transfer import BoundTransferFunction
 
 

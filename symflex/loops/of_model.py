@@ -6,22 +6,25 @@ from math import pi
 from typing import TYPE_CHECKING
 
 from symflex.loops import loop as loop_room
-from symflex.loops.colocation import dynamic_colocation
+from symflex.loops.colocation import DynamicColocation, dynamic_colocation
 from symflex.loops.find import find_stable_gains
-from symflex.loops.loop import pick_gain
-from symflex.model import with_numbers
-from symflex.options import band_ends, gain_ends, highest_frequency, tolerance
+from symflex.loops.loop import Loop, pick_gain
+from symflex.model import Model, with_numbers
+from symflex.options import (
+    ColocationOptions,
+    StabilityOptions,
+    band_ends,
+    gain_ends,
+    highest_frequency,
+    tolerance,
+)
 from symflex.transfer.of_model import assemble, derive_all, derive_bound, pick_pairs
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from symflex.budget import Budget
-    from symflex.loops.colocation import DynamicColocation
-    from symflex.loops.loop import Loop
     from symflex.loops.stability_map import StabilityMap
-    from symflex.model import Model
-    from symflex.options import ColocationOptions, StabilityOptions
     from symflex.transfer import Given
 
 

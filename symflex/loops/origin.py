@@ -12,16 +12,14 @@ from symflex.algebra import Factored
 from symflex.algebra.origin import OriginSeries
 from symflex.budget import spend
 from symflex.errors import SymflexError
-from symflex.roots import precision
-from symflex.roots.counting.local_series import SERIES_POINTS, local_series
+from symflex.roots import Budget, precision
+from symflex.roots.counting.local_series import SERIES_POINTS, LocalSeries, local_series
 from symflex.roots.counting.winding import Winding
 from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.transfer.balls import ball
 
 if TYPE_CHECKING:
     from symflex.loops.loop import LoopFunction
-    from symflex.roots import Budget
-    from symflex.roots.counting.local_series import LocalSeries
 
 BITS = 320
 SHRINKINGS = 24

@@ -13,8 +13,6 @@ from symflex.transfer.balls import ball
 if TYPE_CHECKING:
     from fractions import Fraction
 
-    from flint import arb
-
     from symflex.loops.margins import AllowedBandwidth
 
 

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from fractions import Fraction
 from math import pi
-from typing import TYPE_CHECKING
 
 from flint import arb
 
-from symflex.loops import decibels, degrees, hertz
+from symflex.loops import AllowedBandwidth, Boundary, GainInterval, StabilityMap, decibels, degrees, hertz
 from symflex.print.text import INDENT, aligned
 from symflex.roots import decimals
-
-if TYPE_CHECKING:
-    from fractions import Fraction
-
-    from symflex.loops import AllowedBandwidth, Boundary, GainInterval, StabilityMap
 
 SHORT_DIGITS = 6
 

@@ -17,7 +17,7 @@ from math import inf
 from typing import TYPE_CHECKING
 
 from symflex.roots.axes.lossless import LosslessSearch, lossless_search
-from symflex.roots.counting.winding import Winding
+from symflex.roots.counting.winding import Cell, Winding
 from symflex.roots.plane.search import RootSearch
 from symflex.roots.polynomials.guesses import propose_by_durand_kerner, propose_by_laguerre
 
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 
     from symflex.budget import Budget
     from symflex.roots.counting.argument_principle import CertifiedWinding
-    from symflex.roots.counting.winding import Cell
     from symflex.roots.functions.kernel_function import KernelFunction
     from symflex.roots.polynomials.discs import Proposer
 

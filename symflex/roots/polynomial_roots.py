@@ -11,7 +11,7 @@ from flint import acb, arb
 from symflex.budget import Budget, entered_budget
 from symflex.errors import BudgetError
 from symflex.roots.engines import proposers_for
-from symflex.roots.polynomials.discs import Disc, connected
+from symflex.roots.polynomials.discs import Disc, Proposer, connected
 from symflex.roots.polynomials.isolation import differs_from_zero, first_bits, isolations, prove_singly
 from symflex.roots.polynomials.squarefree import Splitting, SquareFreePart, split
 from symflex.roots.precision import bits_for_digits, precision
@@ -20,7 +20,6 @@ from symflex.roots.root import GUARD_BITS, Root
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.roots.polynomials.discs import Proposer
     from symflex.roots.problem import RootProblem
 
 DISTINCTION_ROUNDS = 5

@@ -3,22 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from fractions import Fraction
 
 from flint import arb, arb_poly, fmpz_mpoly, fmpz_mpoly_ctx
 
 from symflex.algebra import Ring, degree_in
 from symflex.errors import Diagnostic, ModelError, UncertifiedError
 from symflex.roots.precision import precision
-from symflex.transfer import coefficients_in_s
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
-    from fractions import Fraction
-
-    from symflex.transfer import BoundTransferFunction
-
+from symflex.transfer import BoundTransferFunction, coefficients_in_s
 
 ZERO_TEST_BITS = (64, 256, 1024, 4096)
 """At which a coefficient is compared with zero, one after the other."""

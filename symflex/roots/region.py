@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from flint import arb
 
 from symflex.errors import Diagnostic, UsageError
-from symflex.options import band_ends, frequency
+from symflex.options import RootsOptions, band_ends, frequency
 from symflex.roots.precision import precision
 from symflex.transfer.balls import ball
 
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
     from fractions import Fraction
 
-    from symflex.options import RootsOptions
     from symflex.roots.root import Root
 
 

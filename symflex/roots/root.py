@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 from flint import acb, arb, fmpz
 
 from symflex.roots.precision import precision
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 GUARD_BITS = 32
 """Beyond the bits of what is computed with."""

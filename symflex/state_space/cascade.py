@@ -8,17 +8,14 @@ none is lost among coefficients of high degree.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import mpmath
 import numpy as np
 
 from symflex.errors import Diagnostic, ModelError
 from symflex.state_space.numeric import Arrays
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 BITS = 256
 PAIR = 2

@@ -14,7 +14,7 @@ from sys import float_info
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from flint import acb, acb_mat, arb, ctx
+from flint import acb, acb_mat, arb, ctx, fmpz_mpoly
 
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
 from symflex.expressions import format_expression
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     import numpy.typing as npt
-    from flint import fmpz_mpoly
     from numpy import float64
 
     from symflex.model import ExactValue

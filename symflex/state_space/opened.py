@@ -5,8 +5,9 @@ Input: a model. Output: the same model without definitions, and with a signal fo
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, TypeGuard
+from typing import TypeGuard
 
 from symflex.algebra import LAPLACE
 from symflex.errors import BudgetError, Diagnostic
@@ -26,12 +27,7 @@ from symflex.expressions import (
     substitute,
     sum_of,
 )
-from symflex.model import Signal
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from symflex.model import Model
+from symflex.model import Model, Signal
 
 PARTS_LIMIT = 100_000
 """Parts that an expression may have once its definitions are opened."""

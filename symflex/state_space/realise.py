@@ -18,13 +18,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from symflex.algebra import LAPLACE
-from symflex.equations import assemble
+from symflex.algebra import LAPLACE, Factored, Ring
+from symflex.equations import ConstantFunction, Equations, assemble
 from symflex.equations.elimination import explain_singular
 from symflex.errors import Diagnostic, ModelError
-from symflex.expressions import Attribute, Name, names, product_of
+from symflex.expressions import Attribute, Expression, Name, names, product_of
 from symflex.expressions import power as power_of
-from symflex.library.elements import Variable
+from symflex.library.elements import LinearForm, Variable
 from symflex.library.elements.element import ACROSS_UNIT, COMPONENT_UNIT
 from symflex.quantities import unit_of
 from symflex.state_space.opened import opened, with_filters_apart
@@ -44,10 +44,6 @@ from symflex.transfer.derive import nested_transfer
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from symflex.algebra import Factored, Ring
-    from symflex.equations import ConstantFunction, Equations
-    from symflex.expressions import Expression
-    from symflex.library.elements import LinearForm
     from symflex.model import Model
 
 DISPLACEMENT, FLOW, VOLTAGE, SIGNAL = 0, 5, 6, 7

@@ -9,9 +9,9 @@ outputs show are combinations of states: the simplest ones that do become the ne
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 from flint import nmod_mat
 
@@ -19,12 +19,7 @@ from symflex.algebra import PRIME, Factored, random_point, residue
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic
 from symflex.state_space.popov import FieldElement, Vector, applied, combined, transposed
-from symflex.state_space.state_space import State
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from symflex.state_space.state_space import Combination, StateSpace
+from symflex.state_space.state_space import Combination, State, StateSpace
 
 SIZE_LIMIT = 5_000
 """Terms that a basis may hold on the way."""

@@ -21,17 +21,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from math import log
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 from scipy.spatial import cKDTree
 
-from symflex.sweep.design import number
-
-if TYPE_CHECKING:
-    from symflex.sweep.design import Axis, Design
+from symflex.sweep.design import Axis, Design, number
 
 Doubles = npt.NDArray[np.float64]
 Complexes = npt.NDArray[np.complex128]

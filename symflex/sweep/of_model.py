@@ -7,7 +7,7 @@ Output: ``Task(model, ("X", "F"), "poles", ("k",), derive_all, Modes(3))`` and a
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,9 +15,9 @@ from symflex.errors import Diagnostic, UsageError
 from symflex.files.lock import held
 from symflex.files.write import write_atomically
 from symflex.loops import pick_gain
-from symflex.options import FREQUENCIES, RootsOptions, band_ends
+from symflex.options import FREQUENCIES, RootsOptions, SweepOptions, band_ends
 from symflex.roots.region import region_of
-from symflex.sweep.design import Task
+from symflex.sweep.design import Design, Task
 from symflex.sweep.files import check_writable, sweep_bytes
 from symflex.sweep.journal import open_journal
 from symflex.sweep.points import logarithmic
@@ -26,13 +26,10 @@ from symflex.sweep.run import run_sweep, sweep_key
 from symflex.transfer.of_model import derive_all, pick_pairs
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
     from concurrent.futures import Executor
 
     from symflex.model import Model
-    from symflex.options import SweepOptions
     from symflex.roots import Progress, Region
-    from symflex.sweep.design import Design
     from symflex.sweep.sweep import Sweep
 
 

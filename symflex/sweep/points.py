@@ -9,42 +9,29 @@ points.
 from __future__ import annotations
 
 import pickle
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from fractions import Fraction
 from functools import lru_cache
 from hashlib import sha256
 from math import hypot, inf, isfinite, nan, nextafter, pi, ulp
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 from flint import arb
 
 from symflex.budget import spend
 from symflex.errors import SymflexError
-from symflex.loops import characteristic_loop, find_stable_gains, pick_gain
+from symflex.loops import StabilityMap, characteristic_loop, find_stable_gains, pick_gain
 from symflex.loops.stability_map import degrees, hertz
 from symflex.model import ExactValue
-from symflex.roots import Everything, Modes, precision
+from symflex.roots import Everything, Modes, PoleZeroMap, Region, Root, precision
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import locate
-from symflex.sweep.design import Range, between, codes_of, derived
-from symflex.sweep.similarity import Similarities
-from symflex.transfer import bind
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-    from fractions import Fraction
-
-    from flint import arb
-
-    from symflex.loops import StabilityMap
-    from symflex.model import ExactValue
-    from symflex.roots import PoleZeroMap, Region, Root
-    from symflex.sweep.design import Point, Rows, Solver, Task
-    from symflex.sweep.similarity import Similarity
-    from symflex.transfer import BoundTransferFunction, TransferFunction
-
+from symflex.sweep.design import Point, Range, Rows, Solver, Task, between, codes_of, derived
+from symflex.sweep.similarity import Similarities, Similarity
+from symflex.transfer import BoundTransferFunction, TransferFunction, bind
 
 LARGEST = 1023
 """Exponent of two beyond which nothing is told."""

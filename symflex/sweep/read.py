@@ -8,16 +8,14 @@ from typing import TYPE_CHECKING
 
 from symflex.errors import Diagnostic, Source, Span, SpecError, Text, UsageError
 from symflex.errors.diagnostic import nearest
-from symflex.model import ExactValue, check_value
+from symflex.model import ExactValue, Model, ModelParameter, check_value
 from symflex.quantities import parse_quantity
-from symflex.sweep.design import POINTS_LIMIT, Axis, Design, Range, between, number, too_many_points
+from symflex.sweep.design import POINTS_LIMIT, Axis, Design, Range, Scale, between, number, too_many_points
 from symflex.transfer.bind import read_values
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from symflex.model import Model, ModelParameter
-    from symflex.sweep.design import Scale
     from symflex.transfer import Given
 
 FORMS = "NAME=LO:HI:lin|log:COUNT or NAME=V1,V2,..., or NAME=LO:HI[:log] or NAME=+-5% with draws"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import pickle
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, ProcessPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
 from contextlib import contextmanager
 from hashlib import sha256
 from multiprocessing import connection, get_context, parent_process
@@ -16,18 +16,15 @@ import numpy as np
 
 from symflex.budget import Silent
 from symflex.errors import BudgetError, Diagnostic, UsageError
-from symflex.sweep.design import fingerprint, points_between, written
+from symflex.sweep.design import Array, Design, Point, Rows, Task, fingerprint, points_between, written
 from symflex.sweep.points import PointStatus, solve_chunk
-from symflex.sweep.sweep import assembled, extra
+from symflex.sweep.sweep import Sweep, assembled, extra
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
-    from concurrent.futures import Executor, Future
 
     from symflex.roots import Progress
-    from symflex.sweep.design import Array, Design, Point, Rows, Task
     from symflex.sweep.follow import Between, Complexes
-    from symflex.sweep.sweep import Sweep
 
 
 CONNECT_SECONDS = 10

@@ -11,16 +11,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from flint import fmpq
+from flint import fmpq, fmpz_mpoly
 
-from symflex.algebra import degree_in
+from symflex.algebra import Factored, degree_in
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from flint import fmpz_mpoly
-
-    from symflex.algebra import Factored
     from symflex.model import ExactValue
     from symflex.transfer import TransferFunction
 

@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from symflex.errors import Diagnostic, UsageError
-from symflex.sweep.design import number
-from symflex.sweep.follow import NameOrigin, follow, predecessors
+from symflex.sweep.design import Array, Design, Rows, Task, number
+from symflex.sweep.follow import Between, NameOrigin, follow, predecessors
 from symflex.sweep.points import MARGINS, PointStatus, RootStatus
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from symflex.sweep.design import Array, Design, Rows, Task
-    from symflex.sweep.follow import Between
 
 SCHEMA = "symflex.sweep/1"
 MODE, FREQUENCY, DRAW = "mode", "frequency", "draw"

@@ -5,23 +5,25 @@ Input: a model. Output: a :class:`Constraint`, the same model with one constrain
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
-from symflex.analysis.explanation.coordinates import driven_source, holds
-from symflex.expressions import Attribute, Call, Derivative, Equation, Name, Number, format_expression, names
-from symflex.library.elements import ELEMENTS
-from symflex.model import NodeReference, PlacedElement
+from symflex.analysis.explanation.coordinates import Coordinates, driven_source, holds
+from symflex.expressions import (
+    Attribute,
+    Call,
+    Derivative,
+    Equation,
+    Expression,
+    Name,
+    Number,
+    format_expression,
+    names,
+)
+from symflex.library.elements import ELEMENTS, Placing, Variable
+from symflex.model import FieldProblem, Input, Model, NodeReference, PlacedElement
 from symflex.model.input_kinds import INPUT_KINDS
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from symflex.analysis.explanation.coordinates import Coordinates
-    from symflex.expressions import Expression
-    from symflex.library.elements import Placing, Variable
-    from symflex.model import FieldProblem, Input, Model
 
 HOLD = "hold"
 PAIR = 2

@@ -18,6 +18,7 @@ from symflex.expressions import (
     Attribute,
     Call,
     Equation,
+    Expression,
     Name,
     Negative,
     Number,
@@ -27,7 +28,7 @@ from symflex.expressions import (
     names,
     replace_values,
 )
-from symflex.library.elements import LineElement, Variable
+from symflex.library.elements import Domain, LinearForm, LineElement, Variable
 from symflex.library.elements.source import CurrentSource, ForceSource, TorqueSource, VoltageSource
 from symflex.model.input_kinds import INPUT_KINDS
 from symflex.model.nodes import variable_of
@@ -37,8 +38,6 @@ if TYPE_CHECKING:
     from collections.abc import Hashable, Iterator, Mapping
 
     from symflex.equations import Equations
-    from symflex.expressions import Expression
-    from symflex.library.elements import Domain, LinearForm
     from symflex.model import Input, Model, NodeReference, PlacedElement
 
 

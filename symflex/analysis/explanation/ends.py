@@ -15,7 +15,16 @@ from typing import TYPE_CHECKING
 from symflex.analysis.explanation.comparison import opened
 from symflex.analysis.explanation.coordinates import acting, measured
 from symflex.analysis.explanation.parts import SUPPORTS, coordinates_of
-from symflex.expressions import Call, Derivative, Name, format_expression, is_number, names
+from symflex.expressions import (
+    Call,
+    Derivative,
+    Equation,
+    Expression,
+    Name,
+    format_expression,
+    is_number,
+    names,
+)
 from symflex.library.elements import LineElement, Variable
 from symflex.library.elements.beam import Beam, MasslessBeam
 
@@ -24,7 +33,6 @@ if TYPE_CHECKING:
 
     from symflex.algebra import Factored
     from symflex.equations import Equations
-    from symflex.expressions import Equation, Expression
     from symflex.model import FieldProblem, Input, Model, NodeReference, Output, PlacedElement
 
 

@@ -9,19 +9,17 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from symflex.algebra import LAPLACE, degree_in
+from symflex.algebra import LAPLACE, Factored, degree_in
 from symflex.analysis.explanation.comparison import opened, varying
 from symflex.equations.elimination import Determinants
-from symflex.library.elements import LinearForm, Variable
+from symflex.library.elements import EquationRow, LinearForm, Variable
 from symflex.library.elements.rigid import Fixed, Pin, Slider
 from symflex.model.nodes import variable_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from symflex.algebra import Factored
     from symflex.equations import Equations
-    from symflex.library.elements import EquationRow
     from symflex.model import Model, PlacedElement
 
 SUPPORTS = (Fixed, Pin, Slider)

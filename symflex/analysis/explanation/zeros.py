@@ -21,32 +21,33 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
-from symflex.algebra import LAPLACE, Factored, degree_in
+from symflex.algebra import LAPLACE, Factored, Ring, degree_in
 from symflex.analysis.explanation.comparison import Relation, agree, relate, varying
 from symflex.analysis.explanation.constraints import Constraint, hold, open_circuit, replace_condition
 from symflex.analysis.explanation.coordinates import acting, in_one_way, measured, seen_at_the_input
-from symflex.analysis.explanation.ends import bending_between, ends_of_element, ends_of_field, is_line
+from symflex.analysis.explanation.ends import (
+    Bending,
+    bending_between,
+    ends_of_element,
+    ends_of_field,
+    is_line,
+)
 from symflex.analysis.explanation.parts import ConstrainedPart, Separation, separate
 from symflex.analysis.explanation.text import explanation_json, explanation_text
-from symflex.equations import assemble
+from symflex.equations import Equations, assemble
 from symflex.equations.elimination import Determinants
 from symflex.errors import ModelError
 from symflex.expressions import format_expression, power, product_of
-from symflex.model import with_numbers
+from symflex.model import Input, Model, Output, PlacedBlock, with_numbers
 from symflex.print.forms.arrange import Arranger
 from symflex.roots.locate import locate
-from symflex.transfer import bind, derive_all
+from symflex.transfer import BoundTransferFunction, bind, derive_all
 from symflex.transfer.lowest_terms import cancel
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from symflex.algebra import Ring
-    from symflex.analysis.explanation.ends import Bending
-    from symflex.equations import Equations
-    from symflex.model import Input, Model, Output, PlacedBlock
     from symflex.roots import PoleZeroMap, Root
-    from symflex.transfer import BoundTransferFunction
 
     Nested = Callable[[PlacedBlock, Ring], Factored]
 

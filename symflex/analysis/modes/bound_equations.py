@@ -12,16 +12,14 @@ from typing import TYPE_CHECKING
 
 from flint import acb, acb_mat, arb, arb_mat
 
-from symflex.algebra import LAPLACE
-from symflex.algebra.propagators import EXPONENTIAL
+from symflex.algebra import LAPLACE, Factored
+from symflex.algebra.propagators import EXPONENTIAL, Propagation
 from symflex.analysis.modes.shape import DistributedShape
 from symflex.transfer.balls import ball, enclose, enclosure
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from symflex.algebra import Factored
-    from symflex.algebra.propagators import Propagation
     from symflex.equations import Continuum, Equations
     from symflex.library.elements import Variable
     from symflex.model import ExactValue

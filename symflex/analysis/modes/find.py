@@ -13,25 +13,22 @@ from typing import TYPE_CHECKING
 
 from flint import acb, acb_mat
 
-from symflex.analysis.modes.bound_equations import BoundEquations, null_space
+from symflex.analysis.modes.bound_equations import BoundEquations, SystemAt, null_space
 from symflex.analysis.modes.shape import EnclosedModeShape, Motion, normalised
 from symflex.budget import spend
 from symflex.equations import assemble
 from symflex.errors import BudgetError, Diagnostic, UncertifiedError, UsageError
 from symflex.library.elements.element import ACROSS_UNIT, COMPONENT_UNIT
-from symflex.roots import Band, Modes, precision
+from symflex.roots import Band, Modes, PoleZeroMap, Region, Root, precision
 from symflex.roots.locate import locate
-from symflex.transfer import nested_transfer
+from symflex.transfer import BoundTransferFunction, nested_transfer
 from symflex.transfer.bind import read_values
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from symflex.analysis.modes.bound_equations import SystemAt
     from symflex.library.elements import Variable
-    from symflex.roots import PoleZeroMap, Region, Root
     from symflex.roots.verdict import StabilityVerdict
-    from symflex.transfer import BoundTransferFunction
 
 DIGITS = 15
 SPARE_DIGITS = 15

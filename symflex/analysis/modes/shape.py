@@ -14,13 +14,12 @@ from flint import acb, acb_mat, arb, arb_mat
 
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
-from symflex.roots import precision
+from symflex.roots import Root, precision
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
     from symflex.library.elements import Variable
-    from symflex.roots import Root
 
 
 SQUARINGS = 7

@@ -14,7 +14,7 @@ from symflex.analysis.rational.forms import FORMS
 from symflex.analysis.rational.toolboxes import check_form
 from symflex.analysis.response import default_band
 from symflex.errors import Diagnostic, ModelError, UsageError
-from symflex.roots import Band, Everything, Modes, Position
+from symflex.roots import Band, Everything, Modes, PoleZeroMap, Position, Root
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import locate
 from symflex.roots.verdict import is_right
@@ -22,7 +22,6 @@ from symflex.roots.verdict import is_right
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.roots import PoleZeroMap, Root
     from symflex.transfer import BoundTransferFunction
 
 

@@ -5,7 +5,7 @@ A new form is one function and one line in :data:`FORMS`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -14,18 +14,14 @@ import numpy as np
 from flint import acb, acb_poly, arb, ctx
 
 from symflex.analysis.rational.approximation import PoleZeroGain, RationalEvaluator
-from symflex.analysis.rational.laurent import about_zero, expand_at_zero, residues_at
+from symflex.analysis.rational.laurent import PrincipalPart, about_zero, expand_at_zero, residues_at
 from symflex.errors import Diagnostic, UncertifiedError
-from symflex.roots import precision
+from symflex.roots import Root, precision
 from symflex.roots.multiprecision import to_complex_mpmath, to_mpmath
 from symflex.transfer.bind import EnclosedTransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from symflex.analysis.rational.approximate import KeptRoots
-    from symflex.analysis.rational.laurent import PrincipalPart
-    from symflex.roots import Root
     from symflex.transfer import BoundTransferFunction
 
 BITS = 256

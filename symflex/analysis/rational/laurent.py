@@ -12,7 +12,7 @@ Residues, how much of each mode a transfer function holds, are the first coeffic
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
@@ -25,7 +25,7 @@ from symflex.algebra.origin import OriginSeries
 from symflex.analysis.rational.local_values import BRANCHES, local_values, series_length
 from symflex.budget import spend
 from symflex.errors import Diagnostic, UncertifiedError
-from symflex.roots import precision
+from symflex.roots import Budget, Region, Root, precision
 from symflex.roots.counting.local_series import (
     BITS_A_POINT,
     REACH,
@@ -42,11 +42,6 @@ from symflex.roots.precision import bits_for_digits
 from symflex.roots.root import GUARD_BITS
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from flint import acb
-
-    from symflex.roots import Budget, Region, Root
     from symflex.transfer import BoundTransferFunction
     from symflex.transfer.enclose_kernels import KernelValues
 

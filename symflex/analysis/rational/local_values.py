@@ -12,13 +12,12 @@ from typing import TYPE_CHECKING
 import flint
 from flint import acb, acb_mat, acb_series
 
-from symflex.transfer.balls import at_centre
+from symflex.transfer.balls import Value, at_centre
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from symflex.algebra import Dispersion, Factored, Kernel
-    from symflex.transfer.balls import Value
     from symflex.transfer.enclose_kernels import KernelValues
 
 BRANCHES = 4

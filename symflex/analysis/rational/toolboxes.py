@@ -18,7 +18,7 @@ from math import tau
 from typing import TYPE_CHECKING
 
 import numpy as np
-from flint import acb
+from flint import acb, fmpz_mpoly
 
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.errors.diagnostic import nearest
@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     import numpy.typing as npt
-    from flint import fmpz_mpoly
 
     from symflex.transfer import BoundTransferFunction, TransferFunction
     from symflex.transfer.bind import Enclosed

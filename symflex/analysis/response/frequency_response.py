@@ -27,7 +27,7 @@ from flint import acb, ctx
 from symflex.budget import entered_budget, spend
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.roots.counting.winding import Winding, continuous_step
-from symflex.roots.functions.kernel_function import KernelFunction
+from symflex.roots.functions.kernel_function import KernelFunction, Sample
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import locate
 from symflex.roots.root import exact_fraction
@@ -39,7 +39,6 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from symflex.roots import PoleZeroMap, Root
-    from symflex.roots.functions.kernel_function import Sample
     from symflex.transfer import BoundTransferFunction, EnclosedTransferFunction
 
 

@@ -10,14 +10,14 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
-from flint import acb, arb
+from flint import acb, arb, fmpz_mpoly
 
-from symflex.algebra import square_free_factors
+from symflex.algebra import Factored, square_free_factors
 from symflex.algebra.origin import OriginSeries
 from symflex.analysis.sensitivity.tangents import Tangents
 from symflex.budget import spend
 from symflex.loops import pick_gain
-from symflex.model import with_numbers
+from symflex.model import ExactValue, Model, ModelParameter, with_numbers
 from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.root import GUARD_BITS, decimals, exact_fraction
 from symflex.transfer.balls import enclosure
@@ -27,11 +27,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from fractions import Fraction
 
-    from flint import fmpz_mpoly
-
-    from symflex.algebra import Factored
-    from symflex.analysis.sensitivity.tangents import Tangents
-    from symflex.model import ExactValue, Model, ModelParameter
     from symflex.roots import PoleZeroMap, Root
     from symflex.transfer import BoundTransferFunction, TransferFunction
 

@@ -13,22 +13,18 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from flint import acb, acb_series, arb, arb_series
+from flint import acb, acb_series, arb, arb_series, fmpz_mpoly
 
-from symflex.algebra import FUNCTIONS, LAPLACE, PolynomialMemo
+from symflex.algebra import FUNCTIONS, LAPLACE, Factored, Kernel, PolynomialMemo
 from symflex.expressions import Call, Expression, fold
-from symflex.transfer.balls import ball, enclosure, plan
+from symflex.transfer.balls import EvaluationPlan, ball, enclosure, plan
 from symflex.transfer.enclose_kernels import fundamental_functions
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from flint import arb_series, fmpz_mpoly
-
-    from symflex.algebra import Factored, Kernel
     from symflex.model import ExactValue
     from symflex.transfer import TransferFunction
-    from symflex.transfer.balls import EvaluationPlan
 
 
 Point = dict[str, acb_series]

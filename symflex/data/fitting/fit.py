@@ -23,7 +23,7 @@ from symflex.data.fitting.order import (
 )
 from symflex.data.fitting.phase_test import PhaseTest, judge_phase
 from symflex.data.fitting.problem import FitProblem, fit_problem, with_noise, with_rough_noise
-from symflex.data.fitting.resonances import MILLISECOND, Complex, Free, Real
+from symflex.data.fitting.resonances import MILLISECOND, Complex, Free, Real, Resonances
 from symflex.data.fitting.starts import with_delays
 from symflex.errors import DataError, Diagnostic, FitError, UsageError
 from symflex.errors.diagnostic import nearest
@@ -34,7 +34,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from symflex.data.fitting.least_squares import Refined
-    from symflex.data.fitting.resonances import Resonances
     from symflex.data.measurement import MeasuredResponse
 
 

@@ -28,11 +28,10 @@ from scipy.optimize import least_squares
 
 from symflex.budget import spend
 from symflex.data.fitting.observation import score_covariance
-from symflex.data.fitting.resonances import Complex, Real
+from symflex.data.fitting.resonances import Complex, Real, Resonances
 
 if TYPE_CHECKING:
     from symflex.data.fitting.problem import FitProblem, FittedLines
-    from symflex.data.fitting.resonances import Resonances
 
 
 STEPS = 100

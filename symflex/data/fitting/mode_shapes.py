@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.optimize import least_squares
 
-from symflex.data.fitting.observation import observe
+from symflex.data.fitting.observation import Observation, observe
 from symflex.data.fitting.resonances import Complex, Real
 from symflex.errors import DataError, Diagnostic, FitError, Source, Span, Text, UsageError
 from symflex.quantities import parse_unit
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symflex.data.fitting.fit import ResonanceFit
-    from symflex.data.fitting.observation import Observation
     from symflex.data.measurement import MeasuredResponse
 
 

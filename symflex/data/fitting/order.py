@@ -13,15 +13,15 @@ damping ratio is lost in its own error, or where the evidence for it is not stro
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.stats import f
 
 from symflex.data.fitting.least_squares import STEPS, Refined, refine, refine_directly
 from symflex.data.fitting.numerator import STRANGE, over_poles, strange
-from symflex.data.fitting.problem import estimated
+from symflex.data.fitting.problem import FitProblem, estimated
 from symflex.data.fitting.resonances import Complex, Resonances
 from symflex.data.fitting.starts import (
     find_modes,
@@ -31,12 +31,6 @@ from symflex.data.fitting.starts import (
     start_from_peaks,
 )
 from symflex.errors import Diagnostic, FitError
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
-
-    from symflex.data.fitting.problem import FitProblem
-
 
 CRITERIA = ("bic", "aicc")
 MOST_MODES = 12

@@ -27,11 +27,10 @@ import numpy as np
 from scipy.optimize import least_squares
 from scipy.signal import medfilt
 
-from symflex.data.fitting.resonances import Complex, Real
+from symflex.data.fitting.resonances import Complex, Real, Resonances
 
 if TYPE_CHECKING:
     from symflex.data.fitting.problem import FitProblem, FittedLines
-    from symflex.data.fitting.resonances import Resonances
 
 Verdict = Literal["minimum", "undetermined", "nonminimum"]
 

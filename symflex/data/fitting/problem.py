@@ -17,13 +17,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from symflex.data.fitting.observation import Observation, observe
-from symflex.data.fitting.resonances import Complex, Real
+from symflex.data.fitting.resonances import Complex, Free, Real, Resonances
 from symflex.data.fitting.starts import generous_fit
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from symflex.data.fitting.resonances import Free, Resonances
     from symflex.data.measurement import MeasuredResponse
 
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import zlib
-from typing import TYPE_CHECKING, Final
+from collections.abc import Mapping
+from typing import Final
 
 import numpy as np
 
@@ -20,9 +21,6 @@ from symflex.data.measurement.measured_response import (
     window_of,
 )
 from symflex.errors import DataError, Diagnostic
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 FREQUENCY: Final = ("frequency_hz", "frequency", "freq", "f", "f_hz")
 ANGULAR: Final = ("omega", "w")

@@ -8,8 +8,9 @@ m/(V*s^2)``, ``# synthetic: yes``.
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
@@ -24,9 +25,6 @@ from symflex.data.measurement.measured_response import (
 )
 from symflex.errors import DataError, Diagnostic, Source, Span
 from symflex.errors.diagnostic import nearest
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 COMMENTS: Final = ("#", "%", "!", "//")
 _CELL = re.compile(r"[^,;\t ]+(?: +[^,;\t ]+)*")

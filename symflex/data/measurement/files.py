@@ -7,16 +7,16 @@ from __future__ import annotations
 
 import os
 import tempfile
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from symflex.data.measurement.arrays import read_mat, read_npz
 from symflex.data.measurement.comma_separated import read_columns
-from symflex.data.measurement.measured_response import MAX_BYTES, MOST_AVERAGES
+from symflex.data.measurement.measured_response import MAX_BYTES, MOST_AVERAGES, MeasuredResponse
 from symflex.data.measurement.universal_file import (
     COHERENCE,
     FREQUENCY_AXIS,
@@ -26,12 +26,6 @@ from symflex.data.measurement.universal_file import (
 )
 from symflex.errors import DataError, Diagnostic, UsageError
 from symflex.model.spec.read import read_bytes
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from symflex.data.measurement.measured_response import MeasuredResponse
-
 
 READERS: Mapping[str, Callable[[str, bytes, str], tuple[MeasuredResponse, ...]]] = {
     ".csv": read_columns,

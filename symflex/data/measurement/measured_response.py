@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
 from symflex.errors import DataError, Diagnostic, Source, Span, SpecError, Text
 from symflex.quantities import parse_unit
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    import numpy.typing as npt
-
 
 SMALLEST_NOISE = 1e-6
 """The least share of incoherent power assumed: a coherence rounded to 1 does not make a line exact."""

@@ -8,8 +8,10 @@ from __future__ import annotations
 
 import os
 import tempfile
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from types import ModuleType
+from typing import Any, Final
 
 import numpy as np
 
@@ -21,10 +23,6 @@ from symflex.data.measurement.measured_response import (
     nowhere,
 )
 from symflex.errors import DataError, Diagnostic, UsageError
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-    from types import ModuleType
 
 MARK: Final = b"    -1"
 HEADER_LINES: Final = 11

@@ -7,18 +7,14 @@ from __future__ import annotations
 
 from functools import cache
 from math import frexp, inf, isfinite
-from typing import TYPE_CHECKING
 
 from flint import arb
 
 from symflex.algebra.interval_newton import stays_inside
 from symflex.budget import spend
-from symflex.roots.axes.axis_function import FLOAT_BITS
+from symflex.roots.axes.axis_function import FLOAT_BITS, AxisFunction
 from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.root import GUARD_BITS
-
-if TYPE_CHECKING:
-    from symflex.roots.axes.axis_function import AxisFunction
 
 GUESS_BITS = 46
 """Bits of a guess in doubles that are right as a rule."""

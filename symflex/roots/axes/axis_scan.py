@@ -14,12 +14,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from symflex.roots.counting.winding import RootOnPathError
+from symflex.roots.counting.winding import RootOnPathError, Winding
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from symflex.roots.counting.winding import Winding
     from symflex.roots.functions.exponential_values import Doubles, DoubleSums
     from symflex.roots.functions.kernel_function import Sample
 

@@ -33,7 +33,7 @@ from symflex.roots.axes.axis_function import (
 )
 from symflex.roots.counting.stepping import SPREAD, WIDENED, total_turn
 from symflex.roots.precision import precision
-from symflex.transfer.balls import at_centre
+from symflex.transfer.balls import Value, at_centre
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -51,7 +51,6 @@ if TYPE_CHECKING:
     )
     from symflex.roots.functions.kernel_function import KernelFunction
     from symflex.transfer import BoundTransferFunction
-    from symflex.transfer.balls import Value
 
 
 EIGHTH = pi / 4

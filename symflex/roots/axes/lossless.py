@@ -17,19 +17,16 @@ import numpy as np
 from flint import arb
 
 from symflex.budget import spend
-from symflex.roots.axes.axis_function import IMAGINARY, REAL
+from symflex.roots.axes.axis_function import IMAGINARY, REAL, AxisFunction, Doubles
 from symflex.roots.axes.axis_root import AxisNewton, bits_of, bracketed, changes_sign
-from symflex.roots.axes.harmonic_sum import lossless_function
-from symflex.roots.counting.winding import RootOnPathError
+from symflex.roots.axes.harmonic_sum import LosslessFunction, lossless_function
+from symflex.roots.counting.winding import Cell, RootOnPathError
 from symflex.roots.precision import precision
 from symflex.roots.root import Root
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from symflex.roots.axes.axis_function import AxisFunction, Doubles
-    from symflex.roots.axes.harmonic_sum import LosslessFunction
-    from symflex.roots.counting.winding import Cell
     from symflex.roots.functions.kernel_function import KernelFunction
 
 GRID = 0.8

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import inf
-from typing import TYPE_CHECKING
 
 from flint import arb
 
 from symflex.budget import spend
 from symflex.roots.argument import ROOM
 from symflex.roots.counting.winding import RootOnPathError
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 GOAL = 1.15
 """Deviation that the next step aims at."""

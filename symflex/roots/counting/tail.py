@@ -15,24 +15,19 @@ from fractions import Fraction
 from math import sqrt
 from typing import TYPE_CHECKING
 
-from flint import acb, arb
+from flint import acb, arb, fmpz_mpoly
 
-from symflex.algebra import LAPLACE, Ring, degree_in
-from symflex.algebra.exponential_sum import arguments_of, exponential_sum
+from symflex.algebra import LAPLACE, Dispersion, Factored, Ring, degree_in
+from symflex.algebra.exponential_sum import Exponent, arguments_of, exponential_sum
 from symflex.budget import spend
 from symflex.roots.functions.exponential_values import ExponentialValues
 from symflex.roots.precision import precision
-from symflex.transfer import coefficients_in_s
+from symflex.transfer import BoundTransferFunction, coefficients_in_s
 from symflex.transfer.balls import ball
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from flint import fmpz_mpoly
-
-    from symflex.algebra import Dispersion, Factored
-    from symflex.algebra.exponential_sum import Exponent
-    from symflex.transfer import BoundTransferFunction
     from symflex.transfer.enclose_kernels import KernelValues
 
 BITS = 64

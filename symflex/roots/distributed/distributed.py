@@ -22,17 +22,14 @@ from symflex.roots.engines import LOSSLESS, POLYNOMIAL
 from symflex.roots.plane.search import HIGHEST
 from symflex.roots.pole_zero_map import Certificate, Exclusion, HiddenRoot, PoleZeroMap, right_beyond
 from symflex.roots.polynomial_roots import in_order
-from symflex.roots.region import Band, Everything, Mode, Modes, Position
-from symflex.roots.root import overlap
-from symflex.roots.verdict import is_right, judge
+from symflex.roots.region import Band, Everything, Mode, Modes, Position, Region
+from symflex.roots.root import Root, overlap
+from symflex.roots.verdict import StabilityVerdict, is_right, judge
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symflex.roots.counting.winding import Cell
-    from symflex.roots.region import Region
-    from symflex.roots.root import Root
-    from symflex.roots.verdict import StabilityVerdict
     from symflex.transfer import BoundTransferFunction
 
 DEFAULT_MODES = 5

@@ -12,7 +12,7 @@ from flint import arb
 
 from symflex.algebra.origin import OriginSeries
 from symflex.errors import Diagnostic, UncertifiedError
-from symflex.roots.counting.winding import RootOnPathError
+from symflex.roots.counting.winding import Cell, RootOnPathError
 from symflex.roots.precision import precision
 from symflex.roots.root import FLOAT_BITS, Root
 
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
     from symflex.algebra import Factored
     from symflex.roots.counting.argument_principle import CertifiedWinding
-    from symflex.roots.counting.winding import Cell
 
 SERIES_TERMS = (20, 80)
 """Lengths of the series about 0 in which the first term is sought."""

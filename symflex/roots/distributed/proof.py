@@ -13,14 +13,13 @@ from typing import TYPE_CHECKING
 from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.winding import Cell, RootOnPathError
 from symflex.roots.plane.domains import decider, is_whole_ring, parts
-from symflex.roots.root import overlap
+from symflex.roots.root import Root, overlap
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symflex.budget import Budget
     from symflex.roots.axes.lossless import LosslessSearch
-    from symflex.roots.root import Root
 
 UNPROVED = "the number of roots could not be proved"
 TOUCHING = "some roots could not be told apart"

@@ -29,14 +29,13 @@ from symflex.roots.plane.simple_root import prove_simple
 from symflex.roots.polynomial_roots import find_polynomial_roots, in_order
 from symflex.roots.precision import precision
 from symflex.roots.problem import problem_of
-from symflex.roots.region import Modes
+from symflex.roots.region import Modes, Region
 from symflex.roots.root import FLOAT_BITS, Root, mirror_images, overlap
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from symflex.budget import Budget
-    from symflex.roots.region import Region
     from symflex.transfer import BoundTransferFunction
 
 ACCUMULATION_DIGITS = 20

@@ -16,17 +16,23 @@ import numpy as np
 import numpy.typing as npt
 from flint import acb, arb
 
-from symflex.algebra.exponential_sum import REAL, amplitude_of, parts
-from symflex.transfer.balls import at_centre, ball
-from symflex.transfer.enclose_kernels import power_of
+from symflex.algebra.exponential_sum import (
+    REAL,
+    Amplitude,
+    Argument,
+    Combination,
+    Exponent,
+    ExponentialSum,
+    amplitude_of,
+    parts,
+)
+from symflex.transfer.balls import Value, at_centre, ball
+from symflex.transfer.enclose_kernels import KernelValues, power_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from symflex.algebra import Dispersion, Factored
-    from symflex.algebra.exponential_sum import Amplitude, Argument, Combination, Exponent, ExponentialSum
-    from symflex.transfer.balls import Value
-    from symflex.transfer.enclose_kernels import KernelValues
 
 
 Valued = tuple[tuple[acb, tuple[tuple[str, int], ...]], ...]

@@ -13,26 +13,28 @@ from functools import cached_property, lru_cache
 from math import exp, lcm
 from typing import TYPE_CHECKING, Final
 
-from flint import acb, acb_series, arb
+from flint import acb, acb_series, arb, fmpz_mpoly
 
-from symflex.algebra import Factored, degree_in
-from symflex.algebra.exponential_sum import REAL, arguments_of, combination, exponential_sum
+from symflex.algebra import Dispersion, Factored, KernelTable, degree_in
+from symflex.algebra.exponential_sum import (
+    REAL,
+    Argument,
+    ExponentialSum,
+    arguments_of,
+    combination,
+    exponential_sum,
+)
 from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError
 from symflex.roots.argument import ROOM, deviation
 from symflex.roots.functions.exponential_values import DoubleSums, ExponentialValues, Place
 from symflex.roots.precision import precision
-from symflex.transfer.balls import at_centre, expansion
+from symflex.transfer.balls import Value, at_centre, expansion
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from flint import fmpz_mpoly
-
-    from symflex.algebra import Dispersion, KernelTable
-    from symflex.algebra.exponential_sum import Argument, ExponentialSum
     from symflex.transfer import BoundTransferFunction
-    from symflex.transfer.balls import Value
     from symflex.transfer.enclose_kernels import KernelValues
 
 FIRST_BITS = 64

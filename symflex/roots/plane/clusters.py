@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symflex.roots.functions.kernel_function import KernelFunction
-    from symflex.roots.root import Root
 
 
 POINTS = 64

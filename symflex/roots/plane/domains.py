@@ -7,20 +7,15 @@ a quarter of the plane; what is counted is the ring that mirror images make of i
 from __future__ import annotations
 
 from cmath import phase
+from collections.abc import Callable, Sequence
 from math import inf, log, pi
-from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
 from symflex.roots.counting.winding import Cell
 from symflex.roots.precision import precision
-from symflex.roots.region import Band, Rectangle
+from symflex.roots.region import Band, Rectangle, Region
 from symflex.roots.root import FLOAT_BITS, Root
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from symflex.roots.region import Region
 
 NEIGHBOURHOOD = 0.05
 """Of a point where roots accumulate: relative to its distance from 0."""

@@ -15,7 +15,7 @@ from flint import acb, arb
 
 from symflex.errors import BudgetError, Diagnostic
 from symflex.roots.axes.axis_scan import sign_changes
-from symflex.roots.counting.winding import RING, Cell, RootOnPathError
+from symflex.roots.counting.winding import RING, Cell, RootOnPathError, Winding
 from symflex.roots.plane.clusters import in_disc, is_branched, middle_of, prove_together, resolve, snapped
 from symflex.roots.plane.simple_root import prove_simple
 from symflex.roots.precision import bits_for_digits, precision
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from symflex.roots.counting.argument_principle import CertifiedWinding
-    from symflex.roots.counting.winding import Winding
 
 MARGIN = 0.03
 """How far beyond the axes cells reach [rad], so that no side lies on a row of roots."""

@@ -11,18 +11,15 @@ holds a real one. Guesses are therefore listed in the closed upper half plane on
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 from flint import acb, acb_poly, arb, arb_poly, ctx
 
 from symflex.budget import Budget, entered_budget
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    Proposer = Callable[[acb_poly], tuple[acb, ...] | None]
+Proposer = Callable[[acb_poly], tuple[acb, ...] | None]
 
 NEWTON_STEPS = 60
 """Each doubles the digits of a simple root; more only next to others."""

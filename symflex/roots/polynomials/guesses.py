@@ -14,22 +14,16 @@ from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Iterator
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 from flint import acb, acb_poly, arb
 
 from symflex.budget import Budget, entered_budget
 from symflex.roots.polynomials.discs import real_symmetric_roots
 from symflex.roots.precision import precision
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    import numpy.typing as npt
-    from flint import acb
-
 
 ITERATIONS = 80
 """For one root; five are enough as a rule."""

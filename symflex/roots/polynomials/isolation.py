@@ -22,6 +22,7 @@ from symflex.errors import Diagnostic, UncertifiedError
 from symflex.roots.polynomials.discs import (
     Disc,
     LevelPolynomial,
+    Proposer,
     complete,
     groups,
     middle_of,
@@ -34,10 +35,7 @@ from symflex.roots.precision import bits_for_digits, precision
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from flint import acb
-
     from symflex.budget import Budget
-    from symflex.roots.polynomials.discs import Proposer
     from symflex.roots.problem import PolynomialInS
 
     Goal = Callable[[acb], arb]
