@@ -53,7 +53,7 @@ def command(spec: Specification, given: ExportOptions) -> int:
     """
     from symflex import pipeline
     from symflex.codegen.exporters import EXPORTERS
-    from symflex.codegen.program.identifiers import identifiers
+    from symflex.codegen.program.user_text import identifiers
     from symflex.codegen.targets.latex import LatexExporter
     from symflex.files.write import check_folder, check_writable, write_atomically
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 from math import isfinite
 from typing import TYPE_CHECKING, Protocol
 
-from symflex.codegen.program.identifiers import identifiers
+from symflex.codegen.program.user_text import identifiers
 from symflex.codegen.program.verify import SAMPLES, choose_programs
 
 if TYPE_CHECKING:
@@ -56,18 +56,10 @@ class Exporter(Protocol):
     def export(
         self, model: Model, tfs: Sequence[AnyTransferFunction], stem: str = "", *, is_alone: bool = True
     ) -> Export:
-        """Return the file.
+        """Return the file of a model's transfer functions.
 
-        Parameters
-        ----------
-        model : Model
-            Whose they are.
-        tfs : sequence of TransferFunction
-            To write.
-        stem : str
-            The file's name without suffix, where that is known.
-        is_alone : bool
-            There can be no other files beside it: it has to serve without companions.
+        ``stem`` is its name without suffix, where that is known. Where it ``is_alone`` there can be no other
+        files beside it: it has to serve without companions.
         """
         ...
 
@@ -134,25 +126,13 @@ class Language:
         samples: int = SAMPLES,
         digits: int = 2,
     ) -> Export:
-        """Return the file; accuracy that was not reached is a warning.
+        """Return the file, the same on every run; accuracy that was not reached is a warning.
 
-        Parameters
-        ----------
-        model, tfs, stem, is_alone
-            As for :class:`Exporter`; a transfer function given twice is written once.
-        band_hz : tuple of Fraction, optional
-            Where the error is measured [Hz]; by default the model's ``[analysis]`` band, else 0.1 Hz to
-            10 kHz.
-        samples : int
-            Number of frequencies at which it is measured, besides those around poles and zeros.
-        digits : int
-            Significant digits of the printed error.
-
-        Returns
-        -------
-        Export
-            The same text on every run. Names that cannot be the language's are altered; text of the model
-            stands in it only as inert strings and comments.
+        Arguments are those of :class:`Exporter`; a transfer function given twice is written once. The error
+        is measured in ``band_hz`` [Hz], by default the model's ``[analysis]`` band, else 0.1 Hz to 10 kHz, at
+        so many ``samples`` besides those around poles and zeros, and printed with so many ``digits``. Names
+        that cannot be the language's are altered; text of the model stands in it only as inert strings and
+        comments.
 
         Raises
         ------

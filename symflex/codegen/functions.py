@@ -10,8 +10,8 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar
 
-from symflex.codegen.program.identifiers import identifiers
 from symflex.codegen.program.nodes import ONE, Laplace
+from symflex.codegen.program.user_text import identifiers
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence

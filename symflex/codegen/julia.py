@@ -21,8 +21,7 @@ from symflex.codegen.module_text import (
     headline,
     origin_lines,
 )
-from symflex.codegen.program.identifiers import identifiers
-from symflex.codegen.program.prose import inert, wrapped
+from symflex.codegen.program.user_text import identifiers, inert, wrapped
 from symflex.codegen.source_parts import called_parts, parts_of
 
 if TYPE_CHECKING:

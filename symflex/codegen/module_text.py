@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symflex.codegen.program.evaluate import nearest_double
-from symflex.codegen.program.prose import inert, wrapped
+from symflex.codegen.program.user_text import inert, wrapped
 from symflex.expressions import Quotient, format_expression, is_number
 from symflex.print.forms import print_form
 from symflex.print.latex.table import decimal_text
@@ -38,15 +38,7 @@ ITERATED = (
 
 
 def formula_lines(tf: AnyTransferFunction, width: int) -> list[str]:
-    """Return the formula in lines of inert text, shortened when it is long.
-
-    Parameters
-    ----------
-    tf : TransferFunction or NestedTransferFunction
-        Derived.
-    width : int
-        Columns of a line.
-    """
+    """Return the formula in lines of inert text of so many columns, shortened when it is long."""
     if isinstance(tf, NestedTransferFunction):
         return (
             _lines_of(tf.name, print_form(tf), width)
@@ -86,15 +78,7 @@ def origin_lines(model: Model, width: int) -> list[str]:
 
 
 def headline(tf: AnyTransferFunction, *, is_real: bool = False) -> str:
-    """Return what a function computes, in one inert line.
-
-    Parameters
-    ----------
-    tf : TransferFunction or NestedTransferFunction
-        Derived.
-    is_real : bool
-        True for its response at an angular frequency in real arithmetic.
-    """
+    """Return what a function, or its response in real arithmetic, computes, in one inert line."""
     unit = f" [{tf.unit}]" if tf.unit else ""
     at = " at s = j omega, in real arithmetic" if is_real else ""
     return inert(f"{tf.quantity[:1].upper()}{tf.quantity[1:]} {tf.name}{unit}{at}.")
@@ -103,12 +87,7 @@ def headline(tf: AnyTransferFunction, *, is_real: bool = False) -> str:
 def described(parameter: ModelParameter, name: str) -> str:
     """Return what a parameter is, with its unit, as inert text that ends with a full stop.
 
-    Parameters
-    ----------
-    parameter : ModelParameter
-        Of the model.
-    name : str
-        What it is called in the generated code.
+    ``name`` is what it is called in the generated code.
     """
     parts = [inert(parameter.doc).rstrip(".")] if parameter.doc.strip() else []
     parts += [f"'{inert(parameter.name)}' in the model"] if name != parameter.name else []

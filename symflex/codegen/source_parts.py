@@ -25,14 +25,9 @@ _CALL = re.compile(r"(\w+)\(")
 
 @cache
 def parts_of(file: str, dialect: str = "") -> Mapping[tuple[str, ...], str]:
-    """Return the parts of a source by the names that each defines.
+    """Return the parts of a file in ``codegen/sources`` by the names that each defines.
 
-    Parameters
-    ----------
-    file : str
-        Its name in ``codegen/sources``.
-    dialect : str
-        Of a file whose parts take the place of those that define one of the same names.
+    Those of a ``dialect``, another file, take the place of those that define one of the same names.
 
     Examples
     --------
@@ -55,16 +50,9 @@ def parts_of(file: str, dialect: str = "") -> Mapping[tuple[str, ...], str]:
 
 
 def called_parts(code: str, parts: Mapping[tuple[str, ...], str], always: Iterable[str] = ()) -> list[str]:
-    """Return the parts that some code needs, in order.
+    """Return the parts that some code needs, in order, and those that ``always`` are.
 
-    Parameters
-    ----------
-    code : str
-        What calls them; text of a model, which might look like a call, is not part of it.
-    parts : mapping of tuple of str to str
-        As :func:`parts_of` returns them.
-    always : iterable of str
-        Names that are needed besides.
+    Text of a model, which might look like a call, is no part of the code.
 
     Examples
     --------

@@ -17,7 +17,6 @@ from symflex.algebra import irreducible_factors
 from symflex.codegen.export import Export, shortfalls
 from symflex.codegen.module_text import default_value, described
 from symflex.codegen.program.evaluate import evaluate, nearest_double
-from symflex.codegen.program.identifiers import identifiers
 from symflex.codegen.program.nodes import (
     Add,
     Apply,
@@ -31,7 +30,7 @@ from symflex.codegen.program.nodes import (
     Straight,
     lumped,
 )
-from symflex.codegen.program.prose import inert, wrapped
+from symflex.codegen.program.user_text import identifiers, inert, wrapped
 from symflex.codegen.program.verify import Verification, measure_values
 from symflex.codegen.python.dialects import NUMPY_DIALECT
 from symflex.codegen.python.expression import WIDTH, PythonPrinter, statement

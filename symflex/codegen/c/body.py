@@ -15,7 +15,6 @@ from textwrap import TextWrapper
 from typing import TYPE_CHECKING
 
 from symflex.codegen.c.expression import CPrinter, Kind, Term, complex_term, product
-from symflex.codegen.program.identifiers import identifiers
 from symflex.codegen.program.nodes import (
     Assignment,
     CodeNode,
@@ -27,6 +26,7 @@ from symflex.codegen.program.nodes import (
     Roots,
     Solutions,
 )
+from symflex.codegen.program.user_text import identifiers
 from symflex.codegen.source_parts import parts_of
 
 if TYPE_CHECKING:

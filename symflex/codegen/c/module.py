@@ -21,8 +21,7 @@ from symflex.codegen.module_text import (
     origin_lines,
     value_as_written,
 )
-from symflex.codegen.program.identifiers import identifiers
-from symflex.codegen.program.prose import inert, wrapped
+from symflex.codegen.program.user_text import identifiers, inert, wrapped
 from symflex.codegen.source_parts import called_parts
 from symflex.errors import Diagnostic, UsageError
 

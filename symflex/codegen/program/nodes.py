@@ -302,23 +302,15 @@ class Straight:
 
 @dataclass(frozen=True, slots=True)
 class CodePiece:
-    """One way of computing a quotient.
+    """One way of computing a quotient."""
 
-    Parameters
-    ----------
-    code : Straight
-        Its values are numerator and denominator, in a lumped program the quotient alone; with a circle also
-        the logarithm of the factor that both were divided by, and the radius of the circle.
-    circle : int
-        Number of points on a circle around s over which numerator and denominator are averaged, because
-        the formula itself is singular near s though they are not; 0 for none.
-    is_complex: bool
-        True for a piece of complex s in a program of the angular frequency.
-    """
-
+    # Its values are numerator and denominator, in a lumped program the quotient alone; with a circle also the
+    # logarithm of the factor that both were divided by, and the radius of the circle.
     code: Straight
+    # Points on a circle around s over which numerator and denominator are averaged, because the formula
+    # itself is singular near s though they are not; 0 for none.
     circle: int = 0
-    is_complex: bool = False
+    is_complex: bool = False  # true for a piece of complex s in a program of the angular frequency
 
 
 @dataclass(frozen=True, slots=True)

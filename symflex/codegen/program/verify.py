@@ -177,31 +177,20 @@ def frequency_text(hertz: Fraction) -> str:
     return f"{float(hertz):.6g} Hz"
 
 
-def choose_program(
+def choose_programs(
     tf: AnyTransferFunction,
     band_hz: tuple[Fraction, Fraction] | None = None,
     samples: int = SAMPLES,
-) -> tuple[Piecewise, Verification]:
-    """Return the program of the form with the smallest measured error, and the measurement.
+) -> tuple[tuple[Piecewise, Verification], tuple[Piecewise, Verification] | None]:
+    """Return the program of the form with the smallest measured error, and the measurement; twice.
 
+    The second one computes the frequency response in real arithmetic, for lossless distributed systems only.
     Without values for all parameters nothing can be measured; recurrences are taken unless another form is
     much shorter.
 
     The band is in Hz, by default that of the model's ``[analysis]``, else 0.1 Hz to 10 kHz; ``samples`` are
     spaced evenly on a logarithmic scale, and more are taken near poles and zeros. SF503 when every program
     would be too large, SF233 when a number does not fit in double precision.
-    """
-    return _choose(_gauge(tf, band_hz, samples))
-
-
-def choose_programs(
-    tf: AnyTransferFunction,
-    band_hz: tuple[Fraction, Fraction] | None = None,
-    samples: int = SAMPLES,
-) -> tuple[tuple[Piecewise, Verification], tuple[Piecewise, Verification] | None]:
-    """Return what :func:`choose_program` does, and the same for the frequency response in real arithmetic.
-
-    The latter is there for lossless distributed systems only; arguments and errors are the same.
     """
     gauge = _gauge(tf, band_hz, samples)
     return _choose(gauge), _choose_real(gauge)
@@ -217,7 +206,7 @@ def measure_values(
     """Return how well values that are computed in some other way agree with a transfer function.
 
     ``values`` takes an array of s [rad/s]; it is not called when nothing can be measured. ``form`` is what
-    the other way is called; band and samples as for :func:`choose_program`.
+    the other way is called; band and samples as for :func:`choose_programs`.
     """
     gauge = _gauge(tf, band_hz, samples)
     if gauge.references is None:

@@ -121,12 +121,7 @@ Accuracy holds in double precision, which jax has to be told to use before anyth
 
 
 def private_copy(function: Callable[..., object]) -> str:
-    """Return the text of a run-time function as a private one, without annotations.
-
-    Parameters
-    ----------
-    function : callable
-        Of this package.
+    """Return the text of a run-time function of this package as a private one, without annotations.
 
     Raises
     ------

@@ -22,8 +22,7 @@ from symflex.codegen.module_text import (
     origin_lines,
 )
 from symflex.codegen.program.evaluate import nearest_double
-from symflex.codegen.program.identifiers import identifiers
-from symflex.codegen.program.prose import inert, wrapped
+from symflex.codegen.program.user_text import identifiers, inert, wrapped
 from symflex.codegen.python.dialects import ARRAY_API_DIALECT, JAX_DIALECT, NUMPY_DIALECT
 from symflex.codegen.python.expression import WIDTH, statement
 from symflex.codegen.python.pieces import BlockText, TracedText

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any
 
 from symflex.codegen.program.evaluate import number_of
 from symflex.codegen.program.everywhere import cases_of, in_pieces, places_of
-from symflex.codegen.program.identifiers import identifiers
 from symflex.codegen.program.nodes import (
     ONE,
     Apply,
@@ -28,6 +27,7 @@ from symflex.codegen.program.nodes import (
     Piecewise,
     Straight,
 )
+from symflex.codegen.program.user_text import identifiers
 from symflex.codegen.python.expression import WIDTH, ArrayPrinter, PythonPrinter, statement
 
 if TYPE_CHECKING:
