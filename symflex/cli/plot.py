@@ -153,7 +153,7 @@ def _part_shown(kind: str, given: PlotOptions) -> tuple[tuple[Fraction, Fraction
     Raises
     ------
     UsageError
-        SF902 for limits that are none, and for two of the frequencies of a Bode plot.
+        SF902 for what are not limits, and for two of the frequencies of a Bode plot.
     """
     from symflex.figures import AxisLimits
 

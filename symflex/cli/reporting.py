@@ -25,7 +25,7 @@ LAYOUT = "\n\t" + "".join(map(chr, (0xA0, 0x1680, *range(0x2000, 0x200B), 0x202F
 
 
 def reporting(command: Callable[P, int | None]) -> Callable[P, int]:
-    """Turn a :class:`SymflexError` into its message on stderr and its exit code; a closed pipe is none."""
+    """Turn a :class:`SymflexError` into its message on stderr and its exit code; a closed pipe has none."""
 
     @wraps(command)
     def run(*args: P.args, **kwargs: P.kwargs) -> int:

@@ -118,7 +118,7 @@ def dynamic_colocation(
     all until a zero, so that magnitude is what tells them apart. ``limits`` [Hz] are by default the model's
     band.
 
-    SF805 different inputs, outputs of different units, or tolerances that are none; SF804 no band; SF402 one
+    SF805 different inputs, outputs of different units, or tolerances out of range; SF804 no band; SF402 one
     of the functions is identically zero.
     """
     if tip.source.input.name != joint.source.input.name:

@@ -276,7 +276,7 @@ class Model:
         )
 
     def expressions(self) -> Iterator[tuple[str, Expression]]:
-        """Yield all expressions but printed ones, each with the name it defines, empty where that is none."""
+        """Yield all expressions but printed ones, each with the name it defines or an empty one."""
         yield from ((d.name, d.expression) for d in self.definitions)
         yield from (("", e) for use in self.elements for _, e in use.values)
         yield from ((b.name, e) for b in self.blocks for _, e in b.values)

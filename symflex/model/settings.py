@@ -38,7 +38,7 @@ def read_settings(texts: Sequence[str]) -> dict[str, str]:
     Raises
     ------
     UsageError
-        SF902 for a text that is none, or a name that is given twice.
+        SF902 for a text that is not NAME=VALUE, or a name that is given twice.
 
     Examples
     --------

@@ -133,7 +133,7 @@ class Reading:
         Raises
         ------
         UnexpectedError
-            Where the text is none of the language.
+            Where the text is not of the language.
         """
         place = 0
         while token := self._grammar.word(self._text, place, self._states[-1]):

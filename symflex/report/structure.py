@@ -211,7 +211,7 @@ def rigid_counts(model: Model) -> Mapping[tuple[str, str], RigidCounts]:
     Springs, torsion springs, massless beams and resonance blocks are stiffened; blocks that hold another
     model stay as they are. Distributed models have no such limit here.
 
-    There are none of distributed models, and of models without any compliance. Zeros are None where nothing
+    Distributed models have none, and models without any compliance. Zeros are None where nothing
     moves, as of a structure that only springs hold to ground.
 
     Examples
@@ -250,7 +250,7 @@ def rigid_counts(model: Model) -> Mapping[tuple[str, str], RigidCounts]:
 def undamped_counts(model: Model) -> Mapping[tuple[str, str], Counts]:
     """Return the zeros and poles of every transfer function as the coefficients of all dampers vanish.
 
-    There are none of distributed models, and of models without dampers.
+    Distributed models have none, and models without dampers.
     """
 
     def lossy(use: PlacedElement) -> frozenset[str]:

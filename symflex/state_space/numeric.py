@@ -36,7 +36,7 @@ class BoundState:
     """One state."""
 
     name: str  # letters, digits and underscores
-    # The quantities of the model that it is a sum of, with their coefficients; empty when it is none.
+    # The quantities of the model that it is a sum of, with their coefficients; empty when it is not one.
     terms: tuple[tuple[str, float], ...]
     unit: str  # SI unit, empty when unknown
 

@@ -130,7 +130,7 @@ def _constants(points: Sequence[Mapping[int, Mapping[int, int]]], system: StateS
 
 
 def _reconstructed(value: int) -> tuple[int, int] | None:
-    """Return the small fraction that a residue is (Wang 1981), ``None`` when it is none."""
+    """Return the small fraction that a residue is (Wang 1981), ``None`` when it is not one."""
     (above, below), (left, right) = (PRIME, value), (0, 1)
     while below > LARGEST:
         quotient = above // below

@@ -40,7 +40,7 @@ def expansion(s: acb) -> acb_series:
 
 
 def at_centre(value: Value) -> acb:
-    """Return the first coefficient of a series, itself what is none."""
+    """Return the first coefficient of a series; a number is its own."""
     return value[0] if isinstance(value, acb_series) else value
 
 

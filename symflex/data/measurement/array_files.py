@@ -31,7 +31,7 @@ SHOWN = 80
 """Characters of a message that repeats what a file says."""
 LAST_CHARACTER: Final = 0x10FFFF
 SURROGATES: Final = (0xD800, 0xDFFF)
-"""Unicode's range of characters, and the halves of pairs in it that are none (Unicode 15, section 3.9)."""
+"""The range of Unicode, and the halves of pairs in it that are not characters (Unicode 15, section 3.9)."""
 DIMENSIONS_LIMIT = 32
 """Of numpy 1; version 2 takes 64."""
 
@@ -80,7 +80,7 @@ class ByteReader:
     def numbers(self, kind: str, shape: Sequence[int], order: Literal["C", "F"] = "C") -> npt.NDArray[Any]:
         """Return an array of numbers of one kind, such as ``f8``, in the bytes' own order.
 
-        ValueError when there are fewer bytes, or the shape is none; nothing is allocated for what is not
+        ValueError when there are fewer bytes, or it is not a shape; nothing is allocated for what is not
         there.
         """
         if len(shape) > DIMENSIONS_LIMIT or any(size < 0 for size in shape):

@@ -236,7 +236,7 @@ def nowhere(index: int, column: str) -> Span | None:
 
 
 def averages_of(text: str, file: str, span: Span | None = None) -> float:
-    """Return a number of averages; SF603 when it is none."""
+    """Return a number of averages; SF603 when it is not one."""
     try:
         number = float(text)
     except ValueError:

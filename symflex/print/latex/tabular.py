@@ -91,7 +91,7 @@ def tabular(columns: Sequence[TabularColumn], setting: Setting, heights: Sequenc
 def number_column(
     head: tuple[str, ...], head_widths: tuple[float, ...], cells: Sequence[str]
 ) -> TabularColumn:
-    r"""Return a column of numbers, aligned by siunitx; cells in braces are none.
+    r"""Return a column of numbers, aligned by siunitx; cells in braces are not numbers.
 
     Cells are decimals such as ``-1.5e-3``, of which ``\pm`` may stand before; the widths of the lines of the
     head are in em.

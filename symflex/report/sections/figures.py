@@ -48,7 +48,7 @@ def figure_section(study: Study) -> ChapterPart | None:
             blocks.append(Notice(why))
             warnings.append(f"{study.stem}, figure {why}")
             # What the specification asks for is missing. Nobody asked for the figures by default, and kinds
-            # that are announced are none that failed.
+            # that are announced have not failed.
             is_asked = bool(study.model.figures) and figure.kind in (*FIGURES, *LOOP_FIGURES)
             code = max(code, code_of(drawn), UncertifiedError.exit_code if is_asked else 0)
         else:

@@ -267,7 +267,7 @@ class _Searched:
                 found.append(())
                 reasons.append(error.diagnostics[0].message)
                 continue
-            # Where wavenumbers meet or vanish, a function may have a root that is none of the system.
+            # Where wavenumbers meet or vanish, a function may have a root that the system does not have.
             apart = tuple(
                 r for r in whole.roots if not any(overlap(r, p) for p in degenerate if not p.is_zero)
             )

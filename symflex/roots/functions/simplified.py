@@ -60,7 +60,7 @@ def without_lengths_of_zero(bound: BoundTransferFunction) -> BoundTransferFuncti
     num, den = (part.map_factors(ring, evaluated) for part in (bound.num, bound.den))
     if den.is_zero:
         message = f"the denominator of {bound.name} is zero for these values"
-        raise ModelError(Diagnostic("SF231", message, None, "without its length a part is none"))
+        raise ModelError(Diagnostic("SF231", message, None, "a part needs its length"))
     hidden = [
         HiddenFactor(f, e * known.multiplicity)
         for known in bound.hidden

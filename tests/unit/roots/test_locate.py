@@ -110,7 +110,7 @@ def test_a_denominator_that_vanishes_without_a_length_is_refused():
         without_lengths_of_zero(bound(WITHOUT_LENGTH.format(formula="u/(1 - D)")))
     (diagnostic,) = failed.value.diagnostics
     assert diagnostic.message == "the denominator of y/u is zero for these values"
-    assert diagnostic.hint == "without its length a part is none"
+    assert diagnostic.hint == "a part needs its length"
 
 
 HIDING = """
