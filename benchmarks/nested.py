@@ -41,7 +41,7 @@ SNIPPET = """
 import time
 from benchmarks.networks import NETWORKS, network
 from symflex import pipeline
-from symflex.equations.elimination import eliminate
+from symflex.equations.elimination.star_mesh import eliminate
 
 model = network(NETWORKS[{kind!r}]({n}))
 begin = time.process_time()

@@ -73,7 +73,7 @@ class LazyGroup(click.Group):
         """Name the nearest command when there is none of that name."""
         name = args[0]
         if name not in COMMANDS and not name.startswith("-"):
-            from symflex.errors.diagnostic import nearest  # difflib is not needed to start
+            from symflex.errors.diagnostic import nearest  # most commands go well
 
             hint = GONE if name == "cache" else nearest(name, COMMANDS)
             ctx.fail(f"No such command '{name}'." + (f" {hint[0].upper()}{hint[1:]}" if hint else ""))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from difflib import get_close_matches
 from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
@@ -84,6 +83,8 @@ def nearest(name: str, known: Iterable[str]) -> str | None:
     """
     if len(name) > 64:  # noqa: PLR2004
         return None
+    from difflib import get_close_matches  # most commands go well
+
     known = sorted(known)
     same = [n for n in known if n.lower() == name.lower()]
     matches = same or get_close_matches(name, known, n=1, cutoff=0.6)

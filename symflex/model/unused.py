@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from symflex.errors import Diagnostic
@@ -118,6 +117,8 @@ def _looks_like(name: str, other: str) -> bool:
     """Tell whether two names have the same letters, or nearly those of the ground, as which none is named."""
     if _letters(name) == _letters(other):
         return True
+    from difflib import get_close_matches  # most models have a use for all their names
+
     return other == "ground" and bool(get_close_matches(name.lower(), [other], cutoff=ALIKE))
 
 

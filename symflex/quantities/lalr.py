@@ -14,11 +14,10 @@ from __future__ import annotations
 
 import json
 import re
-from functools import cache
 from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence, Set
     from pathlib import Path
 
 END: Final = "$END"
@@ -77,28 +76,29 @@ class Grammar:
             (origin, size, parts, _callback(builder, name, is_single=is_single))
             for origin, size, parts, name, is_single in table["rules"]
         ]
-        self._terminals: dict[str, str] = table["terminals"]
+        self._terminals = {name: re.compile(pattern) for name, pattern in table["terminals"].items()}
         self._ignored = frozenset(table["ignored"])
         self._is_contextual = is_contextual
-        self._pattern = cache(self._joined)
-
-    def _joined(self, state: int | None) -> re.Pattern[str]:
-        kept = self._terminals if state is None else self.states[state].keys() | self._ignored
-        return re.compile("|".join(f"(?P<{n}>{p})" for n, p in self._terminals.items() if n in kept))
 
     def word(self, text: str, start: int, state: int) -> Token | None:
         """Return the word that begins at an offset, or behind what is ignored there; none at the end."""
-        pattern = self._pattern(state if self._is_contextual else None)
+        kept = self.states[state].keys() | self._ignored if self._is_contextual else self._terminals.keys()
         while start < len(text):
-            found = pattern.match(text, start)
+            found = self._first(text, start, kept)
             if found is None:
-                token = None
-                if self._is_contextual and (other := self._pattern(None).match(text, start)):
-                    token = Token(str(other.lastgroup), other[0], start)
-                raise UnexpectedError(start, token, self.expected(state))
-            if found.lastgroup not in self._ignored:
-                return Token(str(found.lastgroup), found[0], start)
-            start = found.end()
+                raise UnexpectedError(
+                    start, self._first(text, start, self._terminals.keys()), self.expected(state)
+                )
+            if found.type not in self._ignored:
+                return found
+            start = found.end
+        return None
+
+    def _first(self, text: str, start: int, kept: Set[str]) -> Token | None:
+        """Return the first of some terminals that begins at an offset."""
+        for name, pattern in self._terminals.items():
+            if name in kept and (found := pattern.match(text, start)):
+                return Token(name, found[0], start)
         return None
 
     def expected(self, state: int) -> frozenset[str]:

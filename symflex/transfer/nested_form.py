@@ -17,7 +17,6 @@ from flint import acb, arb, ctx
 from symflex.algebra import LAPLACE
 from symflex.algebra.straight_line import Operation, Step, StraightLine
 from symflex.budget import spend
-from symflex.equations.elimination import eliminate
 from symflex.errors import Diagnostic, ModelError
 from symflex.expressions import Name, names
 from symflex.transfer.balls import FIRST_BITS, ball, double_value, enclosure, later
@@ -159,6 +158,8 @@ def derive_nested(
     if model.is_distributed:
         message = "the nested form of a model with beams, rods, fields or delays is not available yet"
         raise ModelError(Diagnostic("SF910", message, None, "leave the representation to the program"))
+    from symflex.equations.elimination.star_mesh import eliminate  # few models are so large
+
     found = eliminate(equations, pairs)
     outputs, inputs = {o.name: o for o in model.outputs}, {i.name: i for i in model.inputs}
     known = dict(model.quotients)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from symflex import equations as equations_room
 from symflex.algebra import uncollected
 from symflex.budget import spend
-from symflex.equations.elimination import eliminate, expanded_terms, explain_singular, is_singular
+from symflex.equations.elimination import expanded_terms, explain_singular, is_singular
 from symflex.errors import BudgetError, Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.model import with_numbers
@@ -122,6 +122,8 @@ def derive_as(
     if representation == "expanded":
         return derive_all(model, pairs), ""
     if len(model.elements) > NEVER_LARGE and not model.is_distributed:
+        from symflex.equations.elimination.star_mesh import eliminate  # few models are so large
+
         equations = assemble_sparse(model)
         terms = expanded_terms(equations, eliminate(equations, pairs[:1]))
         if terms > EXPANDED_TERMS:

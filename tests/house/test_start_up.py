@@ -40,6 +40,7 @@ ALLOWED = [
     (("rational", LUMPED), {*READING, "numpy", "mpmath"}),
 ]
 NUMBERS = {"audit", "explanation", "fitting", "rational", "report", "response", "roots", "sensitivity"}
+MOST_MODULES = 120
 CODE = """
 import sys
 from symflex.cli import run
@@ -58,6 +59,34 @@ def modules_after(*arguments):
 @pytest.mark.parametrize(("arguments", "allowed"), ALLOWED, ids=[" ".join(a) for a, _ in ALLOWED])
 def test_a_command_imports_the_libraries_it_needs_and_no_other(arguments, allowed):
     assert modules_after(*arguments) & LIBRARIES == allowed
+
+
+ONLY_WITH_BEAMS = {
+    "algebra.exponential_sum",
+    "algebra.exponentials",
+    "algebra.modal_sum",
+    "algebra.origin",
+    "algebra.propagators",
+    "algebra.taylor",
+    "equations.distributed",
+    "library.fields",
+    "print.forms.economical",
+    "print.forms.frequency",
+    "print.forms.krylov",
+    "transfer.distributed",
+    "transfer.enclose_kernels",
+}
+ONLY_WHERE_SOMETHING_IS_WRONG = {"difflib", "symflex.model.spec.diagnose"}
+
+
+def test_a_lumped_model_needs_nothing_that_only_beams_need():
+    imported = modules_after("derive", LUMPED)
+    found = {module for module in ONLY_WITH_BEAMS if f"symflex.{module}" in imported}
+    assert not found | ONLY_WHERE_SOMETHING_IS_WRONG & imported
+
+
+def test_deriving_a_lumped_model_imports_at_most_120_modules():
+    assert sum(module.startswith("symflex.") for module in modules_after("derive", LUMPED)) <= MOST_MODULES
 
 
 @pytest.mark.slow

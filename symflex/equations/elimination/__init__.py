@@ -9,17 +9,14 @@ from symflex.equations.elimination.closing import (
 )
 from symflex.equations.elimination.determinants import Determinants, Minors, expanded_terms, expansion_order
 from symflex.equations.elimination.singular import explain_singular, is_singular, unreached
-from symflex.equations.elimination.star_mesh import Elimination, eliminate
 
 __all__ = [
     "ClosedSystem",
     "Closure",
     "Determinants",
-    "Elimination",
     "Minors",
     "ReducedSystem",
     "close",
-    "eliminate",
     "eliminate_unit_pivots",
     "expanded_terms",
     "expansion_order",

@@ -283,7 +283,7 @@ def expanded_terms(equations: Equations, elimination: Elimination) -> float:
     Examples
     --------
     >>> from symflex import pipeline
-    >>> from symflex.equations.elimination import eliminate
+    >>> from symflex.equations.elimination.star_mesh import eliminate
     >>> equations = pipeline.assemble(pipeline.loads('''
     ... symflex = 1
     ... parameters = {m_1 = {}, m_2 = {}, k = {}}

@@ -13,7 +13,6 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from symflex.errors import Diagnostic, Span, SpecError
-from symflex.model.spec.diagnose import diagnose_toml, diagnose_unclosed
 from symflex.model.spec.positions import Document, Literal, decode_key, locate
 from symflex.model.spec.read import MAX_ERRORS
 from symflex.model.spec.scan import KEY, KEY_PART, Scan, Statement, scan
@@ -98,6 +97,8 @@ def parse_with_recovery(source: Source) -> tuple[Spec, tuple[Diagnostic, ...]]:
     repair = _Repair(source, found)
     for statement in found.statements:
         if statement.unclosed is not None:
+            from symflex.model.spec.diagnose import diagnose_unclosed  # most texts are TOML
+
             repair.report(statement, diagnose_unclosed(source, found.text, statement))
     decoded = repair.decode()
     document = repair.document()
@@ -163,6 +164,8 @@ class _Repair:
             except tomllib.TOMLDecodeError as error:
                 message, offset = _place(error, document)
             statement = self._at(offset)
+            from symflex.model.spec.diagnose import diagnose_toml  # most texts are TOML
+
             self.report(statement, diagnose_toml(self.source, self.scan, statement, message, offset), offset)
             # tomllib goes forward: no error before this one is still to be found.
             if sum(d.span.start <= offset for d in self.diagnostics if d.span) >= MAX_ERRORS:

@@ -13,7 +13,8 @@ from symflex import pipeline
 from symflex.algebra.ring import terms_of
 from symflex.algebra.straight_line import ONE, ZERO, Step, Workbench
 from symflex.equations import assemble
-from symflex.equations.elimination import eliminate, expanded_terms, is_singular
+from symflex.equations.elimination import expanded_terms, is_singular
+from symflex.equations.elimination.star_mesh import eliminate
 from symflex.errors import ModelError
 
 
