@@ -10,7 +10,7 @@ from symflex.errors import Diagnostic, SymflexError
 
 @pytest.fixture(autouse=True)
 def _no_tex(monkeypatch):
-    monkeypatch.setattr("symflex.report.pdf.shutil.which", lambda _: None)
+    monkeypatch.setattr("symflex.report.published.shutil.which", lambda _: None)
 
 
 @pytest.mark.slow
