@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from decimal import Decimal
 from enum import Enum
-from typing import TYPE_CHECKING
+from fractions import Fraction
+from math import floor, log10
 
 from symflex.expressions.nodes import (
     Attribute,
@@ -20,9 +21,6 @@ from symflex.expressions.nodes import (
     Quotient,
     Sum,
 )
-
-if TYPE_CHECKING:
-    from fractions import Fraction
 
 # A decimal is short up to so many significant digits, and can be read back down to this decimal exponent.
 SHORT_DIGITS = 40
@@ -175,6 +173,16 @@ def number_text(value: Fraction) -> str:
     if value.denominator == 1:
         return fraction.removesuffix("/1")
     return _decimal_text(value) or fraction
+
+
+def decimal_exponent(value: Fraction) -> int:
+    """Return floor(log10(value)) of a positive rational, exactly."""
+    estimate = floor((value.numerator.bit_length() - value.denominator.bit_length()) * log10(2))
+    while value >= Fraction(10) ** (estimate + 1):
+        estimate += 1
+    while value < Fraction(10) ** estimate:
+        estimate -= 1
+    return estimate
 
 
 def _decimal_text(value: Fraction) -> str | None:

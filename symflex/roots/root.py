@@ -9,6 +9,7 @@ from fractions import Fraction
 
 from flint import acb, arb, fmpz
 
+from symflex.expressions.format import decimal_exponent
 from symflex.roots.precision import precision
 
 GUARD_BITS = 32
@@ -178,24 +179,14 @@ def exact_fraction(number: arb) -> Fraction:
     return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
 
 
-def _decimal_exponent(value: Fraction) -> int:
-    """Return floor(log10(value)) of a positive rational, exactly."""
-    estimate = math.floor((value.numerator.bit_length() - value.denominator.bit_length()) * math.log10(2))
-    while value >= Fraction(10) ** (estimate + 1):
-        estimate += 1
-    while value < Fraction(10) ** estimate:
-        estimate -= 1
-    return estimate
-
-
 def _round_ball(ball: arb, digits: int) -> tuple[str, Fraction]:
     """Return the print of a real ball and a bound on its distance from every point of the ball."""
     middle, radius = exact_fraction(ball), exact_fraction(ball.rad())
     if middle == 0 == radius:
         return "0", radius
-    last = _decimal_exponent(abs(middle or radius)) - digits + 1
+    last = decimal_exponent(abs(middle or radius)) - digits + 1
     if radius:
-        last = max(last, _decimal_exponent(radius) + 1)
+        last = max(last, decimal_exponent(radius) + 1)
     unit = Fraction(10) ** last
     count = round(middle / unit)
     error = abs(middle - count * unit) + radius
@@ -223,7 +214,7 @@ def _round_up(*errors: Fraction) -> str:
     square = sum((error**2 for error in errors), Fraction(0))
     if square == 0:
         return "0"
-    scale = _decimal_exponent(square) // 2 - 1
+    scale = decimal_exponent(square) // 2 - 1
     unit = Fraction(10) ** scale
     count = math.isqrt(math.ceil(square / unit**2))
     if count**2 * unit**2 < square:

@@ -2,10 +2,10 @@ r"""Tables of parameters, poles, zeros and modes, with booktabs and siunitx, as 
 
 from __future__ import annotations
 
-import math
 from fractions import Fraction
 from typing import TYPE_CHECKING, Final
 
+from symflex.expressions.format import decimal_exponent
 from symflex.print.label import symbol
 from symflex.print.latex.equation import model_labels
 from symflex.print.latex.page import COLUMNS_MM
@@ -175,7 +175,7 @@ def decimal_text(value: ExactValue) -> str:
     if number == 0:
         return "0"
     sign, size = ("-" if number < 0 else ""), abs(number)
-    leading = _decimal_exponent(size)
+    leading = decimal_exponent(size)
     count = round(size / Fraction(10) ** (leading - VALUE_DIGITS + 1))
     if count == 10**VALUE_DIGITS:
         leading, count = leading + 1, count // 10
@@ -188,15 +188,6 @@ def decimal_text(value: ExactValue) -> str:
         whole = text[: leading + 1].ljust(leading + 1, "0")
         return f"{sign}{whole}{'.' if len(text) > leading + 1 else ''}{text[leading + 1 :]}"
     return f"{sign}{text[0]}{'.' if len(text) > 1 else ''}{text[1:]}e{leading}"
-
-
-def _decimal_exponent(value: Fraction) -> int:
-    estimate = math.floor((value.numerator.bit_length() - value.denominator.bit_length()) * math.log10(2))
-    while value >= Fraction(10) ** (estimate + 1):
-        estimate += 1
-    while value < Fraction(10) ** estimate:
-        estimate -= 1
-    return estimate
 
 
 def _cut(text: str) -> str:
