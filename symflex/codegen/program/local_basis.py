@@ -107,7 +107,7 @@ def pair_basis(exponents: Iterable[Sequence[tuple[int, int]]]) -> LocalBasis:
         1,
         order,
         tuple(
-            {(p, q): int(c) for (_, p, q), c in powers[n,].terms()} if (n,) in powers else {}
+            {(int(p), int(q)): int(c) for (_, p, q), c in powers[n,].terms()} if (n,) in powers else {}
             for n in range(order)
         ),
     )
