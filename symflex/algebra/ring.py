@@ -109,11 +109,8 @@ class Ring:
 
     def coefficients(self, polynomial: fmpz_mpoly, generator: int = 0) -> list[fmpz_mpoly]:
         """Return the coefficients of ascending powers of one generator, over the same ring."""
-        parts: list[dict[tuple[int, ...], int]] = [{} for _ in range(degree_in(polynomial, generator) + 1)]
-        for monomial, coefficient in polynomial.terms():
-            rest = tuple(0 if i == generator else int(e) for i, e in enumerate(monomial))
-            parts[int(monomial[generator])][rest] = int(coefficient)
-        return [self.context.from_dict(part) for part in parts]
+        found = coefficients_of(self, polynomial, (generator,))
+        return [found.get((n,), self.constant(0)) for n in range(degree_in(polynomial, generator) + 1)]
 
 
 def expanded_length(polynomial: fmpz_mpoly, lengths: Sequence[int]) -> int | None:
