@@ -52,20 +52,9 @@ _Work = list["str | tuple[Expression, _Position]"]
 def format_expression(expression: Expression, *, multiply: str = "*", power: str = "^") -> str:
     """Print a tree so that :func:`~symflex.expressions.parse` reads the same tree back.
 
-    Parameters
-    ----------
-    expression : Expression
-        A tree of any width and depth; an :class:`Equation` is printed as ``left = right``.
-    multiply, power : str, optional
-        The operators; ``power="**"`` is read back too and suits other languages.
+    It may have any width and depth, and gets the fewest parentheses; an :class:`Equation` is printed as
+    ``left = right``. The operators may be others: ``power="**"`` is read back too and suits other languages.
 
-    Returns
-    -------
-    str
-        Text with the fewest parentheses.
-
-    Notes
-    -----
     Text is read back as the same tree when sums do not stand directly in sums, nor products in products, and
     numbers are non-negative integers or finite decimals of at most 40 significant digits, not below 1e-200.
     Any other number prints as numerator over denominator and is read back as the ``Quotient`` of two

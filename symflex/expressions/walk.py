@@ -30,17 +30,9 @@ Value = TypeVar("Value")
 
 
 def names(expression: Expression) -> tuple[Name | Attribute | Call | Derivative, ...]:
-    """Return every node that bears a name, in order of appearance, as often as it appears.
+    """Return every node of a tree, or an equation, that bears a name, in order and as often as it appears.
 
-    Parameters
-    ----------
-    expression : Expression
-        A tree; an :class:`Equation` too.
-
-    Returns
-    -------
-    tuple of Name, Attribute, Call or Derivative
-        A call stands before the names in its argument.
+    A call stands before the names in its argument.
 
     Examples
     --------
@@ -141,18 +133,9 @@ def fold(
 def substitute(expression: Expression, mapping: Mapping[str, Expression]) -> Expression:
     """Replace names by expressions, all at once: what is put in is not searched again.
 
-    Parameters
-    ----------
-    expression : Expression
-        A tree; an :class:`Equation` too.
-    mapping : Mapping of str to Expression
-        From a name, or from ``owner.name`` for an attribute. Names of functions and fields are not replaced.
-
-    Returns
-    -------
-    Expression
-        The new tree, flat like every tree and otherwise not simplified. Parts without a replaced name are the
-        same objects as before; rebuilt parts keep their place in the text.
+    Names are given as ``name``, or ``owner.name`` for an attribute; those of functions and fields stay. The
+    new tree is flat like every tree and otherwise not simplified; parts without a replaced name are the same
+    objects as before, and rebuilt parts keep their place in the text.
 
     Examples
     --------

@@ -20,14 +20,8 @@ def write_atomically(path: Path, data: bytes) -> None:
     """Write a file so that at every moment its path holds the old content or the new, never a part.
 
     The data go to a temporary file in the same folder, reach the disk, and then take the place of ``path``.
-    An existing file keeps its permissions; a new one gets those of the process's umask.
-
-    Parameters
-    ----------
-    path : Path
-        In a folder that exists; not a symbolic link, and not a folder or device.
-    data : bytes
-        The whole content.
+    An existing file keeps its permissions; a new one gets those of the process's umask. The folder
+    exists, and the path is not a symbolic link, a folder or a device.
 
     Raises
     ------
@@ -102,12 +96,7 @@ def _check_entry(folder: Path, name: str) -> None:
 def write_folder(folder: Path, files: Mapping[str, str]) -> None:
     """Write text files into a folder, which is made when it is missing, each as a whole or not at all.
 
-    Parameters
-    ----------
-    folder : Path
-        In a folder that exists.
-    files : mapping of str to str
-        Text by name of file; names lead nowhere else.
+    Texts are given by name of file, and names lead nowhere else.
 
     Raises
     ------

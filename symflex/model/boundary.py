@@ -79,10 +79,7 @@ def depends_on_s(expression: Expression, varying: frozenset[str]) -> bool:
 def check_fields(reader: Reader, fields: Sequence[FieldProblem], around: Surroundings) -> frozenset[str]:
     """Note everything wrong with the fields apart from units and from points (:func:`check_points`).
 
-    Returns
-    -------
-    frozenset of str
-        Names of the fields whose domain is sound.
+    Returned are the names of the fields whose domain is sound.
     """
     orders: dict[str, int] = {}
     placed: set[str] = set()

@@ -175,16 +175,9 @@ class DimensionSystem:
         self.problems: list[Diagnostic] = []
 
     def require(self, expression: Expression, unit: str, what: str, a_what: str) -> None:
-        """Demand that ``expression`` is measured in ``unit``.
+        """Demand that the value of a port is measured in the port's SI unit; an empty one accepts anything.
 
-        Parameters
-        ----------
-        expression : Expression
-            A port's value.
-        unit : str
-            The port's SI unit; empty accepts anything.
-        what, a_what : str
-            "m of mass 'tip'" and "a mass", for the message.
+        In the message it is called ``what``, "m of mass 'tip'", and ``a_what``, "a mass".
         """
         measure = self.measure(expression)
         if not unit:

@@ -29,17 +29,7 @@ EXAMPLE = """for instance: domain = ["0", "l"], equation = "E*A*u'' = rho*A*s^2*
 def read_fields(
     reader: Reader, section: TableValue | None, taken: Collection[str]
 ) -> tuple[FieldProblem, ...]:
-    """Return the fields in order.
-
-    Parameters
-    ----------
-    reader : Reader
-        Takes what is wrong.
-    section : TableValue, optional
-        ``[fields]``.
-    taken : collection of str
-        Names of parameters, definitions and blocks, which no unknown may bear.
-    """
+    """Return ``[fields]`` in order; no unknown may bear a name of a parameter, definition or block."""
     found: list[FieldProblem] = []
     owners: dict[str, str] = {}
     for i, entry in enumerate(section.entries if section else ()):

@@ -58,17 +58,7 @@ def integer_exponent(exponent: Expression) -> int | None:
 
 
 def check_expression(expression: Expression, scope: ModelScope, *, constant: bool) -> list[Diagnostic]:
-    """Return everything wrong with an expression apart from its units.
-
-    Parameters
-    ----------
-    expression : Expression
-        As parsed.
-    scope : ModelScope
-        The model's names.
-    constant : bool
-        True where no unknown may stand.
-    """
+    """Return everything wrong with an expression apart from its units; no unknown may stand in a constant."""
     degrees = _Degrees(scope, constant)
     degree = degrees.of(expression)
     if not constant and degree == "constant" and not degrees.problems and not is_number(expression, 0):
@@ -79,12 +69,7 @@ def check_expression(expression: Expression, scope: ModelScope, *, constant: boo
 def check_equation(equation: Equation, scope: ModelScope) -> list[Diagnostic]:
     """Return everything wrong with an equation or condition of a field apart from its units.
 
-    Parameters
-    ----------
-    equation : Equation
-        As parsed.
-    scope : ModelScope
-        The model's names; :meth:`ModelScope.within` the field for one of its equations.
+    The scope of an equation is :meth:`ModelScope.within` its field.
     """
     degrees = _Degrees(scope, constant=False)
     sides = (equation.left, equation.right)

@@ -21,11 +21,8 @@ if TYPE_CHECKING:
 def is_passive(model: Model, values: Iterable[tuple[str, ExactValue]]) -> bool:
     """Tell whether it is proved that a model supplies no energy.
 
-    Returns
-    -------
-    bool
-        False where nothing is known: with signals, blocks, fields, parameters that depend on s, elements that
-        are not of this program, or a value of the wrong sign.
+    Nothing is known with signals, blocks, fields, parameters that depend on s, elements that are not of this
+    program, or a value of the wrong sign.
 
     Examples
     --------

@@ -50,11 +50,8 @@ def readable_names(model: Model, broken: Collection[str] = ()) -> Readable:
 def check_printed(published: Published, readable: Readable) -> list[Diagnostic]:
     """Return everything wrong with the names and exponents of a printed formula.
 
-    Returns
-    -------
-    list of Diagnostic
-        SF210 an unknown name or function, SF212 a name that may not stand there, SF215 lines that use each
-        other in a circle, SF225 an exponent that is not a number.
+    SF210 an unknown name or function, SF212 a name that may not stand there, SF215 lines that use each other
+    in a circle, SF225 an exponent that is not a number.
     """
     known = {**readable.definitions, **dict(published.where)}
     roots = [published.expression, *([published.scale] if published.scale is not None else [])]

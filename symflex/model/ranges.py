@@ -57,16 +57,8 @@ def ranged_values(draft: Draft | Model) -> Iterator[RangedValue]:
 def check_ranges(reader: Reader, draft: Draft, line: Line, unsound: set[Span | None]) -> None:
     """Note values of distributed parts that are zero or negative where they cannot be.
 
-    Parameters
-    ----------
-    reader : Reader
-        Takes what is wrong.
-    draft : Draft
-        What was read.
-    line : Line
-        Tells signs, from values and from what is assumed of parameters.
-    unsound : set of Span
-        Places that hold a mistake already; those found here are added.
+    Signs are told by ``line``, from values and what is assumed of parameters. Places in ``unsound`` hold a
+    mistake already; those found here are added.
     """
     for ranged in ranged_values(draft):
         expression, least = ranged.expression, 1 if ranged.sign == "positive" else 0
@@ -83,16 +75,7 @@ def check_ranges(reader: Reader, draft: Draft, line: Line, unsound: set[Span | N
 def check_value(model: Model, name: str, value: ExactValue, varied: Collection[str]) -> None:
     """Refuse a value of a parameter with which a distributed part is what none can be.
 
-    Parameters
-    ----------
-    model : Model
-        Resolved; all other parameters keep their declared values.
-    name : str
-        The parameter.
-    value : ExactValue
-        Instead of the declared one.
-    varied : collection of str
-        Parameters whose declared values do not count, since they vary too.
+    All other parameters keep their declared values, but for those ``varied``, which do not count.
 
     Raises
     ------

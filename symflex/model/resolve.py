@@ -99,16 +99,8 @@ def load_model(
 ) -> Model:
     """Parse and resolve a text, reporting syntax and meaning errors together.
 
-    Parameters
-    ----------
-    source : Source
-        The text; ``model`` blocks are found relative to ``source.name``.
-    ancestors : tuple of Path
-        The files whose ``model`` blocks led here.
-    loads : Loads, optional
-        What was read for ``model`` blocks so far.
-    allow_outside : iterable of str or Path, optional
-        Folders that ``model`` blocks may read besides that of the source.
+    Files of ``model`` blocks are found relative to ``source.name``, in its folder and those of
+    ``allow_outside``; ``ancestors`` are the files whose blocks led here, ``loads`` what was read for blocks.
 
     Raises
     ------
@@ -133,14 +125,7 @@ def load_with(
 ) -> Model:
     """Parse and resolve a text with values in place of declared ones, checked as those in the text are.
 
-    Parameters
-    ----------
-    source : Source
-        The text.
-    settings : mapping of str to str or number
-        By parameter, also of nested models: a quantity, or a number in SI units.
-    allow_outside : iterable of str or Path, optional
-        Folders that ``model`` blocks may read besides that of the source.
+    Settings are quantities, or numbers in SI units, by parameter, also of nested models.
 
     Raises
     ------

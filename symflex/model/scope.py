@@ -84,14 +84,7 @@ class ModelScope:
         return found[0] if len(found) == 1 else constants[0] if len(constants) == 1 else None
 
     def lookup(self, expression: Name | Attribute, *, constant: bool) -> Meaning:
-        """Return the meaning of a name.
-
-        Parameters
-        ----------
-        expression : Name or Attribute
-            As parsed.
-        constant : bool
-            True where only parameters, definitions, blocks, ``s`` and ``pi`` may stand.
+        """Return the meaning of a name; in a constant stand parameters, definitions, blocks, s and pi only.
 
         Raises
         ------

@@ -134,16 +134,7 @@ def with_numbers(
     """Return a model whose valued parameters are replaced by exact numbers; the others stay symbolic.
 
     Its transfer functions, bound, are those of the model; deriving them costs no symbols. A distributed model
-    is returned as it is.
-
-    Parameters
-    ----------
-    model : Model
-        Resolved.
-    symbolic : collection of str
-        Parameters that stay symbolic although they have a value.
-    values : mapping of str to ExactValue, optional
-        Taken in place of the declared ones.
+    is returned as it is. Parameters in ``symbolic`` stay so; ``values`` stand in place of declared ones.
     """
     if model.is_distributed:
         # Wavenumbers and kernels are named by their parameters; values are put in when they are bound.

@@ -23,11 +23,8 @@ ALIKE = 0.8
 def unused(model: Model) -> tuple[Diagnostic, ...]:
     """Return a warning for every loose node and for every name that nothing uses.
 
-    Returns
-    -------
-    tuple of Diagnostic
-        SF650 a node that one element touches, or that branches join to one other node only, and that nothing
-        reads or drives; SF651 a parameter, block, signal, free input or field that nothing uses.
+    SF650 a node that one element touches, or that branches join to one other node only, and that nothing
+    reads or drives; SF651 a parameter, block, signal, free input or field that nothing uses.
     """
     used = _uses(model)
     return (*_loose_nodes(model, used), *_unused_names(model, used))

@@ -60,17 +60,8 @@ class Quantity:
 def parse_quantity(text: Text) -> Quantity:
     """Read a quantity, or a bare number, exactly.
 
-    Between constant and unit stands a space; a plain number may touch a unit's first letter (``3kg``).
-
-    Parameters
-    ----------
-    text : Text
-        At most 200 characters, untrusted.
-
-    Returns
-    -------
-    Quantity
-        In SI; cycles (Hz, rev, rpm) are counted, not multiplied by 2 pi.
+    Between constant and unit stands a space; a plain number may touch a unit's first letter (``3kg``). The
+    text is untrusted, of at most 200 characters. Cycles (Hz, rev, rpm) are counted, not multiplied by 2 pi.
 
     Raises
     ------
@@ -97,17 +88,7 @@ def parse_quantity(text: Text) -> Quantity:
 
 
 def parse_unit(text: Text) -> Unit:
-    """Read a unit alone; ``1`` is the unit of a pure number.
-
-    Parameters
-    ----------
-    text : Text
-        At most 200 characters, untrusted.
-
-    Returns
-    -------
-    Unit
-        Exact factor, dimension, and the exponents of cycle and radian.
+    """Read a unit alone, from an untrusted text; ``1`` is the unit of a pure number.
 
     Raises
     ------

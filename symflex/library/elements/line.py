@@ -48,18 +48,10 @@ class LineElement(Element):
         return self.type_name.replace("_", "-")
 
     def stamp(self, use: ElementUse) -> Stamp:
-        """Contribute what is delivered at both ends and one row per state, ``z(l) = T*z(0)``.
+        """Contribute what is delivered at both ends and one row per state, ``z(l) = T*z(0)``, T entire in s.
 
-        Parameters
-        ----------
-        use : ElementUse
-            With ``transmission``, the matrix T, entire in s.
-
-        Returns
-        -------
-        Stamp
-            Of a beam the unknowns ``f_a``, ``tau_a`` (delivered at the first end), ``f`` and ``tau``
-            (delivered at the second), and four rows.
+        Of a beam: the unknowns ``f_a``, ``tau_a`` (delivered at the first end), ``f`` and ``tau`` (delivered
+        at the second), and four rows.
         """
         one = use.one
         a, b = use.terminals["between"]

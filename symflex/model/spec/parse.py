@@ -27,17 +27,7 @@ _KEY_PARTS = re.compile(KEY_PART)
 
 
 def parse(source: Source) -> Spec:
-    r"""Parse a specification.
-
-    Parameters
-    ----------
-    source : Source
-        TOML 1.0, with or without a byte order mark, any line ends.
-
-    Returns
-    -------
-    Spec
-        Exact values, each with its place.
+    r"""Parse a specification: TOML 1.0, with or without a byte order mark, any line ends.
 
     Raises
     ------
@@ -60,21 +50,10 @@ def parse(source: Source) -> Spec:
 
 
 def parse_with_recovery(source: Source) -> tuple[Spec, tuple[Diagnostic, ...]]:
-    r"""Parse what is right of a specification, and report what is not.
+    r"""Parse what is right of a specification, and report what is not, in the order of the text.
 
-    Parameters
-    ----------
-    source : Source
-        As for :func:`parse`.
-
-    Returns
-    -------
-    spec : Spec
-        The statements without syntax errors. A key whose value is wrong keeps an
-        ``OtherValue("invalid", ...)``, so that its name is still known; under a header that is
-        wrong or repeated, entries go to the table it seems to name.
-    diagnostics : tuple of Diagnostic
-        The syntax errors in the order of the text; empty when there are none.
+    A key whose value is wrong keeps an ``OtherValue("invalid", ...)``, so that its name is still known; under
+    a header that is wrong or repeated, entries go to the table it seems to name.
 
     Raises
     ------

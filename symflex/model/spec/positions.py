@@ -91,19 +91,7 @@ def _frozen(value: _Table | _Tables | Value) -> Value:
 
 
 def locate(document: Document, decoded: Mapping[str, Any]) -> TableValue:
-    """Give every decoded value its place.
-
-    Parameters
-    ----------
-    document : Document
-        The text.
-    decoded : mapping
-        What tomllib made of it, with floats as :class:`Literal`.
-
-    Returns
-    -------
-    TableValue
-        The root table.
+    """Give every value that tomllib made of a text its place, floats being :class:`Literal`.
 
     Raises
     ------

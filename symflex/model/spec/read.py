@@ -17,17 +17,9 @@ _UTF16_MARKS = (b"\xff\xfe", b"\xfe\xff")
 
 
 def read(path: str | Path) -> Source:
-    r"""Read the text of a specification.
+    r"""Read the text of a specification, without its byte order mark; line ends are kept as they are.
 
-    Parameters
-    ----------
-    path : str or Path
-        A regular file, UTF-8 with or without a byte order mark, at most 1 MB.
-
-    Returns
-    -------
-    Source
-        The text without its byte order mark; line ends are kept as they are.
+    It is a regular file, in UTF-8, of at most 1 MB.
 
     Raises
     ------

@@ -212,12 +212,7 @@ class Scan:
 
 
 def scan(source: Source) -> Scan:
-    r"""Cut a text into statements.
-
-    Returns
-    -------
-    Scan
-        Statements, and the masked text.
+    r"""Cut a text into statements, and mask the content of its strings and comments.
 
     Raises
     ------

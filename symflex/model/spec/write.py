@@ -27,18 +27,9 @@ def write(mapping: Mapping[str, object]) -> str:
     r"""Render nested values as the text of a specification.
 
     The two outer levels become ``[a]`` and ``[a.b]`` headers; what is deeper, and what stands in
-    `parameters`, `elements`, `inputs`, `outputs` and `blocks`, becomes inline tables.
-
-    Parameters
-    ----------
-    mapping : mapping
-        Of str, int, Fraction, Decimal, float, bool, list, tuple and mappings of these. A fraction
-        that is not a finite decimal becomes the string ``"p/q"``.
-
-    Returns
-    -------
-    str
-        TOML; :func:`symflex.model.spec.parse` gives the mapping back.
+    `parameters`, `elements`, `inputs`, `outputs` and `blocks`, becomes inline tables. Values are str, int,
+    Fraction, Decimal, float, bool, list, tuple and mappings of these; a fraction that is not a finite decimal
+    becomes the string ``"p/q"``. :func:`symflex.model.spec.parse` gives the mapping back.
 
     Raises
     ------
