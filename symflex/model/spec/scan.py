@@ -212,7 +212,7 @@ class Scan:
 
 
 def scan(source: Source) -> Scan:
-    r"""Cut a text into statements, and mask the content of its strings and comments.
+    r"""Cut a text into statements, and mask the inside of its strings.
 
     Raises
     ------
