@@ -24,8 +24,8 @@ from symflex.errors import UsageError
 from symflex.transfer import bind
 from tests.house.repository import ROOT, blocks, slow_ones, specifications
 from tests.unit.codegen.against_balls import axis_points, worst_errors
-from tests.unit.codegen.exportable import MASSLESS, PIPE
-from tests.unit.codegen.test_numpy_distributed import BAR, COMPRESSED, DELAY, SENSOR, specification
+from tests.unit.codegen.exportable import BAR, DELAY, MASSLESS, PIPE
+from tests.unit.codegen.test_numpy_distributed import COMPRESSED, SENSOR, specification
 
 pytestmark = pytest.mark.needs_tool("gcc")
 

@@ -13,7 +13,8 @@ from symflex.codegen.program.distributed import build_piecewise
 from symflex.codegen.program.evaluate import evaluate, numbers_of_pieces, value_of_piece
 from symflex.codegen.program.everywhere import cases_of, in_pieces, places_of
 from symflex.codegen.program.verify import doubles
-from tests.unit.codegen.test_numpy_distributed import DELAY, SPECS, specification
+from tests.unit.codegen.exportable import DELAY
+from tests.unit.codegen.test_numpy_distributed import SPECS, specification
 
 TEXTS = {**{name: specification(name) for name in SPECS}, "delay": DELAY}
 
