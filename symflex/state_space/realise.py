@@ -263,7 +263,7 @@ def _row(ring: Ring, form: LinearForm, columns: Mapping[Variable, int]) -> Row:
 
 def _powers(ring: Ring, value: Factored) -> dict[int, FieldElement]:
     """Return the coefficients of the powers of s in a polynomial."""
-    parts = enumerate(ring.coefficients(value.expand()))
+    parts = [*enumerate(ring.coefficients(value.expand()))][::-1]  # as they print, the highest first
     return {power: FieldElement(part, ring.constant(1)) for power, part in parts if not part.is_zero()}
 
 
