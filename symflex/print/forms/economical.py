@@ -37,8 +37,8 @@ def economical(tf: TransferFunction) -> TransferFunction:
     if any(len(factor) > LARGE for factor, _ in tf.ratio.factors):
         return tf
     for _ in range(DOUBLINGS):
-        lengths = {id(a.length): a.length for a in angles_of(tf.kernels) if is_half(a.length)}
-        found = next((d for length in lengths.values() if (d := _doubled(tf, length)) is not None), None)
+        lengths = dict.fromkeys(a.length for a in angles_of(tf.kernels) if is_half(a.length))
+        found = next((d for length in lengths if (d := _doubled(tf, length)) is not None), None)
         if found is None:
             return tf
         tf = found

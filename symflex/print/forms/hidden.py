@@ -111,8 +111,8 @@ def _naming(tf: TransferFunction, form: PrintedForm) -> Naming:
 
 def _stretched(table: KernelTable, ratio: Fraction) -> KernelTable:
     """Return kernels of other lengths, those that share one sharing one again."""
-    lengths = {id(k.length): k.length * ratio for k in table.kernels}
-    kernels = (replace(k, length=lengths[id(k.length)]) if k.wavenumber else k for k in table.kernels)
+    lengths = {k.length: k.length * ratio for k in table.kernels}
+    kernels = (replace(k, length=lengths[k.length]) if k.wavenumber else k for k in table.kernels)
     return KernelTable(table.dispersions, tuple(kernels))
 
 

@@ -43,9 +43,9 @@ class Invariants:
     @cached_property
     def angles(self) -> tuple[tuple[Angle, ...], ...]:
         """The angles by argument: those of both wavenumbers of a pair stand together."""
-        groups: dict[tuple[int, int], list[Angle]] = {}
+        groups: dict[tuple[Dispersion, Factored], list[Angle]] = {}
         for angle in angles_of(self.table):
-            groups.setdefault((id(angle.dispersion), id(angle.length)), []).append(angle)
+            groups.setdefault((angle.dispersion, angle.length), []).append(angle)
         return tuple(tuple(group) for group in groups.values())
 
     @cached_property
@@ -305,15 +305,11 @@ class Invariants:
 
     def halved(self) -> tuple[Invariants, Mapping[str, fmpz_mpoly]]:
         """Return the same with bending arguments half as long, and the kernels in terms of the new ones."""
-        lengths = {
-            id(a.length): a.length / 2 for g in self.angles for a in g if a.dispersion.kind == "bending"
-        }
+        lengths = {a.length: a.length / 2 for g in self.angles for a in g if a.dispersion.kind == "bending"}
         table = KernelTable(
             self.table.dispersions,
             tuple(
-                replace(k, length=lengths[id(k.length)])
-                if k.wavenumber and k.dispersion.kind == "bending"
-                else k
+                replace(k, length=lengths[k.length]) if k.wavenumber and k.dispersion.kind == "bending" else k
                 for k in self.table.kernels
             ),
         )

@@ -86,10 +86,10 @@ class Naming:
 
 def angles_of(table: KernelTable, used: Collection[str] | None = None) -> tuple[Angle, ...]:
     """Return the angles of which a kernel is used, in the order of the table."""
-    groups: dict[tuple[str, int], list[Kernel]] = {}
+    groups: dict[tuple[str, Factored], list[Kernel]] = {}
     for kernel in table.kernels:
         if kernel.wavenumber:
-            groups.setdefault((kernel.wavenumber, id(kernel.length)), []).append(kernel)
+            groups.setdefault((kernel.wavenumber, kernel.length), []).append(kernel)
     return tuple(
         Angle(w, kernels[0].dispersion, kernels[0].length, {k.function: k.generator for k in kernels})
         for (w, _), kernels in groups.items()
@@ -163,14 +163,14 @@ def wave_notation(tf: TransferFunction, dispersions: Iterable[Dispersion], namin
     lines: list[Line] = []
     bending = by_kind["bending"]
     lossless = [d for d in bending if speed_squared(d) is not None]
-    speeds = dict(zip(map(id, lossless), naming.take("a", len(lossless)), strict=True))
+    speeds = dict(zip(lossless, naming.take("a", len(lossless)), strict=True))
     for name, d in zip(naming.take("mu", len(bending)), bending, strict=True):
         symbols[d.wavenumbers[0]] = Name(name)
         square = speed_squared(d)
         if square is None:
             lines.append((name, Call("sqrt", printer.square_root(d.characteristic[0] / 4))))
         else:
-            a = speeds[id(d)]
+            a = speeds[d]
             lines.append((name, Call("sqrt", quotient(Name(LAPLACE), product_of([number(2), Name(a)])))))
             lines.append((a, printer.square_root(square)))
     for name, d in zip(naming.take("gamma", len(by_kind["wave"])), by_kind["wave"], strict=True):

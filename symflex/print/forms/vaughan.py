@@ -108,14 +108,14 @@ class _DecayingPage:
         bent = [(i, a) for i, a in enumerate(self._angles) if a.dispersion.kind == "bending"]
         straight = [(i, a) for i, a in enumerate(self._angles) if a.dispersion.kind != "bending"]
         s_names, c_names, t_names = (naming.take(stem, len(bent)) for stem in "SCT")
-        p_names = dict(zip(map(id, self._bending), naming.take("p", len(self._bending)), strict=True))
+        p_names = dict(zip(self._bending, naming.take("p", len(self._bending)), strict=True))
         lossless = [d for d in self._bending if speed_squared(d) is not None]
-        a_names = dict(zip(map(id, lossless), naming.take("a", len(lossless)), strict=True))
+        a_names = dict(zip(lossless, naming.take("a", len(lossless)), strict=True))
         q_names, d_names = naming.take("Q", len(bent)), naming.take("D", len(straight))
         symbols = dict(constant_symbols(tf))
         lines: list[Line] = []
         for j, (i, angle) in enumerate(bent):
-            argument = Call("sqrt", product_of([Name(t_names[j]), Name(p_names[id(angle.dispersion)])]))
+            argument = Call("sqrt", product_of([Name(t_names[j]), Name(p_names[angle.dispersion])]))
             decay = Call("exp", negative(argument))
             lines += [
                 (s_names[j], product_of([decay, Call("sin", argument)])),
@@ -144,12 +144,12 @@ class _DecayingPage:
                 exponent = wave_times_length(printer, wave, angle.length)
             lines.append((name, Call("exp", negative(exponent))))
         for d in self._bending:
-            p = Name(p_names[id(d)])
+            p = Name(p_names[d])
             square = speed_squared(d)
             if square is None:
                 lines.append((p.name, printer.square_root(d.characteristic[0])))
             else:
-                a = Name(a_names[id(d)])
+                a = Name(a_names[d])
                 symbols[_of("a", d.wavenumbers[0])] = a
                 lines += [(p.name, quotient(Name(LAPLACE), a)), (a.name, printer.square_root(square))]
             two = number(2)
