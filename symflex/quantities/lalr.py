@@ -72,7 +72,8 @@ class Grammar:
         self.starts: dict[str, tuple[int, int]] = table["starts"]
         self.states: list[dict[str, int]] = table["states"]
         # Per rule: its name, how many parts it has, which of them are handed on and which of these are lists.
-        self.rules: list[tuple[str, int, Sequence[tuple[int, bool]], Callable[..., Any]]] = [
+        # What makes the value of a rule without a name is None: its parts are one list.
+        self.rules: list[tuple[str, int, Sequence[tuple[int, bool]], Callable[..., Any] | None]] = [
             (origin, size, parts, _callback(builder, name, is_single=is_single))
             for origin, size, parts, name, is_single in table["rules"]
         ]
@@ -106,10 +107,10 @@ class Grammar:
         return frozenset(name for name in self.states[state] if name.isupper())
 
 
-def _callback(builder: object, name: str, *, is_single: bool) -> Callable[..., Any]:
-    """Return what makes the value of a rule: one part is handed on as it is, a nameless rule is a list."""
+def _callback(builder: object, name: str, *, is_single: bool) -> Callable[..., Any] | None:
+    """Return what makes the value of a rule: one part is handed on as it is."""
     if not name:
-        return _listed
+        return None
     made = getattr(builder, name, _listed)
     return (lambda *parts: parts[0] if len(parts) == 1 else made(*parts)) if is_single else made
 
@@ -161,11 +162,13 @@ class Reading:
             del states[-size:], values[-size:]
             handed: list[Any] = []
             for i, is_list in kept:
-                if is_list:
+                if not is_list:
+                    handed.append(parts[i])
+                elif handed:
                     handed.extend(parts[i])
                 else:
-                    handed.append(parts[i])
-            values.append(made(*handed))
+                    handed = parts[i]  # nobody else has it, and a long sum is not to be copied at every term
+            values.append(handed if made is None else made(*handed))
             states.append(self._grammar.states[states[-1]][origin])
             if token.type == END and states[-1] == self._last:
                 return
