@@ -7,7 +7,7 @@ from symflex.algebra.factorisation import irreducible_factors, square_free_facto
 from symflex.algebra.functions import FUNCTIONS, ElementaryFunction
 from symflex.algebra.memo import PolynomialMemo
 from symflex.algebra.residue import PRIME, random_point, residue
-from symflex.algebra.ring import LAPLACE, MEMORY_LIMIT, Ring, degree_in, expanded_length, terms_of
+from symflex.algebra.ring import LAPLACE, MEMORY_LIMIT, Ring, by_powers, degree_in, expanded_length, terms_of
 
 __all__ = [
     "FUNCTIONS",
@@ -22,6 +22,7 @@ __all__ = [
     "KernelTable",
     "PolynomialMemo",
     "Ring",
+    "by_powers",
     "common_denominator",
     "degree_in",
     "expanded_length",

@@ -19,8 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from symflex.algebra.factored import Factored, common_denominator
 from symflex.algebra.memo import PolynomialMemo
-from symflex.algebra.normal_form import split
-from symflex.algebra.ring import Ring, coefficients_of
+from symflex.algebra.ring import Ring, by_powers, coefficients_of
 from symflex.errors import BudgetError, Diagnostic
 
 if TYPE_CHECKING:
@@ -319,10 +318,10 @@ def _complete(ring: Ring, roots: Sequence[fmpz_mpoly], degree: int) -> fmpz_mpol
 
 def _remainder(ring: Ring, polynomial: fmpz_mpoly, divisor: fmpz_mpoly, index: int) -> fmpz_mpoly:
     """Return a multiple, free of roots, of the remainder of a division with respect to one generator."""
-    below = split(ring, divisor, index)
+    below = by_powers(ring, divisor, index)
     degree = max(below)
     leading = below.pop(degree)
-    parts: Mapping[int, fmpz_mpoly] = split(ring, polynomial, index)
+    parts: Mapping[int, fmpz_mpoly] = by_powers(ring, polynomial, index)
     left = dict(parts)
     for power in range(max(left, default=0), degree - 1, -1):
         top = left.pop(power, None)

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from flint import Ordering, fmpz_mpoly_ctx
 
 from symflex.algebra.factored import Factored, common_denominator
-from symflex.algebra.ring import coefficients_of
+from symflex.algebra.ring import by_powers
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic
 
@@ -27,11 +27,6 @@ if TYPE_CHECKING:
 
 PAIR_TERMS = 60_000
 """Terms up to which powers of a pair of wavenumbers are replaced: some seconds."""
-
-
-def split(ring: Ring, polynomial: fmpz_mpoly, index: int) -> dict[int, fmpz_mpoly]:
-    """Return the coefficient of every power of one generator, over the same ring."""
-    return {power: part for (power,), part in coefficients_of(ring, polynomial, (index,)).items()}
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,7 +128,7 @@ class NormalForm:
         above, below = image.numerator().expand(), image.denominator().expand()
         x = self.ring.context.gen(index)
         total = self.ring.constant(0)
-        for power, part in split(self.ring, polynomial, index).items():
+        for power, part in by_powers(self.ring, polynomial, index).items():
             times = power // degree
             total = total + part * x ** (power % degree) * above**times * below ** (highest - times)
         return total, image.denominator() ** highest
@@ -152,7 +147,7 @@ class NormalForm:
             x = self.ring.context.gen(first)
             image = -n2 - d * y * y
             total = self.ring.constant(0)
-            for power, part in split(self.ring, polynomial, first).items():
+            for power, part in by_powers(self.ring, polynomial, first).items():
                 total = total + part * x ** (power % 2) * image ** (power // 2) * d ** (highest - power // 2)
             polynomial, scale = total, scale * below**highest
         while (degree := int(polynomial.degrees()[second])) >= 4:  # noqa: PLR2004
@@ -162,7 +157,7 @@ class NormalForm:
                 hint = "give some parameters numbers, or leave out losses, loads or lengths"
                 raise BudgetError(Diagnostic("SF502", message, None, hint))
             total = self.ring.constant(0)
-            for power, part in split(self.ring, polynomial, second).items():
+            for power, part in by_powers(self.ring, polynomial, second).items():
                 if power == degree:
                     total = total - part * (n2 * y ** (power - 2) + n0 * y ** (power - 4))
                 else:

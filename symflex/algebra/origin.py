@@ -8,8 +8,7 @@ from __future__ import annotations
 from random import Random
 from typing import TYPE_CHECKING
 
-from symflex.algebra.normal_form import split
-from symflex.algebra.ring import degree_in
+from symflex.algebra.ring import by_powers, degree_in
 from symflex.algebra.taylor import BASE, TaylorField, primes, random_values
 
 if TYPE_CHECKING:
@@ -63,7 +62,7 @@ def _find_point(
     linear = next((i for i in range(len(ring.names)) if degree_in(at, i) == 1), None)
     if linear is None:
         return None
-    parts = split(ring, at, linear)
+    parts = by_powers(ring, at, linear)
     name, zero = ring.names[linear], ring.constant(0)
 
     def prepare(values: dict[str, nmod_poly], field: TaylorField) -> bool:

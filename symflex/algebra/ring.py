@@ -109,8 +109,8 @@ class Ring:
 
     def coefficients(self, polynomial: fmpz_mpoly, generator: int = 0) -> list[fmpz_mpoly]:
         """Return the coefficients of ascending powers of one generator, over the same ring."""
-        found = coefficients_of(self, polynomial, (generator,))
-        return [found.get((n,), self.constant(0)) for n in range(degree_in(polynomial, generator) + 1)]
+        found = by_powers(self, polynomial, generator)
+        return [found.get(n, self.constant(0)) for n in range(degree_in(polynomial, generator) + 1)]
 
 
 def expanded_length(polynomial: fmpz_mpoly, lengths: Sequence[int]) -> int | None:
@@ -212,6 +212,11 @@ def coefficients_of(
         key = tuple([int(monomial[i]) for i in positions])
         parts.setdefault(key, {})[tuple(rest)] = int(coefficient)
     return {key: ring.context.from_dict(terms) for key, terms in parts.items()}
+
+
+def by_powers(ring: Ring, polynomial: fmpz_mpoly, generator: int = 0) -> dict[int, fmpz_mpoly]:
+    """Return the coefficient of every power of one generator that occurs, over the same ring."""
+    return {power: part for (power,), part in coefficients_of(ring, polynomial, (generator,)).items()}
 
 
 def terms_of(polynomial: fmpz_mpoly) -> list[tuple[Monomial, int]]:

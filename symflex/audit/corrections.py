@@ -18,7 +18,7 @@ from itertools import chain
 from typing import TYPE_CHECKING
 
 from symflex.algebra import Factored
-from symflex.algebra.normal_form import split
+from symflex.algebra.ring import by_powers
 from symflex.audit.field import GrowError, UnreadError
 from symflex.audit.notation import in_symbols, monomial_expression, solve_linear, symbols_of
 from symflex.audit.reading import Formula, FormulaReading, read
@@ -146,7 +146,7 @@ def _needed(reading: FormulaReading, part: Expression) -> Factored | None:
     expanded = field.reduce(polynomial.expand())
     if not len(expanded) or int(expanded.degrees()[index]) != 1:
         return None
-    powers = split(field.ring, expanded, index)
+    powers = by_powers(field.ring, expanded, index)
     zero = field.ring.constant(0)
     constant = Factored.polynomial(field.ring, powers.get(0, zero))
     return None if constant.is_zero else -constant / Factored.polynomial(field.ring, powers[1])

@@ -26,7 +26,7 @@ from math import gcd
 from typing import TYPE_CHECKING, NoReturn
 
 from symflex.algebra import LAPLACE, Factored, Ring, irreducible_factors
-from symflex.algebra.normal_form import split
+from symflex.algebra.ring import by_powers
 from symflex.errors import BudgetError, Diagnostic
 
 if TYPE_CHECKING:
@@ -473,7 +473,7 @@ class Arithmetic:
             if not len(polynomial) or int(polynomial.degrees()[index]) < power:
                 continue
             x, total = self.ring.context.gen(index), self.ring.constant(0)
-            for n, part in split(self.ring, polynomial, index).items():
+            for n, part in by_powers(self.ring, polynomial, index).items():
                 total = total + part * x ** (n % power) * image ** (n // power)
             polynomial = total
         return polynomial

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 from symflex.algebra import LAPLACE, Factored
 from symflex.codegen.module_text import FORMULA_TERMS
 from symflex.expressions import number, sum_of
-from symflex.print.forms.arrange import Arranger, coefficients
+from symflex.print.forms.arrange import Arranger
 from symflex.print.forms.notation import constant_symbols, plain_printer
 from symflex.transfer import TransferFunction
 
@@ -68,7 +68,5 @@ def _descending(tf: TransferFunction, polynomial: fmpz_mpoly) -> tuple[Expressio
     """Return the coefficients of all powers of s, the highest first."""
     ring = tf.ratio.ring
     arranger = Arranger.plain(ring, constant_symbols(tf))
-    parts = coefficients(ring, polynomial)
-    return tuple(
-        arranger.coefficient(parts[k]) if k in parts else number(0) for k in range(max(parts), -1, -1)
-    )
+    found = reversed(ring.coefficients(polynomial))
+    return tuple(number(0) if part.is_zero() else arranger.coefficient(part) for part in found)

@@ -11,10 +11,9 @@ import itertools
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Literal
 
-from symflex.algebra import LAPLACE, degree_in, irreducible_factors
+from symflex.algebra import LAPLACE, by_powers, degree_in, irreducible_factors
 from symflex.model import Model
 from symflex.print.forms import Arranger
-from symflex.print.forms.arrange import coefficients
 
 if TYPE_CHECKING:
     from flint import fmpz_mpoly
@@ -88,7 +87,7 @@ def minimum_phase(tf: TransferFunction, explained: ZeroExplanation) -> PhaseCond
 
 
 def _of_factor(factor: fmpz_mpoly, ring: Ring, tf: TransferFunction) -> PhaseCondition:
-    parts = coefficients(ring, factor)
+    parts = by_powers(ring, factor)
     signs = {power: _sign(part, ring, tf) for power, part in parts.items()}
     definite = {sign for sign in signs.values() if sign != "indefinite"}
     top = max(parts)

@@ -31,8 +31,9 @@ from symflex.algebra import (
 )
 from symflex.algebra.exponentials import Exponentials, split_content
 from symflex.algebra.multiple_angles import lift
-from symflex.algebra.normal_form import NormalForm, split
+from symflex.algebra.normal_form import NormalForm
 from symflex.algebra.origin import OriginSeries
+from symflex.algebra.ring import by_powers
 from symflex.algebra.vanishing import Vanishing
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic
@@ -516,7 +517,7 @@ def _substitute(ring: Ring, name: str, formula: Factored, factor: fmpz_mpoly) ->
     above_powers = _powers((formula * below).expand(), highest, ring)
     below_powers = _powers(below.expand(), highest, ring)
     total = ring.constant(0)
-    for power, part in split(ring, factor, index).items():
+    for power, part in by_powers(ring, factor, index).items():
         size = len(part) * len(above_powers[power]) * len(below_powers[highest - power])
         if ring.bytes_of(size) > MEMORY_LIMIT:
             raise _too_large()

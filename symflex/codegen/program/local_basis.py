@@ -13,7 +13,7 @@ from fractions import Fraction
 from math import factorial, inf, lgamma, log, prod
 from typing import TYPE_CHECKING
 
-from symflex.algebra.ring import Ring, coefficients_of
+from symflex.algebra.ring import Ring, by_powers
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -101,13 +101,13 @@ def pair_basis(exponents: Iterable[Sequence[tuple[int, int]]]) -> LocalBasis:
     """Return the basis for exponents ``a*lambda_1 + b*lambda_2``."""
     orbits = sorted({tuple(sorted((abs(a), abs(b)), reverse=True)) for (a, _), (b, _) in exponents})
     whole = prod((_orbit(a, b) for a, b in orbits), start=SYMMETRIC.constant(1))
-    powers = coefficients_of(SYMMETRIC, whole, (0,))
-    order = max(n for (n,) in powers)
+    powers = by_powers(SYMMETRIC, whole)
+    order = max(powers)
     return LocalBasis(
         1,
         order,
         tuple(
-            {(int(p), int(q)): int(c) for (_, p, q), c in powers[n,].terms()} if (n,) in powers else {}
+            {(int(p), int(q)): int(c) for (_, p, q), c in powers[n].terms()} if n in powers else {}
             for n in range(order)
         ),
     )

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from flint import nmod_poly
 
 from symflex.algebra import LAPLACE, PRIME, Factored, degree_in, random_point, residue
-from symflex.algebra.normal_form import split
+from symflex.algebra.ring import by_powers
 from symflex.budget import spend
 from symflex.codegen.program.forge import Forge
 from symflex.codegen.program.general_series import GeneralSeries
@@ -211,7 +211,7 @@ class _ModalWorkshop:
             for i, c in enumerate(law.characteristic):
                 if c.is_zero:
                     continue
-                above, below = (split(self.ring, v.expand(), 0) for v in (c.numerator(), c.denominator()))
+                above, below = (by_powers(self.ring, v.expand(), 0) for v in (c.numerator(), c.denominator()))
                 if 0 not in below:
                     return []
                 at_rest = Factored.polynomial(self.ring, below[0])

@@ -8,7 +8,7 @@ from math import gcd
 from operator import add, neg, sub
 from typing import TYPE_CHECKING
 
-from symflex.algebra import LAPLACE, Ring, degree_in, irreducible_factors
+from symflex.algebra import LAPLACE, Ring, by_powers, degree_in, irreducible_factors
 from symflex.expressions import (
     Call,
     Expression,
@@ -93,7 +93,7 @@ class Arranger:
     def collected(self, polynomial: fmpz_mpoly, *, factored: bool = True) -> Expression:
         """Return a polynomial by descending powers of s, each coefficient factored."""
         is_opened = self.kept is not None and polynomial.context() is self.kept.source.context
-        parts = coefficients(self.kept.source if self.kept and is_opened else self.ring, polynomial)
+        parts = by_powers(self.kept.source if self.kept and is_opened else self.ring, polynomial)
         s = self._symbols[0]
         terms = []
         for exponent in sorted(parts, reverse=True):
@@ -347,12 +347,3 @@ def _pull_number(terms: dict[tuple[int, ...], int]) -> tuple[int, dict[tuple[int
     if all(c < 0 for c in terms.values()):
         scale = -scale
     return scale, {m: c // scale for m, c in terms.items()}
-
-
-def coefficients(ring: Ring, polynomial: fmpz_mpoly) -> dict[int, fmpz_mpoly]:
-    """Return the coefficient of every power of s that occurs, over the same ring."""
-    parts: dict[int, dict[tuple[int, ...], int]] = {}
-    for monomial, coefficient in polynomial.terms():
-        key = (0, *map(int, monomial[1:]))
-        parts.setdefault(int(monomial[0]), {})[key] = int(coefficient)
-    return {exponent: ring.context.from_dict(part) for exponent, part in parts.items()}

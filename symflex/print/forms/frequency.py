@@ -11,7 +11,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE, Factored, KernelTable, Ring
-from symflex.algebra.normal_form import split
+from symflex.algebra.ring import by_powers
 from symflex.expressions import (
     Call,
     Expression,
@@ -157,7 +157,7 @@ class _FrequencyPage:
         zero = ring.constant(0)
         work = lowered.compose(*(images.get(n, zero) for n in source.names), ctx=ring.context)
         work = self._reduced(work)
-        parts = split(ring, work, ring.index[IMAGINARY])
+        parts = by_powers(ring, work, ring.index[IMAGINARY])
         if set(parts) == {1}:
             return self._in_whole_lengths(parts[1]) * scale, 1
         return self._in_whole_lengths(work) * scale, 0
@@ -237,7 +237,7 @@ class _FrequencyPage:
                 work = sum(
                     (
                         part * x ** (n % 2) * square ** (n // 2)
-                        for n, part in split(ring, work, index).items()
+                        for n, part in by_powers(ring, work, index).items()
                     ),
                     ring.constant(0),
                 )

@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING
 
 from symflex.algebra import Factored, KernelTable, Ring
 from symflex.algebra.exponential_sum import power, spread, times
-from symflex.algebra.normal_form import NormalForm, split
+from symflex.algebra.normal_form import NormalForm
+from symflex.algebra.ring import by_powers
 from symflex.print.forms.notation import angles_of, coefficient_name
 from symflex.transfer.expansion import compose_rational
 
@@ -195,17 +196,17 @@ class Invariants:
         c0, c2 = (ring.generator(coefficient_name(number, k)) for k in (0, 2))
         image = -c2 - y * y
         work = sum(
-            (part * image ** (n // 2) for n, part in split(ring, work, first).items()), ring.constant(0)
+            (part * image ** (n // 2) for n, part in by_powers(ring, work, first).items()), ring.constant(0)
         )
         while int(work.degrees()[second]) >= 4:  # noqa: PLR2004
             work = sum(
                 (
                     part * y**n if n < 4 else -part * (c2 * y ** (n - 2) + c0 * y ** (n - 4))  # noqa: PLR2004
-                    for n, part in split(ring, work, second).items()
+                    for n, part in by_powers(ring, work, second).items()
                 ),
                 ring.constant(0),
             )
-        parts = split(ring, work, second)
+        parts = by_powers(ring, work, second)
         zero = ring.constant(0)
         return parts.get(0, zero), parts.get(2, zero)
 
@@ -356,7 +357,7 @@ def real_powers(ring: Ring, work: fmpz_mpoly) -> fmpz_mpoly:
         return work
     j = ring.generator(IMAGINARY)
     return sum(
-        (part * j ** (n % 2) * (-1) ** (n // 2) for n, part in split(ring, work, index).items()),
+        (part * j ** (n % 2) * (-1) ** (n // 2) for n, part in by_powers(ring, work, index).items()),
         ring.constant(0),
     )
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from symflex.algebra import LAPLACE, Factored, Ring, degree_in, irreducible_factors
+from symflex.algebra import LAPLACE, Factored, Ring, by_powers, degree_in, irreducible_factors
 from symflex.expressions import Expression, Name, number, power, product_of, quotient, sum_of
-from symflex.print.forms.arrange import Arranger, coefficients
+from symflex.print.forms.arrange import Arranger
 from symflex.print.forms.hyperbolic import collected_form, in_kernels
 from symflex.print.forms.kept import KeptDefinitions
 from symflex.print.forms.notation import constant_symbols
@@ -59,7 +59,7 @@ def _normalised(tf: TransferFunction, name: str, choose: Callable[[Iterable[int]
     ring = tf.ratio.ring
     arranger = _arranger(tf)
     den = tf.ratio.denominator().expand()
-    parts = coefficients(ring, den)
+    parts = by_powers(ring, den)
     divisor = parts[choose(parts)]
     return PrintedForm(
         name,
@@ -69,7 +69,7 @@ def _normalised(tf: TransferFunction, name: str, choose: Callable[[Iterable[int]
 
 
 def _divided(arranger: Arranger, ring: Ring, polynomial: fmpz_mpoly, divisor: fmpz_mpoly) -> Expression:
-    parts = coefficients(ring, polynomial)
+    parts = by_powers(ring, polynomial)
     terms = []
     for exponent in sorted(parts, reverse=True):
         common = parts[exponent].gcd(divisor)

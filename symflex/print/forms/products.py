@@ -8,7 +8,7 @@ from math import isqrt
 from typing import TYPE_CHECKING
 
 from symflex.algebra import Factored
-from symflex.algebra.normal_form import split
+from symflex.algebra.ring import by_powers
 from symflex.expressions import (
     Call,
     Expression,
@@ -104,7 +104,7 @@ class ProductPrinter:
     def _arranged(self, polynomial: fmpz_mpoly) -> Expression:
         degrees = polynomial.degrees()
         if self._imaginary is not None and int(degrees[self._imaginary]):
-            parts = split(self.arranger.ring, polynomial, self._imaginary)
+            parts = by_powers(self.arranger.ring, polynomial, self._imaginary)
             j = self.arranger.monomial([int(i == self._imaginary) for i in range(len(degrees))])
             return sum_of([self.sum(parts[0]), product_of([j, self.sum(parts[1])])])
         if not any(int(degrees[i]) for i in self._apart):
