@@ -29,7 +29,7 @@ from symflex.expressions import (
     replace_values,
 )
 from symflex.library.elements import Domain, LinearForm, LineElement, Variable
-from symflex.library.elements.source import CurrentSource, ForceSource, TorqueSource, VoltageSource
+from symflex.library.elements.lumped import CurrentSource, ForceSource, TorqueSource, VoltageSource
 from symflex.model.input_kinds import INPUT_KINDS
 from symflex.model.nodes import variable_of
 from symflex.model.points import Line

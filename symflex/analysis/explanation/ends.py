@@ -26,7 +26,7 @@ from symflex.expressions import (
     names,
 )
 from symflex.library.elements import LineElement, Variable
-from symflex.library.elements.beam import Beam, MasslessBeam
+from symflex.library.elements.line import Beam, MasslessBeam
 
 if TYPE_CHECKING:
     from collections.abc import Collection

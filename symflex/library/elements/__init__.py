@@ -1,9 +1,7 @@
 """The element library. A new element is one file and one line in ``ELEMENTS``."""
 
-from symflex.library.elements.axial import Rod, Shaft, String
-from symflex.library.elements.beam import Beam, MasslessBeam
-from symflex.library.elements.coupling import Gyrator, Transformer
-from symflex.library.elements.electrical import Capacitor, Inductor, Resistor
+from symflex.library import ParameterPort, Sign
+from symflex.library.elements.coupling import DcMotor, Gyrator, Piezo, Transformer
 from symflex.library.elements.element import (
     ACROSS_UNIT,
     COMPONENT_UNIT,
@@ -23,13 +21,23 @@ from symflex.library.elements.element import (
     Stamp,
     Variable,
 )
-from symflex.library.elements.line import LineElement
+from symflex.library.elements.line import Beam, LineElement, MasslessBeam, Rod, Shaft, String
+from symflex.library.elements.lumped import (
+    Capacitor,
+    CurrentSource,
+    Damper,
+    ForceSource,
+    Inductor,
+    Inertia,
+    Mass,
+    Resistor,
+    RotaryDamper,
+    Spring,
+    TorqueSource,
+    TorsionSpring,
+    VoltageSource,
+)
 from symflex.library.elements.rigid import Fixed, Pin, RigidBody, RigidLink, Slider
-from symflex.library.elements.rotation import Inertia, RotaryDamper, TorsionSpring
-from symflex.library.elements.source import CurrentSource, ForceSource, TorqueSource, VoltageSource
-from symflex.library.elements.transducers import DcMotor, Piezo
-from symflex.library.elements.translation import Damper, Mass, Spring
-from symflex.library.parameter import ParameterPort, Sign
 
 ELEMENTS: dict[str, Element] = {
     element.type_name: element

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from symflex.algebra import Factored
-    from symflex.library.parameter import ParameterPort
+    from symflex.library import ParameterPort
 
 Domain = Literal["translation", "rotation", "electrical"]
 PortDomain = Literal["translation", "rotation", "electrical", "planar", "any", "whole"]

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from symflex.library import ParameterPort
 from symflex.library.elements.element import (
     THROUGH_NAME,
     Element,
@@ -18,7 +19,6 @@ from symflex.library.elements.element import (
     Port,
     Stamp,
 )
-from symflex.library.parameter import ParameterPort
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

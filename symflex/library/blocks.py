@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, ClassVar
 
-from symflex.library.parameter import ParameterPort
+from symflex.library import ParameterPort
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -143,3 +143,20 @@ class Delay(Block):
         """Return the rational factor beside the kernel, which is one; never called by the equations."""
         del values
         return s**0
+
+
+BLOCKS: dict[str, Block] = {
+    block.type_name: block
+    for block in (
+        Resonance(),
+        TransferFunctionBlock(),
+        Integrator(),
+        LeadLag(),
+        Lag(),
+        Pid(),
+        Delay(),
+    )
+}
+
+MODEL_BLOCK = "model"
+"""The block that stands for another specification's transfer function; resolved by the model room."""
