@@ -481,7 +481,8 @@ def frequency(given: Stated, flag: str, example: str, *, is_hertz: bool = False)
     """Return a frequency in Hz, or in rad/s, from a number or a quantity that counts per second."""
     if not isinstance(given, str):
         return exact(given)
-    from symflex.model.analysis import PER_SECOND, PI_NEARLY, in_limits
+    from symflex.model.analysis import PER_SECOND, in_limits
+    from symflex.model.model import PI_NEARLY
 
     wrong = UsageError(Diagnostic("SF902", f"{flag} takes numbers such as {example}, found '{given[:60]}'"))
     quantity = _quantity(given, flag, wrong)

@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
     from symflex.audit.field import Arithmetic
 
-
 MOST_TERMS = 20_000
 
 

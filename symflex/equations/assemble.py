@@ -28,8 +28,8 @@ from symflex.expressions import Call, Expression, Name, format_expression, names
 from symflex.library.elements import ElementUse, EquationRow, LinearForm, PortTerminal, Stamp, Variable
 from symflex.library.elements.line import LineElement
 from symflex.model import scope_of
-from symflex.model.input_kinds import INPUT_KINDS
-from symflex.model.nodes import variable_of
+from symflex.model.model import INPUT_KINDS
+from symflex.model.network import variable_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping

@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 
     from symflex.algebra import Factored
 
-
 Matrix = tuple[tuple["Factored", ...], ...]
 
 

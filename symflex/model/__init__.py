@@ -17,10 +17,10 @@ from symflex.model.model import (
     Published,
     Signal,
 )
-from symflex.model.ranges import check_value
 from symflex.model.resolve import load_model, load_with, resolve
 from symflex.model.scope import ModelScope, scope_of
 from symflex.model.settings import Setting, read_settings, with_numbers
+from symflex.model.signs import check_value
 
 __all__ = [
     "Analysis",

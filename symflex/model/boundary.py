@@ -35,9 +35,9 @@ if TYPE_CHECKING:
     from symflex.expressions import Equation, Expression
     from symflex.model.independence import Repetition
     from symflex.model.model import Definition, FieldProblem, PlacedBlock, PlacedElement
-    from symflex.model.points import Line
     from symflex.model.reading import Reader
     from symflex.model.scope import ModelScope
+    from symflex.model.signs import Line
 
 ORDER_LIMIT = 12
 SHOWN_NAMES = 6

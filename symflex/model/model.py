@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING, Final, Literal
 
-from symflex.library.elements import LineElement
+from symflex.library.elements import THROUGH_NAME, LineElement, Variable
 from symflex.quantities import Dimension
 
 if TYPE_CHECKING:
@@ -18,8 +18,10 @@ if TYPE_CHECKING:
     from symflex.errors import Diagnostic, Span
     from symflex.expressions import Equation, Expression
     from symflex.library.blocks import Block as BlockType
-    from symflex.library.elements import Element, Placing, Variable
+    from symflex.library.elements import Domain, Element, Placing
 
+PI_NEARLY = Fraction(314159265358979323846264338328, 10**29)
+"""Pi to 30 digits: signs, and the limits of a plot or search band, need no exact one."""
 Assumption = Literal["positive", "nonnegative", "real"]
 
 
@@ -29,6 +31,11 @@ class ExactValue:
 
     rational: Fraction
     pi_power: int = 0
+
+    @property
+    def nearly(self) -> Fraction:
+        """The number to 30 digits."""
+        return self.rational * PI_NEARLY**self.pi_power
 
 
 ONE: Final = ExactValue(Fraction(1))
@@ -167,7 +174,7 @@ class PlacedBlock:
 class Input:
     """What acts on a node, or a free signal.
 
-    ``kind`` is ``signal`` or one of :data:`symflex.model.input_kinds.INPUT_KINDS`. What is given at two nodes
+    ``kind`` is ``signal`` or one of :data:`INPUT_KINDS`. What is given at two nodes
     acts on the first and reacts on the second; a motion is then that of the first relative to the second.
     """
 
@@ -289,3 +296,52 @@ class Model:
     def transfer_functions(self) -> tuple[tuple[str, str], ...]:
         """Every (output, input) pair, outputs first."""
         return tuple((o.name, i.name) for o in self.outputs for i in self.inputs)
+
+
+@dataclass(frozen=True, slots=True)
+class InputKind:
+    """An input that acts on nodes."""
+
+    domain: Domain  # of the nodes
+    unit: str  # SI unit of the input
+    # Of an input that nodes follow, ``s^order * node = input``; ``None`` of one delivered into them.
+    order: int | None = None
+
+    @property
+    def quantity(self) -> str:
+        """The name of what an imposed input has to deliver: ``f``, ``tau`` or ``i``."""
+        return THROUGH_NAME[self.domain]
+
+    @property
+    def effort(self) -> str:
+        """The kind that delivers into the same nodes."""
+        return next(
+            k for k, kind in INPUT_KINDS.items() if kind.domain == self.domain and not kind.is_imposed
+        )
+
+    @property
+    def is_imposed(self) -> bool:
+        """Whether nodes follow it."""
+        return self.order is not None
+
+    def delivered(self, name: str) -> Variable:
+        """Return the unknown that an imposed input of this name delivers.
+
+        An element may bear the input's name: its own quantities are called otherwise.
+        """
+        return Variable("through", name, "supplied" if self.quantity == "i" else f"supplied_{self.quantity}")
+
+
+INPUT_KINDS: dict[str, InputKind] = {
+    "force": InputKind("translation", "N"),
+    "torque": InputKind("rotation", "N*m"),
+    "current": InputKind("electrical", "A"),
+    "voltage": InputKind("electrical", "V", 0),
+    "displacement": InputKind("translation", "m", 0),
+    "velocity": InputKind("translation", "m/s", 1),
+    "acceleration": InputKind("translation", "m/s^2", 2),
+    "angle": InputKind("rotation", "rad", 0),
+    "angular_velocity": InputKind("rotation", "rad/s", 1),
+    "angular_acceleration": InputKind("rotation", "rad/s^2", 2),
+}
+"""Every kind but a free signal, which acts on no node."""

@@ -1,29 +1,41 @@
-"""Reading elements, inputs and their nodes."""
+"""Reading elements, inputs and their nodes, and which domain each node has, from what is attached to it."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from fractions import Fraction
+from heapq import heapify, heappop, heappush
 from typing import TYPE_CHECKING
 
-from symflex.errors import SpecError
+from symflex.errors import Diagnostic, SpecError
 from symflex.errors.diagnostic import nearest
-from symflex.library.elements import ELEMENTS, Element, Port
-from symflex.model.declarations import read_label
-from symflex.model.input_kinds import INPUT_KINDS
-from symflex.model.model import Input, NodeReference
-from symflex.model.nodes import Attachment, Coupling
+from symflex.library.elements import ELEMENTS, Element, Port, Variable
+from symflex.model.declarations import DeclaredParameter, read_label
+from symflex.model.model import (
+    INPUT_KINDS,
+    Definition,
+    FieldProblem,
+    Input,
+    ModelParameter,
+    NetworkNode,
+    NodeReference,
+    Output,
+    PlacedBlock,
+    Signal,
+)
 from symflex.model.reading import NAME, Reader, signed_number
 from symflex.model.scope import RESERVED
+from symflex.model.spec import ArrayValue, StringValue, TableValue
 from symflex.quantities import parse_unit, unit_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from symflex.errors import Span, Text
     from symflex.expressions import Expression
+    from symflex.library.elements import Domain
     from symflex.library.elements.element import PortDomain
-    from symflex.model.spec import KeyValue, TableValue
+    from symflex.model.spec import KeyValue
     from symflex.quantities import Dimension
 
 TYPES_HINT = "'symflex elements' lists the types"
@@ -336,3 +348,180 @@ class NetworkReader:
             message = f"unit of {what} is '{text.value}'; transfer functions are per SI unit"
             self.reader.note("SF203", message, text.span, f"write '{unit.dimension}'")
         return text.value
+
+
+@dataclass(frozen=True, slots=True)
+class Coupling:
+    """What a coupling says about the domains of its two sides."""
+
+    element: Element  # whose ``ratio`` has a unit that depends on both domains
+    # port and partner_port: this side and the other side.
+    port: str
+    partner_port: str
+    partner: NodeReference  # the node at the other side
+    ratio: Dimension | None  # what the given ratio is measured in, when that is known
+
+    def suggested(self, partner: Domain) -> Domain:
+        """Return the domain for this side that the ratio's unit asks for, or else its partner's."""
+        if self.ratio is None:
+            return partner
+        for domain in (partner, *DOMAINS):
+            unit = self.element.unit_of("ratio", {self.port: domain, self.partner_port: partner})
+            if unit_of(unit).dimension == self.ratio:
+                return domain
+        return partner
+
+
+@dataclass(frozen=True, slots=True)
+class Attachment:
+    """One port at one node; a coupling's port has no domain of its own."""
+
+    reference: NodeReference
+    domain: PortDomain
+    who: str
+    coupling: Coupling | None = None
+
+
+DOMAINS: tuple[Domain, ...] = ("translation", "rotation", "electrical")
+WORDS = {
+    "translation": "a displacement",
+    "rotation": "an angle",
+    "electrical": "a voltage",
+    "planar": "a planar node",
+}
+
+
+def infer_nodes(attachments: Sequence[Attachment]) -> tuple[tuple[NetworkNode, ...], list[Diagnostic]]:
+    """Return the nodes in order of appearance, with every contradiction found.
+
+    A node touched by a planar element, or named with ``.y`` or ``.theta``, is planar; translational
+    elements then act on y and rotational ones on theta. Otherwise all elements must agree.
+    """
+    problems: list[Diagnostic] = []
+    first: dict[str, Attachment] = {}
+    claims: dict[str, dict[str, Attachment]] = {}
+    for attachment in attachments:
+        reference = attachment.reference
+        if reference.is_ground:
+            continue
+        first.setdefault(reference.node, attachment)
+        claim = "planar" if reference.component else attachment.domain
+        claims.setdefault(reference.node, {}).setdefault(claim, attachment)
+    nodes: dict[str, NetworkNode] = {}
+    for name, claimed in claims.items():
+        span = first[name].reference.span
+        definite = [d for d in claimed if d in DOMAINS]
+        if "planar" in claimed:
+            if "electrical" in claimed:
+                one, other = (d for d in claimed if d in ("planar", "electrical"))
+                problems.append(_contradiction(name, claimed[one], claimed[other]))
+            nodes[name] = NetworkNode(name, "planar", span)
+            continue
+        for other in definite[1:]:
+            problems.append(_contradiction(name, claimed[definite[0]], claimed[other]))
+        if definite:
+            nodes[name] = NetworkNode(name, definite[0], span)
+    _spread(attachments, nodes, first)
+    return tuple(nodes[name] for name in first), problems
+
+
+def _spread(
+    attachments: Sequence[Attachment], nodes: dict[str, NetworkNode], first: dict[str, Attachment]
+) -> None:
+    """Give nodes that only couplings touch a domain that suits the ratio's unit (translation at last)."""
+    waiting: dict[str, list[int]] = {}
+    for i, attachment in enumerate(attachments):
+        if attachment.coupling is not None and not attachment.reference.is_ground:
+            waiting.setdefault(attachment.coupling.partner.node, []).append(i)
+    ready = [i for node in nodes for i in waiting.get(node, ())]
+    heapify(ready)
+    while ready:
+        attachment = attachments[heappop(ready)]
+        name, coupling = attachment.reference.node, attachment.coupling
+        if coupling is None or name in nodes:
+            continue
+        domain = coupling.suggested(domain_of(coupling.partner, nodes[coupling.partner.node]))
+        nodes[name] = NetworkNode(name, domain, first[name].reference.span)
+        for i in waiting.get(name, ()):
+            heappush(ready, i)
+    for name, attachment in first.items():
+        nodes.setdefault(name, NetworkNode(name, "translation", attachment.reference.span))
+
+
+def domain_of(reference: NodeReference, node: NetworkNode) -> Domain:
+    """Return the domain a one-variable port sees at a node; a bare planar node is its deflection y."""
+    if node.domain == "planar":
+        return "rotation" if reference.component == "theta" else "translation"
+    return node.domain
+
+
+def variable_of(reference: NodeReference, node: NetworkNode, domain: PortDomain) -> Variable:
+    """Return the across variable a port of the given domain acts on."""
+    if node.domain != "planar":
+        return Variable("node", node.name)
+    component = reference.component or ("theta" if domain == "rotation" else "y")
+    return Variable("node", node.name, component)
+
+
+def _contradiction(name: str, one: Attachment, other: Attachment) -> Diagnostic:
+    claims = ["planar" if a.reference.component else a.domain for a in (one, other)]
+    hint = (
+        "use two nodes and couple them, with a transformer for instance; a node that both moves and turns "
+        "is planar: name its parts with .y and .theta"
+    )
+    if "electrical" in claims:
+        hint = "use two nodes and couple them, with a dc_motor or a gyrator for instance"
+    return Diagnostic(
+        "SF220",
+        f"node '{name}' is {WORDS[claims[0]]} for {one.who} and {WORDS[claims[1]]} for {other.who}",
+        other.reference.span,
+        hint,
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Draft:
+    """What was read, before names and units were checked."""
+
+    declared: tuple[DeclaredParameter, ...]
+    inherited: tuple[ModelParameter, ...]
+    definitions: tuple[Definition, ...]
+    nodes: tuple[NetworkNode, ...]
+    elements: tuple[DraftElement, ...]
+    inputs: tuple[DraftInput, ...]
+    blocks: tuple[PlacedBlock, ...]
+    signals: tuple[Signal, ...]
+    outputs: tuple[Output, ...]
+    fields: tuple[FieldProblem, ...] = ()
+
+
+def broken_names(sections: Mapping[str, TableValue | None], draft: Draft) -> frozenset[str]:
+    """Return the names in declarations that could not be read: their own and those of nodes listed there."""
+    read = {
+        "parameters": {p.name for p in draft.declared},
+        "definitions": {d.name for d in draft.definitions},
+        "elements": {e.name for e in draft.elements},
+        "inputs": {d.input.name for d in draft.inputs},
+        "signals": {x.name for x in draft.signals},
+        "blocks": {b.name for b in draft.blocks},
+        "fields": {f.name for f in draft.fields},
+    }
+    broken: set[str] = set()
+    for section, names_read in read.items():
+        table = sections[section]
+        for entry in table.entries if table else ():
+            if entry.key not in names_read:
+                broken.add(entry.key)
+                if not isinstance(entry.value, TableValue):
+                    continue
+                if section in ("elements", "inputs"):
+                    broken.update(_listed_names(entry.value.entries))
+                if section == "fields":
+                    broken.update(_listed_names(e for e in entry.value.entries if e.key == "unknowns"))
+    return frozenset(broken)
+
+
+def _listed_names(entries: Iterable[KeyValue]) -> Iterator[str]:
+    for entry in entries:
+        items = entry.value.items if isinstance(entry.value, ArrayValue) else (entry.value,)
+        yield from (i.text.value.partition(".")[0] for i in items if isinstance(i, StringValue))

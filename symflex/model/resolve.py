@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from symflex.errors import Diagnostic, Span, SpecError, UsageError
 from symflex.expressions import Equation, Expression, substitute
 from symflex.library.elements import LineElement, Placing
-from symflex.model.analysis import PI_NEARLY, read_analysis, read_figures, read_published
+from symflex.model.analysis import check_printed, read_analysis, read_figures, read_published, readable_names
 from symflex.model.blocks import Loads, Origin, read_blocks
 from symflex.model.boundary import (
     Surroundings,
@@ -23,9 +23,15 @@ from symflex.model.boundary import (
     stretches,
     varying_constants,
 )
-from symflex.model.declarations import CycleReading, DeclaredParameter, read_definitions, read_parameters
+from symflex.model.declarations import (
+    CycleReading,
+    DeclaredParameter,
+    read_definitions,
+    read_outputs,
+    read_parameters,
+    read_signals,
+)
 from symflex.model.dimensions import turned_name
-from symflex.model.draft import Draft, broken_names
 from symflex.model.fields import read_fields
 from symflex.model.linearity import check_expression, without_signal
 from symflex.model.model import (
@@ -37,15 +43,19 @@ from symflex.model.model import (
     PlacedBlock,
     PlacedElement,
 )
-from symflex.model.network import DraftElement, DraftInput, NetworkReader
-from symflex.model.nodes import domain_of, infer_nodes
-from symflex.model.points import Line
-from symflex.model.printed import check_printed, readable_names
-from symflex.model.ranges import check_ranges, ranged_values
+from symflex.model.network import (
+    Draft,
+    DraftElement,
+    DraftInput,
+    NetworkReader,
+    broken_names,
+    domain_of,
+    infer_nodes,
+)
 from symflex.model.reading import QuantityLiteral, Reader, describe
 from symflex.model.scope import ModelScope, build_scope
 from symflex.model.settings import check_names, settled
-from symflex.model.signals import read_outputs, read_signals
+from symflex.model.signs import Line, check_ranges, ranged_values
 from symflex.model.spec import ArrayValue, TableValue, parse_with_recovery
 from symflex.model.units import (
     block_unit,
@@ -462,7 +472,7 @@ def _surroundings(draft: Draft, scope: ModelScope) -> Surroundings:
         definitions,
         frozenset(p.name for p in parameters if p.assume == "positive"),
         frozenset(p.name for p in parameters if p.assume == "nonnegative"),
-        {p.name: p.value.rational * PI_NEARLY**p.value.pi_power for p in parameters if p.value},
+        {p.name: p.value.nearly for p in parameters if p.value},
     )
     return Surroundings(scope, definitions, varying_constants(draft.definitions, draft.blocks), line)
 

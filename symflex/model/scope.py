@@ -10,7 +10,7 @@ from symflex.errors import Diagnostic, SpecError
 from symflex.errors.diagnostic import nearest
 from symflex.expressions import Attribute, Name
 from symflex.library.elements import LineElement, Variable
-from symflex.model.input_kinds import INPUT_KINDS
+from symflex.model.model import INPUT_KINDS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence

@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from symflex.model.model import ExactValue, Model
     from symflex.model.reading import Reader
 
-
 Setting = str | int | float | Fraction | Decimal
 """A quantity with its unit, or a number in SI units."""
 OPTION = "--set"

@@ -11,8 +11,8 @@ from symflex.expressions import Expression, Name, names, power, product_of, subs
 from symflex.library.elements import ACROSS_UNIT, THROUGH_UNIT, LineElement, Variable
 from symflex.model.declarations import CycleReading, DeclaredParameter
 from symflex.model.dimensions import DimensionSystem, Measure
-from symflex.model.input_kinds import INPUT_KINDS
 from symflex.model.model import (
+    INPUT_KINDS,
     Definition,
     ExactValue,
     Input,
@@ -29,7 +29,7 @@ from symflex.quantities import DIMENSIONLESS, Dimension, Quantity, unit_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
-    from symflex.model.draft import Draft
+    from symflex.model.network import Draft
 
 
 def check_units(

@@ -23,7 +23,7 @@ from symflex.expressions import (
 )
 from symflex.library.elements import ELEMENTS, Placing, Variable
 from symflex.model import FieldProblem, Input, Model, NodeReference, PlacedElement
-from symflex.model.input_kinds import INPUT_KINDS
+from symflex.model.model import INPUT_KINDS
 
 HOLD = "hold"
 PAIR = 2

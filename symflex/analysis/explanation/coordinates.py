@@ -30,9 +30,9 @@ from symflex.expressions import (
 )
 from symflex.library.elements import Domain, LinearForm, LineElement, Variable
 from symflex.library.elements.lumped import CurrentSource, ForceSource, TorqueSource, VoltageSource
-from symflex.model.input_kinds import INPUT_KINDS
-from symflex.model.nodes import variable_of
-from symflex.model.points import Line
+from symflex.model.model import INPUT_KINDS
+from symflex.model.network import variable_of
+from symflex.model.signs import Line
 
 if TYPE_CHECKING:
     from collections.abc import Hashable, Iterator, Mapping

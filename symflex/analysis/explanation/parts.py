@@ -14,7 +14,7 @@ from symflex.analysis.explanation.comparison import opened, varying
 from symflex.equations.elimination import Determinants
 from symflex.library.elements import EquationRow, LinearForm, Variable
 from symflex.library.elements.rigid import Fixed, Pin, Slider
-from symflex.model.nodes import variable_of
+from symflex.model.network import variable_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

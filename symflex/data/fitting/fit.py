@@ -36,7 +36,6 @@ if TYPE_CHECKING:
     from symflex.data.fitting.least_squares import Refined
     from symflex.data.measurement import MeasuredResponse
 
-
 SLOPES = tuple(range(-4, 5))
 FEWEST_LINES = 8
 """Of a response that is fitted."""

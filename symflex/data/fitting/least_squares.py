@@ -33,7 +33,6 @@ from symflex.data.fitting.resonances import Complex, Real, Resonances
 if TYPE_CHECKING:
     from symflex.data.fitting.problem import FitProblem, FittedLines
 
-
 STEPS = 100
 """Evaluations of each residual; a search that takes more has lost its way."""
 TOLERANCE = 1e-9

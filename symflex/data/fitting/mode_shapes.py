@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from symflex.data.fitting.fit import ResonanceFit
     from symflex.data.measurement import MeasuredResponse
 
-
 STEP = 1e-6
 """Of the logarithms by which derivatives are taken."""
 

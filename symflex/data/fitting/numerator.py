@@ -18,7 +18,6 @@ from symflex.data.fitting.resonances import Complex, Real, Resonances
 if TYPE_CHECKING:
     from symflex.data.fitting.problem import FitProblem
 
-
 TURNS, PER_TURN = 2.5, 8
 """Dead times tried on either side of that of the poles, in turns of the phase at the highest line."""
 MOST_LINES = 400

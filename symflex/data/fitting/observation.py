@@ -33,7 +33,6 @@ from symflex.data.fitting.resonances import Complex, Real
 if TYPE_CHECKING:
     from symflex.data.fitting.problem import FittedLines
 
-
 Places = npt.NDArray[np.intp]
 
 STEPS_PER_LINE = 6

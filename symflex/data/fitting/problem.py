@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 
     from symflex.data.measurement import MeasuredResponse
 
-
 FEWEST_FOR_SLOPE = 5
 """Lines from which a power of s is guessed."""
 STEPS = 60

@@ -29,7 +29,6 @@ from symflex.data.fitting.resonances import Complex, Real, Resonances
 if TYPE_CHECKING:
     from symflex.data.fitting.problem import FitProblem
 
-
 LEAST_PROMINENCE = 0.02
 """Of the logarithm of the magnitude: 0.2 dB, below the shoulders that close pairs leave."""
 NOISE_MULTIPLE = 5.0

@@ -17,7 +17,7 @@ from symflex.errors import Diagnostic, ModelError
 from symflex.errors.diagnostic import nearest
 from symflex.expressions import format_expression
 from symflex.library.elements import LineElement, Variable
-from symflex.model.nodes import domain_of, variable_of
+from symflex.model.network import domain_of, variable_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence

@@ -1,8 +1,7 @@
 """From text to exact values with positions, and back: the specification as it was written."""
 
 from symflex.model.spec.parse import parse, parse_with_recovery
-from symflex.model.spec.read import read
-from symflex.model.spec.values import (
+from symflex.model.spec.positions import (
     ArrayValue,
     BooleanValue,
     KeyValue,
@@ -13,6 +12,7 @@ from symflex.model.spec.values import (
     TableValue,
     Value,
 )
+from symflex.model.spec.read import read
 from symflex.model.spec.write import write
 
 __all__ = [

@@ -13,10 +13,9 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from symflex.errors import Diagnostic, Span, SpecError
-from symflex.model.spec.positions import Document, Literal, decode_key, locate
+from symflex.model.spec.positions import Document, Literal, Spec, decode_key, locate
 from symflex.model.spec.read import MAX_ERRORS
 from symflex.model.spec.scan import KEY, KEY_PART, Scan, Statement, scan
-from symflex.model.spec.values import Spec
 
 if TYPE_CHECKING:
     from symflex.errors import Source

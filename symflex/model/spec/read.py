@@ -12,7 +12,6 @@ from symflex.errors import Diagnostic, Source, Span, SpecError, UsageError
 if TYPE_CHECKING:
     from pathlib import Path
 
-
 _UTF16_MARKS = (b"\xff\xfe", b"\xfe\xff")
 
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from symflex.algebra import Factored
 from symflex.budget import Budget
 from symflex.errors import BudgetError, Diagnostic, SymflexError
-from symflex.model.passive import is_passive
+from symflex.model.signs import is_passive
 from symflex.roots.distributed.proof import ROUNDING
 from symflex.roots.distributed.right_half_plane import DEGENERATE, PASSIVE, search_right
 from symflex.roots.distributed.side import ACCUMULATION_DIGITS, Side, groups, polynomial_roots

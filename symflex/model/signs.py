@@ -1,8 +1,8 @@
-"""Where points along x lie, as far as expressions of parameters say.
+"""Which signs lengths, stiffnesses, delays and points along x have, as far as expressions of parameters say.
 
-A point or length is read as a polynomial in the parameters (exponents may be negative). Of a difference that
-is such a polynomial the sign is known when all its coefficients agree, since parameters are positive, or when
-all parameters in it have values.
+A value is read as a polynomial in the parameters (exponents may be negative). Of a difference that is such a
+polynomial the sign is known when all its coefficients agree, since parameters are positive, or when all
+parameters in it have values.
 """
 
 from __future__ import annotations
@@ -11,15 +11,22 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from symflex.expressions import Expression, Name, Negative, Number, Power, Product, Quotient, Sum
-from symflex.model.analysis import PI_NEARLY
+from symflex.errors import Diagnostic, UsageError
+from symflex.expressions import Expression, Name, Negative, Number, Power, Product, Quotient, Sum, names
+from symflex.library.elements import LineElement
 from symflex.model.linearity import integer_exponent
+from symflex.model.model import PI_NEARLY
+from symflex.model.reading import literal_value
 from symflex.model.units import lower
 
 if TYPE_CHECKING:
-    from collections.abc import Hashable, Iterable, Mapping
+    from collections.abc import Collection, Hashable, Iterable, Iterator, Mapping
 
-    from symflex.model.model import Definition, ExactValue
+    from symflex.errors import Span
+    from symflex.library.elements import Sign
+    from symflex.model.model import Definition, ExactValue, Model, PlacedElement
+    from symflex.model.network import Draft
+    from symflex.model.reading import Reader
 
 Monomial = tuple[tuple[str, int], ...]
 Polynomial = dict[Monomial, Fraction]
@@ -54,7 +61,7 @@ class Line:
         definitions: Iterable[Definition], values: Iterable[tuple[str, ExactValue | None]]
     ) -> Line:
         """Return the line of parameters of which nothing is known but the values of some."""
-        numbers = {name: v.rational * PI_NEARLY**v.pi_power for name, v in values if v is not None}
+        numbers = {name: v.nearly for name, v in values if v is not None}
         return Line({d.name: d.expression for d in definitions}, frozenset(), frozenset(), numbers)
 
     def __post_init__(self) -> None:
@@ -177,3 +184,130 @@ def _power(base: Polynomial, exponent: int) -> Polynomial | None:
     if any(abs(e * exponent) > DEGREE_LIMIT for _, e in monomial):
         return None
     return _sum([{tuple((n, e * exponent) for n, e in monomial if exponent): coefficient**exponent}])
+
+
+@dataclass(frozen=True, slots=True)
+class RangedValue:
+    """A value that has to be positive, or not negative; ``what`` and ``reason`` are for messages."""
+
+    what: str
+    expression: Expression
+    sign: Sign
+    reason: str
+
+
+def ranged_values(draft: Draft | Model) -> Iterator[RangedValue]:
+    """Yield the values of distributed elements and delays that cannot have any sign."""
+    for use in draft.elements:
+        element = use.element
+        if not isinstance(element, LineElement):
+            continue
+        given = dict(use.values)
+        for port in element.parameters:
+            sign: Sign = "positive" if port.name == element.length else port.sign
+            if sign != "any" and port.name in given:
+                reason = f"{port.doc} is positive" if sign == "positive" else f"{port.doc} cannot be"
+                what = f"{port.name} of {element.type_name} '{use.name}'"
+                yield RangedValue(what, given[port.name], sign, reason)
+    for placed in draft.blocks:
+        block = placed.block
+        if block is not None and block.kernel_time:
+            what = f"{block.kernel_time} of {block.type_name} '{placed.name}'"
+            time = dict(placed.values)[block.kernel_time]
+            yield RangedValue(what, time, "nonnegative", "a delay cannot look ahead")
+
+
+def check_ranges(reader: Reader, draft: Draft, line: Line, unsound: set[Span | None]) -> None:
+    """Note values of distributed parts that are zero or negative where they cannot be.
+
+    Signs are told by ``line``, from values and what is assumed of parameters. Places in ``unsound`` hold a
+    mistake already; those found here are added.
+    """
+    for ranged in ranged_values(draft):
+        expression, least = ranged.expression, 1 if ranged.sign == "positive" else 0
+        if expression.span in unsound:
+            continue
+        sign = line.sign(expression)
+        if sign is None or sign >= least:
+            continue
+        value = None if literal_value(expression) is not None else line.value(expression)
+        reader.note("SF209", _message(ranged, sign, value), expression.span)
+        unsound.add(expression.span)
+
+
+def check_value(model: Model, name: str, value: ExactValue, varied: Collection[str]) -> None:
+    """Refuse a value of a parameter with which a distributed part is what none can be.
+
+    All other parameters keep their declared values, but for those ``varied``, which do not count.
+
+    Raises
+    ------
+    UsageError
+        SF209 a length, stiffness or dead time of a sign it cannot have.
+    """
+    known = {p.name: p.value for p in model.parameters if p.value and p.name not in varied} | {name: value}
+    line = Line(
+        {d.name: d.expression for d in model.definitions},
+        frozenset(p.name for p in model.parameters if p.assume == "positive"),
+        # The value itself tells the sign of what it stands for alone.
+        frozenset(p.name for p in model.parameters if p.assume == "nonnegative" and p.name != name),
+        {each: v.nearly for each, v in known.items()},
+    )
+    for ranged in ranged_values(model):
+        sign = line.sign(ranged.expression)
+        if sign is not None and sign < (1 if ranged.sign == "positive" else 0):
+            message = _message(ranged, sign, line.value(ranged.expression))
+            shown = float(value.nearly)
+            raise UsageError(Diagnostic("SF209", f"with {name} = {shown:.6g}, {message}"))
+
+
+def _message(ranged: RangedValue, sign: int, value: Fraction | None) -> str:
+    shown = f" ({float(value):.6g})" if value else ""
+    return f"{ranged.what} is {'negative' if sign < 0 else '0'}{shown}; {ranged.reason}"
+
+
+def is_passive(model: Model, values: Iterable[tuple[str, ExactValue]]) -> bool:
+    """Tell whether it is proved that nothing in a model supplies energy but its inputs.
+
+    Then no pole lies in the right half plane: of ``x^H A(s) x/s`` mass, loss and stiffness are each
+    nonnegative, and at Re(s) > 0 their sum vanishes only where nothing moves (Anderson & Vongpanitlerd 1973,
+    Network Analysis and Synthesis, chapter 2). Nothing is known with signals, blocks, fields, parameters that
+    depend on s, elements that are not of this program, or a value of the wrong sign.
+
+    Examples
+    --------
+    >>> from symflex import pipeline
+    >>> text = '''
+    ... symflex = 1
+    ... parameters = { k = "2 N/m", m = "1 kg" }
+    ... elements.body = { type = "mass", at = "x", m = "m" }
+    ... elements.spring = { type = "spring", between = ["x", "ground"], k = "SIGNk" }
+    ... inputs.F = { force = "x" }
+    ... outputs.X = "x"
+    ... '''
+    >>> for sign in ("", "-"):
+    ...     model = pipeline.loads(text.replace("SIGN", sign))
+    ...     print(is_passive(model, [(p.name, p.value) for p in model.parameters]))
+    True
+    False
+    """
+    if model.signals or model.blocks or model.fields:
+        return False
+    line = Line.of_numbers(model.definitions, values)
+    inputs = {each.name for each in model.inputs}
+    return all(_is_passive(use, line, inputs) for use in model.elements)
+
+
+def _is_passive(use: PlacedElement, line: Line, inputs: set[str]) -> bool:
+    element, given = use.element, dict(use.values)
+    if element.is_source:
+        # One that follows an input alone is a support or a free node where the input rests.
+        known = inputs | {"pi", *line.values}
+        return all(
+            isinstance(each, Name) and each.name in known for value in given.values() for each in names(value)
+        )
+    law = element.passive
+    if law is None or any(given[name] != given[law.equal[0]] for name in law.equal):
+        return False
+    signs = {name: line.sign(value) for name, value in given.items()}
+    return all(sign is not None and (sign >= 0 or name in law.of_any_sign) for name, sign in signs.items())
