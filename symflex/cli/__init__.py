@@ -18,23 +18,24 @@ YOUNG_OBJECTS = 50_000
 WATCHED = "watched"
 """What the context holds of a command line that was started as a program, not called from Python."""
 
-COMMANDS: dict[str, str] = {
-    "check": "Parse and resolve a specification; report every problem at once.",
-    "derive": "Print transfer functions in closed form.",
-    "roots": "Print poles and zeros with proved enclosures.",
-    "rational": "Print rational approximations and where they are valid.",
-    "sweep": "Solve a model at many values of its parameters.",
-    "stability": "Print for which values of a gain a feedback loop is stable.",
-    "colocation": "Print up to which frequency two outputs move together.",
-    "plot": "Draw a Bode plot, a pole-zero array, mode shapes, a root locus or a Nyquist plot.",
-    "export": "Write numeric code or LaTeX.",
-    "audit": "Compare printed formulas with derived ones.",
-    "fit": "Fit resonances to measured frequency responses.",
-    "measure": "Write a synthetic measurement of a model.",
-    "report": "Write a report: a page, a PDF, figures, code, data.",
-    "new": "Write a specification to start from.",
-    "elements": "List the element and block library.",
+COMMANDS: dict[str, tuple[str, str]] = {
+    "check": ("formulas", "Parse and resolve a specification; report every problem at once."),
+    "derive": ("formulas", "Print transfer functions in closed form."),
+    "roots": ("analyses", "Print poles and zeros with proved enclosures."),
+    "rational": ("analyses", "Print rational approximations and where they are valid."),
+    "sweep": ("analyses", "Solve a model at many values of its parameters."),
+    "stability": ("analyses", "Print for which values of a gain a feedback loop is stable."),
+    "colocation": ("analyses", "Print up to which frequency two outputs move together."),
+    "plot": ("plot", "Draw a Bode plot, a pole-zero array, mode shapes, a root locus or a Nyquist plot."),
+    "export": ("formulas", "Write numeric code or LaTeX."),
+    "audit": ("formulas", "Compare printed formulas with derived ones."),
+    "fit": ("measured", "Fit resonances to measured frequency responses."),
+    "measure": ("measured", "Write a synthetic measurement of a model."),
+    "report": ("report", "Write a report: a page, a PDF, figures, code, data."),
+    "new": ("library", "Write a specification to start from."),
+    "elements": ("library", "List the element and block library."),
 }
+"""The module of each, in which its function has its name, and what it does."""
 
 
 NO_CACHE = "--no-cache"
@@ -43,7 +44,7 @@ GONE = "Derivations are quick and no longer kept on disk: leave it out."
 
 
 class LazyGroup(click.Group):
-    """A group whose commands live in modules of their own."""
+    """A group whose commands are imported when they run."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the command names in the order of a session."""
@@ -55,17 +56,15 @@ class LazyGroup(click.Group):
         del ctx
         if cmd_name not in COMMANDS:
             return None
-        command = import_module(f"symflex.cli.{cmd_name}").command
-        if not isinstance(command, click.Command):
-            message = f"symflex.cli.{cmd_name} defines no command"
-            raise TypeError(message)
+        module, _ = COMMANDS[cmd_name]
+        command: click.Command = getattr(import_module(f"symflex.cli.{module}"), cmd_name)
         return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """List the commands without importing them."""
         del ctx
         with formatter.section("Commands"):
-            formatter.write_dl(list(COMMANDS.items()))
+            formatter.write_dl([(name, summary) for name, (_, summary) in COMMANDS.items()])
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]

@@ -27,7 +27,7 @@ S_PLANES = ("locus", "poles_zeros")
 
 
 @command_of("plot", PlotOptions)
-def command(spec: Specification, given: PlotOptions) -> int:
+def plot(spec: Specification, given: PlotOptions) -> int:
     """Draw KIND (bode, locus, modes, nyquist, poles_zeros) or a figure that SPEC defines in [figures].
 
     modes draws the shapes of the lowest modes of the model, --modes or [analysis] modes of them, else five.

@@ -17,7 +17,7 @@ EPOCH_VARIABLE = "SOURCE_DATE_EPOCH"
 
 
 @bare_command("report", ReportOptions)
-def command(given: ReportOptions) -> int:
+def report(given: ReportOptions) -> int:
     """Write a report on models: equations, poles and zeros, figures, comparison, code.
 
     A SPEC that is a folder stands for all specifications in it and below; measured responses (.csv, .uff,

@@ -23,7 +23,7 @@ HANG = 300  # seconds after which a process that uses no processor time is taken
 # A child leaves the loop and goes on as a fresh interpreter would: what it raises ends it.
 SERVER = """
 import json, os, resource, signal, sys
-import symflex.pipeline, symflex.cli.check, symflex.cli.derive
+import symflex.pipeline, symflex.cli.formulas
 for line in sys.stdin:
     folder, arguments, seconds, memory, hang, out, err = json.loads(line)
     child = os.fork()

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from dataclasses import FrozenInstanceError, fields, is_dataclass
 from fractions import Fraction
-from importlib import import_module
 
 import click
 import pytest
 
 from symflex import options
-from symflex.cli import COMMANDS
+from symflex.cli import COMMANDS, group
 from symflex.errors import UsageError
 from symflex.options import RootsOptions, axis_ends, band_ends, tolerance
 from symflex.roots.region import region_of
@@ -24,7 +23,7 @@ OF_A_COMMAND = {
 
 @pytest.mark.parametrize("name", sorted(OF_A_COMMAND))
 def test_every_field_is_a_parameter_of_its_command(name):
-    command = import_module(f"symflex.cli.{name}").command
+    command = group.get_command(click.Context(group), name)
     assert isinstance(command, click.Command)
     assert {f.name for f in fields(OF_A_COMMAND[name])} <= {p.name for p in command.params}
 

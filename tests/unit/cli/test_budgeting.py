@@ -16,7 +16,7 @@ ENDLESS = "while True: pass"
 SELF = """
 import sys, os
 from symflex.cli import main, budgeting
-from symflex.cli import check
+from symflex.cli import formulas
 import symflex.pipeline
 def load(*given, **more):
     {body}

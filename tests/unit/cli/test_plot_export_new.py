@@ -5,7 +5,7 @@ from importlib.resources import files
 
 import pytest
 
-from symflex.cli.new import TEMPLATES
+from symflex.cli.library import TEMPLATES
 from symflex.codegen.exporters import EXPORTERS
 
 

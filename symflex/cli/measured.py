@@ -1,19 +1,20 @@
-"""``symflex fit``."""
+"""Measured responses: ``fit`` and ``measure``."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
-from symflex.cli.command import Specification, bare_command
+from symflex.cli.command import Specification, bare_command, command_of, first_pair
 from symflex.cli.reporting import check_place, emit_json, note, say, terminal_width
 from symflex.errors import Diagnostic, FitError, SymflexError, UsageError
-from symflex.options import FitOptions
+from symflex.options import FitOptions, MeasureOptions
 
 SUFFIXES = (".pdf", ".png", ".svg")
 
 
 @bare_command("fit", FitOptions)
-def command(given: FitOptions) -> int:
+def fit(given: FitOptions) -> int:
     """Fit resonances to the frequency responses in DATA: .csv, .uff, .mat or .npz.
 
     On top of the transfer function --base SPEC --tf OUT/IN, or of a gain and a power of s, each resonance
@@ -78,4 +79,25 @@ def command(given: FitOptions) -> int:
             one = place if r == 0 else place.with_stem(f"{place.stem}_{r + 1}")
             save(draw_fit(found, r), one)
             note(f"wrote {one}")
+    return 0
+
+
+@command_of("measure", MeasureOptions)
+def measure(spec: Specification, given: MeasureOptions) -> int:
+    """Write what an analyser would measure of a transfer function of SPEC: synthetic data, and labelled so.
+
+    Band-limited noise drives the model; a sensor with noise of its own sees the response; overlapping
+    records with a Hann window are averaged to an H1 estimate and its coherence. The same seed gives
+    the same file.
+    """
+    from symflex import pipeline
+    from symflex.data.measurement import WRITERS, measurement_bytes
+    from symflex.files.write import write_atomically
+
+    check_place(given.output, WRITERS)
+    model = spec.load()
+    tf = "/".join(first_pair(model, given.tf, "measuring"))
+    measured = pipeline.measure(model, replace(given, tf=tf, rolloff=given.rolloff or None))
+    write_atomically(Path(given.output), measurement_bytes(measured, given.output))
+    note(f"wrote {given.output}: {measured.values.size} lines of SYNTHETIC data")
     return 0

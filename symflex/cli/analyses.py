@@ -1,0 +1,209 @@
+"""What a model says with numbers: ``roots``, ``rational``, ``stability``, ``colocation``, ``sweep``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from symflex.budget import entered_budget
+from symflex.cli.command import Specification, command_of, first_pair
+from symflex.cli.reporting import emit_json, note, say, show_error, terminal_width
+from symflex.errors import BudgetError, Diagnostic, UsageError
+from symflex.options import ColocationOptions, RationalOptions, RootsOptions, StabilityOptions, SweepOptions
+
+if TYPE_CHECKING:
+    from symflex.analysis.explanation import ZeroExplanation
+    from symflex.analysis.sensitivity import RootDerivative
+
+
+DERIVING = 0.5
+"""Seconds that deriving may take in any case, by which a command may exceed its time."""
+
+
+@command_of("roots", RootsOptions)
+def roots(spec: Specification, given: RootsOptions) -> int:
+    """Print poles, zeros and hidden modes of one transfer function of SPEC.
+
+    Every root is proved to lie within its radius, with its multiplicity, and none is missing. Distributed
+    systems have infinitely many, of which the lowest are shown by default. Exit code 4 says that roots could
+    not be told apart, or that their number could not be proved; exit code 5, that the budget was exceeded:
+    what was proved until then is shown.
+
+    --sensitivity adds the relative change of each natural frequency, and the change of each damping ratio,
+    per relative change of a parameter. It takes the next word as a name: put it after SPEC.
+    """
+    from symflex import pipeline
+    from symflex.cli.progress import ProgressBar
+    from symflex.print.text import roots_text
+    from symflex.roots.region import region_of
+
+    chosen = region_of(given, "--")
+    # However short the time is, what is sought is told, and how many roots there are.
+    with entered_budget().at_least(DERIVING).entered():
+        model = spec.load()
+        pair = first_pair(model, given.tf, "showing")
+        shown = given.digits or model.analysis.digits or 15
+        (bound,) = pipeline.derive_bound(model, [pair])
+    with ProgressBar() as bar:
+        found = pipeline.roots(bound, chosen, shown, entered_budget().told(bar))
+    moved: tuple[RootDerivative, ...] = ()
+    explained: ZeroExplanation | None = None
+    wanted, is_over = bool(given.sensitivity), found.certificate.is_exceeded
+    try:
+        if wanted:
+            names = [] if "" in given.sensitivity else given.sensitivity
+            moved = pipeline.sensitivities(model, bound, found, names, shown)
+        explained = pipeline.explain_zeros(model, bound, found) if given.explain else None
+    except BudgetError as error:
+        show_error(error)
+        wanted, is_over = False, True
+    if given.as_json:
+        more: dict[str, object] = {}
+        if wanted:
+            more["sensitivity"] = [m.to_json_dict(shown) for m in moved]
+        if explained is not None:
+            from symflex.analysis.explanation import explanation_json  # most calls need none of it
+
+            more["explanation"] = explanation_json(explained)
+        emit_json({**found.to_json_dict(), **more})
+    else:
+        say(roots_text(found, shown, terminal_width()))
+        if wanted:
+            from symflex.analysis.sensitivity.text import sensitivity_text  # most calls need none of it
+
+            say(sensitivity_text(moved, terminal_width()))
+        if explained is not None:
+            from symflex.analysis.explanation import explanation_text
+
+            say("\n" + explanation_text(explained, terminal_width()))
+    if is_over:
+        return 5
+    if any(m.status == "undecided" for m in moved):
+        return 4
+    return 0 if found.certificate.certified and not (given.strict and found.excluded) else 4
+
+
+@command_of("rational", RationalOptions)
+def rational(spec: Specification, given: RationalOptions) -> None:
+    """Print a rational approximation of one transfer function of SPEC.
+
+    Of a beam, rod or delay, a number of modes is kept: in product form their poles and zeros, in modal form
+    their residues and a static correction. The frequencies up to which the approximation is within 1 % and
+    5 % of the exact function are found by sampling. A lumped system with all its modes is its own
+    approximation.
+    """
+    from symflex import pipeline
+    from symflex.analysis.rational.text import rational_json, rational_text
+
+    model = spec.load()
+    (bound,) = pipeline.derive_bound(model, [first_pair(model, given.tf, "showing")])
+    found = pipeline.rational(bound, given.modes, given.form)
+    if given.as_json:
+        emit_json(rational_json(found))
+    else:
+        say(rational_text(found))
+
+
+@command_of("stability", StabilityOptions)
+def stability(spec: Specification, given: StabilityOptions) -> int:
+    """Print for which values of K all poles of SPEC lie in the open left half plane.
+
+    The loop is closed in [signals]; K is one of [parameters]. Boundaries are enclosed, with the frequency at
+    which poles cross the imaginary axis, and poles right of it are counted between them; hidden modes count.
+    For the value that K has in SPEC, gain and phase margins follow.
+
+    Exit code 4 says that something is not proved, and what. Poles of structures without loss have no end
+    along the axis: there, poles are counted up to a frequency, which is printed.
+    """
+    from symflex import pipeline
+    from symflex.cli.progress import ProgressBar
+    from symflex.loops.text import stability_text
+
+    model = spec.load()
+    with ProgressBar() as bar:
+        found = pipeline.stability(model, given, budget=entered_budget().told(bar))
+    if given.as_json:
+        emit_json(found.to_json_dict())
+    else:
+        say(stability_text(found))
+    return 0 if found.certified else 4
+
+
+@command_of("colocation", ColocationOptions)
+def colocation(spec: Specification, given: ColocationOptions) -> int:
+    """Print up to which frequency an output of SPEC moves with a colocated one.
+
+    Within this band they are dynamically colocated, although flexible parts lie between them. It ends where
+    the ratio of the two first leaves the tolerances; that it does not before is proved. Exit code 4 says that
+    the end could not be told.
+    """
+    from symflex import pipeline
+
+    found = pipeline.colocation(spec.load(), given)
+    if given.as_json:
+        emit_json(found.to_json_dict())
+    else:
+        say(str(found))
+    return 0 if found.is_decided else 4
+
+
+BUDGET_CODE = "SF5"
+
+
+@command_of("sweep", SweepOptions)
+def sweep(spec: Specification, given: SweepOptions) -> int:
+    """Solve SPEC at many values of its parameters: poles, zeros, a response or stability margins.
+
+    Several --over make a grid; ranges without a count are drawn from, N times, as a Latin hypercube. Every
+    root is proved at every point, as by 'symflex roots', and given as the nearest double with a radius; modes
+    keep their names along the sweep. The result does not depend on the number of workers.
+
+    With -o, chunks that are done are kept in FILE.part until FILE is written: the same command goes on after
+    a kill. 'symflex plot sweep FILE' draws a .nc or .npz.
+
+    Exit code 4 says that something is not certified, 5 that a budget was exceeded.
+    """
+    from symflex import pipeline
+    from symflex.cli.progress import ProgressBar
+    from symflex.sweep.files import check_writable
+    from symflex.sweep.run import open_executor
+    from symflex.sweep.text import sweep_json, sweep_text
+
+    if given.workers and given.scheduler:
+        raise UsageError(Diagnostic("SF902", "give only one of --workers and --scheduler"))
+    if given.fresh and not given.output:
+        raise UsageError(Diagnostic("SF902", "--fresh is for a file: give -o FILE"))
+    if given.output:
+        check_writable(Path(given.output))
+    model = spec.load()
+    _check(given)
+    task, design = pipeline.plan_sweep(model, given)
+    if doubled := [name for name in design.names if name in spec.settings]:
+        raise UsageError(Diagnostic("SF902", f"'{doubled[0]}' is swept and set"))
+    if given.of != "margins":
+        first_pair(model, given.tf, "sweeping")
+    with ProgressBar() as bar, open_executor(given.workers, given.scheduler) as (executor, size):
+        found = pipeline.sweep(task, design, given, executor, workers=size, progress=bar)
+    if given.output:
+        note(f"wrote {Path(given.output)}")
+    if given.as_json:
+        emit_json(sweep_json(found))
+    else:
+        say(sweep_text(found, terminal_width()))
+    if found.is_certified:
+        return 0
+    return 5 if any(code.startswith(BUDGET_CODE) for code in found["code"].reshape(-1).tolist()) else 4
+
+
+def _check(given: SweepOptions) -> None:
+    """Refuse options that say nothing for what is computed, or contradict each other."""
+    if given.of != "response" and given.count is not None:
+        raise UsageError(Diagnostic("SF902", "--count is for --of response"))
+    if given.of not in ("poles", "zeros") and given.modes is not None:
+        raise UsageError(Diagnostic("SF902", "--modes is for --of poles and --of zeros"))
+    if given.modes is not None and given.band is not None:
+        raise UsageError(Diagnostic("SF902", "give only one of --modes and --band"))
+    if given.of == "margins" and not given.gain:
+        raise UsageError(Diagnostic("SF902", "margins are those of a loop", None, "name its gain: --gain K"))
+    if given.of != "margins" and given.gain:
+        raise UsageError(Diagnostic("SF902", "--gain is for --of margins"))

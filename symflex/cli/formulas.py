@@ -1,0 +1,281 @@
+"""What a model says in symbols: ``check``, ``derive``, ``export``, ``audit``."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from symflex.cli.command import Specification, command_of
+from symflex.cli.reporting import diagnostic_json, emit_json, listed, note, say, show, terminal_width
+from symflex.errors import Diagnostic, SymflexError, UsageError
+from symflex.errors.diagnostic import nearest, printable
+from symflex.options import AuditOptions, CheckOptions, DeriveOptions, ExportOptions
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.codegen.export import Exporter
+    from symflex.codegen.targets.latex import LatexExporter
+    from symflex.model import Model
+    from symflex.transfer import AnyTransferFunction
+
+
+@command_of("check", CheckOptions)
+def check(spec: Specification, given: CheckOptions) -> int:
+    """Parse and resolve SPEC; report every problem at once.
+
+    Names, units, ports, linearity and solvability are checked; nothing is derived.
+
+    Warnings tell what a typing error may have left behind: a node that one element touches, a name that
+    nothing uses, an input that reaches nothing, an element without effect. They also say how a frequency was
+    read, in cycles or in radians, where an expression could mean either. All other commands print them too.
+    """
+    from symflex import pipeline
+
+    try:
+        model = pipeline.load(spec.path, spec.allow_outside, spec.settings)
+        equations = pipeline.assemble(model)
+        pipeline.check_solvable(equations)
+    except SymflexError as error:
+        if not given.as_json:
+            raise
+        problems = [diagnostic_json(d) for d in error.diagnostics]
+        emit_json({"schema": "symflex.check/1", "ok": False, "problems": problems, "warnings": []})
+        return error.exit_code
+    warnings = pipeline.warnings(model, equations)
+    code = 3 if given.strict and warnings else 0
+    names = ["/".join(pair) for pair in model.transfer_functions]
+    if given.as_json:
+        document = {
+            "problems": [],
+            "warnings": [diagnostic_json(w) for w in warnings],
+            "transfer_functions": names,
+        }
+        emit_json({"schema": "symflex.check/1", "ok": True, **document})
+        return code
+    show(warnings)
+    symbolic = [p.name for p in model.parameters if p.value is None]
+    counts = ", ".join(
+        f"{len(group)} {word}{'' if len(group) == 1 else 's'}"
+        for group, word in (
+            (model.parameters, "parameter"),
+            (model.nodes, "node"),
+            (model.elements, "element"),
+            (model.signals, "signal"),
+            (model.blocks, "block"),
+            (model.fields, "field"),
+        )
+        if group
+    )
+    said = f", {len(warnings)} warning{'' if len(warnings) == 1 else 's'}" if warnings else ""
+    say(f"{printable(spec.path)}: ok{said}")
+    if model.title:
+        say(listed("", printable(model.title).split(), " "))
+    say(listed("", counts.split(), " "))
+    say(listed("transfer functions: ", names))
+    if symbolic:
+        say(listed("symbolic (no value): ", symbolic))
+    return code
+
+
+LONG = 5_000
+"""Terms beyond which a print is announced: it takes seconds, or minutes."""
+
+
+def chosen_representation(representation: str, form: str | None) -> str:
+    """Return the representation to derive in: a form belongs to one of them.
+
+    Raises
+    ------
+    UsageError
+        SF902 when the two options contradict each other.
+    """
+    if form is None:
+        return representation
+    wanted = "nested" if form == "nested" else "expanded"
+    if representation not in ("auto", wanted):
+        message = f"--form {form[:64]} is of the {wanted} representation, not the {representation} one"
+        raise UsageError(Diagnostic("SF902", message))
+    return wanted
+
+
+@command_of("derive", DeriveOptions)
+def derive(spec: Specification, given: DeriveOptions) -> int:
+    """Print the transfer functions of SPEC in closed form.
+
+    All of them by default. JSON strings are in the specification's own expression grammar.
+    """
+    from symflex import pipeline
+    from symflex.print.forms import print_forms, terms_to_print
+
+    if given.width is not None and (given.as_json or given.format != "latex"):
+        raise UsageError(Diagnostic("SF902", "--width is for --format latex"))
+    column = None
+    if given.width is not None:
+        from symflex.print.latex import column_width
+
+        column = column_width(given.width)
+    model = spec.load()
+    derived, reason = pipeline.derive_as(
+        model, pipeline.pick_pairs(model, given.tfs), chosen_representation(given.representation, given.form)
+    )
+    if reason:
+        note(reason)
+    for tf in derived:
+        if (terms := terms_to_print(tf, given.form)) > LONG:
+            note(f"printing {tf.name}: about {terms} terms; --representation nested is shorter")
+    forms, sentences = print_forms(derived, given.form, given.digits)
+    for sentence in sentences:
+        note(sentence)
+    entries = list(zip(derived, forms, strict=True))
+    # Each format is imported where it is printed, so that a terminal does not wait for LaTeX.
+    if given.as_json or given.format == "json":
+        from symflex.print.json_format import derive_document
+
+        emit_json(derive_document(entries))
+    elif given.format == "latex":
+        from symflex.print.latex import transfer_function_latex
+
+        verdicts = (f"% {printed.stability.headline}\n" if printed.stability else "" for printed in forms)
+        equations = (transfer_function_latex(tf, printed, width_mm=column) for tf, printed in entries)
+        say("\n\n".join(map(str.__add__, verdicts, equations)))
+    else:
+        from symflex.print.text import derive_text
+
+        room = terminal_width()
+        say("\n".join(derive_text(tf, printed, room) for tf, printed in entries).rstrip("\n"))
+    return 0
+
+
+class ExportCommand(click.Command):
+    """A command whose help lists the targets."""
+
+    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the targets and what they are."""
+        from symflex.codegen.exporters import EXPORTERS
+
+        with formatter.section("Targets"):
+            formatter.write_dl([(name, exporter.summary) for name, exporter in EXPORTERS.items()])
+
+
+@command_of("export", ExportOptions, cls=ExportCommand)
+def export(spec: Specification, given: ExportOptions) -> int:
+    """Write the transfer functions of SPEC for another program.
+
+    Numeric code is verified against ball arithmetic before it is written; the worst error stands in its
+    documentation. A target that consists of several files, as c does with its header, writes them beside
+    the one named with -o; on standard output it is one file.
+
+    With --to latex and -o FOLDER/ every transfer function, table and figure becomes a file for a paper to
+    input, and document.tex inputs them all.
+
+    With --to state-space all of them get one realisation, whose states are displacements, velocities,
+    currents and the like of the model. Exit code 3 says that there is none: beams, rods and delays have
+    infinitely many states, and what has more zeros than poles has no output equation.
+    """
+    from symflex import pipeline
+    from symflex.codegen.exporters import EXPORTERS
+    from symflex.codegen.program.user_text import identifiers
+    from symflex.codegen.targets.latex import LatexExporter
+    from symflex.files.write import check_folder, check_writable, write_atomically
+
+    if given.target not in EXPORTERS:
+        hint = nearest(given.target, EXPORTERS) or "targets: " + ", ".join(EXPORTERS)
+        raise UsageError(Diagnostic("SF902", f"there is no export target '{given.target[:64]}'", None, hint))
+    exporter = _chosen(EXPORTERS[given.target], given)
+    is_folder = isinstance(exporter, LatexExporter) and bool(given.output) and _is_folder(given.output or "")
+    if given.output:
+        (check_folder if is_folder else check_writable)(Path(given.output))
+    model = spec.load()
+    derived, reason = pipeline.derive_as(
+        model, pipeline.pick_pairs(model, given.tfs), chosen_representation(given.representation, given.form)
+    )
+    if reason:
+        note(reason)
+    if isinstance(exporter, LatexExporter) and given.output and is_folder:
+        return _write_fragments(exporter, model, derived, given.output, strict=given.strict)
+    stem = Path(given.output).stem if given.output else identifiers({"": Path(spec.path).stem}, ())[""]
+    made = exporter.export(model, derived, stem, is_alone=not given.output)
+    for warning in made.warnings:
+        note(f"warning: {warning}")
+    if given.output:
+        path = Path(given.output)
+        files = {path: made.text} | {path.with_suffix(s): text for s, text in made.companions.items()}
+        if len(files) <= len(made.companions):
+            message = f"'{given.output}' is the name of a file that belongs beside it"
+            hint = f"end its name with {EXPORTERS[given.target].suffix}"
+            raise UsageError(Diagnostic("SF902", message, None, hint))
+        for file, text in files.items():
+            write_atomically(file, text.encode())
+            note(f"wrote {file}")
+    else:
+        say(made.text, nl=False)
+    return 4 if given.strict and made.warnings else 0
+
+
+def _chosen(exporter: Exporter, given: ExportOptions) -> Exporter:
+    """Return an exporter with the options that are its own."""
+    from symflex.codegen.state_space import StateSpaceExporter
+    from symflex.codegen.targets.latex import LatexExporter
+    from symflex.print.latex import column_width
+
+    if isinstance(exporter, LatexExporter):
+        column = column_width(given.width or "a4")
+        exporter = replace(exporter, form=given.form, width_mm=column, has_figures=not given.no_figures)
+    elif given.form is not None or given.width is not None or given.no_figures:
+        raise UsageError(Diagnostic("SF902", "--form, --width and --no-figures are for --to latex"))
+    if isinstance(exporter, StateSpaceExporter):
+        exporter = replace(exporter, is_minimal=given.is_minimal)
+    elif given.is_minimal:
+        raise UsageError(Diagnostic("SF902", "--minimal is for --to state-space"))
+    return exporter
+
+
+def _is_folder(output: str) -> bool:
+    return output.endswith(("/", os.sep)) or Path(output).is_dir()
+
+
+def _write_fragments(
+    exporter: LatexExporter,
+    model: Model,
+    derived: Sequence[AnyTransferFunction],
+    folder: str,
+    *,
+    strict: bool,
+) -> int:
+    from symflex.files.write import write_folder
+
+    files, warnings = exporter.export_files(model, derived)
+    for warning in warnings:
+        note(f"warning: {warning}")
+    write_folder(Path(folder), files)
+    note(f"wrote {len(files)} files to {folder}")
+    return 4 if strict and warnings else 0
+
+
+@command_of("audit", AuditOptions)
+def audit(spec: Specification, given: AuditOptions) -> int:
+    """Compare what SPEC says was printed with what is derived.
+
+    Every formula of [published] is proved equal, or what is different is shown, with the structural laws it
+    violates. A difference is a result: the exit code is 0, and 4 with --strict.
+    """
+    from symflex import pipeline
+    from symflex.audit.json_format import audit_document
+    from symflex.audit.text import audit_text
+
+    model = spec.load()
+    audits = pipeline.audit(model, given.tfs)
+    if not model.published:
+        note('nothing is published in this specification: [published."OUT/IN"] holds a printed formula')
+    if given.as_json:
+        emit_json(audit_document(audits))
+    elif audits:
+        width = terminal_width()
+        say("\n\n".join(audit_text(audit, width) for audit in audits))
+    is_equal = bool(audits) and all(audit.verdict == "equal" for audit in audits)
+    return 4 if given.strict and not is_equal else 0
