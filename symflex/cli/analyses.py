@@ -34,7 +34,7 @@ def roots(spec: Specification, given: RootsOptions) -> int:
     """
     from symflex import pipeline
     from symflex.cli.progress import ProgressBar
-    from symflex.print.text import roots_text
+    from symflex.print.roots import roots_text
     from symflex.roots.region import region_of
 
     chosen = region_of(given, "--")

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Final
 from symflex.print.forms import print_form
 from symflex.print.latex import model_labels, notebook_latex
 from symflex.print.latex.table import decimal_text
-from symflex.print.roots import PAGE_COLUMNS, one_of_each_pair, roots_of
-from symflex.print.text import region_text
+from symflex.print.roots import PAGE_COLUMNS, one_of_each_pair, region_text, roots_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -168,6 +167,5 @@ def roots_html(found: PoleZeroMap) -> str:
 
 def _root_cells(word: str, entry: PrintedRoot) -> tuple[str, ...]:
     mark = ("" if entry.root.certified else " ?") + (" |" if entry.root.on_boundary else "")
-    shown = [cell.replace("-", "\u2212") for cell in entry.cells(PAGE_COLUMNS, DIGITS)]
-    signs = ["&pm;" if entry.is_pair and column.is_mirrored else "" for column in PAGE_COLUMNS]
-    return (f"{word}{mark}", *map(str.__add__, signs, shown))
+    shown = entry.cells(PAGE_COLUMNS, DIGITS, "&pm;")
+    return (f"{word}{mark}", *(cell.replace("-", "\u2212") for cell in shown))

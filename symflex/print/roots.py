@@ -4,7 +4,7 @@ r"""Poles, zeros and modes as rows of tables: what a column shows is written her
                                     web page    -0.500 | +-3.10 | 4e-16 | 0.4997 | 0.159 | 1
                                     paper       -0.500 & \pm 3.10 & 0.4997 & 0.159
 
-A column that is added to one of the three lists below is in every table of its kind; in JSON it is a key of
+A column that is added to one of the four lists below is in every table of its kind; in JSON it is a key of
 :mod:`symflex.roots.pole_zero_map`.
 """
 
@@ -12,14 +12,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from textwrap import wrap
 from typing import TYPE_CHECKING, Final
 
 from flint import arb
 
+from symflex.print.text import INDENT, WIDTH, aligned
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.roots import PoleZeroMap, Root
+    from symflex.roots import PoleZeroMap, Region, Root
     from symflex.roots.root import RootDecimals
 
 KINDS: Final = {"poles": "pole", "zeros": "zero", "hidden": "hidden root"}
@@ -34,17 +37,23 @@ class PrintedRoot:
     root: Root
     is_pair: bool
 
-    def cells(self, columns: Sequence[RootColumn], digits: int) -> list[str]:
-        """Return what columns show, in decimals with at most so many certified digits."""
+    def cells(self, columns: Sequence[RootColumn], digits: int, both: str = "") -> list[str]:
+        """Return what columns show, in decimals with at most so many certified digits.
+
+        ``both`` is how a page writes plus and minus, before what stands for both members of a pair.
+        """
         printed = self.root.decimal(digits)
-        return [column.text(self.root, printed, digits) for column in columns]
+        return [
+            both * (self.is_pair and column.is_mirrored) + column.text(self.root, printed, digits)
+            for column in columns
+        ]
 
 
 @dataclass(frozen=True, slots=True)
 class RootColumn:
     """A column of tables of roots."""
 
-    name: str  # its head on a web page, the unit aside
+    name: str  # its head on a web page or in a terminal, the unit aside
     paper: tuple[str, ...]  # its head in LaTeX, line by line
     unit: str  # empty where there is none
     text: Callable[[Root, RootDecimals, int], str]  # a decimal, empty where there is none
@@ -53,7 +62,7 @@ class RootColumn:
 
     @property
     def head(self) -> str:
-        """Its head on a web page."""
+        """Its head on a web page or in a terminal."""
         return f"{self.name} [{self.unit}]" if self.unit else self.name
 
 
@@ -111,6 +120,12 @@ def _damping(root: Root, printed: RootDecimals, digits: int) -> str:
     return decimals(ratio, arb(0), digits).re
 
 
+def _plain_damping(root: Root, printed: RootDecimals, digits: int) -> str:
+    """Return the damping ratio as a double; nearly zero where only the real part's enclosure holds 0."""
+    zeta = root.damping_ratio()
+    return "" if zeta is None else "~0" if printed.re.startswith("0e") else f"{zeta:.6g}"
+
+
 _REAL: Final = RootColumn(
     "Re s",
     ("Re $s$",),
@@ -144,3 +159,122 @@ PAPER_COLUMNS: Final = (_REAL, _IMAGINARY, _HERTZ, _RATIO)
 """Of LaTeX tables; the multiplicity is a column there where one is not 1."""
 MODE_COLUMNS: Final = (_HERTZ, _ANGULAR, _RATIO)
 """Of LaTeX tables of modes."""
+TERMINAL_COLUMNS: Final = (
+    RootColumn("Re", (), "rad/s", _REAL.text),
+    RootColumn("Im", (), "rad/s", _IMAGINARY.text, is_mirrored=True),
+    RootColumn("radius", (), "", _RADIUS.text),
+    RootColumn("f", (), "Hz", lambda root, printed, digits: f"{root.frequency_hz():.6g}"),
+    RootColumn("zeta", (), "", _plain_damping),
+)
+"""Of tables in a terminal; the first two, the parts of s, stand below each other where lines are short."""
+
+
+CAUSES: Final = {
+    "cancelled": "cancelled between numerator and denominator",
+    "coincident": "poles and zeros that agree in all digits",
+}
+
+
+def roots_text(found: PoleZeroMap, digits: int, width: int = WIDTH) -> str:
+    """Return poles and zeros as tables, with the certificate.
+
+    Where a line per root is longer than ``width`` columns, the imaginary part stands below the real part.
+    """
+    certificate = found.certificate
+    status = "certified" if certificate.certified else f"NOT CERTIFIED: {certificate.reason}"
+    word = found.verdict.brief
+    lines = [f"{found.tf}   {status}: {certificate.found} of {certificate.counted} roots enclosed; {word}"]
+    if found.verdict.sentence != word:
+        lines += wrap(found.verdict.sentence, width, initial_indent=INDENT, subsequent_indent=2 * INDENT)
+    if shown := region_text(found.region):
+        if found.verdict.word == "unstable" and not found.unstable:
+            shown += "; poles in the right half plane, all that are known"
+        lines += wrap(f"shown: {shown}", width, initial_indent=INDENT, subsequent_indent=2 * INDENT)
+    if found.is_default_region:
+        lines.append(f"{INDENT}by default: a distributed system has infinitely many poles")
+    for part in found.excluded:
+        im = f" +- {part.im:g} j" if part.im else ""
+        where = f"{part.radius:.3g} rad/s about {part.re:g}{im}"
+        lines.append(f"{INDENT}left out: {where}, where roots accumulate")
+    for title, roots in (("poles", found.poles), ("zeros", found.zeros)):
+        lines += ["", _counted(title, roots), *_root_table(roots, digits, width)]
+    if found.unstable:
+        title = f"{_counted('poles', found.unstable)}, in the right half plane, outside of what was asked for"
+        lines += ["", title, *_root_table(found.unstable, digits, width)]
+    if found.hidden:
+        for cause, meaning in CAUSES.items():
+            hidden = [h.root for h in found.hidden if h.cause == cause]
+            if hidden:
+                lines += ["", f"{_counted('hidden', hidden)}, {meaning}", *_root_table(hidden, digits, width)]
+    everything = [*found.poles, *found.zeros, *found.unstable, *(h.root for h in found.hidden)]
+    if everything:
+        lines += ["", "  radius bounds the distance from the printed value to the root [rad/s]"]
+    if any(root.on_boundary for root in everything):
+        lines.append("  | marks a root on the boundary of what was asked for")
+    if not all(root.certified for root in everything):
+        lines.append("  ? marks roots that could not be told apart, enclosed as one")
+    return "\n".join(lines)
+
+
+def region_text(region: Region) -> str:
+    """Say what was asked for, nothing when it was everything."""
+    from symflex.roots import Band, Mode, Modes, Rectangle  # imports numpy
+
+    match region:
+        case Modes(count):
+            modes = "mode" if count == 1 else f"{count} modes"
+            return f"the {modes} of lowest natural frequency, and roots at 0"
+        case Mode(number):
+            return f"mode number {number}, by natural frequency"
+        case Band(low, high):
+            return f"natural frequencies from {float(low):g} to {float(high):g} Hz"
+        case Rectangle(re_low, re_high, im_low, im_high):
+            re = f"Re from {float(re_low):g} to {float(re_high):g}"
+            return f"{re}, Im from {float(im_low):g} to {float(im_high):g} rad/s"
+        case _:
+            return ""
+
+
+def _counted(title: str, roots: Sequence[Root]) -> str:
+    """Return a heading with the number of roots, multiplicity counted."""
+    return f"{INDENT}{title}: {sum(root.multiplicity for root in roots) or 'none'}"
+
+
+def _root_table(roots: Sequence[Root], digits: int, width: int) -> list[str]:
+    """Return a line per real root or conjugate pair, or two where one is too long."""
+    if not roots:
+        return []
+    rows = _root_rows(roots, digits)
+    heads = [column.head for column in TERMINAL_COLUMNS]
+    lines = aligned([("", *heads), *rows])
+    if max(map(len, lines)) <= width:
+        return lines
+    stacked: list[tuple[str, ...]] = [("", "Re, Im [rad/s]", *heads[2:])]
+    for flags, re, im, *rest in rows:
+        stacked.append((flags, f"{re}  ", *rest))
+        if im != "0":
+            stacked.append(("", f"{im} j", *("" for _ in rest)))
+    lines = aligned(stacked)
+    if max(map(len, lines)) <= width:
+        return lines
+    return [line for row in rows for line in _root_paragraph(row)][:-1]
+
+
+def _root_rows(roots: Sequence[Root], digits: int) -> list[tuple[str, ...]]:
+    """Return flags, real and imaginary part and what stands beside them; a conjugate pair is one row."""
+    rows = []
+    for entry in one_of_each_pair(roots):
+        root = entry.root
+        times = f"x{root.multiplicity}" if root.multiplicity > 1 else ""
+        flags = times + ("" if root.certified else "?") + ("|" if root.on_boundary else "")
+        rows.append((flags, *entry.cells(TERMINAL_COLUMNS, digits, "+-")))
+    return rows
+
+
+def _root_paragraph(row: tuple[str, ...]) -> list[str]:
+    """Return a root whose digits fill lines of their own."""
+    flags, re, im, *rest = row
+    shown = zip(TERMINAL_COLUMNS[2:], rest, strict=True)
+    about = [f"{column.name} {cell} {column.unit}".rstrip() for column, cell in shown if cell]
+    lines = (f"Re {re}", f"Im {im}", ", ".join(filter(None, (*about, flags))))
+    return [*(2 * INDENT + line for line in lines), ""]

@@ -1,11 +1,10 @@
-"""Plain text for a terminal: transfer functions, poles and zeros."""
+"""Plain text for a terminal: transfer functions, and the rows of tables."""
 
 from __future__ import annotations
 
 from itertools import chain, repeat
 from re import compile as compile_pattern
-from textwrap import wrap
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 from symflex.expressions import (
     Derivative,
@@ -17,26 +16,17 @@ from symflex.expressions import (
     names,
 )
 from symflex.print.forms import PrintedForm, with_hidden
-from symflex.print.roots import one_of_each_pair
 from symflex.transfer import NestedTransferFunction
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from symflex.roots import PoleZeroMap, Region, Root
-    from symflex.roots.root import RootDecimals
     from symflex.transfer import AnyTransferFunction
-
-Row = tuple[str, ...]
 
 WIDTH = 80
 INDENT = "  "
 NARROWEST = 12
 """Columns below which breaking a line further would not help to read it."""
-CAUSES = {
-    "cancelled": "cancelled between numerator and denominator",
-    "coincident": "poles and zeros that agree in all digits",
-}
 SHALLOW = 8
 """Columns up to which a broken sum stands to the right of its parenthesis."""
 
@@ -203,128 +193,7 @@ _STOPS = compile_pattern(r"[()+\-/]|(?<=\*).")
 """Where a text may break, and what opens and closes a group."""
 
 
-def roots_text(found: PoleZeroMap, digits: int, width: int = WIDTH) -> str:
-    """Return poles and zeros as tables, with the certificate.
-
-    Where a line per root is longer than ``width`` columns, the imaginary part stands below the real part.
-    """
-    certificate = found.certificate
-    status = "certified" if certificate.certified else f"NOT CERTIFIED: {certificate.reason}"
-    word = found.verdict.brief
-    lines = [f"{found.tf}   {status}: {certificate.found} of {certificate.counted} roots enclosed; {word}"]
-    if found.verdict.sentence != word:
-        lines += wrap(found.verdict.sentence, width, initial_indent=INDENT, subsequent_indent=2 * INDENT)
-    if shown := region_text(found.region):
-        if found.verdict.word == "unstable" and not found.unstable:
-            shown += "; poles in the right half plane, all that are known"
-        lines += wrap(f"shown: {shown}", width, initial_indent=INDENT, subsequent_indent=2 * INDENT)
-    if found.is_default_region:
-        lines.append(f"{INDENT}by default: a distributed system has infinitely many poles")
-    for part in found.excluded:
-        im = f" +- {part.im:g} j" if part.im else ""
-        where = f"{part.radius:.3g} rad/s about {part.re:g}{im}"
-        lines.append(f"{INDENT}left out: {where}, where roots accumulate")
-    for title, roots in (("poles", found.poles), ("zeros", found.zeros)):
-        lines += ["", _counted(title, roots), *_root_table(roots, digits, width)]
-    if found.unstable:
-        title = f"{_counted('poles', found.unstable)}, in the right half plane, outside of what was asked for"
-        lines += ["", title, *_root_table(found.unstable, digits, width)]
-    if found.hidden:
-        for cause, meaning in CAUSES.items():
-            hidden = [h.root for h in found.hidden if h.cause == cause]
-            if hidden:
-                lines += ["", f"{_counted('hidden', hidden)}, {meaning}", *_root_table(hidden, digits, width)]
-    everything = [*found.poles, *found.zeros, *found.unstable, *(h.root for h in found.hidden)]
-    if everything:
-        lines += ["", "  radius bounds the distance from the printed value to the root [rad/s]"]
-    if any(root.on_boundary for root in everything):
-        lines.append("  | marks a root on the boundary of what was asked for")
-    if not all(root.certified for root in everything):
-        lines.append("  ? marks roots that could not be told apart, enclosed as one")
-    return "\n".join(lines)
-
-
-def region_text(region: Region) -> str:
-    """Say what was asked for, nothing when it was everything."""
-    from symflex.roots import Band, Mode, Modes, Rectangle  # imports numpy
-
-    match region:
-        case Modes(count):
-            modes = "mode" if count == 1 else f"{count} modes"
-            return f"the {modes} of lowest natural frequency, and roots at 0"
-        case Mode(number):
-            return f"mode number {number}, by natural frequency"
-        case Band(low, high):
-            return f"natural frequencies from {float(low):g} to {float(high):g} Hz"
-        case Rectangle(re_low, re_high, im_low, im_high):
-            re = f"Re from {float(re_low):g} to {float(re_high):g}"
-            return f"{re}, Im from {float(im_low):g} to {float(im_high):g} rad/s"
-        case _:
-            return ""
-
-
-def _counted(title: str, roots: Sequence[Root]) -> str:
-    """Return a heading with the number of roots, multiplicity counted."""
-    return f"{INDENT}{title}: {sum(root.multiplicity for root in roots) or 'none'}"
-
-
-def _zeta(root: Root, printed: RootDecimals) -> str:
-    zeta = root.damping_ratio()
-    return "" if zeta is None else "~0" if printed.re.startswith("0e") else f"{zeta:.6g}"
-
-
-_ABOUT: Final[tuple[tuple[str, Callable[[Root, RootDecimals], str]], ...]] = (
-    ("radius", lambda root, printed: printed.radius),
-    ("f [Hz]", lambda root, printed: f"{root.frequency_hz():.6g}"),
-    ("zeta", _zeta),
-)
-"""Columns after real and imaginary part."""
-
-
-def _root_table(roots: Sequence[Root], digits: int, width: int) -> list[str]:
-    """Return a line per real root or conjugate pair, or two where one is too long."""
-    if not roots:
-        return []
-    rows: list[Row] = _root_rows(roots, digits)
-    heads = [head for head, _ in _ABOUT]
-    lines = aligned([("", "Re [rad/s]", "Im [rad/s]", *heads), *rows])
-    if max(map(len, lines)) <= width:
-        return lines
-    stacked: list[Row] = [("", "Re, Im [rad/s]", *heads)]
-    for flags, re, im, *rest in rows:
-        stacked.append((flags, f"{re}  ", *rest))
-        if im != "0":
-            stacked.append(("", f"{im} j", *("" for _ in rest)))
-    lines = aligned(stacked)
-    if max(map(len, lines)) <= width:
-        return lines
-    return [line for row in rows for line in _root_paragraph(row)][:-1]
-
-
-def _root_rows(roots: Sequence[Root], digits: int) -> list[Row]:
-    """Return flags, real and imaginary part and what stands beside them; a conjugate pair is one row."""
-    rows: list[Row] = []
-    for entry in one_of_each_pair(roots):
-        root, printed = entry.root, entry.root.decimal(digits)
-        times = f"x{root.multiplicity}" if root.multiplicity > 1 else ""
-        flags = times + ("" if root.certified else "?") + ("|" if root.on_boundary else "")
-        im = f"+-{printed.im}" if entry.is_pair else printed.im
-        rows.append((flags, printed.re, im, *(text(root, printed) for _, text in _ABOUT)))
-    return rows
-
-
-def _root_paragraph(row: Row) -> list[str]:
-    """Return a root whose digits fill lines of their own."""
-    flags, re, im, *rest = row
-    about = []
-    for (head, _), cell in zip(_ABOUT, rest, strict=True):
-        name, _, unit = head.removesuffix("]").partition(" [")
-        about.append(f"{name} {cell} {unit}".rstrip() if cell else "")
-    lines = (f"Re {re}", f"Im {im}", ", ".join(filter(None, (*about, flags))))
-    return [*(2 * INDENT + line for line in lines), ""]
-
-
-def aligned(rows: Sequence[Row], indent: str = 2 * INDENT) -> list[str]:
+def aligned(rows: Sequence[tuple[str, ...]], indent: str = 2 * INDENT) -> list[str]:
     """Return the rows of a table, numbers under each other; a column without a text takes no room."""
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     return [

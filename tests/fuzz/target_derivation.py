@@ -14,7 +14,7 @@ from symflex import pipeline
 from symflex.codegen.exporters import EXPORTERS
 from symflex.errors import SymflexError
 from symflex.model.spec import write
-from symflex.print.text import roots_text
+from symflex.print.roots import roots_text
 from symflex.roots import Budget
 from tests.house.repository import ROOT, specifications
 

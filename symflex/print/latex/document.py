@@ -19,8 +19,7 @@ from symflex.print.latex.page import COLUMNS_MM, preamble
 from symflex.print.latex.table import VALUE_DIGITS, mode_table, parameter_table, root_table
 from symflex.print.latex.text import escape_text
 from symflex.print.latex.units import unit_latex
-from symflex.print.roots import KINDS, roots_of
-from symflex.print.text import region_text
+from symflex.print.roots import KINDS, region_text, roots_of
 from symflex.print.width import EM_MM
 from symflex.transfer import NestedTransferFunction
 

@@ -147,7 +147,7 @@ def _table_of(
         if first is not None:
             title, numbers = first
             columns.append(TabularColumn("r", (title,), (text_width(title),), tuple(numbers), 2.0))
-        rows = [entry.cells(shown, count) for entry in entries]
+        rows = [entry.cells(shown, count, r"\pm ") for entry in entries]
         for i, column in enumerate(shown):
             cells = [_cell(column, entry, row[i]) for entry, row in zip(entries, rows, strict=True)]
             columns.append(_number_column(column, cells))
@@ -220,6 +220,5 @@ def _cell(column: RootColumn, entry: PrintedRoot, decimal: str) -> str:
     """Return a decimal as a cell; a zero that is not exact is nearly zero."""
     if not decimal:
         return "{--}"
-    if decimal.partition("e")[0] == "0" and not column.is_exact(entry.root):
-        return r"{$\approx 0$}"
-    return rf"\pm {decimal}" if entry.is_pair and column.is_mirrored else decimal
+    is_zero = decimal.removeprefix(r"\pm ").partition("e")[0] == "0"
+    return r"{$\approx 0$}" if is_zero and not column.is_exact(entry.root) else decimal

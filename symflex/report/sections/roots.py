@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Final
 from symflex.analysis.explanation import explanation_paragraphs
 from symflex.errors import SymflexError
 from symflex.print.latex import ratio_latex, root_table
-from symflex.print.roots import KINDS, PAGE_COLUMNS, one_of_each_pair, roots_of
-from symflex.print.text import region_text
+from symflex.print.roots import KINDS, PAGE_COLUMNS, one_of_each_pair, region_text, roots_of
 from symflex.report.document import Badge, Mathematics, Notice, Section, Table, columns, exponents, text
 from symflex.report.part import ChapterPart, code_of
 from symflex.report.sections.equations import ratio_line
@@ -111,6 +110,4 @@ def _told(told: ZeroExplanation) -> list[tuple[str, ...]]:
 
 
 def _row(entry: PrintedRoot) -> tuple[Cell, ...]:
-    signs = ["±" if entry.is_pair and column.is_mirrored else "" for column in PAGE_COLUMNS]
-    cells = map(exponents, entry.cells(PAGE_COLUMNS, DIGITS))
-    return tuple((sign + cell,) for sign, cell in zip(signs, cells, strict=True))
+    return tuple((exponents(cell),) for cell in entry.cells(PAGE_COLUMNS, DIGITS, "±"))

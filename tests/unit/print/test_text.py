@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from symflex import pipeline
 from symflex.errors import Source, Span, Text
 from symflex.expressions import PROGRAM_LIMITS, format_expression, parse
-from symflex.print.text import roots_text, wrapped
+from symflex.print.roots import roots_text
+from symflex.print.text import wrapped
 from symflex.roots import Modes
 
 CHAIN = " + ".join(

@@ -6,7 +6,7 @@ import mpmath
 import pytest
 
 from symflex import pipeline
-from symflex.print.text import roots_text
+from symflex.print.roots import roots_text
 from symflex.roots import Band, Everything, Mode, Modes, PoleZeroMap, Rectangle
 from symflex.roots.counting.tail import Tail
 from symflex.roots.verdict import StabilityVerdict
