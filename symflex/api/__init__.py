@@ -2,17 +2,13 @@
 
 from symflex.api.bound import BoundTransferFunction
 from symflex.api.fitted import Fit, fit
-from symflex.api.form import Form
 from symflex.api.mode_shape import ModeShape
 from symflex.api.model import Model, Table, load, loads
-from symflex.api.nested import NestedTransferFunction
 from symflex.api.report import WrittenReport, write_report
-from symflex.api.residue import Residue
-from symflex.api.root import Mode, Root
-from symflex.api.sensitivity import Sensitivity
+from symflex.api.root import Mode, Residue, Root, Sensitivity
 from symflex.api.stability import Stability, StabilityBoundary
 from symflex.api.state_space import StateSpace
-from symflex.api.transfer_function import Number, TransferFunction
+from symflex.api.transfer_function import Form, NestedTransferFunction, Number, TransferFunction
 
 __all__ = [
     "BoundTransferFunction",

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import inf
 from typing import TYPE_CHECKING
 
 from symflex import pipeline
-from symflex.api.budget import budget_of
+from symflex.analysis import response as response_room
 from symflex.api.mode_shape import ModeShape
-from symflex.api.residue import Residue
-from symflex.api.root import Mode, PoleZeroMap, Root, plain_mode
-from symflex.api.sensitivity import Sensitivity
+from symflex.api.root import Mode, PoleZeroMap, Residue, Root, Sensitivity, plain_mode
+from symflex.budget import Budget, entered_budget
+from symflex.errors import Diagnostic, UsageError
 from symflex.options import RootsOptions
 from symflex.roots.region import region_of
 
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from symflex import transfer as transfer_room
     from symflex.analysis import rational as rational_room
     from symflex.analysis.explanation import ZeroExplanation
-    from symflex.api.frequency_response import FrequencyResponse
     from symflex.state_space.numeric import BoundStateSpace
 
 
@@ -67,10 +67,7 @@ class BoundTransferFunction:
 
     def frequency_response(self, omega: ArrayLike) -> FrequencyResponse:
         """Return the response at real angular frequencies [rad/s]."""
-        from symflex.analysis.response import respond
-        from symflex.api.frequency_response import FrequencyResponse
-
-        return FrequencyResponse.of(respond(self.bound, omega))
+        return FrequencyResponse.of(response_room.respond(self.bound, omega))
 
     def poles(
         self,
@@ -170,14 +167,8 @@ class BoundTransferFunction:
 
         Parameters
         ----------
-        digits : int
-            Correct significant digits.
-        modes : int, optional
-            Only the lowest modes, with the roots at the origin.
-        mode : int, optional
-            Only the pole and the zero of this number, from 1 by natural frequency, with their conjugates.
-        band : (float, float), optional
-            Only natural frequencies in this band [Hz].
+        digits, modes, mode, band : optional
+            As for :meth:`poles`, of poles and zeros alike.
         region : (float, float, float, float), optional
             Only the rectangle ``(re_low, re_high, im_low, im_high)`` [rad/s].
         budget : float, optional
@@ -215,16 +206,8 @@ class BoundTransferFunction:
 
         Parameters
         ----------
-        modes : int, optional
-            Only at the poles of the lowest modes and at the origin.
-        mode : int, optional
-            Only at the pole of this number and its conjugate.
-        band : (float, float), optional
-            Only at poles with natural frequencies in this band [Hz].
-        digits : int
-            Correct significant digits.
-        budget : float, optional
-            Time the search for the poles may take [s].
+        modes, mode, band, digits, budget : optional
+            As for :meth:`poles`: at which poles, and how they are searched for.
 
         Raises
         ------
@@ -473,3 +456,59 @@ class BoundTransferFunction:
     def dcgain(self) -> float:
         """Return the limit for s -> 0 from the right, possibly infinite."""
         return self.bound.limit_at_zero()
+
+
+LARGEST_DRAWING = 4000
+"""Frequencies up to which the picture is a drawing, which grows with their number, and beyond a raster."""
+
+
+@dataclass(frozen=True, eq=False)
+class FrequencyResponse(response_room.SampledResponse):
+    """Values on the imaginary axis; in a notebook, a Bode plot.
+
+    See :class:`symflex.analysis.response.SampledResponse`.
+    """
+
+    @staticmethod
+    def of(response: response_room.SampledResponse) -> FrequencyResponse:
+        """Return the face of a response."""
+        return FrequencyResponse(
+            response.tf, response.omega, response.values, response.quantity, response.unit, response.turns
+        )
+
+    def __repr__(self) -> str:
+        count = len(self.omega)
+        if not count:
+            return f"<FrequencyResponse {self.tf}: {self.quantity}, no frequency>"
+        low, high = self.omega.min(), self.omega.max()
+        return f"<FrequencyResponse {self.tf}: {self.quantity}, {count} from {low:.6g} to {high:.6g} rad/s>"
+
+    def _repr_svg_(self) -> str | None:
+        picture = self._picture("svg") if len(self.omega) <= LARGEST_DRAWING else None
+        return None if picture is None else picture.decode()
+
+    def _repr_png_(self) -> bytes | None:
+        return self._picture("png") if len(self.omega) > LARGEST_DRAWING else None
+
+    def _picture(self, format: str) -> bytes | None:
+        from symflex.figures import draw_response, render  # imports matplotlib
+
+        figure = draw_response(self)
+        return None if figure is None else render(figure, format)
+
+
+def budget_of(seconds: float | None) -> Budget:
+    """Return a budget of so many seconds that starts now, the one that is entered when no time is given.
+
+    Raises UsageError: SF902 when the time is not positive and finite.
+
+    Examples
+    --------
+    >>> budget_of(2.5).seconds
+    2.5
+    """
+    if seconds is None:
+        return entered_budget()
+    if not 0 < seconds < inf:
+        raise UsageError(Diagnostic("SF902", f"a budget is a positive time in seconds, not {seconds}"))
+    return Budget(seconds)

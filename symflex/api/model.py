@@ -8,11 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from symflex import pipeline
-from symflex.api.budget import budget_of
-from symflex.api.nested import NestedTransferFunction
+from symflex.api.bound import budget_of
 from symflex.api.stability import Stability
 from symflex.api.state_space import StateSpace
-from symflex.api.transfer_function import Number, TransferFunction
+from symflex.api.transfer_function import NestedTransferFunction, Number, TransferFunction
 from symflex.model.spec import write
 from symflex.options import ColocationOptions, MeasureOptions, StabilityOptions, SweepOptions
 

@@ -1,4 +1,4 @@
-"""Poles and zeros as mpmath numbers, and what a user may call a mode by."""
+"""Poles and zeros as mpmath numbers, with residues and derivatives; and what a user may call a mode by."""
 
 from __future__ import annotations
 
@@ -8,12 +8,16 @@ from typing import TYPE_CHECKING
 import mpmath
 
 from symflex import roots as roots_room
-from symflex.roots import HiddenRoot, precision
+from symflex.roots import HiddenRoot, decimals, precision
 from symflex.roots import Root as CertifiedRoot
 from symflex.roots.multiprecision import to_complex_mpmath, to_mpmath
 
 if TYPE_CHECKING:
     from flint import acb
+
+    from symflex.analysis import rational as rational_room
+    from symflex.analysis import sensitivity as sensitivity_room
+
 
 SHOWN_DIGITS = 12
 RADIUS_BITS = 64
@@ -135,3 +139,116 @@ class PoleZeroMap(roots_room.PoleZeroMap):
         from symflex.print.html import roots_html  # only notebooks ask
 
         return roots_html(self)
+
+
+@dataclass(frozen=True)
+class Residue:
+    """How much of a mode a transfer function holds: its principal part at a pole p.
+
+    Parameters
+    ----------
+    principal : symflex.analysis.rational.PrincipalPart
+        The enclosures.
+    """
+
+    principal: rational_room.PrincipalPart
+
+    @property
+    def pole(self) -> Root:
+        """The pole p."""
+        return Root(self.principal.root)
+
+    @property
+    def value(self) -> mpmath.mpc:
+        """The coefficient of ``1/(s - p)``, midpoint of its enclosure; in the function's unit times rad/s."""
+        return to_complex_mpmath(self.principal.value)
+
+    @property
+    def radius(self) -> mpmath.mpf:
+        """A bound on the distance from :attr:`value` to the residue; if unproved, an estimate."""
+        return radius_of(self.principal.value)
+
+    @property
+    def coefficients(self) -> tuple[mpmath.mpc, ...]:
+        """The coefficients of ``1/(s - p)``, ``1/(s - p)^2``, ... up to the pole's multiplicity."""
+        return tuple(map(to_complex_mpmath, self.principal.coefficients))
+
+    @property
+    def certified(self) -> bool:
+        """Whether the pole, and with it the residue, is proved."""
+        return not self.principal.is_estimate
+
+    def __repr__(self) -> str:
+        re, im = (mpmath.nstr(part, SHOWN_DIGITS) for part in (self.value.real, self.value.imag))
+        return f"<Residue {re}, {im} j at {complex(self.pole):.6g}, radius {mpmath.nstr(self.radius, 2)}>"
+
+    def __complex__(self) -> complex:
+        return complex(self.value)
+
+
+@dataclass(frozen=True)
+class Sensitivity:
+    """How a root s moves with a parameter p; numbers are midpoints of proved enclosures.
+
+    Parameters
+    ----------
+    moved : symflex.analysis.sensitivity.RootDerivative
+        The enclosures.
+    """
+
+    moved: sensitivity_room.RootDerivative
+
+    @property
+    def kind(self) -> str:
+        """``pole`` or ``zero``."""
+        return self.moved.kind
+
+    @property
+    def root(self) -> Root:
+        """The root."""
+        return Root(self.moved.root)
+
+    @property
+    def parameter(self) -> str:
+        """The parameter's name."""
+        return self.moved.parameter.name
+
+    @property
+    def status(self) -> str:
+        """``certified``, ``multiple`` (there is no derivative) or ``undecided``."""
+        return self.moved.status
+
+    @property
+    def derivative(self) -> mpmath.mpc | None:
+        """ds/dp [rad/s per unit of the parameter]; ``None`` where there is none."""
+        return None if self.moved.derivative is None else to_complex_mpmath(self.moved.derivative)
+
+    @property
+    def radius(self) -> mpmath.mpf | None:
+        """A bound on the distance from :attr:`derivative` to the true one."""
+        return None if self.moved.derivative is None else radius_of(self.moved.derivative)
+
+    @property
+    def normalised(self) -> mpmath.mpc | None:
+        """``(p/s) ds/dp``; its real part is ``(p/f) df/dp``. ``None`` at s = 0."""
+        normalised = self.moved.normalised
+        return None if normalised is None else to_complex_mpmath(normalised)
+
+    @property
+    def frequency(self) -> mpmath.mpf | None:
+        """df/dp [Hz per unit of the parameter] of the natural frequency ``f = abs(s)/(2 pi)``."""
+        frequency = self.moved.frequency
+        return None if frequency is None else to_mpmath(frequency)
+
+    @property
+    def damping_ratio(self) -> mpmath.mpf | None:
+        """dzeta/dp [1 per unit of the parameter]; ``None`` for real roots."""
+        damping_ratio = self.moved.damping_ratio
+        return None if damping_ratio is None else to_mpmath(damping_ratio)
+
+    def __repr__(self) -> str:
+        if self.moved.derivative is None:
+            return f"<Sensitivity of a {self.kind} to {self.parameter}: {self.status}>"
+        derivative = self.moved.derivative
+        printed = decimals(derivative.real, derivative.imag, SHOWN_DIGITS)
+        return f"<Sensitivity of a {self.kind} to {self.parameter}: {printed.re}, {printed.im} j>"

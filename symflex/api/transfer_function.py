@@ -1,4 +1,4 @@
-"""An exact transfer function, its parts as SymPy expressions."""
+"""Exact transfer functions, expanded or nested, and their forms, with SymPy at the surface."""
 
 from __future__ import annotations
 
@@ -10,28 +10,97 @@ from typing import TYPE_CHECKING
 
 from symflex import pipeline
 from symflex.api.bound import BoundTransferFunction
-from symflex.api.form import Form
 from symflex.api.state_space import StateSpace
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
-from symflex.expressions import Name
-from symflex.print.forms import counts_of, hidden_expressions, print_form
+from symflex.expressions import Expression, Name
+from symflex.print.forms import PrintedForm, counts_of, hidden_expressions, print_form
 from symflex.print.json_format import derive_json
 from symflex.print.sympy import symbols_of, to_sympy
+from symflex.print.text import form_text
+from symflex.transfer import bind_nested
 
 if TYPE_CHECKING:
     import sympy
 
     from symflex import transfer as transfer_room
 
+
 Number = int | float | Fraction | Decimal | str
 
 
 @dataclass(frozen=True)
-class TransferFunction:
-    """An exact transfer function; its parts are SymPy expressions in the shortest form."""
+class Form:
+    """A transfer function arranged for print, as SymPy expressions and as text.
 
-    exact: transfer_room.TransferFunction
+    Parameters
+    ----------
+    source : TransferFunction or NestedTransferFunction
+        The transfer function.
+    printed : PrintedForm
+        Its arrangement.
+    """
+
+    source: transfer_room.AnyTransferFunction
+    printed: PrintedForm
+
+    @property
+    def name(self) -> str:
+        """The form's name."""
+        return self.printed.name
+
+    @cached_property
+    def _symbols(self) -> dict[str, sympy.Symbol]:
+        return symbols_of(self.source.model)
+
+    def _sympy(self, expression: Expression) -> sympy.Expr:
+        return to_sympy(expression, self._symbols)
+
+    @property
+    def num(self) -> sympy.Expr:
+        """Numerator."""
+        return self._sympy(self.printed.num)
+
+    @property
+    def den(self) -> sympy.Expr:
+        """Denominator."""
+        return self._sympy(self.printed.den)
+
+    @property
+    def expr(self) -> sympy.Expr:
+        """Numerator over denominator."""
+        return self.num / self.den
+
+    @property
+    def where(self) -> tuple[tuple[sympy.Symbol, sympy.Expr], ...]:
+        """The closed names that occur, with what they stand for."""
+        return tuple((self._sympy(Name(n)), self._sympy(e)) for n, e in self.printed.where)
+
+    def latex(self) -> str:
+        """Return the equation in LaTeX."""
+        from symflex.print.latex import inline_latex
+
+        return inline_latex(self.source, self.printed)
+
+    def __repr__(self) -> str:
+        return f"<Form {self.name} of {self.source.name}>"
+
+    def _repr_latex_(self) -> str | None:
+        """Return the equation for a notebook, in lines where one would be too long; None for a huge one."""
+        from symflex.print.latex import notebook_latex
+
+        latex = notebook_latex(self.source, self.printed)
+        return None if latex is None else f"$\\displaystyle {latex}$"
+
+    def __str__(self) -> str:
+        return form_text(self.source, self.printed)
+
+
+@dataclass(frozen=True)
+class _Derived:
+    """What a transfer function tells of itself, however it was derived."""
+
+    exact: transfer_room.AnyTransferFunction
 
     @property
     def name(self) -> str:
@@ -48,23 +117,18 @@ class TransferFunction:
         """SI unit, empty when unknown."""
         return self.exact.unit
 
-    @property
-    def is_distributed(self) -> bool:
-        """True when waves or delays make the function transcendental, with infinitely many poles or zeros."""
-        return self.exact.is_distributed
-
     @cached_property
     def _shortest(self) -> Form:
-        return self.form()
+        return Form(self.exact, print_form(self.exact))
 
     @property
     def num(self) -> sympy.Expr:
-        """Numerator of the shortest form."""
+        """Numerator of the shortest form, in the names of :attr:`where`."""
         return self._shortest.num
 
     @property
     def den(self) -> sympy.Expr:
-        """Denominator of the shortest form."""
+        """Denominator of the shortest form, in the names of :attr:`where`."""
         return self._shortest.den
 
     @property
@@ -74,8 +138,26 @@ class TransferFunction:
 
     @property
     def where(self) -> tuple[tuple[sympy.Symbol, sympy.Expr], ...]:
-        """The definitions that occur in :attr:`expr`."""
+        """The definitions that occur, and the sub-impedances in order, each in terms of earlier ones."""
         return self._shortest.where
+
+    def _repr_latex_(self) -> str | None:
+        return self._shortest._repr_latex_()
+
+    def __str__(self) -> str:
+        return str(self._shortest)
+
+
+@dataclass(frozen=True)
+class TransferFunction(_Derived):
+    """An exact transfer function; its parts are SymPy expressions in the shortest form."""
+
+    exact: transfer_room.TransferFunction
+
+    @property
+    def is_distributed(self) -> bool:
+        """True when waves or delays make the function transcendental, with infinitely many poles or zeros."""
+        return self.exact.is_distributed
 
     @property
     def hidden(self) -> tuple[tuple[sympy.Expr, int], ...]:
@@ -192,8 +274,44 @@ class TransferFunction:
         zeros, poles = ("infinitely many" if n is None else n for n in counts_of(self.exact))
         return f"<TransferFunction {self.name}: {self.quantity}, {zeros} zeros, {poles} poles>"
 
-    def _repr_latex_(self) -> str | None:
-        return self._shortest._repr_latex_()
 
-    def __str__(self) -> str:
-        return str(self._shortest)
+@dataclass(frozen=True)
+class NestedTransferFunction(_Derived):
+    """A transfer function as a straight-line program: numerator over denominator, in named sub-impedances.
+
+    Neither need be a polynomial, and common factors are not looked for. See
+    :func:`symflex.transfer.derive_nested`.
+    """
+
+    exact: transfer_room.NestedTransferFunction
+
+    @property
+    def size(self) -> int:
+        """How many operations a value takes, shared ones counted once."""
+        return self.exact.size
+
+    def latex(self) -> str:
+        """Return the equation in LaTeX."""
+        return self._shortest.latex()
+
+    def to_json_dict(self) -> dict[str, object]:
+        """Return the transfer function as ``symflex derive --json`` lists it."""
+        return derive_json(self.exact, print_form(self.exact))
+
+    def bind(self, **values: Number) -> transfer_room.BoundNested:
+        """Return the function with the declared values, or the given ones in their place.
+
+        Numbers are in SI units; strings may carry a unit, ``k="95 kN/m"``. Of what it returns, ``H(2j)`` is a
+        value to double precision, from balls, and ``H.at(s)`` evaluates arrays.
+
+        Raises
+        ------
+        ModelError
+            SF229 when a parameter has no value.
+        UsageError
+            SF902 for an unknown parameter.
+        """
+        return bind_nested(self.exact, values)
+
+    def __repr__(self) -> str:
+        return f"<NestedTransferFunction {self.name}, {self.size} operations>"

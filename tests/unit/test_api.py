@@ -12,7 +12,7 @@ import pytest
 import sympy
 
 import symflex
-from symflex.api import budget as api_budget
+from symflex.api import bound as api_bound
 from symflex.errors import BudgetError, UsageError
 from symflex.print.forms.printed import RATIONAL
 from symflex.roots import Budget
@@ -360,7 +360,7 @@ def test_what_cannot_say_that_a_budget_was_exceeded_raises_with_the_map(colocate
 def test_what_was_proved_within_a_budget_is_not_lost(loop, monkeypatch):
     # out/r = 1/(s + 2 exp(-s/2)): s = 2 W_k(-1)
     times = iter([0.0] * 400 + [10.0] * 100_000)
-    monkeypatch.setattr(api_budget, "Budget", lambda seconds: Budget(seconds, clock=lambda: next(times)))
+    monkeypatch.setattr(api_bound, "Budget", lambda seconds: Budget(seconds, clock=lambda: next(times)))
     with pytest.raises(BudgetError, match="modes were found up to") as caught:
         loop.poles(modes=30, budget=5)
     found = [symflex.Root(root) for root in caught.value.found.poles if root.im > 0]
