@@ -11,7 +11,7 @@ import mpmath
 from symflex.api.root import Root, radius_of
 from symflex.errors import Diagnostic, UsageError
 from symflex.roots import precision
-from symflex.roots.multiprecision import to_complex_mpmath
+from symflex.roots.precision import to_complex_mpmath
 
 if TYPE_CHECKING:
     import numpy as np

@@ -10,7 +10,7 @@ import mpmath
 from symflex import roots as roots_room
 from symflex.roots import HiddenRoot, decimals, precision
 from symflex.roots import Root as CertifiedRoot
-from symflex.roots.multiprecision import to_complex_mpmath, to_mpmath
+from symflex.roots.precision import to_complex_mpmath, to_mpmath
 
 if TYPE_CHECKING:
     from flint import acb

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import mpmath
 
 from symflex.loops import degrees, hertz
-from symflex.roots.multiprecision import to_mpmath
+from symflex.roots.precision import to_mpmath
 
 if TYPE_CHECKING:
     from flint import arb

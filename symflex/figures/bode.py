@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from symflex.analysis.response import SampledResponse
     from symflex.data.fitting import ResonanceFit
     from symflex.data.measurement import MeasuredResponse
-    from symflex.figures.drawing import Canvas, Limits
+    from symflex.figures.axes import Canvas, Limits
     from symflex.roots import PoleZeroMap
     from symflex.transfer import BoundTransferFunction, TransferFunction
 

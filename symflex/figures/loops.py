@@ -41,9 +41,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from symflex.figures.drawing import Canvas
+    from symflex.figures.axes import Canvas
     from symflex.loops import RootLocus
-    from symflex.roots.verdict import StabilityVerdict
+    from symflex.roots.pole_zero_map import StabilityVerdict
     from symflex.transfer import BoundTransferFunction, TransferFunction
 
 
@@ -254,7 +254,7 @@ def _open_poles(verdict: StabilityVerdict) -> str:
 
     Examples
     --------
-    >>> from symflex.roots.verdict import StabilityVerdict
+    >>> from symflex.roots.pole_zero_map import StabilityVerdict
     >>> _open_poles(StabilityVerdict("unstable", 2, True, "", 2))
     '$P = 2$'
     """

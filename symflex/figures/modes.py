@@ -14,8 +14,8 @@ from matplotlib.ticker import FixedLocator, MaxNLocator, NullFormatter
 from symflex.analysis.modes import lowest_modes
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.figures.labels import PLAIN_HIGH, label_of_name
-from symflex.figures.pgf import MM_PER_INCH
 from symflex.figures.runs import Run, Stems, panels_of
+from symflex.figures.save import MM_PER_INCH
 from symflex.figures.style import (
     COLOURS,
     COLUMN_INCHES,
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from symflex.analysis.modes import EnclosedModeShape
-    from symflex.figures.drawing import Canvas
+    from symflex.figures.axes import Canvas
     from symflex.figures.runs import Panel
     from symflex.transfer import BoundTransferFunction, TransferFunction
 

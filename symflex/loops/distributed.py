@@ -17,9 +17,8 @@ from flint import acb, arb
 from symflex.algebra import Factored
 from symflex.algebra.origin import OriginSeries
 from symflex.errors import Diagnostic, UncertifiedError
-from symflex.loops.axis import AxisRoots, find_on_axis
+from symflex.loops.axis import AxisRoots, LoopAtOrigin, find_on_axis, loop_at_origin
 from symflex.loops.loop import GainPolynomial, LoopFunction, LoopValue
-from symflex.loops.origin import LoopAtOrigin, loop_at_origin
 from symflex.loops.stability_map import Crossing, PoleCount
 from symflex.roots import Band, Budget, precision
 from symflex.roots.counting.argument_principle import CertifiedWinding

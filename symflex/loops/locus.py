@@ -18,7 +18,7 @@ from symflex.errors import Diagnostic, UncertifiedError, UsageError
 from symflex.loops.loop import Loop, LoopFunction
 from symflex.roots import Band, Modes, PoleZeroMap, Position, Region, Root
 from symflex.roots.locate import locate
-from symflex.roots.verdict import is_right
+from symflex.roots.pole_zero_map import is_right
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 from symflex.roots.axes.lossless import LosslessSearch, lossless_search
 from symflex.roots.counting.winding import Cell, Winding
 from symflex.roots.plane.search import RootSearch
-from symflex.roots.polynomials.guesses import propose_by_durand_kerner, propose_by_laguerre
+from symflex.roots.polynomials.discs import propose_by_durand_kerner, propose_by_laguerre
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping

@@ -1,16 +1,43 @@
-"""Poles and zeros of a bound transfer function."""
+"""Poles and zeros of a bound transfer function: all of a lumped one, a distributed one's in a region."""
 
 from __future__ import annotations
 
+from cmath import exp as cexp
+from dataclasses import replace
+from fractions import Fraction
+from math import exp, inf, isfinite, pi
 from typing import TYPE_CHECKING
 
+from symflex.algebra import Factored
 from symflex.budget import Budget, entered_budget
-from symflex.roots.distributed.distributed import locate_distributed
+from symflex.errors import BudgetError, Diagnostic, SymflexError
+from symflex.model.signs import is_passive
+from symflex.roots.distributed.proof import ROUNDING
+from symflex.roots.distributed.right_half_plane import DEGENERATE, PASSIVE, search_right
+from symflex.roots.distributed.side import ACCUMULATION_DIGITS, Side, groups, polynomial_roots
+from symflex.roots.engines import LOSSLESS, POLYNOMIAL
 from symflex.roots.functions.simplified import without_lengths_of_zero
-from symflex.roots.pole_zero_map import PoleZeroMap, find_pole_zero_map
+from symflex.roots.plane.search import HIGHEST
+from symflex.roots.pole_zero_map import (
+    Certificate,
+    Exclusion,
+    HiddenRoot,
+    PoleZeroMap,
+    StabilityVerdict,
+    find_pole_zero_map,
+    is_right,
+    judge,
+    right_beyond,
+)
+from symflex.roots.polynomial_roots import in_order
 from symflex.roots.problem import problem_of
+from symflex.roots.region import Band, Everything, Mode, Modes, Position, Region
+from symflex.roots.root import Root, overlap
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.roots.counting.winding import Cell
     from symflex.roots.region import Region
     from symflex.transfer import BoundTransferFunction
 
@@ -43,3 +70,386 @@ def locate(
         [(problem_of(bound, [factor]), "cancelled") for factor in hidden],
         budget=budget,
     )
+
+
+DEFAULT_MODES = 5
+"""Where neither the model nor the user says how many."""
+MATCHING_ROUNDS = 4
+"""Searches that go further because poles and zeros took each other out."""
+
+
+def default_region(bound: BoundTransferFunction) -> Region:
+    """Return where to search when nothing is said: the model's modes, or its band, or five modes.
+
+    A distributed system has infinitely many poles.
+    """
+    analysis = bound.source.model.analysis
+    if analysis.modes is not None:
+        return Modes(analysis.modes)
+    return Modes(DEFAULT_MODES) if analysis.band is None else Band(*analysis.band)
+
+
+def locate_distributed(
+    bound: BoundTransferFunction, region: Region | None, digits: int, budget: Budget
+) -> PoleZeroMap:
+    """Find the poles and zeros of a transfer function with kernels, to so many significant digits, proved.
+
+    For everything :func:`default_region` is searched. For a number of modes, the lowest poles and the lowest
+    zeros; roots that mirror each other in the axes count as one mode. When the budget is exceeded, what was
+    proved so far is returned. Certified if every root in the region was counted, found, and told apart from
+    the others.
+    """
+    is_default = region is None or isinstance(region, Everything)
+    where = default_region(bound) if region is None or isinstance(region, Everything) else region
+    searched = _Searched(bound, where, digits, budget)
+    reason, code = None, None
+    try:
+        searched.find()
+        reason = searched.prove()
+    except BudgetError as error:
+        # What was found stays; the roots are proved one by one, only their number is not.
+        reason = "; ".join(d.message for d in error.diagnostics) + searched.extent()
+        code = error.diagnostics[0].code
+        if all(root.is_zero for side in searched.sides for root in side.roots):
+            raise
+        with Budget().entered():  # what is known is told also when the time is over
+            searched.settle()
+    chosen = searched.chosen()
+    found = sum(root.multiplicity for roots in chosen for root in roots)
+    every = [root for roots in chosen for root in roots]
+    if reason is None and not all(root.certified for root in every):
+        reason = "some roots could not be told apart"
+    missing = sum(side.missing for side in searched.sides)
+    engines = sorted({side.engine for side in searched.sides if not side.is_finite}) or [POLYNOMIAL]
+    excluded = {hole for side in searched.sides for hole in side.excluded()}
+    try:
+        if code is not None:
+            raise BudgetError(Diagnostic(code, reason or ""))
+        verdict, right, hidden = searched.judged(reason)
+    except BudgetError as error:
+        with Budget().entered():
+            verdict, right, hidden = searched.judged(error.diagnostics[0].message, is_over=True)
+    known = [h.root for h in searched.hidden]
+    beyond = in_order(right_beyond(right, [*chosen[0], *known]))
+    hidden = in_order(right_beyond(hidden, known))
+    # Nobody asked for these modes and no others.
+    is_free = is_default and isinstance(where, Modes)
+    found += sum(root.multiplicity for root in (*beyond, *hidden))
+    certificate = Certificate(
+        ", ".join(engines),
+        reason is None,
+        found + missing,
+        found,
+        reason,
+        is_exceeded=code is not None,
+        code=code,
+    )
+    return PoleZeroMap(
+        bound.name,
+        where,
+        (*chosen[0], *(beyond if is_free else ())),
+        tuple(chosen[1]),
+        (*searched.hidden, *map(HiddenRoot, hidden)),
+        certificate,
+        digits,
+        tuple(_exclusion(hole) for hole in sorted(excluded, key=lambda hole: hole.low)),
+        is_default,
+        is_infinite=True,
+        verdict=verdict,
+        unstable=() if is_free else beyond,
+    )
+
+
+class _Searched:
+    """Numerator, denominator and what cancelled between them, searched in a region."""
+
+    def __init__(self, bound: BoundTransferFunction, region: Region, digits: int, budget: Budget) -> None:
+        self.bound, self.region, self.digits, self.budget = bound, region, digits, budget
+        self.sides: list[Side] = []
+        self.hidden: list[HiddenRoot] = []
+        self._within: Region = region
+
+    def find(self) -> None:
+        """Find the roots of all sides."""
+        bound, digits, where = self.bound, self.digits, self.region
+        if not bound.ratio.is_zero:
+            self.sides.append(Side(bound, bound.den, digits, self.budget))
+            self.sides.append(Side(bound, bound.num, digits, self.budget))
+        if isinstance(where, Mode):
+            for side in self.sides:
+                side.numbered(where.number)
+            return
+        shared = _find(self.sides, where)
+        highest = max((root.frequency_hz() for root in self.chosen()[0]), default=0.0)
+        # Modes are of the poles; what cancelled has none of its own.
+        within = Band(Fraction(0), Fraction(highest)) if isinstance(where, Modes) and highest else where
+        factors = tuple((h.polynomial, h.multiplicity) for h in bound.hidden)
+        product = Factored(bound.ratio.ring, Fraction(1), factors)
+        cancelled = Side(bound, product, digits, self.budget, is_hidden=True)
+        self._within = within
+        self.sides.append(cancelled)
+        _find((cancelled,), within)
+        self._hide(shared)
+
+    def _hide(self, shared: Sequence[Root]) -> None:
+        """List what cancelled, and what poles and zeros share, as hidden."""
+        within = self._within
+        cancelled = [root for side in self.sides[2:] for root in side.roots]
+        if self.bound.ratio.is_zero:
+            cancelled = [root for side in self.sides for root in side.roots]
+        degenerate = _degenerate_points(self.bound)
+        self.hidden = [
+            HiddenRoot(root)
+            for root in _chosen(cancelled, within)
+            # Where two wavenumbers meet or vanish, what cancels belongs to how the function is written.
+            if root.is_zero or not any(overlap(root, other) for other in degenerate)
+        ]
+        self.hidden += [
+            HiddenRoot(root, "coincident")
+            for root in _chosen(shared, within)
+            if not any(overlap(root, other) for other in (*degenerate, *cancelled))
+        ]
+
+    def prove(self) -> str | None:
+        """Count the roots of all sides with proof; return what could not be proved."""
+        reasons = []
+        if isinstance(self.region, Mode):
+            # Its number was counted, or all below it were found.
+            for side in self.sides:
+                if (
+                    side.engine != LOSSLESS
+                    and not (proof := side.prove(Modes(self.region.number))).is_complete
+                ):
+                    reasons.append(proof.reason or "roots were counted but not found")
+            return "; ".join(dict.fromkeys(reasons)) or None
+        engines = [side.engine for side in self.sides]
+        for i, side in enumerate(self.sides):
+            self.budget.progress.report(i / len(self.sides), "proving that no root is missing")
+            is_last = i == len(self.sides) - 1
+            proof = side.prove(self._within if is_last else self.region)
+            if not proof.is_complete:
+                missing = proof.counted - proof.found
+                reasons.append(proof.reason or f"{abs(missing)} roots were counted but not found")
+        if engines != [side.engine for side in self.sides]:
+            reasons += self._match_again()
+        return "; ".join(dict.fromkeys(reasons)) or None
+
+    def _match_again(self) -> list[str]:
+        """Take out what poles and zeros share where roots were searched anew; return what is lost by it."""
+        pair = self._pair
+        for side in self.sides:
+            side.restore()
+        self._hide(_match(*pair) if pair else [])
+        if isinstance(self.region, Modes) and pair and pair[0].modes < self.region.count:
+            return ["too many poles and zeros coincide to tell the modes"]
+        return []
+
+    def settle(self) -> None:
+        """Take out what may be no pole or zero where a search was broken off."""
+        pair = self._pair
+        if not pair or isinstance(self.region, Mode):
+            return
+        for side in self.sides:
+            side.restore()
+        shared = _match(*pair)
+        # Where wavenumbers vanish or meet, both may have a root; one of them was perhaps not yet met.
+        degenerate = _degenerate_points(self.bound)
+        for side, other in (pair, pair[::-1]):
+            side.roots = [
+                root
+                for root in side.roots
+                if root.is_zero
+                or other.is_finite
+                or float(root.natural_frequency().log().mid()) < other.reached
+                or not any(overlap(root, point) for point in degenerate)
+            ]
+        self._hide(shared)
+
+    @property
+    def _pair(self) -> list[Side]:
+        """Denominator and numerator; nothing when the function is zero."""
+        return self.sides[:2] if len(self.sides) > 1 else []
+
+    def judged(
+        self, unproved: str | None, *, is_over: bool = False
+    ) -> tuple[StabilityVerdict, tuple[Root, ...], tuple[Root, ...]]:
+        """Return whether the model is stable, and its poles and hidden modes in the right half plane.
+
+        ``unproved`` is what could not be proved of the region. Where the budget ``is_over``, nothing more is
+        searched.
+        """
+        bound = self.bound
+        product = Factored(
+            bound.ratio.ring, Fraction(1), tuple((h.polynomial, h.multiplicity) for h in bound.hidden)
+        )
+        poles = [] if bound.ratio.is_zero else [(0, bound.den)]
+        coincident = [h.root for h in self.hidden if h.cause == "coincident"]
+        degenerate = _degenerate_points(bound)
+        proof = PASSIVE if bound.is_of_model and is_passive(bound.source.model, bound.values) else ""
+        found: list[tuple[Root, ...]] = []
+        reasons: list[str] = []
+        for place, part in (*poles, (2 * len(poles), product)):
+            is_hidden = part is product
+            try:
+                side = (
+                    self.sides[place]
+                    if place < len(self.sides)
+                    else Side(bound, part, self.digits, self.budget, is_hidden=is_hidden)
+                )
+                known = [*side.roots, *(() if is_hidden else coincident)]
+                if proof or is_over:
+                    found.append(tuple(known))
+                    reasons += [unproved] if is_over and unproved else []
+                    continue
+                reached = 0.0 if unproved else self._reached(side)
+                whole = search_right(bound, part, side, known, reached, self.digits, self.budget)
+            except SymflexError as error:
+                found.append(())
+                reasons.append(error.diagnostics[0].message)
+                continue
+            # Where wavenumbers meet or vanish, a function may have a root that the system does not have.
+            apart = tuple(
+                r for r in whole.roots if not any(overlap(r, p) for p in degenerate if not p.is_zero)
+            )
+            if any(is_right(r) for r in whole.roots if r not in apart):
+                reasons.append(DEGENERATE)
+            found.append(apart)
+            reasons += [whole.unproved] if whole.unproved else []
+        roots = [root for each in found for root in each]
+        if proof:
+            reasons = ["none of those found lies on the imaginary axis"]
+        verdict = judge(roots, "; ".join(dict.fromkeys(reasons)), proof)
+        return verdict, found[0] if poles else (), found[-1]
+
+    def _reached(self, side: Side) -> float:
+        """Return up to which abs(s) all roots of a side are known [rad/s]."""
+        match self.region:
+            case Modes():
+                return exp(min(side.reached, HIGHEST))
+            case Band(low, high) if not low:
+                return 2 * pi * float(high)
+        return 0.0
+
+    def chosen(self) -> tuple[list[Root], list[Root], list[Root]]:
+        """Return the poles, zeros and hidden modes of the region."""
+        pair = [_chosen(side.roots, self.region) for side in self.sides[:2]] if len(self.sides) > 1 else []
+        poles, zeros = pair if pair else ([], [])
+        return poles, zeros, [h.root for h in self.hidden]
+
+    def extent(self) -> str:
+        """Say how far a search came that was broken off."""
+        reached = self.sides[0].reached if self.sides else -inf
+        if not isinstance(self.region, Modes) or not isfinite(reached):
+            return ""
+        count = self.sides[0].modes
+        modes = "1 mode was" if count == 1 else f"{count} modes were"
+        return f"; {modes} found up to {exp(reached) / (2 * pi):g} Hz"
+
+
+def _find(sides: Sequence[Side], region: Region) -> list[Root]:
+    """Find the roots of both sides in a region, and perhaps more; take out and return what they share."""
+    if not isinstance(region, Modes):
+        for side in sides:
+            side.search(region)
+        return _match(*sides) if len(sides) > 1 else []
+    shared: list[Root] = []
+    wanted = region.count
+    for _ in range(MATCHING_ROUNDS):
+        for side in sides:
+            side.extend(wanted)
+        reached = max((side.reached for side in sides), default=-inf)
+        for side in sides:
+            side.extend(0, reached)
+        shared = _match(*sides) if len(sides) > 1 else []
+        if not shared:
+            break
+        lacking = max(region.count - side.modes for side in sides)
+        if lacking <= 0:
+            break
+        wanted += lacking
+    if shared and sides[0].modes < region.count:
+        # Of zeros there may be none that no pole takes with it; poles are what was asked for.
+        message = "too many poles and zeros coincide to tell the modes"
+        raise BudgetError(Diagnostic("SF505", message, None, "ask for a band, which shows those that do not"))
+    return shared
+
+
+def _match(poles: Side, zeros: Side) -> list[Root]:
+    """Take out and return what poles and zeros share: modes that cancel without a visible common factor."""
+    left: list[Root] = list(zeros.roots)
+    kept: list[Root] = []
+    shared: list[Root] = []
+    for pole in poles.roots:
+        i = next((i for i, zero in enumerate(left) if _coincide(poles, pole, zeros, zero)), None)
+        if i is None:
+            kept.append(pole)
+            continue
+        zero = left.pop(i)
+        multiplicity = min(pole.multiplicity, zero.multiplicity)
+        certified = pole.certified and zero.certified
+        shared.append(replace(pole, multiplicity=multiplicity, certified=certified))
+        if pole.multiplicity > multiplicity:
+            kept.append(replace(pole, multiplicity=pole.multiplicity - multiplicity))
+        if zero.multiplicity > multiplicity:
+            left.insert(i, replace(zero, multiplicity=zero.multiplicity - multiplicity))
+    poles.roots, zeros.roots = kept, left
+    return shared
+
+
+def _coincide(poles: Side, pole: Root, zeros: Side, zero: Root) -> bool:
+    """Tell whether a pole and a zero agree in more than twice the digits asked for."""
+    if not overlap(pole, zero):
+        return False
+    closer = poles.refined(pole)
+    return overlap(closer, zero) and overlap(closer, zeros.refined(zero))
+
+
+def _chosen(roots: Sequence[Root], region: Region) -> list[Root]:
+    """Return the roots in a region in order of natural frequency."""
+    ordered = in_order(roots)
+    if isinstance(region, Mode):
+        return list(ordered)
+    if isinstance(region, Modes):
+        return _lowest(ordered, region.count)
+    positions = region.classify(ordered)
+    return [
+        root if position is Position.INSIDE else replace(root, on_boundary=True)
+        for root, position in zip(ordered, positions, strict=True)
+        if position is not Position.OUTSIDE
+    ]
+
+
+def _lowest(ordered: Sequence[Root], count: int) -> list[Root]:
+    """Return the roots at 0 and the lowest modes, mirror images with them."""
+    result = [root for root in ordered if root.is_zero]
+    modes = 0
+    for group in groups(ordered):
+        if modes >= count:
+            break
+        result.extend(group)
+        modes += group[0].multiplicity
+    return result
+
+
+def _degenerate_points(bound: BoundTransferFunction) -> list[Root]:
+    """Return where wavenumbers vanish or meet: what numerator and denominator share there is no mode."""
+    roots: list[Root] = []
+    for law in bound.kernels.dispersions:
+        values = list(law.characteristic[:1])
+        if law.kind == "pair":
+            values.append(law.characteristic[2])
+            values.append(law.characteristic[2] ** 2 - law.characteristic[0] * 4)
+        for value in values:
+            if not value.is_zero:
+                roots += polynomial_roots(bound, value, ACCUMULATION_DIGITS)
+    return roots
+
+
+def _exclusion(hole: Cell) -> Exclusion:
+    """Return a disc that holds a neighbourhood, which is a rectangle of ln(s)."""
+    centre = cexp(hole.centre)
+    corners = [complex(x, y) for x in (hole.low, hole.high) for y in (hole.right, hole.left)]
+    radius = max(abs(cexp(corner) - centre) for corner in corners)
+    im = 0.0 if hole.right <= pi <= hole.left or hole.right <= 0 <= hole.left else centre.imag
+    re = 0.0 if abs(centre.real) < ROUNDING * abs(centre) else centre.real
+    return Exclusion(re, im, radius, "infinitely many roots accumulate there")

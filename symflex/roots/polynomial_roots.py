@@ -13,8 +13,8 @@ from symflex.errors import BudgetError
 from symflex.roots.engines import proposers_for
 from symflex.roots.polynomials.discs import Disc, Proposer, connected
 from symflex.roots.polynomials.isolation import differs_from_zero, first_bits, isolations, prove_singly
-from symflex.roots.polynomials.squarefree import Splitting, SquareFreePart, split
 from symflex.roots.precision import bits_for_digits, precision
+from symflex.roots.problem import Splitting, SquareFreePart, split
 from symflex.roots.root import GUARD_BITS, Root
 
 if TYPE_CHECKING:

@@ -1,10 +1,16 @@
-"""Working precision of python-flint, set for a block and always restored."""
+"""Working precision of python-flint, set for a block and always restored; balls as mpmath numbers."""
 
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import flint
+
+if TYPE_CHECKING:
+    import mpmath
+    from flint import acb, arb
+
 
 BITS_PER_DIGIT = math.log2(10)
 
@@ -45,3 +51,26 @@ def bits_for_digits(digits: int) -> int:
     183
     """
     return math.ceil(digits * BITS_PER_DIGIT) + 16
+
+
+def to_mpmath(ball: arb) -> mpmath.mpf:
+    """Return the midpoint of a real ball, exactly.
+
+    Examples
+    --------
+    >>> from flint import arb
+    >>> to_mpmath(arb(0.75))
+    mpf('0.75')
+    """
+    import mpmath  # most commands need none of it
+
+    mantissa, exponent = ball.mid().man_exp()
+    return mpmath.mp.make_mpf(mpmath.libmp.from_man_exp(int(mantissa), int(exponent)))
+
+
+def to_complex_mpmath(ball: acb) -> mpmath.mpc:
+    """Return the midpoint of a complex ball, exactly."""
+    import mpmath  # most commands need none of it
+
+    # mpmath.mpc(re, im) would round to the working precision.
+    return mpmath.mp.make_mpc((to_mpmath(ball.real)._mpf_, to_mpmath(ball.imag)._mpf_))

@@ -5,10 +5,9 @@ labelled arrays. What is computed at a point depends on nothing but the point, s
 workers, nor the order in which they finish, nor a restart in between changes a byte of the result.
 """
 
-from symflex.sweep.design import Axis, Design, Range, Task, fingerprint
+from symflex.sweep.design import Axis, Design, Range, Task, check_design, design_of, fingerprint, read_design
 from symflex.sweep.of_model import plan_sweep, sweep, sweep_task
 from symflex.sweep.points import QUANTITIES, solve_chunk
-from symflex.sweep.read import check_design, design_of, read_design
 from symflex.sweep.run import Journal, chunk_size, run_sweep, sweep_key
 from symflex.sweep.sweep import Labelled, Sweep
 

@@ -1,4 +1,7 @@
-"""What is wanted at every point of a sweep; and the points, in order, each with exact values."""
+"""What is wanted at every point of a sweep; and the points, in order, each with exact values.
+
+Designs are read from text such as ``k=1e4:1e6:log:200``, ``m_2=1,2,5``, ``l=+-5%``.
+"""
 
 from __future__ import annotations
 
@@ -15,14 +18,17 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from symflex.errors import BudgetError, Diagnostic
-from symflex.model import ExactValue, Model, with_numbers
+from symflex.errors import BudgetError, Diagnostic, Source, Span, SpecError, Text, UsageError
+from symflex.errors.diagnostic import nearest
+from symflex.model import ExactValue, Model, ModelParameter, check_value, with_numbers
+from symflex.quantities import parse_quantity
+from symflex.transfer.bind import read_values
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from symflex.roots import Region
-    from symflex.transfer import TransferFunction
+    from symflex.transfer import Given, TransferFunction
 
 
 Scale = Literal["lin", "log"]
@@ -238,3 +244,226 @@ def derived(task: Task, *symbols: str) -> TransferFunction:
 def codes_of(codes: Sequence[str]) -> Array:
     """Return error codes as an array, empty where nothing failed."""
     return np.array(codes, f"<U{CODE_LENGTH}")
+
+
+FORMS = "NAME=LO:HI:lin|log:COUNT or NAME=V1,V2,..., or NAME=LO:HI[:log] or NAME=+-5% with draws"
+LIMITS = 2
+COUNT = re.compile(r"([0-9]+)(?:[eE]\+?([0-9]+))?")
+COUNT_DIGITS = 9
+COUNT_SHOWN = 20
+
+
+def read_design(
+    parameters: Sequence[ModelParameter], texts: Sequence[str], draws: int = 0, seed: int = 1
+) -> Design:
+    """Return the design that texts say.
+
+    ``NAME=LO:HI:lin|log:COUNT`` and ``NAME=V1,V2,...`` are axes of a grid; ``NAME=LO:HI``, ``NAME=LO:HI:log``
+    and ``NAME=+-5%`` (about the declared value) are ranges from which ``draws`` points are drawn. Numbers are
+    in SI units or carry a unit.
+
+    SF902 what cannot be read, an unknown parameter, one that is swept twice, ranges without draws or draws
+    without ranges; SF203 another unit, SF209 another sign than assumed of the parameter, or 0 for one that is
+    assumed positive, also as the limit of a range; SF507 too many points.
+
+    Examples
+    --------
+    >>> from symflex.model import ModelParameter
+    >>> design = read_design([ModelParameter("k", None)], ["k=1:100:log:3"])
+    >>> [str(point[0].rational) for point in design.points]
+    ['1', '10', '100']
+    """
+    if not texts:
+        raise UsageError(Diagnostic("SF902", "nothing is swept", None, f"say what: {FORMS}"))
+    known = {p.name: p for p in parameters}
+    return _design([_read(known, text) for text in texts], draws, seed)
+
+
+def design_of(
+    parameters: Sequence[ModelParameter],
+    over: Mapping[str, str | Sequence[Given]],
+    draws: int = 0,
+    seed: int = 1,
+) -> Design:
+    """Return the design that a mapping says: per parameter a text as for :func:`read_design`, or values.
+
+    Examples
+    --------
+    >>> from symflex.model import ModelParameter
+    >>> parameters = [ModelParameter(name, None) for name in ("k", "m")]
+    >>> design_of(parameters, {"k": "1:2:lin:2", "m": [0.5, "3"]}).shape
+    (2, 2)
+    """
+    known = {p.name: p for p in parameters}
+    read: list[Axis | Range] = []
+    for name, said in over.items():
+        if isinstance(said, str):
+            read.append(_read(known, f"{name}={said}"))
+            continue
+        parameter = _known(known, name)
+        exact = tuple(_assumed(parameter, value) for value in said)
+        if not exact:
+            raise UsageError(Diagnostic("SF902", f"'{name}' has no values"))
+        read.append(Axis(name, exact))
+    if not read:
+        raise UsageError(Diagnostic("SF902", "nothing is swept"))
+    return _design(read, draws, seed)
+
+
+def check_design(model: Model, design: Design) -> None:
+    """Refuse values that would give a beam a length of zero, a delay a negative time, and the like: SF209.
+
+    The smallest and the largest value of each swept parameter are looked at, with the declared values of
+    those that are not swept.
+    """
+    ends = [(axis.name, axis.values) for axis in design.axes]
+    ends += [(each.name, (each.low, each.high)) for each in design.ranges]
+    for name, values in ends:
+        for value in {min(values, key=number), max(values, key=number)}:
+            check_value(model, name, value, design.names)
+
+
+def _design(found: Sequence[Axis | Range], draws: int, seed: int) -> Design:
+    axes: list[Axis] = []
+    ranges: list[Range] = []
+    names: set[str] = set()
+    for each in found:
+        if each.name in names:
+            raise UsageError(Diagnostic("SF902", f"'{each.name}' is swept twice"))
+        names.add(each.name)
+        if isinstance(each, Axis):
+            axes.append(each)
+        else:
+            ranges.append(each)
+    if ranges and not draws:
+        hint = "give a count, as in k=1:10:lin:50, or draw with --monte-carlo N"
+        raise UsageError(Diagnostic("SF902", f"how many values of '{ranges[0].name}'?", None, hint))
+    if draws and not ranges:
+        hint = "leave out the count of a range, as in k=1:10 or k=1:10:log"
+        raise UsageError(Diagnostic("SF902", "there is no range to draw from", None, hint))
+    return Design(tuple(axes), tuple(ranges), draws, seed)
+
+
+def _read(known: dict[str, ModelParameter], text: str) -> Axis | Range:
+    name, sign, said = text.partition("=")
+    name, said = name.strip(), said.strip()
+    if not sign or not name or not said:
+        raise _unreadable(text)
+    parameter = _known(known, name)
+    if said[:2] in ("+-", "±") or said[:1] == "±":
+        return _about(parameter, said.removeprefix("+-").removeprefix("±"), text)
+    parts = [part.strip() for part in said.split(":")]
+    if len(parts) == 1:
+        items = said.split(",")
+        if len(items) > POINTS_LIMIT:
+            raise too_many_points(len(items))
+        return Axis(name, tuple(_value(parameter, item.strip(), text) for item in items))
+    low, high = (_value(parameter, part, text) for part in parts[:LIMITS])
+    scale, count = _scale_and_count(parts[LIMITS:], text)
+    limits = _range(parameter, low, high, scale, text)
+    if count is None:
+        return limits
+    Design((), (limits,), count)  # refuses too many before they are made
+    return Axis(name, between(limits, count))
+
+
+def _known(known: dict[str, ModelParameter], name: str) -> ModelParameter:
+    if name not in known:
+        hint = nearest(name, known) or "parameters: " + ", ".join(list(known)[:8])
+        raise UsageError(Diagnostic("SF902", f"there is no parameter '{name[:64]}'", None, hint))
+    return known[name]
+
+
+def _scale_and_count(parts: list[str], text: str) -> tuple[Scale, int | None]:
+    scale: Scale = "lin"
+    count: int | None = None
+    for i, part in enumerate(parts):
+        if i == 0 and part in ("lin", "log"):
+            scale = "log" if part == "log" else "lin"
+        elif i == len(parts) - 1 and (digits := COUNT.fullmatch(part)):
+            count = _count(*digits.groups())
+        else:
+            raise _unreadable(text)
+    if count == 0:
+        raise _unreadable(text)
+    return scale, count
+
+
+def _count(whole: str, exponent: str | None) -> int:
+    """Return the count that digits and a power of ten say, which nobody has to write out to refuse."""
+    whole, zeros = whole.lstrip("0"), (exponent or "").lstrip("0")
+    if not whole:
+        return 0
+    if len(zeros) > COUNT_DIGITS or len(whole) + int(zeros or 0) > COUNT_DIGITS:
+        said = f"{whole}e{zeros}" if zeros else whole
+        raise too_many_points(said if len(said) <= COUNT_SHOWN else f"{said[:COUNT_SHOWN]}...")
+    return int(whole + int(zeros or 0) * "0")
+
+
+def _about(parameter: ModelParameter, said: str, text: str) -> Range:
+    """Return a range about the declared value: ``5%`` of it, or an amount in its unit."""
+    if parameter.value is None:
+        message = f"'{parameter.name}' has no declared value to vary about"
+        raise UsageError(Diagnostic("SF902", message, None, "give both limits"))
+    value = parameter.value
+    if said.endswith("%"):
+        source = Text(said[:-1].strip(), Span(Source("--over", said), 0, len(said)))
+        try:
+            share = parse_quantity(source)
+        except SpecError:
+            raise _unreadable(text) from None
+        if share.unit:
+            raise _unreadable(text)
+        amount = abs(value.rational) * share.angular()[0] / 100
+    else:
+        by = _value(parameter, said, text)
+        if by.pi_power != value.pi_power:
+            raise _unreadable(text)
+        amount = by.rational
+    if amount <= 0:
+        raise _unreadable(text)
+    low, high = (ExactValue(value.rational + side * amount, value.pi_power) for side in (-1, 1))
+    for limit in (low, high):
+        _assumed(parameter, limit)
+    return _range(parameter, low, high, "lin", text)
+
+
+def _range(parameter: ModelParameter, low: ExactValue, high: ExactValue, scale: Scale, text: str) -> Range:
+    if low.pi_power != high.pi_power and low.rational and high.rational:
+        message = f"the limits of '{parameter.name}' differ by a power of pi"
+        raise UsageError(Diagnostic("SF902", message, None, "write both in the same unit"))
+    power = high.pi_power if high.rational else low.pi_power
+    low, high = ExactValue(low.rational, power), ExactValue(high.rational, power)
+    if low.rational == high.rational:
+        raise UsageError(Diagnostic("SF902", f"the limits of '{parameter.name}' are equal: '{text[:60]}'"))
+    if scale == "log" and not Fraction(0) < low.rational * high.rational:
+        message = f"a logarithmic range of '{parameter.name}' needs limits of one sign, other than 0"
+        raise UsageError(Diagnostic("SF902", message))
+    return Range(parameter.name, low, high, scale)
+
+
+def _value(parameter: ModelParameter, item: str, text: str) -> ExactValue:
+    if not item:
+        raise _unreadable(text)
+    try:
+        return _assumed(parameter, item)
+    except SpecError as error:
+        reason = error.diagnostics[0].message
+        message = f"--over '{text[:60]}': {reason}"
+        raise UsageError(Diagnostic("SF902", message, None, error.diagnostics[0].hint)) from None
+
+
+def _assumed(parameter: ModelParameter, given: Given) -> ExactValue:
+    """Return a value that a specification could declare too.
+
+    To leave an effect out, binding takes a zero anywhere; a point of a sweep is a model of its own.
+    """
+    value = read_values((parameter,), {parameter.name: given})[0][1]
+    if not value.rational and parameter.assume == "positive":
+        message = f"parameter '{parameter.name}' is 0, but is assumed positive"
+        raise UsageError(Diagnostic("SF209", message, None, 'say assume = "nonnegative" in the model'))
+    return value
+
+
+def _unreadable(text: str) -> UsageError:
+    return UsageError(Diagnostic("SF902", f"cannot read '{text[:60]}'", None, f"write {FORMS}"))

@@ -17,11 +17,9 @@ from symflex.files.write import write_atomically
 from symflex.loops import pick_gain
 from symflex.options import FREQUENCIES, RootsOptions, SweepOptions, band_ends
 from symflex.roots.region import region_of
-from symflex.sweep.design import Design, Task
-from symflex.sweep.files import check_writable, sweep_bytes
-from symflex.sweep.journal import open_journal
+from symflex.sweep.design import Design, Task, check_design, design_of, read_design
+from symflex.sweep.files import check_writable, open_journal, sweep_bytes
 from symflex.sweep.points import logarithmic
-from symflex.sweep.read import check_design, design_of, read_design
 from symflex.sweep.run import run_sweep, sweep_key
 from symflex.transfer.of_model import derive_all, pick_pairs
 

@@ -11,10 +11,9 @@ from pathlib import Path
 import numpy as np
 
 from symflex.errors import SymflexError
-from symflex.sweep.files import archive
-from symflex.sweep.journal import FolderJournal, open_journal
+from symflex.sweep.files import FolderJournal, archive, open_journal
 
-ROOMS = ("symflex.sweep.journal", "symflex.data.measurement")
+ROOMS = ("symflex.sweep.files", "symflex.data.measurement")
 ROWS = {"point_status": np.zeros(1, np.int32), "re": np.ones((1, 2))}
 ABOUT = b'{"schema": "symflex.sweep.journal/1", "key": "key"}'
 

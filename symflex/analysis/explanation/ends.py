@@ -12,9 +12,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from symflex.analysis.explanation.comparison import opened
 from symflex.analysis.explanation.coordinates import acting, measured
-from symflex.analysis.explanation.parts import SUPPORTS, coordinates_of
+from symflex.analysis.explanation.parts import SUPPORTS, coordinates_of, opened
 from symflex.expressions import (
     Call,
     Derivative,

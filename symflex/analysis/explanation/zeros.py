@@ -22,7 +22,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 from symflex.algebra import LAPLACE, Factored, Ring, degree_in
-from symflex.analysis.explanation.comparison import Relation, agree, relate, varying
 from symflex.analysis.explanation.constraints import Constraint, hold, open_circuit, replace_condition
 from symflex.analysis.explanation.coordinates import acting, in_one_way, measured, seen_at_the_input
 from symflex.analysis.explanation.ends import (
@@ -32,7 +31,15 @@ from symflex.analysis.explanation.ends import (
     ends_of_field,
     is_line,
 )
-from symflex.analysis.explanation.parts import ConstrainedPart, Separation, separate
+from symflex.analysis.explanation.parts import (
+    ConstrainedPart,
+    Relation,
+    Separation,
+    agree,
+    relate,
+    separate,
+    varying,
+)
 from symflex.analysis.explanation.text import explanation_json, explanation_text
 from symflex.equations import Equations, assemble
 from symflex.equations.elimination import Determinants

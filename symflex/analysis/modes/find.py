@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from symflex.library.elements import Variable
-    from symflex.roots.verdict import StabilityVerdict
+    from symflex.roots.pole_zero_map import StabilityVerdict
 
 DIGITS = 15
 SPARE_DIGITS = 15

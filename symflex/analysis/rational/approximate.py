@@ -17,7 +17,7 @@ from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.roots import Band, Everything, Modes, PoleZeroMap, Position, Root
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import locate
-from symflex.roots.verdict import is_right
+from symflex.roots.pole_zero_map import is_right
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -19,7 +19,7 @@ import numpy as np
 from symflex.analysis.rational.toolboxes import PERCENTS, RationalFunction, end_units
 from symflex.analysis.response import adaptive_grid
 from symflex.errors import Diagnostic, ModelError
-from symflex.roots.verdict import NOT_EXAMINED, StabilityVerdict
+from symflex.roots.pole_zero_map import NOT_EXAMINED, StabilityVerdict
 from symflex.state_space import Channel
 from symflex.state_space.cascade import cascade
 from symflex.state_space.numeric import BoundState, BoundStateSpace, installed

@@ -17,7 +17,7 @@ from symflex.analysis.rational.approximation import PoleZeroGain, RationalEvalua
 from symflex.analysis.rational.laurent import PrincipalPart, about_zero, expand_at_zero, residues_at
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.roots import Root, precision
-from symflex.roots.multiprecision import to_complex_mpmath, to_mpmath
+from symflex.roots.precision import to_complex_mpmath, to_mpmath
 from symflex.transfer.bind import EnclosedTransferFunction
 
 if TYPE_CHECKING:

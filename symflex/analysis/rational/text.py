@@ -9,7 +9,7 @@ import mpmath
 
 from symflex.analysis.rational.toolboxes import PERCENTS
 from symflex.print.text import aligned
-from symflex.roots.multiprecision import to_complex_mpmath
+from symflex.roots.precision import to_complex_mpmath
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -14,7 +14,7 @@ from symflex.transfer.transfer_function import degree
 if TYPE_CHECKING:
     from symflex.algebra import Factored
     from symflex.expressions import Equation
-    from symflex.roots.verdict import StabilityVerdict
+    from symflex.roots.pole_zero_map import StabilityVerdict
     from symflex.transfer import TransferFunction
 
 

@@ -21,7 +21,6 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
-from symflex.roots.argument import ROOM, deviation
 from symflex.roots.axes.axis_function import (
     FLOAT_BITS,
     IMAGINARY,
@@ -31,7 +30,8 @@ from symflex.roots.axes.axis_function import (
     AxisFunction,
     Enclosures,
 )
-from symflex.roots.counting.stepping import SPREAD, WIDENED, total_turn
+from symflex.roots.counting.winding import SPREAD, WIDENED, total_turn
+from symflex.roots.functions.kernel_function import ROOM, deviation
 from symflex.roots.precision import precision
 from symflex.transfer.balls import Value, at_centre
 

@@ -17,8 +17,16 @@ import numpy as np
 from flint import arb
 
 from symflex.budget import spend
-from symflex.roots.axes.axis_function import IMAGINARY, REAL, AxisFunction, Doubles
-from symflex.roots.axes.axis_root import AxisNewton, bits_of, bracketed, changes_sign
+from symflex.roots.axes.axis_function import (
+    IMAGINARY,
+    REAL,
+    AxisFunction,
+    AxisNewton,
+    Doubles,
+    bits_of,
+    bracketed,
+    changes_sign,
+)
 from symflex.roots.axes.harmonic_sum import LosslessFunction, lossless_function
 from symflex.roots.counting.winding import Cell, RootOnPathError
 from symflex.roots.precision import precision

@@ -15,10 +15,9 @@ from typing import TYPE_CHECKING, Protocol
 
 from flint import acb, arb
 
-from symflex.roots.argument import ROOM, angle
 from symflex.roots.counting.local_series import SeriesSteps
-from symflex.roots.counting.stepping import SPREAD, WIDENED, total_turn
-from symflex.roots.counting.winding import Cell, RootOnPathError, Winding
+from symflex.roots.counting.winding import SPREAD, WIDENED, Cell, RootOnPathError, Winding, total_turn
+from symflex.roots.functions.kernel_function import ROOM, angle
 from symflex.roots.precision import precision
 
 if TYPE_CHECKING:

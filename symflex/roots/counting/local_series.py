@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, arb
 
-from symflex.roots.argument import ROOM, angle
+from symflex.roots.functions.kernel_function import ROOM, angle
 from symflex.roots.precision import precision
 
 if TYPE_CHECKING:

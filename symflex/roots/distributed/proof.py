@@ -1,25 +1,36 @@
 """The proof that no root of one side is missing: its domain is counted by its boundary.
 
-Found within 100 rad/s are a double root at 0 and j 3.5, -j 3.5. The argument turns four times on that circle:
-they are all. Were it six times, two would be missing, and the domain is searched with every count proved.
+Found within 100 rad/s are a double root at 0 and j 3.5, -j 3.5. The argument turns four times on that
+circle: they are all. Were it six times, two would be missing, and the domain is searched with every count
+proved.
+
+Domains are cells of ln(s), less holes where roots accumulate. A search keeps to the upper half plane, for
+functions whose roots mirror each other in the imaginary axis to a quarter of the plane; what is counted is
+the ring that mirror images make of it.
 """
 
 from __future__ import annotations
 
+from cmath import phase
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import inf, pi
+from math import inf, log, pi
 from typing import TYPE_CHECKING
+
+from flint import acb, arb
 
 from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.winding import Cell, RootOnPathError
-from symflex.roots.plane.domains import decider, is_whole_ring, parts
-from symflex.roots.root import Root, overlap
+from symflex.roots.precision import precision
+from symflex.roots.region import Band, Rectangle, Region
+from symflex.roots.root import FLOAT_BITS, Root, overlap
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symflex.budget import Budget
     from symflex.roots.axes.lossless import LosslessSearch
+
 
 UNPROVED = "the number of roots could not be proved"
 TOUCHING = "some roots could not be told apart"
@@ -142,3 +153,155 @@ def are_apart(roots: Sequence[Root]) -> bool:
             return False
         near.append((high, root))
     return True
+
+
+NEIGHBOURHOOD = 0.05
+"""Of a point where roots accumulate: relative to its distance from 0."""
+WIDER = 1e-3
+"""How far beyond its limits, in ln, a ring is searched."""
+
+
+def holes_about(points: Sequence[complex]) -> tuple[Cell, ...]:
+    """Return neighbourhoods of points, those that meet as one.
+
+    Examples
+    --------
+    >>> (hole,) = holes_about([1 + 0j, 1.01 + 0j])
+    >>> round(hole.low, 6), round(hole.high, 6)
+    (-0.05, 0.05995)
+    """
+    found: list[Cell] = []
+    for hole in map(_hole_about, points):
+        joined = hole
+        while meeting := next((h for h in found if _meet(h, joined)), None):
+            found.remove(meeting)
+            joined = Cell(
+                min(meeting.low, joined.low),
+                max(meeting.high, joined.high),
+                min(meeting.right, joined.right),
+                max(meeting.left, joined.left),
+            )
+        found.append(joined)
+    return tuple(found)
+
+
+def _meet(a: Cell, b: Cell) -> bool:
+    along = a.low <= b.high and b.low <= a.high
+    return along and a.right <= b.left and b.right <= a.left
+
+
+def _hole_about(point: complex) -> Cell:
+    z = complex(log(abs(point)), phase(point))
+    e = NEIGHBOURHOOD
+    return Cell(z.real - e, z.real + e, z.imag - e, z.imag + e)
+
+
+def is_whole_ring(cell: Cell, left: float, holes: Sequence[Cell]) -> bool:
+    """Tell whether a cell and its mirror images make a ring, whose circles pass by all holes.
+
+    The cell lies in the upper half plane. ``left`` is the argument of s up to which the search goes: pi, or
+    pi/2 where mirror images make up for the rest.
+    """
+    return (
+        cell.right <= 0
+        and cell.left >= left
+        and all(
+            hole.high < cell.low or hole.low > cell.high or (cell.low < hole.low and hole.high < cell.high)
+            for hole in holes
+        )
+    )
+
+
+def parts(domain: Cell, left: float, holes: Sequence[Cell]) -> tuple[tuple[Cell, ...], tuple[Cell, ...]]:
+    """Return the cells that were searched, and the holes in them, mirror images included.
+
+    ``left`` is that of :func:`is_whole_ring`.
+    """
+    if is_whole_ring(domain, left, holes):
+        cell = Cell(domain.low, domain.high, -pi, pi)
+        met = [h for h in holes if h.low < cell.high and h.high > cell.low]
+        return (cell,), tuple(image for hole in met for image in _images(hole))
+    cells: tuple[Cell, ...] = (domain,)
+    for hole in holes:
+        cells = tuple(part for whole in cells for part in whole.without(hole))
+    return cells, ()
+
+
+def _images(hole: Cell) -> tuple[Cell, ...]:
+    """Return a neighbourhood in the closed upper half plane and, off the real axis, its mirror image."""
+    if hole.right <= 0 <= hole.left or hole.right <= pi <= hole.left:
+        return (hole,)
+    return (hole, Cell(hole.low, hole.high, -hole.left, -hole.right))
+
+
+def decider(cell: Cell) -> Callable[[Root], bool | None]:
+    """Return what tells whether a root lies in a cell, ``None`` where its enclosure does not decide that.
+
+    Examples
+    --------
+    >>> from flint import arb
+    >>> is_inside = decider(Cell(0.0, 1.0, -pi, pi))
+    >>> frequencies = (arb(2), arb(3), arb(1, 0.1))
+    >>> [is_inside(Root(arb(0), f, 1, on_imaginary_axis=True, is_real=False)) for f in frequencies]
+    [True, False, None]
+    """
+    with precision(FLOAT_BITS):
+        low, high = arb(cell.low).exp(), arb(cell.high).exp()
+
+    def is_inside(root: Root) -> bool | None:
+        if root.is_zero:
+            return cell.low == -inf
+        size = root.natural_frequency()
+        if size < low or size > high:
+            return False
+        is_ring = cell.right <= -pi and cell.left >= pi
+        is_between = True if is_ring else _is_between(cell, root)
+        return is_between and (True if size > low and size < high else None)
+
+    return is_inside
+
+
+def _is_between(cell: Cell, root: Root) -> bool | None:
+    """Tell whether the argument of a root lies between those of a cell's sides."""
+    with precision(FLOAT_BITS):
+        # Measured from the middle of the cell, the argument does not jump on it.
+        middle = acb(0, (cell.right + cell.left) / 2).exp()
+        turned = (root.enclosure() / middle).arg()
+        half = (cell.left - cell.right) / 2
+        if turned > half or turned < -half:
+            return False
+        return True if turned < half and turned > -half else None
+
+
+def limits(region: Region, *, is_even: bool) -> tuple[float, float, float, float]:
+    """Return ln(abs(s)) and arg(s) between which a band or rectangle lies, folded into the upper half plane.
+
+    Roots of even functions mirror each other in the imaginary axis too. TypeError for any other region.
+    """
+    match region:
+        case Band(low, high):
+            return _log(2 * pi * low) - WIDER, _log(2 * pi * high) + WIDER, 0.0, pi
+        case Rectangle(re_low, re_high, im_low, im_high):
+            sides = (float(re_low), float(re_high), float(im_low), float(im_high))
+            return _limits_of_rectangle(*sides, is_even=is_even)
+    message = f"no search for {type(region).__name__}"
+    raise TypeError(message)
+
+
+def _limits_of_rectangle(
+    re_low: float, re_high: float, im_low: float, im_high: float, *, is_even: bool
+) -> tuple[float, float, float, float]:
+    across_real, across_imaginary = im_low <= 0 <= im_high, re_low <= 0 <= re_high
+    bottom = 0.0 if across_real else min(abs(im_low), abs(im_high))
+    top = max(abs(im_low), abs(im_high))
+    corners = [complex(re, im) for re in (re_low, re_high) for im in (bottom, top)]
+    nearest = complex(0.0 if across_imaginary else min(abs(re_low), abs(re_high)), bottom)
+    low, high = _log(abs(nearest)) - WIDER, _log(max(abs(corner) for corner in corners)) + WIDER
+    right, left = min(map(phase, corners)), max(map(phase, corners))
+    if is_even or not nearest:
+        right, left = 0.0, pi
+    return low, high, right, left
+
+
+def _log(size: float) -> float:
+    return log(size) if size > 0 else -inf

@@ -18,8 +18,8 @@ from symflex.errors import BudgetError
 from symflex.roots.counting.tail import right_tail
 from symflex.roots.counting.winding import RootOnPathError
 from symflex.roots.distributed.side import Side
+from symflex.roots.pole_zero_map import count_right, is_right
 from symflex.roots.region import Rectangle
-from symflex.roots.verdict import count_right, is_right
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -18,14 +18,22 @@ from symflex.roots.axes.lossless import LosslessSearch
 from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.winding import Cell, RootOnPathError
 from symflex.roots.distributed.origin import roots_at_zero
-from symflex.roots.distributed.proof import TOUCHING, UNPROVED, Count, Proof, are_apart
+from symflex.roots.distributed.proof import (
+    TOUCHING,
+    UNPROVED,
+    WIDER,
+    Count,
+    Proof,
+    are_apart,
+    holes_about,
+    is_whole_ring,
+    limits,
+)
 from symflex.roots.engines import SEARCHES, SUBDIVISION, Sought
 from symflex.roots.functions.kernel_function import KernelFunction, has_kernels, split_off_kernels
 from symflex.roots.functions.simplified import without_squares
-from symflex.roots.plane.clusters import prove_together
-from symflex.roots.plane.domains import WIDER, holes_about, is_whole_ring, limits
+from symflex.roots.plane.local_roots import prove_simple, prove_together
 from symflex.roots.plane.search import HIGHEST, MODES_LIMIT, RootSearch
-from symflex.roots.plane.simple_root import prove_simple
 from symflex.roots.polynomial_roots import find_polynomial_roots, in_order
 from symflex.roots.precision import precision
 from symflex.roots.problem import problem_of

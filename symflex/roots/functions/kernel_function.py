@@ -2,6 +2,9 @@
 
 Input: a bound transfer function and a product of factors over its ring.
 Output: a :class:`KernelFunction`, evaluated with its logarithmic derivative at any precision.
+
+How far its argument may turn on a step is read off the ball that holds its values there: a ball of radius 1
+about 2 is seen from 0 at 30 degrees on both sides of its middle.
 """
 
 from __future__ import annotations
@@ -10,7 +13,7 @@ from cmath import exp as cexp
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property, lru_cache
-from math import exp, lcm
+from math import asin, exp, inf, lcm, pi
 from typing import TYPE_CHECKING, Final
 
 from flint import acb, acb_series, arb, fmpz_mpoly
@@ -26,7 +29,6 @@ from symflex.algebra.exponential_sum import (
 )
 from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError
-from symflex.roots.argument import ROOM, deviation
 from symflex.roots.functions.exponential_values import DoubleSums, ExponentialValues, Place
 from symflex.roots.precision import precision
 from symflex.transfer.balls import Value, at_centre, expansion
@@ -34,8 +36,11 @@ from symflex.transfer.balls import Value, at_centre, expansion
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    from flint import acb, arb
+
     from symflex.transfer import BoundTransferFunction
     from symflex.transfer.enclose_kernels import KernelValues
+
 
 FIRST_BITS = 64
 """Of values; more where these do not suffice."""
@@ -455,3 +460,25 @@ def has_kernels(value: Factored, table: KernelTable) -> bool:
     """Tell whether a product has a factor with a kernel, not only powers of wavenumbers."""
     kernels = [value.ring.index[k.generator] for k in table.kernels]
     return any(degree_in(f, i) for f, e in value.factors if e > 0 for i in kernels)
+
+
+ROOM = 1.5
+"""Largest deviation of the argument [rad] from the middle to an end of a step; less than pi/2."""
+
+
+def deviation(values: acb) -> float:
+    """Return how far the argument may turn from the middle of a ball of values [rad].
+
+    Half a turn and more stands for what may wind about 0; infinite where nothing is known.
+    """
+    if not values.is_finite():
+        return inf
+    middle = values.mid()
+    room = middle.abs_lower()
+    return angle((values - middle).abs_upper(), room) if room > 0 else inf
+
+
+def angle(off: arb, size: arb) -> float:
+    """Return half the angle [rad] at which a disc of radius ``off``, so far from 0, is seen from there."""
+    share = float((off / size).upper())
+    return asin(share) if share < 1 else share * pi / 2

@@ -16,8 +16,15 @@ from flint import acb, arb
 from symflex.errors import BudgetError, Diagnostic
 from symflex.roots.axes.axis_scan import sign_changes
 from symflex.roots.counting.winding import RING, Cell, RootOnPathError, Winding
-from symflex.roots.plane.clusters import in_disc, is_branched, middle_of, prove_together, resolve, snapped
-from symflex.roots.plane.simple_root import prove_simple
+from symflex.roots.plane.local_roots import (
+    in_disc,
+    is_branched,
+    middle_of,
+    prove_simple,
+    prove_together,
+    resolve,
+    snapped,
+)
 from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.root import Root, overlap
 

@@ -25,11 +25,11 @@ from symflex.roots.polynomials.discs import (
     Proposer,
     complete,
     groups,
+    guess_by_laguerre,
     middle_of,
     overlapping_pairs,
     with_mirrors,
 )
-from symflex.roots.polynomials.guesses import guess_by_laguerre
 from symflex.roots.precision import bits_for_digits, precision
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ def isolations(
 
     Examples
     --------
-    >>> from symflex.roots.polynomials.guesses import propose_by_durand_kerner
+    >>> from symflex.roots.polynomials.discs import propose_by_durand_kerner
     >>> from symflex.roots.problem import PolynomialInS
     >>> polynomial = PolynomialInS.from_integers([-2, 0, 1])
     >>> [found] = isolations(polynomial, 10, in_square=False, proposers=[propose_by_durand_kerner])

@@ -6,7 +6,7 @@ import pytest
 
 from symflex import pipeline
 from symflex.figures import draw
-from symflex.figures.s_plane import Panel, View
+from symflex.figures.poles_zeros import Panel, View
 
 SQUARE = View((-10.0, 10.0), (-10.0, 10.0), frozenset())
 

@@ -7,7 +7,7 @@ from flint import fmpz_poly
 
 from symflex.roots import find_polynomial_roots
 from symflex.roots.engines import GUESSES
-from symflex.roots.polynomials.guesses import propose_by_laguerre
+from symflex.roots.polynomials.discs import propose_by_laguerre
 from tests.unit.roots.root_problems import chain, from_roots, problem, problem_of, with_root_of_two
 
 PROBLEMS = {

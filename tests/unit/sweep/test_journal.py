@@ -12,8 +12,7 @@ import pytest
 
 from symflex.errors import SymflexError, UsageError
 from symflex.files.lock import held
-from symflex.sweep.files import archive, npz_bytes, read_sweep
-from symflex.sweep.journal import MAGIC, open_journal
+from symflex.sweep.files import MAGIC, archive, npz_bytes, open_journal, read_sweep
 from symflex.sweep.run import run_sweep
 from tests.unit.sweep.test_run import task_and_design
 

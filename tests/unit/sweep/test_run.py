@@ -14,8 +14,7 @@ import pytest
 import symflex
 from symflex.errors import BudgetError, UsageError
 from symflex.sweep import chunk_size, read_design, run_sweep, sweep_key, sweep_task
-from symflex.sweep.files import npz_bytes
-from symflex.sweep.journal import open_journal
+from symflex.sweep.files import npz_bytes, open_journal
 from tests.house.repository import ROOT
 from tests.unit.sweep.models import LOOP, SLIDING_FREE, oscillator
 

@@ -9,7 +9,7 @@ import pytest
 
 from symflex import pipeline
 from symflex.analysis.explanation import zeros as zeros_module
-from symflex.analysis.explanation.comparison import agree
+from symflex.analysis.explanation.parts import agree
 from symflex.roots import Band
 
 DERIVATIONS = "derivations"

@@ -15,7 +15,7 @@ from symflex import pipeline
 from symflex.analysis.rational import expand_at_pole, expand_at_zero, find_residues
 from symflex.errors import UncertifiedError
 from symflex.roots import Modes
-from symflex.roots.multiprecision import to_complex_mpmath
+from symflex.roots.precision import to_complex_mpmath
 from tests.independent import classics
 from tests.unit.analysis.rods import CLAMPED_ROD, FREE_ROD, bound, rational
 from tests.unit.roots import distributed_models as distributed

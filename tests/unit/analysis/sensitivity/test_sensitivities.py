@@ -16,7 +16,7 @@ from symflex import pipeline
 from symflex.errors import UsageError
 from symflex.quantities import unit_of
 from symflex.roots import Modes
-from symflex.roots.multiprecision import to_complex_mpmath as to_complex
+from symflex.roots.precision import to_complex_mpmath as to_complex
 from tests.house.repository import specifications
 from tests.unit.roots.distributed_models import DELAY_LOOP, FREE, KELVIN_VOIGT, ON_A_FOUNDATION
 

@@ -10,14 +10,18 @@ from mpmath import mp, mpf
 
 from symflex.algebra.exponential_sum import AxisWave
 from symflex.roots.axes.axis_function import (
+    CLOSER,
     FLOAT_BITS,
     IMAGINARY,
     REAL,
     AxisFunction,
+    AxisNewton,
     Enclosures,
     _products,
+    bits_of,
+    bracketed,
+    changes_sign,
 )
-from symflex.roots.axes.axis_root import CLOSER, AxisNewton, bits_of, bracketed, changes_sign
 from symflex.roots.precision import precision
 
 BITS = 300

@@ -7,7 +7,7 @@ from math import inf, pi, sqrt
 import pytest
 from flint import arb
 
-from symflex.roots.axes.axis_root import AxisNewton, _level, bits_of, bracketed, changes_sign
+from symflex.roots.axes.axis_function import AxisNewton, _level, bits_of, bracketed, changes_sign
 from symflex.roots.precision import bits_for_digits, precision
 
 

@@ -11,8 +11,16 @@ from mpmath import exp, findroot, mp, mpf, sin
 
 from symflex.algebra.exponential_sum import AxisWave
 from symflex.roots import Mode, Modes
-from symflex.roots.axes.axis_function import IMAGINARY, REAL, AxisFunction, Enclosures
-from symflex.roots.axes.axis_root import AxisNewton, bits_of, bracketed, changes_sign
+from symflex.roots.axes.axis_function import (
+    IMAGINARY,
+    REAL,
+    AxisFunction,
+    AxisNewton,
+    Enclosures,
+    bits_of,
+    bracketed,
+    changes_sign,
+)
 from symflex.roots.axes.harmonic_sum import ArcSum, ArcTerm
 from symflex.roots.counting.winding import RootOnPathError
 from symflex.roots.precision import precision

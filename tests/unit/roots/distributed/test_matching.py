@@ -14,7 +14,7 @@ from symflex import pipeline
 from symflex.errors import BudgetError
 from symflex.roots import Band, Mode, Modes, Rectangle
 from symflex.roots.counting.winding import Cell
-from symflex.roots.distributed.distributed import (
+from symflex.roots.locate import (
     MATCHING_ROUNDS,
     _chosen,
     _degenerate_points,

@@ -9,7 +9,7 @@ from symflex import pipeline
 from symflex.print.roots import roots_text
 from symflex.roots import Band, Everything, Mode, Modes, PoleZeroMap, Rectangle
 from symflex.roots.counting.tail import Tail
-from symflex.roots.verdict import StabilityVerdict
+from symflex.roots.pole_zero_map import StabilityVerdict
 
 HAYES = """
 symflex = 1

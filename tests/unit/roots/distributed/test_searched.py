@@ -12,12 +12,12 @@ from symflex.algebra import Factored
 from symflex.budget import Budget
 from symflex.errors import BudgetError, Diagnostic, UncertifiedError
 from symflex.roots import Band, Everything, Mode, Modes, Rectangle
+from symflex.roots import locate as room
 from symflex.roots.counting.winding import Cell
-from symflex.roots.distributed import distributed
-from symflex.roots.distributed.distributed import _degenerate_points, _Searched, locate_distributed
 from symflex.roots.distributed.proof import Proof
 from symflex.roots.distributed.right_half_plane import DEGENERATE, PASSIVE, RightHalfPlane
 from symflex.roots.engines import LOSSLESS, POLYNOMIAL
+from symflex.roots.locate import _degenerate_points, _Searched, locate_distributed
 from symflex.roots.plane.search import HIGHEST
 from symflex.roots.pole_zero_map import HiddenRoot
 from symflex.transfer import HiddenFactor
@@ -118,8 +118,8 @@ def world(monkeypatch):
             return locate_distributed(source, region, 15, budget or Budget())
 
     made = World()
-    monkeypatch.setattr(distributed, "Side", made.side)
-    monkeypatch.setattr(distributed, "search_right", made.search_right)
+    monkeypatch.setattr(room, "Side", made.side)
+    monkeypatch.setattr(room, "search_right", made.search_right)
     return made
 
 
@@ -543,13 +543,13 @@ def test_what_is_not_of_the_model_is_not_passive_by_it(world):
 
 
 def test_to_the_right_where_wavenumbers_meet_there_may_be_no_pole(world, monkeypatch):
-    monkeypatch.setattr(distributed, "_degenerate_points", lambda _: [root(2, 0), root(0, 0)])
+    monkeypatch.setattr(room, "_degenerate_points", lambda _: [root(2, 0), root(0, 0)])
     world.beyond["poles"] = RightHalfPlane((root(2, 0), root(3, 0), root(0, 0)))
     shown = world.locate()
     assert places(shown.unstable) == [(3, 0, 1)]
     assert (shown.verdict.found, shown.verdict.right, shown.verdict.reason) == (1, None, DEGENERATE)
     # To the left nothing depends on it.
-    monkeypatch.setattr(distributed, "_degenerate_points", lambda _: [root(-2, 0)])
+    monkeypatch.setattr(room, "_degenerate_points", lambda _: [root(-2, 0)])
     world.beyond["poles"] = RightHalfPlane((root(-2, 0),))
     assert world.locate().verdict.word == "stable"
 

@@ -13,10 +13,9 @@ from symflex.roots.axes.lossless import LosslessSearch
 from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.winding import Cell, RootOnPathError, Winding
 from symflex.roots.distributed import proof
-from symflex.roots.distributed.proof import Proof
+from symflex.roots.distributed.proof import WIDER, Proof
 from symflex.roots.distributed.side import FEW
 from symflex.roots.engines import GUESS_AND_PROVE, LOSSLESS, SUBDIVISION
-from symflex.roots.plane.domains import WIDER
 from symflex.roots.plane.search import HIGHEST, Found, RootSearch
 from tests.unit.roots.distributed_models import DELAY_LOOP, KELVIN_VOIGT
 from tests.unit.roots.stand_ins import OVER, root, side

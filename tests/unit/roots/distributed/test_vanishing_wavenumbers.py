@@ -17,7 +17,7 @@ from mpmath import mpc, mpf, sqrt, workdps
 from symflex import pipeline
 from symflex.roots import Band, Modes
 from symflex.roots.locate import locate
-from symflex.roots.multiprecision import to_complex_mpmath, to_mpmath
+from symflex.roots.precision import to_complex_mpmath, to_mpmath
 
 BEAM = """
 symflex = 1

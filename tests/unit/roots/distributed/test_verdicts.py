@@ -16,7 +16,7 @@ from symflex.roots.counting.winding import RootOnPathError
 from symflex.roots.distributed import right_half_plane
 from symflex.roots.distributed.proof import Proof
 from symflex.roots.distributed.right_half_plane import ACCUMULATING, NOT_COUNTED, RightHalfPlane, search_right
-from symflex.roots.verdict import NOT_EXAMINED, ON_AXIS, StabilityVerdict, judge
+from symflex.roots.pole_zero_map import NOT_EXAMINED, ON_AXIS, StabilityVerdict, judge
 from tests.unit.roots.stand_ins import root as pole
 
 LEFT, RIGHT, TWICE = pole(-1), pole(2, 3), pole(1, times=2)

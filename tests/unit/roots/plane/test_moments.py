@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from flint import acb, arb
 
-from symflex.roots.plane.clusters import MOST, middle_of, resolve
+from symflex.roots.plane.local_roots import MOST, middle_of, resolve
 from symflex.roots.precision import precision
 from tests.unit.roots.known_functions import KnownFunction
 

@@ -9,7 +9,7 @@ import pytest
 from flint import acb, arb
 
 from symflex.roots import precision
-from symflex.roots.plane.simple_root import (
+from symflex.roots.plane.local_roots import (
     BOX_SHARE,
     LEAST_BITS,
     PATIENCE,

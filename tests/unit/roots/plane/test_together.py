@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from flint import acb, arb
 
-from symflex.roots.plane.clusters import in_disc, is_branched, prove_together, snapped
+from symflex.roots.plane.local_roots import in_disc, is_branched, prove_together, snapped
 from symflex.roots.precision import precision
 from tests.unit.roots.known_functions import KnownFunction
 

@@ -10,7 +10,7 @@ import pytest
 from flint import acb, acb_poly, arb
 
 from symflex.budget import Budget
-from symflex.roots.polynomials.guesses import (
+from symflex.roots.polynomials.discs import (
     LARGEST_LOGARITHM,
     _central_exponent,
     _find_one,

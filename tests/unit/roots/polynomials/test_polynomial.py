@@ -24,9 +24,8 @@ from symflex.roots.polynomial_roots import (
     find_polynomial_roots,
     in_order,
 )
-from symflex.roots.polynomials.discs import Disc
-from symflex.roots.polynomials.guesses import propose_by_durand_kerner
-from symflex.roots.polynomials.squarefree import Splitting, SquareFreePart
+from symflex.roots.polynomials.discs import Disc, propose_by_durand_kerner
+from symflex.roots.problem import Splitting, SquareFreePart
 
 CORNERS = [(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)]
 

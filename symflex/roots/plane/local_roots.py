@@ -1,8 +1,14 @@
-"""Roots that lie close together: told apart by the moments of a circle about them, or proved as one.
+"""Proving roots of a function with kernels about a guess: a simple one, or several that lie close together.
 
-For the n roots inside a circle about c, the integral of ``(s - c)^k f'/f`` is ``2 pi j`` times their k-th
-power sum (Delves and Lyness 1967); Newton's identities make a polynomial of degree n out of these, whose
-roots are guesses that are then proved one by one.
+An interval Newton step proves that a factor has exactly one root in a box, a simple one; see
+:mod:`symflex.algebra.interval_newton`. Where all other factors differ from 0 on the box, the function has
+that root with the factor's exponent for its multiplicity. Example: in ``(s^2 + 4) cosh(s)^2`` a box about 2j
+holds a simple root, one about ``j pi/2`` a double root.
+
+Roots that lie close together are told apart by the moments of a circle about them. For the n roots inside a
+circle about c, the integral of ``(s - c)^k f'/f`` is ``2 pi j`` times their k-th power sum (Delves and
+Lyness 1967); Newton's identities make a polynomial of degree n out of these, whose roots are guesses that
+are then proved one by one.
 
 Where a wavenumber vanishes or meets another, no box has values of one branch. The function itself is as
 smooth there as elsewhere, and its power series says how many roots a disc holds.
@@ -10,13 +16,14 @@ smooth there as elsewhere, and its power series says how many roots a disc holds
 
 from __future__ import annotations
 
-from math import ceil, log2
+from dataclasses import dataclass
+from math import ceil, inf, log2
 from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, arb
 
+from symflex.algebra.interval_newton import stays_inside
 from symflex.roots.counting.local_series import BITS_A_POINT, REACH, SERIES_BITS, SERIES_POINTS, local_series
-from symflex.roots.plane.simple_root import prove_simple
 from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.root import GUARD_BITS, Root
 
@@ -24,6 +31,193 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symflex.roots.functions.kernel_function import KernelFunction
+
+
+LEAST_BITS = 96
+"""Of a box, whatever the digits wanted."""
+BOX_SHARE = 0.4
+"""The box is so many of the bits smaller than the root is large."""
+DOUBLINGS = 5
+"""Of the precision, after which a root is left to other means."""
+CLOSE = BOX_SHARE + 0.02
+"""The last Newton step before a box is drawn is by so many of the bits smaller."""
+FIRST_BITS = 64
+"""Of the first Newton steps."""
+STEPS = 80
+"""Newton steps in all."""
+SMALLER = 4
+"""A middle this many times closer to an axis than the box is large is put on it."""
+PATIENCE = 10
+"""Newton steps at one precision, after the first, beyond which they converge too slowly for a simple root."""
+
+
+class _SlowError(Exception):
+    """Newton steps do not double their digits: next to the root the factor is not like a simple one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Box:
+    """A box that holds exactly one root of one factor, and what is known of the others there."""
+
+    # re and im: enclosures of the root [rad/s], exactly zero where symmetry proves that.
+    re: arb
+    im: arb
+    reach: arb  # half the side of the box in which there is no other root of the factor [rad/s]
+    exponent: int  # of the factor
+    touching: tuple[int, ...]  # other factors that may have a root in the box
+
+
+def prove_simple(
+    function: KernelFunction,
+    s: acb,
+    digits: int,
+    *,
+    factor: int | None = None,
+    even: bool | None = None,
+    first_bits: int = FIRST_BITS,
+) -> Root | None:
+    """Return the root of a factor next to an exact point with an enclosure, ``None`` where none is proved.
+
+    By default it is the factor with the nearest root. Even functions have roots that mirror each other in the
+    imaginary axis. ``first_bits`` is the precision of the first steps: next to other roots, few bits may lead
+    astray. The multiplicity is the factor's exponent; where other factors have roots in the same box that
+    cannot be told apart, it is the sum of all exponents, and the root is not ``certified``.
+    """
+    is_even = function.is_even if even is None else even
+    wanted = bits_for_digits(digits + 2) + GUARD_BITS
+    bits = max(LEAST_BITS, wanted, first_bits)
+    found: Box | None = None
+    for _ in range(DOUBLINGS):
+        try:
+            box = _box(function, s, (first_bits, bits), factor, even=is_even)
+        except _SlowError:
+            break
+        if box is not None:
+            found = box
+            with precision(bits):
+                size = acb(box.re, box.im).abs_lower()
+                error = box.re.rad() + box.im.rad()
+                if not box.touching and error < size * arb(10) ** -digits:
+                    return _root(box, box.exponent, certified=True)
+                s = acb(box.re.mid(), box.im.mid())
+        bits *= 2
+    if found is None:
+        return None
+    total = found.exponent
+    for other in found.touching:
+        try:
+            beside = _box(function, s, (first_bits, bits // 2), other, even=is_even)
+        except _SlowError:
+            return None
+        if beside is None:
+            return None
+        total += beside.exponent
+    return _root(found, total, certified=not found.touching)
+
+
+def _root(box: Box, multiplicity: int, *, certified: bool) -> Root:
+    return Root(
+        box.re,
+        box.im,
+        multiplicity,
+        on_imaginary_axis=bool(box.re == 0) and certified,
+        is_real=bool(box.im == 0) and certified,
+        certified=certified,
+    )
+
+
+def _box(
+    function: KernelFunction, s: acb, levels: tuple[int, int], factor: int | None, *, even: bool
+) -> Box | None:
+    """Return a box about the root next to ``s``, after Newton steps from a first to a last precision."""
+    bits = levels[1]
+    with precision(bits):
+        middle = acb(s.real.mid(), s.imag.mid())
+        approached = _approached(function, middle, levels, factor)
+        if approached is None:
+            return None
+        middle, chosen = approached
+        reach = middle.abs_upper() * arb(2) ** (-BOX_SHARE * bits)
+        on_axis = even and bool(abs(middle.real) < reach / SMALLER)
+        is_real = bool(abs(middle.imag) < reach / SMALLER)
+        middle = acb(arb(0) if on_axis else middle.real, arb(0) if is_real else middle.imag)
+        reach = reach.mid()
+        box = acb(arb(middle.real, reach), arb(middle.imag, reach))
+        factors = function.enclosed_about(box, middle, bits)
+        value, slope, exponent = factors[chosen]
+        step = value / slope
+        if not stays_inside(step, reach):
+            return None
+        farthest = (box - middle).abs_upper()
+        touching = tuple(
+            i
+            for i, (other, change, _) in enumerate(factors)
+            if i != chosen and not other.abs_lower() > (change * farthest).abs_upper()
+        )
+        if touching and _is_alone(function, middle, farthest, exponent, bits):
+            touching = ()
+        root = middle - step
+        # The only root of the product in a box that mirrors itself is its own mirror image.
+        alone = not touching
+        return Box(
+            arb(0) if on_axis and alone else root.real,
+            arb(0) if is_real and alone else root.imag,
+            reach,
+            exponent,
+            touching,
+        )
+
+
+def _is_alone(function: KernelFunction, middle: acb, radius: arb, exponent: int, bits: int) -> bool:
+    """Tell whether a function has so many roots near a point: where wavenumbers vanish, boxes do not say."""
+    within = (radius * SMALLER).mid()
+    reach = within.max((middle.abs_upper() * REACH).mid())
+    series = local_series(function, middle, reach, bits + SERIES_BITS, SERIES_POINTS + bits // BITS_A_POINT)
+    return series is not None and series.count(within) == exponent * function.power
+
+
+def _approached(
+    function: KernelFunction, s: acb, levels: tuple[int, int], factor: int | None
+) -> tuple[acb, int] | None:
+    """Return a point close to a root to a share of the bits, by Newton steps at rising precision."""
+    first, bits = min(levels), levels[1]
+    level, chosen, patience = first, factor or 0, STEPS
+    for _ in range(STEPS):
+        factors = function.enclosed(s, level)
+        if factor is None and level == first:
+            chosen = nearest_factor(factors)
+        value, slope, _ = factors[chosen]
+        with precision(level):
+            step = value / slope
+            if not step.is_finite():
+                if level >= bits:
+                    return None
+                level, patience = min(2 * level, bits), PATIENCE
+                continue
+            s = (s - step).mid()
+            size, least = step.abs_upper(), s.abs_lower()
+        if level >= bits and size < least * 2.0 ** (-CLOSE * bits):
+            return s, chosen
+        if size < least * 2.0 ** (-level / 3) and level < bits:
+            level, patience = min(2 * level, bits), PATIENCE
+            continue
+        patience -= 1
+        if patience < 0:
+            # Steps of unknown sign ask for more digits; others are right, and too short.
+            if step.contains(0):
+                return None
+            raise _SlowError
+    return None
+
+
+def nearest_factor(factors: list[tuple[acb, acb, int]]) -> int:
+    """Return the factor with a positive exponent whose root is nearest by Newton's estimate."""
+    sizes = []
+    for i, (value, slope, exponent) in enumerate(factors):
+        size, steepness = abs(value).mid(), abs(slope).mid()
+        if exponent > 0 and steepness > 0:
+            sizes.append((float((size / steepness).log()) if size > 0 else -inf, i))
+    return min(sizes)[1] if sizes else 0
 
 
 POINTS = 64
@@ -136,7 +330,7 @@ WIDER = 5
 """Radius of a disc that holds one moved to an axis, in radii of that."""
 DIGITS_A_SHRINKING = 2
 """The logarithm of ``GROWTH``."""
-FIRST_BITS = 128
+BRANCH_BITS = 128
 """Of a look whether wavenumbers have branches."""
 
 
@@ -193,9 +387,9 @@ def prove_together(
 
 def is_branched(function: KernelFunction, s: acb, within: arb) -> bool:
     """Tell whether a disc may hold a point where wavenumbers have branches."""
-    with precision(FIRST_BITS):
+    with precision(BRANCH_BITS):
         disc = s + acb(arb(0, within), arb(0, within))
-    return not all(value.is_finite() for value, _, _ in function.enclosed(disc, FIRST_BITS))
+    return not all(value.is_finite() for value, _, _ in function.enclosed(disc, BRANCH_BITS))
 
 
 def snapped(s: acb, close: arb, *, even: bool) -> acb:

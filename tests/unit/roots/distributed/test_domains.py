@@ -11,7 +11,7 @@ from flint import arb
 
 from symflex.roots import Band, Modes, Rectangle
 from symflex.roots.counting.winding import Cell
-from symflex.roots.plane.domains import (
+from symflex.roots.distributed.proof import (
     NEIGHBOURHOOD,
     WIDER,
     decider,

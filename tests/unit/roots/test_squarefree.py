@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from symflex.roots import PolynomialInS, RootProblem
-from symflex.roots.polynomials.squarefree import split
+from symflex.roots.problem import split
 from tests.unit.roots.root_problems import from_roots, problem, with_pi, with_root_of_two
 
 

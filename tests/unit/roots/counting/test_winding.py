@@ -13,7 +13,6 @@ from flint import acb, arb
 from symflex.budget import Budget
 from symflex.errors import BudgetError
 from symflex.roots import precision
-from symflex.roots.argument import ROOM, angle, deviation
 from symflex.roots.counting.argument_principle import (
     CertifiedWinding,
     Circle,
@@ -24,9 +23,17 @@ from symflex.roots.counting.argument_principle import (
     _whole,
 )
 from symflex.roots.counting.local_series import BLURRED, MOST, LocalSeries, SeriesSteps, _followed
-from symflex.roots.counting.stepping import FORGETTING, GOAL, NEARER, total_turn
-from symflex.roots.counting.winding import Cell, RootOnPathError, Winding, continuous_step
-from symflex.roots.functions.kernel_function import Sample
+from symflex.roots.counting.winding import (
+    FORGETTING,
+    GOAL,
+    NEARER,
+    Cell,
+    RootOnPathError,
+    Winding,
+    continuous_step,
+    total_turn,
+)
+from symflex.roots.functions.kernel_function import ROOM, Sample, angle, deviation
 from tests.unit.roots.known_functions import KnownFunction, exact
 
 
