@@ -205,7 +205,9 @@ class Workbench:
     def residue(self, step: int) -> int:
         """Return the value of a step at the random point; only few are ever asked for."""
         known, program = self._residues, self.finished()
-        wanted, pending = {step} - known.keys(), [step]
+        if step in known:
+            return known[step]
+        wanted, pending = {step}, [step]
         while pending:
             new = [x for x in program.inner(pending.pop()) if x not in known and x not in wanted]
             wanted.update(new)

@@ -152,7 +152,7 @@ class LaplaceExpansion(ABC, Generic[Entry, Value]):
 
     def _find(self, columns: int) -> None:
         """Compute a determinant and all its minors, the smallest first: calls go less deep than chains."""
-        wanted = [{columns} - self._known.keys()]
+        wanted = [{columns}.difference(self._known)]
         count = len(self._known)
         for entries in self.rows:
             spend()
@@ -160,7 +160,7 @@ class LaplaceExpansion(ABC, Generic[Entry, Value]):
             if count > MINOR_LIMIT:
                 raise _too_large("the determinant has too many minors or terms")
             below = {left for each in wanted[-1] for left in self._left(entries, each)}
-            wanted.append(below - self._known.keys())
+            wanted.append(below.difference(self._known))
         for row in reversed(range(len(self.rows))):
             for each in wanted[row]:
                 spend()
