@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING
 
 from symflex import pipeline
 from symflex.errors import SpecError, SymflexError
-from symflex.report.document import Notice, Section, text
+from symflex.report.document import Notice, Section, code_of, text
 from symflex.report.facts import ModelFacts, bare_facts
-from symflex.report.part import code_of
 from symflex.report.sections import SECTIONS
 from symflex.report.study import Study, attempt, said
 

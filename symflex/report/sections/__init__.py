@@ -1,13 +1,14 @@
 """The sections of a model's chapter. A new one is a module here and a line in :data:`SECTIONS`."""
 
-from symflex.report.part import SectionMaker
-from symflex.report.sections.audits import audit_section
-from symflex.report.sections.equations import equation_section
-from symflex.report.sections.exports import export_section
-from symflex.report.sections.figures import data_section, figure_section
-from symflex.report.sections.loops import loop_section
-from symflex.report.sections.roots import root_section
-from symflex.report.sections.specification import parameter_section, specification_section
+from symflex.report.document import SectionMaker
+from symflex.report.sections.files import data_section, export_section, figure_section
+from symflex.report.sections.formulas import (
+    audit_section,
+    equation_section,
+    parameter_section,
+    specification_section,
+)
+from symflex.report.sections.roots import loop_section, root_section
 
 SECTIONS: dict[str, SectionMaker] = {
     "parameters": parameter_section,

@@ -1,0 +1,260 @@
+"""The model as it was given: a table of its parameters, and the text that all of the above follows from.
+
+The transfer functions of a model in closed form.
+
+What a publication printed, against what is derived.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from typing import TYPE_CHECKING, Final
+
+from symflex.audit.json_format import audit_document
+from symflex.audit.text import VERDICTS
+from symflex.print.forms import counts_of, with_hidden
+from symflex.print.json_format import derive_document
+from symflex.print.label import labels_of
+from symflex.print.latex import (
+    TEXT_WIDTH_MM,
+    form_labels,
+    formula_latex,
+    model_labels,
+    parameter_table,
+    ratio_latex,
+    transfer_function_latex,
+)
+from symflex.print.latex.table import decimal_text
+from symflex.print.mathml import (
+    WIDEST_FRACTION,
+    MathmlWriter,
+    MathRow,
+    label_mathml,
+    mathml_expression,
+    ratio_mathml,
+    transfer_function_mathml,
+)
+from symflex.report.document import (
+    Badge,
+    ChapterPart,
+    Code,
+    DisplayedFormula,
+    Listing,
+    Mathematics,
+    Notice,
+    Section,
+    Table,
+    columns,
+    counted,
+    exponents,
+    labelled,
+    mathematics,
+    text,
+    unit_text,
+)
+from symflex.report.study import MOST_FUNCTIONS
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.audit import Audit
+    from symflex.expressions import Expression
+    from symflex.print.forms import PrintedForm
+    from symflex.report.document import Block, Cell, Run
+    from symflex.report.study import Study
+    from symflex.transfer import TransferFunction
+
+
+def specification_section(study: Study) -> ChapterPart:
+    """Return the specification as it was read, with its checksum."""
+    content = study.text.encode()
+    checksum = hashlib.sha256(content).hexdigest()
+    name = f"data/{study.stem}.toml"
+    return ChapterPart(
+        "Specification",
+        (text("SHA-256 ", Code(checksum)), Listing(f"{study.stem}.toml", study.text)),
+        {name: content},
+    )
+
+
+def parameter_section(study: Study) -> ChapterPart | None:
+    """Return the table of parameters: symbol, value in the unit it was given in, meaning."""
+    model = study.model
+    if not model.parameters:
+        return None
+    labels = model_labels(model)
+    rows: list[tuple[Cell, ...]] = []
+    for p in model.parameters:
+        symbol = Mathematics(label_mathml(p.name, labels), labels[p.name])
+        exact, unit = p.as_written()
+        value = "symbolic" if exact is None else exponents(decimal_text(exact))
+        rows.append(((symbol,), (Code(p.name),), (value,), (unit_text(unit),), (p.doc,)))
+    heads = columns(("Symbol", "plain"), ("Name", "plain"), ("Value", "number"), ("Unit", "plain"), "Meaning")
+    table = Table(heads, tuple(rows), latex=parameter_table(model))
+    return ChapterPart("Parameters", (table,))
+
+
+LONGEST_LATEX: Final = 60_000
+
+
+def equation_section(study: Study) -> ChapterPart:
+    """Return every transfer function in its default form, with what cancelled from it."""
+    blocks: list[Block] = []
+    left_out = len(study.model.transfer_functions) - len(study.pairs)
+    if left_out:
+        blocks.append(
+            Notice(
+                f"{left_out} of {left_out + len(study.pairs)} transfer functions are left out: "
+                f"a report shows the first {MOST_FUNCTIONS}."
+            )
+        )
+    for i, (tf, form) in enumerate(zip(study.tfs, study.forms, strict=True)):
+        title = Mathematics(ratio_line(tf), ratio_latex(tf))
+        blocks.append(
+            Section(tf.name, _of(tf, form, f"eq:{study.stem}:{i + 1}"), f"{study.stem}-tf-{i + 1}", title)
+        )
+    document = derive_document(list(zip(study.tfs, study.forms, strict=True)))
+    data = json.dumps(document, indent=1, ensure_ascii=True).encode()
+    return ChapterPart("Transfer functions", tuple(blocks), {f"data/{study.stem}_derive.json": data})
+
+
+def ratio_line(tf: TransferFunction) -> str:
+    """Return output over input in one line."""
+    above, below = ratio_mathml(tf).removeprefix("<mfrac>").removesuffix("</mfrac>").split("</mrow><mrow>", 1)
+    return f"{above}</mrow><mo>/</mo><mrow>{below}"
+
+
+def _of(tf: TransferFunction, form: PrintedForm, label: str) -> tuple[Block, ...]:
+    form, hidden = with_hidden(tf, form)
+    rows = transfer_function_mathml(tf, form)
+    latex = transfer_function_latex(tf, form, width_mm=TEXT_WIDTH_MM, label=label)
+    blocks: list[Block] = [text(_introduction(tf), " Form: ", Code(form.name), ".")]
+    if tf.ratio.is_zero:
+        return (text("Identically zero: the input does not reach the output."),)
+    if rows is None or len(latex) > LONGEST_LATEX:
+        blocks.append(Notice("The closed form is too long for a page; the folder's data hold it."))
+    else:
+        blocks.append(DisplayedFormula(rows, latex, f"{tf.name} in closed form"))
+    labels = form_labels(tf, form)
+    for expression, multiplicity in hidden:
+        times = "" if multiplicity == 1 else f" ({multiplicity} times)"
+        runs: list[Run] = ["Hidden: the factor ", labelled(expression, labels)]
+        runs.append(
+            f" cancels{times}; its modes are uncontrollable from this input or unobservable at this output."
+        )
+        blocks.append(text(*runs))
+    return tuple(blocks)
+
+
+def _introduction(tf: TransferFunction) -> str:
+    zeros, poles = counts_of(tf)
+    counts = ", ".join(
+        f"infinitely many {noun}s" if n is None else counted(n, noun)
+        for n, noun in ((zeros, "zero"), (poles, "pole"))
+    )
+    unit = f" in {unit_text(tf.unit)}" if unit_text(tf.unit) else ""
+    return f"{tf.quantity.capitalize()}{unit}; {counts}."
+
+
+JUDGED: Final = {
+    "equal": ("right as printed (proved)", "good"),
+    "differs": ("not right as printed (proved)", "bad"),
+    "agrees": ("agrees at all points tried (not proved)", "fair"),
+    "undecided": ("not decided", "fair"),
+}
+
+
+def audit_section(study: Study) -> ChapterPart | None:
+    """Return every printed formula with its verdict, and the smallest change that makes a wrong one right."""
+    if not study.audits:
+        return None
+    blocks = tuple(
+        Section(
+            audit.tf.name,
+            _audited(audit),
+            f"{study.stem}-printed-{i + 1}",
+            Mathematics(ratio_line(audit.tf), ratio_latex(audit.tf)),
+        )
+        for i, audit in enumerate(study.audits)
+    )
+    data = json.dumps(audit_document(study.audits), indent=1, ensure_ascii=True).encode()
+    return ChapterPart("Printed formulas", blocks, {f"data/{study.stem}_audit.json": data})
+
+
+def _audited(audit: Audit) -> tuple[Block, ...]:
+    word, tone = JUDGED[audit.verdict]
+    source = f", printed in {audit.published.source}" if audit.published.source else ""
+    blocks: list[Block] = [text(Badge(word, tone), f"{source}:")]  # type: ignore[arg-type]
+    where = audit.formula.lines
+    scale = audit.published.scale
+    blocks.append(_formula(audit, audit.published.expression, where, f"{audit.tf.name} as printed"))
+    if scale is not None:
+        blocks.append(
+            text("times ", mathematics(scale, audit.tf.model), ", a scale that the print leaves out.")
+        )
+    if audit.verdict == "equal":
+        return tuple(blocks)
+    if audit.verdict != "differs":
+        blocks.append(text(f"The formula {VERDICTS[audit.verdict]}."))
+    if audit.ratio is not None:
+        blocks.append(
+            text("It is the derived function times ", mathematics(audit.ratio, audit.tf.model), ".")
+        )
+    if audit.correction is not None:
+        blocks.append(text("Right, in the same symbols:"))
+        lines = audit.correction.lines if audit.correction.lines != where else ()
+        blocks.append(_formula(audit, audit.correction.expression, lines, f"{audit.tf.name}, corrected"))
+    if audit.changes:
+        rows = tuple(
+            ((c.place,), (_mathematics(audit, c.printed),), (_mathematics(audit, c.derived),))
+            for c in audit.changes
+        )
+        blocks.append(Table(columns("Where", "Printed", "Right"), rows, "What differs"))
+    deviation = audit.deviation
+    if deviation is not None:
+        low, high = (f"{float(f):g}" for f in deviation.band)
+        size = "grows without bound" if deviation.unbounded else f"is {deviation.magnitude_db:+.4g} dB"
+        blocks.append(
+            text(
+                f"The largest deviation of the magnitude from {low} to {high} Hz {size} at "
+                f"{deviation.magnitude_hz:.4g} Hz, that of the phase is {deviation.phase_deg:+.4g}° at "
+                f"{deviation.phase_hz:.4g} Hz (measured)."
+            )
+        )
+    if audit.laws:
+        laws = tuple(
+            (
+                (law.law,),
+                (Badge("kept", "good") if law.kept else Badge("violated", "bad"),),
+                (f"{law.detail} ({law.how})",),
+            )
+            for law in audit.laws
+        )
+        blocks.append(Table(columns(("Law", "plain"), ("", "plain"), "Why"), laws, "Structural laws"))
+    return tuple(blocks)
+
+
+def _labels(audit: Audit) -> dict[str, str]:
+    labels = model_labels(audit.tf.model)
+    return labels_of([(name, "") for name, _ in audit.formula.lines if name not in labels], labels)
+
+
+def _mathematics(audit: Audit, expression: Expression) -> Mathematics:
+    from symflex.print.latex import latex_expression
+
+    labels = _labels(audit)
+    return Mathematics(mathml_expression(expression, labels), latex_expression(expression, labels))
+
+
+def _formula(
+    audit: Audit, expression: Expression, where: Sequence[tuple[str, Expression]], name: str
+) -> DisplayedFormula:
+    labels = _labels(audit)
+    writer = MathmlWriter(labels)
+    is_narrow = writer.width(expression) <= WIDEST_FRACTION
+    pieces = (writer.piece(expression).markup,) if is_narrow else writer.pieces(expression)
+    rows = [MathRow(ratio_mathml(audit.tf), pieces)]
+    rows += [MathRow(label_mathml(n, labels), writer.pieces(e), is_where=True) for n, e in where]
+    latex = formula_latex(ratio_latex(audit.tf), expression, where, labels, width_mm=TEXT_WIDTH_MM)
+    return DisplayedFormula(tuple(rows), latex, name)
