@@ -8,7 +8,7 @@ text --parse--> Spec --resolve--> Model --assemble--> Equations --derive--> Tran
 
 any of them --print, codegen--> text, JSON, LaTeX, numpy, figure
 
-The arrows to transfer functions and warnings are imported from their rooms; those after them, in :data:`LATER`,
+The arrows to transfer functions and warnings are imported from their rooms; those after them, in ``LATER``,
 when they are first used, as most commands need few of them, and many of their rooms import numpy.
 """
 

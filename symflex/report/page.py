@@ -11,8 +11,7 @@ import re
 from importlib import resources
 from typing import TYPE_CHECKING, Final, assert_never
 
-from symflex.print.mathml import math_element
-from symflex.print.mathml.element import EQUALS
+from symflex.print.mathml import EQUALS, math_element
 from symflex.report.document import (
     Aside,
     Badge,

@@ -11,10 +11,15 @@ from symflex.expressions import format_expression
 from symflex.print.forms.arrange import Arranger
 from symflex.print.forms.definitions import definitions_form
 from symflex.print.forms.hidden import hidden_expressions, with_hidden
-from symflex.print.forms.hyperbolic import hyperbolic_form
 from symflex.print.forms.kept import with_definitions
 from symflex.print.forms.nested import nested_form, step_names
-from symflex.print.forms.polynomial import constant_form, factored_form, monic_form, polynomial_form
+from symflex.print.forms.polynomial import (
+    constant_form,
+    factored_form,
+    hyperbolic_form,
+    monic_form,
+    polynomial_form,
+)
 from symflex.print.forms.printed import Arrange, PrintedForm, counts_of, forms_of, require
 from symflex.transfer import NestedTransferFunction
 

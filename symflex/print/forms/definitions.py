@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 from symflex.algebra import Factored, Ring, degree_in
 from symflex.expressions import Expression, Name, format_expression
 from symflex.print.forms.arrange import Arranger
-from symflex.print.forms.hyperbolic import in_kernels
 from symflex.print.forms.kept import REWRITE_LIMIT, in_definitions, is_divisor
 from symflex.print.forms.notation import constant_symbols
+from symflex.print.forms.polynomial import in_kernels
 from symflex.print.forms.printed import PrintedForm
 
 if TYPE_CHECKING:

@@ -23,7 +23,7 @@ from symflex.expressions import (
     quotient,
     sum_of,
 )
-from symflex.print.forms.arrange import Arranger
+from symflex.print.forms.arrange import Arranger, ProductPrinter, shortest_sides
 from symflex.print.forms.economical import LARGE, angle_doubled, is_half
 from symflex.print.forms.invariants import IMAGINARY, in_krylov_functions, krylov_name
 from symflex.print.forms.kept import KeptDefinitions
@@ -40,7 +40,6 @@ from symflex.print.forms.notation import (
     wave_times_length,
 )
 from symflex.print.forms.printed import PrintedForm
-from symflex.print.forms.products import ProductPrinter, shortest_sides
 
 if TYPE_CHECKING:
     from flint import fmpz_mpoly

@@ -25,8 +25,8 @@ from symflex.expressions import (
     substitute,
 )
 from symflex.print.forms.arrange import Arranger
-from symflex.print.forms.hyperbolic import kernel_printer
 from symflex.print.forms.notation import Naming, Notation, angles_of, constant_symbols, notation_of, reachable
+from symflex.print.forms.polynomial import kernel_printer
 from symflex.transfer import NestedTransferFunction
 
 if TYPE_CHECKING:

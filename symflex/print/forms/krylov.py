@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 from symflex.algebra import Factored
 from symflex.expressions import Expression, Name, negative, number, power, product_of, quotient, sum_of
-from symflex.print.forms.arrange import Arranger
-from symflex.print.forms.hyperbolic import in_kernels
+from symflex.print.forms.arrange import Arranger, ProductPrinter, shortest_sides
 from symflex.print.forms.invariants import Invariants, in_krylov_functions, krylov_name
 from symflex.print.forms.kept import KeptDefinitions
 from symflex.print.forms.notation import (
@@ -19,8 +18,8 @@ from symflex.print.forms.notation import (
     reachable,
     wavenumber_laws,
 )
+from symflex.print.forms.polynomial import in_kernels
 from symflex.print.forms.printed import PrintedForm
-from symflex.print.forms.products import ProductPrinter, shortest_sides
 
 if TYPE_CHECKING:
     from symflex.print.forms.notation import Angle

@@ -22,9 +22,8 @@ from symflex.expressions import (
     quotient,
     sum_of,
 )
-from symflex.print.forms.arrange import Arranger
+from symflex.print.forms.arrange import Arranger, ProductPrinter
 from symflex.print.forms.kept import KeptDefinitions
-from symflex.print.forms.products import ProductPrinter
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence

@@ -1,4 +1,7 @@
-"""Forms over the expanded ring: polynomial, monic, constant, factored."""
+"""Forms over the expanded ring: polynomial, monic, constant, factored.
+
+Hyperbolic and circular functions of wavenumber times length.
+"""
 
 from __future__ import annotations
 
@@ -7,10 +10,9 @@ from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE, Factored, Ring, by_powers, degree_in, irreducible_factors
 from symflex.expressions import Expression, Name, number, power, product_of, quotient, sum_of
-from symflex.print.forms.arrange import Arranger
-from symflex.print.forms.hyperbolic import collected_form, in_kernels
+from symflex.print.forms.arrange import Arranger, ProductPrinter, shortest_sides
 from symflex.print.forms.kept import KeptDefinitions
-from symflex.print.forms.notation import constant_symbols
+from symflex.print.forms.notation import Naming, Notation, constant_symbols, notation_of, wavenumber_laws
 from symflex.print.forms.printed import PrintedForm
 
 if TYPE_CHECKING:
@@ -18,6 +20,7 @@ if TYPE_CHECKING:
 
     from flint import fmpz_mpoly
 
+    from symflex.algebra import Factored
     from symflex.transfer import TransferFunction
 
 
@@ -115,3 +118,39 @@ def _irreducible(arranger: Arranger, value: Factored) -> Expression:
             key = (len(positive) > 1, degree, tuple(tuple(-int(e) for e in m[1:]) for m in positive.monoms()))
             pieces.append((key, printed))
     return product_of([number(unit), *(p for _, p in sorted(pieces, key=lambda item: item[0]))])
+
+
+def hyperbolic_form(tf: TransferFunction) -> PrintedForm:
+    """Return the function in cosh, sinh, cos and sin of ``q = mu*l``; delays are exponentials."""
+    return in_kernels(tf, "hyperbolic", tf.ratio)
+
+
+def in_kernels(tf: TransferFunction, name: str, value: Factored) -> PrintedForm:
+    """Return a form of a value over the transfer function's ring."""
+    used = tf.ratio.ring.used_in(f for f, _ in value.factors)
+    notation = notation_of(tf, used, Naming.of(tf))
+    printer = kernel_printer(tf, notation)
+    sides = shortest_sides(printer, value, wavenumber_laws(tf))
+    return PrintedForm(name, *sides, notation.lines, notation.laws)
+
+
+def kernel_printer(tf: TransferFunction, notation: Notation) -> ProductPrinter:
+    """Return a printer for values over the transfer function's ring."""
+    symbols = {**constant_symbols(tf), **notation.symbols}
+    apart = (k.generator for k in tf.kernels.kernels)
+    ring = tf.ratio.ring
+    return ProductPrinter(Arranger.plain(ring, symbols, apart, KeptDefinitions.of(tf, ring)))
+
+
+def collected_form(tf: TransferFunction) -> PrintedForm:
+    """Return the polynomial form of a function with kernels: both sides by descending powers of s."""
+    used = tf.ratio.ring.used_in(f for f, _ in tf.ratio.factors)
+    notation = notation_of(tf, used, Naming.of(tf))
+    arranger = kernel_printer(tf, notation).arranger
+    return PrintedForm(
+        "polynomial",
+        arranger.collected(tf.ratio.numerator().expand()),
+        arranger.collected(tf.ratio.denominator().expand()),
+        notation.lines,
+        notation.laws,
+    )

@@ -24,7 +24,7 @@ from symflex.expressions import (
     quotient,
     sum_of,
 )
-from symflex.print.forms.arrange import Arranger
+from symflex.print.forms.arrange import Arranger, ProductPrinter, Sides, length
 from symflex.print.forms.kept import KeptDefinitions
 from symflex.print.forms.notation import (
     Line,
@@ -41,7 +41,6 @@ from symflex.print.forms.notation import (
     wavenumber_laws,
 )
 from symflex.print.forms.printed import PrintedForm
-from symflex.print.forms.products import ProductPrinter, Sides, length
 
 if TYPE_CHECKING:
     from flint import fmpz_mpoly

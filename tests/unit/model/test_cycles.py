@@ -13,7 +13,7 @@ from symflex import pipeline
 from symflex.codegen.exporters import EXPORTERS
 from symflex.errors import SpecError
 from symflex.model import ExactValue
-from symflex.print.mathml.expression import transfer_function_mathml
+from symflex.print.mathml import transfer_function_mathml
 
 POINT = 3 + 40j
 LOW_PASS = """symflex = 1

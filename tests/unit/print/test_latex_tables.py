@@ -10,8 +10,7 @@ from flint import arb
 from symflex.errors import UsageError
 from symflex.model.model import ExactValue, Model, ModelParameter
 from symflex.print.latex import COLUMNS_MM, column_width, mode_table, parameter_table, root_table
-from symflex.print.latex.table import decimal_text
-from symflex.print.latex.tabular import SETTINGS, TabularColumn, fitting, tabular
+from symflex.print.latex.table import SETTINGS, TabularColumn, decimal_text, fitting, tabular
 from symflex.print.latex.units import quantity_latex, siunitx_unit
 from symflex.roots import Certificate, Everything, HiddenRoot, PoleZeroMap, Root
 
