@@ -1,7 +1,4 @@
-"""Forms over the expanded ring: polynomial, monic, constant, factored.
-
-Hyperbolic and circular functions of wavenumber times length.
-"""
+"""Forms over the ring that a function is derived in: polynomial, monic, constant, factored, hyperbolic."""
 
 from __future__ import annotations
 
