@@ -6,15 +6,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from symflex.algebra import LAPLACE, Factored
+from symflex.algebra import Factored
 from symflex.audit.field import Arithmetic, GrowError, UnreadError, ground_of
 from symflex.errors import BudgetError, Diagnostic, SpecError
-from symflex.errors.diagnostic import nearest
 from symflex.expressions import (
-    FUNCTIONS,
-    Attribute,
     Call,
-    Derivative,
     Expression,
     Name,
     Negative,
@@ -23,8 +19,8 @@ from symflex.expressions import (
     Product,
     Quotient,
     Sum,
-    names,
 )
+from symflex.model.analysis import check_printed, readable_names, used_names
 from symflex.transfer.balls import rational_value
 from symflex.transfer.expansion import compose_rational
 
@@ -58,89 +54,38 @@ class Formula:
 def formula_of(published: Published, model: Model) -> Formula:
     """Return a printed formula with its lines in order.
 
-    Raises SpecError: SF210 an unknown name or function, SF212 a name that may not stand here, SF215 lines
-    that use each other in a circle, SF225 an exponent that is not a number: every problem at once, each at
-    its place.
+    Raises SpecError with every problem, each at its place: those of names, as :func:`check_printed`, and
+    SF225 an exponent that is more than a quotient of numbers.
     """
-    where = dict(published.where)
-    definitions = {d.name: d.expression for d in model.definitions if d.name not in where}
-    known = {**definitions, **where}
-    parameters = frozenset(p.name for p in model.parameters)
-    problems: list[Diagnostic] = []
+    problems = check_printed(published, readable_names(model))
     roots = [published.expression, *([published.scale] if published.scale is not None else [])]
-    for expression in (*roots, *where.values()):
-        problems += _problems(expression, known, parameters, model)
-    if problems:
-        raise SpecError(*problems)
-    return Formula(published.expression, published.scale, tuple(_in_order(roots, known)), parameters)
-
-
-def _problems(
-    expression: Expression, known: Mapping[str, Expression], parameters: frozenset[str], model: Model
-) -> list[Diagnostic]:
-    found = []
-    for node in names(expression):
-        if isinstance(node, Attribute | Derivative) or (isinstance(node, Call) and node.order):
-            message = "only s, pi, parameters, definitions and 'where' names may stand in a printed formula"
-            found.append(Diagnostic("SF212", message, node.span))
-        elif isinstance(node, Call) and node.name not in FUNCTIONS:
-            hint = nearest(node.name, FUNCTIONS) or "a product needs '*'"
-            found.append(Diagnostic("SF210", f"unknown function '{node.name[:64]}'", node.span, hint))
-        elif isinstance(node, Name) and node.name not in known and node.name not in parameters:
-            if node.name not in (LAPLACE, "pi"):
-                found.append(_unknown(node, {*known, *parameters, LAPLACE, "pi"}, model))
-    pending = [expression]
+    pending = [] if problems else [e for _, e in reversed(published.where)] + roots[::-1]
     while pending:
         part = pending.pop()
         pending.extend(part.children)
+        # Stricter than when the model was read, where 2^2 is a number too: here it would be no exponent.
         if isinstance(part, Power) and rational_value(part.exponent, {}) is None:
             message = "an exponent in a printed formula is a rational number"
-            found.append(Diagnostic("SF225", message, part.exponent.span or part.span))
-    return found
-
-
-def _unknown(node: Name, readable: set[str], model: Model) -> Diagnostic:
-    others = {
-        **{n.name: "a node" for n in model.nodes},
-        **{b.name: "a block" for b in model.blocks},
-        **{x.name: "a signal" for x in model.signals},
-        **{o.name: "an output" for o in model.outputs},
-        **{i.name: "an input" for i in model.inputs},
-    }
-    if node.name in others:
-        message = f"'{node.name}' is {others[node.name]}; a printed formula holds s and constants only"
-        return Diagnostic(
-            "SF212", message, node.span, "define it in 'where' if the print means something else"
-        )
-    hint = nearest(node.name, readable) or "define it in 'where'"
-    return Diagnostic("SF210", f"unknown name '{node.name[:64]}' in a printed formula", node.span, hint)
+            problems.append(Diagnostic("SF225", message, part.exponent.span or part.span))
+    if problems:
+        raise SpecError(*problems)
+    known = {d.name: d.expression for d in model.definitions} | dict(published.where)
+    parameters = frozenset(p.name for p in model.parameters)
+    return Formula(published.expression, published.scale, tuple(_in_order(roots, known)), parameters)
 
 
 def _in_order(roots: Sequence[Expression], known: Mapping[str, Expression]) -> list[tuple[str, Expression]]:
-    """Return the lines that occur, each after those it uses."""
+    """Return the lines that occur, each after those it uses; none of them use each other in a circle."""
     done: dict[str, Expression] = {}
-    open_names: list[str] = []
-    pending = [(n, False) for r in reversed(roots) for n in reversed(_used(r, known))]
+    pending = [(n, False) for r in reversed(roots) for n in reversed(used_names(r, known))]
     while pending:
         name, is_ready = pending.pop()
-        if name in done:
-            continue
         if is_ready:
-            open_names.pop()
-            done[name] = known[name]
-            continue
-        if name in open_names:
-            circle = " -> ".join((*open_names[open_names.index(name) :], name))
-            message = f"lines of a printed formula use each other in a circle: {circle}"
-            raise SpecError(Diagnostic("SF215", message, known[name].span))
-        open_names.append(name)
-        pending.append((name, True))
-        pending += [(n, False) for n in reversed(_used(known[name], known))]
+            done.setdefault(name, known[name])
+        elif name not in done:
+            pending.append((name, True))
+            pending += [(n, False) for n in reversed(used_names(known[name], known))]
     return list(done.items())
-
-
-def _used(expression: Expression, known: Mapping[str, Expression]) -> list[str]:
-    return [n.name for n in names(expression) if isinstance(n, Name) and n.name in known]
 
 
 @dataclass(frozen=True, eq=False)

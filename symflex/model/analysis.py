@@ -312,7 +312,7 @@ def _circles(roots: Sequence[Expression], known: Mapping[str, Expression]) -> li
     """Return the first circle among the lines that occur; the walk is not recursive, chains may be long."""
     done: set[str] = set()
     followed: list[str] = []
-    pending = [(name, False) for root in reversed(roots) for name in reversed(_used(root, known))]
+    pending = [(name, False) for root in reversed(roots) for name in reversed(used_names(root, known))]
     while pending:
         name, is_left = pending.pop()
         if is_left:
@@ -324,9 +324,10 @@ def _circles(roots: Sequence[Expression], known: Mapping[str, Expression]) -> li
         elif name not in done:
             followed.append(name)
             pending.append((name, True))
-            pending += [(other, False) for other in reversed(_used(known[name], known))]
+            pending += [(other, False) for other in reversed(used_names(known[name], known))]
     return []
 
 
-def _used(expression: Expression, known: Collection[str]) -> list[str]:
+def used_names(expression: Expression, known: Collection[str]) -> list[str]:
+    """Return the lines an expression names, in order and as often as it does."""
     return [n.name for n in names(expression) if isinstance(n, Name) and n.name in known]
