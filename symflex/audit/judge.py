@@ -12,8 +12,7 @@ from symflex.audit.notation import derived_in_symbols, monomial_expression
 from symflex.audit.numeric import Comparison, Deviation, Numbers, compare, largest_deviation, numbers_of
 from symflex.audit.reading import Formula, FormulaReading, formula_of, read
 from symflex.budget import spend
-from symflex.errors import BudgetError, Diagnostic, SpecError, UsageError
-from symflex.errors.diagnostic import nearest
+from symflex.errors import BudgetError, Diagnostic, SpecError, UsageError, nearest
 from symflex.transfer.of_model import derive_all
 
 if TYPE_CHECKING:

@@ -19,8 +19,9 @@ from symflex.expressions import (
     Product,
     Quotient,
     Sum,
+    names_among,
 )
-from symflex.model.analysis import check_printed, readable_names, used_names
+from symflex.model.analysis import check_printed, readable_names
 from symflex.transfer.balls import rational_value
 from symflex.transfer.expansion import compose_rational
 
@@ -77,14 +78,14 @@ def formula_of(published: Published, model: Model) -> Formula:
 def _in_order(roots: Sequence[Expression], known: Mapping[str, Expression]) -> list[tuple[str, Expression]]:
     """Return the lines that occur, each after those it uses; none of them use each other in a circle."""
     done: dict[str, Expression] = {}
-    pending = [(n, False) for r in reversed(roots) for n in reversed(used_names(r, known))]
+    pending = [(n, False) for r in reversed(roots) for n in reversed(names_among(r, known))]
     while pending:
         name, is_ready = pending.pop()
         if is_ready:
             done.setdefault(name, known[name])
         elif name not in done:
             pending.append((name, True))
-            pending += [(n, False) for n in reversed(used_names(known[name], known))]
+            pending += [(n, False) for n in reversed(names_among(known[name], known))]
     return list(done.items())
 
 

@@ -1,6 +1,6 @@
 """Positions, diagnostics and the exceptions every other room raises."""
 
-from symflex.errors.diagnostic import Diagnostic
+from symflex.errors.diagnostic import Diagnostic, Source, Span, Text, nearest
 from symflex.errors.exceptions import (
     BudgetError,
     DataError,
@@ -11,7 +11,6 @@ from symflex.errors.exceptions import (
     UncertifiedError,
     UsageError,
 )
-from symflex.errors.source import Source, Span, Text
 
 __all__ = [
     "BudgetError",
@@ -26,4 +25,5 @@ __all__ = [
     "Text",
     "UncertifiedError",
     "UsageError",
+    "nearest",
 ]

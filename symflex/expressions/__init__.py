@@ -16,17 +16,23 @@ from symflex.expressions.nodes import (
     Product,
     Quotient,
     Sum,
+    fold,
     is_number,
+    measured,
+    names,
+    names_among,
     negative,
+    nodes,
     number,
     power,
     product_of,
     quotient,
+    replace_values,
+    substitute,
     sum_of,
 )
 from symflex.expressions.parse import parse, parse_equation
 from symflex.expressions.slips import FUNCTIONS
-from symflex.expressions.walk import fold, measured, names, nodes, replace_values, substitute
 
 __all__ = [
     "FUNCTIONS",
@@ -51,6 +57,7 @@ __all__ = [
     "is_number",
     "measured",
     "names",
+    "names_among",
     "negative",
     "nodes",
     "number",

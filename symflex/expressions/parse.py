@@ -46,9 +46,9 @@ from symflex.expressions.nodes import (
     Product,
     Quotient,
     Sum,
+    measured,
 )
 from symflex.expressions.slips import FUNCTIONS, Slip, character_slip, end_slip, token_slip
-from symflex.expressions.walk import measured
 from symflex.quantities import parse_quantity
 from symflex.quantities.lalr import END, Grammar, Reading, Token, UnexpectedError
 

@@ -11,9 +11,19 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE
-from symflex.errors import Diagnostic
-from symflex.errors.diagnostic import nearest
-from symflex.expressions import FUNCTIONS, Attribute, Call, Derivative, Expression, Name, Power, names, nodes
+from symflex.errors import Diagnostic, nearest
+from symflex.expressions import (
+    FUNCTIONS,
+    Attribute,
+    Call,
+    Derivative,
+    Expression,
+    Name,
+    Power,
+    names,
+    names_among,
+    nodes,
+)
 from symflex.model.model import PI_NEARLY, Analysis, Figure, Published
 from symflex.model.scope import COMPARED_NAMES, LISTED_NAMES, RESERVED
 from symflex.model.signs import Line
@@ -312,7 +322,7 @@ def _circles(roots: Sequence[Expression], known: Mapping[str, Expression]) -> li
     """Return the first circle among the lines that occur; the walk is not recursive, chains may be long."""
     done: set[str] = set()
     followed: list[str] = []
-    pending = [(name, False) for root in reversed(roots) for name in reversed(used_names(root, known))]
+    pending = [(name, False) for root in reversed(roots) for name in reversed(names_among(root, known))]
     while pending:
         name, is_left = pending.pop()
         if is_left:
@@ -324,10 +334,5 @@ def _circles(roots: Sequence[Expression], known: Mapping[str, Expression]) -> li
         elif name not in done:
             followed.append(name)
             pending.append((name, True))
-            pending += [(other, False) for other in reversed(used_names(known[name], known))]
+            pending += [(other, False) for other in reversed(names_among(known[name], known))]
     return []
-
-
-def used_names(expression: Expression, known: Collection[str]) -> list[str]:
-    """Return the lines an expression names, in order and as often as it does."""
-    return [n.name for n in names(expression) if isinstance(n, Name) and n.name in known]

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE
 from symflex.budget import spend
-from symflex.errors import SymflexError
-from symflex.errors.diagnostic import nearest
+from symflex.errors import SymflexError, nearest
 from symflex.expressions import Expression, Name, Number, power, product_of, sum_of
 from symflex.library.blocks import BLOCKS, MODEL_BLOCK
 from symflex.model.analysis import named_pairs, pick_tf

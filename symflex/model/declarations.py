@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, cast
 
 from symflex.errors import Diagnostic, SpecError, Text
-from symflex.expressions import Expression, Name, names
+from symflex.expressions import names, names_among
 from symflex.model.labels import check_label
 from symflex.model.model import ONE, Assumption, Definition, ExactValue, ModelParameter, Output, Signal
 from symflex.model.reading import Reader
@@ -292,7 +292,9 @@ def _without_circles(reader: Reader, definitions: Sequence[Definition]) -> tuple
     state: dict[str, str] = {}
     ordered: list[Definition] = []
     for start in definitions:
-        stack = [(start.name, iter(_used(start.expression, by_name)))] if start.name not in state else []
+        stack = (
+            [(start.name, iter(names_among(start.expression, by_name)))] if start.name not in state else []
+        )
         if stack:
             state[start.name] = "open"
         while stack:
@@ -305,7 +307,7 @@ def _without_circles(reader: Reader, definitions: Sequence[Definition]) -> tuple
                     ordered.append(by_name[name])
             elif following not in state:
                 state[following] = "open"
-                stack.append((following, iter(_used(by_name[following].expression, by_name))))
+                stack.append((following, iter(names_among(by_name[following].expression, by_name))))
             elif state[following] == "open":
                 circle = [n for n, _ in stack]
                 circle = circle[circle.index(following) :]
@@ -318,11 +320,6 @@ def _without_circles(reader: Reader, definitions: Sequence[Definition]) -> tuple
                 for member in circle:
                     state[member] = "circular"
     return tuple(ordered)
-
-
-def _used(expression: Expression, known: Mapping[str, Definition]) -> list[str]:
-    found = names(expression)
-    return [n.name for n in found if isinstance(n, Name) and n.name in known]
 
 
 def read_signals(reader: Reader, section: TableValue | None) -> tuple[Signal, ...]:

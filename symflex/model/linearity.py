@@ -7,8 +7,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Literal
 
 from symflex.algebra import FUNCTIONS, LAPLACE
-from symflex.errors import Diagnostic, SpecError
-from symflex.errors.diagnostic import nearest
+from symflex.errors import Diagnostic, SpecError, nearest
 from symflex.expressions import (
     Attribute,
     Call,

@@ -7,8 +7,7 @@ from fractions import Fraction
 from heapq import heapify, heappop, heappush
 from typing import TYPE_CHECKING
 
-from symflex.errors import Diagnostic, SpecError
-from symflex.errors.diagnostic import nearest
+from symflex.errors import Diagnostic, SpecError, nearest
 from symflex.library.elements import ELEMENTS, Element, Port, Variable
 from symflex.model.declarations import DeclaredParameter, read_label
 from symflex.model.model import (

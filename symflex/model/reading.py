@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from symflex.errors import Diagnostic, SpecError
-from symflex.errors.diagnostic import nearest
+from symflex.errors import Diagnostic, SpecError, nearest
 from symflex.expressions import Expression, Negative, Number, parse
 from symflex.model.spec import ArrayValue, BooleanValue, NumberValue, OtherValue, StringValue, TableValue
 from symflex.quantities import Quantity, looks_like_quantity, parse_quantity

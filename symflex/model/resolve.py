@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from symflex.errors import Diagnostic, Span, SpecError, UsageError
 from symflex.expressions import Equation, Expression, substitute
-from symflex.library.elements import LineElement, Placing
+from symflex.library.elements import Placing
 from symflex.model.analysis import check_printed, read_analysis, read_figures, read_published, readable_names
 from symflex.model.blocks import Loads, Origin, read_blocks
 from symflex.model.boundary import (
@@ -73,7 +73,7 @@ from symflex.model.units import (
 from symflex.model.unused import unused
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Mapping, Sequence
 
     from symflex.errors import Source
     from symflex.model.settings import Setting
@@ -479,10 +479,10 @@ def _surroundings(draft: Draft, scope: ModelScope) -> Surroundings:
 
 def _check_lengths(reader: Reader, draft: Draft, around: Surroundings, unsound: set[Span | None]) -> None:
     """Note lengths and delays that depend on s; their places are added to the unsound ones."""
-    for what, expression in _lengths(draft):
-        if depends_on_s(expression, around.varying):
-            reader.note("SF249", f"{what} cannot depend on s", expression.span)
-            unsound.add(expression.span)
+    for ranged in ranged_values(draft):
+        if ranged.is_extent and depends_on_s(ranged.expression, around.varying):
+            reader.note("SF249", f"{ranged.what} cannot depend on s", ranged.expression.span)
+            unsound.add(ranged.expression.span)
 
 
 def _unsound_equations(draft: Draft, problems: Sequence[Diagnostic]) -> set[Span | None]:
@@ -508,20 +508,6 @@ def _check_points(
 
 def _covers(outer: Span, inner: Span) -> bool:
     return outer.source is inner.source and outer.start <= inner.start and inner.end <= outer.end
-
-
-def _lengths(draft: Draft) -> Iterator[tuple[str, Expression]]:
-    """Yield the lengths of distributed elements and the times of delays."""
-    for use in draft.elements:
-        if isinstance(use.element, LineElement):
-            for name, expression in use.values:
-                if name == use.element.length:
-                    yield f"{name} of {use.element.type_name} '{use.name}'", expression
-    for block in draft.blocks:
-        if block.block is not None and block.block.kernel_time:
-            for name, expression in block.values:
-                if name == block.block.kernel_time:
-                    yield f"{name} of {block.block.type_name} '{block.name}'", expression
 
 
 def _check(expression: Expression, scope: ModelScope, *, constant: bool) -> list[Diagnostic]:

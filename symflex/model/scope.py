@@ -6,8 +6,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Literal
 
 from symflex.algebra import LAPLACE
-from symflex.errors import Diagnostic, SpecError
-from symflex.errors.diagnostic import nearest
+from symflex.errors import Diagnostic, SpecError, nearest
 from symflex.expressions import Attribute, Name
 from symflex.library.elements import LineElement, Variable
 from symflex.model.model import INPUT_KINDS
@@ -108,15 +107,7 @@ class ModelScope:
         if len(readable) > 1:
             raise SpecError(_ambiguous(expression.name, readable, expression.span))
         if found:
-            raise SpecError(
-                Diagnostic(
-                    "SF212",
-                    f"'{expression.name}' is {found[0].described}; only parameters, definitions, s and pi "
-                    "may stand here",
-                    expression.span,
-                    VARYING_HINT,
-                )
-            )
+            raise SpecError(_varying(expression.name, found[0], expression.span))
         if expression.name in self.unknowns:
             raise SpecError(without_point(expression.name, expression.name, expression.span))
         hint = self._hint(expression.name, constant=constant)
@@ -172,14 +163,7 @@ class ModelScope:
         if self.inside:
             raise SpecError(outside(text, meaning.described, expression.span))
         if constant:
-            raise SpecError(
-                Diagnostic(
-                    "SF212",
-                    f"'{text}' is {meaning.described}; only parameters, definitions, s and pi may stand here",
-                    expression.span,
-                    VARYING_HINT,
-                )
-            )
+            raise SpecError(_varying(text, meaning, expression.span))
         return meaning
 
 
@@ -188,6 +172,13 @@ def _ambiguous(name: str, readable: Sequence[Meaning], span: Span | None) -> Dia
     readings = " or ".join(m.described for m in readable)
     message = f"'{name}' can be read two ways: {readings}"
     return Diagnostic("SF211", message, span, "rename one of them")
+
+
+def _varying(written: str, meaning: Meaning, span: Span | None) -> Diagnostic:
+    """Return the diagnostic of what varies in time and stands in a constant."""
+    message = f"'{written}' is {meaning.described}; only parameters, definitions, s and pi may stand here"
+    hint = "what varies in time may stand in [signals], in [outputs] and as the value of a source"
+    return Diagnostic("SF212", message, span, hint)
 
 
 def without_point(name: str, written: str, span: Span | None) -> Diagnostic:
@@ -207,9 +198,6 @@ def outside(written: str, described: str, span: Span | None) -> Diagnostic:
         span,
         "what acts at a point belongs in the conditions; a load along x is an input or a signal",
     )
-
-
-VARYING_HINT = "what varies in time may stand in [signals], in [outputs] and as the value of a source"
 
 
 def nearest_name(name: str, known: Sequence[str]) -> str | None:

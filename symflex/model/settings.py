@@ -11,8 +11,7 @@ from fractions import Fraction
 from math import isfinite
 from typing import TYPE_CHECKING
 
-from symflex.errors import Diagnostic, Source, Span, SpecError, Text, UsageError
-from symflex.errors.diagnostic import nearest
+from symflex.errors import Diagnostic, Source, Span, SpecError, Text, UsageError, nearest
 from symflex.expressions import substitute
 from symflex.model.declarations import one_of, without_sign
 from symflex.model.units import exact_expression

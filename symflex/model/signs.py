@@ -194,6 +194,7 @@ class RangedValue:
     expression: Expression
     sign: Sign
     reason: str
+    is_extent: bool = False  # a length or a delay, which cannot depend on s
 
 
 def ranged_values(draft: Draft | Model) -> Iterator[RangedValue]:
@@ -208,13 +209,13 @@ def ranged_values(draft: Draft | Model) -> Iterator[RangedValue]:
             if sign != "any" and port.name in given:
                 reason = f"{port.doc} is positive" if sign == "positive" else f"{port.doc} cannot be"
                 what = f"{port.name} of {element.type_name} '{use.name}'"
-                yield RangedValue(what, given[port.name], sign, reason)
+                yield RangedValue(what, given[port.name], sign, reason, port.name == element.length)
     for placed in draft.blocks:
         block = placed.block
         if block is not None and block.kernel_time:
             what = f"{block.kernel_time} of {block.type_name} '{placed.name}'"
             time = dict(placed.values)[block.kernel_time]
-            yield RangedValue(what, time, "nonnegative", "a delay cannot look ahead")
+            yield RangedValue(what, time, "nonnegative", "a delay cannot look ahead", is_extent=True)
 
 
 def check_ranges(reader: Reader, draft: Draft, line: Line, unsound: set[Span | None]) -> None:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symflex.errors import Diagnostic
-from symflex.errors.diagnostic import nearest
+from symflex.errors import Diagnostic, nearest
 from symflex.expressions import Attribute, names
 from symflex.library.elements import LineElement
 

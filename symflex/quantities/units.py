@@ -12,7 +12,7 @@ from fractions import Fraction
 from itertools import pairwise, product
 from typing import Final
 
-from symflex.errors.diagnostic import nearest
+from symflex.errors import nearest
 from symflex.quantities.dimension import DIMENSIONLESS, Dimension
 
 

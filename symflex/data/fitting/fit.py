@@ -25,8 +25,7 @@ from symflex.data.fitting.phase_test import PhaseTest, judge_phase
 from symflex.data.fitting.problem import FitProblem, fit_problem, with_noise, with_rough_noise
 from symflex.data.fitting.resonances import MILLISECOND, Complex, Free, Real, Resonances
 from symflex.data.fitting.starts import with_delays
-from symflex.errors import DataError, Diagnostic, FitError, UsageError
-from symflex.errors.diagnostic import nearest
+from symflex.errors import DataError, Diagnostic, FitError, UsageError, nearest
 from symflex.options import FitOptions
 
 if TYPE_CHECKING:

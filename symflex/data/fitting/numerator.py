@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from symflex.data.fitting.resonances import Complex, Real, Resonances
+from symflex.data.fitting.starts import solved_real
 
 if TYPE_CHECKING:
     from symflex.data.fitting.problem import FitProblem
@@ -169,11 +170,7 @@ class _System:
                 target = target - self.columns[:, first] * self.middle ** shape[0]
             turned = -self.weight * self.values * np.exp(self.s * delay) * self.s
             matrix = np.concatenate((self.columns[:, at], turned[:, None]), axis=1)
-            stacked = np.concatenate((matrix.real, matrix.imag))
-            norms = np.maximum(np.linalg.norm(stacked, axis=0), np.finfo(float).tiny)
-            right = np.concatenate((target.real, target.imag))
-            step = float((np.linalg.lstsq(stacked / norms, right, rcond=None)[0] / norms)[-1])
-            delay = max(delay + step, 0.0)
+            delay = max(delay + float(solved_real(matrix, target)[-1]), 0.0)
         ((rest, coefficients),) = self.solved([shape], delay)
         return rest, delay, shape, coefficients
 

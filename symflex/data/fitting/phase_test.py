@@ -27,6 +27,7 @@ import numpy as np
 from scipy.optimize import least_squares
 from scipy.signal import medfilt
 
+from symflex.data.fitting.least_squares import CAP, EDGE, STEPS
 from symflex.data.fitting.resonances import Complex, Real, Resonances
 
 if TYPE_CHECKING:
@@ -42,14 +43,8 @@ SMOOTHED_LINES = 5
 """Width of the running median; single lines that are off do not count."""
 SHORTEST_RUN, LONGEST_GAP = 4, 10
 """Lines that a band where phases part has at least, and has between two that are one."""
-STEPS = 100
-"""Evaluations, as in :mod:`symflex.data.fitting.least_squares`."""
-CAP = 0.05
-"""Added to the noise, as in :mod:`symflex.data.fitting.least_squares`."""
 LOWEST_DAMPING = 1e-4
 """Of mirrored zeros, whose logarithms are searched for."""
-EDGE = 12.0
-"""Logarithms of parameters are kept within this of their start, so that nothing overflows on the way."""
 MOST_LAG: Final = np.pi / 2
 """The phase of a lag at the highest line up to which poles above the band, or a sensor, may be its cause."""
 WORSE: Final = 1.25

@@ -247,7 +247,7 @@ def generous_fit(problem: FitProblem, count: int) -> tuple[list[Complex], int]:
     values = []
     for r, line in enumerate(problem.lines):
         basis, weight = _local(problem, line.omega, poles), _weights(problem, r)
-        solved = _solved(weight[:, None] * basis, weight * problem.quotient(r))
+        solved = solved_real(weight[:, None] * basis, weight * problem.quotient(r))
         values.append(basis @ solved * (line.measured.values / problem.quotient(r)))
     return values, 2 * count + len(values) * (2 * count + len(_powers(problem)))
 
@@ -259,7 +259,7 @@ def _conspicuous(problem: FitProblem, poles: Complex, count: int) -> Complex:
     for r, line in enumerate(problem.lines):
         quotient, weight = problem.quotient(r), _weights(problem, r)
         basis = _local(problem, line.omega, poles)
-        solved = _solved(weight[:, None] * basis, weight * quotient)
+        solved = solved_real(weight[:, None] * basis, weight * quotient)
         for i in range(poles.size):
             share = np.abs(basis[:, 2 * i : 2 * i + 2] @ solved[2 * i : 2 * i + 2]) * weight
             size[i] += float(np.sum(share**2))
@@ -281,7 +281,7 @@ def _local(problem: FitProblem, omega: Real, poles: Complex) -> Complex:
     return np.concatenate((_basis(omega, poles), *(x ** float(p) for p in _powers(problem))), axis=1)
 
 
-def _solved(matrix: Complex, target: Complex) -> Real:
+def solved_real(matrix: Complex, target: Complex) -> Real:
     """Return the real solution of a complex system in the sense of least squares."""
     stacked, right = np.concatenate((matrix.real, matrix.imag)), np.concatenate((target.real, target.imag))
     norms = np.maximum(np.linalg.norm(stacked, axis=0), np.finfo(float).tiny)

@@ -23,8 +23,7 @@ from symflex.data.measurement.measured_response import (
     unit_of,
     window_of,
 )
-from symflex.errors import DataError, Diagnostic, Source, Span
-from symflex.errors.diagnostic import nearest
+from symflex.errors import DataError, Diagnostic, Source, Span, nearest
 
 COMMENTS: Final = ("#", "%", "!", "//")
 _CELL = re.compile(r"[^,;\t ]+(?: +[^,;\t ]+)*")

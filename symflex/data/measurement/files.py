@@ -25,7 +25,7 @@ from symflex.data.measurement.universal_file import (
     read_universal_file,
 )
 from symflex.errors import DataError, Diagnostic, UsageError
-from symflex.model.spec.read import read_bytes
+from symflex.model.spec.read import read_file
 
 READERS: Mapping[str, Callable[[str, bytes, str], tuple[MeasuredResponse, ...]]] = {
     ".csv": read_columns,
@@ -67,21 +67,12 @@ def read_measurement(path: str | Path) -> tuple[MeasuredResponse, ...]:
     if suffix not in READERS:
         message = f"'{name}': data files end in {', '.join(READERS)}"
         raise DataError(Diagnostic("SF606", message))
-    try:
-        data = read_bytes(name, MAX_BYTES)
-    except OSError as error:
-        raise _unreadable(name, error.strerror or "input/output error") from None
-    except ValueError:
-        raise _unreadable(name, "the name holds a character no file name can have") from None
+    data = read_file(name, MAX_BYTES)
     if len(data) > MAX_BYTES:
         raise DataError(Diagnostic("SF607", f"'{name}' is larger than {MAX_BYTES} bytes"))
     if not data.strip():
         raise DataError(Diagnostic("SF605", f"'{name}' is empty"))
     return READERS[suffix](name, data, Path(name).stem)
-
-
-def _unreadable(name: str, reason: str) -> UsageError:
-    return UsageError(Diagnostic("SF901", f"cannot read '{name}': {reason}"))
 
 
 def prepared(

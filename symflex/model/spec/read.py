@@ -34,12 +34,7 @@ def read(path: str | Path) -> Source:
     symflex.errors.exceptions.UsageError: error[SF901]: cannot read 'no/such.toml': No such file or directory
     """
     name = os.fspath(path)
-    try:
-        data = read_bytes(name, MAX_BYTES)
-    except OSError as error:
-        raise _unreadable(name, error.strerror or "input/output error") from None
-    except ValueError:
-        raise _unreadable(name, "the name holds a character no file name can have") from None
+    data = read_file(name, MAX_BYTES)
     if len(data) > MAX_BYTES:
         message = f"'{name}' is larger than {MAX_BYTES} bytes"
         raise SpecError(Diagnostic("SF901", message, hint="is this the right file?"))
@@ -47,6 +42,16 @@ def read(path: str | Path) -> Source:
         return Source(name, data.decode("utf-8").removeprefix("\ufeff"))
     except UnicodeDecodeError as error:
         raise SpecError(_not_utf8(name, data, error.start)) from None
+
+
+def read_file(name: str, limit: int) -> bytes:
+    """Return the bytes of a file as :func:`read_bytes`; SF901 when it cannot be opened."""
+    try:
+        return read_bytes(name, limit)
+    except OSError as error:
+        raise _unreadable(name, error.strerror or "input/output error") from None
+    except ValueError:
+        raise _unreadable(name, "the name holds a character no file name can have") from None
 
 
 def read_bytes(name: str, limit: int) -> bytes:
