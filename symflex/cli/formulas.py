@@ -265,8 +265,7 @@ def audit(spec: Specification, given: AuditOptions) -> int:
     violates. A difference is a result: the exit code is 0, and 4 with --strict.
     """
     from symflex import pipeline
-    from symflex.audit.text import audit_document
-    from symflex.audit.text import audit_text
+    from symflex.audit.text import audit_document, audit_text
 
     model = spec.load()
     audits = pipeline.audit(model, given.tfs)

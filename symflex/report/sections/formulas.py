@@ -11,8 +11,7 @@ import hashlib
 import json
 from typing import TYPE_CHECKING, Final
 
-from symflex.audit.text import audit_document
-from symflex.audit.text import VERDICTS
+from symflex.audit.text import VERDICTS, audit_document
 from symflex.print.forms import counts_of, with_hidden
 from symflex.print.json_format import derive_document
 from symflex.print.label import labels_of
