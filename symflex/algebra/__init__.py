@@ -2,12 +2,27 @@
 
 from symflex.algebra.collection import uncollected
 from symflex.algebra.dispersion import NO_KERNELS, Dispersion, Kernel, KernelTable
-from symflex.algebra.factored import Factored, common_denominator, least_common_multiple
-from symflex.algebra.factorisation import irreducible_factors, square_free_factors
+from symflex.algebra.factored import (
+    PRIME,
+    Factored,
+    common_denominator,
+    least_common_multiple,
+    random_point,
+    residue,
+)
 from symflex.algebra.functions import FUNCTIONS, ElementaryFunction
-from symflex.algebra.memo import PolynomialMemo
-from symflex.algebra.residue import PRIME, random_point, residue
-from symflex.algebra.ring import LAPLACE, MEMORY_LIMIT, Ring, by_powers, degree_in, expanded_length, terms_of
+from symflex.algebra.ring import (
+    LAPLACE,
+    MEMORY_LIMIT,
+    PolynomialMemo,
+    Ring,
+    by_powers,
+    degree_in,
+    expanded_length,
+    irreducible_factors,
+    square_free_factors,
+    terms_of,
+)
 
 __all__ = [
     "FUNCTIONS",

@@ -18,8 +18,7 @@ from math import comb, factorial, prod
 from typing import TYPE_CHECKING, Any
 
 from symflex.algebra.factored import Factored, common_denominator
-from symflex.algebra.memo import PolynomialMemo
-from symflex.algebra.ring import Ring, by_powers, coefficients_of
+from symflex.algebra.ring import PolynomialMemo, Ring, by_powers, coefficients_of
 from symflex.errors import BudgetError, Diagnostic
 
 if TYPE_CHECKING:
@@ -258,10 +257,7 @@ class _RootAlgebra:
     modes: Sequence[CharacteristicMode]
 
     def vanishes(
-        self,
-        slots: tuple[int, ...],
-        pattern: Key,
-        terms: Sequence[tuple[tuple[int, ...], fmpz_mpoly]],
+        self, slots: tuple[int, ...], pattern: Key, terms: Sequence[tuple[tuple[int, ...], fmpz_mpoly]]
     ) -> bool:
         """Tell whether a sum of coefficients times powers of roots, ``x_(pattern i)^(order i)``, is zero."""
         laws: dict[Dispersion, int] = {}

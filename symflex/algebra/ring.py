@@ -1,4 +1,4 @@
-"""The exact ring: integer polynomials in s, the parameters, closed definitions and constants.
+"""The exact ring: integer polynomials in s, parameters, closed definitions and constants, and their factors.
 
 Input: an ordered tuple of generator names.
 Output: a :class:`Ring` whose elements are python-flint ``fmpz_mpoly``, or sparse polynomials of the same
@@ -10,17 +10,20 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import comb, prod
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Generic, TypeVar, cast
 
-from flint import Ordering, fmpz_mpoly, fmpz_mpoly_ctx
+from flint import Ordering, fmpq_mpoly_ctx, fmpz_mpoly, fmpz_mpoly_ctx
 
 from symflex.algebra.sparse import SparseContext, SparsePolynomial
 from symflex.errors import BudgetError, Diagnostic
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
+
+    from flint import fmpz_mpoly
 
     from symflex.algebra.sparse import Monomial
+
 
 LAPLACE = "s"
 TERM_LIMIT = 3_000_000
@@ -232,3 +235,75 @@ def terms_of(polynomial: fmpz_mpoly) -> list[tuple[Monomial, int]]:
     if (sparse := _sparse(polynomial)) is not None:
         return sparse.ordered()
     return [(tuple((i, int(e)) for i, e in enumerate(m) if e), int(c)) for m, c in polynomial.terms()]
+
+
+def irreducible_factors(polynomial: fmpz_mpoly) -> tuple[int, list[tuple[fmpz_mpoly, int]]]:
+    """Return a nonzero polynomial as a number times powers of polynomials irreducible over the rationals.
+
+    The number bears the sign; factors have content 1 and positive leading coefficients, and are ordered by
+    exponents, then by terms.
+
+    Examples
+    --------
+    >>> from symflex.algebra import Ring
+    >>> s, k = Ring(("s", "k")).context.gens()
+    >>> irreducible_factors((s + 2**70) * (s + 2**70 + 2) * k**2 * -6)
+    (-6, [(s + 1180591620717411303424, 1), (s + 1180591620717411303426, 1), (k, 2)])
+    """
+    try:
+        number, factors = polynomial.factor()
+    except OverflowError:
+        # To sort integer polynomials python-flint 0.9 reads their coefficients as C integers. Those with
+        # rational coefficients it sorts in the same order, and with coefficients of any size.
+        context = polynomial.context()
+        rational = fmpq_mpoly_ctx.get(context.names(), context.ordering())
+        unit, parts = rational.from_dict(polynomial.to_dict()).factor()
+        number = unit.p
+        factors = [(context.from_dict({m: c.p for m, c in part.terms()}), times) for part, times in parts]
+    return int(number), [(factor, int(times)) for factor, times in factors]
+
+
+def square_free_factors(polynomial: fmpz_mpoly) -> tuple[int, list[tuple[fmpz_mpoly, int]]]:
+    """Return a nonzero polynomial as a number times powers of coprime polynomials without squares.
+
+    See :func:`irreducible_factors`; these are in no order.
+
+    Examples
+    --------
+    >>> from symflex.algebra import Ring
+    >>> s, k = Ring(("s", "k")).context.gens()
+    >>> square_free_factors(3 * (s + 1) * (s - k) ** 2)
+    (3, [(s + 1, 1), (s - k, 2)])
+    """
+    number, factors = polynomial.factor_squarefree()
+    return int(number), [(factor, int(times)) for factor, times in factors]
+
+
+Made = TypeVar("Made")
+
+
+@dataclass(frozen=True, eq=False)
+class PolynomialMemo(Generic[Made]):
+    """A function of polynomials that remembers its values.
+
+    The engine's polynomials have no hash, so the same object is known again, and not an equal one.
+
+    Examples
+    --------
+    >>> from symflex.algebra import Ring
+    >>> s = Ring(("s",)).generator("s")
+    >>> memo = PolynomialMemo(lambda polynomial: [len(polynomial)])
+    >>> memo(s), memo(s) is memo(s)
+    ([1], True)
+    """
+
+    make: Callable[[fmpz_mpoly], Made]  # the function
+    _known: dict[int, tuple[fmpz_mpoly, Made]] = field(default_factory=dict)
+
+    def __call__(self, polynomial: fmpz_mpoly) -> Made:
+        """Return the value for a polynomial."""
+        known = self._known.get(id(polynomial))
+        if known is None:
+            # The polynomial is kept as well: as long as it lives, its id is its own.
+            known = self._known[id(polynomial)] = (polynomial, self.make(polynomial))
+        return known[1]

@@ -22,9 +22,8 @@ from operator import neg, truediv
 from random import Random
 from typing import TYPE_CHECKING, Any
 
-from symflex.algebra.memo import PolynomialMemo
-from symflex.algebra.residue import PRIME
-from symflex.algebra.ring import terms_of
+from symflex.algebra.factored import PRIME
+from symflex.algebra.ring import PolynomialMemo, terms_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence

@@ -1,26 +1,35 @@
-"""To what order a polynomial in kernels vanishes where wavenumbers do, or where two of them meet.
+"""To what order polynomials in kernels vanish: where wavenumbers do, where two of them meet, and at s = 0.
 
 Numerators and denominators of transfer functions are entire in s, but as polynomials in kernels they bear
-powers of wavenumbers whose zeros kernels cancel: ``sinh(gamma l)/gamma``. The order is read off the Taylor
-series at random values of everything else.
+powers of wavenumbers whose zeros kernels cancel: ``sinh(gamma l)/gamma``. The order is read off Taylor series
+over a prime field at random values of everything else: only what is zero vanishes there, almost surely.
+
+Wavenumbers are square and fourth roots of quantities of either sign, which exist in some fields and not in
+others: the primes are one more than a multiple of eight, and there are several of them. With ``s = e^4``
+every wavenumber is a power series in e.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from random import Random
 from typing import TYPE_CHECKING
 
-from symflex.algebra.taylor import BASE, TaylorField, random_values
+from flint import fmpz, nmod_poly
+from flint.utils.flint_exceptions import DomainError
+
+from symflex.algebra.ring import by_powers, degree_in
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from flint import fmpz_mpoly, nmod_poly
 
     from symflex.algebra.dispersion import Dispersion, KernelTable
     from symflex.algebra.factored import Factored
     from symflex.algebra.ring import Ring
+
 
 TERMS = (8, 16, 32)
 """Lengths of Taylor series that are tried."""
@@ -87,3 +96,290 @@ class Vanishing:
             even, odd = field.even_odd(argument, start, circular=circular)
             values[kernel.generator] = even if kernel.function in ("cosh", "cos") else odd
         return values
+
+
+def primes() -> Iterator[int]:
+    """Yield the sizes of fields that are tried, the same ones every time."""
+    prime = 2**61 + 1 - STEP
+    for _ in range(FIELDS):
+        prime = _next_prime(prime)
+        yield prime
+
+
+@cache
+def _next_prime(prime: int) -> int:
+    candidate = prime + STEP
+    while not fmpz(candidate).is_prime():
+        candidate += STEP
+    return candidate
+
+
+FIELDS = 400
+STEP = 8
+FIRST_PRIME = next(primes())
+BASE = 3
+"""Powers of it stand for exponentials."""
+
+
+@dataclass(frozen=True, slots=True)
+class TaylorField:
+    """Series to a fixed number of terms."""
+
+    terms: int  # number of coefficients kept
+    prime: int = FIRST_PRIME  # the field's size
+
+    def constant(self, value: int) -> nmod_poly:
+        """Return a number as a series."""
+        return nmod_poly([value % self.prime], self.prime)
+
+    def power(self, exponent: int, start: int = 0) -> nmod_poly:
+        """Return ``start + x^exponent``."""
+        return nmod_poly([start, *[0] * (exponent - 1), 1] if exponent else [start + 1], self.prime)
+
+    def order(self, series: nmod_poly) -> int | None:
+        """Return the order of the first term, ``None`` when there is none."""
+        return next((i for i, c in enumerate(series.coeffs()) if int(c)), None)
+
+    def times(self, left: nmod_poly, right: nmod_poly) -> nmod_poly:
+        """Return a product."""
+        return left.mul_low(right, self.terms)
+
+    def inverse(self, series: nmod_poly) -> nmod_poly | None:
+        """Return the reciprocal, ``None`` when the series starts with zero."""
+        return series.inverse_series_trunc(self.terms) if int(series[0]) else None
+
+    def root(self, series: nmod_poly) -> nmod_poly | None:
+        """Return a square root, ``None`` when the valuation is odd or the leading coefficient no square."""
+        first = self.order(series)
+        if first is None or first % 2:
+            return None
+        lead = square_root(int(series[first]), self.prime)
+        if lead is None:
+            return None
+        square, root = series.right_shift(first), self.constant(lead)
+        half, known = pow(2, -1, self.prime), 1
+        while known < self.terms - first:
+            known = min(2 * known, self.terms - first)
+            # Newton's iteration doubles the number of terms.
+            root = (root + square.mul_low(root.inverse_series_trunc(known), known)) * half
+        return root.left_shift(first // 2).truncate(self.terms)
+
+    def even_odd(self, argument: nmod_poly, start: int, *, circular: bool) -> tuple[nmod_poly, nmod_poly]:
+        """Return cosh and sinh, or cos and sin, of an argument.
+
+        A constant term of the argument is a transcendental angle: ``start`` stands for its exponential, or
+        for the tangent of its half.
+        """
+        constant = int(argument[0])
+        moving = argument - self.constant(constant)
+        sign = self.prime - 1 if circular else 1
+        square = self.times(moving, moving) * sign
+        even, odd = self.constant(1), moving
+        term_even, term_odd = self.constant(1), moving
+        below = _reciprocals(self.terms + 2, self.prime)
+        for n in range(1, self.terms // 2 + 1):
+            term_even = self.times(term_even, square) * (below[2 * n] * below[2 * n - 1] % self.prime)
+            term_odd = self.times(term_odd, square) * (below[2 * n] * below[2 * n + 1] % self.prime)
+            if term_even.is_zero() and term_odd.is_zero():
+                break
+            even, odd = even + term_even, odd + term_odd
+        if not constant:
+            return even, odd
+        if circular:
+            share = pow(1 + start * start, -1, self.prime)
+            c, s = (1 - start * start) * share % self.prime, 2 * start * share % self.prime
+        else:
+            half, back = pow(2, -1, self.prime), pow(start, -1, self.prime)
+            c, s = (start + back) * half % self.prime, (start - back) * half % self.prime
+        return even * c + odd * (s * sign % self.prime), even * s + odd * c
+
+    def polynomial(
+        self, polynomial: fmpz_mpoly, names: Sequence[str], values: Mapping[str, nmod_poly]
+    ) -> nmod_poly:
+        """Return a polynomial with series in place of its generators."""
+        total = self.constant(0)
+        powers: dict[tuple[int, int], nmod_poly] = {}
+        for monomial, coefficient in polynomial.terms():
+            product = self.constant(int(coefficient))
+            for i, exponent in enumerate(monomial):
+                if exponent:
+                    key = (i, int(exponent))
+                    if key not in powers:
+                        powers[key] = values[names[i]].pow_trunc(int(exponent), self.terms)
+                    product = self.times(product, powers[key])
+            total = total + product
+        return total
+
+    def rational(
+        self, value: Factored, names: Sequence[str], values: Mapping[str, nmod_poly]
+    ) -> nmod_poly | None:
+        """Return a rational function, ``None`` when a denominator starts with zero."""
+        unit = value.unit.numerator * pow(value.unit.denominator, -1, self.prime)
+        total = self.constant(unit)
+        for factor, exponent in value.factors:
+            series: nmod_poly | None = self.polynomial(factor, names, values)
+            if exponent < 0 and series is not None:
+                series = self.inverse(series)
+            if series is None:
+                return None
+            total = self.times(total, series.pow_trunc(abs(exponent), self.terms))
+        return total
+
+
+@cache
+def _reciprocals(count: int, prime: int) -> tuple[int, ...]:
+    """Return 0 and the reciprocals of the numbers below ``count`` modulo a larger prime."""
+    found = [0, 1]
+    for n in range(2, count):
+        found.append(-(prime // n) * found[prime % n] % prime)
+    return tuple(found)
+
+
+def square_root(value: int, prime: int) -> int | None:
+    """Return a square root modulo a prime, ``None`` when there is none.
+
+    Examples
+    --------
+    >>> square_root(2, 17), square_root(3, 17)
+    (6, None)
+    """
+    try:
+        return int(fmpz(value).sqrtmod(prime))
+    except DomainError:
+        return None
+
+
+def random_values(names: Sequence[str], random: Random, field: TaylorField) -> dict[str, nmod_poly]:
+    """Return a random number per name."""
+    return {name: field.constant(random.randrange(1, field.prime)) for name in names}
+
+
+BRANCHES = 4
+ORIGIN_TERMS = 80
+TRIALS = 4
+"""Values of the parameters that are tried in each field."""
+
+
+class OriginSeries:
+    """Orders at s = 0, or where another polynomial in s and parameters vanishes, of functions over one ring.
+
+    General dispersions are not covered. With ``at``, linear in s or in a parameter, that vanishes instead of
+    s. Orders above ``terms``, in the fourth root of s, are not found.
+    """
+
+    def __init__(
+        self, ring: Ring, table: KernelTable, at: fmpz_mpoly | None = None, terms: int = ORIGIN_TERMS
+    ) -> None:
+        self.ring = ring
+        self._found = _find_point(ring, table, ring.context.gen(0) if at is None else at, terms)
+
+    def order(self, value: Factored) -> int | None:
+        """Return the order of the zero (negative: of the pole), ``None`` when it is not found."""
+        if self._found is None:
+            return None
+        field, values = self._found
+        total = 0
+        for factor, exponent in value.factors:
+            first = field.order(field.polynomial(factor, self.ring.names, values))
+            if first is None:
+                return None
+            total += first * exponent
+        return total // BRANCHES if total % BRANCHES == 0 else None
+
+
+def _find_point(
+    ring: Ring, table: KernelTable, at: fmpz_mpoly, terms: int
+) -> tuple[TaylorField, dict[str, nmod_poly]] | None:
+    """Return series for all generators near where a polynomial vanishes."""
+    if any(d.kind == "general" for d in table.dispersions):
+        return None
+    linear = next((i for i in range(len(ring.names)) if degree_in(at, i) == 1), None)
+    if linear is None:
+        return None
+    parts = by_powers(ring, at, linear)
+    name, zero = ring.names[linear], ring.constant(0)
+
+    def prepare(values: dict[str, nmod_poly], field: TaylorField) -> bool:
+        rest, slope = (field.polynomial(parts.get(k, zero), ring.names, values) for k in (0, 1))
+        below = field.inverse(slope)
+        if below is None:
+            return False
+        # The scale decides in which fields the roots of several wavenumbers exist together.
+        scale = int(values[name][0]) or 1
+        values[name] = field.times(field.power(BRANCHES) * scale - rest, below)
+        return True
+
+    return find_point(ring, table, terms, prepare)
+
+
+def find_point(
+    ring: Ring, table: KernelTable, terms: int, prepare: Callable[[dict[str, nmod_poly], TaylorField], bool]
+) -> tuple[TaylorField, dict[str, nmod_poly]] | None:
+    """Return values for all generators that satisfy every relation, in a field where the wavenumbers exist.
+
+    Kernels of general dispersions get random values. Series have so many terms, one for numbers; ``prepare``
+    sets values that are not random, and returns False to ask for other random ones.
+    """
+    random = Random(11)
+    for prime in primes():
+        field = TaylorField(terms, prime)
+        for _ in range(TRIALS):
+            values = random_values(ring.names, random, field)
+            if prepare(values, field) and all(_place(d, ring, values, field) for d in table.dispersions):
+                found = _with_kernels(ring, table, values, field)
+                return None if found is None else (field, found)
+    return None
+
+
+def _with_kernels(
+    ring: Ring, table: KernelTable, values: dict[str, nmod_poly], field: TaylorField
+) -> dict[str, nmod_poly] | None:
+    starts: dict[tuple[str, Factored], int] = {}
+    known: dict[tuple[Dispersion, str, Factored, bool], tuple[nmod_poly, nmod_poly]] = {}
+    for kernel in table.kernels:
+        if kernel.function == "fundamental":
+            continue
+        key = (kernel.wavenumber, kernel.length)
+        start = starts.setdefault(key, pow(BASE, 1001 + 2 * len(starts), field.prime))
+        circular = kernel.function in ("cos", "sin")
+        pair = (kernel.dispersion, *key, circular)
+        if pair not in known:
+            length = field.rational(kernel.length, ring.names, values)
+            shift = field.rational(kernel.dispersion.shift, ring.names, values)
+            if length is None or shift is None:
+                return None
+            rate = values[kernel.wavenumber] if kernel.wavenumber else -shift
+            known[pair] = field.even_odd(field.times(rate, length), start, circular=circular)
+        even, odd = known[pair]
+        if kernel.function == "exp":
+            values[kernel.generator] = even + odd
+        else:
+            values[kernel.generator] = even if kernel.function in ("cosh", "cos") else odd
+    return values
+
+
+def _place(law: Dispersion, ring: Ring, values: dict[str, nmod_poly], field: TaylorField) -> bool:
+    """Put the wavenumbers' series into the values; False where a root does not exist."""
+    found = [field.rational(x, ring.names, values) for x in law.characteristic]
+    c = [x for x in found if x is not None]
+    if len(c) < len(found):
+        return False
+    roots: list[nmod_poly | None] = []
+    match law.kind:
+        case "wave":
+            roots = [field.root(-c[0])]
+        case "bending":
+            square = field.root(c[0] * pow(4, -1, field.prime))
+            roots = [None if square is None else field.root(square)]
+        case "pair":
+            middle = -c[2] * pow(2, -1, field.prime)
+            root = field.root(field.times(middle, middle) - c[0])
+            if root is not None:
+                roots = [field.root(middle + root), field.root(middle - root)]
+    if len(roots) < len(law.wavenumbers):
+        return False
+    for name, series in zip(law.wavenumbers, roots, strict=True):
+        if series is None:
+            return False
+        values[name] = series
+    return True

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 from math import isfinite
 from typing import TYPE_CHECKING, Protocol
 
-from symflex.codegen.program.user_text import identifiers
+from symflex.codegen.module_text import identifiers
 from symflex.codegen.program.verify import SAMPLES, choose_programs
 
 if TYPE_CHECKING:

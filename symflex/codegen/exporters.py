@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 from symflex.codegen.c import C99
 from symflex.codegen.julia import JULIA
+from symflex.codegen.latex import LatexExporter
 from symflex.codegen.matlab import MATLAB
 from symflex.codegen.python import ARRAY_API, JAX, NUMPY
 from symflex.codegen.state_space import StateSpaceExporter
-from symflex.codegen.targets.latex import LatexExporter
 
 if TYPE_CHECKING:
     from symflex.codegen.export import Exporter

@@ -11,17 +11,18 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 from symflex.codegen.export import Export, Language
-from symflex.codegen.functions import NumberFunctions
-from symflex.codegen.infix import InfixPrinter, in_lines
+from symflex.codegen.infix import InfixPrinter, NumberFunctions, in_lines
 from symflex.codegen.module_text import (
     COST,
     default_value,
     described,
     formula_lines,
     headline,
+    identifiers,
+    inert,
     origin_lines,
+    wrapped,
 )
-from symflex.codegen.program.user_text import identifiers, inert, wrapped
 from symflex.codegen.source_parts import called_parts, parts_of
 
 if TYPE_CHECKING:

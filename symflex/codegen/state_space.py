@@ -15,7 +15,7 @@ import numpy as np
 
 from symflex.algebra import irreducible_factors
 from symflex.codegen.export import Export, shortfalls
-from symflex.codegen.module_text import default_value, described
+from symflex.codegen.module_text import default_value, described, identifiers, inert, wrapped
 from symflex.codegen.program.evaluate import evaluate, nearest_double
 from symflex.codegen.program.nodes import (
     Add,
@@ -30,11 +30,9 @@ from symflex.codegen.program.nodes import (
     Straight,
     lumped,
 )
-from symflex.codegen.program.user_text import identifiers, inert, wrapped
 from symflex.codegen.program.verify import Verification, measure_values
-from symflex.codegen.python.dialects import NUMPY_DIALECT
-from symflex.codegen.python.expression import WIDTH, PythonPrinter, statement
-from symflex.codegen.python.module import docstring, literal, origin, parameter_table
+from symflex.codegen.python.module import NUMPY_DIALECT, docstring, literal, origin, parameter_table
+from symflex.codegen.python.pieces import WIDTH, PythonPrinter, statement
 from symflex.errors import BudgetError, Diagnostic
 from symflex.expressions import (
     Call,

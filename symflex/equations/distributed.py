@@ -1,4 +1,4 @@
-"""The distributed parts of a model: which kernels they need, and their transfer matrices.
+"""The distributed parts of a model: their equations, the kernels they need, and their transfer matrices.
 
 Input: a model and an evaluator over the ring without kernels.
 Output: a :class:`Distributed`, with the ring that has generators for every fundamental function that occurs.
@@ -19,20 +19,31 @@ from typing import TYPE_CHECKING
 from symflex.algebra import Dispersion, Factored
 from symflex.algebra.propagators import propagate
 from symflex.budget import spend
-from symflex.equations.coefficients import read_equation
 from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError
-from symflex.expressions import Call, Expression, names
+from symflex.expressions import (
+    Call,
+    Derivative,
+    Expression,
+    Name,
+    Negative,
+    Product,
+    Quotient,
+    Sum,
+    names,
+    nodes,
+)
 from symflex.library.elements import LinearForm, Variable
 from symflex.library.elements.line import LineElement
-from symflex.library.fields import FIELDS, Component, FieldSystem, components, first_order
+from symflex.library.fields import FIELDS, Component, FieldEquation, FieldSystem, components, first_order
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Mapping, Sequence
 
     from symflex.algebra import Factored
     from symflex.algebra.propagators import Propagation
     from symflex.equations.evaluate import ExactEvaluator
     from symflex.errors import Span
+    from symflex.expressions import Equation
     from symflex.library.fields import FieldSystem, Matrix
     from symflex.model import FieldProblem, Model, PlacedElement
 
@@ -449,3 +460,82 @@ def _links(chain: Sequence[str], lengths: Sequence[Factored], is_driven: Sequenc
         )
         for n in range(len(chain) - 1, 0, -1)
     ]
+
+
+Key = tuple[str, int] | Variable
+Terms = dict[Key, "Factored"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ReadEquation:
+    """``sum(terms[u, k] * d^k u/dx^k) + sum(loads[v] * v) = 0``."""
+
+    terms: Mapping[tuple[str, int], Factored]
+    loads: Mapping[Variable, Factored]
+
+    def named(self) -> FieldEquation:
+        """Return the equation with its loads under the variables' names."""
+        return FieldEquation(self.terms, {str(v): c for v, c in self.loads.items()})
+
+
+def read_equation(equation: Equation, unknowns: Collection[str], evaluator: ExactEvaluator) -> ReadEquation:
+    """Return the coefficients of an equation, linear in unknowns, their derivatives and loads."""
+    terms: Terms = {}
+    for side, sign in ((equation.left, 1), (equation.right, -1)):
+        for key, value in _read(side, unknowns, evaluator).items():
+            terms[key] = terms[key] + value * sign if key in terms else value * sign
+    kept = {k: c for k, c in terms.items() if not c.is_zero}
+    return ReadEquation(
+        {k: c for k, c in kept.items() if not isinstance(k, Variable)},
+        {k: c for k, c in kept.items() if isinstance(k, Variable)},
+    )
+
+
+def _read(expression: Expression, unknowns: Collection[str], evaluator: ExactEvaluator) -> Terms:
+    one = evaluator.s**0
+    match expression:
+        case Name(name) if name in unknowns:
+            return {(name, 0): one}
+        case Derivative(name, order):
+            return {(name, order): one}
+        case Negative(operand):
+            return {k: -c for k, c in _read(operand, unknowns, evaluator).items()}
+        case Sum(terms):
+            total: Terms = {}
+            for term in terms:
+                for key, value in _read(term, unknowns, evaluator).items():
+                    total[key] = total[key] + value if key in total else value
+            return total
+        case Product(factors):
+            varying = [f for f in factors if _varies(f, unknowns, evaluator)]
+            scale = one
+            for factor in factors:
+                if factor not in varying:
+                    scale = scale * evaluator.constant(factor)
+            if len(varying) != 1:
+                return _constant(expression, scale)
+            return {k: c * scale for k, c in _read(varying[0], unknowns, evaluator).items()}
+        case Quotient(numerator, denominator):
+            below = evaluator.constant(denominator)
+            if evaluator.vanishes(below):
+                raise ModelError(Diagnostic("SF224", "division by zero", denominator.span))
+            return {k: c / below for k, c in _read(numerator, unknowns, evaluator).items()}
+    form = evaluator.linear(expression)
+    return dict(form.terms)
+
+
+def _constant(expression: Expression, value: Factored) -> Terms:
+    if value.is_zero:
+        return {}
+    raise ModelError(Diagnostic("SF221", "the equation has a term without an unknown", expression.span))
+
+
+def _varies(expression: Expression, unknowns: Collection[str], evaluator: ExactEvaluator) -> bool:
+    """Tell whether an expression holds an unknown, an input or a signal."""
+
+    def varies(node: Expression) -> bool:
+        if not isinstance(node, Name):
+            return isinstance(node, Derivative)
+        return node.name in unknowns or evaluator.scope.lookup(node, constant=False).variable is not None
+
+    return any(varies(node) for node in nodes(expression))

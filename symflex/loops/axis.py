@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from flint import acb, arb
 
 from symflex.algebra import Factored
-from symflex.algebra.origin import OriginSeries
+from symflex.algebra.vanishing import OriginSeries
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic, SymflexError
 from symflex.roots import Budget, precision

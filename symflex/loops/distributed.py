@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from flint import acb, arb
 
 from symflex.algebra import Factored
-from symflex.algebra.origin import OriginSeries
+from symflex.algebra.vanishing import OriginSeries
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.loops.axis import AxisRoots, LoopAtOrigin, find_on_axis, loop_at_origin
 from symflex.loops.loop import GainPolynomial, LoopFunction, LoopValue

@@ -77,9 +77,4 @@ class StateSpace:
     def matrices(self) -> tuple[tuple[str, tuple[Vector, ...], tuple[int, int]], ...]:
         """Per matrix its letter, its rows, and how many rows and columns it has."""
         n, m, p = len(self.states), len(self.inputs), len(self.outputs)
-        return (
-            ("A", self.a, (n, n)),
-            ("B", self.b, (n, m)),
-            ("C", self.c, (p, n)),
-            ("D", self.d, (p, m)),
-        )
+        return (("A", self.a, (n, n)), ("B", self.b, (n, m)), ("C", self.c, (p, n)), ("D", self.d, (p, m)))

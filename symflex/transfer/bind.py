@@ -22,15 +22,7 @@ from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, acb_series, arb, ctx
 
-from symflex.algebra import (
-    LAPLACE,
-    NO_KERNELS,
-    Factored,
-    KernelTable,
-    PolynomialMemo,
-    Ring,
-    degree_in,
-)
+from symflex.algebra import LAPLACE, NO_KERNELS, Factored, KernelTable, PolynomialMemo, Ring, degree_in
 from symflex.budget import spend
 from symflex.equations import assemble
 from symflex.errors import Diagnostic, ModelError, Source, Span, Text, UsageError

@@ -17,8 +17,13 @@ from symflex.equations.elimination import Determinants, explain_singular
 from symflex.errors import Diagnostic, ModelError
 from symflex.transfer.expansion import Expansion, Opening
 from symflex.transfer.lowest_terms import DeterminantsOnLine, LineImages, cancel
-from symflex.transfer.quantity import name_quantity, unit_of_quotient
-from symflex.transfer.transfer_function import ClosedForm, HiddenFactor, TransferFunction
+from symflex.transfer.transfer_function import (
+    ClosedForm,
+    HiddenFactor,
+    TransferFunction,
+    name_quantity,
+    unit_of_quotient,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -29,12 +29,10 @@ from symflex.algebra import (
     degree_in,
     irreducible_factors,
 )
-from symflex.algebra.exponentials import Exponentials, split_content
-from symflex.algebra.multiple_angles import lift
+from symflex.algebra.exponentials import Exponentials, lift, split_content
 from symflex.algebra.normal_form import NormalForm
-from symflex.algebra.origin import OriginSeries
 from symflex.algebra.ring import by_powers
-from symflex.algebra.vanishing import Vanishing
+from symflex.algebra.vanishing import OriginSeries, Vanishing
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic
 from symflex.transfer.kernel_images import KernelImages

@@ -21,8 +21,7 @@ from symflex.errors import Diagnostic, ModelError
 from symflex.expressions import Name, names
 from symflex.transfer.balls import FIRST_BITS, ball, double_value, enclosure, later
 from symflex.transfer.bind import values_for
-from symflex.transfer.quantity import name_quantity, unit_of_quotient
-from symflex.transfer.transfer_function import TransferFunction
+from symflex.transfer.transfer_function import TransferFunction, name_quantity, unit_of_quotient
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

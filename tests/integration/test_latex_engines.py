@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from symflex import pipeline
-from symflex.codegen.targets.latex import LatexExporter
+from symflex.codegen.latex import LatexExporter
 from symflex.print.latex import DOCUMENT
 from tests.integration.test_latex_compiles import COMPLAINT, HOSTILE, LABELS, SAFE, UNITS
 from tests.unit.codegen.test_numpy_hostile import HOSTILE as TEXTS

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from symflex import pipeline
-from symflex.codegen.targets.latex import LatexExporter
+from symflex.codegen.latex import LatexExporter
 from symflex.figures import draw, render
 from symflex.print.latex import DOCUMENT
 from tests.house.repository import specifications

@@ -21,8 +21,7 @@ from symflex.analysis.response import adaptive_grid
 from symflex.errors import Diagnostic, ModelError
 from symflex.roots.pole_zero_map import NOT_EXAMINED, StabilityVerdict
 from symflex.state_space import Channel
-from symflex.state_space.cascade import cascade
-from symflex.state_space.numeric import BoundState, BoundStateSpace, installed
+from symflex.state_space.numeric import BoundState, BoundStateSpace, cascade, installed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 from flint import acb, acb_series, arb, ctx
 
 from symflex.algebra import Factored
-from symflex.algebra.origin import OriginSeries
+from symflex.algebra.vanishing import OriginSeries
 from symflex.analysis.rational.local_values import BRANCHES, local_values, series_length
 from symflex.budget import spend
 from symflex.errors import Diagnostic, UncertifiedError

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Literal
 from flint import acb, acb_series, arb, arb_series, fmpz_mpoly
 
 from symflex.algebra import FUNCTIONS, LAPLACE, Factored, Kernel, PolynomialMemo, square_free_factors
-from symflex.algebra.origin import OriginSeries
+from symflex.algebra.vanishing import OriginSeries
 from symflex.budget import spend
 from symflex.expressions import Call, Expression, fold
 from symflex.loops import pick_gain

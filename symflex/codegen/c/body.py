@@ -15,6 +15,7 @@ from textwrap import TextWrapper
 from typing import TYPE_CHECKING
 
 from symflex.codegen.c.expression import CPrinter, Kind, Term, complex_term, product
+from symflex.codegen.module_text import identifiers
 from symflex.codegen.program.nodes import (
     Assignment,
     CodeNode,
@@ -26,7 +27,6 @@ from symflex.codegen.program.nodes import (
     Roots,
     Solutions,
 )
-from symflex.codegen.program.user_text import identifiers
 from symflex.codegen.source_parts import parts_of
 
 if TYPE_CHECKING:
@@ -354,10 +354,7 @@ def limit_text(condition: Condition, scope: Body) -> str:
 
 
 def choose(
-    program: Piecewise,
-    conditions: Sequence[str],
-    scope: Body,
-    body: Callable[[int, Body], None],
+    program: Piecewise, conditions: Sequence[str], scope: Body, body: Callable[[int, Body], None]
 ) -> None:
     """Print the choice among pieces: test i adds ``2**i`` to the number of the piece."""
     indent = STEP * scope.depth

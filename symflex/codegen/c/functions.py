@@ -240,10 +240,7 @@ def _mentions(line: str, name: str) -> bool:
 
 
 def _lumped(
-    program: Piecewise,
-    scope: Body,
-    store: Callable[[Body, Term], None],
-    varying: Body | None = None,
+    program: Piecewise, scope: Body, store: Callable[[Body, Term], None], varying: Body | None = None
 ) -> None:
     """Print a program of one or two branches; what varies goes to a scope of its own if there is one."""
     inner = varying or scope

@@ -18,10 +18,12 @@ from symflex.codegen.module_text import (
     ITERATED,
     default_value,
     formula_lines,
+    identifiers,
+    inert,
     origin_lines,
     value_as_written,
+    wrapped,
 )
-from symflex.codegen.program.user_text import identifiers, inert, wrapped
 from symflex.codegen.source_parts import called_parts
 from symflex.errors import Diagnostic, UsageError
 

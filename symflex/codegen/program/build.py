@@ -5,6 +5,9 @@ Output: a lumped :class:`Piecewise` per way of evaluating it. ``closed``, ``clos
 sums such as k + b*s and definitions as intermediates: the first in recurrences over the elements, the second
 in recurrences that part powers of s too, the third by powers of s; ``factors`` multiplies out every factor by
 powers of s.
+
+Of a nested transfer function every shared step becomes an assignment: nothing is a power of s above the
+second or so, nor a product of many impedances, so nothing overflows long before the value does.
 """
 
 from __future__ import annotations
@@ -16,13 +19,18 @@ from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE, Factored
 from symflex.budget import spend
-from symflex.codegen.program.forge import Forge
-from symflex.codegen.program.polynomials import RingValues, degree_of, evaluate_polynomial
-from symflex.codegen.program.recurrence import express, plan_recurrences
-from symflex.codegen.program.schedule import schedule
+from symflex.codegen.program.forge import Forge, schedule
+from symflex.codegen.program.polynomials import (
+    RingValues,
+    degree_of,
+    evaluate_polynomial,
+    express,
+    plan_recurrences,
+)
 from symflex.errors import BudgetError, Diagnostic
 from symflex.expressions import Expression, fold
 from symflex.model.linearity import integer_exponent
+from symflex.print.forms import step_names
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -32,7 +40,8 @@ if TYPE_CHECKING:
     from symflex.algebra import Ring
     from symflex.codegen.program.nodes import Piecewise
     from symflex.model import Model
-    from symflex.transfer import ClosedForm, TransferFunction
+    from symflex.transfer import ClosedForm, NestedTransferFunction, TransferFunction
+
 
 TERM_LIMIT = 20_000
 """Terms a program may be made of; beyond that its text would be megabytes."""
@@ -266,3 +275,59 @@ def _factors(generators: Generators) -> tuple[int, int]:
     den, den_degree = generators.product(varying.denominator())
     above, below = (forge.multiply([gain, num]), num_degree), (den, den_degree)
     return _quotient(generators, (above, below))
+
+
+OPERATION_LIMIT = 100_000
+"""Operations a program may have; beyond that its text would be many megabytes."""
+
+
+def build_nested(tf: NestedTransferFunction) -> Piecewise:
+    """Return the program of a nested transfer function.
+
+    Raises BudgetError: SF503 when it would be too large.
+
+    Examples
+    --------
+    >>> from symflex import pipeline
+    >>> (G,) = pipeline.derive_nested(pipeline.loads('''
+    ... symflex = 1
+    ... parameters = {m = "2 kg", b = "3 N*s/m"}
+    ... elements.body = {type = "mass", at = "x", m = "m"}
+    ... elements.loss = {type = "damper", between = ["x", "ground"], b = "b"}
+    ... inputs.F = {force = "x"}
+    ... outputs.V = "s*x"
+    ... '''))
+    >>> build_nested(G).size
+    4
+    """
+    size = tf.size
+    if size > OPERATION_LIMIT:
+        message = f"a program for {tf.name} would have {size} operations, more than {OPERATION_LIMIT}"
+        raise BudgetError(Diagnostic("SF503", message, None, "evaluate it with the Python interface"))
+    forge = Forge()
+    program = tf.program
+    parameters = {p.name for p in tf.model.parameters}
+    constants = {c.generator: c.expression for c in tf.constants}
+
+    def generator(position: int) -> int:
+        name = program.names[position]
+        if name == LAPLACE:
+            return forge.s
+        if name == PI:
+            return forge.constant(1, 1)
+        return forge.parameter(name) if name in parameters else constant_of(forge, tf.model, constants[name])
+
+    made = program.values(
+        program.operations(tf.steps),
+        name=generator,
+        number=lambda x: forge.divide(forge.constant(x.numerator), forge.constant(x.denominator)),
+        negative=forge.negate,
+        total=forge.add,
+        product=forge.multiply,
+        quotient=forge.divide,
+        power=forge.power,
+    )
+    for i, name in step_names(tf).items():
+        forge.label(forge.signed(made[i])[1], name)
+    whole = forge.divide(made[tf.num], made[tf.den])
+    return schedule(forge, tuple(p.name for p in tf.parameters), whole, None, inf)

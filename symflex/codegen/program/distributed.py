@@ -28,8 +28,10 @@ from symflex.codegen.program.exponents import (
     in_lengths,
     in_other_lengths,
 )
-from symflex.codegen.program.forge import Forge
-from symflex.codegen.program.local_basis import (
+from symflex.codegen.program.forge import Forge, straight
+from symflex.codegen.program.modal import CIRCLE, MODAL_REACHES, build_modal, declared_length
+from symflex.codegen.program.nodes import CodePiece, Condition, Piecewise
+from symflex.codegen.program.series import (
     SERIES_ERROR,
     LocalBasis,
     bending_basis,
@@ -37,9 +39,6 @@ from symflex.codegen.program.local_basis import (
     taylor_term,
     wave_basis,
 )
-from symflex.codegen.program.modal import CIRCLE, MODAL_REACHES, build_modal, declared_length
-from symflex.codegen.program.nodes import CodePiece, Condition, Piecewise
-from symflex.codegen.program.schedule import straight
 from symflex.codegen.program.site import Site
 from symflex.errors import BudgetError, Diagnostic
 from symflex.transfer.lowest_terms import cancel

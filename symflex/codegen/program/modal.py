@@ -19,10 +19,9 @@ from flint import nmod_poly
 from symflex.algebra import LAPLACE, PRIME, Factored, degree_in, random_point, residue
 from symflex.algebra.ring import by_powers
 from symflex.budget import spend
-from symflex.codegen.program.forge import Forge
-from symflex.codegen.program.general_series import GeneralSeries
+from symflex.codegen.program.forge import Forge, straight
 from symflex.codegen.program.nodes import CodePiece, Condition, Piecewise, RealNumber
-from symflex.codegen.program.schedule import straight
+from symflex.codegen.program.series import GeneralSeries
 from symflex.codegen.program.site import Site
 from symflex.errors import BudgetError
 

@@ -1,21 +1,36 @@
-"""Integer polynomials as nested products and sums: few operations, and no term computed twice.
+"""Integer polynomials as few operations: nested products and sums, or recurrences found in a determinant.
 
-Input: an exact polynomial and an expression for each of its generators.
-Output: an expression on the forge.
+Input: exact polynomials of one ring, and an expression for each of its generators.
+Output: expressions on the forge; no term, and no equal sub-determinant, is computed twice.
+
+For recurrences a polynomial is split as ``v**k * q + r`` with ``r`` free of v, and q and r are stripped of
+common factors. For masses in series, ``p_k = m_k s^2 u_k + w_k p_(k+1)`` and ``u_k = p_(k+1) + w_k u_(k+1)``
+come out. They grow linearly with the number of masses, where the expanded polynomial grows exponentially; and
+each value is exact for slightly different parameters, so that nothing is lost between resonances, where the
+expanded polynomial cancels.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
+from math import gcd
 from typing import TYPE_CHECKING
+
+import numpy as np
+
+from symflex.algebra import irreducible_factors
+from symflex.errors import BudgetError, Diagnostic
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from flint import fmpz_mpoly
+    from numpy.typing import NDArray
 
+    from symflex.algebra import Ring
     from symflex.codegen.program.forge import Forge
+
 
 Monomial = tuple[int, ...]
 Terms = dict[Monomial, int]
@@ -104,3 +119,200 @@ def _nest(forge: Forge, terms: Mapping[Monomial, int], values: Sequence[int]) ->
         rest = {m: k for m, k in rest.items() if not m[i]}
         summands.append(_nest(forge, inside, values))
     return forge.multiply([*outside, forge.add(summands)])
+
+
+FACTOR_LIMIT = 400
+"""Number of terms up to which a polynomial is factored."""
+
+WORK_LIMIT = 300_000_000
+"""Exponents looked at before the search for structure is given up; about two seconds."""
+
+
+DEPTH_LIMIT = 150
+"""Splits inside one another; a polynomial of so high a degree is better nested by powers of s."""
+
+
+@dataclass(frozen=True, slots=True)
+class Scaled:
+    """``integer * monomial * steps[rest]``; a negative ``rest`` stands for one."""
+
+    integer: int
+    monomial: tuple[int, ...]
+    rest: int
+
+
+@dataclass(frozen=True, slots=True)
+class SumStep:
+    """The sum of its parts."""
+
+    parts: tuple[Scaled, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ProductStep:
+    """An integer times powers of irreducible factors."""
+
+    integer: int
+    parts: tuple[tuple[Scaled, int], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class RecurrencePlan:
+    """How to compute some polynomials together."""
+
+    steps: tuple[SumStep | ProductStep, ...]  # each uses earlier ones only
+    roots: tuple[Scaled, ...]  # the polynomials asked for
+
+
+def plan_recurrences(
+    ring: Ring, polynomials: Sequence[fmpz_mpoly], *, splits_s: bool = False
+) -> RecurrencePlan:
+    """Return how to compute several polynomials of a ring with few operations.
+
+    With ``splits_s`` they are split by s as by any other generator. Where every element has parameters of its
+    own, s runs through all of them and parts nothing; where elements share parameters it may be what parts
+    them. Raises BudgetError: SF503 when they have so little structure that looking for it takes too long.
+    """
+    planner = _Planner(ring, splits_s)
+    roots = planner.plan_all([_Terms.of(polynomial) for polynomial in polynomials])
+    return RecurrencePlan(tuple(planner.steps), roots)
+
+
+def express(forge: Forge, plan: RecurrencePlan, images: RingValues) -> list[tuple[int, int]]:
+    """Return the expressions of a plan's polynomials, and their degrees in s.
+
+    In the far branch the expressions are those of ``polynomial / s**degree``.
+    """
+    known: list[tuple[int, int]] = []
+
+    def scaled(part: Scaled) -> tuple[int, int]:
+        value, degree = known[part.rest] if part.rest >= 0 else (forge.constant(1), 0)
+        factors = [forge.constant(part.integer, part.monomial[images.pi])]
+        for i, exponent in enumerate(part.monomial):
+            if exponent and i != images.pi:
+                degree += exponent * images.degrees[i]
+                # In the far branch s divided by its own power is one.
+                if i or not images.is_far:
+                    factors.append(forge.power(images.values[i], exponent))
+        return forge.multiply([*factors, value]), degree
+
+    for step in plan.steps:
+        if isinstance(step, ProductStep):
+            pairs = [(scaled(part), exponent) for part, exponent in step.parts]
+            factors = [forge.power(value, exponent) for (value, _), exponent in pairs]
+            total = sum(degree * exponent for (_, degree), exponent in pairs)
+            known.append((forge.multiply([forge.constant(step.integer), *factors]), total))
+            continue
+        parts = [scaled(part) for part in step.parts]
+        total = max(degree for _, degree in parts)
+        if images.is_far:
+            inverse = images.values[0]
+            parts = [(forge.multiply([v, forge.power(inverse, total - d)]), d) for v, d in parts]
+        known.append((forge.add([value for value, _ in parts]), total))
+    return [scaled(root) for root in plan.roots]
+
+
+@dataclass(frozen=True, eq=False)
+class _Terms:
+    """A polynomial as a matrix of exponents, one row per term in the ring's order, and coefficients."""
+
+    exponents: NDArray[np.int32]
+    coefficients: tuple[int, ...]
+
+    @staticmethod
+    def of(polynomial: fmpz_mpoly) -> _Terms:
+        exponents = [[int(e) for e in monomial] for monomial in polynomial.monoms()]
+        return _Terms(np.array(exponents, dtype=np.int32), tuple(int(c) for c in polynomial.coeffs()))
+
+    @property
+    def key(self) -> tuple[bytes, tuple[int, ...]]:
+        return self.exponents.tobytes(), self.coefficients
+
+    def stripped(self) -> tuple[int, tuple[int, ...], _Terms]:
+        """Return the integer and the monomial that all terms share, and the rest, its first term positive."""
+        content = self.exponents.min(axis=0)
+        integer = gcd(*self.coefficients)
+        integer = -integer if self.coefficients[0] < 0 else integer
+        rest = _Terms(self.exponents - content, tuple(c // integer for c in self.coefficients))
+        return integer, tuple(content.tolist()), rest
+
+    def parts(self, variable: int) -> tuple[_Terms, _Terms]:
+        """Return the terms with a variable and those without; both exist when there is no content."""
+        has = self.exponents[:, variable] > 0
+        with_it: list[int] = []
+        without: list[int] = []
+        for c, is_in in zip(self.coefficients, has.tolist(), strict=True):
+            (with_it if is_in else without).append(c)
+        return _Terms(self.exponents[has], tuple(with_it)), _Terms(self.exponents[~has], tuple(without))
+
+    def variables(self) -> list[int]:
+        return [int(i) for i in np.flatnonzero(self.exponents.any(axis=0))]
+
+
+@dataclass
+class _Planner:
+    """Finds the steps, the operands of each before itself."""
+
+    ring: Ring
+    splits_s: bool
+    steps: list[SumStep | ProductStep] = field(default_factory=list)
+    _known: dict[tuple[bytes, tuple[int, ...]], int] = field(default_factory=dict)
+    _wanted: set[tuple[bytes, tuple[int, ...]]] = field(default_factory=set)
+    _work: int = 0
+    _depth: int = 0
+
+    def plan_all(self, polynomials: Sequence[_Terms]) -> tuple[Scaled, ...]:
+        """Return several polynomials, planned from the largest: smaller ones are often its parts."""
+        self._wanted.update(polynomial.stripped()[2].key for polynomial in polynomials)
+        found: dict[int, Scaled] = {}
+        for i in sorted(range(len(polynomials)), key=lambda i: -len(polynomials[i].coefficients)):
+            found[i] = self.plan(polynomials[i])
+        return tuple(found[i] for i in range(len(polynomials)))
+
+    def plan(self, terms: _Terms) -> Scaled:
+        """Return a polynomial in terms of the steps found so far and those it adds."""
+        integer, monomial, rest = terms.stripped()
+        if len(rest.coefficients) == 1:
+            return Scaled(integer, monomial, -1)
+        key = rest.key
+        if key not in self._known:
+            self._depth += 1
+            if self._depth > DEPTH_LIMIT:
+                raise _without_structure()
+            step = self._product(rest) or self._split(rest)
+            self._depth -= 1
+            self.steps.append(step)
+            self._known[key] = len(self.steps) - 1
+        return Scaled(integer, monomial, self._known[key])
+
+    def _product(self, terms: _Terms) -> ProductStep | None:
+        """Return the product of the irreducible factors, ``None`` when there is only one."""
+        if len(terms.coefficients) > FACTOR_LIMIT:
+            return None
+        rows = map(tuple, terms.exponents.tolist())
+        polynomial = self.ring.context.from_dict(dict(zip(rows, terms.coefficients, strict=True)))
+        constant, factors = irreducible_factors(polynomial)
+        if len(factors) == 1 and factors[0][1] == 1:
+            return None
+        parts = [(self.plan(_Terms.of(factor)), exponent) for factor, exponent in factors]
+        return ProductStep(constant, tuple(parts))
+
+    def _split(self, terms: _Terms) -> SumStep:
+        every = terms.variables()
+        variables = every if self.splits_s else [i for i in every if i] or every
+        self._work += terms.exponents.size * len(variables)
+        if self._work > WORK_LIMIT:
+            raise _without_structure()
+        parts = min((terms.parts(v) for v in variables), key=self._cost)
+        return SumStep(self.plan_all(parts))
+
+    def _cost(self, parts: tuple[_Terms, _Terms]) -> tuple[int, int]:
+        """Return how many terms, and generators, a split leaves to do; the first of equals is taken."""
+        rests = [part.stripped()[2] for part in parts]
+        new = [rest for rest in rests if rest.key not in self._wanted]
+        return sum(len(rest.coefficients) for rest in new), sum(len(rest.variables()) for rest in new)
+
+
+def _without_structure() -> BudgetError:
+    message = "the closed form has too little structure for recurrences"
+    return BudgetError(Diagnostic("SF503", message, None, "give more parameters numbers, or split the model"))

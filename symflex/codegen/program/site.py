@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from symflex.algebra import LAPLACE
 from symflex.codegen.program.build import Generators
-from symflex.codegen.program.local_basis import series_length
 from symflex.codegen.program.polynomials import evaluate_polynomial
+from symflex.codegen.program.series import series_length
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
         Term,
     )
     from symflex.codegen.program.forge import Forge
-    from symflex.codegen.program.local_basis import LocalBasis
+    from symflex.codegen.program.series import LocalBasis
     from symflex.transfer import TransferFunction
 
 MINUS_J = (0, -1)
@@ -419,11 +419,7 @@ class Site:
         one, two = forge.constant(1), forge.constant(2)
         t = self._labelled(forge.apply("tan", self.angle(i, j, forge.constant(step / 2))), "t_half")
         square = forge.multiply([t, t])
-        return (
-            forge.add([one, forge.negate(square)]),
-            forge.multiply([two, t]),
-            forge.add([one, square]),
-        )
+        return (forge.add([one, forge.negate(square)]), forge.multiply([two, t]), forge.add([one, square]))
 
     def _oscillation(self, i: int, j: int, step: Fraction, multiple: int) -> tuple[int, int]:
         """Return cosine and sine of a multiple of an angle, times that power of the same factor."""

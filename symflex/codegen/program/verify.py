@@ -16,10 +16,9 @@ import numpy as np
 from flint import acb, arb, ctx
 
 from symflex.budget import spend
-from symflex.codegen.program.build import available_forms, build_program
+from symflex.codegen.program.build import available_forms, build_nested, build_program
 from symflex.codegen.program.distributed import build_piecewise, build_real, reaches_of
 from symflex.codegen.program.evaluate import evaluate, nearest_double
-from symflex.codegen.program.nested import build_nested
 from symflex.codegen.program.positive_frequencies import for_positive, in_half_angles
 from symflex.errors import BudgetError, ModelError
 from symflex.transfer import BoundNested, NestedTransferFunction, bind, bind_nested
@@ -178,9 +177,7 @@ def frequency_text(hertz: Fraction) -> str:
 
 
 def choose_programs(
-    tf: AnyTransferFunction,
-    band_hz: tuple[Fraction, Fraction] | None = None,
-    samples: int = SAMPLES,
+    tf: AnyTransferFunction, band_hz: tuple[Fraction, Fraction] | None = None, samples: int = SAMPLES
 ) -> tuple[tuple[Piecewise, Verification], tuple[Piecewise, Verification] | None]:
     """Return the program of the form with the smallest measured error, and the measurement; twice.
 

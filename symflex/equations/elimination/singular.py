@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from symflex.algebra import Factored
     from symflex.algebra.propagators import Propagation
-    from symflex.algebra.taylor import TaylorField
+    from symflex.algebra.vanishing import TaylorField
     from symflex.equations import Equations
     from symflex.errors import Span
     from symflex.library.elements import EquationRow, LinearForm, Variable
@@ -177,8 +177,11 @@ def _number(
 def _point_of_kernels(
     equations: Equations, propagation: Propagation
 ) -> tuple[TaylorField, dict[str, nmod_poly]]:
-    from symflex.algebra.origin import find_point  # only with beams
-    from symflex.algebra.taylor import TaylorField, random_values
+    from symflex.algebra.vanishing import (
+        TaylorField,
+        find_point,  # only with beams
+        random_values,
+    )
 
     ring = propagation.kernel_ring
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from flint import arb
 
-from symflex.algebra.origin import OriginSeries
+from symflex.algebra.vanishing import OriginSeries
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.roots.counting.winding import Cell, RootOnPathError
 from symflex.roots.precision import precision

@@ -8,13 +8,10 @@ import mpmath as mp
 import pytest
 
 from symflex.algebra import Dispersion, Factored, Ring
-from symflex.algebra.exponentials import Exponentials
-from symflex.algebra.multiple_angles import lift
+from symflex.algebra.exponentials import Exponentials, lift
 from symflex.algebra.normal_form import NormalForm
-from symflex.algebra.origin import OriginSeries
 from symflex.algebra.propagators import propagate
-from symflex.algebra.taylor import TaylorField, primes, square_root
-from symflex.algebra.vanishing import Vanishing
+from symflex.algebra.vanishing import OriginSeries, TaylorField, Vanishing, primes, square_root
 from symflex.errors import BudgetError
 from symflex.transfer.lowest_terms import cancel
 

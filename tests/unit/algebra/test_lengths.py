@@ -7,7 +7,7 @@ from fractions import Fraction
 import pytest
 
 from symflex.algebra import Factored, Ring
-from symflex.algebra.lengths import length_base
+from symflex.algebra.propagators import length_base
 
 RING = Ring(("s", "l", "x", "d"))
 L, X, D = (Factored.generator(RING, name) for name in ("l", "x", "d"))
@@ -56,7 +56,7 @@ def test_quotients_that_no_given_length_divides_have_a_base_of_their_own():
 
 def test_a_base_is_made_where_too_many_subsets_would_have_to_be_tried(monkeypatch):
     assert length_base([L * 2, L]).base[0].unit == 1
-    monkeypatch.setattr("symflex.algebra.lengths.SUBSET_LIMIT", 1)
+    monkeypatch.setattr("symflex.algebra.propagators.SUBSET_LIMIT", 1)
     lengths = [L * 2, X, L]
     found = length_base(lengths)
     assert [(recombined(found, i) - length).is_zero for i, length in enumerate(lengths)] == [True] * 3

@@ -8,10 +8,8 @@ import pytest
 from flint import fmpz
 
 from symflex.algebra import Dispersion, Factored, Ring
-from symflex.algebra.origin import OriginSeries, find_point
 from symflex.algebra.propagators import propagate
-from symflex.algebra.taylor import BASE, TaylorField, primes
-from symflex.algebra.vanishing import Vanishing
+from symflex.algebra.vanishing import BASE, OriginSeries, TaylorField, Vanishing, find_point, primes
 
 RING = Ring(("s", "r", "p", "l", "x"))
 S, R, P, L, X = (Factored.generator(RING, name) for name in RING.names)

@@ -6,7 +6,7 @@ from math import factorial, log
 import mpmath
 import pytest
 
-from symflex.codegen.program.local_basis import LocalBasis, series_length, taylor_term
+from symflex.codegen.program.series import LocalBasis, series_length, taylor_term
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ import symflex
 from symflex.codegen.infix import in_lines
 from symflex.codegen.julia import JULIA, module_name
 from symflex.codegen.matlab import MATLAB, NAMES, main_name
-from symflex.codegen.program.user_text import identifiers
+from symflex.codegen.module_text import identifiers
 from tests.house.repository import slow_ones
 from tests.unit.codegen.exportable import DERIVATIONS, derived
 

@@ -6,8 +6,8 @@ import pytest
 from benchmarks.networks import chain, network
 from symflex import pipeline
 from symflex.codegen.module_text import formula_lines
+from symflex.codegen.program.build import build_nested
 from symflex.codegen.program.evaluate import evaluate
-from symflex.codegen.program.nested import build_nested
 from symflex.codegen.program.verify import choose_programs
 from symflex.codegen.python import NUMPY
 from symflex.errors import BudgetError
@@ -60,7 +60,7 @@ def test_without_values_a_few_missing_ones_are_named():
 
 
 def test_a_program_beyond_the_limit_is_refused(monkeypatch):
-    monkeypatch.setattr("symflex.codegen.program.nested.OPERATION_LIMIT", 100)
+    monkeypatch.setattr("symflex.codegen.program.build.OPERATION_LIMIT", 100)
     (tf,) = pipeline.derive_nested(network(chain(30)), [("X_first", "F")])
     with pytest.raises(BudgetError) as caught:
         build_nested(tf)

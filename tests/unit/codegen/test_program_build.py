@@ -250,6 +250,6 @@ def test_a_ratio_of_degree_180_over_180_does_not_overflow(form, s):
 
 
 def test_recurrences_give_up_on_a_polynomial_nested_too_deeply(monkeypatch):
-    monkeypatch.setattr("symflex.codegen.program.recurrence.DEPTH_LIMIT", 3)
+    monkeypatch.setattr("symflex.codegen.program.polynomials.DEPTH_LIMIT", 3)
     with pytest.raises(BudgetError, match="structure"):
         build_program(EIGHT[0], "closed")

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from symflex.codegen.program.user_text import identifiers, inert, wrapped
+from symflex.codegen.module_text import identifiers, inert, wrapped
 
 RESERVED = frozenset({*keyword.kwlist, "np", "s"})
 

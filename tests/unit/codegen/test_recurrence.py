@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from symflex import pipeline
-from symflex.codegen.program.recurrence import SumStep, plan_recurrences
+from symflex.codegen.program.polynomials import SumStep, plan_recurrences
 
 
 def chain(count):

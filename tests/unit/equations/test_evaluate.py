@@ -9,7 +9,7 @@ import pytest
 
 from symflex import pipeline
 from symflex.algebra import PRIME, Factored, Ring, residue
-from symflex.equations.coefficients import read_equation
+from symflex.equations.distributed import read_equation
 from symflex.equations.evaluate import ExactEvaluator, exact_root, extent
 from symflex.errors import BudgetError, ModelError, Source, Span, Text
 from symflex.expressions import Name, format_expression, names, parse_equation

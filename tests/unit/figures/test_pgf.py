@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from symflex import pipeline
-from symflex.codegen.targets.latex import LatexExporter
+from symflex.codegen.latex import LatexExporter
 from symflex.errors import UsageError
 from symflex.figures import FIGURES, draw, render
 from symflex.figures.save import pgf_text

@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from symflex import pipeline
-from symflex.codegen.targets.latex import LatexExporter
+from symflex.codegen.latex import LatexExporter
 from symflex.print.forms import print_form
 from symflex.print.latex import DOCUMENT, latex_files
 from tests.unit.codegen.test_numpy_hostile import HOSTILE
@@ -93,7 +93,7 @@ def test_names_of_files_are_letters_whatever_the_function_is_called(model):
 
 
 def test_a_map_that_cannot_be_found_is_told_and_left_out(model, monkeypatch):
-    from symflex.codegen.targets import latex
+    from symflex.codegen import latex
     from symflex.errors import Diagnostic, UncertifiedError
 
     def refuse(*_, **__):

@@ -8,7 +8,7 @@ from flint import acb, ctx
 
 from symflex import pipeline
 from symflex.algebra import degree_in
-from symflex.algebra.origin import OriginSeries
+from symflex.algebra.vanishing import OriginSeries
 from symflex.errors import ModelError
 from symflex.transfer import bind
 

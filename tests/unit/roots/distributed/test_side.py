@@ -10,7 +10,7 @@ import mpmath
 import pytest
 
 from symflex.algebra import Factored
-from symflex.algebra.origin import OriginSeries
+from symflex.algebra.vanishing import OriginSeries
 from symflex.budget import Budget
 from symflex.errors import BudgetError, UncertifiedError
 from symflex.roots import Band, Modes, Rectangle

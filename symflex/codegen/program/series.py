@@ -1,8 +1,13 @@
-"""Polynomials in fundamental functions as power series in the size of all lengths together.
+"""What is expanded for small lengths: solutions of equations in one length, and power series in all of them.
 
-Input: a polynomial over a ring whose kernels are derivatives of fundamental functions and exponentials.
-Output: its Taylor coefficients, exact polynomials in s and the parameters. What cancels for small lengths,
-or divides by a power of s, does so here and not in rounded numbers.
+A sum of exponentials ``exp(Lambda x)`` solves the equation whose characteristic roots are all the Lambda.
+Completed by their images under the symmetries of the wavenumbers, its coefficients are polynomials in those
+of the dispersion relation; a combination of its solutions with the exact derivatives at x = 0 holds no terms
+that cancel for small x.
+
+Polynomials in fundamental functions and exponentials are power series in the size of all lengths together;
+their Taylor coefficients are exact polynomials in s and the parameters. What cancels for small lengths, or
+divides by a power of s, does so here and not in rounded numbers.
 """
 
 from __future__ import annotations
@@ -10,22 +15,135 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from math import comb, factorial
+from math import comb, factorial, inf, lgamma, log, prod
 from typing import TYPE_CHECKING
 
 from flint import Ordering, fmpz_mpoly_ctx
 
 from symflex.algebra import Factored, common_denominator
+from symflex.algebra.ring import Ring, by_powers
 from symflex.budget import spend
-from symflex.codegen.program.local_basis import SERIES_ERROR, taylor_term
 from symflex.errors import BudgetError, Diagnostic
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from flint import fmpz_mpoly
 
     from symflex.algebra import Dispersion, Kernel, KernelTable, Ring
+
+
+SERIES_ERROR = log(1e-19)
+"""Logarithm of the first term left out, over the largest."""
+
+Polynomial = tuple[int, ...]
+"""Ascending integer coefficients."""
+
+
+@dataclass(frozen=True, slots=True)
+class LocalBasis:
+    """Solutions of the equation with characteristic polynomial ``x^n + c_(n-1) x^(n-1) + ... + c_0``."""
+
+    # 2 for waves, 4 for bending: every solution is ``x^k`` times a series in ``(w x)^step``, w the
+    # wavenumber. 1 for a pair of wavenumbers.
+    step: int
+    order: int  # number of solutions; solution k has derivative k at zero equal to 1, the others below n zero
+    # ``c_0, ..., c_(n-1)`` as polynomials in e and f, over powers of the wavenumber for a step of 2 or 4.
+    coefficients: tuple[Mapping[tuple[int, int], int], ...]
+
+    def series(self, solution: int, size: float) -> tuple[Fraction, ...]:
+        """Return the coefficients of powers of ``(w x)^step`` in a solution over ``x^solution``.
+
+        It is used up to an exponent of some size.
+        """
+        whole = [c.get((0, 0), 0) for c in self.coefficients]
+        derivatives = [int(i == solution) for i in range(self.order)]
+        found: list[Fraction] = []
+        m = 0
+        while m <= solution + self.step or taylor_term(size, m) > SERIES_ERROR:
+            if m >= self.order:
+                derivatives.append(-sum(c * derivatives[m - self.order + i] for i, c in enumerate(whole)))
+            if m >= solution and (m - solution) % self.step == 0:
+                found.append(Fraction(derivatives[m], factorial(m)))
+            m += 1
+        while len(found) > 1 and not found[-1]:
+            found.pop()
+        return tuple(found)
+
+
+def taylor_term(size: float, order: int) -> float:
+    """Return the logarithm of ``size^order/order!``, whose parts may each exceed a double."""
+    return order * (log(size) if size else -inf) - lgamma(order + 1) if order else 0.0
+
+
+def series_length(size: float) -> int:
+    """Return how many derivatives a Taylor series needs up to an exponent of the given size."""
+    m = 1
+    while taylor_term(size, m) > SERIES_ERROR:
+        m += 1
+    return m + 1
+
+
+def wave_basis(exponents: Iterable[Sequence[tuple[int, int]]]) -> LocalBasis:
+    """Return the basis for exponents ``a*gamma``."""
+    roots = sorted({sign * a for ((a, _),) in exponents for sign in (1, -1)})
+    return _basis(2, [(r, 0) for r in roots])
+
+
+def bending_basis(exponents: Iterable[Sequence[tuple[int, int]]]) -> LocalBasis:
+    """Return the basis for exponents ``(a + j b)*mu``."""
+    roots: set[tuple[int, int]] = set()
+    for ((a, b),) in exponents:
+        for x, y in ((a, b), (-b, a)):
+            roots |= {(x, y), (-x, -y), (x, -y), (-x, y)}
+    return _basis(4, sorted(roots))
+
+
+def _basis(step: int, roots: Sequence[tuple[int, int]]) -> LocalBasis:
+    polynomial: list[tuple[int, int]] = [(1, 0)]
+    for real, imaginary in roots:
+        longer = [(0, 0), *polynomial]
+        for i, (x, y) in enumerate(polynomial):
+            below = longer[i]
+            longer[i] = (below[0] - (x * real - y * imaginary), below[1] - (x * imaginary + y * real))
+        polynomial = longer
+    return LocalBasis(step, len(roots), tuple({(0, 0): x} for x, _ in polynomial[:-1]))
+
+
+def pair_basis(exponents: Iterable[Sequence[tuple[int, int]]]) -> LocalBasis:
+    """Return the basis for exponents ``a*lambda_1 + b*lambda_2``."""
+    orbits = sorted({tuple(sorted((abs(a), abs(b)), reverse=True)) for (a, _), (b, _) in exponents})
+    whole = prod((_orbit(a, b) for a, b in orbits), start=SYMMETRIC.constant(1))
+    powers = by_powers(SYMMETRIC, whole)
+    order = max(powers)
+    return LocalBasis(
+        1,
+        order,
+        tuple(
+            {(int(p), int(q)): int(c) for (_, p, q), c in powers[n].terms()} if n in powers else {}
+            for n in range(order)
+        ),
+    )
+
+
+SYMMETRIC = Ring(("x", "e", "f"))
+"""Of polynomials in x, ``e = lambda_1^2 + lambda_2^2`` and ``f = lambda_1^2 lambda_2^2``."""
+
+
+def _orbit(a: int, b: int) -> fmpz_mpoly:
+    """Return the polynomial in x whose roots are all images of ``a*lambda_1 + b*lambda_2``."""
+    x, e, f = SYMMETRIC.context.gens()
+    if a == 0:
+        return x
+    if b == 0:
+        # (x^2 - a^2 lambda_1^2)(x^2 - a^2 lambda_2^2)
+        return x**4 - a**2 * e * x**2 + a**4 * f
+    if a == b:
+        return (x**2 - a**2 * e) ** 2 - 4 * a**4 * f
+    squares = a**2 + b**2
+    q = x**4 - squares * e * x**2 + a**2 * b**2 * e**2 + (a**2 - b**2) ** 2 * f
+    return q**2 - 4 * a**2 * b**2 * f * ((2 * x**2 - squares * e) ** 2 - 2 * q) + 16 * a**4 * b**4 * f**2
+
 
 WORK_LIMIT = 60_000
 """Terms that one step may hold before such a series is given up."""
