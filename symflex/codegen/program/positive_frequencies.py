@@ -11,8 +11,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import comb, gcd, lcm
+from functools import reduce
+from math import gcd, lcm
 from typing import TYPE_CHECKING
+
+from flint import Ordering, fmpq, fmpq_mpoly_ctx
 
 from symflex.codegen.program.nodes import (
     Add,
@@ -34,6 +37,8 @@ from symflex.codegen.program.nodes import (
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
+
+    from flint import fmpq_mpoly
 
 
 TWO = RealNumber(Fraction(2))
@@ -129,8 +134,18 @@ def _signed(node: CodeNode, constants: set[str]) -> CodeNode | None:
 NEXT_TO_ZERO = 1e-6
 """Of the square of an argument below which series are used, the part that is left to them."""
 
-_Monomial = tuple[Fraction, dict[CodeNode, int]]
-_Polynomial = dict[tuple[int, int], Fraction]
+CONTEXT = fmpq_mpoly_ctx.get(("t", "other"), Ordering.lex)
+"""Polynomials in ``t_half`` and ``decay``; in the end, in t and h."""
+
+T, OTHER = CONTEXT.gens()
+
+_Powers = dict[CodeNode, int]
+"""A product of powers of expressions."""
+
+_Value = tuple[_Powers, "fmpq_mpoly"]
+"""A product of powers, its sign among them, times a polynomial."""
+
+MINUS: _Value = ({Negate(RealNumber(Fraction(1))): 1}, CONTEXT.constant(1))
 
 
 def _half_angles(piece: CodePiece) -> tuple[CodePiece, bool] | None:
@@ -139,51 +154,47 @@ def _half_angles(piece: CodePiece) -> tuple[CodePiece, bool] | None:
     ``None`` when it is not of that kind or not shorter.
     """
     reader = _HalfAngleReader({a.name: a.value for a in (*piece.code.constants, *piece.code.assignments)})
-    found = reader.found()
-    if found is None:
+    try:
+        law, half = reader.argument()
+        (front, above), (back, below) = (reader.value(v) for v in piece.code.values)
+    except _OtherKindError:
         return None
-    law, half = found
-    sides = [reader.split(v) for v in piece.code.values]
-    if any(s is None for s in sides):
-        return None
-    (front, above), (back, below) = (s for s in sides if s is not None)
-    if not all(any(not d for _, d in p) for p in (above, below)):
+    if not all(any(not d for _, d in p.monoms()) for p in (above, below)):
         # What decays with the length would be a difference of numbers near one.
         return None
-    degree = max(d for p in (above, below) for _, d in p)
+    degree = max(d for p in (above, below) for _, d in p.monoms())
     unit, (above, below) = _primitive([_hyperbolic(p, degree) for p in (above, below)])
-    gain = _product((unit, {}), _product(front, back, -1))
+    gain = _product((front, CONTEXT.constant(unit)), (back, CONTEXT.constant(1)), -1)
     # omega and mu by x/2 = sqrt(half^2 * law * omega) = half * mu
-    omega, mu = gain[1].pop(Laplace(), 0), gain[1].pop(reader.mu, 0)
+    omega, mu = gain[0].pop(Laplace(), 0), gain[0].pop(Assigned("mu"), 0)
     power = mu + 2 * omega
-    gain = _product(gain, law, -omega)
-    gain = _product(gain, half, -power)
-    square = _fraction(_product(_product(half, half), law))
+    gain = _product(_product(gain, law, -omega), half, -power)
     names = [Assigned(n) for n in ("x_half", "t_half", "h_half", "t_h")]
     x, t, h, both = names
-    constants = [Assignment("c_square", square)]
     values = [_sum(p, t, h, both) for p in (above, below)]
-    size = _product((Fraction(1), {}), gain, 1 if power >= 0 else -1)
-    constants.append(Assignment("c_gain", _fraction(size)))
+    size = _product(({}, CONTEXT.constant(1)), gain, 1 if power >= 0 else -1)
     side = 0 if power >= 0 else 1
     values[side] = Multiply((Assigned("c_gain"), *[x] * abs(power), values[side]))
-    assignments = [
+    constants = (
+        Assignment("c_square", _fraction(_product(_product(half, half), law))),
+        Assignment("c_gain", _fraction(size)),
+    )
+    assignments = (
         Assignment("x_half", Apply("sqrt", Multiply((Assigned("c_square"), Laplace())))),
         Assignment("t_half", Apply("tan", x)),
         Assignment("h_half", Apply("tanh", x)),
         Assignment("t_h", Multiply((t, h))),
-    ]
-    whole = Straight((*piece.code.constants, *constants), tuple(assignments), ())
-    code = whole.needed(values)
+    )
+    code = Straight((*piece.code.constants, *constants), assignments, ()).needed(values)
     if _cost(code) >= _cost(piece.code):
         return None
     return replace(piece, code=code), _is_regular(above) and _is_regular(below)
 
 
-def _is_regular(polynomial: _Polynomial) -> bool:
+def _is_regular(polynomial: fmpq_mpoly) -> bool:
     """Tell whether the terms of lowest degree do not cancel where t and h are equal."""
-    lowest = min(i + j for i, j in polynomial)
-    signs = {v > 0 for (i, j), v in polynomial.items() if i + j == lowest}
+    lowest = min(map(sum, polynomial.monoms()))
+    signs = {v > 0 for m, v in polynomial.terms() if sum(m) == lowest}
     return len(signs) == 1
 
 
@@ -192,32 +203,32 @@ def _cost(code: Straight) -> int:
     return sum(max(len(n.children) - 1, 0) + isinstance(n, Apply) for r in roots for n in r.walk())
 
 
+class _OtherKindError(Exception):
+    """An expression is no product of powers and a polynomial."""
+
+
 @dataclass(frozen=True)
 class _HalfAngleReader:
     """Reads a piece's expressions as products of powers and polynomials of ``t_half`` and ``decay``."""
 
     values: Mapping[str, CodeNode]
 
-    @property
-    def mu(self) -> CodeNode:
-        return Assigned("mu")
-
-    def found(self) -> tuple[_Monomial, _Monomial] | None:
-        """Return mu^2/omega and half the argument over mu, if there is one of each."""
+    def argument(self) -> tuple[_Value, _Value]:
+        """Return mu^2/omega and half the argument over mu."""
         applied = [n for v in self.values.values() for n in v.walk() if isinstance(n, Apply)]
-        functions = [n.function for n in applied if any(self._varies(c) for c in n.children)]
+        functions = sorted(n.function for n in applied if any(self._varies(c) for c in n.children))
         match self.values.get("mu"), self.values.get("t_half"), self.values.get("decay"):
             case Apply("sqrt", square), Apply("tan", angle), Apply("exp", exponent):
-                pass
+                law, half, whole = (self.value(n) for n in (square, angle, exponent))
             case _:
-                return None
-        law, half, whole = (self.monomial(n) for n in (square, angle, exponent))
-        if sorted(functions) != ["exp", "sqrt", "tan"] or law is None or half is None or whole is None:
-            return None
-        if _product(whole, half, -1) != (Fraction(-2), dict[CodeNode, int]()) or half[1].pop(self.mu, 0) != 1:
-            return None
-        if law[1].pop(Laplace(), 0) != 1 or any(self._varies(n) for n in (*law[1], *half[1])):
-            return None
+                raise _OtherKindError
+        powers, quotient = _product(whole, half, -1)
+        is_such = (
+            functions == ["exp", "sqrt", "tan"] and powers == MINUS[0] and quotient == CONTEXT.constant(2)
+        )
+        is_linear = half[0].pop(Assigned("mu"), 0) == 1 and law[0].pop(Laplace(), 0) == 1
+        if not is_such or not is_linear or any(self._varies(n) for n in (*law[0], *half[0])):
+            raise _OtherKindError
         return law, half
 
     def _varies(self, node: CodeNode) -> bool:
@@ -226,149 +237,87 @@ class _HalfAngleReader:
             for n in node.walk()
         )
 
-    def monomial(self, node: CodeNode) -> _Monomial | None:
-        """Return an expression as a product of powers; sums and functions free of s count as symbols."""
+    def value(self, node: CodeNode) -> _Value:
+        """Return the value of an expression; sums and functions free of s count as symbols."""
         match node:
-            case RealNumber(value, 0):
-                return value, {}
-            case Negate(operand):
-                inner = self.monomial(operand)
-                return None if inner is None else (-inner[0], inner[1])
-            case Multiply(factors):
-                result: _Monomial | None = (Fraction(1), {})
-                for factor in factors:
-                    own = self.monomial(factor)
-                    result = None if result is None or own is None else _product(result, own)
-                return result
-            case Divide(above, below):
-                left, right = self.monomial(above), self.monomial(below)
-                return None if left is None or right is None else _product(left, right, -1)
-            case IntegerPower(base, exponent):
-                inner = self.monomial(base)
-                return None if inner is None else _product((Fraction(1), {}), inner, exponent)
-            case Assigned(name) if name not in ("mu", "t_half", "decay"):
-                named = self.values[name]
-                is_symbol = isinstance(named, Apply | Add) and not self._varies(named)
-                return (Fraction(1), {node: 1}) if is_symbol else self.monomial(named)
-            case Assigned("mu") | ParameterValue() | RealNumber() | Laplace():
-                return Fraction(1), {node: 1}
-        return None if self._varies(node) else (Fraction(1), {node: 1})
-
-    def split(self, node: CodeNode) -> tuple[_Monomial, _Polynomial] | None:
-        """Return an expression as a product of powers times a polynomial with numbers for coefficients."""
-        if isinstance(node, Negate):
-            inner = self.split(node.operand)
-            return None if inner is None else (_product((Fraction(-1), {}), inner[0]), inner[1])
-        factors = node.factors if isinstance(node, Multiply) else (node,)
-        front: _Monomial = (Fraction(1), {})
-        rest: _Polynomial = {(0, 0): Fraction(1)}
-        for factor in factors:
-            polynomial = self.polynomial(factor)
-            if polynomial is not None:
-                rest = _convolved(rest, polynomial)
-                continue
-            if isinstance(factor, Multiply):
-                inner = self.split(factor)
-                if inner is None:
-                    return None
-                front, rest = _product(front, inner[0]), _convolved(rest, inner[1])
-                continue
-            own = self.monomial(factor)
-            if own is None:
-                return None
-            front = _product(front, own)
-        return front, rest
-
-    def polynomial(self, node: CodeNode) -> _Polynomial | None:
-        """Return a polynomial in ``t_half`` and ``decay``."""
-        match node:
-            case RealNumber(value, 0):
-                return {(0, 0): value}
+            case RealNumber(number, 0):
+                return {}, CONTEXT.constant(number.numerator) / number.denominator
             case Assigned("t_half"):
-                return {(1, 0): Fraction(1)}
+                return {}, T
             case Assigned("decay"):
-                return {(0, 1): Fraction(1)}
-            case Assigned("mu"):
-                return None
-            case Assigned(name):
-                return self.polynomial(self.values[name])
+                return {}, OTHER
+            case Assigned(name) if name != "mu":
+                named = self.values[name]
+                if self._varies(named) or not isinstance(named, Apply | Add):
+                    return self.value(named)
             case Negate(operand):
-                inner = self.polynomial(operand)
-                return None if inner is None else {k: -v for k, v in inner.items()}
-            case Add(parts) | Multiply(parts):
-                polynomials = [p for x in parts if (p := self.polynomial(x)) is not None]
-                if len(polynomials) < len(parts):
-                    return None
-                result = polynomials[0]
-                for p in polynomials[1:]:
-                    result = _convolved(result, p) if isinstance(node, Multiply) else _added(result, p)
-                return result
-        return None
+                return _product(self.value(operand), MINUS)
+            case Divide(above, below):
+                return _product(self.value(above), self.value(below), -1)
+            case IntegerPower(base, exponent):
+                return _product(({}, CONTEXT.constant(1)), self.value(base), exponent)
+            case Multiply(factors):
+                return reduce(_product, map(self._part, factors))
+            case Add(terms) if self._varies(node):
+                parts = [self._part(x) for x in terms]
+                if not any(powers for powers, _ in parts):
+                    return {}, sum((p for _, p in parts), CONTEXT.constant(0))
+        if self._varies(node) and node not in (Laplace(), Assigned("mu")):
+            raise _OtherKindError
+        return {node: 1}, CONTEXT.constant(1)
+
+    def _part(self, node: CodeNode) -> _Value:
+        """Return the value of a part of an expression; minus a polynomial is a polynomial."""
+        powers, polynomial = self.value(node)
+        return ({}, -polynomial) if powers == MINUS[0] else (powers, polynomial)
 
 
-def _product(left: _Monomial, right: _Monomial, power: int = 1) -> _Monomial:
+def _product(left: _Value, right: _Value, power: int = 1) -> _Value:
     """Return ``left * right**power``."""
-    symbols = dict(left[1])
-    for node, exponent in right[1].items():
-        symbols[node] = symbols.get(node, 0) + exponent * power
-    return left[0] * right[0] ** power, {n: e for n, e in symbols.items() if e}
+    if power < 0 and not right[1].is_constant():
+        raise _OtherKindError
+    powers = dict(left[0])
+    for node, exponent in right[0].items():
+        powers[node] = powers.get(node, 0) + exponent * power
+    polynomial = left[1] * right[1] ** power if power >= 0 else left[1] / right[1] ** -power
+    return {n: e for n, e in powers.items() if (e % 2 if n in MINUS[0] else e)}, polynomial
 
 
-def _fraction(value: _Monomial) -> CodeNode:
-    """Return a product of powers as an expression."""
-    number, symbols = value
+def _fraction(value: _Value) -> CodeNode:
+    """Return a product of powers and a number as an expression."""
+    powers = {node: exponent for node, exponent in value[0].items() if node not in MINUS[0]}
+    number = value[1].leading_coefficient()
     sides: list[list[CodeNode]] = [[], []]
-    for side, whole in enumerate((abs(number.numerator), number.denominator)):
-        if whole != 1:
-            sides[side].append(RealNumber(Fraction(whole)))
-    for node, exponent in symbols.items():
+    for own, whole in zip(sides, (int(number.p), int(number.q)), strict=True):
+        own.extend([RealNumber(Fraction(whole))] if whole != 1 else [])
+    for node, exponent in powers.items():
         sides[exponent < 0].append(node if abs(exponent) == 1 else IntegerPower(node, abs(exponent)))
     above, below = (
         own[0] if len(own) == 1 else Multiply(tuple(own)) if own else RealNumber(Fraction(1)) for own in sides
     )
     whole_node = Divide(above, below) if sides[1] else above
-    return Negate(whole_node) if number < 0 else whole_node
+    return whole_node if len(powers) == len(value[0]) else Negate(whole_node)
 
 
-def _added(left: _Polynomial, right: _Polynomial) -> _Polynomial:
-    keys = dict.fromkeys((*left, *right))
-    zero = Fraction(0)
-    return {k: v for k in keys if (v := left.get(k, zero) + right.get(k, zero))}
-
-
-def _convolved(left: _Polynomial, right: _Polynomial) -> _Polynomial:
-    result: _Polynomial = {}
-    for (a, b), x in left.items():
-        result = _added(result, {(a + c, b + d): x * y for (c, d), y in right.items()})
-    return result
-
-
-def _hyperbolic(polynomial: _Polynomial, degree: int) -> _Polynomial:
+def _hyperbolic(polynomial: fmpq_mpoly, degree: int) -> fmpq_mpoly:
     """Return ``(1 + h)**degree`` times a polynomial in t and ``d = (1 - h)/(1 + h)``, in t and h."""
-    result: _Polynomial = {}
-    for (i, j), number in polynomial.items():
-        falling = {(0, k): Fraction(comb(j, k) * (-1) ** k) for k in range(j + 1)}
-        rising = {(0, k): Fraction(comb(degree - j, k)) for k in range(degree - j + 1)}
-        result = _added(result, _convolved({(i, 0): number}, _convolved(falling, rising)))
-    return result
+    terms = (T**i * (1 - OTHER) ** j * (1 + OTHER) ** (degree - j) * c for (i, j), c in polynomial.terms())
+    return sum(terms, CONTEXT.constant(0))
 
 
-def _primitive(polynomials: Sequence[_Polynomial]) -> tuple[Fraction, list[_Polynomial]]:
+def _primitive(polynomials: Sequence[fmpq_mpoly]) -> tuple[fmpq, list[fmpq_mpoly]]:
     """Return the quotient of the contents, and polynomials with whole coefficients that share nothing."""
-    unit, found = Fraction(1), []
-    for side, polynomial in enumerate(polynomials):
-        numbers = list(polynomial.values())
-        size = Fraction(gcd(*(x.numerator for x in numbers)), lcm(*(x.denominator for x in numbers)))
-        unit *= size ** (-1 if side else 1)
-        found.append({k: v / size for k, v in polynomial.items()})
-    return unit, found
+    sizes = [
+        fmpq(gcd(*(int(x.p) for x in p.coeffs())), lcm(*(int(x.q) for x in p.coeffs()))) for p in polynomials
+    ]
+    return sizes[0] / sizes[1], [p / size for p, size in zip(polynomials, sizes, strict=True)]
 
 
-def _sum(polynomial: _Polynomial, t: CodeNode, h: CodeNode, both: CodeNode) -> CodeNode:
+def _sum(polynomial: fmpq_mpoly, t: CodeNode, h: CodeNode, both: CodeNode) -> CodeNode:
     """Return a polynomial in t and h by powers of their product."""
     groups: dict[int, list[CodeNode]] = {}
-    for (i, j), number in sorted(polynomial.items()):
-        shared = min(i, j)
+    for (i, j), coefficient in sorted(polynomial.terms()):
+        number, shared = Fraction(int(coefficient.p), int(coefficient.q)), min(i, j)
         factors = [*([t] * (i - shared)), *([h] * (j - shared))]
         if abs(number) != 1 or not factors:
             factors.insert(0, RealNumber(abs(number)))
