@@ -13,35 +13,11 @@ from textwrap import TextWrapper
 from typing import TYPE_CHECKING, ClassVar
 
 from symflex.codegen.module_text import identifiers
+from symflex.codegen.program import nodes as tree
 from symflex.codegen.program.evaluate import nearest_double
-from symflex.codegen.program.nodes import (
-    ONE,
-    Add,
-    Apply,
-    Assigned,
-    CodeNode,
-    ComplexNumber,
-    Divide,
-    IntegerPower,
-    InverseLaplace,
-    Item,
-    Laplace,
-    LargerRoot,
-    ModalValue,
-    ModeValues,
-    Multiply,
-    Negate,
-    ParameterValue,
-    RealNumber,
-    Roots,
-    Solutions,
-    ToComplex,
-)
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
-
-    from symflex.codegen.program.nodes import Assignment, CodePiece, Condition, Frames, Piecewise
 
 
 _SUM, _PRODUCT, _SIGN, _POWER, LEAF = range(5)
@@ -62,15 +38,15 @@ class InfixPrinter(ABC):
     times: ClassVar[str] = "*"
     over: ClassVar[str] = "/"
 
-    def print(self, node: CodeNode) -> str:
+    def print(self, node: tree.CodeNode) -> str:
         """Return the text of an expression."""
         return self._print(node)[0]
 
-    def quotient(self, numerator: CodeNode, denominator: CodeNode) -> str:
+    def quotient(self, numerator: tree.CodeNode, denominator: tree.CodeNode) -> str:
         """Return the text of a quotient."""
-        return self.print(Divide(numerator, denominator))
+        return self.print(tree.Divide(numerator, denominator))
 
-    def within(self, node: CodeNode, tightest: int) -> str:
+    def within(self, node: tree.CodeNode, tightest: int) -> str:
         """Return the text of an operand, in parentheses when it binds less tightly."""
         text, binding = self._print(node)
         return text if binding >= tightest else f"({text})"
@@ -80,15 +56,15 @@ class InfixPrinter(ABC):
         """The number pi."""
         return "pi"
 
-    def applied(self, function: str, argument: CodeNode) -> str:
+    def applied(self, function: str, argument: tree.CodeNode) -> str:
         """Return the text of an elementary function's value."""
         return f"{function.removeprefix('complex_')}({self.print(argument)})"
 
-    def to_complex(self, operand: CodeNode) -> tuple[str, int]:
+    def to_complex(self, operand: tree.CodeNode) -> tuple[str, int]:
         """Return the text of a real number as a complex one, and how tightly it binds."""
         return f"{self.complex_number(1.0, 0.0)} {self.times} {self.within(operand, _SIGN)}", _PRODUCT
 
-    def piece_number(self, program: Piecewise) -> str:
+    def piece_number(self, program: tree.Piecewise) -> str:
         """Return the sum of ``2**i`` over the tests that hold; empty without tests."""
         terms = []
         for i, condition in enumerate(program.conditions):
@@ -96,11 +72,11 @@ class InfixPrinter(ABC):
             terms.append(f"{2**i} {self.times} ({test})" if i else f"({test})")
         return " + ".join(terms)
 
-    def _holds(self, condition: Condition, *, is_real: bool) -> str:
+    def _holds(self, condition: tree.Condition, *, is_real: bool) -> str:
         if not condition.limit:
-            return f"real({self.print(Multiply((condition.scale, condition.quantity)))}) < 0.0"
+            return f"real({self.print(tree.Multiply((condition.scale, condition.quantity)))}) < 0.0"
         quantity, scale = self.print(condition.quantity), self.print(condition.scale)
-        is_positive = is_real and isinstance(condition.quantity, Laplace)
+        is_positive = is_real and isinstance(condition.quantity, tree.Laplace)
         below = "" if scale == "1.0" else f" {self.over} abs({scale})"
         return f"{quantity if is_positive else f'abs({quantity})'} < {condition.limit!r}{below}"
 
@@ -127,81 +103,81 @@ class InfixPrinter(ABC):
         return f"_{function}({', '.join(arguments)})"
 
     @abstractmethod
-    def frames(self, frames: Frames) -> str:
+    def frames(self, frames: tree.Frames) -> str:
         """Return the frames of a sum of exponentials."""
 
     # -------------------------------------------------------------------------------------------- the tree
 
-    def _print(self, node: CodeNode) -> tuple[str, int]:
+    def _print(self, node: tree.CodeNode) -> tuple[str, int]:
         """Return the text and how tightly it binds."""
         match node:
-            case RealNumber(value, pi_power):
+            case tree.RealNumber(value, pi_power):
                 is_pi = value == 1 and pi_power == 1
                 return self.pi if is_pi else repr(nearest_double(value, pi_power)), LEAF
-            case ComplexNumber(real, imaginary):
+            case tree.ComplexNumber(real, imaginary):
                 return self.complex_number(nearest_double(real), nearest_double(imaginary)), LEAF
-            case ToComplex(operand):
+            case tree.ToComplex(operand):
                 return self.to_complex(operand)
-            case LargerRoot(formula):
+            case tree.LargerRoot(formula):
                 return self._print(formula)
-            case ParameterValue(name):
+            case tree.ParameterValue(name):
                 return self.parameters[name], LEAF
-            case Assigned(name):
+            case tree.Assigned(name):
                 return self.locals[name], LEAF
-            case Laplace():
+            case tree.Laplace():
                 return self.variable, LEAF
-            case InverseLaplace():
+            case tree.InverseLaplace():
                 return self.inverse, LEAF
-            case Add() | Multiply() | Divide() | Negate():
+            case tree.Add() | tree.Multiply() | tree.Divide() | tree.Negate():
                 return self.operation(node)
-            case IntegerPower(base, exponent):
+            case tree.IntegerPower(base, exponent):
                 return self.power(self.within(base, LEAF), exponent), _POWER
-            case Apply(function, argument):
+            case tree.Apply(function, argument):
                 return self.applied(function, argument), LEAF
         return self._with_lists(node), LEAF
 
-    def _with_lists(self, node: CodeNode) -> str:
+    def _with_lists(self, node: tree.CodeNode) -> str:
         """Return the text of what takes lists or gives them."""
         match node:
-            case Solutions(coefficients, terms):
+            case tree.Solutions(coefficients, terms):
                 given = self._listed(coefficients)
                 return (
                     self.call("series_solutions", [given, str(terms)])
                     if terms
                     else self.call("propagated", [given])
                 )
-            case Roots(coefficients):
+            case tree.Roots(coefficients):
                 return self.call("characteristic_roots", [self._listed(coefficients)])
-            case ModeValues(roots, length):
+            case tree.ModeValues(roots, length):
                 return self.call("mode_values", [self.print(roots), self.print(length)])
-            case ModalValue(modes, coefficients, frames):
+            case tree.ModalValue(modes, coefficients, frames):
                 lists = [self._listed(modes), self._listed(coefficients)]
                 return self.call("modal_value", [*lists, self.frames(frames)])
-            case Item(values, position):
+            case tree.Item(values, position):
                 return self.item(self.within(values, LEAF), position)
         message = f"no text for {type(node).__name__}"
         raise TypeError(message)
 
-    def operation(self, node: Add | Multiply | Divide | Negate) -> tuple[str, int]:
+    def operation(self, node: tree.Add | tree.Multiply | tree.Divide | tree.Negate) -> tuple[str, int]:
         """Return the text of a sum, product, quotient or negative number, and how tightly it binds."""
         match node:
-            case Add(terms):
+            case tree.Add(terms):
                 return self._sum(terms), _SUM
-            case Multiply(factors):
+            case tree.Multiply(factors):
                 texts = [self.within(factors[0], _PRODUCT), *(self.within(f, _SIGN) for f in factors[1:])]
                 return f" {self.times} ".join(texts), _PRODUCT
-            case Divide(above, below):
+            case tree.Divide(above, below):
                 return f"{self.within(above, _PRODUCT)} {self.over} {self.within(below, _SIGN)}", _PRODUCT
-            case Negate(operand):
+            case tree.Negate(operand):
                 return f"-{self.within(operand, _POWER)}", _SIGN
 
-    def _listed(self, nodes: Iterable[CodeNode]) -> str:
+    def _listed(self, nodes: Iterable[tree.CodeNode]) -> str:
         return self.listed(self.print(n) for n in nodes)
 
-    def _sum(self, terms: Sequence[CodeNode]) -> str:
+    def _sum(self, terms: Sequence[tree.CodeNode]) -> str:
         text = self.within(terms[0], _PRODUCT)
         for term in terms[1:]:
-            if isinstance(term, Negate):
+            if isinstance(term, tree.Negate):
                 text += f" - {self.within(term.operand, _PRODUCT)}"
             else:
                 text += f" + {self.within(term, _PRODUCT)}"
@@ -232,7 +208,7 @@ class PrivateFunctions(ABC):
     printer: ClassVar[type[InfixPrinter]]
     longest: ClassVar[int | None] = None  # characters of an identifier
 
-    program: Piecewise  # what they compute
+    program: tree.Piecewise  # what they compute
     name: str  # identifier of the public function
     parameters: Mapping[str, str]  # identifiers of the parameters
     reserved: Collection[str]  # identifiers that intermediate values cannot have
@@ -254,7 +230,7 @@ class PrivateFunctions(ABC):
         """Return what the functions take: s or its like, and the parameters."""
         return [variable, *(self.parameters[p] for p in self.program.parameters)]
 
-    def scope(self, assignments: Sequence[Assignment], *words: str) -> tuple[InfixPrinter, list[str]]:
+    def scope(self, assignments: Sequence[tree.Assignment], *words: str) -> tuple[InfixPrinter, list[str]]:
         """Return a printer, and identifiers for the code's own words, the first one s or its like."""
         own = {f"{word} of the code": word for word in words}
         taken = {*self.reserved, *self.parameters.values()}
@@ -262,7 +238,9 @@ class PrivateFunctions(ABC):
         found = [names[key] for key in own]
         return self.printer(self.parameters, names, found[0], found[-1]), found
 
-    def assigned(self, assignments: Sequence[Assignment], printer: InfixPrinter, depth: int = 1) -> list[str]:
+    def assigned(
+        self, assignments: Sequence[tree.Assignment], printer: InfixPrinter, depth: int = 1
+    ) -> list[str]:
         """Return the lines of assignments."""
         lines: list[str] = []
         for a in assignments:
@@ -303,13 +281,13 @@ class NumberFunctions(PrivateFunctions):
     def _call(self, kind: str, variable: str) -> str:
         return f"_{kind}_of_{self.name}({', '.join(self.arguments(variable))})"
 
-    def _lumped(self, program: Piecewise) -> str:
+    def _lumped(self, program: tree.Piecewise) -> str:
         near, far, late = program.near, program.far, program.late
         early = (*near.constants, *near.assignments)
         printer, (s, inverse) = self.scope((*early, *late), "s", "inverse")
         lines = self.assigned(early, printer)
         if far is not None:
-            one = printer.quotient(ONE, Laplace())
+            one = printer.quotient(tree.ONE, tree.Laplace())
             body = [
                 *self.statement(inverse, one, 2),
                 *self.assigned(late, printer, 2),
@@ -318,7 +296,7 @@ class NumberFunctions(PrivateFunctions):
             lines += self.branch(f"abs({s}) > {program.limit!r}", body)
         return self._function("value", s, [*lines, *self.returned(printer.print(near.values[0]))])
 
-    def _choice(self, program: Piecewise) -> str:
+    def _choice(self, program: tree.Piecewise) -> str:
         """Return the function that finds the piece that serves."""
         assignments = (*program.tests.constants, *program.tests.assignments)
         printer, (variable, number) = self.scope(assignments, self.variable, "number")
@@ -338,7 +316,7 @@ class NumberFunctions(PrivateFunctions):
             "value", variable, [*lines, *self.returned(self._call(f"piece_{last}", variable))]
         )
 
-    def _piece(self, program: Piecewise, number: int, piece: CodePiece) -> list[str]:
+    def _piece(self, program: tree.Piecewise, number: int, piece: tree.CodePiece) -> list[str]:
         assignments = (*piece.code.constants, *piece.code.assignments)
         if piece.circle:
             printer, (variable,) = self.scope(assignments, self.variable)

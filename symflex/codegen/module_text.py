@@ -106,20 +106,7 @@ def described(parameter: ModelParameter, name: str) -> str:
 
 
 def value_as_written(parameter: ModelParameter) -> str:
-    """Return a value in the unit it was written in, empty where that is the SI unit of the code.
-
-    Examples
-    --------
-    >>> from symflex import pipeline
-    >>> model = pipeline.loads('''
-    ... symflex = 1
-    ... parameters = {E = "70 GPa", l = "2 m"}
-    ... inputs.u = {}
-    ... outputs.y = "E*l*u"
-    ... ''')
-    >>> [value_as_written(p) for p in model.parameters]
-    ['70 GPa', '']
-    """
+    """Return a value in the unit it was written in, empty where that is the SI unit of the code."""
     value, unit = parameter.as_written()
     if value is None or unit in (parameter.unit, ""):
         return ""

@@ -16,20 +16,8 @@ import numpy as np
 from symflex.algebra import irreducible_factors
 from symflex.codegen.export import Export, shortfalls
 from symflex.codegen.module_text import default_value, described, identifiers, inert, wrapped
+from symflex.codegen.program import nodes as tree
 from symflex.codegen.program.evaluate import evaluate, nearest_double
-from symflex.codegen.program.nodes import (
-    Add,
-    Apply,
-    CodeNode,
-    Divide,
-    IntegerPower,
-    Multiply,
-    Negate,
-    ParameterValue,
-    RealNumber,
-    Straight,
-    lumped,
-)
 from symflex.codegen.program.verify import Verification, measure_values
 from symflex.codegen.python.module import NUMPY_DIALECT, docstring, literal, origin, parameter_table
 from symflex.codegen.python.pieces import WIDTH, PythonPrinter, statement
@@ -196,21 +184,6 @@ def state_space_module(
     has symbols; its functions are measured at some ``samples`` in ``band_hz`` [Hz], by default the model's
     ``[analysis]`` band, else 0.1 Hz to 10 kHz. SF503 when the text would be too long, SF233 when a number
     does not fit in double precision.
-
-    Examples
-    --------
-    >>> from symflex import pipeline
-    >>> model = pipeline.loads('''
-    ... symflex = 1
-    ... parameters = {m = "2 kg", b = "3 N*s/m"}
-    ... elements.body = {type = "mass", at = "x", m = "m"}
-    ... elements.loss = {type = "damper", between = ["x", "ground"], b = "b"}
-    ... inputs.F = {force = "x"}
-    ... outputs.V = "s*x"
-    ... ''')
-    >>> export = state_space_module(pipeline.state_space(model), pipeline.derive_all(model))
-    >>> "A[1, 1] = -b / m" in export.text
-    True
     """
     size = sum(v.size for _, rows, _ in system.matrices for row in rows for v in row.values())
     if size > TERM_LIMIT:
@@ -274,7 +247,7 @@ class _Module:
         for letter, _, shape in self._system.matrices:
             array = np.zeros(shape)
             for place, node in self._entries[letter].items():
-                program = lumped(tuple(given), Straight((), (), (node,)))
+                program = tree.lumped(tuple(given), tree.Straight((), (), (node,)))
                 array[place] = float(evaluate(program, 0.0, given).real)
             arrays.append(array)
         return Arrays(*arrays)
@@ -378,34 +351,36 @@ def _table(name: str, rows: Sequence[tuple[str, str, str]]) -> str:
     return "\n".join([f"{name}: tuple[dict[str, str], ...] = (", *lines, ")"]) + "\n"
 
 
-def _node(expression: Expression) -> CodeNode:
+def _node(expression: Expression) -> tree.CodeNode:
     """Return an expression of constants as a program's node."""
     match expression:
         case Number(value) if value < 0:
-            return Negate(RealNumber(-value))
+            return tree.Negate(tree.RealNumber(-value))
         case Number(value) if value.denominator == 1:
-            return RealNumber(value)
+            return tree.RealNumber(value)
         case Number(value):
-            return Divide(RealNumber(Fraction(value.numerator)), RealNumber(Fraction(value.denominator)))
+            return tree.Divide(
+                tree.RealNumber(Fraction(value.numerator)), tree.RealNumber(Fraction(value.denominator))
+            )
         case Name(name):
-            return RealNumber(Fraction(1), 1) if name == PI else ParameterValue(name)
+            return tree.RealNumber(Fraction(1), 1) if name == PI else tree.ParameterValue(name)
         case Negative(Quotient(numerator, denominator)):
-            return Divide(Negate(_node(numerator)), _node(denominator))
+            return tree.Divide(tree.Negate(_node(numerator)), _node(denominator))
         case Negative(operand):
-            return Negate(_node(operand))
+            return tree.Negate(_node(operand))
         case Sum(terms):
-            return Add(tuple(_node(t) for t in terms))
+            return tree.Add(tuple(_node(t) for t in terms))
         case Product(factors):
-            return Multiply(tuple(_node(f) for f in factors))
+            return tree.Multiply(tuple(_node(f) for f in factors))
         case Quotient(numerator, denominator):
-            return Divide(_node(numerator), _node(denominator))
+            return tree.Divide(_node(numerator), _node(denominator))
         case Power(base, exponent):
             order = integer_exponent(exponent) or 0
             inner = _node(base)
-            raised = inner if abs(order) == 1 else IntegerPower(inner, abs(order))
-            return raised if order > 0 else Divide(RealNumber(Fraction(1)), raised)
+            raised = inner if abs(order) == 1 else tree.IntegerPower(inner, abs(order))
+            return raised if order > 0 else tree.Divide(tree.RealNumber(Fraction(1)), raised)
         case Call(name, argument):
-            return Apply(name, _node(argument))
+            return tree.Apply(name, _node(argument))
     message = f"unexpected expression {type(expression).__name__}"
     raise TypeError(message)
 

@@ -39,22 +39,6 @@ def minimal(system: StateSpace) -> StateSpace:
 
     It is minimal for almost all values of its parameters; special values may hide more. SF502 when the
     combinations of states become too large.
-
-    Examples
-    --------
-    >>> from symflex import pipeline
-    >>> from symflex.state_space.realise import realise
-    >>> model = pipeline.loads('''
-    ... symflex = 1
-    ... parameters = {m_1 = "1 kg", m_2 = "2 kg", k = "3 N/m"}
-    ... elements.left = {type = "mass", at = "x", m = "m_1"}
-    ... elements.right = {type = "mass", at = "y", m = "m_2"}
-    ... elements.joint = {type = "spring", between = ["x", "y"], k = "k"}
-    ... inputs.F = {force = "x"}
-    ... outputs.V = "s*y"
-    ... ''')
-    >>> [state.name for state in minimal(realise(model, [("V", "F")])).states]
-    ['x_minus_y', 'x_dot', 'y_dot']
     """
     columns = transposed(system.a, system.order)
     reached = _closed(transposed(system.b, len(system.inputs)), columns, system)

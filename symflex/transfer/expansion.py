@@ -100,11 +100,6 @@ class Opening:
 SMALL = 100_000
 """Number of terms up to which the engine composes at once."""
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from flint import fmpz_mpoly
-
 
 def compose_rational(ring: Ring, factor: fmpz_mpoly, images: Sequence[Factored | None]) -> Factored:
     """Return ``factor`` over ``ring`` with the images in place of its generators.

@@ -137,21 +137,6 @@ def derive_nested(
     """Return transfer functions in nested form.
 
     Raises ModelError: SF30x when the equations are singular; SF910 for a distributed model.
-
-    Examples
-    --------
-    >>> from symflex import pipeline
-    >>> model = pipeline.loads('''
-    ... symflex = 1
-    ... parameters = {m = "2 kg", b = "3 N*s/m"}
-    ... elements.body = {type = "mass", at = "x", m = "m"}
-    ... elements.loss = {type = "damper", between = ["x", "ground"], b = "b"}
-    ... inputs.F = {force = "x"}
-    ... outputs.V = "s*x"
-    ... ''')
-    >>> (G,) = derive_nested(pipeline.assemble(model), [("V", "F")])
-    >>> G.size, bind_nested(G)(0.5j)
-    (3, (0.3-0.1j))
     """
     model = equations.model
     if model.is_distributed:

@@ -16,23 +16,11 @@ from typing import TYPE_CHECKING
 
 from symflex.codegen.c.expression import CPrinter, Kind, Term, complex_term, product
 from symflex.codegen.module_text import identifiers
-from symflex.codegen.program.nodes import (
-    Assignment,
-    CodeNode,
-    Condition,
-    ModalValue,
-    ModeValues,
-    Piecewise,
-    RealNumber,
-    Roots,
-    Solutions,
-)
+from symflex.codegen.program import nodes as tree
 from symflex.codegen.source_parts import parts_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
-
-    from symflex.codegen.program.nodes import Frames
 
 
 PARTS = parts_of("c.c")
@@ -185,7 +173,7 @@ class Body:
         in_lanes = self.s in (LANE, AXIS_LANE)
         return CPrinter(self._parameter, self.known, self.s, self._array, self._hold, in_lanes)
 
-    def term(self, node: CodeNode) -> Term:
+    def term(self, node: tree.CodeNode) -> Term:
         """Return an expression of these variables."""
         return self.printer.print(node)
 
@@ -201,10 +189,10 @@ class Body:
         """Add a block: what opens it, statements as they are, and a brace."""
         self.lines += [STEP * self.depth + opening, *lines, f"{STEP * self.depth}}}"]
 
-    def assign(self, assignments: Sequence[Assignment]) -> None:
+    def assign(self, assignments: Sequence[tree.Assignment]) -> None:
         """Make variables; what is free of s and made already is not made again."""
         for assignment in assignments:
-            if isinstance(assignment.value, Solutions | Roots | ModeValues | ModalValue):
+            if isinstance(assignment.value, tree.Solutions | tree.Roots | tree.ModeValues | tree.ModalValue):
                 self.known[assignment.name] = self._array(assignment.value, assignment.name)
                 continue
             term = self.printer.whole(assignment.value)
@@ -238,9 +226,9 @@ class Body:
         self.used.add(name)
         return self.parameters[name]
 
-    def _array(self, node: CodeNode, wanted: str = "solutions") -> Term:
+    def _array(self, node: tree.CodeNode, wanted: str = "solutions") -> Term:
         match node:
-            case Solutions(coefficients, count):
+            case tree.Solutions(coefficients, count):
                 given, order, varies = self._given(coefficients)
                 found = self.name(wanted)
                 call = (
@@ -248,30 +236,30 @@ class Body:
                 )
                 self.add(f"cx {found}[{order}];", f"{call} {found});")
                 return Term(found, Kind.COMPLEX, varies)
-            case Roots(coefficients):
+            case tree.Roots(coefficients):
                 given, order, varies = self._given(coefficients)
                 found = self.name(wanted)
                 self.add(f"cx {found}[{order + 1}];", f"cx_roots({given}, {order}, {found});")
                 return Term(found, Kind.COMPLEX, varies, real_at=order)
-            case ModeValues(roots, length):
+            case tree.ModeValues(roots, length):
                 held, scale = self.printer.listed(roots), complex_term(self.term(length))
                 found = self.name(wanted)
                 self.add(f"cx_mode {found};")
                 self.say(f"cx_modes({held.text}, {held.real_at},", f"{scale.text}, &{found})")
                 return Term(found, Kind.COMPLEX, held.varies or scale.varies)
-            case ModalValue():
+            case tree.ModalValue():
                 return self._modal(node, wanted)
         message = f"no text for {type(node).__name__}"
         raise TypeError(message)
 
-    def _given(self, nodes: Sequence[CodeNode]) -> tuple[str, int, bool]:
+    def _given(self, nodes: Sequence[tree.CodeNode]) -> tuple[str, int, bool]:
         """Declare an array of coefficients; return its name, its length and whether it depends on s."""
         terms = [complex_term(self.term(c)) for c in nodes]
         given = self.name("coefficients")
         self.say(f"const cx {given}[{len(terms)}] =", f"{{{', '.join(t.text for t in terms)}}}")
         return given, len(terms), any(t.varies for t in terms)
 
-    def _modal(self, node: ModalValue, wanted: str) -> Term:
+    def _modal(self, node: tree.ModalValue, wanted: str) -> Term:
         modes = [self.printer.listed(mode) for mode in node.modes]
         given, _, varies = self._given(node.coefficients)
         plan, most = modal_plan(node.frames)
@@ -283,7 +271,7 @@ class Body:
         return Term(names[3], Kind.COMPLEX, varies or any(m.varies for m in modes), real_at=1)
 
 
-def modal_plan(frames: Frames) -> tuple[list[int], int]:
+def modal_plan(frames: tree.Frames) -> tuple[list[int], int]:
     """Return a sum as a table of numbers in the order in which ``cx_modal`` reads them, and its partial sums.
 
     What :func:`~symflex.algebra.modal_sum.modal_amplitudes` finds out as it goes, which terms come together
@@ -316,7 +304,7 @@ def modal_plan(frames: Frames) -> tuple[list[int], int]:
     return plan, most
 
 
-def conditions_of(program: Piecewise, scope: Body, varying: Body | None = None) -> list[str]:
+def conditions_of(program: tree.Piecewise, scope: Body, varying: Body | None = None) -> list[str]:
     """Print what conditions need, and return the conditions; limits go to the outer scope."""
     inner = varying or scope
     fixed = program.tests.needed([c.scale for c in program.conditions])
@@ -344,9 +332,9 @@ def conditions_of(program: Piecewise, scope: Body, varying: Body | None = None) 
     return conditions
 
 
-def limit_text(condition: Condition, scope: Body) -> str:
+def limit_text(condition: tree.Condition, scope: Body) -> str:
     """Return the text of a limit, a variable unless it is a number."""
-    if not condition.limit or condition.scale == RealNumber(Fraction(1)):
+    if not condition.limit or condition.scale == tree.RealNumber(Fraction(1)):
         return repr(condition.limit)
     scale = scope.term(condition.scale)
     size = f"cx_abs({scale.text})" if scale.kind is Kind.COMPLEX else f"fabs({scale.text})"
@@ -354,7 +342,7 @@ def limit_text(condition: Condition, scope: Body) -> str:
 
 
 def choose(
-    program: Piecewise, conditions: Sequence[str], scope: Body, body: Callable[[int, Body], None]
+    program: tree.Piecewise, conditions: Sequence[str], scope: Body, body: Callable[[int, Body], None]
 ) -> None:
     """Print the choice among pieces: test i adds ``2**i`` to the number of the piece."""
     indent = STEP * scope.depth

@@ -12,25 +12,8 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from typing import TYPE_CHECKING
 
+from symflex.codegen.program import nodes as tree
 from symflex.codegen.program.evaluate import nearest_double
-from symflex.codegen.program.nodes import (
-    Add,
-    Apply,
-    Assigned,
-    CodeNode,
-    ComplexNumber,
-    Divide,
-    IntegerPower,
-    InverseLaplace,
-    Item,
-    Laplace,
-    LargerRoot,
-    Multiply,
-    Negate,
-    ParameterValue,
-    RealNumber,
-    ToComplex,
-)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -91,47 +74,47 @@ class CPrinter:
     known: Mapping[str, Term]  # intermediate values; of lists, the identifier of the array
     s: Term  # what the leaf :class:`Laplace` stands for
     # Declares an array with the values of a list, and returns its identifier.
-    array: Callable[[CodeNode], Term]
+    array: Callable[[tree.CodeNode], Term]
     hold: Callable[[Term], Term]  # makes a variable with a value
     in_lanes: bool = False  # true to call functions without branches where there are such
 
-    def print(self, node: CodeNode) -> Term:
+    def print(self, node: tree.CodeNode) -> Term:
         """Return an expression as C; calls nested deeply become variables."""
         return self._short(self.whole(node))
 
-    def whole(self, node: CodeNode) -> Term:
+    def whole(self, node: tree.CodeNode) -> Term:
         """Return an expression that gets a variable anyway."""
         match node:
-            case RealNumber(value, pi_power):
+            case tree.RealNumber(value, pi_power):
                 return Term(repr(nearest_double(value, pi_power)), Kind.REAL)
-            case ComplexNumber(real, imaginary):
+            case tree.ComplexNumber(real, imaginary):
                 return _complex(nearest_double(real), nearest_double(imaginary))
-            case ToComplex(operand) | LargerRoot(operand):
+            case tree.ToComplex(operand) | tree.LargerRoot(operand):
                 return self.whole(operand)
-            case ParameterValue(name):
+            case tree.ParameterValue(name):
                 return Term(self.parameter(name), Kind.REAL)
-            case Assigned(name):
+            case tree.Assigned(name):
                 return self.known[name]
-            case Laplace():
+            case tree.Laplace():
                 return self.s
-            case InverseLaplace():
+            case tree.InverseLaplace():
                 return self.quotient(Term("1.0", Kind.REAL), self.s)
-            case Add(terms):
+            case tree.Add(terms):
                 return self._sum(terms)
-            case Multiply(factors):
+            case tree.Multiply(factors):
                 result = self.print(factors[0])
                 for factor in factors[1:]:
                     result = product(self._short(result), self.print(factor))
                 return result
-            case Divide(numerator, denominator):
+            case tree.Divide(numerator, denominator):
                 return self.quotient(self.print(numerator), self.print(denominator))
-            case IntegerPower(base, exponent):
+            case tree.IntegerPower(base, exponent):
                 return _power(self.print(base), exponent)
-            case Negate(operand):
+            case tree.Negate(operand):
                 return negative(self.print(operand))
-            case Apply(function, argument):
+            case tree.Apply(function, argument):
                 return self._apply(function, self.print(argument))
-            case Item(values, position):
+            case tree.Item(values, position):
                 held = self.listed(values)
                 part, kind = (".re", Kind.REAL) if position == held.real_at else ("", held.kind)
                 return Term(f"{held.text}[{position}]{part}", kind, held.varies)
@@ -144,14 +127,14 @@ class CPrinter:
             return _call("lane_div", Kind.COMPLEX, complex_term(x), y)
         return quotient(x, y)
 
-    def listed(self, node: CodeNode) -> Term:
+    def listed(self, node: tree.CodeNode) -> Term:
         """Return the array that holds a list; it is declared where there is none yet."""
-        return self.known[node.name] if isinstance(node, Assigned) else self.array(node)
+        return self.known[node.name] if isinstance(node, tree.Assigned) else self.array(node)
 
-    def _sum(self, terms: Sequence[CodeNode]) -> Term:
+    def _sum(self, terms: Sequence[tree.CodeNode]) -> Term:
         result = self.print(terms[0])
         for term in terms[1:]:
-            if isinstance(term, Negate):
+            if isinstance(term, tree.Negate):
                 result = difference(self._short(result), self.print(term.operand))
             else:
                 result = total(self._short(result), self.print(term))

@@ -26,17 +26,7 @@ from symflex.codegen.c.body import (
     limit_text,
 )
 from symflex.codegen.c.expression import LANE_FUNCTIONS, Kind, Term, complex_term, quotient
-from symflex.codegen.program.nodes import (
-    Apply,
-    Assigned,
-    CodeNode,
-    CodePiece,
-    Divide,
-    Piecewise,
-    Roots,
-    Solutions,
-    Straight,
-)
+from symflex.codegen.program import nodes as tree
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -50,8 +40,8 @@ class Functions:
     prefix: str  # what public names begin with
     structure: str  # name of the type that holds the parameters
     members: Mapping[str, str]  # the structure's members by the parameters' names
-    program: Piecewise  # the function of s
-    axis: Piecewise | None = None  # the frequency response in real arithmetic, where there is one
+    program: tree.Piecewise  # the function of s
+    axis: tree.Piecewise | None = None  # the frequency response in real arithmetic, where there is one
 
     @property
     def value_prototype(self) -> str:
@@ -90,7 +80,7 @@ class Functions:
     def order(self) -> int:
         """The largest order of a differential equation, or degree of a polynomial, they solve; 0 for none."""
         codes = [c for p in (self.program, self.axis) if p for c in (p.tests, *(x.code for x in p.code))]
-        solving = (n for code in codes for n in code.nodes() if isinstance(n, Solutions | Roots))
+        solving = (n for code in codes for n in code.nodes() if isinstance(n, tree.Solutions | tree.Roots))
         return max((len(n.coefficients) for n in solving), default=0)
 
     # ------------------------------------------------------------------------------------- at a complex s
@@ -102,7 +92,7 @@ class Functions:
         unused = [] if any(_mentions(line, "s") for line in scope.lines) else [f"{STEP}(void)s;"]
         return [*head, *scope.opening(self.members), *unused, *scope.lines, "}"]
 
-    def _lumped_value(self, program: Piecewise) -> list[str]:
+    def _lumped_value(self, program: tree.Piecewise) -> list[str]:
         scope = Body.of(self.members, S)
         _lumped(program, scope, lambda inner, term: inner.say("return", complex_term(term).text))
         return self._wrapped_value(self._ends(scope, self._head(f"value_of_{self.name}")))
@@ -120,7 +110,7 @@ class Functions:
             "#endif",
         ]
 
-    def _pieces(self, program: Piecewise) -> list[list[str]]:
+    def _pieces(self, program: tree.Piecewise) -> list[list[str]]:
         blocks = []
         for number, piece in enumerate(program.code):
             blocks += self._piece(f"piece_{number}_of_{self.name}", piece)
@@ -134,7 +124,7 @@ class Functions:
         blocks.append(self._wrapped_value(self._ends(scope, self._head(f"value_of_{self.name}"))))
         return blocks
 
-    def _piece(self, name: str, piece: CodePiece) -> list[list[str]]:
+    def _piece(self, name: str, piece: tree.CodePiece) -> list[list[str]]:
         scope = Body.of(self.members, S)
         code = piece.code.needed(piece.code.values)
         scope.assign((*code.constants, *code.assignments))
@@ -184,7 +174,7 @@ class Functions:
             "}",
         ]
 
-    def _axis_pieces(self, program: Piecewise, outer: Body, inner: Body) -> None:
+    def _axis_pieces(self, program: tree.Piecewise, outer: Body, inner: Body) -> None:
         conditions = conditions_of(program, outer, inner)
         codes = [piece.code.needed(piece.code.values) for piece in program.code]
         fixed: list[dict[str, Term]] = []
@@ -240,7 +230,7 @@ def _mentions(line: str, name: str) -> bool:
 
 
 def _lumped(
-    program: Piecewise, scope: Body, store: Callable[[Body, Term], None], varying: Body | None = None
+    program: tree.Piecewise, scope: Body, store: Callable[[Body, Term], None], varying: Body | None = None
 ) -> None:
     """Print a program of one or two branches; what varies goes to a scope of its own if there is one."""
     inner = varying or scope
@@ -291,7 +281,7 @@ if (count < LANES) {
 }"""
 
 
-def fits_lanes(program: Piecewise) -> bool:
+def fits_lanes(program: tree.Piecewise) -> bool:
     """Tell whether a program in real arithmetic has two pieces, one for small frequencies."""
     return (
         len(program.conditions) == 1
@@ -301,15 +291,15 @@ def fits_lanes(program: Piecewise) -> bool:
     )
 
 
-def is_rational_in_lanes(program: Piecewise) -> bool:
+def is_rational_in_lanes(program: tree.Piecewise) -> bool:
     """Tell whether a program varies, has one branch, and calls no function of s."""
     near = program.near
     values = (*(a.value for a in near.assignments), *near.values)
-    calls = (n for value in values for n in value.walk() if isinstance(n, Apply | Solutions))
+    calls = (n for value in values for n in value.walk() if isinstance(n, tree.Apply | tree.Solutions))
     return program.varies and program.far is None and not any(calls)
 
 
-def lanes(program: Piecewise, members: Mapping[str, str]) -> list[str]:
+def lanes(program: tree.Piecewise, members: Mapping[str, str]) -> list[str]:
     """Return the body of the function that computes the frequency response, where :func:`fits_lanes`.
 
     ``members`` are the structure's, by the parameters' names.
@@ -322,7 +312,7 @@ def lanes(program: Piecewise, members: Mapping[str, str]) -> list[str]:
     tested = program.tests.needed([condition.quantity])
     outer.assign(tested.constants)
     tests = outer.within(3)
-    pieces: list[tuple[Straight, dict[str, Term]]] = []
+    pieces: list[tuple[tree.Straight, dict[str, Term]]] = []
     for k in program.pieces:
         code = program.code[k].code.needed(program.code[k].code.values)
         outer.known = {}
@@ -352,7 +342,7 @@ def lanes(program: Piecewise, members: Mapping[str, str]) -> list[str]:
     return _looped(outer, loop, members)
 
 
-def rational_lanes(program: Piecewise, members: Mapping[str, str]) -> list[str]:
+def rational_lanes(program: tree.Piecewise, members: Mapping[str, str]) -> list[str]:
     """Return the body of the function that computes the response, where :func:`is_rational_in_lanes`.
 
     ``members`` are the structure's, by the parameters' names.
@@ -390,9 +380,9 @@ def _looped(outer: Body, loop: Body, members: Mapping[str, str]) -> list[str]:
     return [*head, *loop.lines, f"{STEP}}}"]
 
 
-def _stages(code: Straight, scope: Body, condition: str) -> None:
+def _stages(code: tree.Straight, scope: Body, condition: str) -> None:
     """Print loops that compute a quotient; expressions that call the library are in loops of their own."""
-    values = [*(a.value for a in code.assignments), Divide(*code.values)]
+    values = [*(a.value for a in code.assignments), tree.Divide(*code.values)]
     stages = [0]
     for before, value in pairwise(values):
         stages.append(stages[-1] + (_calls(value) is not _calls(before)))
@@ -425,14 +415,14 @@ def _stages(code: Straight, scope: Body, condition: str) -> None:
         scope.enclose(LOOP, inner.lines)
 
 
-def _is_used_later(name: str, stage: int, values: Sequence[CodeNode], stages: Sequence[int]) -> bool:
+def _is_used_later(name: str, stage: int, values: Sequence[tree.CodeNode], stages: Sequence[int]) -> bool:
     return any(
-        other > stage and any(isinstance(n, Assigned) and n.name == name for n in value.walk())
+        other > stage and any(isinstance(n, tree.Assigned) and n.name == name for n in value.walk())
         for value, other in zip(values, stages, strict=True)
     )
 
 
-def _calls(root: CodeNode) -> bool:
+def _calls(root: tree.CodeNode) -> bool:
     """Tell whether an expression has a function that there is only in the library."""
     others = ("abs", *LANE_FUNCTIONS)
-    return any(isinstance(node, Apply) and node.function not in others for node in root.walk())
+    return any(isinstance(node, tree.Apply) and node.function not in others for node in root.walk())

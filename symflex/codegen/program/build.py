@@ -59,20 +59,6 @@ def build_program(tf: TransferFunction, form: str | None = None) -> Piecewise:
     """Return the program of one form, ``closed`` or ``factors``; by default the first there is.
 
     Raises BudgetError: SF503 when the program would be too large.
-
-    Examples
-    --------
-    >>> from symflex import pipeline
-    >>> G = pipeline.derive_all(pipeline.loads('''
-    ... symflex = 1
-    ... parameters = {m = "2 kg", b = "3 N*s/m"}
-    ... elements.body = {type = "mass", at = "x", m = "m"}
-    ... elements.loss = {type = "damper", between = ["x", "ground"], b = "b"}
-    ... inputs.F = {force = "x"}
-    ... outputs.V = "s*x"
-    ... '''))[0]
-    >>> build_program(G, "factors").parameters
-    ('m', 'b')
     """
     forms = available_forms(tf)
     if not forms:
@@ -285,20 +271,6 @@ def build_nested(tf: NestedTransferFunction) -> Piecewise:
     """Return the program of a nested transfer function.
 
     Raises BudgetError: SF503 when it would be too large.
-
-    Examples
-    --------
-    >>> from symflex import pipeline
-    >>> (G,) = pipeline.derive_nested(pipeline.loads('''
-    ... symflex = 1
-    ... parameters = {m = "2 kg", b = "3 N*s/m"}
-    ... elements.body = {type = "mass", at = "x", m = "m"}
-    ... elements.loss = {type = "damper", between = ["x", "ground"], b = "b"}
-    ... inputs.F = {force = "x"}
-    ... outputs.V = "s*x"
-    ... '''))
-    >>> build_nested(G).size
-    4
     """
     size = tf.size
     if size > OPERATION_LIMIT:

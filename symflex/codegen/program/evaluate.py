@@ -13,31 +13,7 @@ import numpy as np
 from flint import arb, ctx, fmpq
 
 from symflex.algebra.modal_sum import mode_values
-from symflex.codegen.program.nodes import (
-    Add,
-    Apply,
-    Assigned,
-    Assignment,
-    CodeNode,
-    CodePiece,
-    ComplexNumber,
-    Divide,
-    IntegerPower,
-    InverseLaplace,
-    Item,
-    Laplace,
-    LargerRoot,
-    ModalValue,
-    ModeValues,
-    Multiply,
-    Negate,
-    ParameterValue,
-    Piecewise,
-    RealNumber,
-    Roots,
-    Solutions,
-    ToComplex,
-)
+from symflex.codegen.program import nodes as tree
 from symflex.codegen.program.runtime import (
     Values,
     characteristic_roots,
@@ -95,7 +71,9 @@ def nearest_double(value: Fraction, pi_power: int = 0) -> float:
     return result
 
 
-def evaluate(program: Piecewise, s: ArrayLike, values: Mapping[str, ArrayLike]) -> NDArray[np.complex128]:
+def evaluate(
+    program: tree.Piecewise, s: ArrayLike, values: Mapping[str, ArrayLike]
+) -> NDArray[np.complex128]:
     """Return the values of a program, exactly those that the generated code returns.
 
     ``s`` is the Laplace variable [rad/s], the angular frequency for a program in real arithmetic; ``values``
@@ -124,7 +102,9 @@ def evaluate(program: Piecewise, s: ArrayLike, values: Mapping[str, ArrayLike]) 
     return result.reshape(shape)
 
 
-def numbers_of_pieces(program: Piecewise, point: Values, given: Mapping[str, Values]) -> NDArray[np.int64]:
+def numbers_of_pieces(
+    program: tree.Piecewise, point: Values, given: Mapping[str, Values]
+) -> NDArray[np.int64]:
     """Return, for every value of the argument, the number that the conditions make of it.
 
     It and the parameters, given by name, are numbers or arrays that broadcast.
@@ -143,7 +123,7 @@ def numbers_of_pieces(program: Piecewise, point: Values, given: Mapping[str, Val
     return number
 
 
-def value_of_piece(piece: CodePiece, point: Values, given: Mapping[str, Values]) -> Values:
+def value_of_piece(piece: tree.CodePiece, point: Values, given: Mapping[str, Values]) -> Values:
     """Return the value that a piece computes, wherever its argument lies."""
 
     def parts(s: Values) -> tuple[Values, ...]:
@@ -158,7 +138,7 @@ def value_of_piece(piece: CodePiece, point: Values, given: Mapping[str, Values])
     return num / den[0] if den else num
 
 
-def number_of(node: CodeNode, known: Mapping[str, Values]) -> Values:
+def number_of(node: tree.CodeNode, known: Mapping[str, Values]) -> Values:
     """Return the value of an expression that depends on no argument, ``None`` for one that does.
 
     ``known`` are the values of assignments that depend on no argument either.
@@ -173,9 +153,9 @@ def number_of(node: CodeNode, known: Mapping[str, Values]) -> Values:
     pending = [node]
     while pending:
         part = pending.pop()
-        if isinstance(part, (ParameterValue, Laplace, InverseLaplace)):
+        if isinstance(part, (tree.ParameterValue, tree.Laplace, tree.InverseLaplace)):
             return None
-        if isinstance(part, Assigned) and part.name not in known:
+        if isinstance(part, tree.Assigned) and part.name not in known:
             return None
         pending += part.children
     run = _ProgramRun(None, {})
@@ -196,65 +176,65 @@ class _ProgramRun:
         self._parameters = parameters
         self.assigned: dict[str, Values] = {}
 
-    def assign(self, assignments: tuple[Assignment, ...]) -> None:
+    def assign(self, assignments: tuple[tree.Assignment, ...]) -> None:
         for assignment in assignments:
             self.assigned[assignment.name] = self.value(assignment.value)
 
-    def value(self, node: CodeNode) -> Values:
+    def value(self, node: tree.CodeNode) -> Values:
         """Return the value of an expression: a number, an array, or a list of these."""
         match node:
-            case RealNumber(value, pi_power):
+            case tree.RealNumber(value, pi_power):
                 return nearest_double(value, pi_power)
-            case ComplexNumber(real, imaginary):
+            case tree.ComplexNumber(real, imaginary):
                 return complex(nearest_double(real), nearest_double(imaginary))
-            case ToComplex(operand):
+            case tree.ToComplex(operand):
                 return (1 + 0j) * self.value(operand)
-            case LargerRoot(formula):
+            case tree.LargerRoot(formula):
                 return self.value(formula)
-            case ParameterValue(name):
+            case tree.ParameterValue(name):
                 return self._parameters[name]
-            case Assigned(name):
+            case tree.Assigned(name):
                 return self.assigned[name]
-            case Laplace():
+            case tree.Laplace():
                 return self._s
-            case InverseLaplace():
+            case tree.InverseLaplace():
                 return 1.0 / self._s
-            case Add((first, *rest)):
+            case tree.Add((first, *rest)):
                 return reduce(self._plus, rest, self.value(first))
-            case Multiply(factors):
+            case tree.Multiply(factors):
                 return reduce(mul, map(self.value, factors))
-            case Divide(numerator, denominator):
+            case tree.Divide(numerator, denominator):
                 return self.value(numerator) / self.value(denominator)
-            case IntegerPower(base, exponent):
+            case tree.IntegerPower(base, exponent):
                 return self.value(base) ** exponent
-            case Negate(operand):
+            case tree.Negate(operand):
                 return -self.value(operand)
-            case Apply("complex_exp", argument):
+            case tree.Apply("complex_exp", argument):
                 return complex_exp(np.asarray(self.value(argument), dtype=complex)[()])
-            case Apply(function, argument):
+            case tree.Apply(function, argument):
                 return getattr(np, NUMPY_FUNCTIONS[function])(self.value(argument))
         return self._lists(node)
 
-    def _plus(self, total: Values, term: CodeNode) -> Values:
-        if isinstance(term, Negate):
+    def _plus(self, total: Values, term: tree.CodeNode) -> Values:
+        if isinstance(term, tree.Negate):
             return total - self.value(term.operand)
         return total + self.value(term)
 
-    def _lists(self, node: CodeNode) -> Values:
+    def _lists(self, node: tree.CodeNode) -> Values:
         """Return the value of what takes lists or gives them."""
         match node:
-            case Solutions(coefficients, terms):
+            case tree.Solutions(coefficients, terms):
                 given = [self.value(c) for c in coefficients]
                 return series_solutions(given, terms) if terms else propagated(given)
-            case Roots(coefficients):
+            case tree.Roots(coefficients):
                 return characteristic_roots([self.value(c) for c in coefficients])
-            case ModeValues(roots, length):
+            case tree.ModeValues(roots, length):
                 return mode_values(self.value(roots)[:-1], self.value(length))
-            case ModalValue(modes, coefficients, frames):
+            case tree.ModalValue(modes, coefficients, frames):
                 return modal_value(
                     [self.value(m) for m in modes], [self.value(c) for c in coefficients], frames
                 )
-            case Item(values, position):
+            case tree.Item(values, position):
                 return self.value(values)[position]
         message = f"no value for {type(node).__name__}"
         raise TypeError(message)

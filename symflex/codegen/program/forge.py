@@ -24,37 +24,10 @@ from functools import reduce
 from operator import or_
 from typing import TYPE_CHECKING, Any, cast
 
-from symflex.codegen.program.nodes import (
-    Add,
-    Apply,
-    Assigned,
-    Assignment,
-    CodeNode,
-    ComplexNumber,
-    Divide,
-    IntegerPower,
-    InverseLaplace,
-    Item,
-    Laplace,
-    LargerRoot,
-    ModalValue,
-    ModeValues,
-    Multiply,
-    Negate,
-    ParameterValue,
-    Piecewise,
-    RealNumber,
-    Roots,
-    Solutions,
-    Straight,
-    ToComplex,
-    lumped,
-)
+from symflex.codegen.program import nodes as tree
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
-
-    from symflex.codegen.program.nodes import Frames
 
 
 class Depends(IntFlag):
@@ -69,22 +42,24 @@ class Depends(IntFlag):
 class Forge:
     """Makes expressions; equal ones get the same number."""
 
-    nodes: list[CodeNode] = field(default_factory=list)
+    nodes: list[tree.CodeNode] = field(default_factory=list)
     depends: list[Depends] = field(default_factory=list)
     labels: dict[int, str] = field(default_factory=dict)
-    _numbers: dict[CodeNode, int] = field(default_factory=dict)
+    _numbers: dict[tree.CodeNode, int] = field(default_factory=dict)
 
     def operands(self, x: int) -> tuple[int, ...]:
         """Return what an expression is made of."""
         return cast("tuple[int, ...]", self.nodes[x].children)
 
-    def _make(self, node: CodeNode) -> int:
+    def _make(self, node: tree.CodeNode) -> int:
         known = self._numbers.get(node)
         if known is not None:
             return known
         x = len(self.nodes)
         self.nodes.append(node)
-        own = {Laplace: Depends.S, InverseLaplace: Depends.INVERSE}.get(type(node), Depends.PARAMETERS)
+        own = {tree.Laplace: Depends.S, tree.InverseLaplace: Depends.INVERSE}.get(
+            type(node), Depends.PARAMETERS
+        )
         self.depends.append(reduce(or_, (self.depends[o] for o in self.operands(x)), own))
         self._numbers[node] = x
         return x
@@ -94,54 +69,56 @@ class Forge:
         exact = Fraction(value)
         if exact == 0:
             pi_power = 0
-        number = self._make(RealNumber(abs(exact), pi_power))
+        number = self._make(tree.RealNumber(abs(exact), pi_power))
         return self.negate(number) if exact < 0 else number
 
     def complex_number(self, real: Fraction | int, imaginary: Fraction | int) -> int:
         """Return ``real + 1j*imaginary``."""
-        return self._make(ComplexNumber(Fraction(real), Fraction(imaginary)))
+        return self._make(tree.ComplexNumber(Fraction(real), Fraction(imaginary)))
 
     def to_complex(self, x: int) -> int:
         """Return a real number as a complex one; see :class:`nodes.ToComplex`."""
         minus, size = self.signed(x)
         if self.is_number(size, 0):
             return size
-        number = self.complex_number(1, 0) if self.is_number(size, 1) else self._make(ToComplex(_row(size)))
+        number = (
+            self.complex_number(1, 0) if self.is_number(size, 1) else self._make(tree.ToComplex(_row(size)))
+        )
         return self.negate(number) if minus else number
 
     def larger_root(self, formula: int, middle: int, product: int) -> int:
         """Return the value of a formula that is known to be a :class:`nodes.LargerRoot`."""
-        return self._make(LargerRoot(_row(formula), _row(middle), _row(product)))
+        return self._make(tree.LargerRoot(_row(formula), _row(middle), _row(product)))
 
     def parameter(self, name: str) -> int:
         """Return a parameter."""
-        return self._make(ParameterValue(name))
+        return self._make(tree.ParameterValue(name))
 
     @property
     def s(self) -> int:
         """The Laplace variable."""
-        return self._make(Laplace())
+        return self._make(tree.Laplace())
 
     @property
     def inverse(self) -> int:
         """The quotient 1/s."""
-        return self._make(InverseLaplace())
+        return self._make(tree.InverseLaplace())
 
     def is_number(self, x: int, value: int) -> bool:
         """Tell whether ``x`` is the given non-negative integer."""
         node = self.nodes[x]
-        return isinstance(node, RealNumber) and node.value == value and not node.pi_power
+        return isinstance(node, tree.RealNumber) and node.value == value and not node.pi_power
 
     def signed(self, x: int) -> tuple[bool, int]:
         """Return whether ``x`` is minus something, and that."""
-        return (True, self.operands(x)[0]) if isinstance(self.nodes[x], Negate) else (False, x)
+        return (True, self.operands(x)[0]) if isinstance(self.nodes[x], tree.Negate) else (False, x)
 
     def negate(self, x: int) -> int:
         """Return minus ``x``."""
         is_negative, inner = self.signed(x)
         if is_negative or self.is_number(inner, 0):
             return inner
-        return self._make(Negate(_row(x)))
+        return self._make(tree.Negate(_row(x)))
 
     def add(self, terms: Iterable[int]) -> int:
         """Return a sum; a term without minus sign comes first when there is one."""
@@ -152,7 +129,7 @@ class Forge:
         if first is None:
             return self.negate(self.add([self.negate(t) for t in kept]))
         kept.insert(0, kept.pop(first))
-        return kept[0] if len(kept) == 1 else self._make(Add(_rows(*kept)))
+        return kept[0] if len(kept) == 1 else self._make(tree.Add(_rows(*kept)))
 
     def multiply(self, factors: Sequence[int]) -> int:
         """Return a product, its parameters multiplied first, so that they are multiplied once per call."""
@@ -171,7 +148,7 @@ class Forge:
         return self.negate(product) if is_negative else product
 
     def _product(self, factors: Sequence[int]) -> int:
-        return factors[0] if len(factors) == 1 else self._make(Multiply(_rows(*factors)))
+        return factors[0] if len(factors) == 1 else self._make(tree.Multiply(_rows(*factors)))
 
     def divide(self, above: int, below: int) -> int:
         """Return a quotient."""
@@ -179,7 +156,7 @@ class Forge:
         minus_below, denominator = self.signed(below)
         whole = numerator
         if not self.is_number(denominator, 1) and not self.is_number(numerator, 0):
-            whole = self._make(Divide(_row(numerator), _row(denominator)))
+            whole = self._make(tree.Divide(_row(numerator), _row(denominator)))
         return whole if minus_above == minus_below else self.negate(whole)
 
     def power(self, base: int, exponent: int) -> int:
@@ -193,7 +170,7 @@ class Forge:
             power = self.power(size, exponent)
             return self.negate(power) if exponent % 2 else power
         if not self.depends[base]:
-            return self._make(IntegerPower(_row(base), exponent))
+            return self._make(tree.IntegerPower(_row(base), exponent))
         if exponent % 2:
             return self._product([self.power(base, exponent - 1), base])
         half = self.power(base, exponent // 2)
@@ -201,31 +178,31 @@ class Forge:
 
     def apply(self, function: str, argument: int) -> int:
         """Return an elementary function."""
-        return self._make(Apply(function, _row(argument)))
+        return self._make(tree.Apply(function, _row(argument)))
 
     def solutions(self, coefficients: Sequence[int], terms: int) -> tuple[int, ...]:
         """Return a differential equation's solutions at 1; see :class:`nodes.Solutions`."""
-        row = self.label(self._make(Solutions(_rows(*coefficients), terms)), "solutions")
+        row = self.label(self._make(tree.Solutions(_rows(*coefficients), terms)), "solutions")
         return tuple(self.item(row, k) for k in range(len(coefficients)))
 
     def roots(self, coefficients: Sequence[int]) -> int:
         """Return the list of a polynomial's roots; see :class:`nodes.Roots`."""
-        return self.label(self._make(Roots(_rows(*coefficients))), "x")
+        return self.label(self._make(tree.Roots(_rows(*coefficients))), "x")
 
     def mode_values(self, roots: int, length: int) -> int:
         """Return what a sum needs of roots at a length; see :class:`nodes.ModeValues`."""
-        return self.label(self._make(ModeValues(_row(roots), _row(length))), "modes")
+        return self.label(self._make(tree.ModeValues(_row(roots), _row(length))), "modes")
 
     def modal_value(
-        self, modes: Sequence[int], coefficients: Sequence[int], frames: Frames
+        self, modes: Sequence[int], coefficients: Sequence[int], frames: tree.Frames
     ) -> tuple[int, int]:
         """Return a sum over its largest exponential, and the logarithm of that."""
-        row = self.label(self._make(ModalValue(_rows(*modes), _rows(*coefficients), frames)), "total")
+        row = self.label(self._make(tree.ModalValue(_rows(*modes), _rows(*coefficients), frames)), "total")
         return self.item(row, 0), self.item(row, 1)
 
     def item(self, values: int, position: int) -> int:
         """Return one value of a list."""
-        return self._make(Item(_row(values), position))
+        return self._make(tree.Item(_row(values), position))
 
     def label(self, x: int, name: str) -> int:
         """Ask for an assignment of ``x``; the first name given stays."""
@@ -249,16 +226,16 @@ DEEPEST = 8
 
 def schedule(
     forge: Forge, parameters: tuple[str, ...], near: int, far: int | None, limit: float
-) -> Piecewise:
+) -> tree.Piecewise:
     """Return the program that computes ``near``, or ``far`` where ``abs(s)`` exceeds ``limit``."""
     return _Schedule(forge, near, far).program(parameters, limit)
 
 
-def straight(forge: Forge, values: Sequence[int]) -> Straight:
+def straight(forge: Forge, values: Sequence[int]) -> tree.Straight:
     """Return the code that computes several values."""
     run = _Schedule(forge, values[0], None)
     constants, assignments, _ = run.sections(list(values), set(), shared=True)
-    return Straight(constants, assignments, tuple(run.nodes[v] for v in values))
+    return tree.Straight(constants, assignments, tuple(run.nodes[v] for v in values))
 
 
 @dataclass
@@ -266,37 +243,39 @@ class _Schedule:
     forge: Forge
     near: int
     far: int | None
-    nodes: dict[int, CodeNode] = field(default_factory=dict)
+    nodes: dict[int, tree.CodeNode] = field(default_factory=dict)
     depth: dict[int, int] = field(default_factory=dict)
     taken: dict[str, int] = field(default_factory=dict)
 
-    def program(self, parameters: tuple[str, ...], limit: float) -> Piecewise:
+    def program(self, parameters: tuple[str, ...], limit: float) -> tree.Piecewise:
         roots = [x for x in (self.near, self.far) if x is not None]
         late = set() if self.far is None else self._reached([self.far]) - self._reached([self.near])
         constants, at_near, at_far = self.sections(roots, late)
-        near = Straight(constants, at_near, (self.nodes[self.near],))
+        near = tree.Straight(constants, at_near, (self.nodes[self.near],))
         if self.far is None:
-            return lumped(parameters, near)
-        return lumped(parameters, near, Straight(constants, at_near + at_far, (self.nodes[self.far],)), limit)
+            return tree.lumped(parameters, near)
+        return tree.lumped(
+            parameters, near, tree.Straight(constants, at_near + at_far, (self.nodes[self.far],)), limit
+        )
 
     def sections(
         self, roots: list[int], late: set[int], *, shared: bool = False
-    ) -> tuple[tuple[Assignment, ...], tuple[Assignment, ...], tuple[Assignment, ...]]:
+    ) -> tuple[tuple[tree.Assignment, ...], tuple[tree.Assignment, ...], tuple[tree.Assignment, ...]]:
         """Return assignments free of s, those with s, and those in ``late``; expressions go to ``nodes``.
 
         With ``shared``, a root that others are made of is assigned as well.
         """
         reached = self._reached(roots)
         uses = self._uses(reached)
-        sections: tuple[list[Assignment], list[Assignment], list[Assignment]] = ([], [], [])
+        sections: tuple[list[tree.Assignment], list[tree.Assignment], list[tree.Assignment]] = ([], [], [])
         for x in sorted(reached):
             node, deep = self._node(x)
             is_inner = x not in roots or (shared and uses[x][0] > 0)
             if is_inner and self._deserves_name(x, (uses[x][0] + (x in roots), uses[x][1]), deep):
                 section = 0 if not self.forge.depends[x] else 2 if x in late else 1
                 name = self._name(x)
-                sections[section].append(Assignment(name, node))
-                node, deep = Assigned(name), 0
+                sections[section].append(tree.Assignment(name, node))
+                node, deep = tree.Assigned(name), 0
             self.nodes[x], self.depth[x] = node, deep
         constants, early, after = (tuple(section) for section in sections)
         return constants, early, after
@@ -322,7 +301,7 @@ class _Schedule:
 
     def _deserves_name(self, x: int, uses: tuple[int, bool], deep: int) -> bool:
         operands = self.forge.operands(x)
-        is_minus = isinstance(self.forge.nodes[x], Negate)
+        is_minus = isinstance(self.forge.nodes[x], tree.Negate)
         if not operands or (is_minus and not self.forge.operands(operands[0])):
             return False
         count, used_with_s = uses
@@ -342,7 +321,7 @@ class _Schedule:
                 self.taken[name] = 1
                 return name
 
-    def _node(self, x: int) -> tuple[CodeNode, int]:
+    def _node(self, x: int) -> tuple[tree.CodeNode, int]:
         operands = self.forge.operands(x)
         deep = 1 + max(self.depth[o] for o in operands) if operands else 0
         return self.forge.nodes[x].with_children(self.nodes[o] for o in operands), deep

@@ -17,23 +17,7 @@ from typing import TYPE_CHECKING
 
 from flint import Ordering, fmpq, fmpq_mpoly_ctx
 
-from symflex.codegen.program.nodes import (
-    Add,
-    Apply,
-    Assigned,
-    Assignment,
-    CodeNode,
-    CodePiece,
-    Divide,
-    IntegerPower,
-    Laplace,
-    Multiply,
-    Negate,
-    ParameterValue,
-    Piecewise,
-    RealNumber,
-    Straight,
-)
+from symflex.codegen.program import nodes as tree
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -41,10 +25,10 @@ if TYPE_CHECKING:
     from flint import fmpq_mpoly
 
 
-TWO = RealNumber(Fraction(2))
+TWO = tree.RealNumber(Fraction(2))
 
 
-def for_positive(program: Piecewise) -> Piecewise:
+def for_positive(program: tree.Piecewise) -> tree.Piecewise:
     """Return a program of the angular frequency as one for positive ones, with no power of j above one.
 
     Values stay the same to the last bit; signs and doublings go where they cost nothing.
@@ -65,7 +49,7 @@ def for_positive(program: Piecewise) -> Piecewise:
     return replace(program, tests=tests, conditions=conditions, code=tuple(code), turn=turn)
 
 
-def in_half_angles(program: Piecewise) -> Piecewise | None:
+def in_half_angles(program: tree.Piecewise) -> tree.Piecewise | None:
     """Return a program for positive frequencies in tangents of half angles, circular and hyperbolic.
 
     With ``t = tan(x/2)`` and ``h = tanh(x/2)`` sums of ``exp(-x)``, cosines and sines of one argument are
@@ -84,48 +68,52 @@ def in_half_angles(program: Piecewise) -> Piecewise | None:
     return replace(program, code=code, conditions=conditions)
 
 
-def _each(code: Straight, change: Callable[[CodeNode], CodeNode]) -> Straight:
-    return Straight(
-        tuple(Assignment(a.name, _everywhere(a.value, change)) for a in code.constants),
-        tuple(Assignment(a.name, _everywhere(a.value, change)) for a in code.assignments),
+def _each(code: tree.Straight, change: Callable[[tree.CodeNode], tree.CodeNode]) -> tree.Straight:
+    return tree.Straight(
+        tuple(tree.Assignment(a.name, _everywhere(a.value, change)) for a in code.constants),
+        tuple(tree.Assignment(a.name, _everywhere(a.value, change)) for a in code.assignments),
         tuple(_everywhere(v, change) for v in code.values),
     )
 
 
-def _everywhere(node: CodeNode, change: Callable[[CodeNode], CodeNode]) -> CodeNode:
+def _everywhere(node: tree.CodeNode, change: Callable[[tree.CodeNode], tree.CodeNode]) -> tree.CodeNode:
     """Return an expression changed from the leaves up."""
     return change(node.with_children(_everywhere(c, change) for c in node.children))
 
 
-def _positive(node: CodeNode) -> CodeNode:
+def _positive(node: tree.CodeNode) -> tree.CodeNode:
     match node:
-        case Apply("abs", Laplace()):
-            return Laplace()
-        case Multiply((factor, Assigned() as x)) if factor == TWO:
-            return Add((x, x))
-        case Apply(function, Negate(Multiply((RealNumber() | ParameterValue() as first, *rest)))):
-            return Apply(function, Multiply((Negate(first), *rest)))
+        case tree.Apply("abs", tree.Laplace()):
+            return tree.Laplace()
+        case tree.Multiply((factor, tree.Assigned() as x)) if factor == TWO:
+            return tree.Add((x, x))
+        case tree.Apply(
+            function, tree.Negate(tree.Multiply((tree.RealNumber() | tree.ParameterValue() as first, *rest)))
+        ):
+            return tree.Apply(function, tree.Multiply((tree.Negate(first), *rest)))
     return node
 
 
-def _negated(num: CodeNode, den: CodeNode, constants: set[str]) -> tuple[CodeNode, CodeNode]:
+def _negated(
+    num: tree.CodeNode, den: tree.CodeNode, constants: set[str]
+) -> tuple[tree.CodeNode, tree.CodeNode]:
     """Return numerator and denominator of minus a quotient; the sign goes to a number if there is one."""
     if (above := _signed(num, constants)) is not None:
         return above, den
     if (below := _signed(den, constants)) is not None:
         return num, below
-    return Negate(num), den
+    return tree.Negate(num), den
 
 
-def _signed(node: CodeNode, constants: set[str]) -> CodeNode | None:
+def _signed(node: tree.CodeNode, constants: set[str]) -> tree.CodeNode | None:
     """Return minus a product whose first factor is a number, ``None`` if it is no such product."""
     match node:
-        case RealNumber() | ParameterValue():
-            return Negate(node)
-        case Assigned(name) if name in constants:
-            return Negate(node)
-        case Multiply((first, *rest)) if (changed := _signed(first, constants)) is not None:
-            return Multiply((changed, *rest))
+        case tree.RealNumber() | tree.ParameterValue():
+            return tree.Negate(node)
+        case tree.Assigned(name) if name in constants:
+            return tree.Negate(node)
+        case tree.Multiply((first, *rest)) if (changed := _signed(first, constants)) is not None:
+            return tree.Multiply((changed, *rest))
     return None
 
 
@@ -139,16 +127,16 @@ CONTEXT = fmpq_mpoly_ctx.get(("t", "other"), Ordering.lex)
 
 T, OTHER = CONTEXT.gens()
 
-_Powers = dict[CodeNode, int]
+_Powers = dict[tree.CodeNode, int]
 """A product of powers of expressions."""
 
 _Value = tuple[_Powers, "fmpq_mpoly"]
 """A product of powers, its sign among them, times a polynomial."""
 
-MINUS: _Value = ({Negate(RealNumber(Fraction(1))): 1}, CONTEXT.constant(1))
+MINUS: _Value = ({tree.Negate(tree.RealNumber(Fraction(1))): 1}, CONTEXT.constant(1))
 
 
-def _half_angles(piece: CodePiece) -> tuple[CodePiece, bool] | None:
+def _half_angles(piece: tree.CodePiece) -> tuple[tree.CodePiece, bool] | None:
     """Return a piece in tangents of half angles, and whether nothing cancels where its argument is small.
 
     ``None`` when it is not of that kind or not shorter.
@@ -166,26 +154,28 @@ def _half_angles(piece: CodePiece) -> tuple[CodePiece, bool] | None:
     unit, (above, below) = _primitive([_hyperbolic(p, degree) for p in (above, below)])
     gain = _product((front, CONTEXT.constant(unit)), (back, CONTEXT.constant(1)), -1)
     # omega and mu by x/2 = sqrt(half^2 * law * omega) = half * mu
-    omega, mu = gain[0].pop(Laplace(), 0), gain[0].pop(Assigned("mu"), 0)
+    omega, mu = gain[0].pop(tree.Laplace(), 0), gain[0].pop(tree.Assigned("mu"), 0)
     power = mu + 2 * omega
     gain = _product(_product(gain, law, -omega), half, -power)
-    names = [Assigned(n) for n in ("x_half", "t_half", "h_half", "t_h")]
+    names = [tree.Assigned(n) for n in ("x_half", "t_half", "h_half", "t_h")]
     x, t, h, both = names
     values = [_sum(p, t, h, both) for p in (above, below)]
     size = _product(({}, CONTEXT.constant(1)), gain, 1 if power >= 0 else -1)
     side = 0 if power >= 0 else 1
-    values[side] = Multiply((Assigned("c_gain"), *[x] * abs(power), values[side]))
+    values[side] = tree.Multiply((tree.Assigned("c_gain"), *[x] * abs(power), values[side]))
     constants = (
-        Assignment("c_square", _fraction(_product(_product(half, half), law))),
-        Assignment("c_gain", _fraction(size)),
+        tree.Assignment("c_square", _fraction(_product(_product(half, half), law))),
+        tree.Assignment("c_gain", _fraction(size)),
     )
     assignments = (
-        Assignment("x_half", Apply("sqrt", Multiply((Assigned("c_square"), Laplace())))),
-        Assignment("t_half", Apply("tan", x)),
-        Assignment("h_half", Apply("tanh", x)),
-        Assignment("t_h", Multiply((t, h))),
+        tree.Assignment(
+            "x_half", tree.Apply("sqrt", tree.Multiply((tree.Assigned("c_square"), tree.Laplace())))
+        ),
+        tree.Assignment("t_half", tree.Apply("tan", x)),
+        tree.Assignment("h_half", tree.Apply("tanh", x)),
+        tree.Assignment("t_h", tree.Multiply((t, h))),
     )
-    code = Straight((*piece.code.constants, *constants), assignments, ()).needed(values)
+    code = tree.Straight((*piece.code.constants, *constants), assignments, ()).needed(values)
     if _cost(code) >= _cost(piece.code):
         return None
     return replace(piece, code=code), _is_regular(above) and _is_regular(below)
@@ -198,9 +188,9 @@ def _is_regular(polynomial: fmpq_mpoly) -> bool:
     return len(signs) == 1
 
 
-def _cost(code: Straight) -> int:
+def _cost(code: tree.Straight) -> int:
     roots = [*(a.value for a in code.assignments), *code.values]
-    return sum(max(len(n.children) - 1, 0) + isinstance(n, Apply) for r in roots for n in r.walk())
+    return sum(max(len(n.children) - 1, 0) + isinstance(n, tree.Apply) for r in roots for n in r.walk())
 
 
 class _OtherKindError(Exception):
@@ -211,14 +201,14 @@ class _OtherKindError(Exception):
 class _HalfAngleReader:
     """Reads a piece's expressions as products of powers and polynomials of ``t_half`` and ``decay``."""
 
-    values: Mapping[str, CodeNode]
+    values: Mapping[str, tree.CodeNode]
 
     def argument(self) -> tuple[_Value, _Value]:
         """Return mu^2/omega and half the argument over mu."""
-        applied = [n for v in self.values.values() for n in v.walk() if isinstance(n, Apply)]
+        applied = [n for v in self.values.values() for n in v.walk() if isinstance(n, tree.Apply)]
         functions = sorted(n.function for n in applied if any(self._varies(c) for c in n.children))
         match self.values.get("mu"), self.values.get("t_half"), self.values.get("decay"):
-            case Apply("sqrt", square), Apply("tan", angle), Apply("exp", exponent):
+            case tree.Apply("sqrt", square), tree.Apply("tan", angle), tree.Apply("exp", exponent):
                 law, half, whole = (self.value(n) for n in (square, angle, exponent))
             case _:
                 raise _OtherKindError
@@ -226,47 +216,48 @@ class _HalfAngleReader:
         is_such = (
             functions == ["exp", "sqrt", "tan"] and powers == MINUS[0] and quotient == CONTEXT.constant(2)
         )
-        is_linear = half[0].pop(Assigned("mu"), 0) == 1 and law[0].pop(Laplace(), 0) == 1
+        is_linear = half[0].pop(tree.Assigned("mu"), 0) == 1 and law[0].pop(tree.Laplace(), 0) == 1
         if not is_such or not is_linear or any(self._varies(n) for n in (*law[0], *half[0])):
             raise _OtherKindError
         return law, half
 
-    def _varies(self, node: CodeNode) -> bool:
+    def _varies(self, node: tree.CodeNode) -> bool:
         return any(
-            isinstance(n, Laplace) or (isinstance(n, Assigned) and self._varies(self.values[n.name]))
+            isinstance(n, tree.Laplace)
+            or (isinstance(n, tree.Assigned) and self._varies(self.values[n.name]))
             for n in node.walk()
         )
 
-    def value(self, node: CodeNode) -> _Value:
+    def value(self, node: tree.CodeNode) -> _Value:
         """Return the value of an expression; sums and functions free of s count as symbols."""
         match node:
-            case RealNumber(number, 0):
+            case tree.RealNumber(number, 0):
                 return {}, CONTEXT.constant(number.numerator) / number.denominator
-            case Assigned("t_half"):
+            case tree.Assigned("t_half"):
                 return {}, T
-            case Assigned("decay"):
+            case tree.Assigned("decay"):
                 return {}, OTHER
-            case Assigned(name) if name != "mu":
+            case tree.Assigned(name) if name != "mu":
                 named = self.values[name]
-                if self._varies(named) or not isinstance(named, Apply | Add):
+                if self._varies(named) or not isinstance(named, tree.Apply | tree.Add):
                     return self.value(named)
-            case Negate(operand):
+            case tree.Negate(operand):
                 return _product(self.value(operand), MINUS)
-            case Divide(above, below):
+            case tree.Divide(above, below):
                 return _product(self.value(above), self.value(below), -1)
-            case IntegerPower(base, exponent):
+            case tree.IntegerPower(base, exponent):
                 return _product(({}, CONTEXT.constant(1)), self.value(base), exponent)
-            case Multiply(factors):
+            case tree.Multiply(factors):
                 return reduce(_product, map(self._part, factors))
-            case Add(terms) if self._varies(node):
+            case tree.Add(terms) if self._varies(node):
                 parts = [self._part(x) for x in terms]
                 if not any(powers for powers, _ in parts):
                     return {}, sum((p for _, p in parts), CONTEXT.constant(0))
-        if self._varies(node) and node not in (Laplace(), Assigned("mu")):
+        if self._varies(node) and node not in (tree.Laplace(), tree.Assigned("mu")):
             raise _OtherKindError
         return {node: 1}, CONTEXT.constant(1)
 
-    def _part(self, node: CodeNode) -> _Value:
+    def _part(self, node: tree.CodeNode) -> _Value:
         """Return the value of a part of an expression; minus a polynomial is a polynomial."""
         powers, polynomial = self.value(node)
         return ({}, -polynomial) if powers == MINUS[0] else (powers, polynomial)
@@ -283,20 +274,21 @@ def _product(left: _Value, right: _Value, power: int = 1) -> _Value:
     return {n: e for n, e in powers.items() if (e % 2 if n in MINUS[0] else e)}, polynomial
 
 
-def _fraction(value: _Value) -> CodeNode:
+def _fraction(value: _Value) -> tree.CodeNode:
     """Return a product of powers and a number as an expression."""
     powers = {node: exponent for node, exponent in value[0].items() if node not in MINUS[0]}
     number = value[1].leading_coefficient()
-    sides: list[list[CodeNode]] = [[], []]
+    sides: list[list[tree.CodeNode]] = [[], []]
     for own, whole in zip(sides, (int(number.p), int(number.q)), strict=True):
-        own.extend([RealNumber(Fraction(whole))] if whole != 1 else [])
+        own.extend([tree.RealNumber(Fraction(whole))] if whole != 1 else [])
     for node, exponent in powers.items():
-        sides[exponent < 0].append(node if abs(exponent) == 1 else IntegerPower(node, abs(exponent)))
+        sides[exponent < 0].append(node if abs(exponent) == 1 else tree.IntegerPower(node, abs(exponent)))
     above, below = (
-        own[0] if len(own) == 1 else Multiply(tuple(own)) if own else RealNumber(Fraction(1)) for own in sides
+        own[0] if len(own) == 1 else tree.Multiply(tuple(own)) if own else tree.RealNumber(Fraction(1))
+        for own in sides
     )
-    whole_node = Divide(above, below) if sides[1] else above
-    return whole_node if len(powers) == len(value[0]) else Negate(whole_node)
+    whole_node = tree.Divide(above, below) if sides[1] else above
+    return whole_node if len(powers) == len(value[0]) else tree.Negate(whole_node)
 
 
 def _hyperbolic(polynomial: fmpq_mpoly, degree: int) -> fmpq_mpoly:
@@ -313,35 +305,35 @@ def _primitive(polynomials: Sequence[fmpq_mpoly]) -> tuple[fmpq, list[fmpq_mpoly
     return sizes[0] / sizes[1], [p / size for p, size in zip(polynomials, sizes, strict=True)]
 
 
-def _sum(polynomial: fmpq_mpoly, t: CodeNode, h: CodeNode, both: CodeNode) -> CodeNode:
+def _sum(polynomial: fmpq_mpoly, t: tree.CodeNode, h: tree.CodeNode, both: tree.CodeNode) -> tree.CodeNode:
     """Return a polynomial in t and h by powers of their product."""
-    groups: dict[int, list[CodeNode]] = {}
+    groups: dict[int, list[tree.CodeNode]] = {}
     for (i, j), coefficient in sorted(polynomial.terms()):
         number, shared = Fraction(int(coefficient.p), int(coefficient.q)), min(i, j)
         factors = [*([t] * (i - shared)), *([h] * (j - shared))]
         if abs(number) != 1 or not factors:
-            factors.insert(0, RealNumber(abs(number)))
-        term: CodeNode = factors[0] if len(factors) == 1 else Multiply(tuple(factors))
-        groups.setdefault(shared, []).append(term if number > 0 else Negate(term))
-    summands: list[CodeNode] = []
+            factors.insert(0, tree.RealNumber(abs(number)))
+        term: tree.CodeNode = factors[0] if len(factors) == 1 else tree.Multiply(tuple(factors))
+        groups.setdefault(shared, []).append(term if number > 0 else tree.Negate(term))
+    summands: list[tree.CodeNode] = []
     for shared, terms in sorted(groups.items()):
         inner = _total(terms)
-        minus = isinstance(inner, Negate)
-        size = inner.operand if isinstance(inner, Negate) else inner
+        minus = isinstance(inner, tree.Negate)
+        size = inner.operand if isinstance(inner, tree.Negate) else inner
         factors = [both] * shared
-        if not (shared and size == RealNumber(Fraction(1))):
+        if not (shared and size == tree.RealNumber(Fraction(1))):
             factors.append(size)
-        product: CodeNode = factors[0] if len(factors) == 1 else Multiply(tuple(factors))
-        summands.append(Negate(product) if minus else product)
+        product: tree.CodeNode = factors[0] if len(factors) == 1 else tree.Multiply(tuple(factors))
+        summands.append(tree.Negate(product) if minus else product)
     return _total(summands)
 
 
-def _total(terms: Sequence[CodeNode]) -> CodeNode:
+def _total(terms: Sequence[tree.CodeNode]) -> tree.CodeNode:
     """Return a sum; a term without minus sign comes first when there is one."""
     if len(terms) == 1:
         return terms[0]
-    first = next((t for t in terms if not isinstance(t, Negate)), None)
+    first = next((t for t in terms if not isinstance(t, tree.Negate)), None)
     if first is None:
-        return Negate(_total([t.operand for t in terms if isinstance(t, Negate)]))
+        return tree.Negate(_total([t.operand for t in terms if isinstance(t, tree.Negate)]))
     rest = [t for t in terms if t is not first]
-    return Add((first, *rest))
+    return tree.Add((first, *rest))

@@ -15,26 +15,13 @@ from typing import TYPE_CHECKING, Any
 
 from symflex.codegen.infix import InfixPrinter
 from symflex.codegen.module_text import identifiers
+from symflex.codegen.program import nodes as tree
 from symflex.codegen.program.evaluate import NUMPY_FUNCTIONS, number_of
 from symflex.codegen.program.everywhere import cases_of, in_pieces, places_of
-from symflex.codegen.program.nodes import (
-    ONE,
-    Apply,
-    Assignment,
-    CodeNode,
-    CodePiece,
-    InverseLaplace,
-    Laplace,
-    LargerRoot,
-    Multiply,
-    Piecewise,
-    Straight,
-)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from symflex.codegen.program.nodes import Frames
     from symflex.codegen.python.module import Dialect
 
 
@@ -45,7 +32,7 @@ class PrivateText(ABC):
     Their names begin with what a private function is, so that ``A_over_F_0`` may be another public function.
     """
 
-    given: Piecewise  # what they compute
+    given: tree.Piecewise  # what they compute
     name: str  # identifier of the public function
     parameters: Mapping[str, str]  # identifiers of the parameters
     values: Mapping[str, float]  # values of the parameters that have one
@@ -85,7 +72,7 @@ class PrivateText(ABC):
         return [f"def {name}(", *(f"    {g}," for g in given), "):"]
 
     @abstractmethod
-    def _body(self, code: Straight, variable: str) -> tuple[list[str], PythonPrinter]:
+    def _body(self, code: tree.Straight, variable: str) -> tuple[list[str], PythonPrinter]:
         """Return the lines of the assignments, and what prints values in their scope."""
 
     @abstractmethod
@@ -93,10 +80,10 @@ class PrivateText(ABC):
         """Return the text of a mean over a circle."""
 
     @abstractmethod
-    def _value(self, piece: CodePiece, lines: list[str], printer: PythonPrinter) -> list[str]:
+    def _value(self, piece: tree.CodePiece, lines: list[str], printer: PythonPrinter) -> list[str]:
         """Return the last lines of a piece's function."""
 
-    def _piece(self, number: int, piece: CodePiece) -> list[str]:
+    def _piece(self, number: int, piece: tree.CodePiece) -> list[str]:
         name, parts = (f"_{word}_{number}_of_{self.name}" for word in ("piece", "parts"))
         if piece.circle:
             lines, printer = self._body(piece.code, self.variable)
@@ -148,7 +135,7 @@ class BlockText(PrivateText):
         comma = "," if len(names) == 1 else ""
         return [*lines, *statement(f"_pieces_of_{self.name}", f"({', '.join(names)}{comma})", "")]
 
-    def _lumped(self, program: Piecewise) -> list[str]:
+    def _lumped(self, program: tree.Piecewise) -> list[str]:
         """Return the function that computes with numbers or arrays of any shape."""
         lines = [f"def _value_of_{self.name}("]
         lines += [f"    {name}: NDArray[np.complex128]," for name in self.arguments]
@@ -175,14 +162,14 @@ class BlockText(PrivateText):
         whole = f"np.where({own['is_far']}, {printer.print(far.values[0])}, {own['value']})"
         return [*lines, *statement(own["value"], whole, "        "), f"    return {own['value']}"]
 
-    def _body(self, code: Straight, variable: str) -> tuple[list[str], PythonPrinter]:
-        assignments: list[Assignment] = [*code.constants, *code.assignments]
+    def _body(self, code: tree.Straight, variable: str) -> tuple[list[str], PythonPrinter]:
+        assignments: list[tree.Assignment] = [*code.constants, *code.assignments]
         taken = {*self.dialect.reserved, *self.parameters.values(), self.variable, variable, "z"}
         names = identifiers({a.name: a.name for a in assignments}, taken)
         printer = PythonPrinter(self.parameters, names, variable, "inverse")
         return [line for a in assignments for line in printer.assignment(a.name, a.value, "    ")], printer
 
-    def _tests(self, program: Piecewise) -> list[str]:
+    def _tests(self, program: tree.Piecewise) -> list[str]:
         lines, printer = self._body(program.tests, self.variable)
         tests = []
         for condition in program.conditions:
@@ -196,20 +183,20 @@ class BlockText(PrivateText):
         head = self._head(f"_tests_of_{self.name}")
         return [*head, *lines, *statement("return", f"[{', '.join(tests)}]", "    ")]
 
-    def _real_tests(self, program: Piecewise) -> list[str]:
+    def _real_tests(self, program: tree.Piecewise) -> list[str]:
         """Return two functions: of the limits, made once per call, and of the sizes, made per block."""
         _, printer = self._body(program.tests, self.variable)
         limits: list[str] = []
-        sizes: list[CodeNode] = []
+        sizes: list[tree.CodeNode] = []
         for condition in program.conditions:
             if not condition.limit:
                 limits.append("0.0")
-                sizes.append(Multiply((condition.scale, condition.quantity)))
+                sizes.append(tree.Multiply((condition.scale, condition.quantity)))
                 continue
             scale = printer.print(condition.scale)
             limits.append(repr(condition.limit) + (f" / np.abs({scale})" if scale != "1.0" else ""))
-            is_positive = isinstance(condition.quantity, Laplace)
-            sizes.append(condition.quantity if is_positive else Apply("abs", condition.quantity))
+            is_positive = isinstance(condition.quantity, tree.Laplace)
+            sizes.append(condition.quantity if is_positive else tree.Apply("abs", condition.quantity))
         fixed = program.tests.needed([c.scale for c in program.conditions if c.limit])
         lines: list[list[str]] = []
         for code in (fixed, program.tests.needed(sizes)):
@@ -230,7 +217,7 @@ class BlockText(PrivateText):
         given = ", ".join(["z", *self.arguments[1:]])
         return f"_mean_over_circle(lambda z: {parts}({given}), {self.variable}, {points})"
 
-    def _value(self, piece: CodePiece, lines: list[str], printer: PythonPrinter) -> list[str]:
+    def _value(self, piece: tree.CodePiece, lines: list[str], printer: PythonPrinter) -> list[str]:
         num, den = piece.code.values
         if not self.given.is_real:
             return [*lines, *statement("return", printer.quotient(num, den), "    ")]
@@ -246,7 +233,7 @@ class TracedText(PrivateText):
     """Prints functions without branches on values."""
 
     @property
-    def program(self) -> Piecewise:
+    def program(self) -> tree.Piecewise:
         """The program in pieces, each of which can be computed without the others."""
         return in_pieces(self.given)
 
@@ -277,7 +264,7 @@ class TracedText(PrivateText):
             ]
         return [*lines, ")"]
 
-    def _body(self, code: Straight, variable: str) -> tuple[list[str], ArrayPrinter]:
+    def _body(self, code: tree.Straight, variable: str) -> tuple[list[str], ArrayPrinter]:
         assignments = (*code.constants, *code.assignments)
         taken = {*self.dialect.reserved, *self.arguments, variable}
         inverse = identifiers({"inverse": "inverse"}, taken)["inverse"]
@@ -304,19 +291,21 @@ class TracedText(PrivateText):
             lines = [f"    {inverse} = 1.0 / {variable}", *lines]
         return lines, printer
 
-    def _tests(self, program: Piecewise) -> list[str]:
+    def _tests(self, program: tree.Piecewise) -> list[str]:
         lines, printer = self._body(program.tests, self.variable)
         tests = []
         for condition in program.conditions:
-            is_one = condition.scale == ONE
+            is_one = condition.scale == tree.ONE
             if not condition.limit:
-                tested = condition.quantity if is_one else Multiply((condition.scale, condition.quantity))
+                tested = (
+                    condition.quantity if is_one else tree.Multiply((condition.scale, condition.quantity))
+                )
                 text = printer.print(tested)
                 text = text if program.is_real else f"{self.dialect.space}.real({text})"
                 tests.append(f"{text} < 0.0")
                 continue
-            is_positive = program.is_real and isinstance(condition.quantity, Laplace)
-            size = condition.quantity if is_positive else Apply("abs", condition.quantity)
+            is_positive = program.is_real and isinstance(condition.quantity, tree.Laplace)
+            size = condition.quantity if is_positive else tree.Apply("abs", condition.quantity)
             limit = repr(condition.limit)
             if not is_one:
                 limit += f" / {_size(condition.scale, printer)}"
@@ -327,22 +316,22 @@ class TracedText(PrivateText):
     def _mean(self, parts: str, points: int) -> str:
         return f"_mean_over_circle({self.leading}{parts}, [{', '.join(self.arguments)}], {points})"
 
-    def _value(self, piece: CodePiece, lines: list[str], printer: PythonPrinter) -> list[str]:
+    def _value(self, piece: tree.CodePiece, lines: list[str], printer: PythonPrinter) -> list[str]:
         num, den = piece.code.values
-        value = printer.print(num) if den == ONE else printer.quotient(num, den)
+        value = printer.print(num) if den == tree.ONE else printer.quotient(num, den)
         first = f"    {printer.inverse} = 1.0 / {printer.variable}"
-        if den == ONE and printer.inverse in value and first not in lines:
+        if den == tree.ONE and printer.inverse in value and first not in lines:
             lines = [first, *lines]
         if self.program.is_real and not piece.is_complex:
             value = f"{'1j' if self.program.turn else '(1+0j)'} * ({value})"
-        elif not any(isinstance(n, (Laplace, InverseLaplace)) for n in piece.code.nodes()):
+        elif not any(isinstance(n, (tree.Laplace, tree.InverseLaplace)) for n in piece.code.nodes()):
             value = f"{value} + {self.dialect.space}.zeros_like({self.variable})"
         return [*lines, *statement("return", value, "    ")]
 
 
-def _size(scale: CodeNode, printer: ArrayPrinter) -> str:
+def _size(scale: tree.CodeNode, printer: ArrayPrinter) -> str:
     number = number_of(scale, printer.numbers)
-    return printer.print(Apply("abs", scale)) if number is None else repr(abs(number))
+    return printer.print(tree.Apply("abs", scale)) if number is None else repr(abs(number))
 
 
 WIDTH = 88
@@ -355,7 +344,7 @@ class PythonPrinter(InfixPrinter):
 
     space: str = "np"  # what functions are looked up in
 
-    def assignment(self, name: str, value: CodeNode, indent: str) -> list[str]:
+    def assignment(self, name: str, value: tree.CodeNode, indent: str) -> list[str]:
         """Return the lines of an assignment."""
         return statement(self.locals[name], self.print(value), indent)
 
@@ -364,7 +353,7 @@ class PythonPrinter(InfixPrinter):
         """The number pi."""
         return f"{self.space}.pi"
 
-    def applied(self, function: str, argument: CodeNode) -> str:
+    def applied(self, function: str, argument: tree.CodeNode) -> str:
         """Return the text of a function's value."""
         if function == "complex_exp":
             return f"_complex_exp({self.print(argument)})"
@@ -388,7 +377,7 @@ class PythonPrinter(InfixPrinter):
             arguments = (f"{roots}[:-1]", length)
         return super().call(function, arguments)
 
-    def frames(self, frames: Frames) -> str:
+    def frames(self, frames: tree.Frames) -> str:
         """Return the frames of a sum of exponentials."""
         return repr(frames)
 
@@ -403,15 +392,15 @@ class ArrayPrinter(PythonPrinter):
     has_fixed_sizes: bool = False  # true to print magnitudes as ``_size``, which has no derivative
     leading: str = ""  # first arguments of functions that look others up
 
-    def print(self, node: CodeNode) -> str:
+    def print(self, node: tree.CodeNode) -> str:
         """Return the text of an expression."""
-        if isinstance(node, LargerRoot):
+        if isinstance(node, tree.LargerRoot):
             return f"_larger({self.leading}{self.print(node.middle)}, {self.print(node.product)})"
         return super().print(node)
 
-    def applied(self, function: str, argument: CodeNode) -> str:
+    def applied(self, function: str, argument: tree.CodeNode) -> str:
         """Return the text of a function's value."""
-        number = number_of(Apply(function, argument), self.numbers)
+        number = number_of(tree.Apply(function, argument), self.numbers)
         if number is not None and isfinite(number):
             return repr(complex(number)) if isinstance(number, complex) else f"({float(number)!r})"
         if function == "abs" and self.has_fixed_sizes:

@@ -279,22 +279,6 @@ def expanded_terms(equations: Equations, elimination: Elimination) -> float:
     coefficient one: with one for every sub-impedance and parameter its value is their number. Elsewhere
     signs may cancel, and it is an estimate. A determinant in few symbols has no more terms than these have
     monomials up to the degrees they can reach.
-
-    Examples
-    --------
-    >>> from symflex import pipeline
-    >>> from symflex.equations.elimination.star_mesh import eliminate
-    >>> equations = pipeline.assemble(pipeline.loads('''
-    ... symflex = 1
-    ... parameters = {m_1 = {}, m_2 = {}, k = {}}
-    ... elements.first = {type = "mass", at = "x", m = "m_1"}
-    ... elements.second = {type = "mass", at = "y", m = "m_2"}
-    ... elements.spring = {type = "spring", between = ["x", "y"], k = "k"}
-    ... inputs.F = {force = "x"}
-    ... outputs.X = "x"
-    ... '''))
-    >>> round(expanded_terms(equations, eliminate(equations, [("X", "F")])))
-    3
     """
     exponent = min(_forests(elimination), _monomials(equations))
     return inf if exponent > LARGEST else 2.718281828459045**exponent
