@@ -179,8 +179,8 @@ def export(spec: Specification, given: ExportOptions) -> int:
     """
     from symflex import pipeline
     from symflex.codegen.exporters import EXPORTERS
-    from symflex.codegen.module_text import identifiers
     from symflex.codegen.latex import LatexExporter
+    from symflex.codegen.module_text import identifiers
     from symflex.files.write import check_folder, check_writable, write_atomically
 
     if given.target not in EXPORTERS:
@@ -219,8 +219,8 @@ def export(spec: Specification, given: ExportOptions) -> int:
 
 def _chosen(exporter: Exporter, given: ExportOptions) -> Exporter:
     """Return an exporter with the options that are its own."""
-    from symflex.codegen.state_space import StateSpaceExporter
     from symflex.codegen.latex import LatexExporter
+    from symflex.codegen.state_space import StateSpaceExporter
     from symflex.print.latex import column_width
 
     if isinstance(exporter, LatexExporter):
