@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     from symflex.model.spec import Spec
     from symflex.roots import Budget, PoleZeroMap, Region
     from symflex.state_space import StateSpace
-    from symflex.sweep.of_model import plan_sweep, sweep
+    from symflex.sweep.run import plan_sweep, sweep
     from symflex.transfer import BoundTransferFunction
 
 __all__ = [
@@ -98,8 +98,8 @@ LATER: Final = {
     "measure": ("analysis.measured", "measure"),
     "fit": ("analysis.measured", "fit"),
     "fit_specification": ("data.fitting.specification", "fit_specification"),
-    "plan_sweep": ("sweep.of_model", "plan_sweep"),
-    "sweep": ("sweep.of_model", "sweep"),
+    "plan_sweep": ("sweep.run", "plan_sweep"),
+    "sweep": ("sweep.run", "sweep"),
 }
 """Where the function behind an arrow is, and its name there."""
 

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
     import numpy.typing as npt
 
-    from symflex.roots import PoleZeroMap, Root
+    from symflex.roots import Root
     from symflex.transfer import BoundTransferFunction, EnclosedTransferFunction
 
 

@@ -126,7 +126,7 @@ class Stability:
         return self.proved.to_json_dict()
 
     def __str__(self) -> str:
-        from symflex.loops.text import stability_text
+        from symflex.loops.stability_map import stability_text
 
         return stability_text(self.proved)
 

@@ -117,7 +117,7 @@ def stability(spec: Specification, given: StabilityOptions) -> int:
     """
     from symflex import pipeline
     from symflex.cli.progress import ProgressBar
-    from symflex.loops.text import stability_text
+    from symflex.loops.stability_map import stability_text
 
     model = spec.load()
     with ProgressBar() as bar:
@@ -167,7 +167,7 @@ def sweep(spec: Specification, given: SweepOptions) -> int:
     from symflex.cli.progress import ProgressBar
     from symflex.sweep.files import check_writable
     from symflex.sweep.run import open_executor
-    from symflex.sweep.text import sweep_json, sweep_text
+    from symflex.sweep.sweep import sweep_json, sweep_text
 
     if given.workers and given.scheduler:
         raise UsageError(Diagnostic("SF902", "give only one of --workers and --scheduler"))

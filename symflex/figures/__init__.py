@@ -14,12 +14,11 @@ from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.figures.axes import FREE, AxisLimits, Canvas, Drawing
 from symflex.figures.bode import draw_bode, draw_fit, draw_measured, draw_response
-from symflex.figures.labels import label_of_name
 from symflex.figures.loops import draw_locus, draw_nyquist, number_label
 from symflex.figures.modes import draw_modes
 from symflex.figures.poles_zeros import draw_poles_zeros
 from symflex.figures.save import FORMATS, MM_PER_INCH, render, save
-from symflex.figures.style import DEFAULT_FONT, FONTS, family_of, paper_style
+from symflex.figures.style import DEFAULT_FONT, FONTS, family_of, label_of_name, paper_style
 from symflex.figures.sweep import draw_sweep
 from symflex.loops import closed_loop, loop_gain, require_arrival, trace_locus
 from symflex.model.analysis import FIGURE_KINDS

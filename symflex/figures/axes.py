@@ -19,8 +19,14 @@ from matplotlib.ticker import (
 )
 
 from symflex.errors import Diagnostic, UsageError
-from symflex.figures.labels import label_of_frequency, label_of_unit
-from symflex.figures.style import QUIET, TITLE_POINTS, TITLE_SPACING, new_figure
+from symflex.figures.style import (
+    QUIET,
+    TITLE_POINTS,
+    TITLE_SPACING,
+    label_of_frequency,
+    label_of_unit,
+    new_figure,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

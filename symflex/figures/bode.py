@@ -19,13 +19,14 @@ from symflex.figures.axes import (
     set_magnitude_ticks,
     write_title,
 )
-from symflex.figures.labels import label_of_tf, label_of_unit
 from symflex.figures.style import (
     COLOURS,
     COLUMN_INCHES,
     DASHES,
     LINE_INCHES,
     QUIET,
+    label_of_tf,
+    label_of_unit,
     paper_style,
     stability_lines,
     title_lines,

@@ -21,7 +21,6 @@ from symflex.figures.axes import (
     set_round_ticks,
     write_title,
 )
-from symflex.figures.labels import label_of_name, label_of_tf
 from symflex.figures.style import (
     COLOURS,
     COLUMN_INCHES,
@@ -29,6 +28,8 @@ from symflex.figures.style import (
     QUIET,
     TITLE_POINTS,
     TITLE_SPACING,
+    label_of_name,
+    label_of_tf,
     new_figure,
     title_lines,
 )

@@ -13,7 +13,6 @@ from matplotlib.ticker import FixedLocator, MaxNLocator, NullFormatter
 
 from symflex.analysis.modes import lowest_modes
 from symflex.errors import Diagnostic, ModelError, UsageError
-from symflex.figures.labels import PLAIN_HIGH, label_of_name
 from symflex.figures.runs import Run, Stems, panels_of
 from symflex.figures.save import MM_PER_INCH
 from symflex.figures.style import (
@@ -22,7 +21,9 @@ from symflex.figures.style import (
     FAINT,
     LINE_INCHES,
     PAGE_INCHES,
+    PLAIN_HIGH,
     QUIET,
+    label_of_name,
     new_figure,
     title_lines,
     write_titles,

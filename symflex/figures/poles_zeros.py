@@ -13,13 +13,13 @@ from math import atan2, ceil, isclose, pi
 from typing import TYPE_CHECKING, Final, Literal
 
 from symflex.figures.axes import FREE, draw_points, draw_zero_lines, point_of, set_round_ticks
-from symflex.figures.labels import label_of_tf
 from symflex.figures.style import (
     COLOURS,
     COLUMN_INCHES,
     LINE_INCHES,
     NOTE_POINTS,
     PAGE_INCHES,
+    label_of_tf,
     new_figure,
     stability_lines,
     title_lines,

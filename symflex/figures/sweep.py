@@ -12,7 +12,6 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from symflex.errors import Diagnostic, ModelError
 from symflex.figures.axes import RIGHT_HALF_PLANE, label_s_plane, set_frequency_axis, write_title
-from symflex.figures.labels import label_of_frequency, label_of_name, label_of_unit
 from symflex.figures.style import (
     COLOURS,
     COLUMN_INCHES,
@@ -20,6 +19,9 @@ from symflex.figures.style import (
     DEFAULT_FONT,
     LINE_INCHES,
     QUIET,
+    label_of_frequency,
+    label_of_name,
+    label_of_unit,
     new_figure,
     paper_style,
     title_lines,

@@ -4,8 +4,8 @@ from symflex.loops.colocation import DynamicColocation, dynamic_colocation
 from symflex.loops.find import find_stable_gains
 from symflex.loops.locus import RootLocus, closed_loop, loop_gain, require_arrival, trace_locus
 from symflex.loops.loop import GainPolynomial, Loop, characteristic_loop, pick_gain
-from symflex.loops.margins import AllowedBandwidth
 from symflex.loops.stability_map import (
+    AllowedBandwidth,
     Boundary,
     Crossing,
     GainInterval,

@@ -22,8 +22,8 @@ from symflex.loops.loop import GainPolynomial, LoopFunction, LoopValue
 from symflex.loops.stability_map import Crossing, PoleCount
 from symflex.roots import Band, Budget, precision
 from symflex.roots.counting.argument_principle import CertifiedWinding
-from symflex.roots.counting.tail import right_tail
 from symflex.roots.counting.winding import Cell, RootOnPathError, Winding
+from symflex.roots.distributed.right_half_plane import right_tail
 from symflex.roots.distributed.side import Side
 from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.functions.simplified import without_squares

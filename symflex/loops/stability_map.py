@@ -13,8 +13,6 @@ from symflex.transfer.balls import ball
 if TYPE_CHECKING:
     from fractions import Fraction
 
-    from symflex.loops.margins import AllowedBandwidth
-
 
 SCHEMA = "symflex.stability/1"
 BITS = 128
@@ -65,6 +63,18 @@ class PhaseMargin:
 
     angle: arb  # [rad]; positive: lag until poles reach the axis; negative: lead
     frequency: arb  # crossover frequency [rad/s]
+
+
+@dataclass(frozen=True, slots=True)
+class AllowedBandwidth:
+    """Up to which frequency a loop can follow, with a gain margin of 6 dB."""
+
+    gain: Fraction | None  # the largest gain with that margin; ``None`` when every gain is stable
+    # At which the loop gain first falls below one [rad/s]; ``None`` when there is no such gain, or when the
+    # loop gain is below one from the lowest frequencies on.
+    frequency: arb | None
+    phase_margin: arb | None  # the smallest one there in absolute value [rad], positive for lag
+    is_limited: bool  # by a boundary: twice the gain is one. Otherwise the gains examined end there.
 
 
 @dataclass(frozen=True)

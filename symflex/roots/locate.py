@@ -38,7 +38,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symflex.roots.counting.winding import Cell
-    from symflex.roots.region import Region
     from symflex.transfer import BoundTransferFunction
 
 

@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 
     from symflex.budget import Budget
     from symflex.roots.problem import RootProblem
-    from symflex.roots.root import Root
 
 
 SCHEMA = "symflex.roots/1"

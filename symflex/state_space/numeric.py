@@ -12,16 +12,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from importlib import import_module
 from math import inf, isfinite
 from sys import float_info
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import mpmath
 import numpy as np
 from flint import acb, acb_mat, arb, ctx, fmpz_mpoly
 
-from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
+from symflex.errors import Diagnostic, ModelError, UncertifiedError
+from symflex.errors.optional import installed
 from symflex.expressions import format_expression
 from symflex.transfer.balls import enclosure, later, value_at
 
@@ -138,22 +138,6 @@ def bound_state_space(system: StateSpace, values: Mapping[str, ExactValue] | Non
     return BoundStateSpace(
         name, rounded(system, values), states, system.inputs, system.outputs, system.is_minimal
     )
-
-
-PIP = {
-    "control": "pip install 'symflex[control]'",
-    "scipy": "pip install scipy",
-    "sympy": "pip install sympy",
-}
-
-
-def installed(module: str) -> Any:  # noqa: ANN401 (these libraries have no types)
-    """Return a module of a program that is asked for; SF902 where it is not there."""
-    try:
-        return import_module(module)
-    except ImportError:
-        package = module.partition(".")[0]
-        raise UsageError(Diagnostic("SF902", f"{package} is not installed", None, PIP[package])) from None
 
 
 FIRST_BITS, LAST_BITS = 128, 4096

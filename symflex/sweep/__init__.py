@@ -6,9 +6,8 @@ workers, nor the order in which they finish, nor a restart in between changes a 
 """
 
 from symflex.sweep.design import Axis, Design, Range, Task, check_design, design_of, fingerprint, read_design
-from symflex.sweep.of_model import plan_sweep, sweep, sweep_task
 from symflex.sweep.points import QUANTITIES, solve_chunk
-from symflex.sweep.run import Journal, chunk_size, run_sweep, sweep_key
+from symflex.sweep.run import Journal, chunk_size, plan_sweep, run_sweep, sweep, sweep_key, sweep_task
 from symflex.sweep.sweep import Labelled, Sweep
 
 __all__ = [

@@ -23,15 +23,15 @@ import numpy as np
 
 from symflex.data.measurement.array_files import read_archive, read_netcdf, require
 from symflex.errors import DataError, Diagnostic, UsageError
+from symflex.errors.optional import installed
 from symflex.files import write
 from symflex.files.write import write_atomically
 from symflex.model.spec.read import read_bytes
 from symflex.sweep.points import MARGINS
-from symflex.sweep.sweep import DRAW, FREQUENCY, MODE, SCHEMA, Labelled, Sweep, extra
+from symflex.sweep.sweep import DRAW, FREQUENCY, MODE, SCHEMA, Labelled, Sweep
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
-    from pathlib import Path
 
     from symflex.sweep.design import Array, Rows
 
@@ -139,7 +139,7 @@ def _texts(column: Array) -> Iterator[str]:
 
 def parquet_bytes(sweep: Sweep) -> bytes:
     """Return the same table as Apache Parquet; SF914 when pyarrow is not installed."""
-    pyarrow, parquet = extra("pyarrow", "Parquet"), extra("pyarrow.parquet", "Parquet")
+    pyarrow, parquet = installed("pyarrow"), installed("pyarrow.parquet")
     names, columns = _table(sweep)
     table = pyarrow.table(dict(zip(names, columns, strict=True)))
     table = table.replace_schema_metadata(dict(sweep.attributes))
@@ -183,7 +183,7 @@ def check_writable(path: Path) -> None:
     if path.suffix.lower() not in WRITERS:
         raise UsageError(Diagnostic("SF902", f"'{path.name}' must end in {', '.join(WRITERS)}"))
     if path.suffix.lower() == ".parquet":
-        extra("pyarrow", "Parquet")
+        installed("pyarrow")
     write.check_writable(path)
 
 

@@ -12,10 +12,10 @@ from symflex.errors import SymflexError
 from symflex.options import SweepOptions
 from symflex.sweep import read_design, sweep_task
 from symflex.sweep.files import netcdf_bytes, npz_bytes, read_sweep
-from symflex.sweep.text import sweep_json, sweep_text
+from symflex.sweep.sweep import sweep_json, sweep_text
 from tests.fuzz.target_numpy_archive import packed, unpacked
 
-ROOMS = ("symflex.data.measurement", "symflex.sweep.files", "symflex.sweep.text", "symflex.sweep")
+ROOMS = ("symflex.data.measurement", "symflex.sweep.files", "symflex.sweep")
 MODEL = """
 symflex = 1
 parameters = { m = "1 kg", c = "1 N*s/m", k = "4 N/m", K = "1 N/m" }

@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
     from symflex.equations import Equations
-    from symflex.equations.elimination import Determinants
     from symflex.model import Model, PlacedElement
     from symflex.roots import Root
 

@@ -1,8 +1,7 @@
 """Residues, and rational approximations with the band of frequencies they are valid in."""
 
-from symflex.analysis.rational.approximate import approximate
+from symflex.analysis.rational.approximate import FORMS, approximate
 from symflex.analysis.rational.approximation import BandError, ErrorScan, RationalApproximation
-from symflex.analysis.rational.forms import FORMS
 from symflex.analysis.rational.laurent import (
     LaurentSeries,
     PrincipalPart,

@@ -19,9 +19,10 @@ import numpy as np
 from symflex.analysis.rational.toolboxes import PERCENTS, RationalFunction, end_units
 from symflex.analysis.response import adaptive_grid
 from symflex.errors import Diagnostic, ModelError
+from symflex.errors.optional import installed
 from symflex.roots.pole_zero_map import NOT_EXAMINED, StabilityVerdict
 from symflex.state_space import Channel
-from symflex.state_space.numeric import BoundState, BoundStateSpace, cascade, installed
+from symflex.state_space.numeric import BoundState, BoundStateSpace, cascade
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -6,6 +6,8 @@
 
 Numerator and denominator are expanded as power series; how many of their first coefficients are zero is known
 from the pole's multiplicity, at s = 0 from series over a prime field, so a quotient of balls is enough.
+About p wavenumbers and kernels are series in e, where ``s = p + e^n``: with n = 4 every wavenumber is such a
+series also where it vanishes.
 
 Residues, how much of each mode a transfer function holds, are the first coefficients at simple poles.
 """
@@ -13,16 +15,17 @@ Residues, how much of each mode a transfer function holds, are the first coeffic
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING
 
-from flint import acb, acb_series, arb, ctx
+import flint
+from flint import acb, acb_mat, acb_series, arb, ctx
 
 from symflex.algebra import Factored
 from symflex.algebra.vanishing import OriginSeries
-from symflex.analysis.rational.local_values import BRANCHES, local_values, series_length
 from symflex.budget import spend
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.roots import Budget, Region, Root, precision
@@ -40,8 +43,12 @@ from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import locate
 from symflex.roots.precision import bits_for_digits
 from symflex.roots.root import GUARD_BITS
+from symflex.transfer.balls import Value, at_centre
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from symflex.algebra import Dispersion, Kernel
     from symflex.transfer import BoundTransferFunction
     from symflex.transfer.enclose_kernels import KernelValues
 
@@ -420,3 +427,119 @@ def _at_zero(bound: BoundTransferFunction, root: Root, digits: int) -> Principal
 def _are_conjugate(a: Root, b: Root) -> bool:
     """Tell whether two roots, each apart from all others, are a conjugate pair."""
     return not a.is_real and bool(a.re.overlaps(b.re)) and bool(a.im.overlaps(-b.im))
+
+
+BRANCHES = 4
+"""Of a wavenumber about a point where it vanishes."""
+
+
+@contextmanager
+def series_length(terms: int) -> Iterator[None]:
+    """Keep that many terms of power series inside the block; restore the former number on every exit."""
+    former = flint.ctx.cap
+    flint.ctx.cap = terms
+    try:
+        yield
+    finally:
+        flint.ctx.cap = former
+
+
+def local_values(
+    evaluator: KernelValues, centre: acb, terms: int, branches: int = 1
+) -> dict[str, Value] | None:
+    """Return the series of all generators about p [rad/s]; None where a wavenumber is no such series.
+
+    So many ``terms`` in e are computed with; roots of what vanishes lose some. ``branches`` is n: 1 where
+    wavenumbers neither vanish nor meet, else :data:`BRANCHES`.
+    """
+    with series_length(terms):
+        plain: dict[str, Value] = {name: acb(value) for name, value in evaluator.constants.items()}
+        plain["s"] = acb_series([centre, acb(1)], terms)
+        values = dict(plain)
+        values["s"] = _inflated(plain["s"], branches, terms)
+        laws: dict[Dispersion, tuple[tuple[Value, ...], Value]] = {}
+        for law in evaluator.table.dispersions:
+            found = tuple(evaluator.value(c, plain) for c in law.characteristic)
+            laws[law] = (found, evaluator.value(law.shift, plain))
+            try:
+                roots: dict[str, acb_series] = law.roots(
+                    [_inflated(c, branches, terms) for c in found], square_root
+                )
+            except ArithmeticError:
+                return None
+            values.update(roots)
+        fundamental: dict[tuple[Dispersion, Factored], tuple[acb_series, ...]] = {}
+        for kernel in evaluator.table.kernels:
+            length = at_centre(evaluator.value(kernel.length, plain))
+            coefficients, shift = laws[kernel.dispersion]
+            if kernel.function == "exp":
+                values[kernel.generator] = _inflated((-shift * length).exp(), branches, terms)
+            elif kernel.function == "fundamental":
+                key = (kernel.dispersion, kernel.length)
+                if key not in fundamental:
+                    short = 1 + (terms - 1) // branches
+                    fundamental[key] = fundamental_series(coefficients, length, short)
+                values[kernel.generator] = _inflated(fundamental[key][kernel.order], branches, terms)
+            else:
+                values[kernel.generator] = _kernel(kernel, values[kernel.wavenumber] * length)
+        return values
+
+
+def _inflated(value: Value, branches: int, terms: int) -> acb_series:
+    """Return the series with ``e^branches`` in place of its variable."""
+    if not isinstance(value, acb_series):
+        return acb_series([value], terms)
+    spread = [acb(0)] * terms
+    for i, coefficient in enumerate(value.coeffs()):
+        if i * branches < terms:
+            spread[i * branches] = coefficient
+    return acb_series(spread, min(terms, value.prec * branches))
+
+
+def square_root(series: acb_series) -> acb_series:
+    """Return a square root of a series that begins with an even power; ArithmeticError for any other.
+
+    The branch is chosen by the leading coefficient's midpoint: a ball across a branch cut does no harm.
+
+    Examples
+    --------
+    >>> root = square_root(acb_series([0, 0, -4, -8], 4))
+    >>> [complex(c) for c in root.coeffs()]
+    [0j, 2j, 2j]
+    """
+    coefficients = series.coeffs()
+    first = next((i for i, c in enumerate(coefficients) if c != 0), None)
+    lead = acb(0) if first is None else coefficients[first].mid()
+    if first is None or first % 2 or lead == 0:
+        message = "the series has no square root that is one"
+        raise ArithmeticError(message)
+    rest = acb_series([c / lead for c in coefficients[first:]], series.prec - first).sqrt() * lead.sqrt()
+    half = first // 2
+    return acb_series([*[acb(0)] * half, *rest.coeffs()], series.prec - half)
+
+
+def _kernel(kernel: Kernel, argument: Value) -> Value:
+    match kernel.function:
+        case "cosh" | "sinh":
+            grown, decayed = argument.exp(), (-argument).exp()
+            return (grown + decayed) / 2 if kernel.function == "cosh" else (grown - decayed) / 2
+    return argument.cos() if kernel.function == "cos" else argument.sin()
+
+
+def fundamental_series(coefficients: Sequence[Value], length: acb, terms: int) -> tuple[acb_series, ...]:
+    """Return ``h, h', ..., h^(n-1)`` at a length for ``lambda^n + ... + c_0``, with series as coefficients.
+
+    The series of a matrix exponential stands in the first row of blocks of the exponential of a block
+    Toeplitz matrix (Mathias 1996, A chain rule for matrix functions, theorem 4.1).
+    """
+    n = len(coefficients)
+    block = acb_mat(n * terms, n * terms)
+    for k in range(terms):
+        for i in range(n - 1):
+            block[n * k + i, n * k + i + 1] = acb(1)
+        for j, c in enumerate(coefficients):
+            parts = c.coeffs() if isinstance(c, acb_series) else [c]
+            for later, part in enumerate(parts[: terms - k]):
+                block[n * k + n - 1, n * (k + later) + j] = -part
+    grown = (block * length).exp()
+    return tuple(acb_series([grown[i, n * k + n - 1] for k in range(terms)], terms) for i in range(n))

@@ -22,11 +22,12 @@ from flint import acb, fmpz_mpoly
 
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.errors.diagnostic import nearest
+from symflex.errors.optional import installed
 from symflex.model import with_numbers
 from symflex.roots.locate import locate
 from symflex.roots.precision import to_complex_mpmath
 from symflex.state_space import minimal, not_rational, realise, realise_quotient
-from symflex.state_space.numeric import BoundStateSpace, Rounding, bound_state_space, installed
+from symflex.state_space.numeric import BoundStateSpace, Rounding, bound_state_space
 from symflex.state_space.popov import FieldElement
 
 if TYPE_CHECKING:

@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from fractions import Fraction
 
-    from symflex.model import ExactValue
     from symflex.roots import PoleZeroMap, Root
     from symflex.transfer import BoundTransferFunction, TransferFunction
 

@@ -21,10 +21,10 @@ from symflex.data.measurement.universal_file import (
     COHERENCE,
     FREQUENCY_AXIS,
     RESPONSE,
-    load_pyuff,
     read_universal_file,
 )
 from symflex.errors import DataError, Diagnostic, UsageError
+from symflex.errors.optional import installed
 from symflex.model.spec.read import read_file
 
 READERS: Mapping[str, Callable[[str, bytes, str], tuple[MeasuredResponse, ...]]] = {
@@ -164,7 +164,7 @@ def npz_bytes(response: MeasuredResponse) -> bytes:
 
 def universal_bytes(response: MeasuredResponse) -> bytes:
     """Return a response, and its coherence, as datasets 58 of a universal file; SF902 without pyuff."""
-    pyuff = load_pyuff()
+    pyuff = installed("pyuff")
     lines = response.frequency_hz
     told = [f"averages={response.averages:g}"] if response.averages else []
     told += [f"window={response.window}"] if response.window else []

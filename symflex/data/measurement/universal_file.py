@@ -22,7 +22,8 @@ from symflex.data.measurement.measured_response import (
     checked_response,
     nowhere,
 )
-from symflex.errors import DataError, Diagnostic, UsageError
+from symflex.errors import DataError, Diagnostic
+from symflex.errors.optional import installed
 
 MARK: Final = b"    -1"
 HEADER_LINES: Final = 11
@@ -57,7 +58,7 @@ def read_universal_file(name: str, data: bytes, stem: str) -> tuple[MeasuredResp
         )
     if len(places) > MAX_RESPONSES:
         raise DataError(Diagnostic("SF607", f"'{name}' holds more than {MAX_RESPONSES} datasets 58"))
-    pyuff = load_pyuff()
+    pyuff = installed("pyuff")
     sets = _read(pyuff, name, data, places)
     coherences = {_ends(s): s for s in sets if s.get("func_type") in (COHERENCE, MULTIPLE_COHERENCE)}
     found = []
@@ -122,17 +123,6 @@ def _check_header(name: str, line: int, block: Sequence[bytes]) -> None:
         message = f"{name}:{line + 7}:1: ordinate type {kind} with {size} values"
         code = "SF607" if size > MAX_LINES else "SF601"
         raise DataError(Diagnostic(code, message, None, "types 2, 4, 5 and 6 exist"))
-
-
-def load_pyuff() -> ModuleType:
-    """Return pyuff, or say that it is missing."""
-    try:
-        import pyuff
-    except ImportError:
-        message = "reading and writing universal files needs pyuff"
-        raise UsageError(Diagnostic("SF902", message, None, "pip install pyuff")) from None
-    module: ModuleType = pyuff
-    return module
 
 
 def _read(pyuff: ModuleType, name: str, data: bytes, places: Sequence[DatasetPlace]) -> list[dict[str, Any]]:

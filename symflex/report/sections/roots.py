@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 from symflex.analysis.explanation import explanation_paragraphs
 from symflex.errors import SymflexError, UncertifiedError
 from symflex.loops import degrees
-from symflex.loops.text import bandwidth_text, nominal_text
+from symflex.loops.stability_map import bandwidth_text, nominal_text
 from symflex.print.latex import ratio_latex, root_table
 from symflex.print.roots import KINDS, PAGE_COLUMNS, one_of_each_pair, region_text, roots_of
 from symflex.report.document import (

@@ -1,7 +1,7 @@
 """Roots of a function with kernels in the right half plane, wherever they lie.
 
 The closed right half plane is searched up to a radius beyond which one of the function's terms outweighs all
-others, see :mod:`~symflex.roots.counting.tail`; a certified count about the half disc says how many roots it
+others, see :mod:`~symflex.roots.distributed.right_half_plane`; a certified count about the half disc says how many roots it
 holds, and only where there are some they are searched.
 """
 
@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 from flint import acb
 
 from symflex.errors import BudgetError
-from symflex.roots.counting.tail import right_tail
 from symflex.roots.counting.winding import RootOnPathError
+from symflex.roots.distributed.right_half_plane import right_tail
 from symflex.roots.distributed.side import Side
 from symflex.roots.pole_zero_map import count_right, is_right
 from symflex.roots.region import Rectangle

@@ -17,7 +17,6 @@ from symflex.errors import BudgetError, Diagnostic
 from symflex.roots.axes.lossless import LosslessSearch
 from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.winding import Cell, RootOnPathError
-from symflex.roots.distributed.origin import roots_at_zero
 from symflex.roots.distributed.proof import (
     TOUCHING,
     UNPROVED,
@@ -28,6 +27,7 @@ from symflex.roots.distributed.proof import (
     holes_about,
     is_whole_ring,
     limits,
+    roots_at_zero,
 )
 from symflex.roots.engines import SEARCHES, SUBDIVISION, Sought
 from symflex.roots.functions.kernel_function import KernelFunction, has_kernels, split_off_kernels

@@ -36,8 +36,6 @@ from symflex.transfer.balls import Value, at_centre, expansion
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from flint import acb, arb
-
     from symflex.transfer import BoundTransferFunction
     from symflex.transfer.enclose_kernels import KernelValues
 

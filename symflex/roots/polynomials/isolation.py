@@ -39,7 +39,6 @@ if TYPE_CHECKING:
     from symflex.roots.problem import PolynomialInS
 
     Goal = Callable[[acb], arb]
-    from collections.abc import Callable
 
 
 GUARD_DIGITS = 2

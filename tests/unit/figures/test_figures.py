@@ -12,8 +12,8 @@ import pytest
 
 from symflex.errors import ModelError, UsageError
 from symflex.figures import FIGURES, FORMATS, LOOP_FIGURES, AxisLimits, draw, render, save
-from symflex.figures.labels import label_of, label_of_name, label_of_tf, label_of_unit
 from symflex.figures.poles_zeros import RootMark, choose_view, leaving
+from symflex.figures.style import label_of, label_of_name, label_of_tf, label_of_unit
 from symflex.model import Output
 from symflex.model.analysis import FIGURE_KINDS
 from symflex.model.labels import ACCENTS, FONTS, GREEK, SYMBOLS

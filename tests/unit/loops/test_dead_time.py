@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from symflex import pipeline
-from symflex.loops.text import stability_text
+from symflex.loops.stability_map import stability_text
 from symflex.options import StabilityOptions
 
 CASCADE = """

@@ -13,7 +13,7 @@ from flint import acb, arb
 from symflex import pipeline
 from symflex.algebra.exponential_sum import MOST_EXPONENTIALS
 from symflex.roots import precision
-from symflex.roots.counting.tail import (
+from symflex.roots.distributed.right_half_plane import (
     ADVANCED,
     EVERY_DELAYED,
     NARROW,
@@ -139,7 +139,7 @@ def test_all_sectors_of_the_quadrant_are_asked(monkeypatch):
         asked.add(sector)
         return _turned(arguments, sector)
 
-    monkeypatch.setattr("symflex.roots.counting.tail._turned", turned)
+    monkeypatch.setattr("symflex.roots.distributed.right_half_plane._turned", turned)
     assert tail(delayed("s + 10*D"), 20.0).radius == 20
     assert asked == set(range(SECTORS))
 

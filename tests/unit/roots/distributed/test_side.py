@@ -15,9 +15,15 @@ from symflex.budget import Budget
 from symflex.errors import BudgetError, UncertifiedError
 from symflex.roots import Band, Modes, Rectangle
 from symflex.roots.counting.winding import Cell, RootOnPathError
-from symflex.roots.distributed import origin
-from symflex.roots.distributed.origin import roots_at_zero, turns_about_zero
-from symflex.roots.distributed.proof import TOUCHING, UNPROVED, Proof, are_apart
+from symflex.roots.distributed import proof
+from symflex.roots.distributed.proof import (
+    TOUCHING,
+    UNPROVED,
+    Proof,
+    are_apart,
+    roots_at_zero,
+    turns_about_zero,
+)
 from symflex.roots.distributed.side import Side, accumulation_points, groups
 from symflex.roots.engines import GUESS_AND_PROVE, LOSSLESS, SUBDIVISION
 from symflex.roots.plane.search import MODES_LIMIT
@@ -389,7 +395,7 @@ def test_roots_next_to_0_of_functions_without_a_formula_are_in_a_small_box(
 ):
     one = side(ROD)
     monkeypatch.setattr(OriginSeries, "order", lambda self, part: None)
-    monkeypatch.setattr(origin, "turns_about_zero", lambda *given: (-5.0, turns))
+    monkeypatch.setattr(proof, "turns_about_zero", lambda *given: (-5.0, turns))
     roots, order = roots_at_zero(one._winding, bound(ROD).den, pi / 2, (), is_hidden=hidden)
     assert order == turns
     assert [(r.multiplicity, r.certified, r.re.contains(0) and r.im.contains(0)) for r in roots] == expected
@@ -401,7 +407,7 @@ def test_roots_next_to_0_of_functions_without_a_formula_are_in_a_small_box(
 def test_a_power_of_s_alone_is_a_root_at_0_whatever_lies_next_to_it(monkeypatch):
     one = side(ROD)
     monkeypatch.setattr(OriginSeries, "order", lambda self, part: None)
-    monkeypatch.setattr(origin, "turns_about_zero", lambda *given: (-5.0, 0))
+    monkeypatch.setattr(proof, "turns_about_zero", lambda *given: (-5.0, 0))
     part = bound(ROD).den
     s = part.ring.context.gen(0)
     ((zero,), order) = roots_at_zero(

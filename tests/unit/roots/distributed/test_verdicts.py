@@ -11,11 +11,16 @@ from flint import acb
 
 from symflex.budget import Budget
 from symflex.errors import BudgetError, Diagnostic
-from symflex.roots.counting.tail import Tail
 from symflex.roots.counting.winding import RootOnPathError
 from symflex.roots.distributed import right_half_plane
 from symflex.roots.distributed.proof import Proof
-from symflex.roots.distributed.right_half_plane import ACCUMULATING, NOT_COUNTED, RightHalfPlane, search_right
+from symflex.roots.distributed.right_half_plane import (
+    ACCUMULATING,
+    NOT_COUNTED,
+    RightHalfPlane,
+    Tail,
+    search_right,
+)
 from symflex.roots.pole_zero_map import NOT_EXAMINED, ON_AXIS, StabilityVerdict, judge
 from tests.unit.roots.stand_ins import root as pole
 
