@@ -1,7 +1,7 @@
 """Measure how many small changes of modules their tests notice.
 
     python -m tests.mutation symflex/roots/plane/local_roots.py tests/unit/roots/plane/test_simple_root.py
-    python -m tests.mutation --sample 40 symflex/roots/distributed/side.py symflex/roots/counting/tail.py
+    python -m tests.mutation --sample 40 symflex/roots/distributed/side.py symflex/roots/locate.py
 
 changes the modules in a copy of the checkout, one place at a time (mutmut does), runs the tests named, and
 prints the share of changes that they notice and the diff of every other. Without tests the unit tests of the
