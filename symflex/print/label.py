@@ -1,17 +1,22 @@
 r"""How names print: a declared label when it is sound LaTeX, else one made from the name.
 
 A declared label is read completely before it is used, so that it cannot break the formula it stands in:
-every command has its argument, no atom bears two superscripts, and text holds only text.
+every command has its argument, no atom bears two superscripts, and text holds only text. While it is read its
+width is added up, and its atoms and scripts become elements of MathML:
+
+    \hat{x}_1    <msub><mover accent="true"><mi>x</mi><mo>^</mo></mover><mn>1</mn></msub>
 """
 
 from __future__ import annotations
 
 import functools
+import html
 import re
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from dataclasses import dataclass, field
+from itertools import starmap
+from typing import TYPE_CHECKING, Final, NamedTuple
 
-from symflex.model.labels import ACCENTS, FONTS, GREEK, SYMBOLS
+from symflex.model.labels import ACCENTS, GREEK, SYMBOLS
 from symflex.print.width import (
     COMMA_SIZES,
     FENCE_SIZES,
@@ -40,13 +45,14 @@ if TYPE_CHECKING:
 
 WIDEST_LABEL: Final = 12.0
 """Width in em beyond which a label gives way to the name in small type."""
-_GREEK: Final = frozenset(GREEK)
-_ACCENTS: Final = frozenset(ACCENTS)
-_FONTS: Final = frozenset(FONTS)
-_SYMBOLS: Final = frozenset(SYMBOLS)
-_TEXT_FONTS: Final = frozenset(("text", "textrm", "textit"))
+_GREEK: Final = dict(zip(GREEK, "αβγδϵεζηθϑικλμνξπϖρϱσςτυϕφχψωΓΔΘΛΞΠΣΥΦΨΩ", strict=True))
+_ACCENTS: Final = dict(zip(ACCENTS, "˙¨¯^~→ˇ˘´`¯_", strict=True))
+_SYMBOLS: Final = dict(zip(SYMBOLS, "ℓℏ′∞⋆∗∘∥⊥∗†⋅×±∓…", strict=True))
+_NAMES: Final = ("ell", "hbar", "infty")  # symbols that are names in MathML, not operators
+_TEXT_FONTS: Final = {"text": "", "textrm": "", "textit": "it"}
 _DEEPEST: Final = 8
 _TOKEN: Final = re.compile(r"\\([A-Za-z]+) *|\\([,;:! ])|([A-Za-z0-9_^{}'+\-=/.,()| *])")
+_NUMBER: Final = re.compile(r"[0-9]+(?:\.[0-9]+)?")
 _TEXT: Final = re.compile(r"[A-Za-z0-9'+\-=/.,()| *]*")
 _NAME: Final = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 _STEM: Final = re.compile(r"([A-Za-z]+)([0-9]*)")
@@ -64,6 +70,7 @@ class Label:
     is_sum: bool = False
     is_product: bool = False
     subscript: Width = NOTHING  # of the subscript at its end, above which a power has room
+    mathml: str = ""  # one element; empty where the name itself is printed, in typewriter
 
     @property
     def width(self) -> float:
@@ -198,7 +205,7 @@ def _read(latex: str) -> Label | None:
     if _SMALL.fullmatch(latex):
         return Label(latex, always(_stacked_width(latex)), is_wordy=True)
     try:
-        whole, _ = _read_list(latex, 0, ITALIC, 0)
+        whole, _ = _read_list(latex, 0, _Font(ITALIC, ""), 0)
     except _UnsoundError:
         return None
     if not whole.atoms:
@@ -211,6 +218,7 @@ def _read(latex: str) -> Label | None:
         whole.is_sum,
         whole.is_product or whole.atoms > 1,
         whole.subscript,
+        whole.mathml(),
     )
 
 
@@ -231,6 +239,13 @@ class _UnsoundError(Exception):
     """The label would break a formula."""
 
 
+class _Font(NamedTuple):
+    """Letters of a font, and what MathML calls them."""
+
+    letters: Alphabet
+    style: str  # ``rm`` or a class; empty for italic letters, each a name of its own
+
+
 @dataclass(slots=True)
 class _Found:
     """What a list of atoms amounts to."""
@@ -244,9 +259,12 @@ class _Found:
     is_product: bool = False
     subscript: Width = NOTHING
     last: str = ""
+    # MathML of atoms, each with what stands below and above it; primes are not in an element yet.
+    parts: list[list[str]] = field(default_factory=list)
+    word: str = ""  # letters of a font in a row, which are one name
 
     def add(self, size: Width) -> None:
-        """Add an atom."""
+        """Add the width of an atom."""
         self.size += size
         self.atoms += 1
         self.subscript = NOTHING
@@ -257,8 +275,56 @@ class _Found:
         self.size += size.beyond(self.subscript)
         self.subscript = size if sign == "_" else NOTHING
 
+    def add_sign(self, sign: str, letters: Alphabet) -> None:
+        """Add the width of a letter, digit or other sign."""
+        if sign.isalnum():
+            self.letters += sign.isalpha()
+            width = letters.after(self.last, sign)
+            self.add(width)
+            self.last = sign
+        else:
+            self.is_sum = self.is_sum or sign in "+-=,|"
+            self.is_product = self.is_product or sign in "/*"
+            self.add(_SIGN_SIZES[sign])
 
-def _read_list(latex: str, start: int, letters: Alphabet, depth: int) -> tuple[_Found, int]:
+    def merge(self, inner: _Found) -> None:
+        """Add a group as one atom of the list around it."""
+        self.add(inner.size)
+        self.letters += inner.letters
+        self.is_wordy = self.is_wordy or inner.is_wordy
+        self.has_superscript = self.has_superscript or inner.has_superscript
+        self.is_sum = self.is_sum or inner.is_sum
+        self.is_product = self.is_product or inner.is_product
+        self.mark(inner.mathml())
+
+    def mark(self, element: str) -> None:
+        """Add the element of an atom."""
+        self.parts.append([element, "", ""])
+
+    def end_word(self, style: str) -> None:
+        """Make one name of the letters of a font before something else."""
+        if self.word:
+            self.mark(identifier(self.word, style))
+            self.word = ""
+
+    def mathml(self) -> str:
+        """Return all atoms with their scripts as one element."""
+        return row(*starmap(_scripted, self.parts)) if self.parts else words("")
+
+
+def _scripted(base: str, below: str, above: str) -> str:
+    above = operator(above) if above.startswith("′") else above
+    if below and above:
+        return f"<msubsup>{base}{below}{above}</msubsup>"
+    return f"<msub>{base}{below}</msub>" if below else f"<msup>{base}{above}</msup>" if above else base
+
+
+def _mark_of(sign: str, style: str) -> str:
+    """Return the element of a letter, digit or other sign that stands alone."""
+    return identifier(sign, style) if sign.isalpha() else numeral(sign) if sign.isdigit() else operator(sign)
+
+
+def _read_list(latex: str, start: int, font: _Font, depth: int) -> tuple[_Found, int]:
     """Read atoms up to the closing brace, or to the end at depth 0; return them and where reading goes on."""
     if depth > _DEEPEST:
         raise _UnsoundError
@@ -269,42 +335,51 @@ def _read_list(latex: str, start: int, letters: Alphabet, depth: int) -> tuple[_
         match = _TOKEN.match(latex, position)
         if match is None:
             raise _UnsoundError
-        position = match.end()
         command, space, sign = match.groups()
+        if sign and sign.isalpha() and font.style:
+            found.word += sign
+            found.add_sign(sign, font.letters)
+            scripts, position = set(), match.end()
+            continue
+        found.end_word(font.style)
+        if number := _NUMBER.match(latex, position):
+            for digit in number[0]:
+                found.add_sign(digit, font.letters)
+            found.mark(numeral(number[0]))
+            scripts, position = set(), number.end()
+            continue
+        position = match.end()
         if space:
             found.size += THIN_SIZES * 2
             found.subscript, found.last = NOTHING, ""
+            found.mark('<mspace width="0.2em"></mspace>')
             scripts = None
         elif command:
-            inner, position = _read_command(latex, command, position, letters, depth)
-            _merge(found, inner)
+            inner, position = _read_command(latex, command, position, font, depth)
+            found.merge(inner)
             scripts = set()
         elif sign == "{":
-            inner, position = _read_list(latex, position, letters, depth + 1)
-            _merge(found, inner)
+            inner, position = _read_list(latex, position, font, depth + 1)
+            found.merge(inner)
             scripts = set()
         elif sign == "}":
             if not depth:
                 raise _UnsoundError
             return found, position
         elif sign in "_^'":
-            position = _read_script(latex, sign, position, found, scripts, letters, depth)
+            position = _read_script(latex, sign, position, found, scripts, font, depth)
         elif sign != " ":
-            _add_sign(found, sign, letters)
+            found.add_sign(sign, font.letters)
+            found.mark(_mark_of(sign, font.style))
             scripts = set()
     if depth:
         raise _UnsoundError
+    found.end_word(font.style)
     return found, position
 
 
 def _read_script(
-    latex: str,
-    sign: str,
-    position: int,
-    found: _Found,
-    scripts: set[str] | None,
-    letters: Alphabet,
-    depth: int,
+    latex: str, sign: str, position: int, found: _Found, scripts: set[str] | None, font: _Font, depth: int
 ) -> int:
     """Read what a script sign raises or lowers; a prime is a superscript and may be repeated."""
     if scripts is None or (sign in scripts and sign != "'") or {sign, *scripts} >= {"^", "'"}:
@@ -315,14 +390,16 @@ def _read_script(
         # More primes stand beside the first, wherever a subscript ends.
         found.size += PRIME_SIZES + SCRIPT_SPACE
         found.subscript = NOTHING
+        found.parts[-1][2] += "′"
         return position
-    inner, position = _read_argument(latex, position, letters, depth)
+    inner, position = _read_argument(latex, position, font, depth)
     found.add_script(sign, inner.size.raised + SCRIPT_SPACE)
     found.is_wordy = found.is_wordy or inner.is_wordy or inner.letters > 1
+    found.parts[-1][1 if sign == "_" else 2] = inner.mathml()
     return position
 
 
-def _read_argument(latex: str, start: int, letters: Alphabet, depth: int) -> tuple[_Found, int]:
+def _read_argument(latex: str, start: int, font: _Font, depth: int) -> tuple[_Found, int]:
     """Read the one atom or group that a script or accent applies to."""
     match = _TOKEN.match(latex, start)
     if match is None:
@@ -330,31 +407,38 @@ def _read_argument(latex: str, start: int, letters: Alphabet, depth: int) -> tup
     command, _, sign = match.groups()
     found, position = _Found(), match.end()
     if sign == "{":
-        found, position = _read_list(latex, position, letters, depth + 1)
+        found, position = _read_list(latex, position, font, depth + 1)
     elif command in _GREEK or command in _SYMBOLS:
-        found.add(_command_width(command))
+        found, position = _read_command(latex, command, position, font, depth)
     elif sign and (sign.isalnum() or sign in "*+-"):
-        _add_sign(found, sign, letters)
+        found.add_sign(sign, font.letters)
+        found.mark(_mark_of(sign, font.style))
     if not found.atoms:
         raise _UnsoundError
     return found, position
 
 
-def _read_command(
-    latex: str, command: str, position: int, letters: Alphabet, depth: int
-) -> tuple[_Found, int]:
+def _read_command(latex: str, command: str, position: int, font: _Font, depth: int) -> tuple[_Found, int]:
     found = _Found()
-    if command in _GREEK or command in _SYMBOLS:
-        found.add(_command_width(command))
+    if command in _GREEK:
+        found.add(greek_width(command))
+        found.mark(identifier(_GREEK[command], "rm" if _GREEK[command].isupper() else ""))
+        return found, position
+    if command in _SYMBOLS:
+        found.add(OPERATOR_SIZES)
         found.is_sum = command in ("pm", "mp")
         found.is_product = command in ("cdot", "times")
+        found.mark((identifier if command in _NAMES else operator)(_SYMBOLS[command]))
         return found, position
     if command in _ACCENTS:
-        inner, position = _read_argument(latex, position, letters, depth)
+        inner, position = _read_argument(latex, position, font, depth)
         found.add(inner.size + THIN_SIZES)
         found.is_wordy = inner.is_wordy
+        over, accent = ("under" if command == "underline" else "over"), operator(_ACCENTS[command])
+        attribute = 'accentunder="true"' if over == "under" else 'accent="true"'
+        found.mark(f"<m{over} {attribute}>{inner.mathml()}{accent}</m{over}>")
         return found, position
-    if command not in _FONTS or latex[position : position + 1] != "{":
+    if command not in (*_FONTS, *_TEXT_FONTS) or latex[position : position + 1] != "{":
         raise _UnsoundError
     if command in _TEXT_FONTS:
         match = _TEXT.match(latex, position + 1)
@@ -363,17 +447,27 @@ def _read_command(
         # Text shrinks in scripts as letters do, at least.
         found.add(_text_size(match[0]))
         found.is_wordy = True
+        found.mark(words(match[0], _TEXT_FONTS[command]))
         return found, match.end() + 1
-    inner, position = _read_list(latex, position + 1, _ALPHABETS.get(command, OTHER_ALPHABETS), depth + 1)
+    inner, position = _read_list(latex, position + 1, _FONTS[command], depth + 1)
     if not inner.atoms:
         raise _UnsoundError
     found.add(inner.size)
     found.letters = inner.letters
     found.is_wordy = inner.letters > 1
+    found.mark(inner.mathml())
     return found, position
 
 
-_ALPHABETS: Final[dict[str, Alphabet]] = {"mathrm": UPRIGHT, "mathit": TEXT_ITALIC}
+_FONTS: Final[dict[str, _Font]] = {
+    "mathrm": _Font(UPRIGHT, "rm"),
+    "operatorname": _Font(OTHER_ALPHABETS, "rm"),
+    "mathit": _Font(TEXT_ITALIC, "it"),
+    "mathbf": _Font(OTHER_ALPHABETS, "bf"),
+    "boldsymbol": _Font(OTHER_ALPHABETS, "bf"),
+    "mathsf": _Font(OTHER_ALPHABETS, "sf"),
+    "mathcal": _Font(OTHER_ALPHABETS, "cal"),
+}
 _SIGN_SIZES: Final = (
     dict.fromkeys("+-", OPERATOR_SIZES)
     | {"=": RELATION_SIZES, ",": COMMA_SIZES, "*": STAR_SIZES, "/": SLASH_SIZES, ".": FENCE_SIZES[1]}
@@ -390,29 +484,44 @@ def _text_size(text: str) -> Width:
     return Width(em, _SCRIPT_TEXT * em, _TINY_TEXT * em)
 
 
-def _command_width(command: str) -> Width:
-    return greek_width(command) if command in _GREEK else OPERATOR_SIZES
+def identifier(text: str, style: str = "") -> str:
+    """Return a name: one letter italic by itself, several upright, unless a class says otherwise.
 
-
-def _add_sign(found: _Found, sign: str, letters: Alphabet) -> None:
-    if sign.isalnum():
-        found.letters += sign.isalpha()
-        before = found.last
-        found.add(letters.after(before, sign))
-        found.last = sign
-    elif sign in "+-=,|":
-        found.is_sum = True
-        found.add(_SIGN_SIZES[sign])
+    Examples
+    --------
+    >>> identifier("m"), identifier("eff"), identifier("R", "rm"), identifier("EI", "it")
+    ('<mi>m</mi>', '<mi>eff</mi>', '<mi mathvariant="normal">R</mi>', '<mi class="it">EI</mi>')
+    """
+    if style == "rm":
+        attribute = ' mathvariant="normal"' if len(text) == 1 else ""
     else:
-        found.is_product = found.is_product or sign in "/*"
-        found.add(_SIGN_SIZES[sign])
+        attribute = f' class="{style}"' if style else ""
+    return f"<mi{attribute}>{html.escape(text)}</mi>"
 
 
-def _merge(found: _Found, inner: _Found) -> None:
-    """Add a group as one atom of the list around it."""
-    found.add(inner.size)
-    found.letters += inner.letters
-    found.is_wordy = found.is_wordy or inner.is_wordy
-    found.has_superscript = found.has_superscript or inner.has_superscript
-    found.is_sum = found.is_sum or inner.is_sum
-    found.is_product = found.is_product or inner.is_product
+def numeral(text: str) -> str:
+    """Return a number."""
+    return f"<mn>{html.escape(text)}</mn>"
+
+
+def operator(text: str, form: str = "") -> str:
+    """Return an operator; a minus sign is one, not a hyphen."""
+    attribute = f' form="{form}"' if form else ""
+    return f"<mo{attribute}>{html.escape(text.replace('-', chr(0x2212)))}</mo>"
+
+
+def words(text: str, style: str = "") -> str:
+    """Return text inside mathematics."""
+    attribute = f' class="{style}"' if style else ""
+    return f"<mtext{attribute}>{html.escape(text)}</mtext>"
+
+
+def row(*parts: str) -> str:
+    """Return parts as one; a single element stays as it is.
+
+    Examples
+    --------
+    >>> row("<mi>a</mi>"), row("<mi>a</mi>", "<mi>b</mi>")
+    ('<mi>a</mi>', '<mrow><mi>a</mi><mi>b</mi></mrow>')
+    """
+    return parts[0] if len(parts) == 1 else f"<mrow>{''.join(parts)}</mrow>"

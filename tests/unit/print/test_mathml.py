@@ -207,3 +207,7 @@ def test_quotients_inside_exponents_have_slashes():
     shown = mathml_expression(Call("exp", Negative(Quotient(Name("s"), number(2)))), {})
     assert "<mfrac>" not in shown
     assert "<mo>/</mo>" in shown
+
+
+def test_a_script_without_braces_is_one_digit_as_in_latex():
+    assert label_mathml("a", {"a": "a_12"}) == "<mrow><msub><mi>a</mi><mn>1</mn></msub><mn>2</mn></mrow>"
