@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class _WhatIsRead:
     """What every command that reads a specification is asked."""
 
@@ -34,7 +34,7 @@ class _WhatIsRead:
     allow_outside: tuple[str, ...] = option((), "--allow-outside", **OUTSIDE)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class _Setting:
     """The values that stand in place of declared ones; last in the help."""
 

@@ -30,7 +30,7 @@ from symflex.codegen.program.polynomials import (
 from symflex.errors import BudgetError, Diagnostic
 from symflex.expressions import Expression, fold
 from symflex.model.linearity import integer_exponent
-from symflex.print.forms import step_names
+from symflex.print.forms.nested import step_names
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence

@@ -12,7 +12,6 @@ from symflex.print.forms.arrange import Arranger
 from symflex.print.forms.definitions import definitions_form
 from symflex.print.forms.hidden import hidden_expressions, with_hidden
 from symflex.print.forms.kept import with_definitions
-from symflex.print.forms.nested import nested_form, step_names
 from symflex.print.forms.polynomial import (
     constant_form,
     factored_form,
@@ -75,6 +74,8 @@ def print_form(tf: AnyTransferFunction, form: str | None = None, digits: int = 6
         if form not in (None, "nested"):
             message = f"{tf.name} is derived in nested form, which is not expanded into others"
             raise UsageError(Diagnostic("SF902", message, None, "ask for the expanded representation"))
+        from symflex.print.forms.nested import nested_form  # only with large models
+
         return nested_form(tf)
     if form == "nested":
         message = f"{tf.name} is derived in expanded form"
@@ -161,10 +162,8 @@ __all__ = [
     "PrintedForm",
     "counts_of",
     "hidden_expressions",
-    "nested_form",
     "print_form",
     "print_forms",
-    "step_names",
     "terms_to_print",
     "with_hidden",
 ]

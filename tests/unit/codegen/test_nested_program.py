@@ -12,7 +12,7 @@ from symflex.codegen.program.verify import choose_programs
 from symflex.codegen.python import NUMPY
 from symflex.errors import BudgetError
 from symflex.expressions import Product, Sum, format_expression
-from symflex.print.forms import nested_form
+from symflex.print.forms.nested import nested_form
 from tests.unit.transfer.test_nested_form import CHAIN, dense
 
 

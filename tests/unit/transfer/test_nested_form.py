@@ -18,7 +18,7 @@ from symflex.expressions import (
     Sum,
     parse,
 )
-from symflex.print.forms import nested_form
+from symflex.print.forms.nested import nested_form
 from symflex.print.json_format import derive_json
 from symflex.transfer import bind, bind_nested
 from tests.property.networks import networks, reciprocal_networks, to_toml
