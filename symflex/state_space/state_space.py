@@ -38,35 +38,21 @@ class Channel:
 
 @dataclass(frozen=True, eq=False)
 class StateSpace:
-    """``s w = A w + B u``, ``y = C w + D u``, exact in parameters, pi and functions of constants.
+    """``s w = A w + B u``, ``y = C w + D u``, exact in parameters, pi and functions of constants."""
 
-    Parameters
-    ----------
-    model : Model
-        Where it comes from; its parameters may have been replaced by numbers.
-    ring : Ring
-        What numerators and denominators of the entries are polynomials of.
-    constants : tuple of ConstantFunction
-        What the ring's function generators stand for.
-    states, inputs, outputs : tuples
-        The names of w, u, y.
-    a, b, c, d : tuple of Vector
-        The rows of the matrices, without entries that are zero.
-    is_minimal : bool
-        True when no state is uncontrollable or unobservable, at almost all values of the parameters.
-    """
-
-    model: Model
-    ring: Ring
-    constants: tuple[ConstantFunction, ...]
+    model: Model  # where it comes from; its parameters may have been replaced by numbers
+    ring: Ring  # what numerators and denominators of the entries are polynomials of
+    constants: tuple[ConstantFunction, ...]  # what the ring's function generators stand for
+    # states, inputs and outputs: the names of w, u, y.
     states: tuple[State, ...]
     inputs: tuple[Channel, ...]
     outputs: tuple[Channel, ...]
+    # a, b, c and d: the rows of the matrices, without entries that are zero.
     a: tuple[Vector, ...]
     b: tuple[Vector, ...]
     c: tuple[Vector, ...]
     d: tuple[Vector, ...]
-    is_minimal: bool = False
+    is_minimal: bool = False  # almost everywhere every state is controllable and observable
 
     @property
     def order(self) -> int:

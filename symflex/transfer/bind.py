@@ -119,34 +119,16 @@ Enclosed = EnclosedTransferFunction | EnclosedDistributed
 
 @dataclass(frozen=True)
 class BoundTransferFunction:
-    """A transfer function with numbers.
+    """A transfer function with numbers."""
 
-    Parameters
-    ----------
-    source : TransferFunction
-        The symbolic function.
-    values : tuple of (str, ExactValue)
-        Every parameter's value, in declared order.
-    ratio : Factored
-        Over a ring with generators s, pi and the functions of constants.
-    hidden : tuple of HiddenFactor
-        Factors cancelled symbolically or by these values, over the same ring.
-    kernels : KernelTable
-        For a distributed system, the wavenumbers and kernels, which are generators of the ring after the
-        constants.
-    parts : tuple of Factored, optional
-        Numerator and denominator of a distributed system, each entire in s; see :attr:`num`.
-    is_of_model : bool
-        Its poles are those of the source's model with these values; not so of a loop gain.
-    """
-
-    source: TransferFunction
-    values: tuple[tuple[str, ExactValue], ...]
-    ratio: Factored
-    hidden: tuple[HiddenFactor, ...]
+    source: TransferFunction  # the symbolic function
+    values: tuple[tuple[str, ExactValue], ...]  # every parameter's value, in declared order
+    ratio: Factored  # over a ring with generators s, pi and the functions of constants
+    hidden: tuple[HiddenFactor, ...]  # factors cancelled symbolically or by these values, over the same ring
+    # Of a distributed system, the wavenumbers and kernels: generators of the ring after the constants.
     kernels: KernelTable = NO_KERNELS
-    parts: tuple[Factored, Factored] | None = None
-    is_of_model: bool = True
+    parts: tuple[Factored, Factored] | None = None  # of a distributed system, :attr:`num` and :attr:`den`
+    is_of_model: bool = True  # its poles are those of the source's model; not so of a loop gain
 
     @property
     def is_distributed(self) -> bool:

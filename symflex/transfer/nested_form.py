@@ -43,32 +43,18 @@ class NestedTransferFunction:
 
     Neither need be a polynomial in s, and nothing is known about common factors: what would cancel, a hidden
     mode, is not looked for. As a function of s and the parameters the quotient is exact.
-
-    Parameters
-    ----------
-    output, input : Output, Input
-        What is measured and what drives.
-    program : StraightLine
-        The steps; those of several functions of a model may share a program.
-    num, den : int
-        Steps of it.
-    quantity, unit : str
-        ``receptance``, ``mobility``, ...; SI unit, empty when unknown.
-    constants : tuple of ConstantFunction
-        What generators such as ``sqrt(k*m)`` stand for.
-    model : Model
-        Where it comes from.
     """
 
-    output: Output
-    input: Input
-    program: StraightLine
+    output: Output  # what is measured
+    input: Input  # what drives
+    program: StraightLine  # the steps; those of several functions of a model may share a program
+    # num and den: steps of it.
     num: int
     den: int
-    quantity: str
-    unit: str
-    constants: tuple[ConstantFunction, ...]
-    model: Model
+    quantity: str  # ``receptance``, ``mobility``, ...
+    unit: str  # SI unit, empty when unknown
+    constants: tuple[ConstantFunction, ...]  # what generators such as ``sqrt(k*m)`` stand for
+    model: Model  # where it comes from
 
     @property
     def name(self) -> str:

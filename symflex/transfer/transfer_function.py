@@ -84,48 +84,23 @@ class ClosedForm:
 
 @dataclass(frozen=True)
 class TransferFunction:
-    """``output = ratio(s) * input``, in lowest terms.
+    """``output = ratio(s) * input``, in lowest terms."""
 
-    Parameters
-    ----------
-    output, input : Output, Input
-        What is measured and what drives.
-    reduced : Factored or None
-        Numerator over denominator; every factor of one is coprime to every factor of the other. ``None`` when
-        it is that of ``closed``, which is then opened when it is first asked for: see :attr:`ratio`.
-    closed : ClosedForm or None
-        The compact form; ``None`` when it could not be reduced without opening its sums.
-    hidden : tuple of HiddenFactor
-        The common factors in s that were cancelled.
-    quantity, unit : str
-        ``receptance``, ``mobility``, ...; SI unit, empty when unknown.
-    base : Ring
-        The equations' ring: as :attr:`ring`, and one generator per definition.
-    definitions : tuple of (str, Factored)
-        The definitions over ``base``, each in terms of earlier ones.
-    constants : tuple of ConstantFunction
-        What function generators such as ``sqrt(k*m)`` stand for.
-    model : Model
-        Where it comes from.
-    kernels : KernelTable
-        What the wavenumbers and kernels in the ring are; empty for a lumped system.
-    parts : tuple of Factored, optional
-        Numerator and denominator of a distributed system, each entire in s; see :attr:`num` and :attr:`den`.
-    """
-
-    output: Output
-    input: Input
+    output: Output  # what is measured
+    input: Input  # what drives
+    # Numerator over denominator; every factor of one is coprime to every factor of the other. None when it is
+    # that of ``closed``, which is then opened when it is first asked for: see :attr:`ratio`.
     reduced: Factored | None
-    closed: ClosedForm | None
-    hidden: tuple[HiddenFactor, ...]
-    quantity: str
-    unit: str
-    base: Ring
-    definitions: tuple[tuple[str, Factored], ...]
-    constants: tuple[ConstantFunction, ...]
-    model: Model
-    kernels: KernelTable = NO_KERNELS
-    parts: tuple[Factored, Factored] | None = None
+    closed: ClosedForm | None  # the compact form; None when it could not be reduced without opening its sums
+    hidden: tuple[HiddenFactor, ...]  # the common factors in s that were cancelled
+    quantity: str  # ``receptance``, ``mobility``, ...
+    unit: str  # SI unit, empty when unknown
+    base: Ring  # the equations' ring: as :attr:`ring`, and one generator per definition
+    definitions: tuple[tuple[str, Factored], ...]  # over ``base``, each in terms of earlier ones
+    constants: tuple[ConstantFunction, ...]  # what function generators such as ``sqrt(k*m)`` stand for
+    model: Model  # where it comes from
+    kernels: KernelTable = NO_KERNELS  # what wavenumbers and kernels are; empty if lumped
+    parts: tuple[Factored, Factored] | None = None  # of a distributed system, :attr:`num` and :attr:`den`
 
     @cached_property
     def ratio(self) -> Factored:

@@ -181,20 +181,13 @@ class _PieceMaker:
 
     def _halves(self) -> tuple[Factored, tuple[_Half, _Half]]:
         """Return the factor without wavenumbers and kernels, and numerator and denominator of the rest."""
-        one = Factored.number(self.ring, 1)
-        kernels, waves, plain = [one, one], [one, one], one
-        for side, value in enumerate((self.tf.num, self.tf.den)):
-            sign = -1 if side else 1
-            plain = plain * value.unit**sign
-            for factor, exponent in value.factors:
-                piece = Factored(self.ring, Fraction(1), ((factor, exponent),))
-                if self._holds(factor, self.kernels):
-                    at = side if exponent > 0 else 1 - side
-                    kernels[at] = kernels[at] * (piece if exponent > 0 else piece**-1)
-                elif self._holds(factor, self.waves):
-                    waves[side] = waves[side] * piece
-                else:
-                    plain = plain * piece**sign
+        sides = (self.tf.num, self.tf.den)
+        above, below = (v.filter(lambda f: self._holds(f, self.kernels)) for v in sides)
+        kernels = (above.numerator() * below.denominator(), above.denominator() * below.numerator())
+        rest = [v.filter(lambda f: not self._holds(f, self.kernels)) for v in sides]
+        waves = [v.filter(lambda f: self._holds(f, self.waves)) for v in rest]
+        num, den = (v.filter(lambda f: not self._holds(f, self.waves)) for v in rest)
+        plain = num / den * self.tf.num.unit / self.tf.den.unit
         for side, product_of_waves in enumerate(waves):
             symmetric, remaining = self._symmetric(product_of_waves)
             waves[side] = remaining
@@ -214,7 +207,6 @@ class _PieceMaker:
 
         Such factors may cancel within themselves: ``rho*s^2 - E*lambda^2`` does at high frequencies.
         """
-        one = Factored.number(self.ring, 1)
         splits = [
             f
             for d in self.table.dispersions
@@ -224,15 +216,10 @@ class _PieceMaker:
                 - Factored.generator(self.ring, d.wavenumbers[1]) ** 2
             ).factors
         ]
-        sums = one
-        for factor, exponent in value.factors:
-            if len(factor) > 1 and exponent > 0 and factor not in splits:
-                sums = sums * Factored(self.ring, Fraction(1), ((factor, exponent),))
-        if sums.is_one:
-            return one, value
+        sums = value.filter(lambda f: len(f) > 1 and f not in splits).numerator()
         reduced = self.normal.reduce(sums.expand())
-        if any(self._holds(f, self.waves) for f, _ in reduced.factors):
-            return one, value
+        if sums.is_one or any(self._holds(f, self.waves) for f, _ in reduced.factors):
+            return Factored.number(self.ring, 1), value
         return reduced, value / sums
 
     def _in_segments(self, sums: list[KernelSum]) -> list[KernelSum]:
@@ -393,7 +380,7 @@ class _PieceMaker:
         """Return the test that the smaller of a pair's arguments is small at every length."""
         forge = site.forge
         reaches = [
-            forge.multiply([forge.constant(g.spread), site.length(g.length)])
+            forge.multiply([forge.constant(g.spread), site.value(g.length)])
             for g in self.groups
             if g.dispersion is dispersion
         ]

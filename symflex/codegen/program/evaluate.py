@@ -145,9 +145,9 @@ def number_of(node: tree.CodeNode, known: Mapping[str, Values]) -> Values:
 
     Examples
     --------
-    >>> number_of(Add((RealNumber(Fraction(1)), Assigned("c_1"))), {"c_1": 2.0})
+    >>> number_of(tree.Add((tree.RealNumber(Fraction(1)), tree.Assigned("c_1"))), {"c_1": 2.0})
     3.0
-    >>> number_of(ParameterValue("m"), {}) is None
+    >>> number_of(tree.ParameterValue("m"), {}) is None
     True
     """
     pending = [node]

@@ -27,7 +27,7 @@ from typing import TYPE_CHECKING, Any, cast
 from symflex.codegen.program import nodes as tree
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
 
 class Depends(IntFlag):
@@ -51,7 +51,8 @@ class Forge:
         """Return what an expression is made of."""
         return cast("tuple[int, ...]", self.nodes[x].children)
 
-    def _make(self, node: tree.CodeNode) -> int:
+    def _make(self, kind: Callable[..., tree.CodeNode], *operands: Any) -> int:  # noqa: ANN401 (numbers of nodes)
+        node = kind(*operands)
         known = self._numbers.get(node)
         if known is not None:
             return known
@@ -69,40 +70,38 @@ class Forge:
         exact = Fraction(value)
         if exact == 0:
             pi_power = 0
-        number = self._make(tree.RealNumber(abs(exact), pi_power))
+        number = self._make(tree.RealNumber, abs(exact), pi_power)
         return self.negate(number) if exact < 0 else number
 
     def complex_number(self, real: Fraction | int, imaginary: Fraction | int) -> int:
         """Return ``real + 1j*imaginary``."""
-        return self._make(tree.ComplexNumber(Fraction(real), Fraction(imaginary)))
+        return self._make(tree.ComplexNumber, Fraction(real), Fraction(imaginary))
 
     def to_complex(self, x: int) -> int:
         """Return a real number as a complex one; see :class:`nodes.ToComplex`."""
         minus, size = self.signed(x)
         if self.is_number(size, 0):
             return size
-        number = (
-            self.complex_number(1, 0) if self.is_number(size, 1) else self._make(tree.ToComplex(_row(size)))
-        )
+        number = self.complex_number(1, 0) if self.is_number(size, 1) else self._make(tree.ToComplex, size)
         return self.negate(number) if minus else number
 
     def larger_root(self, formula: int, middle: int, product: int) -> int:
         """Return the value of a formula that is known to be a :class:`nodes.LargerRoot`."""
-        return self._make(tree.LargerRoot(_row(formula), _row(middle), _row(product)))
+        return self._make(tree.LargerRoot, formula, middle, product)
 
     def parameter(self, name: str) -> int:
         """Return a parameter."""
-        return self._make(tree.ParameterValue(name))
+        return self._make(tree.ParameterValue, name)
 
     @property
     def s(self) -> int:
         """The Laplace variable."""
-        return self._make(tree.Laplace())
+        return self._make(tree.Laplace)
 
     @property
     def inverse(self) -> int:
         """The quotient 1/s."""
-        return self._make(tree.InverseLaplace())
+        return self._make(tree.InverseLaplace)
 
     def is_number(self, x: int, value: int) -> bool:
         """Tell whether ``x`` is the given non-negative integer."""
@@ -118,7 +117,7 @@ class Forge:
         is_negative, inner = self.signed(x)
         if is_negative or self.is_number(inner, 0):
             return inner
-        return self._make(tree.Negate(_row(x)))
+        return self._make(tree.Negate, x)
 
     def add(self, terms: Iterable[int]) -> int:
         """Return a sum; a term without minus sign comes first when there is one."""
@@ -129,7 +128,7 @@ class Forge:
         if first is None:
             return self.negate(self.add([self.negate(t) for t in kept]))
         kept.insert(0, kept.pop(first))
-        return kept[0] if len(kept) == 1 else self._make(tree.Add(_rows(*kept)))
+        return kept[0] if len(kept) == 1 else self._make(tree.Add, tuple(kept))
 
     def multiply(self, factors: Sequence[int]) -> int:
         """Return a product, its parameters multiplied first, so that they are multiplied once per call."""
@@ -148,7 +147,7 @@ class Forge:
         return self.negate(product) if is_negative else product
 
     def _product(self, factors: Sequence[int]) -> int:
-        return factors[0] if len(factors) == 1 else self._make(tree.Multiply(_rows(*factors)))
+        return factors[0] if len(factors) == 1 else self._make(tree.Multiply, tuple(factors))
 
     def divide(self, above: int, below: int) -> int:
         """Return a quotient."""
@@ -156,7 +155,7 @@ class Forge:
         minus_below, denominator = self.signed(below)
         whole = numerator
         if not self.is_number(denominator, 1) and not self.is_number(numerator, 0):
-            whole = self._make(tree.Divide(_row(numerator), _row(denominator)))
+            whole = self._make(tree.Divide, numerator, denominator)
         return whole if minus_above == minus_below else self.negate(whole)
 
     def power(self, base: int, exponent: int) -> int:
@@ -170,7 +169,7 @@ class Forge:
             power = self.power(size, exponent)
             return self.negate(power) if exponent % 2 else power
         if not self.depends[base]:
-            return self._make(tree.IntegerPower(_row(base), exponent))
+            return self._make(tree.IntegerPower, base, exponent)
         if exponent % 2:
             return self._product([self.power(base, exponent - 1), base])
         half = self.power(base, exponent // 2)
@@ -178,46 +177,37 @@ class Forge:
 
     def apply(self, function: str, argument: int) -> int:
         """Return an elementary function."""
-        return self._make(tree.Apply(function, _row(argument)))
+        return self._make(tree.Apply, function, argument)
 
     def solutions(self, coefficients: Sequence[int], terms: int) -> tuple[int, ...]:
         """Return a differential equation's solutions at 1; see :class:`nodes.Solutions`."""
-        row = self.label(self._make(tree.Solutions(_rows(*coefficients), terms)), "solutions")
+        row = self.label(self._make(tree.Solutions, tuple(coefficients), terms), "solutions")
         return tuple(self.item(row, k) for k in range(len(coefficients)))
 
     def roots(self, coefficients: Sequence[int]) -> int:
         """Return the list of a polynomial's roots; see :class:`nodes.Roots`."""
-        return self.label(self._make(tree.Roots(_rows(*coefficients))), "x")
+        return self.label(self._make(tree.Roots, tuple(coefficients)), "x")
 
     def mode_values(self, roots: int, length: int) -> int:
         """Return what a sum needs of roots at a length; see :class:`nodes.ModeValues`."""
-        return self.label(self._make(tree.ModeValues(_row(roots), _row(length))), "modes")
+        return self.label(self._make(tree.ModeValues, roots, length), "modes")
 
     def modal_value(
         self, modes: Sequence[int], coefficients: Sequence[int], frames: tree.Frames
     ) -> tuple[int, int]:
         """Return a sum over its largest exponential, and the logarithm of that."""
-        row = self.label(self._make(tree.ModalValue(_rows(*modes), _rows(*coefficients), frames)), "total")
+        row = self.label(self._make(tree.ModalValue, tuple(modes), tuple(coefficients), frames), "total")
         return self.item(row, 0), self.item(row, 1)
 
     def item(self, values: int, position: int) -> int:
         """Return one value of a list."""
-        return self._make(tree.Item(_row(values), position))
+        return self._make(tree.Item, values, position)
 
     def label(self, x: int, name: str) -> int:
         """Ask for an assignment of ``x``; the first name given stays."""
         if self.operands(x):
             self.labels.setdefault(x, name)
         return x
-
-
-def _row(x: int) -> Any:  # noqa: ANN401
-    """Return the number of a node as an operand of a node of the table."""
-    return x
-
-
-def _rows(*numbers: int) -> tuple[Any, ...]:
-    return numbers
 
 
 DEEPEST = 8

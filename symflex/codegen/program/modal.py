@@ -97,14 +97,12 @@ class _ModalWorkshop:
         one = Factored.number(self.ring, 1)
         self.plain = one * self.tf.num.unit / self.tf.den.unit
         self.halves = [one, one]
-        for side, value in enumerate((self.tf.num, self.tf.den)):
-            for factor, exponent in value.factors:
-                piece = Factored(self.ring, Fraction(1), ((factor, abs(exponent)),))
-                at = side if exponent > 0 else 1 - side
-                if any(degree_in(factor, i) for i in kernels):
-                    self.halves[at] = self.halves[at] * piece
-                else:
-                    self.plain = self.plain * (piece**-1 if at else piece)
+        for value, order in ((self.tf.num, (0, 1)), (self.tf.den, (1, 0))):
+            bearing = value.filter(lambda f: any(degree_in(f, i) for i in kernels))
+            for side, part in zip(order, (bearing.numerator(), bearing.denominator()), strict=True):
+                self.halves[side] = self.halves[side] * part
+            rest = value.filter(lambda f: not any(degree_in(f, i) for i in kernels))
+            self.plain = self.plain * rest ** (-1 if order[0] else 1)
 
     @cached_property
     def longest(self) -> Mapping[Dispersion, Factored]:
@@ -155,7 +153,7 @@ class _ModalWorkshop:
 
     def _roots(self, site: Site, law: Dispersion) -> int:
         """Return the roots of a dispersion times its longest length."""
-        forge, x = site.forge, site.length(self.longest[law])
+        forge, x = site.forge, site.value(self.longest[law])
         n = law.order
         return forge.roots(
             [forge.multiply([forge.power(x, n - i), site.coefficient(law, i)]) for i in range(n)]
@@ -164,7 +162,7 @@ class _ModalWorkshop:
     def _mode(self, site: Site, mode: CharacteristicMode) -> int:
         forge = site.forge
         if mode.is_decay:
-            shift = forge.multiply([site.length(mode.length), site.value(mode.dispersion.shift)])
+            shift = forge.multiply([site.value(mode.length), site.value(mode.dispersion.shift)])
             return forge.mode_values(forge.roots([shift]), forge.constant(1))
         ratio = site.value(mode.length / self.longest[mode.dispersion])
         return forge.mode_values(self._roots(site, mode.dispersion), ratio)
@@ -205,7 +203,7 @@ class _ModalWorkshop:
         forge = site.forge
         found: list[int] = []
         for law in self._laws:
-            x = site.length(self.longest[law])
+            x = site.value(self.longest[law])
             static, moving = [forge.constant(1)], []
             for i, c in enumerate(law.characteristic):
                 if c.is_zero:
@@ -246,7 +244,7 @@ class _ModalWorkshop:
             for orders, i in frame.terms:
                 # The roots are scaled: h^(k) is L^(n - 1 - k) times what they give.
                 powers[i] = [
-                    forge.power(site.length(self.longest[mode.dispersion]), mode.roots - 1 - order)
+                    forge.power(site.value(self.longest[mode.dispersion]), mode.roots - 1 - order)
                     for mode, order in zip((self.sums.modes[m] for m in frame.slots), orders, strict=True)
                     if not mode.is_decay
                 ]
@@ -300,7 +298,7 @@ class _ModalWorkshop:
         reaches: dict[tuple[Dispersion, bool], list[int]] = {}
         for mode, degree in zip(self.sums.modes, self._degrees(), strict=True):
             if degree:
-                part = [forge.constant(degree / Fraction(self.reach)), site.length(mode.length)]
+                part = [forge.constant(degree / Fraction(self.reach)), site.value(mode.length)]
                 reaches.setdefault((mode.dispersion, mode.is_decay), []).append(
                     forge.apply("abs", forge.multiply(part))
                 )

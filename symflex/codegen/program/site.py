@@ -105,30 +105,27 @@ class Site:
             return first if name == law.wavenumbers[0] else second
         c0 = self.coefficient(law)
         negative = self.axis.sign(law) if self.axis is not None else None
-        if (root := self.plain_root(law)) is not None:
+        if (parts := self.plain_parts(law)) is not None:
+            root = forge.multiply(parts)
             if self.axis is None and law in self.mirrored:
                 root = forge.negate(root)
             return (
-                self._labelled(root, "gamma")
+                self.forge.label(root, "gamma")
                 if law.kind == "wave"
-                else self._labelled(self._root(root), "mu")
+                else self.forge.label(self._root(root), "mu")
             )
         if law.kind == "wave":
             square = c0 if negative is False else forge.negate(c0)
-            return self._labelled(self._root(square), "gamma")
+            return self.forge.label(self._root(square), "gamma")
         quarter = forge.negate(c0) if negative else forge.multiply([forge.constant(Fraction(1, 4)), c0])
-        return self._labelled(self._root(self._root(quarter)), "mu")
-
-    def plain_root(self, law: Dispersion) -> int | None:
-        """Return the root of ``-c_0`` (waves) or ``c_0/4`` (bending) where that is proportional to ``s^2``.
-
-        In real arithmetic it is the root of the magnitude, without the factor 1/4 for a negative ``c_0``.
-        """
-        parts = self.plain_parts(law)
-        return None if parts is None else self.forge.multiply(parts)
+        return self.forge.label(self._root(self._root(quarter)), "mu")
 
     def plain_parts(self, law: Dispersion) -> tuple[int, int] | None:
-        """Return the factor free of s of :meth:`plain_root`, and s or its magnitude."""
+        """Return the root of ``-c_0`` (waves) or ``c_0/4`` (bending) where that is proportional to ``s^2``.
+
+        A factor free of s, and s. In real arithmetic it is the root of the magnitude, without the factor 1/4
+        for a negative ``c_0``, and the magnitude of s.
+        """
         if law.kind not in ("wave", "bending") or not (self.is_signed or self.axis is not None):
             return None
         c0, s = law.characteristic[0], self.ring.context.gen(0)
@@ -161,7 +158,7 @@ class Site:
         formula = forge.multiply([middle, forge.add([forge.constant(1), self._root(inside)])])
         large = forge.larger_root(formula, middle, c0)
         first, second = self._root(large), self._root(forge.divide(c0, large))
-        return self._labelled(first, "lambda_1"), self._labelled(second, "lambda_2")
+        return self.forge.label(first, "lambda_1"), self.forge.label(second, "lambda_2")
 
     def _root(self, x: int) -> int:
         """Return the principal square root; in real arithmetic that of a positive number."""
@@ -169,33 +166,26 @@ class Site:
             return self.forge.apply("sqrt", x)
         return self.forge.apply("complex_sqrt", x if self.forge.depends[x] else self.forge.to_complex(x))
 
-    def _labelled(self, x: int, name: str) -> int:
-        return self.forge.label(x, name)
-
-    def length(self, value: Factored) -> int:
-        """Return a base length."""
-        return self.value(value)
-
     def angle(self, i: int, j: int, factor: int | None = None) -> int:
         """Return a wavenumber times a length, or what a delay's exponential decays with, times a factor."""
         forge, family = self.forge, self.families[i]
         factor = forge.constant(1) if factor is None else factor
         if family.wavenumber:
             wavenumber = self._generators.generator(family.wavenumber)
-            return forge.multiply([factor, self.length(family.lengths[j]), wavenumber])
+            return forge.multiply([factor, self.value(family.lengths[j]), wavenumber])
         exponent = self.exponent(family, j)
         return forge.multiply([factor, forge.negate(exponent) if self.grows.get(i) else exponent])
 
     def exponent(self, family: Family, j: int) -> int:
         """Return the exponent of a delay, with a minus sign."""
-        return self.forge.multiply([self.length(family.lengths[j]), self.value(family.dispersion.shift)])
+        return self.forge.multiply([self.value(family.lengths[j]), self.value(family.dispersion.shift)])
 
     def sizes(self, dispersion: Dispersion, length: Factored) -> tuple[tuple[int, int, int], ...]:
         """Return pairs whose products go like powers of wavenumber times length, and these powers.
 
         The first of a pair depends on s, the second does not.
         """
-        forge, x = self.forge, self.length(length)
+        forge, x = self.forge, self.value(length)
         negative = self.axis.sign(dispersion) if self.axis is not None else False
         if negative is not None and (parts := self.plain_parts(dispersion)) is not None:
             power = 1 if dispersion.kind == "wave" else 2
@@ -215,7 +205,7 @@ class Site:
 
     def _argument(self, dispersion: Dispersion, length: Factored) -> int:
         """Return the square of a wave's argument, up to the sign, or the fourth power of one of bending."""
-        forge, x, c0 = self.forge, self.length(length), self.coefficient(dispersion)
+        forge, x, c0 = self.forge, self.value(length), self.coefficient(dispersion)
         if dispersion.kind == "wave":
             return forge.multiply([forge.power(x, 2), c0])
         return forge.multiply([forge.constant(Fraction(1, 4)), forge.power(x, 4), c0])
@@ -225,7 +215,7 @@ class Site:
         forge = self.forge
         c0, c2 = self.coefficient(dispersion), self.coefficient(dispersion, 2)
         quotient = forge.divide(forge.multiply([forge.constant(4), c0]), c2)
-        return forge.multiply([forge.power(self.length(length), 2), forge.add([c2, forge.negate(quotient)])])
+        return forge.multiply([forge.power(self.value(length), 2), forge.add([c2, forge.negate(quotient)])])
 
     def quotient(self, dispersion: Dispersion) -> int:
         """Return ``c_0/c_2`` of a pair: at least half the square of the smaller wavenumber in size."""
@@ -234,7 +224,7 @@ class Site:
     def fundamental(self, kernel: Kernel) -> int:
         """Return the derivative of a fundamental function at its length, or a decay."""
         forge, law = self.forge, kernel.dispersion
-        x, n = self.length(kernel.length), law.order
+        x, n = self.value(kernel.length), law.order
         if kernel.function == "exp":
             return forge.apply("complex_exp", forge.negate(forge.multiply([x, self.value(law.shift)])))
         scaled = [forge.multiply([forge.power(x, n - i), self.coefficient(law, i)]) for i in range(n)]
@@ -245,7 +235,7 @@ class Site:
 
     def local(self, basis: LocalBasis, dispersion: Dispersion, length: Factored, k: int, size: float) -> int:
         """Return solution k of an equation at a length, for exponents up to a size."""
-        forge, x = self.forge, self.length(length)
+        forge, x = self.forge, self.value(length)
         if basis.step > 1:
             argument = self._argument(dispersion, length)
             if dispersion.kind == "wave":
@@ -265,14 +255,14 @@ class Site:
         self, basis: LocalBasis, dispersion: Dispersion, length: Factored, k: int, size: float
     ) -> int:
         """Return what :meth:`local` does for the smaller wavenumber of a pair, on the basis of a wave."""
-        forge, x = self.forge, self.length(length)
+        forge, x = self.forge, self.value(length)
         wavenumber = self._generators.generator(dispersion.wavenumbers[1])
         argument = forge.multiply([forge.power(x, 2), wavenumber, wavenumber])
         return self._series(basis, argument, x, k, size)
 
     def _series(self, basis: LocalBasis, argument: int, x: int, k: int, size: float) -> int:
         forge = self.forge
-        self._labelled(argument, "z")
+        self.forge.label(argument, "z")
         series = basis.series(k, size)
         total = forge.constant(series[-1])
         for number in reversed(series[:-1]):
@@ -348,7 +338,7 @@ class Site:
             function = "complex_exp"
             if not forge.depends[exponent]:
                 exponent = forge.to_complex(exponent)
-        return self._labelled(forge.apply(function, exponent), "decay")
+        return self.forge.label(forge.apply(function, exponent), "decay")
 
     def _spirals(self, i: int, j: int, step: int) -> tuple[int, int]:
         """Return ``exp((-1 + j) q/step)`` and ``exp((-1 - j) q/step)``."""
@@ -358,7 +348,7 @@ class Site:
             forge.apply("complex_exp", forge.multiply([forge.complex_number(-part, sign * part), x]))
             for sign in (1, -1)
         )
-        return self._labelled(up, "e_1"), self._labelled(down, "e_2")
+        return self.forge.label(up, "e_1"), self.forge.label(down, "e_2")
 
     # --------------------------------------------------------------------------------------- real arithmetic
 
@@ -417,7 +407,7 @@ class Site:
         """Return cosine, sine and one, all times one plus the square of the tangent of half the angle."""
         forge = self.forge
         one, two = forge.constant(1), forge.constant(2)
-        t = self._labelled(forge.apply("tan", self.angle(i, j, forge.constant(step / 2))), "t_half")
+        t = self.forge.label(forge.apply("tan", self.angle(i, j, forge.constant(step / 2))), "t_half")
         square = forge.multiply([t, t])
         return (forge.add([one, forge.negate(square)]), forge.multiply([two, t]), forge.add([one, square]))
 
