@@ -20,7 +20,7 @@ import symflex
 from benchmarks.generated import imported
 from benchmarks.measure import Claim, Measurement, taking_turns, typical_ratio
 from symflex import pipeline
-from symflex.codegen.python import NUMPY
+from symflex.codegen.python.module import NUMPY
 
 if TYPE_CHECKING:
     from collections.abc import Callable

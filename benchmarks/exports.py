@@ -21,7 +21,7 @@ from benchmarks.distributed import AGREEMENT, BAND_HZ, POINTS, ROUNDS, SPECIFICA
 from benchmarks.generated import FLAGS, loaded, pointer
 from benchmarks.measure import Claim, Measurement, fastest
 from symflex import pipeline
-from symflex.codegen.c import C99
+from symflex.codegen.c.module import C99
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -24,9 +24,9 @@ import symflex
 from benchmarks.generated import FLAGS, imported, loaded, pointer
 from benchmarks.measure import Claim, Measurement, fastest
 from symflex import pipeline
-from symflex.codegen.c import C99
+from symflex.codegen.c.module import C99
 from symflex.codegen.program.verify import measure_values
-from symflex.codegen.python import NUMPY
+from symflex.codegen.python.module import NUMPY
 
 if TYPE_CHECKING:
     from collections.abc import Callable

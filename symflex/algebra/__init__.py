@@ -10,10 +10,11 @@ from symflex.algebra.factored import (
     random_point,
     residue,
 )
-from symflex.algebra.functions import FUNCTIONS, ElementaryFunction
 from symflex.algebra.ring import (
+    FUNCTIONS,
     LAPLACE,
     MEMORY_LIMIT,
+    ElementaryFunction,
     PolynomialMemo,
     Ring,
     by_powers,

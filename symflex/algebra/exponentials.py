@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 
     from flint import fmpz_mpoly
 
-    from symflex.algebra.ring import Ring
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class KernelPair:

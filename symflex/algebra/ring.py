@@ -2,7 +2,8 @@
 
 Input: an ordered tuple of generator names.
 Output: a :class:`Ring` whose elements are python-flint ``fmpz_mpoly``, or sparse polynomials of the same
-interface, as far as assembling needs it, where there are too many names for these.
+interface, as far as assembling needs it, where there are too many names for these. An elementary function of
+constants is one generator with a numeric definition.
 """
 
 from __future__ import annotations
@@ -12,15 +13,13 @@ from functools import cached_property
 from math import comb, prod
 from typing import TYPE_CHECKING, Generic, TypeVar, cast
 
-from flint import Ordering, fmpq_mpoly_ctx, fmpz_mpoly, fmpz_mpoly_ctx
+from flint import Ordering, arb, fmpq_mpoly_ctx, fmpz_mpoly, fmpz_mpoly_ctx
 
 from symflex.algebra.sparse import SparseContext, SparsePolynomial
 from symflex.errors import BudgetError, Diagnostic
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
-
-    from flint import fmpz_mpoly
 
     from symflex.algebra.sparse import Monomial
 
@@ -307,3 +306,29 @@ class PolynomialMemo(Generic[Made]):
             # The polynomial is kept as well: as long as it lives, its id is its own.
             known = self._known[id(polynomial)] = (polynomial, self.make(polynomial))
         return known[1]
+
+
+@dataclass(frozen=True, slots=True)
+class ElementaryFunction:
+    """A function the expression language knows."""
+
+    name: str  # as written in a specification
+    evaluate: Callable[[arb], arb]  # maps a real or complex ball to a ball at the current precision
+    latex: str  # the operator name in LaTeX
+    derivative: Callable[[arb], arb]  # the derivative, in the same way
+
+
+FUNCTIONS: dict[str, ElementaryFunction] = {
+    f.name: f
+    for f in (
+        ElementaryFunction("sqrt", lambda x: x.sqrt(), r"\sqrt", lambda x: 1 / (2 * x.sqrt())),
+        ElementaryFunction("exp", lambda x: x.exp(), r"\exp", lambda x: x.exp()),
+        ElementaryFunction("log", lambda x: x.log(), r"\log", lambda x: 1 / x),
+        ElementaryFunction("sin", lambda x: x.sin(), r"\sin", lambda x: x.cos()),
+        ElementaryFunction("cos", lambda x: x.cos(), r"\cos", lambda x: -x.sin()),
+        ElementaryFunction("tan", lambda x: x.tan(), r"\tan", lambda x: 1 + x.tan() ** 2),
+        ElementaryFunction("sinh", lambda x: x.sinh(), r"\sinh", lambda x: x.cosh()),
+        ElementaryFunction("cosh", lambda x: x.cosh(), r"\cosh", lambda x: x.sinh()),
+        ElementaryFunction("tanh", lambda x: x.tanh(), r"\tanh", lambda x: 1 - x.tanh() ** 2),
+    )
+}

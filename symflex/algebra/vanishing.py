@@ -24,7 +24,7 @@ from symflex.algebra.ring import by_powers, degree_in
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
-    from flint import fmpz_mpoly, nmod_poly
+    from flint import fmpz_mpoly
 
     from symflex.algebra.dispersion import Dispersion, KernelTable
     from symflex.algebra.factored import Factored

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symflex.codegen.c import C99
+from symflex.codegen.c.module import C99
 from symflex.codegen.julia import JULIA
 from symflex.codegen.latex import LatexExporter
 from symflex.codegen.matlab import MATLAB
-from symflex.codegen.python import ARRAY_API, JAX, NUMPY
+from symflex.codegen.python.module import ARRAY_API, JAX, NUMPY
 from symflex.codegen.state_space import StateSpaceExporter
 
 if TYPE_CHECKING:

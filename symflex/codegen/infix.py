@@ -99,7 +99,7 @@ class InfixPrinter(ABC):
         return f"{values}[{position}]"
 
     def call(self, function: str, arguments: Sequence[str]) -> str:
-        """Return a call of a run-time function, named as in :mod:`symflex.codegen.program.runtime`."""
+        """Return a call of a run-time function, named as in :mod:`symflex.codegen.program.evaluate`."""
         return f"_{function}({', '.join(arguments)})"
 
     @abstractmethod

@@ -50,7 +50,6 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     from flint import fmpz_mpoly
 
-    from symflex.codegen.export import Export
     from symflex.model import Model
     from symflex.state_space import State, StateSpace
     from symflex.state_space.popov import FieldElement, Vector

@@ -263,7 +263,13 @@ class _Assembly:
     def _impose(self, solution: FieldSolution, evaluator: ExactEvaluator) -> None:
         """Take a field's state at its start as unknowns, and its conditions as rows."""
         self.unknowns += solution.initial
-        self._extend_field(solution)
+        if self.distributed is not None:
+            found, start = solution.field, solution.origin
+            length = self.distributed.evaluator.constant(found.end) - start
+            system, initial = solution.medium.system, solution.initial
+            self.continua.append(
+                Continuum(found.name, "field", system, start, length, initial, solution.inputs)
+            )
         for i, condition in enumerate(solution.field.conditions):
             try:
                 left, right = (evaluator.linear(e) for e in (condition.left, condition.right))
@@ -273,25 +279,6 @@ class _Assembly:
             form = left + right * Factored.number(self.ring, -1)
             about = Variable("field", solution.field.name, f"condition {i + 1}")
             self.rows.append(EquationRow(about, form, "condition"))
-
-    def _extend_field(self, solution: FieldSolution) -> None:
-        """Note what a field's unknowns follow along x."""
-        if self.distributed is not None:
-            found, start = solution.field, solution.origin
-            length = self.distributed.evaluator.constant(found.end) - start
-            system, initial = solution.medium.system, solution.initial
-            self.continua.append(
-                Continuum(found.name, "field", system, start, length, initial, solution.inputs)
-            )
-
-    def _extend_line(self, element: LineElement, use: ElementUse) -> None:
-        """Note what the state of a line element follows along x."""
-        if self.distributed is not None:
-            medium, length = self.distributed.lines[use.name]
-            self.states[use.name] = state = element.initial_state(use)
-            self.continua.append(
-                Continuum(use.name, element.type_name, medium.system, length * 0, length, state)
-            )
 
     @property
     def _definitions(self) -> dict[str, Expression]:
@@ -417,7 +404,11 @@ class _Assembly:
         )
         if isinstance(use.element, LineElement):
             self.lines[use.name] = (use.element, element_use)
-            self._extend_line(use.element, element_use)
+            if self.distributed is not None:
+                medium, length = self.distributed.lines[use.name]
+                self.states[use.name] = state = use.element.initial_state(element_use)
+                kind = use.element.type_name
+                self.continua.append(Continuum(use.name, kind, medium.system, length * 0, length, state))
         return use.element.stamp(element_use)
 
     @staticmethod

@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import chain
 from math import factorial
 from typing import TYPE_CHECKING
 
@@ -39,12 +40,11 @@ from symflex.library.fields import FIELDS, Component, FieldEquation, FieldSystem
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
 
-    from symflex.algebra import Factored
     from symflex.algebra.propagators import Propagation
     from symflex.equations.evaluate import ExactEvaluator
     from symflex.errors import Span
     from symflex.expressions import Equation
-    from symflex.library.fields import FieldSystem, Matrix
+    from symflex.library.fields import Matrix
     from symflex.model import FieldProblem, Model, PlacedElement
 
 
@@ -420,12 +420,11 @@ def find_links(model: Model, lines: Mapping[str, tuple[FieldSystem, Factored]]) 
     }
     found = []
     for first in (name for name in ends if name in following and name not in following.values()):
-        chain = [first]
-        while chain[-1] in following:
-            chain.append(following[chain[-1]])
-        found += _links(
-            chain, [lines[name][1] for name in chain], [ends[name][0][0] in driven for name in chain]
-        )
+        path = [first]
+        while path[-1] in following:
+            path.append(following[path[-1]])
+        is_driven = [ends[name][0][0] in driven for name in path]
+        found += _links(path, [lines[name][1] for name in path], is_driven)
     return tuple(found)
 
 
@@ -436,29 +435,23 @@ def _ends(use: PlacedElement) -> tuple[tuple[str, str], tuple[str, str]]:
 
 def _is_same(one: FieldSystem, other: FieldSystem) -> bool:
     """Tell whether two elements have the same equations."""
-    pairs = zip(_entries(one), _entries(other), strict=False)
+    pairs = zip(chain(*one.matrix), chain(*other.matrix), strict=False)
     return one.states == other.states and all((a - b).is_zero for a, b in pairs)
 
 
-def _entries(system: FieldSystem) -> Iterable[Factored]:
-    return (entry for row in system.matrix for entry in row)
-
-
-def _links(chain: Sequence[str], lengths: Sequence[Factored], is_driven: Sequence[bool]) -> list[ChainEnd]:
+def _links(path: Sequence[str], lengths: Sequence[Factored], is_driven: Sequence[bool]) -> list[ChainEnd]:
     """Return the links of one chain, the last first."""
     starts = [lengths[0] * 0]
     for length in lengths:
         starts.append(starts[-1] + length)
     return [
         ChainEnd(
-            chain[n],
-            chain[0],
+            path[n],
+            path[0],
             starts[n + 1],
-            tuple(
-                (chain[k - 1], chain[k], starts[n + 1] - starts[k]) for k in range(1, n + 1) if is_driven[k]
-            ),
+            tuple((path[k - 1], path[k], starts[n + 1] - starts[k]) for k in range(1, n + 1) if is_driven[k]),
         )
-        for n in range(len(chain) - 1, 0, -1)
+        for n in range(len(path) - 1, 0, -1)
     ]
 
 

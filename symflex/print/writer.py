@@ -16,7 +16,7 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from symflex.algebra.functions import FUNCTIONS
+from symflex.algebra.ring import FUNCTIONS
 from symflex.expressions import (
     Call,
     Derivative,

@@ -1,7 +1,6 @@
 """State equations whose states are quantities of the model, exact, and rounded once."""
 
-from symflex.state_space.realise import not_rational, realise, realise_quotient
+from symflex.state_space.realise import Channel, State, StateSpace, not_rational, realise, realise_quotient
 from symflex.state_space.reduction import minimal
-from symflex.state_space.state_space import Channel, State, StateSpace
 
 __all__ = ["Channel", "State", "StateSpace", "minimal", "not_rational", "realise", "realise_quotient"]

@@ -26,14 +26,14 @@ from symflex.expressions import format_expression
 from symflex.transfer.balls import enclosure, later, value_at
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Mapping
 
     import numpy.typing as npt
     from numpy import float64
 
     from symflex.model import ExactValue
     from symflex.state_space.popov import FieldElement
-    from symflex.state_space.state_space import Channel, StateSpace
+    from symflex.state_space.realise import Channel, StateSpace
 
 
 @dataclass(frozen=True, slots=True)

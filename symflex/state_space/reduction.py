@@ -19,7 +19,7 @@ from symflex.algebra import PRIME, Factored, random_point, residue
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic
 from symflex.state_space.popov import FieldElement, Vector, applied, combined, transposed
-from symflex.state_space.state_space import Combination, State, StateSpace
+from symflex.state_space.realise import Combination, State, StateSpace
 
 SIZE_LIMIT = 5_000
 """Terms that a basis may hold on the way."""

@@ -366,7 +366,7 @@ def bind(tf: TransferFunction, values: Mapping[str, Given] | None = None) -> Bou
         ]
     if not tf.kernels:
         return BoundTransferFunction(tf, exact, ratio, tuple(hidden))
-    kernels = _bound_table(tf.kernels, images)
+    kernels = tf.kernels.embedded([(v, images.apply_factored(v)) for v in tf.kernels.values])
     for law in kernels.dispersions:
         if law.wavenumbers and law.characteristic[0].is_zero:
             message = f"a wavenumber of {tf.name} is zero at every s for these values"
@@ -395,11 +395,6 @@ def bind_polynomials(
     ring, values = bound.ratio.ring, dict(bound.values)
     images = _Substitution(ring, tf.ratio.ring, values, _rational_squares(tf, ring, values))
     return tuple(images.apply(polynomial) for polynomial in polynomials)
-
-
-def _bound_table(table: KernelTable, images: _Substitution) -> KernelTable:
-    """Return the table with values in its coefficients and lengths."""
-    return table.embedded([(v, images.apply_factored(v)) for v in table.values])
 
 
 def _used_constants(tf: TransferFunction) -> list[str]:

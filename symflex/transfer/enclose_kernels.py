@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
     from symflex.algebra import Dispersion, Factored, Kernel, KernelTable, PolynomialMemo
-    from symflex.transfer.balls import EvaluationPlan, Value
+    from symflex.transfer.balls import EvaluationPlan
 
 
 SIGNS = (1, -1)

@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 
     from flint import fmpz_mpoly
 
-    from symflex.algebra import Factored, Ring
     from symflex.equations.elimination import Determinants
 
 

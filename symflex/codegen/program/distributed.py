@@ -131,18 +131,11 @@ class _Group:
     position: int
     families: tuple[int, ...]
     basis: LocalBasis
-    spread: int
+    spread: int = 0
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Lone:
+class _Lone(_Group):
     """The smaller wavenumber of a pair at one length, whose argument is small while the other's is not."""
-
-    dispersion: Dispersion
-    length: Factored
-    position: int
-    families: tuple[int, ...]
-    basis: LocalBasis
 
 
 @dataclass(frozen=True, eq=False)
@@ -421,7 +414,7 @@ class _PieceMaker:
             mirrored,
             self._is_signed,
         )
-        groups: list[_Group | _Lone] = [g for g, n in zip(self.groups, near, strict=True) if n]
+        groups: list[_Group] = [g for g, n in zip(self.groups, near, strict=True) if n]
         for group, is_near in zip(self.groups, near, strict=True):
             if not is_near and group.dispersion in lone and (own := self._lone(group)) is not None:
                 groups.append(own)
@@ -451,7 +444,7 @@ class _PieceMaker:
             for j in range(len(family.lengths))
         }
 
-    def _scales(self, near: Sequence[_Group | _Lone], grows: Mapping[int, bool]) -> Scales:
+    def _scales(self, near: Sequence[_Group], grows: Mapping[int, bool]) -> Scales:
         """Return per family, and length that is not small, the largest exponent that occurs."""
         small = {(i, g.position) for g in near for i in g.families}
         keys = [key for h in self.halves for key in h.terms]
@@ -462,9 +455,7 @@ class _PieceMaker:
             if (i, j) not in small
         }
 
-    def _value(
-        self, half: _Half, near: Sequence[_Group | _Lone], site: Site, scales: Scales
-    ) -> tuple[int, Factored]:
+    def _value(self, half: _Half, near: Sequence[_Group], site: Site, scales: Scales) -> tuple[int, Factored]:
         """Return the expression of a half, and the factor that was taken out of it."""
         forge = site.forge
         if not near:
@@ -481,11 +472,11 @@ class _PieceMaker:
             summands.append(forge.multiply([inner, *self._solutions(site, near, orders)]))
         return forge.add(summands), taken
 
-    def _solutions(self, site: Site, near: Sequence[_Group | _Lone], orders: Sequence[int]) -> list[int]:
+    def _solutions(self, site: Site, near: Sequence[_Group], orders: Sequence[int]) -> list[int]:
         return [
-            site.local(g.basis, g.dispersion, g.length, k, self.reach)
-            if isinstance(g, _Group)
-            else site.local_of_smaller(g.basis, g.dispersion, g.length, k, LONE * self.reach)
+            site.local_of_smaller(g.basis, g.dispersion, g.length, k, LONE * self.reach)
+            if isinstance(g, _Lone)
+            else site.local(g.basis, g.dispersion, g.length, k, self.reach)
             for g, k in zip(near, orders, strict=True)
         ]
 
@@ -495,9 +486,7 @@ class _PieceMaker:
         power = min(v.exponent_of(s) for v in values)
         return Factored.generator(self.ring, LAPLACE) ** power
 
-    def _local_parts(
-        self, half: _Half, near: Sequence[_Group | _Lone]
-    ) -> dict[tuple[int, ...], dict[Key, Factored]]:
+    def _local_parts(self, half: _Half, near: Sequence[_Group]) -> dict[tuple[int, ...], dict[Key, Factored]]:
         """Return, per order of the derivatives in the small lengths, the coefficients of what remains."""
         found: dict[tuple[int, ...], dict[Key, Factored]] = {}
         for orders in product(*(range(g.basis.order) for g in near)):
@@ -524,7 +513,7 @@ class _PieceMaker:
         largest = max(taylor_term(self.reach, m) for m in range(lower[0], order))
         return taylor_term(self.reach, order) < SERIES_ERROR + largest
 
-    def _derivative(self, terms: KernelSum, group: _Group | _Lone, order: int) -> KernelSum:
+    def _derivative(self, terms: KernelSum, group: _Group, order: int) -> KernelSum:
         """Return the derivative of a sum with respect to a length at zero."""
         gens = [self.ring.generator(self.families[i].wavenumber) for i in group.families]
         found: KernelSum = {}

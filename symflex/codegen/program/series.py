@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from flint import fmpz_mpoly
 
-    from symflex.algebra import Dispersion, Kernel, KernelTable, Ring
+    from symflex.algebra import Dispersion, Kernel, KernelTable
 
 
 SERIES_ERROR = log(1e-19)

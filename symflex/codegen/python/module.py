@@ -28,7 +28,7 @@ from symflex.codegen.module_text import (
     origin_lines,
     wrapped,
 )
-from symflex.codegen.program import runtime
+from symflex.codegen.program import evaluate
 from symflex.codegen.program.evaluate import nearest_double
 from symflex.codegen.python.pieces import WIDTH, BlockText, TracedText, statement
 from symflex.codegen.source_parts import called_parts, parts_of
@@ -43,14 +43,14 @@ if TYPE_CHECKING:
 
 
 COPIED = (
-    runtime.complex_exp,
-    runtime.series_solutions,
-    runtime.propagated,
-    runtime.characteristic_roots,
+    evaluate.complex_exp,
+    evaluate.series_solutions,
+    evaluate.propagated,
+    evaluate.characteristic_roots,
     mode_values,
     modal_amplitudes,
-    runtime.modal_value,
-    runtime.mean_over_circle,
+    evaluate.modal_value,
+    evaluate.mean_over_circle,
 )
 """Functions with which programs are measured; modules get copies where they have no others."""
 

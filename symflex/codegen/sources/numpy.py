@@ -1,4 +1,4 @@
-# What generated numpy code calls, besides program/runtime.py: parts, each under a line
+# What generated numpy code calls, besides program/evaluate.py: parts, each under a line
 # that says what it defines.
 
 import numpy as np

@@ -22,14 +22,14 @@ from symflex.model.network import domain_of, variable_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
-    from flint import nmod_mat, nmod_poly
+    from flint import nmod_poly
 
     from symflex.algebra import Factored
     from symflex.algebra.propagators import Propagation
     from symflex.algebra.vanishing import TaylorField
     from symflex.equations import Equations
     from symflex.errors import Span
-    from symflex.library.elements import EquationRow, LinearForm, Variable
+    from symflex.library.elements import EquationRow, LinearForm
     from symflex.model import Model, PlacedElement
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from symflex.algebra.functions import FUNCTIONS
+from symflex.algebra.ring import FUNCTIONS
 from symflex.expressions import Call, Expression, Negative, Number, Power, Product, Quotient, Sum
 from symflex.expressions.format import number_text
 from symflex.print.label import symbol

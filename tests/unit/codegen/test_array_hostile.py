@@ -10,7 +10,7 @@ from functools import cache
 import pytest
 
 from symflex import pipeline
-from symflex.codegen.python import ARRAY_API, JAX
+from symflex.codegen.python.module import ARRAY_API, JAX
 from tests.unit.codegen.test_numpy_hostile import HOSTILE, NAMES, model_of, renamed, ring_takes, skeleton
 
 DIALECTS = {"array-api": ARRAY_API, "jax": JAX}

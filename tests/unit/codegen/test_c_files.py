@@ -15,9 +15,8 @@ import pytest
 from flint import acb
 
 from symflex import pipeline
-from symflex.codegen.c import C99
 from symflex.codegen.c.expression import Kind, Term, complex_term, difference, product, quotient, total
-from symflex.codegen.c.module import helpers
+from symflex.codegen.c.module import C99, helpers
 from symflex.codegen.exporters import EXPORTERS
 from symflex.codegen.program import verify
 from symflex.errors import UsageError

@@ -9,8 +9,8 @@ from dataclasses import replace
 import pytest
 
 from symflex import pipeline
-from symflex.codegen.c import C99
 from symflex.codegen.c.body import FUNCTIONS, KEYWORDS, LOCALS, MACROS, RESERVED
+from symflex.codegen.c.module import C99
 from tests.unit.codegen.test_numpy_hostile import HOSTILE, NAMES, SPEC, model_of, renamed, ring_takes
 
 IN_COMMENTS = [

@@ -15,12 +15,12 @@ import pytest
 
 from symflex import pipeline
 from symflex.codegen import export
-from symflex.codegen.c import C99
+from symflex.codegen.c.module import C99
 from symflex.codegen.exporters import EXPORTERS
 from symflex.codegen.julia import JULIA
 from symflex.codegen.matlab import MATLAB
 from symflex.codegen.program.verify import choose_programs
-from symflex.codegen.python import ARRAY_API, JAX, NUMPY
+from symflex.codegen.python.module import ARRAY_API, JAX, NUMPY
 from symflex.codegen.state_space import state_space_module
 from tests.house.repository import slow_ones
 from tests.unit.codegen.hostile_names import NAMES, PARAMETERS, C, benign, mass_on_springs, with_names

@@ -9,7 +9,7 @@ from symflex.codegen.module_text import formula_lines
 from symflex.codegen.program.build import build_nested
 from symflex.codegen.program.evaluate import evaluate
 from symflex.codegen.program.verify import choose_programs
-from symflex.codegen.python import NUMPY
+from symflex.codegen.python.module import NUMPY
 from symflex.errors import BudgetError
 from symflex.expressions import Product, Sum, format_expression
 from symflex.print.forms.nested import nested_form

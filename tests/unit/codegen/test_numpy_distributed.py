@@ -19,7 +19,7 @@ from symflex.codegen.program import modal
 from symflex.codegen.program.distributed import build_piecewise
 from symflex.codegen.program.evaluate import evaluate
 from symflex.codegen.program.verify import doubles
-from symflex.codegen.python import NUMPY
+from symflex.codegen.python.module import NUMPY
 from symflex.transfer import bind
 from tests.unit.codegen import exportable
 

@@ -12,7 +12,7 @@ from dataclasses import replace
 import pytest
 
 from symflex import pipeline
-from symflex.codegen.python import NUMPY
+from symflex.codegen.python.module import NUMPY
 from symflex.expressions import Name, substitute
 
 SPEC = """

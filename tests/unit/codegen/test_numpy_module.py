@@ -22,7 +22,7 @@ from symflex import pipeline
 from symflex.codegen.program.build import build_program
 from symflex.codegen.program.evaluate import evaluate
 from symflex.codegen.program.verify import choose_programs
-from symflex.codegen.python import NUMPY
+from symflex.codegen.python.module import NUMPY
 from symflex.errors import ModelError
 from tests.house.repository import specifications
 
@@ -378,7 +378,7 @@ def test_every_line_fits_in_88_columns_but_the_linters_own():
 def test_the_text_is_the_same_in_every_process():
     code = (
         "from symflex import pipeline\n"
-        "from symflex.codegen.python import NUMPY\n"
+        "from symflex.codegen.python.module import NUMPY\n"
         "import hashlib, sys\n"
         "m = pipeline.load(sys.argv[1])\n"
         "print(hashlib.sha256(NUMPY.export(m, pipeline.derive_all(m)).text.encode()).hexdigest())\n"
