@@ -461,7 +461,7 @@ def adaptive_grid(
     if not 0 < low_hz < high_hz < float("inf"):
         message = f"a band runs from a positive to a higher frequency, not from {low_hz:g} to {high_hz:g} Hz"
         raise UsageError(Diagnostic("SF227", message))
-    if points < 2:  # noqa: PLR2004
+    if points < 2:  # noqa: PLR2004 (the two ends)
         message = f"a grid has at least 2 points, not {points}"
         raise ValueError(message)
     if roots is None:

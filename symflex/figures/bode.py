@@ -219,8 +219,7 @@ def draw_measured(measured: MeasuredResponse, model: npt.NDArray[np.complex128],
     """
     with paper_style():
         figure, top, bottom = magnitude_over_phase(COLUMN_INCHES, MEASURED_INCHES, MEASURED_RATIO)
-        phase = np.degrees(np.unwrap(np.angle(model)))
-        phase = phase - 360 * np.round(phase[0] / 360)
+        phase = _unwrapped(model)
         _draw_data(top, bottom, measured, model, phase)
         top.plot(measured.frequency_hz, _decibels(model), color=COLOURS[0], label="model")
         bottom.plot(measured.frequency_hz, phase, color=COLOURS[0])
@@ -243,8 +242,7 @@ def draw_fit(fit: ResonanceFit, response: int = 0) -> Figure:
         for axes in (top, bottom):
             for band in () if test.is_minimum_phase else test.bands:
                 axes.axvspan(band.low_hz, band.high_hz, color=PARTED_COLOUR, linewidth=0, zorder=0)
-        fitted = np.degrees(np.unwrap(np.angle(model)))
-        fitted = fitted - 360 * np.round(fitted[0] / 360)
+        fitted = _unwrapped(model)
         _draw_data(top, bottom, measured, model, fitted)
         top.plot(frequency, _decibels(start), color=COLOURS[4], linestyle=DASHES[3], label="start")
         top.plot(
@@ -294,6 +292,12 @@ def _finish(
     add_legend_above(top, columns, is_tight=True)
     title = measured.name + (" (synthetic data)" if measured.is_synthetic else "")
     write_title(figure, title_lines(title, COLUMN_INCHES))
+
+
+def _unwrapped(values: npt.NDArray[np.complex128]) -> npt.NDArray[np.float64]:
+    """Return continuous phases [deg], the first within half a turn of 0."""
+    phase = np.degrees(np.unwrap(np.angle(values)))
+    return np.asarray(phase - 360 * np.round(phase[0] / 360))
 
 
 def _decibels(values: npt.NDArray[np.complex128]) -> npt.NDArray[np.float64]:

@@ -295,7 +295,7 @@ def _point_along(axes: Axes, values: npt.NDArray[np.complex128], colour: str) ->
     aside = np.abs(values.real - (left + right) / 2) / half_width
     aside = np.maximum(aside, np.abs(values.imag - (low + high) / 2) / half_height)
     shown = np.flatnonzero(aside < WITHIN)
-    steps = np.abs(np.diff(values[shown])) if shown.size > 2 else np.array([])  # noqa: PLR2004
+    steps = np.abs(np.diff(values[shown])) if shown.size > 2 else np.array([])  # noqa: PLR2004 (two steps at least)
     if not steps.size or not float(steps.sum()) > 0:
         return
     middle = int(np.searchsorted(np.cumsum(steps), 0.4 * float(steps.sum())))

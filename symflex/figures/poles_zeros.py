@@ -399,9 +399,9 @@ def _first_run(sizes: Iterable[float]) -> float:
 
 
 def _number(value: float) -> str:
-    text = f"{value:.0f}" if 1e3 <= abs(value) < PLAIN_LIMIT else f"{value:.4g}"  # noqa: PLR2004
+    text = f"{value:.0f}" if 1e3 <= abs(value) < PLAIN_LIMIT else f"{value:.4g}"  # noqa: PLR2004 (four digits)
     if "e" not in text:
-        return text if abs(value) < 1e4 else rf"{text[:-3]}\,{text[-3:]}"  # noqa: PLR2004
+        return text if abs(value) < 1e4 else rf"{text[:-3]}\,{text[-3:]}"  # noqa: PLR2004 (five digits)
     mantissa, exponent = text.split("e")
     return rf"{mantissa}\cdot 10^{{{int(exponent)}}}"
 

@@ -230,8 +230,7 @@ class LoopFunction:
         """Return what evaluates kernels and sums of exponentials at one precision."""
         if bits not in self._evaluators:
             with precision(bits):
-                constants = {name: evaluate() for name, evaluate in self.bound.constants}
-                kernels = self.bound.kernel_values(constants)
+                kernels = self.bound.kernel_values()
             sums = None
             if self.sums is not None:
                 sums = ExponentialValues(kernels, self.arguments, tuple((f, 1) for f in self.sums))

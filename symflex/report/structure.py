@@ -34,13 +34,13 @@ from symflex.expressions import (
 from symflex.model import ModelParameter, with_numbers
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Collection, Mapping
 
     from flint import fmpz_mpoly
 
     from symflex.algebra import Factored, Ring
     from symflex.expressions import Expression
-    from symflex.model import Input, Model, Output, PlacedBlock, PlacedElement
+    from symflex.model import Input, Model, Output, PlacedElement
 
 
 Place = Literal["base", "transmission", "link", "contact"]
@@ -202,16 +202,16 @@ Counts = tuple[int, int]
 """Zeros and poles."""
 RigidCounts = tuple[int | None, int]
 """The same; no zeros are counted where the function itself vanishes, or grows without bound."""
-RESONANCES: Final = frozenset(("omega_p", "omega_z"))
+RESONANCES: Final = ("omega_p", "omega_z")
+"""What grows in a resonance block as compliances become rigid."""
 
 
 def rigid_counts(model: Model) -> Mapping[tuple[str, str], RigidCounts]:
     """Return the zeros and poles of every transfer function as all compliances become rigid.
 
     Springs, torsion springs, massless beams and resonance blocks are stiffened; blocks that hold another
-    model stay as they are. Distributed models have no such limit here.
-
-    Distributed models have none, and models without any compliance. Zeros are None where nothing
+    model stay as they are. Distributed models have no such limit, nor have models without any
+    compliance. Zeros are None where nothing
     moves, as of a structure that only springs hold to ground.
 
     Examples
@@ -236,15 +236,7 @@ def rigid_counts(model: Model) -> Mapping[tuple[str, str], RigidCounts]:
     >>> rigid_counts(held)
     {('X', 'F'): (None, 0)}
     """
-
-    def stiffened(use: PlacedElement) -> frozenset[str]:
-        return frozenset(filter(None, (use.element.stiffness,)))
-
-    def tuned(use: PlacedBlock) -> frozenset[str]:
-        is_resonance = use.block is not None and use.block.type_name == "resonance"
-        return RESONANCES if is_resonance else frozenset()
-
-    return _limits(model, stiffened, tuned, max)
+    return _limits(model, lambda use: use.element.stiffness, RESONANCES, max)
 
 
 def undamped_counts(model: Model) -> Mapping[tuple[str, str], Counts]:
@@ -252,18 +244,14 @@ def undamped_counts(model: Model) -> Mapping[tuple[str, str], Counts]:
 
     Distributed models have none, and models without dampers.
     """
-
-    def lossy(use: PlacedElement) -> frozenset[str]:
-        return frozenset(filter(None, (use.element.damping,)))
-
-    found = _limits(model, lossy, lambda _: frozenset(), min)
+    found = _limits(model, lambda use: use.element.damping, (), min)
     return {pair: (zeros, poles) for pair, (zeros, poles) in found.items() if zeros is not None}
 
 
 def _limits(
     model: Model,
-    of_element: Callable[[PlacedElement], frozenset[str]],
-    of_block: Callable[[PlacedBlock], frozenset[str]],
+    of_element: Callable[[PlacedElement], str | None],
+    of_resonance: Collection[str],
     choose: Callable[[list[int]], int],
 ) -> dict[tuple[str, str], RigidCounts]:
     if model.is_distributed:
@@ -278,11 +266,16 @@ def _limits(
     while symbol in taken:
         symbol += "_x"
 
-    def scaled(values: Values, keys: frozenset[str]) -> Values:
+    def scaled(values: Values, keys: Collection[str | None]) -> Values:
         return tuple((k, product_of([Name(symbol), e]) if k in keys else e) for k, e in values)
 
-    elements = tuple(replace(e, values=scaled(e.values, of_element(e))) for e in model.elements)
-    blocks = tuple(replace(b, values=scaled(b.values, of_block(b))) for b in model.blocks)
+    elements = tuple(replace(e, values=scaled(e.values, {of_element(e)})) for e in model.elements)
+    blocks = tuple(
+        replace(b, values=scaled(b.values, of_resonance))
+        if b.block is not None and b.block.type_name == "resonance"
+        else b
+        for b in model.blocks
+    )
     if elements == model.elements and blocks == model.blocks:
         return {}
     given = with_numbers(replace(model, elements=elements, blocks=blocks))

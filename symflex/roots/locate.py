@@ -12,7 +12,6 @@ from symflex.algebra import Factored
 from symflex.budget import Budget, entered_budget
 from symflex.errors import BudgetError, Diagnostic, SymflexError
 from symflex.model.signs import is_passive
-from symflex.roots.distributed.proof import ROUNDING
 from symflex.roots.distributed.right_half_plane import DEGENERATE, PASSIVE, search_right
 from symflex.roots.distributed.side import ACCUMULATION_DIGITS, Side, groups, polynomial_roots
 from symflex.roots.engines import LOSSLESS, POLYNOMIAL
@@ -32,7 +31,7 @@ from symflex.roots.pole_zero_map import (
 from symflex.roots.polynomial_roots import in_order
 from symflex.roots.problem import problem_of
 from symflex.roots.region import Band, Everything, Mode, Modes, Position, Region
-from symflex.roots.root import Root, overlap
+from symflex.roots.root import ROUNDING, Root, overlap
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

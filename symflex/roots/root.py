@@ -18,6 +18,8 @@ FLOAT_BITS = 128
 """Of frequencies and comparisons: more than twice the bits of a double."""
 PLAIN_FROM = -5
 """Decimal exponent from which numbers are written without one."""
+ROUNDING = 1e-15
+"""What doubles of enclosures' ends may be off by, relative to them: a few times 2^-53."""
 HUNDRED = 100
 """Two digits are fewer."""
 
@@ -150,6 +152,20 @@ def overlap(a: Root, b: Root) -> bool:
     True
     """
     return bool(a.re.overlaps(b.re)) and bool(a.im.overlaps(b.im))
+
+
+def are_apart(roots: Sequence[Root]) -> bool:
+    """Tell whether no two enclosures overlap."""
+    sizes = ((root.natural_frequency(), root) for root in roots)
+    spans = [(float(f.lower()) * (1 - ROUNDING), float(f.upper()) * (1 + ROUNDING), r) for f, r in sizes]
+    spans.sort(key=lambda span: span[0])
+    near: list[tuple[float, Root]] = []
+    for low, high, root in spans:
+        near = [(end, other) for end, other in near if end >= low]
+        if any(overlap(root, other) for _, other in near):
+            return False
+        near.append((high, root))
+    return True
 
 
 def mirror_images(roots: Sequence[Root], *, even: bool) -> list[Root]:

@@ -6,6 +6,7 @@ Designs are read from text such as ``k=1e4:1e6:log:200``, ``m_2=1,2,5``, ``l=+-5
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from decimal import Decimal, localcontext
 from fractions import Fraction
@@ -13,19 +14,19 @@ from functools import cached_property
 from itertools import product
 from math import pi, prod
 from random import Random
-from typing import TYPE_CHECKING, Any, Literal, Protocol
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from symflex.errors import BudgetError, Diagnostic, Source, Span, SpecError, Text, UsageError
-from symflex.errors.diagnostic import nearest
+from symflex.loops import pick_gain
 from symflex.model import ExactValue, Model, ModelParameter, check_value, with_numbers
 from symflex.quantities import parse_quantity
 from symflex.transfer.bind import read_values
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Mapping
 
     from symflex.roots import Region
     from symflex.transfer import Given, TransferFunction
@@ -197,14 +198,8 @@ Rows = dict[str, Array]
 CODE_LENGTH = 5
 
 
-class Derive(Protocol):
-    """A function that derives transfer functions; one a worker can import by its name."""
-
-    def __call__(
-        self, model: Model, pairs: Sequence[tuple[str, str]] | None = None
-    ) -> tuple[TransferFunction, ...]:
-        """Return the transfer functions of the given pairs."""
-        ...
+Derive = Callable[["Model", Sequence[tuple[str, str]]], tuple["TransferFunction", ...]]
+"""From a model and pairs to transfer functions; one a worker can import by its name."""
 
 
 @dataclass(frozen=True)
@@ -221,12 +216,8 @@ class Task:
     gain: str = ""  # of margins
 
 
-class Solver(Protocol):
-    """Computes rows of results for points."""
-
-    def __call__(self, points: Sequence[Point]) -> Rows:
-        """Return arrays whose first axis counts the points."""
-        ...
+Solver = Callable[[Sequence[Point]], Rows]
+"""Computes rows of results for points: arrays whose first axis counts them."""
 
 
 def fingerprint(task: Task) -> str:
@@ -275,8 +266,7 @@ def read_design(
     """
     if not texts:
         raise UsageError(Diagnostic("SF902", "nothing is swept", None, f"say what: {FORMS}"))
-    known = {p.name: p for p in parameters}
-    return _design([_read(known, text) for text in texts], draws, seed)
+    return _design([_read(parameters, text) for text in texts], draws, seed)
 
 
 def design_of(
@@ -294,13 +284,12 @@ def design_of(
     >>> design_of(parameters, {"k": "1:2:lin:2", "m": [0.5, "3"]}).shape
     (2, 2)
     """
-    known = {p.name: p for p in parameters}
     read: list[Axis | Range] = []
     for name, said in over.items():
         if isinstance(said, str):
-            read.append(_read(known, f"{name}={said}"))
+            read.append(_read(parameters, f"{name}={said}"))
             continue
-        parameter = _known(known, name)
+        parameter = pick_gain(parameters, name)
         exact = tuple(_assumed(parameter, value) for value in said)
         if not exact:
             raise UsageError(Diagnostic("SF902", f"'{name}' has no values"))
@@ -344,12 +333,12 @@ def _design(found: Sequence[Axis | Range], draws: int, seed: int) -> Design:
     return Design(tuple(axes), tuple(ranges), draws, seed)
 
 
-def _read(known: dict[str, ModelParameter], text: str) -> Axis | Range:
+def _read(parameters: Sequence[ModelParameter], text: str) -> Axis | Range:
     name, sign, said = text.partition("=")
     name, said = name.strip(), said.strip()
     if not sign or not name or not said:
         raise _unreadable(text)
-    parameter = _known(known, name)
+    parameter = pick_gain(parameters, name)
     if said[:2] in ("+-", "±") or said[:1] == "±":
         return _about(parameter, said.removeprefix("+-").removeprefix("±"), text)
     parts = [part.strip() for part in said.split(":")]
@@ -365,13 +354,6 @@ def _read(known: dict[str, ModelParameter], text: str) -> Axis | Range:
         return limits
     Design((), (limits,), count)  # refuses too many before they are made
     return Axis(name, between(limits, count))
-
-
-def _known(known: dict[str, ModelParameter], name: str) -> ModelParameter:
-    if name not in known:
-        hint = nearest(name, known) or "parameters: " + ", ".join(list(known)[:8])
-        raise UsageError(Diagnostic("SF902", f"there is no parameter '{name[:64]}'", None, hint))
-    return known[name]
 
 
 def _scale_and_count(parts: list[str], text: str) -> tuple[Scale, int | None]:

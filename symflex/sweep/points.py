@@ -270,18 +270,9 @@ def _family(similarity: Similarity) -> int:
     return int.from_bytes(sha256(text).digest()[:FAMILY_BYTES], "big") + 1
 
 
-def solve_poles(task: Task) -> Solver:
-    """Return what finds the poles of the task's transfer function."""
-    return _solving(task, "poles")
-
-
-def solve_zeros(task: Task) -> Solver:
-    """Return what finds the zeros of the task's transfer function."""
-    return _solving(task, "zeros")
-
-
-def _solving(task: Task, kind: RootKind) -> Solver:
-    solver = RootSolver(derived(task), task.names, kind, task.region)
+def solve_roots(task: Task) -> Solver:
+    """Return what finds the poles, or the zeros, of the task's transfer function."""
+    solver = RootSolver(derived(task), task.names, "poles" if task.of == "poles" else "zeros", task.region)
     return lambda points: _rows([solver(point) for point in points])
 
 
@@ -396,8 +387,8 @@ def logarithmic(low: Fraction, high: Fraction, count: int) -> list[float]:
 
 
 QUANTITIES: dict[str, Callable[[Task], Solver]] = {
-    "poles": solve_poles,
-    "zeros": solve_zeros,
+    "poles": solve_roots,
+    "zeros": solve_roots,
     "response": solve_response,
     "margins": solve_margins,
 }

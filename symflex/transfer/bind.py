@@ -176,13 +176,13 @@ class BoundTransferFunction:
     def enclosed_part(self, part: Factored, bits: int) -> EnclosedDistributed:
         """Return a function over the ring of kernels, such as :attr:`num`, evaluated in balls."""
         with ctx.workprec(bits):
-            values = {name: evaluate() for name, evaluate in self.constants}
-        return EnclosedDistributed(bits, part, self.kernel_values(values))
+            return EnclosedDistributed(bits, part, self.kernel_values())
 
-    def kernel_values(self, constants: Mapping[str, arb]) -> KernelValues:
-        """Return the evaluator of the ring of kernels, from enclosures of the constants."""
+    def kernel_values(self) -> KernelValues:
+        """Return the evaluator of the ring of kernels, with the constants at the current precision."""
         from symflex.transfer.enclose_kernels import KernelValues  # only with beams
 
+        constants = {name: evaluate() for name, evaluate in self.constants}
         return KernelValues(self.ratio.ring.names, self.kernels, constants, self._modal_sums, self._plans)
 
     @cached_property

@@ -12,7 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from symflex.analysis.explanation.coordinates import acting, measured
+from symflex.analysis.explanation.coordinates import acting, holds, measured
 from symflex.analysis.explanation.parts import SUPPORTS, coordinates_of, opened
 from symflex.expressions import (
     Call,
@@ -211,7 +211,7 @@ def _field_between(model: Model, equations: Equations, output: Output, source: I
         loaded = [
             n
             for condition in field.conditions
-            if any(isinstance(n, Name) and n.name == source.name for n in names(condition))
+            if holds(condition, source.name)
             for n in names(condition)
             if isinstance(n, Call) and n.name in field.unknowns
         ]

@@ -246,13 +246,9 @@ def _real_values(explained: ZeroExplanation) -> str:
     real = explained.real_zeros
     if not real:
         return ""
-    paired = [z.root.decimal(DIGITS).re for z in real if z.is_paired]
-    alone = [z.root.decimal(DIGITS).re for z in real if not z.is_paired]
     said = []
-    if paired:
-        more = f" and {len(paired) - LISTED} more" if len(paired) > LISTED else ""
-        said.append("real zeros in pairs +-" + ", +-".join(paired[:LISTED]) + more)
-    if alone:
-        more = f" and {len(alone) - LISTED} more" if len(alone) > LISTED else ""
-        said.append("real zeros at +" + ", +".join(alone[:LISTED]) + more)
+    for lead, sign, is_paired in (("in pairs", "+-", True), ("at", "+", False)):
+        values = [sign + z.root.decimal(DIGITS).re for z in real if z.is_paired == is_paired]
+        more = f" and {len(values) - LISTED} more" if len(values) > LISTED else ""
+        said += [f"real zeros {lead} {', '.join(values[:LISTED])}{more}"] if values else []
     return ", " + "; ".join(said)

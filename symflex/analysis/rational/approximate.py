@@ -16,12 +16,12 @@ import numpy as np
 from flint import acb, acb_poly, arb, ctx
 
 from symflex.analysis.rational.approximation import (
-    PoleZeroGain,
+    Approximant,
     RationalApproximation,
     RationalEvaluator,
     scan_error,
 )
-from symflex.analysis.rational.laurent import PrincipalPart, about_zero, expand_at_zero, residues_at
+from symflex.analysis.rational.laurent import about_zero, expand_at_zero, residues_at
 from symflex.analysis.rational.toolboxes import check_form
 from symflex.analysis.response import default_band
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
@@ -195,19 +195,15 @@ def approximate(
 
     roots = (*kept.poles, *(kept.zeros if form == "product" else ()))
     return RationalApproximation(
-        bound,
-        form,
-        kept.modes,
-        made.function,
-        made.evaluator,
-        made.residues,
-        made.correction,
-        kept.is_exact,
-        made.is_estimate or any(not root.certified for root in roots),
-        kept.omitted_hz,
-        scan_error(bound, value, kept.found, low, high),
-        stated,
-        kept.found.verdict,
+        **vars(made) | {"is_estimate": made.is_estimate or any(not root.certified for root in roots)},
+        bound=bound,
+        form=form,
+        modes=kept.modes,
+        is_exact=kept.is_exact,
+        omitted_hz=kept.omitted_hz,
+        scan=scan_error(bound, value, kept.found, low, high),
+        band=stated,
+        stability=kept.found.verdict,
     )
 
 
@@ -236,17 +232,6 @@ BITS_PER_ROOT = 24
 """Coefficients of a polynomial cancel where its roots span decades."""
 
 
-@dataclass(frozen=True, eq=False)
-class Approximant:
-    """What a form makes: see :class:`RationalApproximation` for the fields."""
-
-    function: PoleZeroGain
-    evaluator: RationalEvaluator
-    residues: tuple[PrincipalPart, ...] = ()
-    correction: tuple[mpmath.mpf, ...] = ()
-    is_estimate: bool = False
-
-
 Form = Callable[["BoundTransferFunction", KeptRoots, int], Approximant]
 
 
@@ -272,11 +257,9 @@ def product_form(bound: BoundTransferFunction, kept: KeptRoots, digits: int) -> 
             if kept.is_exact
             else (_real_coefficients(_from_roots(zeros) * gain), _real_coefficients(_from_roots(poles)))
         )
-    function = PoleZeroGain(
-        tuple(map(to_complex_mpmath, poles)), tuple(map(to_complex_mpmath, zeros)), num[0], num, den
-    )
+    function = (tuple(map(to_complex_mpmath, poles)), tuple(map(to_complex_mpmath, zeros)), num[0], num, den)
     evaluator = RationalEvaluator(order, complex(start.coefficients[0].mid()), _array(poles), _array(zeros))
-    return Approximant(function, evaluator, is_estimate=start.is_estimate)
+    return Approximant(*function, evaluator, is_estimate=start.is_estimate)
 
 
 def modal_form(bound: BoundTransferFunction, kept: KeptRoots, digits: int) -> Approximant:
@@ -316,7 +299,6 @@ def modal_form(bound: BoundTransferFunction, kept: KeptRoots, digits: int) -> Ap
             zeros = tuple(map(to_complex_mpmath, _repeated(kept.zeros)))
         else:
             zeros = tuple(map(to_complex_mpmath, _zeros_of(num.coeffs()[: len(above)])))
-    function = PoleZeroGain(tuple(map(to_complex_mpmath, roots)), zeros, above[0], above, below)
     terms = tuple(
         (complex(residue.root.enclosure().mid()), power, complex(coefficient.mid()))
         for residue in residues
@@ -333,7 +315,8 @@ def modal_form(bound: BoundTransferFunction, kept: KeptRoots, digits: int) -> Ap
     )
     is_estimate = start.is_estimate or any(residue.is_estimate for residue in residues)
     constants = tuple(to_mpmath(c.real) for c in correction)
-    return Approximant(function, evaluator, residues, constants, is_estimate)
+    function = (tuple(map(to_complex_mpmath, roots)), zeros, above[0], above, below)
+    return Approximant(*function, evaluator, residues, constants, is_estimate)
 
 
 FORMS: dict[str, Form] = {"product": product_form, "modal": modal_form}

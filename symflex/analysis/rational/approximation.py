@@ -173,19 +173,6 @@ def scan_error(
 
 
 @dataclass(frozen=True, eq=False)
-class PoleZeroGain:
-    """A rational function with real coefficients."""
-
-    # poles and zeros: [rad/s], as often as their multiplicity says, both members of each conjugate pair.
-    poles: tuple[mpmath.mpc, ...]
-    zeros: tuple[mpmath.mpc, ...]
-    gain: mpmath.mpf  # what ``(s - z).../(s - p)...`` is multiplied with
-    # num and den: coefficients in descending powers of s, ``den`` beginning with 1.
-    num: tuple[mpmath.mpf, ...]
-    den: tuple[mpmath.mpf, ...]
-
-
-@dataclass(frozen=True, eq=False)
 class RationalEvaluator:
     """Values of a rational function in double precision, neither overflowing nor cancelling."""
 
@@ -218,7 +205,27 @@ class RationalEvaluator:
 
 
 @dataclass(frozen=True, eq=False)
-class RationalApproximation(RationalFunction):
+class Approximant:
+    """A rational function R with real coefficients, as a form makes it."""
+
+    # poles and zeros: [rad/s], as often as their multiplicity says, both members of each conjugate pair; the
+    # zeros of a modal form are near, not on, those of G.
+    poles: tuple[mpmath.mpc, ...]
+    zeros: tuple[mpmath.mpc, ...]
+    gain: mpmath.mpf  # what ``(s - z).../(s - p)...`` is multiplied with
+    # num and den: coefficients in descending powers of s, ``den`` beginning with 1.
+    num: tuple[mpmath.mpf, ...]
+    den: tuple[mpmath.mpf, ...]
+    evaluator: RationalEvaluator  # R in double precision
+    residues: tuple[PrincipalPart, ...] = ()  # of the modal form, its principal parts
+    # Of the modal form, what is added to them, in ascending powers of s; one constant, the static correction
+    # of the modes left out, unless G is a rational function that grows with s.
+    correction: tuple[mpmath.mpf, ...] = ()
+    is_estimate: bool = False  # some pole, zero or residue is not proved
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class RationalApproximation(Approximant, RationalFunction):
     """A rational function R(s) in place of a transfer function G(s), for a band of frequencies.
 
     Parameters
@@ -230,19 +237,8 @@ class RationalApproximation(RationalFunction):
         of G at its poles and a constant that makes the finite part at s = 0 exact.
     modes : int
         How many modes, roots at 0 aside.
-    function : PoleZeroGain
-        R.
-    evaluator : RationalEvaluator
-        R in double precision.
-    residues : tuple of PrincipalPart
-        Of the modal form, its principal parts; empty for products.
-    correction : tuple of mpmath.mpf
-        Of the modal form, what is added to the principal parts, in ascending powers of s; one constant, the
-        static correction of the modes left out, unless G is a rational function that grows with s.
     is_exact : bool
         R is G: a lumped system with all its modes.
-    is_estimate : bool
-        Some pole, zero or residue is not proved.
     omitted_hz : float or None
         Natural frequency of the first pole left out [Hz]; ``None`` when no pole is.
     scan : ErrorScan
@@ -256,12 +252,7 @@ class RationalApproximation(RationalFunction):
     bound: BoundTransferFunction
     form: str
     modes: int
-    function: PoleZeroGain
-    evaluator: RationalEvaluator
-    residues: tuple[PrincipalPart, ...]
-    correction: tuple[mpmath.mpf, ...]
     is_exact: bool
-    is_estimate: bool
     omitted_hz: float | None
     scan: ErrorScan
     band: tuple[float, float]
@@ -276,31 +267,6 @@ class RationalApproximation(RationalFunction):
     def tf(self) -> str:
         """``OUT/IN``."""
         return self.bound.name
-
-    @property
-    def poles(self) -> tuple[mpmath.mpc, ...]:
-        """The poles [rad/s], as often as their multiplicity says."""
-        return self.function.poles
-
-    @property
-    def zeros(self) -> tuple[mpmath.mpc, ...]:
-        """The zeros [rad/s]; those of a modal form are near, not on, the zeros of G."""
-        return self.function.zeros
-
-    @property
-    def gain(self) -> mpmath.mpf:
-        """What ``(s - z).../(s - p)...`` is multiplied with."""
-        return self.function.gain
-
-    @property
-    def num(self) -> tuple[mpmath.mpf, ...]:
-        """Numerator, coefficients in descending powers of s."""
-        return self.function.num
-
-    @property
-    def den(self) -> tuple[mpmath.mpf, ...]:
-        """Denominator, coefficients in descending powers of s, beginning with 1."""
-        return self.function.den
 
     @property
     def order_at_zero(self) -> int:

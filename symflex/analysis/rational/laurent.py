@@ -119,7 +119,7 @@ def expand_at_zero(bound: BoundTransferFunction, last: int, digits: int) -> Laur
     terms = max((o for o in orders if o is not None), default=0) + branches * (max(last, 0) + 4) + SLACK
     while bits <= LAST_BITS:
         with precision(bits), series_length(terms):
-            evaluator = _evaluator(bound)
+            evaluator = bound.kernel_values()
             values = local_values(evaluator, acb(0), terms, branches)
             found = None
             if values is not None:
@@ -193,7 +193,7 @@ def expand_at_pole(bound: BoundTransferFunction, root: Root, digits: int) -> tup
     bits = max(FIRST_BITS, 2 * bits_for_digits(digits), root.working_bits())
     while bits <= LAST_BITS:
         with precision(bits):
-            evaluator = _evaluator(bound)
+            evaluator = bound.kernel_values()
             above, below = (partial(_part, evaluator, v) for v in (ratio.numerator(), ratio.denominator()))
             known = _expanded(above, below, root)
             if known is None and (smooth := _smooth_sides(bound, root, bits)) is not None:
@@ -330,10 +330,6 @@ def _coefficients(value: acb | acb_series) -> list[acb]:
     if isinstance(value, acb_series):
         return [value[i] for i in range(value.prec)]
     return [value, *[acb(0)] * (LONGEST - 1)]
-
-
-def _evaluator(bound: BoundTransferFunction) -> KernelValues:
-    return bound.kernel_values({name: evaluate() for name, evaluate in bound.constants})
 
 
 def _fraction(value: Factored) -> arb:

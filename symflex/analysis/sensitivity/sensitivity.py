@@ -22,6 +22,7 @@ from symflex.algebra.vanishing import OriginSeries
 from symflex.budget import spend
 from symflex.expressions import Call, Expression, fold
 from symflex.loops import pick_gain
+from symflex.loops.stability_map import real_json
 from symflex.model import ExactValue, Model, ModelParameter, with_numbers
 from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.root import GUARD_BITS, decimals, exact_fraction
@@ -135,10 +136,7 @@ def _complex_json(value: acb | None, digits: int) -> dict[str, str] | None:
 
 
 def _real_json(value: arb | None, digits: int) -> dict[str, str] | None:
-    if value is None:
-        return None
-    printed = decimals(value, arb(0), digits)
-    return {"value": printed.re, "radius": printed.radius}
+    return None if value is None else real_json(value, digits)
 
 
 ROUNDS = 4

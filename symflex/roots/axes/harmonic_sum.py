@@ -453,9 +453,8 @@ def _enclosures(
 ) -> Enclosures:
     """Return all constants and what x or x^2 is multiplied with in wavenumbers, and in arguments."""
     with precision(bits):
-        constants = {name: evaluate() for name, evaluate in bound.constants}
-        values = bound.kernel_values(constants)
-        places: dict[str, Value] = {"s": acb(1), **{name: acb(c) for name, c in constants.items()}}
+        values = bound.kernel_values()
+        places: dict[str, Value] = {"s": acb(1), **{name: acb(c) for name, c in values.constants.items()}}
 
         def number(value: Factored) -> arb:
             found = values.value(value, places)
@@ -467,7 +466,7 @@ def _enclosures(
             wavenumbers[name] = (-size).sqrt() if law.degree == QUADRATIC else (size / 4).sqrt().sqrt()
         return Enclosures(
             bits,
-            [*constants.values(), *wavenumbers.values()],
+            [*values.constants.values(), *wavenumbers.values()],
             [wavenumbers[argument.wavenumber] * number(argument.length) for argument in arguments],
             [laws[argument.wavenumber].degree for argument in arguments],
         )

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import inf, pi
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
@@ -36,18 +36,6 @@ SMALLEST_TURN = 1e-6
 """The same about a disc [rad]."""
 LOSSY = 0.01
 """Share of its bound below which a turn says that the bound is poor: nearly equal exponentials cancel."""
-
-
-class Path(Protocol):
-    """A curve in the s plane, from t = 0 to 1."""
-
-    def point(self, t: float) -> acb:
-        """Return a point."""
-        ...
-
-    def step(self, start: float, end: float) -> tuple[acb, acb, arb]:
-        """Return a ball around a step, its middle, and the most that s moves from the middle on it."""
-        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +83,10 @@ class Circle:
         turn = arb(middle, half * WIDENED + SPREAD)
         ball = self.centre + self.radius * (acb(0, 2) * arb.pi() * turn).exp()
         return ball, self.point(middle), self.radius * 2 * arb.pi() * turn.rad()
+
+
+Path = LogarithmicLine | Circle
+"""A curve in the s plane, from t = 0 to 1."""
 
 
 class CertifiedWinding(Winding):

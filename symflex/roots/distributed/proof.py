@@ -27,7 +27,7 @@ from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.winding import Cell, RootOnPathError
 from symflex.roots.precision import precision
 from symflex.roots.region import Band, Rectangle, Region
-from symflex.roots.root import FLOAT_BITS, Root, overlap
+from symflex.roots.root import FLOAT_BITS, Root, are_apart
 
 if TYPE_CHECKING:
     from symflex.algebra import Factored
@@ -37,8 +37,6 @@ if TYPE_CHECKING:
 
 UNPROVED = "the number of roots could not be proved"
 TOUCHING = "some roots could not be told apart"
-ROUNDING = 1e-15
-"""What doubles of enclosures' ends may be off by, relative to them: a few times 2^-53."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,20 +140,6 @@ class Count:
         if rest:
             raise RootOnPathError
         return counted
-
-
-def are_apart(roots: Sequence[Root]) -> bool:
-    """Tell whether no two enclosures overlap."""
-    sizes = ((root.natural_frequency(), root) for root in roots)
-    spans = [(float(f.lower()) * (1 - ROUNDING), float(f.upper()) * (1 + ROUNDING), r) for f, r in sizes]
-    spans.sort(key=lambda span: span[0])
-    near: list[tuple[float, Root]] = []
-    for low, high, root in spans:
-        near = [(end, other) for end, other in near if end >= low]
-        if any(overlap(root, other) for _, other in near):
-            return False
-        near.append((high, root))
-    return True
 
 
 NEIGHBOURHOOD = 0.05

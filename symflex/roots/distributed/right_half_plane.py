@@ -197,7 +197,7 @@ def right_tail(
     if len(known) < len(sums):
         return Tail(None, TOO_MANY)
     with precision(BITS):
-        kernels = bound.kernel_values({name: evaluate() for name, evaluate in bound.constants})
+        kernels = bound.kernel_values()
         values = ExponentialValues(kernels, arguments, tuple((terms, 1) for terms in known))
         function = _FunctionFarOut(kernels, values, tuple(scales), table.dispersions)
         if function.is_free_beyond(start):

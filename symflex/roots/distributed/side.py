@@ -23,7 +23,6 @@ from symflex.roots.distributed.proof import (
     WIDER,
     Count,
     Proof,
-    are_apart,
     holes_about,
     is_whole_ring,
     limits,
@@ -38,7 +37,7 @@ from symflex.roots.polynomial_roots import find_polynomial_roots, in_order
 from symflex.roots.precision import precision
 from symflex.roots.problem import problem_of
 from symflex.roots.region import Modes, Region
-from symflex.roots.root import FLOAT_BITS, Root, mirror_images, overlap
+from symflex.roots.root import FLOAT_BITS, Root, are_apart, mirror_images, overlap
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

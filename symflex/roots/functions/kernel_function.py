@@ -357,8 +357,7 @@ class KernelFunction:
 
     def _kernel_values(self, bits: int) -> KernelValues:
         with precision(bits):
-            constants = {name: evaluate() for name, evaluate in self.bound.constants}
-            return self.bound.kernel_values(constants)
+            return self.bound.kernel_values()
 
 
 @dataclass(frozen=True, slots=True)

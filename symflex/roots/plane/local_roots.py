@@ -25,7 +25,7 @@ from flint import acb, acb_poly, arb
 from symflex.algebra.interval_newton import stays_inside
 from symflex.roots.counting.local_series import BITS_A_POINT, REACH, SERIES_BITS, SERIES_POINTS, local_series
 from symflex.roots.precision import bits_for_digits, precision
-from symflex.roots.root import GUARD_BITS, Root
+from symflex.roots.root import GUARD_BITS, Root, are_apart
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -259,7 +259,7 @@ def resolve(
             if root is None:
                 return None
             found.append(root)
-    return found if _are_apart(found) else None
+    return found if are_apart(found) else None
 
 
 def middle_of(function: KernelFunction, centre: acb, radius: arb, bits: int) -> acb | None:
@@ -306,14 +306,6 @@ def _guesses(weights: Sequence[acb], directions: Sequence[acb]) -> list[acb] | N
         return [root.mid() for root in polynomial.roots(tol=ACCURACY)]
     except ValueError:
         return None
-
-
-def _are_apart(roots: Sequence[Root]) -> bool:
-    if not roots:
-        return True
-    with precision(max(root.working_bits() for root in roots)):
-        boxes = [root.enclosure() for root in roots]
-        return not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])
 
 
 MOST_POINTS = 400

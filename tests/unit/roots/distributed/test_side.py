@@ -20,7 +20,6 @@ from symflex.roots.distributed.proof import (
     TOUCHING,
     UNPROVED,
     Proof,
-    are_apart,
     roots_at_zero,
     turns_about_zero,
 )
@@ -28,6 +27,7 @@ from symflex.roots.distributed.side import Side, accumulation_points, groups
 from symflex.roots.engines import GUESS_AND_PROVE, LOSSLESS, SUBDIVISION
 from symflex.roots.plane.search import MODES_LIMIT
 from symflex.roots.problem import polynomial_in_s
+from symflex.roots.root import are_apart
 from tests.unit.roots.distributed_models import DELAY_LOOP, FREE, KELVIN_VOIGT, ROD, bound
 from tests.unit.roots.stand_ins import root, side
 

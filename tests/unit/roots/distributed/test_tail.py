@@ -319,7 +319,7 @@ def test_a_cantilever_that_creeps_ends_where_bending_dies_out():
 def test_beyond_a_radius_a_rational_function_is_a_power_of_s_times_what_is_in_the_ball(radius, eta):
     function = lossy_rod("2*pi", eta)
     with precision(64):
-        kernels = function.kernel_values({name: evaluate() for name, evaluate in function.constants})
+        kernels = function.kernel_values()
         power, ball = _at_infinity(kernels, function.kernels.dispersions[0].characteristic[0], radius)
         assert power == 1
         for size in (1.0001, 1.5, 4, 1000, 1e12):
@@ -337,7 +337,7 @@ def test_a_factor_that_may_vanish_beyond_a_radius_is_no_power_of_s():
     # eta + 1/s is 0 for s = -1/eta.
     function = lossy_rod("1", 10.0)
     with precision(64):
-        kernels = function.kernel_values({name: evaluate() for name, evaluate in function.constants})
+        kernels = function.kernel_values()
         law = function.kernels.dispersions[0].characteristic[0]
         assert _at_infinity(kernels, law, 0.0999) is None
         assert _at_infinity(kernels, law, 0.2) is not None

@@ -35,9 +35,8 @@ class Polynomials:
         sums = [exponential_sum(ring, self.table, arguments, p) for p in make(**names)]
         self.sums = sums
         with precision(120):
-            constants = {name: evaluate() for name, evaluate in source.constants}
             self.values = ExponentialValues(
-                source.kernel_values(constants), arguments, tuple((each, 1) for each in sums)
+                source.kernel_values(), arguments, tuple((each, 1) for each in sums)
             )
 
     def exact(self, s, q, length):

@@ -56,8 +56,7 @@ def test_squares_are_found_with_their_multiplicity(name):
 
 def value(function, part, s):
     with precision(160):
-        constants = {name: evaluate() for name, evaluate in function.constants}
-        kernels = function.kernel_values(constants)
+        kernels = function.kernel_values()
         return kernels.value(part, kernels.at(acb(s)))
 
 
