@@ -151,10 +151,7 @@ class _Walk:
         count = max(1, ceil(abs(there[0] - here[0]) / length))
         between = [here[0] + (there[0] - here[0]) * i / count for i in range(1, count)]
         points = [here, *self._clear(between), there]
-        return sum(self._step(a, b) for a, b in pairwise(points))
-
-    def _step(self, here: Point, there: Point) -> float:
-        return self._divided([here, there], SMALLEST_STEP, self._around)
+        return sum(self._divided(ends, SMALLEST_STEP, self._around) for ends in pairwise(points))
 
     def _divided(
         self, points: Sequence[Point], shortest: float, past: Callable[[Point, Point], float]
@@ -458,9 +455,7 @@ def adaptive_grid(
 
     SF227 when the band is empty or not positive, ValueError for fewer than 2 points.
     """
-    if not 0 < low_hz < high_hz < float("inf"):
-        message = f"a band runs from a positive to a higher frequency, not from {low_hz:g} to {high_hz:g} Hz"
-        raise UsageError(Diagnostic("SF227", message))
+    check_band(low_hz, high_hz)
     if points < 2:  # noqa: PLR2004 (the two ends)
         message = f"a grid has at least 2 points, not {points}"
         raise ValueError(message)
@@ -486,6 +481,13 @@ def adaptive_grid(
         # A hair less than the gap, so that the points placed at the gap itself survive rounding.
         grid = grid[np.abs(grid - centre) > 0.99 * AXIS_GAP * centre]
     return _followed(bound, grid) if found.certificate.is_exceeded else grid
+
+
+def check_band(low_hz: float, high_hz: float) -> None:
+    """Raise SF227 for a band that is empty or not positive."""
+    if not 0 < low_hz < high_hz < inf:
+        message = f"a band runs from a positive to a higher frequency, not from {low_hz:g} to {high_hz:g} Hz"
+        raise UsageError(Diagnostic("SF227", message))
 
 
 def _followed(bound: BoundTransferFunction, grid: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:

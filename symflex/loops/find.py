@@ -452,7 +452,8 @@ def allowed_bandwidth(
     Intervals ascend, and negative gains may be among them; gains were examined up to ``limit``, None for all.
     ``loop_gain`` is that of a loop closed once.
     """
-    begin = next((i for i in intervals if _is_above(i.high) and not (i.low is not None and i.low > 0)), None)
+    about_zero = (i for i in intervals if (i.high is None or i.high > 0) and (i.low is None or not i.low > 0))
+    begin = next(about_zero, None)
     if begin is None or not begin.poles.is_stable:
         return None
     if begin.high is None:
@@ -468,7 +469,3 @@ def allowed_bandwidth(
         angles = [(-ratio * acb(size)).arg() for _, ratio in found]
     worst = min(angles, key=lambda angle: abs(float(angle.mid())))
     return AllowedBandwidth(gain, found[0][0], worst, is_limited)
-
-
-def _is_above(end: arb | None) -> bool:
-    return end is None or bool(end > 0)

@@ -28,7 +28,7 @@ from symflex.transfer.balls import Value, expansion
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from symflex.model import ExactValue, ModelParameter
+    from symflex.model import ModelParameter
     from symflex.transfer.enclose_kernels import KernelValues
 
 
@@ -101,7 +101,8 @@ def characteristic_loop(
     for factor, exponent, is_hidden in factors:
         pieces = bind_polynomials(tf, bound, tuple(tf.ratio.ring.coefficients(factor, position)))
         found.append(GainPolynomial(pieces, exponent, is_hidden))
-    return Loop(bound, gain, _rational(nominal), tuple(found))
+    rational = None if nominal is None or nominal.pi_power else nominal.rational
+    return Loop(bound, gain, rational, tuple(found))
 
 
 def _depends(tf: TransferFunction, position: int) -> bool:
@@ -120,10 +121,6 @@ def _bound(tf: TransferFunction, gain: ModelParameter, given: dict[str, Given]) 
             if error.diagnostics[0].code != "SF231":
                 raise
     return bind(tf, candidates[-1])
-
-
-def _rational(value: ExactValue | None) -> Fraction | None:
-    return None if value is None or value.pi_power else value.rational
 
 
 def pick_gain(parameters: Sequence[ModelParameter], name: str) -> ModelParameter:

@@ -212,7 +212,7 @@ def run_sweep(
         hint = "there may be too little memory; with -o, the same command goes on where this one stopped"
         message = f"a worker ended before its work: {error}"
         raise BudgetError(Diagnostic("SF508", message, None, hint)) from None
-    rows = _joined([done[i] for i in chunks])
+    rows = {name: _stacked([done[i][name] for i in chunks]) for name in done[0]}
     return assembled(task, design, rows, attributes or {}, _between(pickled, design))
 
 
@@ -262,12 +262,8 @@ def _between(pickled: bytes, design: Design) -> Between:
     return solve
 
 
-def _joined(chunks: Sequence[Rows]) -> Rows:
-    """Return the rows of all chunks; those with fewer roots are filled up."""
-    return {name: _stacked([chunk[name] for chunk in chunks]) for name in chunks[0]}
-
-
 def _stacked(arrays: Sequence[Array]) -> Array:
+    """Return the arrays of all chunks as one; those with fewer roots are filled up."""
     if arrays[0].ndim == 1:
         return np.concatenate(arrays)
     width = max(array.shape[1] for array in arrays)

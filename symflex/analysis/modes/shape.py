@@ -262,7 +262,7 @@ def normalised(shape: EnclosedModeShape, digits: int) -> EnclosedModeShape | Non
     largest = max((p.size for group in groups for p in group), default=0.0)
     for group in groups:
         reference = _largest(group)
-        if reference is None or reference.size + _radius(reference) < largest * 10.0**-digits:
+        if reference is None or reference.size + float(reference.value.rad()) < largest * 10.0**-digits:
             continue
         if reference.value.contains(0):
             return None
@@ -332,7 +332,7 @@ def _scaled(shape: EnclosedModeShape, reference: _PlacedAmplitude) -> EnclosedMo
         with precision(part.bits):
             x = part.start + part.length * reference.share.numerator / reference.share.denominator
         name = f"{part.name}({float(x.mid()):.6g})"
-    with precision(_bits(reference)):
+    with precision(max(64, reference.value.bits()) + 32):
         factor = 1 / reference.value
         motions = tuple(
             replace(m, value=acb(1) if m.name == name and m.variable.kind == "node" else m.value * factor)
@@ -340,11 +340,3 @@ def _scaled(shape: EnclosedModeShape, reference: _PlacedAmplitude) -> EnclosedMo
         )
         distributed = tuple(p.scaled(factor) for p in shape.distributed)
     return replace(shape, motions=motions, distributed=distributed, reference=name)
-
-
-def _bits(reference: _PlacedAmplitude) -> int:
-    return max(64, reference.value.bits()) + 32
-
-
-def _radius(place: _PlacedAmplitude) -> float:
-    return float(place.value.rad())

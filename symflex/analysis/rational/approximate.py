@@ -23,7 +23,7 @@ from symflex.analysis.rational.approximation import (
 )
 from symflex.analysis.rational.laurent import about_zero, expand_at_zero, residues_at
 from symflex.analysis.rational.toolboxes import check_form
-from symflex.analysis.response import default_band
+from symflex.analysis.response import check_band, default_band
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
 from symflex.roots import Band, Everything, Modes, PoleZeroMap, Position, Root, precision
 from symflex.roots.functions.simplified import without_lengths_of_zero
@@ -89,11 +89,6 @@ def truncate(bound: BoundTransferFunction, modes: int, digits: int) -> KeptRoots
     excess = max(_count(zeros) - _count(poles), 0) if is_exact else 0
     known = replace(found, zeros=above)
     return KeptRoots(len(_modes_of(poles)), poles, zeros, known, omitted, is_exact, excess)
-
-
-def modes_up_to(bound: BoundTransferFunction, high_hz: float, digits: int) -> int:
-    """Return how many modes have natural frequencies up to a limit [Hz]."""
-    return len(_modes_of(locate(bound, Band(Fraction(0), Fraction(high_hz)), digits).poles))
 
 
 def _count(roots: Sequence[Root]) -> int:
@@ -177,9 +172,8 @@ def approximate(
     0.0024
     """
     check_form(form, tuple(FORMS))
-    if band is not None and not 0 < band[0] < band[1] < float("inf"):
-        message = f"a band runs from a positive to a higher frequency, not from {band[0]:g} to {band[1]:g} Hz"
-        raise UsageError(Diagnostic("SF227", message))
+    if band is not None:
+        check_band(*band)
     bound = without_lengths_of_zero(bound)
     if bound.ratio.is_zero:
         message = f"{bound.name} is identically zero"
@@ -209,7 +203,7 @@ def approximate(
 
 def _default_modes(bound: BoundTransferFunction, band: tuple[float, float] | None) -> int:
     if band is not None:
-        return modes_up_to(bound, band[1], DIGITS)
+        return len(_modes_of(locate(bound, Band(Fraction(0), Fraction(band[1])), DIGITS).poles))
     return bound.source.model.analysis.modes or DEFAULT_MODES
 
 

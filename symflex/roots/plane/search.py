@@ -188,7 +188,7 @@ class RootSearch:
 
     def ring(self, low: float, high: float, right: float = 0.0, left: float = pi) -> Found:
         """Return the roots with ln(abs(s)) and arg(s) in the given limits, and perhaps a few beyond."""
-        cell = self._widened(Cell(low, high, right, min(left, self.left)))
+        cell = Cell(low - 1e-3, high + 1.1e-3, right - MARGIN, min(left, self.left) + MARGIN)
         for nudge in NUDGES:
             moved = Cell(cell.low - nudge / 3, cell.high + nudge / 2, cell.right - nudge, cell.left + nudge)
             try:
@@ -196,9 +196,6 @@ class RootSearch:
             except RootOnPathError:
                 continue
         return Found((), 1)
-
-    def _widened(self, cell: Cell) -> Cell:
-        return Cell(cell.low - 1e-3, cell.high + 1.1e-3, cell.right - MARGIN, cell.left + MARGIN)
 
     def _ring(self, low: float, high: float) -> tuple[float, Found]:
         """Return the roots in a whole ring, whose outer radius may move to pass between roots."""
