@@ -4,7 +4,7 @@
 - ``export``: the driver; programs are chosen, and handed to a language as the contents of a file
 - ``infix``, ``module_text``: what languages share
 - ``python``, ``c``, ``julia``, ``matlab``: a language each
-- ``sources``, ``source_parts``: the functions that generated code calls, in files of its language
+- ``sources``: the functions that generated code calls, in files of its language
 - ``state_space``, ``latex``: what is made otherwise, state equations and LaTeX documents
 - ``exporters``: the registry
 """

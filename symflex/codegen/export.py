@@ -2,12 +2,21 @@
 
 Input: the transfer functions of a model.
 Output: an :class:`Export`. For numeric code a program is chosen for each function and measured against ball
-arithmetic; what a language prints is made of these :class:`Contents` alone.
+arithmetic; what a language prints is made of these :class:`Contents` alone, and of the functions that
+generated code calls. These stand in files of the language, ``codegen/sources``, cut into parts by lines
+that say what each defines; code gets the parts it calls and those that they call, in the order of the file::
+
+    #: _characteristic_roots _refined
+    function _characteristic_roots(c)
+    ...
 """
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field, replace
+from functools import cache
+from importlib import resources
 from math import isfinite
 from typing import TYPE_CHECKING, Protocol
 
@@ -15,13 +24,14 @@ from symflex.codegen.module_text import identifiers
 from symflex.codegen.program.verify import SAMPLES, choose_programs
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
     from fractions import Fraction
 
     from symflex.codegen.program.nodes import Piecewise
     from symflex.codegen.program.verify import Verification
     from symflex.model import Model
     from symflex.transfer import AnyTransferFunction
+
 
 ACCURACY = 1e-13
 """Relative error of exported code above which the user is warned."""
@@ -134,14 +144,8 @@ class Language:
         that cannot be the language's are altered; text of the model stands in it only as inert strings and
         comments.
 
-        Raises
-        ------
-        BudgetError
-            SF503 when a function's text would be too long.
-        ModelError
-            SF233 when a number does not fit in double precision.
-        UsageError
-            SF902 when ``stem`` cannot be the name of a companion.
+        Raises BudgetError: SF503 when a function's text would be too long; ModelError: SF233 when a number
+        does not fit in double precision; UsageError: SF902 when ``stem`` cannot be the name of a companion.
 
         Examples
         --------
@@ -199,3 +203,54 @@ def _shortfall(verification: Verification) -> str:
     if not isfinite(error):
         return f"{name} overflows somewhere over {low:g} Hz to {high:g} Hz"
     return f"{name} is accurate to {error:.1e} only, over {low:g} Hz to {high:g} Hz"
+
+
+_MARK = re.compile(r"^(?:#|%|//): (.+)\n", re.MULTILINE)
+_CALL = re.compile(r"(\w+)\(")
+
+
+@cache
+def parts_of(file: str, dialect: str = "") -> Mapping[tuple[str, ...], str]:
+    """Return the parts of a file in ``codegen/sources`` by the names that each defines.
+
+    Those of a ``dialect``, another file, take the place of those that define one of the same names.
+
+    Examples
+    --------
+    >>> [names for names in parts_of("matlab.m") if "modal_value" in names]
+    [('mode_values', 'modal_value')]
+    """
+    source = resources.files("symflex.codegen").joinpath("sources", file).read_text(encoding="utf-8")
+    _, *cut = _MARK.split(source)
+    parts = {
+        tuple(names.split()): f"{text.strip()}\n" for names, text in zip(cut[::2], cut[1::2], strict=True)
+    }
+    if not dialect:
+        return parts
+    found: dict[tuple[str, ...], str] = {}
+    others = parts_of(dialect)
+    for names, text in parts.items():
+        own = next((other for other in others if not set(other).isdisjoint(names)), names)
+        found.setdefault(own, others.get(own, text))
+    return found
+
+
+def called_parts(code: str, parts: Mapping[tuple[str, ...], str], always: Iterable[str] = ()) -> list[str]:
+    """Return the parts that some code needs, in order, and those that ``always`` are.
+
+    Text of a model, which might look like a call, is no part of the code.
+
+    Examples
+    --------
+    >>> called_parts("f(x)", {("a",): "def a(): pass", ("f", "g"): "def f(): a()", ("h",): ""})
+    ['def a(): pass', 'def f(): a()']
+    """
+    home = {name: names for names in parts for name in names}
+    needed: set[tuple[str, ...]] = set()
+    pending = [*always, *_CALL.findall(code)]
+    while pending:
+        names = home.get(pending.pop())
+        if names is not None and names not in needed:
+            needed.add(names)
+            pending += _CALL.findall(parts[names])
+    return [text for names, text in parts.items() if names in needed]

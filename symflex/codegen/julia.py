@@ -10,7 +10,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
-from symflex.codegen.export import Export, Language
+from symflex.codegen.export import Export, Language, called_parts, parts_of
 from symflex.codegen.infix import InfixPrinter, NumberFunctions, in_lines
 from symflex.codegen.module_text import (
     COST,
@@ -23,7 +23,6 @@ from symflex.codegen.module_text import (
     origin_lines,
     wrapped,
 )
-from symflex.codegen.source_parts import called_parts, parts_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

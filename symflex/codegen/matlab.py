@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar, Final
 
 from symflex.algebra import LAPLACE, Factored
-from symflex.codegen.export import Export, Language
+from symflex.codegen.export import Export, Language, called_parts, parts_of
 from symflex.codegen.infix import InfixPrinter, PrivateFunctions, in_lines
 from symflex.codegen.module_text import (
     COST,
@@ -26,7 +26,6 @@ from symflex.codegen.module_text import (
     origin_lines,
     wrapped,
 )
-from symflex.codegen.source_parts import called_parts, parts_of
 from symflex.expressions import Name, format_expression, number, substitute, sum_of
 from symflex.print.forms.arrange import Arranger
 from symflex.print.forms.notation import constant_symbols, plain_printer

@@ -116,10 +116,7 @@ def value_as_written(parameter: ModelParameter) -> str:
 def default_value(parameter: ModelParameter) -> str:
     """Return the double nearest to a parameter's value as text, empty without a value.
 
-    Raises
-    ------
-    ModelError
-        SF233 when it does not fit in double precision.
+    Raises ModelError: SF233 when it does not fit in double precision.
     """
     value = parameter.value
     return "" if value is None else repr(nearest_double(value.rational, value.pi_power))

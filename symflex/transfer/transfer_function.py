@@ -106,10 +106,7 @@ class TransferFunction:
     def ratio(self) -> Factored:
         """Numerator over denominator, expanded in s and the parameters.
 
-        Raises
-        ------
-        BudgetError
-            SF501 when it would be too large.
+        Raises BudgetError: SF501 when it would be too large.
         """
         if self.reduced is not None:
             return self.reduced

@@ -16,16 +16,20 @@ from symflex.codegen.c.body import (
     AXIS,
     AXIS_LANE,
     LANE,
+    LANE_FUNCTIONS,
     POSITIVE,
     STEP,
     WIDTH,
     Body,
+    Kind,
     S,
+    Term,
     choose,
+    complex_term,
     conditions_of,
     limit_text,
+    quotient,
 )
-from symflex.codegen.c.expression import LANE_FUNCTIONS, Kind, Term, complex_term, quotient
 from symflex.codegen.program import nodes as tree
 
 if TYPE_CHECKING:

@@ -9,10 +9,9 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from symflex.codegen.c.body import KEYWORDS, PARTS, RESERVED, WIDTH
-from symflex.codegen.c.expression import LANE_FUNCTIONS
+from symflex.codegen.c.body import KEYWORDS, LANE_FUNCTIONS, PARTS, RESERVED, WIDTH
 from symflex.codegen.c.functions import Functions
-from symflex.codegen.export import Export, Language
+from symflex.codegen.export import Export, Language, called_parts
 from symflex.codegen.module_text import (
     COST,
     ITERATED,
@@ -24,7 +23,6 @@ from symflex.codegen.module_text import (
     value_as_written,
     wrapped,
 )
-from symflex.codegen.source_parts import called_parts
 from symflex.errors import Diagnostic, UsageError
 
 if TYPE_CHECKING:
@@ -41,10 +39,7 @@ def c_files(contents: Contents) -> Export:
     All public names begin with the file's. Where there can be no header, they begin with ``model``, and
     everything is one file.
 
-    Raises
-    ------
-    UsageError
-        SF902 when the file's name cannot stand in an include directive.
+    Raises UsageError: SF902 when the file's name cannot stand in an include directive.
     """
     name = None if contents.is_alone else contents.stem
     if name is not None and not _FILE_NAME.fullmatch(name):

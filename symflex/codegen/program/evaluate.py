@@ -38,10 +38,7 @@ NUMPY_FUNCTIONS = {
 def nearest_double(value: Fraction, pi_power: int = 0) -> float:
     """Return the double nearest to ``value * pi**pi_power``.
 
-    Raises
-    ------
-    ModelError
-        SF233 when it is too large or too small for double precision.
+    Raises ModelError: SF233 when it is too large or too small for double precision.
 
     Examples
     --------

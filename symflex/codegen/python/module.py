@@ -15,7 +15,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from symflex.algebra.modal_sum import modal_amplitudes, mode_values
-from symflex.codegen.export import Export, Language
+from symflex.codegen.export import Export, Language, called_parts, parts_of
 from symflex.codegen.module_text import (
     COST,
     ITERATED,
@@ -31,7 +31,6 @@ from symflex.codegen.module_text import (
 from symflex.codegen.program import evaluate
 from symflex.codegen.program.evaluate import nearest_double
 from symflex.codegen.python.pieces import WIDTH, BlockText, TracedText, statement
-from symflex.codegen.source_parts import called_parts, parts_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
@@ -150,10 +149,7 @@ Accuracy holds in double precision, which jax has to be told to use before anyth
 def private_copy(function: Callable[..., object]) -> str:
     """Return the text of a run-time function of this package as a private one, without annotations.
 
-    Raises
-    ------
-    ValueError
-        When its text has no signature with a result.
+    Raises ValueError: When its text has no signature with a result.
     """
     text = inspect.getsource(function)
     signature = re.compile(r"def (\w+)\((.*?)\) -> .*?:(?:  # noqa[^\n]*)?\n", re.DOTALL)

@@ -15,7 +15,7 @@ import pytest
 from flint import acb
 
 from symflex import pipeline
-from symflex.codegen.c.expression import Kind, Term, complex_term, difference, product, quotient, total
+from symflex.codegen.c.body import Kind, Term, complex_term, difference, product, quotient, total
 from symflex.codegen.c.module import C99, helpers
 from symflex.codegen.exporters import EXPORTERS
 from symflex.codegen.program import verify

@@ -11,8 +11,8 @@ from symflex import pipeline
 from symflex.codegen.program.build import build_program
 from symflex.codegen.program.distributed import build_piecewise
 from symflex.codegen.program.evaluate import evaluate, numbers_of_pieces, value_of_piece
-from symflex.codegen.program.everywhere import cases_of, in_pieces, places_of
 from symflex.codegen.program.verify import doubles
+from symflex.codegen.python.pieces import cases_of, in_pieces, places_of
 from tests.unit.codegen.exportable import DELAY
 from tests.unit.codegen.test_numpy_distributed import SPECS, specification
 
