@@ -42,7 +42,8 @@ def option(default: T, *flags: str, **said: object) -> T:
     """Return a field: its default, its names on the command line (none for an argument), what is said of it.
 
     That is ``help``, ``metavar``, ``nargs`` and other words of :func:`click.option`, or in place of its
-    ``type``: ``least`` and ``most``, ``choices``, ``is_path``, ``is_folder`` (one that exists).
+    ``type``: ``least`` and ``most``, ``choices``, ``is_path``, ``is_folder`` (one that exists). What is False
+    by default is a switch.
     """
     found: Any = field(default=default, metadata={"flags": flags, **said})
     return found  # type: ignore[no-any-return]
@@ -50,7 +51,7 @@ def option(default: T, *flags: str, **said: object) -> T:
 
 ONE_TF: Final = {"metavar": "OUT/IN", "help": "The transfer function; the first one by default."}
 SOME_TFS: Final = {"metavar": "OUT/IN", "multiple": True, "help": "Only this transfer function; repeatable."}
-JSON: Final = {"is_flag": True, "help": "Print the result as JSON."}
+JSON: Final = {"help": "Print the result as JSON."}
 OUTSIDE: Final = {
     "multiple": True,
     "is_folder": True,
@@ -68,7 +69,7 @@ class CheckOptions:
     """Of ``symflex check``."""
 
     as_json: bool = option(False, "--json", **JSON)
-    strict: bool = option(False, "--strict", is_flag=True, help="Exit with code 3 where there is a warning.")
+    strict: bool = option(False, "--strict", help="Exit with code 3 where there is a warning.")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -99,7 +100,7 @@ class DeriveOptions:
         help="Quotients of polynomials, or straight-line programs of named sub-impedances; auto takes the "
         "latter where expansion would explode, and says so.",
     )
-    as_json: bool = option(False, "--json", is_flag=True, help="The same as --format json.")
+    as_json: bool = option(False, "--json", help="The same as --format json.")
     digits: int = option(6, "--digits", least=1, most=1000, **SHOWN, help="Digits of zpk.")
 
 
@@ -115,7 +116,7 @@ class ExportOptions:
     width: str | None = option(
         None, "--width", metavar=WIDTHS, help="latex: width of the column; a4 (170 mm) by default."
     )
-    no_figures: bool = option(False, "--no-figures", is_flag=True, help="latex: a folder without figures.")
+    no_figures: bool = option(False, "--no-figures", help="latex: a folder without figures.")
     representation: str = option(
         "auto",
         "--representation",
@@ -126,10 +127,8 @@ class ExportOptions:
     output: str | None = option(
         None, "-o", "--output", is_path=True, help="File to write; standard output by default."
     )
-    is_minimal: bool = option(False, "--minimal", is_flag=True, help="state-space: without hidden states.")
-    strict: bool = option(
-        False, "--strict", is_flag=True, help="Exit with 4 when the verified accuracy falls short."
-    )
+    is_minimal: bool = option(False, "--minimal", help="state-space: without hidden states.")
+    strict: bool = option(False, "--strict", help="Exit with 4 when the verified accuracy falls short.")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -157,9 +156,7 @@ class RootsOptions:
     digits: int | None = option(
         None, "--digits", least=1, most=10_000, help="Correct significant digits.  [default: 15]"
     )
-    explain: bool = option(
-        False, "--explain", is_flag=True, help="Say which constrained system's poles the zeros are."
-    )
+    explain: bool = option(False, "--explain", help="Say which constrained system's poles the zeros are.")
     sensitivity: Sequence[str] = option(
         (),
         "--sensitivity",
@@ -170,7 +167,7 @@ class RootsOptions:
         help="How roots move with a parameter, all of them when none is named; may be repeated.",
     )
     strict: bool = option(
-        False, "--strict", is_flag=True, help="Exit with code 4 also when a part of the region is left out."
+        False, "--strict", help="Exit with code 4 also when a part of the region is left out."
     )
     as_json: bool = option(False, "--json", **JSON)
 
@@ -225,16 +222,14 @@ class SweepOptions:
     output: str | Path | None = option(
         None, "-o", "--output", is_path=True, help="File to write: .nc, .npz, .csv or .parquet."
     )
-    fresh: bool = option(
-        False, "--fresh", is_flag=True, help="Discard what an earlier run kept in FILE.part."
-    )
+    fresh: bool = option(False, "--fresh", help="Discard what an earlier run kept in FILE.part.")
     workers: int | None = option(
         None, "--workers", least=1, most=1024, help="Processes.  [default: one per processor]"
     )
     scheduler: str | None = option(
         None, "--scheduler", metavar="tcp://HOST:PORT", help="Work on a dask.distributed cluster."
     )
-    as_json: bool = option(False, "--json", is_flag=True, help="Print a summary as JSON.")
+    as_json: bool = option(False, "--json", help="Print a summary as JSON.")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -312,9 +307,7 @@ class AuditOptions:
     tfs: Sequence[str] = option(
         (), "--tf", multiple=True, metavar="OUT/IN", help="Only this formula; repeatable."
     )
-    strict: bool = option(
-        False, "--strict", is_flag=True, help="Exit with code 4 unless every formula is proved equal."
-    )
+    strict: bool = option(False, "--strict", help="Exit with code 4 unless every formula is proved equal.")
     as_json: bool = option(False, "--json", **JSON)
 
 
@@ -346,14 +339,10 @@ class FitOptions:
     band: tuple[float, float] | None = option(
         None, "--band", type=float, **TWO, help="Only the lines between these frequencies [Hz]."
     )
-    is_gain_free: bool = option(False, "--gain", is_flag=True, help="Fit a gain besides the base too.")
-    is_lag_free: bool = option(False, "--lag", is_flag=True, help="Fit a lag of the sensor, 1/(1 + T s).")
-    is_lag_signed: bool = option(
-        False, "--signed-lag", is_flag=True, help="The same, and it may be negative, a lead."
-    )
-    is_delay_free: bool = option(
-        False, "--delay", is_flag=True, help="Fit a dead time, exp(-T s), T not negative."
-    )
+    is_gain_free: bool = option(False, "--gain", help="Fit a gain besides the base too.")
+    is_lag_free: bool = option(False, "--lag", help="Fit a lag of the sensor, 1/(1 + T s).")
+    is_lag_signed: bool = option(False, "--signed-lag", help="The same, and it may be negative, a lead.")
+    is_delay_free: bool = option(False, "--delay", help="Fit a dead time, exp(-T s), T not negative.")
     slope: int | None = option(
         None, "--slope", least=-6, most=6, help="Without --base: the power of s; chosen if absent."
     )
@@ -375,7 +364,7 @@ class FitOptions:
     output: str | None = option(None, "-o", "--output", is_path=True, help="Specification to write.")
     figure: str | None = option(None, "--plot", is_path=True, help="Figure to write: .pdf, .svg or .png.")
     strict: bool = option(
-        False, "--strict", is_flag=True, help="A fit that is poor is exit code 4, and nothing is written."
+        False, "--strict", help="A fit that is poor is exit code 4, and nothing is written."
     )
     as_json: bool = option(False, "--json", **JSON)
 

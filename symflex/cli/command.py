@@ -107,6 +107,8 @@ def with_parameters(options: type, run: Callable[..., int]) -> Callable[..., int
 def _parameter(one: Field[Any]) -> Callable[[Callable[..., int]], Callable[..., int]]:
     said = dict(one.metadata)
     flags = said.pop("flags")
+    if one.default is False:
+        said["is_flag"] = True
     if "choices" in said:
         said["type"] = click.Choice(said.pop("choices"))
     elif "least" in said:

@@ -6,7 +6,7 @@ import os
 import sys
 from math import isnan
 from time import monotonic
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, TextIO
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -19,19 +19,6 @@ COLUMNS = 79
 BAR = 20
 
 
-class Screen(Protocol):
-    """Where a bar is drawn."""
-
-    def write(self, text: str, /) -> object:
-        """Show characters."""
-
-    def flush(self) -> object:
-        """Show them now."""
-
-    def isatty(self) -> bool:
-        """Tell whether someone is looking."""
-
-
 class ProgressBar:
     r"""One line that shows how far a computation is, and erases itself.
 
@@ -40,7 +27,7 @@ class ProgressBar:
 
     Parameters
     ----------
-    stream : Screen, optional
+    stream : file, optional
         stderr by default.
     clock : callable
         Returns the time [s].
@@ -58,7 +45,7 @@ class ProgressBar:
     '\r[#####---------------]  25 %  12 of 48 roots'
     """
 
-    def __init__(self, stream: Screen | None = None, clock: Callable[[], float] = monotonic) -> None:
+    def __init__(self, stream: TextIO | None = None, clock: Callable[[], float] = monotonic) -> None:
         self._stream = sys.stderr if stream is None else stream
         self._clock = clock
         self._is_shown = (

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+from contextlib import suppress
 from dataclasses import replace
 from datetime import UTC, date, datetime
 from pathlib import Path
@@ -56,14 +57,11 @@ def _date(given: str | None) -> str:
     if given == "none":
         return ""
     if given is not None:
-        try:
-            return (
-                date.fromisoformat(given).isoformat()
-                if re.fullmatch(r"\d{4}-\d\d-\d\d", given)
-                else _refuse(given)
-            )
-        except ValueError:
-            return _refuse(given)
+        with suppress(ValueError):
+            if re.fullmatch(r"\d{4}-\d\d-\d\d", given):
+                return date.fromisoformat(given).isoformat()
+        message = f"--date takes a day such as 1988-12-31, or none, found '{given[:40]}'"
+        raise UsageError(Diagnostic("SF902", message))
     epoch = os.environ.get(EPOCH_VARIABLE, "")
     if epoch:
         try:
@@ -72,9 +70,3 @@ def _date(given: str | None) -> str:
             message = f"{EPOCH_VARIABLE} is '{epoch[:40]}', not a number of seconds since 1970"
             raise UsageError(Diagnostic("SF902", message)) from None
     return datetime.now(UTC).date().isoformat()
-
-
-def _refuse(given: str) -> str:
-    raise UsageError(
-        Diagnostic("SF902", f"--date takes a day such as 1988-12-31, or none, found '{given[:40]}'")
-    )

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Final
 from symflex.errors import Diagnostic, SymflexError, UsageError
 from symflex.files.write import check_folder, write_atomically
 from symflex.report.article import report_article
+from symflex.report.document import counted
 from symflex.report.page import report_page
 from symflex.report.report import (
     compose,
@@ -58,8 +59,8 @@ def written(
     named = name_specifications(find_specifications(paths, folder, outside))
     publications = find_claims(named.values(), outside)
     measured, left_out = find_measurements(paths, folder, outside)
-    data = f", {len(measured)} measured response{'s' if len(measured) > 1 else ''}" if measured else ""
-    said(f"{len(named)} model{'s' if len(named) > 1 else ''}{data}")
+    data = f", {counted(len(measured), 'measured response')}" if measured else ""
+    said(f"{counted(len(named), 'model')}{data}")
     chapters = write_chapters(named, given.jobs or 0, progress, measured, outside)
     report = compose(chapters, given.day or "", publications)
     published = publish(report, folder, progress, pdf=given.pdf)

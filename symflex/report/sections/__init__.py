@@ -1,4 +1,4 @@
-"""The sections of a model's chapter. A new one is a module here and a line in :data:`SECTIONS`."""
+"""The sections of a model's chapter. A new one is a function here and a line in :data:`SECTIONS`."""
 
 from symflex.report.document import SectionMaker
 from symflex.report.sections.files import data_section, export_section, figure_section

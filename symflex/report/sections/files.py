@@ -1,7 +1,4 @@
-"""Figures that the specification asks for, and measured responses with the model over them.
-
-Code for other programs, and the data behind the page.
-"""
+"""Figures that are asked for, measured responses with the model over them, code, and the data of a page."""
 
 from __future__ import annotations
 

@@ -1,9 +1,4 @@
-"""The model as it was given: a table of its parameters, and the text that all of the above follows from.
-
-The transfer functions of a model in closed form.
-
-What a publication printed, against what is derived.
-"""
+"""The model as it was given, its transfer functions in closed form, and what a publication printed."""
 
 from __future__ import annotations
 
@@ -30,7 +25,6 @@ from symflex.print.mathml import (
     MathmlWriter,
     MathRow,
     label_mathml,
-    mathml_expression,
     ratio_mathml,
     transfer_function_mathml,
 )
@@ -109,19 +103,17 @@ def equation_section(study: Study) -> ChapterPart:
             )
         )
     for i, (tf, form) in enumerate(zip(study.tfs, study.forms, strict=True)):
-        title = Mathematics(ratio_line(tf), ratio_latex(tf))
-        blocks.append(
-            Section(tf.name, _of(tf, form, f"eq:{study.stem}:{i + 1}"), f"{study.stem}-tf-{i + 1}", title)
-        )
+        shown = _of(tf, form, f"eq:{study.stem}:{i + 1}")
+        blocks.append(Section(tf.name, shown, f"{study.stem}-tf-{i + 1}", ratio(tf)))
     document = derive_document(list(zip(study.tfs, study.forms, strict=True)))
     data = json.dumps(document, indent=1, ensure_ascii=True).encode()
     return ChapterPart("Transfer functions", tuple(blocks), {f"data/{study.stem}_derive.json": data})
 
 
-def ratio_line(tf: TransferFunction) -> str:
+def ratio(tf: TransferFunction) -> Mathematics:
     """Return output over input in one line."""
     above, below = ratio_mathml(tf).removeprefix("<mfrac>").removesuffix("</mfrac>").split("</mrow><mrow>", 1)
-    return f"{above}</mrow><mo>/</mo><mrow>{below}"
+    return Mathematics(f"{above}</mrow><mo>/</mo><mrow>{below}", ratio_latex(tf))
 
 
 def _of(tf: TransferFunction, form: PrintedForm, label: str) -> tuple[Block, ...]:
@@ -173,7 +165,7 @@ def audit_section(study: Study) -> ChapterPart | None:
             audit.tf.name,
             _audited(audit),
             f"{study.stem}-printed-{i + 1}",
-            Mathematics(ratio_line(audit.tf), ratio_latex(audit.tf)),
+            ratio(audit.tf),
         )
         for i, audit in enumerate(study.audits)
     )
@@ -205,8 +197,9 @@ def _audited(audit: Audit) -> tuple[Block, ...]:
         lines = audit.correction.lines if audit.correction.lines != where else ()
         blocks.append(_formula(audit, audit.correction.expression, lines, f"{audit.tf.name}, corrected"))
     if audit.changes:
+        labels = _labels(audit)
         rows = tuple(
-            ((c.place,), (_mathematics(audit, c.printed),), (_mathematics(audit, c.derived),))
+            ((c.place,), (labelled(c.printed, labels),), (labelled(c.derived, labels),))
             for c in audit.changes
         )
         blocks.append(Table(columns("Where", "Printed", "Right"), rows, "What differs"))
@@ -237,13 +230,6 @@ def _audited(audit: Audit) -> tuple[Block, ...]:
 def _labels(audit: Audit) -> dict[str, str]:
     labels = model_labels(audit.tf.model)
     return labels_of([(name, "") for name, _ in audit.formula.lines if name not in labels], labels)
-
-
-def _mathematics(audit: Audit, expression: Expression) -> Mathematics:
-    from symflex.print.latex import latex_expression
-
-    labels = _labels(audit)
-    return Mathematics(mathml_expression(expression, labels), latex_expression(expression, labels))
 
 
 def _formula(

@@ -1,7 +1,4 @@
-"""Poles and zeros, with what is proved about them.
-
-Stable gains of feedback loops, with what is proved about them, and dynamic colocation.
-"""
+"""Poles and zeros, stable gains of loops and dynamic colocation, with what is proved about them."""
 
 from __future__ import annotations
 
@@ -13,13 +10,12 @@ from symflex.analysis.explanation import explanation_paragraphs
 from symflex.errors import SymflexError, UncertifiedError
 from symflex.loops import degrees
 from symflex.loops.stability_map import bandwidth_text, nominal_text
-from symflex.print.latex import ratio_latex, root_table
+from symflex.print.latex import root_table
 from symflex.print.roots import KINDS, PAGE_COLUMNS, one_of_each_pair, region_text, roots_of
 from symflex.report.document import (
     Badge,
     ChapterPart,
     Code,
-    Mathematics,
     Notice,
     Section,
     Table,
@@ -28,7 +24,7 @@ from symflex.report.document import (
     exponents,
     text,
 )
-from symflex.report.sections.formulas import ratio_line
+from symflex.report.sections.formulas import ratio
 from symflex.report.study import attempt, said
 
 if TYPE_CHECKING:
@@ -56,9 +52,8 @@ def root_section(study: Study) -> ChapterPart:
     warnings = []
     for i, found in enumerate(study.maps):
         tf = tfs.get(found.tf)
-        title = Mathematics(ratio_line(tf), ratio_latex(tf)) if tf else None
         content = _of(found, explained.get(found.tf))
-        blocks.append(Section(found.tf, content, f"{study.stem}-roots-{i + 1}", title))
+        blocks.append(Section(found.tf, content, f"{study.stem}-roots-{i + 1}", ratio(tf) if tf else None))
         if not found.certificate.certified:
             warnings.append(f"{study.stem}: poles and zeros of {found.tf} are not certified")
     code = 0
