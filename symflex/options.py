@@ -147,11 +147,7 @@ class RootsOptions:
         None, "--band", **TWO, help='Only natural frequencies in a band: 0.1 1000, "1 kHz".'
     )
     region: tuple[Stated, Stated, Stated, Stated] | None = option(
-        None,
-        "--region",
-        nargs=4,
-        metavar="RE0 RE1 IM0 IM1",
-        help="Only a rectangle of the s plane [rad/s].",
+        None, "--region", nargs=4, metavar="RE0 RE1 IM0 IM1", help="Only a rectangle of the s plane [rad/s]."
     )
     digits: int | None = option(
         None, "--digits", least=1, most=10_000, help="Correct significant digits.  [default: 15]"
@@ -200,11 +196,7 @@ class SweepOptions:
     draws: int | None = option(None, "--monte-carlo", least=1, metavar="N", help="Draw N points.")
     seed: int = option(1, "--seed", least=0, **SHOWN, help="Of the random numbers.")
     of: str = option(
-        "poles",
-        "--of",
-        choices=("poles", "zeros", "response", "margins"),
-        **SHOWN,
-        help="What is computed.",
+        "poles", "--of", choices=("poles", "zeros", "response", "margins"), **SHOWN, help="What is computed."
     )
     tf: str | None = option(None, "--tf", **ONE_TF)
     modes: int | None = option(None, "--modes", least=1, help="Only the N lowest modes.")
@@ -212,11 +204,7 @@ class SweepOptions:
         None, "--band", **TWO, help='Roots, or a response, in a band of frequencies: 0.1 1000, "1 kHz".'
     )
     count: int | None = option(
-        None,
-        "--count",
-        least=2,
-        most=100_000,
-        help=f"Frequencies of a response.  [default: {FREQUENCIES}]",
+        None, "--count", least=2, most=100_000, help=f"Frequencies of a response.  [default: {FREQUENCIES}]"
     )
     gain: str | None = option(None, "--gain", metavar="K", help="The gain that closes the loop, for margins.")
     output: str | Path | None = option(

@@ -118,9 +118,7 @@ def parse(text: str, name: str = "<string>") -> Spec:
 
 
 def load(
-    path: str | Path,
-    allow_outside: Iterable[str | Path] = (),
-    settings: Mapping[str, Setting] | None = None,
+    path: str | Path, allow_outside: Iterable[str | Path] = (), settings: Mapping[str, Setting] | None = None
 ) -> Model:
     """Read a specification file and resolve it, with the given values in place of declared ones.
 

@@ -227,11 +227,7 @@ class BoundTransferFunction:
         return tuple(Residue(r) for r in pipeline.residues(self.bound, region, digits, budget_of(budget)))
 
     def rational(
-        self,
-        modes: int | None = None,
-        form: str = "product",
-        *,
-        band: tuple[float, float] | None = None,
+        self, modes: int | None = None, form: str = "product", *, band: tuple[float, float] | None = None
     ) -> rational_room.RationalApproximation:
         """Return a rational approximation, with its error along the imaginary axis.
 

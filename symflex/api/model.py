@@ -514,10 +514,7 @@ class Model:
 
 
 def load(
-    path: str | Path,
-    values: Mapping[str, Setting] | None = None,
-    *,
-    allow_outside: Iterable[str | Path] = (),
+    path: str | Path, values: Mapping[str, Setting] | None = None, *, allow_outside: Iterable[str | Path] = ()
 ) -> Model:
     """Read a specification file.
 

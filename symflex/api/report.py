@@ -75,7 +75,7 @@ def write_report(
     ...     written.page.name, written.is_certified, written.warnings
     ('index.html', True, ())
     """
-    from symflex.report import written
+    from symflex.report.published import written
 
     given = ReportOptions(
         specs=[specs] if isinstance(specs, str | Path) else specs,

@@ -35,7 +35,7 @@ def report(given: ReportOptions) -> int:
     report is written then, and says where.
     """
     from symflex.cli.progress import ProgressBar
-    from symflex.report import written
+    from symflex.report.published import written
 
     # What stands in a folder that is reported on may be read by the models there.
     folders = (*given.allow_outside, *(spec for spec in given.specs if Path(spec).is_dir()))

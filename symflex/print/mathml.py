@@ -18,7 +18,6 @@ from typing import TYPE_CHECKING, Final
 
 from symflex.expressions import (
     Call,
-    Derivative,
     Expression,
     Name,
     Negative,
@@ -28,10 +27,9 @@ from symflex.expressions import (
     Sum,
     is_number,
     names,
-    number,
 )
 from symflex.print.label import identifier, numeral, operator, row, symbol, words
-from symflex.print.latex.equation import form_labels, free_names, split_sign, varying_names
+from symflex.print.latex.equation import form_labels, free_names, laws_and_starts, split_sign, varying_names
 from symflex.print.latex.expression import Writer
 from symflex.print.width import NOTHING, Width
 from symflex.print.writer import (
@@ -314,14 +312,6 @@ def _formula(
 
 def _where(form: PrintedForm, writer: MathmlWriter, labels: dict[str, str]) -> list[MathRow]:
     rows = [MathRow(label_mathml(name, labels), writer.pieces(e), is_where=True) for name, e in form.where]
-    for name, law in form.laws:
-        order = max(node.order for node in names(law) if isinstance(node, Derivative))
-        rows.append(_equation(law.left, law.right, writer))
-        rows += [
-            _equation(Call(name, number(0), k), number(int(k == order - 1)), writer) for k in range(order)
-        ]
+    for left, right in laws_and_starts(form):
+        rows.append(MathRow(writer.piece(left).markup, writer.pieces(right), is_where=True))
     return rows
-
-
-def _equation(left: Expression, right: Expression, writer: MathmlWriter) -> MathRow:
-    return MathRow(writer.piece(left).markup, writer.pieces(right), is_where=True)

@@ -26,12 +26,7 @@ if TYPE_CHECKING:
 
 def symbols_of(model: Model) -> dict[str, sympy.Symbol]:
     """Return one SymPy symbol per parameter, with its assumption; others are made without any."""
-    assumptions = {
-        "positive": {"positive": True},
-        "nonnegative": {"nonnegative": True},
-        "real": {"real": True},
-    }
-    return {p.name: sympy.Symbol(p.name, **assumptions[p.assume]) for p in model.parameters}
+    return {p.name: sympy.Symbol(p.name, **{p.assume: True}) for p in model.parameters}
 
 
 def to_sympy(expression: Expression, symbols: Mapping[str, sympy.Symbol]) -> sympy.Expr:

@@ -320,8 +320,8 @@ def facts_of(study: Study) -> ModelFacts:
             TransferFacts(
                 tf=tf.name,
                 quantity=tf.quantity,
-                poles=_root_facts(found, "poles"),
-                zeros=_root_facts(found, "zeros"),
+                poles=tuple(map(_root_fact, found.all_poles)),
+                zeros=tuple(map(_root_fact, found.zeros)),
                 certified=found.certificate.certified,
                 is_infinite=found.is_infinite,
                 counts=None if found.is_infinite else tf.order,
@@ -396,10 +396,6 @@ def _changes(audit: Audit) -> str:
     ]
     shown += [f"violated: {law.law}" for law in audit.laws if not law.kept]
     return "; ".join(shown)
-
-
-def _root_facts(found: PoleZeroMap, kind: Literal["poles", "zeros"]) -> tuple[RootFact, ...]:
-    return tuple(_root_fact(root) for root in (found.all_poles if kind == "poles" else found.zeros))
 
 
 def _root_fact(root: Root) -> RootFact:

@@ -18,8 +18,8 @@ from symflex.budget import TIME_OVER, Budget, entered_budget
 from symflex.errors import BudgetError, Diagnostic, SpecError, SymflexError, UncertifiedError, UsageError
 from symflex.errors.diagnostic import printable
 from symflex.report.chapter import Chapter, chapter_of, failed_chapter
-from symflex.report.claims import CLAIMS, claim_section, is_claims, publication_of, read_claims
-from symflex.report.claims.claim import claims_json, judge_all
+from symflex.report.claims.claim import claim_section, claims_json, judge_all, publication_of
+from symflex.report.claims.read import CLAIMS, is_claims, read_claims
 from symflex.report.comparison import comparison_section
 from symflex.report.document import Badge, Code, PageLink, Section, Table, columns, counted, text
 from symflex.report.sections.roots import stability_mark
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from symflex.data.measurement import MeasuredResponse
-    from symflex.report.claims import Finding, Publication
+    from symflex.report.claims.claim import Finding, Publication
     from symflex.report.document import Block, Cell
     from symflex.roots import Progress
 
@@ -132,7 +132,7 @@ def find_claims(
 ) -> tuple[Publication, ...]:
     """Return what publications claim of specifications, by files ``claims.toml`` in the same folders.
 
-    Raises UsageError, SpecError: See :func:`symflex.report.claims.read_claims`.
+    Raises UsageError, SpecError: See :func:`symflex.report.claims.read.read_claims`.
     """
     folders = dict.fromkeys(path.parent for path in specifications)
     files = [

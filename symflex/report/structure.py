@@ -32,6 +32,7 @@ from symflex.expressions import (
     product_of,
 )
 from symflex.model import ModelParameter, with_numbers
+from symflex.print.forms.notation import names_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping
@@ -256,12 +257,7 @@ def _limits(
 ) -> dict[tuple[str, str], RigidCounts]:
     if model.is_distributed:
         return {}
-    taken = (
-        {p.name for p in model.parameters} | {n.name for n in model.nodes} | {x.name for x in model.signals}
-    )
-    taken |= (
-        {d.name for d in model.definitions} | {b.name for b in model.blocks} | {i.name for i in model.inputs}
-    )
+    taken = names_of(model)
     symbol = "scale"
     while symbol in taken:
         symbol += "_x"

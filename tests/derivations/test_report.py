@@ -12,16 +12,16 @@ from pathlib import Path
 import pytest
 
 from symflex.budget import Silent
-from symflex.report import (
+from symflex.report.claims.read import read_claims
+from symflex.report.facts import DataFact, ModelFacts
+from symflex.report.page import report_page
+from symflex.report.report import (
     compose,
     find_claims,
     find_specifications,
     name_specifications,
-    report_page,
     write_chapters,
 )
-from symflex.report.claims import read_claims
-from symflex.report.facts import DataFact, ModelFacts
 from tests.house.repository import specifications
 from tests.independent import eppinger1988
 from tests.unit.report.pages import Page

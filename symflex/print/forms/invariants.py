@@ -28,6 +28,11 @@ if TYPE_CHECKING:
     from symflex.algebra import Dispersion
     from symflex.print.forms.notation import Angle
 
+    Groups = Sequence[tuple[int, tuple[Angle, ...]]]
+    """Angles of one dispersion, by the number of their argument."""
+    Step = tuple[fmpz_mpoly, Factored] | None
+    """A polynomial with some kernels written in the K, and what it is to be multiplied by."""
+
 IMAGINARY = "j[]"
 ORDERS = {"bending": 4, "pair": 4, "wave": 2}
 
@@ -123,13 +128,7 @@ class Invariants:
     def _k(self, i: int, order: int) -> fmpz_mpoly:
         return self.ring.generator(krylov_name(i, order))
 
-    def _wave(
-        self,
-        work: fmpz_mpoly,
-        number: int,
-        dispersion: Dispersion,
-        groups: Sequence[tuple[int, tuple[Angle, ...]]],
-    ) -> tuple[fmpz_mpoly, Factored] | None:
+    def _wave(self, work: fmpz_mpoly, number: int, dispersion: Dispersion, groups: Groups) -> Step:
         """Write ``cosh = K_0``, ``sinh = gamma K_1``."""
         del number
         gamma = self.ring.generator(dispersion.wavenumbers[0])
@@ -139,7 +138,7 @@ class Invariants:
         work = self._composed(work, images)
         return self._even(work, dispersion.wavenumbers[0])
 
-    def _even(self, work: fmpz_mpoly, wavenumber: str) -> tuple[fmpz_mpoly, Factored] | None:
+    def _even(self, work: fmpz_mpoly, wavenumber: str) -> Step:
         """Return a polynomial even in a wavenumber, and the wavenumber if it had to be taken out."""
         index = self.ring.index[wavenumber]
         parities = {int(m[index]) % 2 for m in work.monoms()}
@@ -154,13 +153,7 @@ class Invariants:
         ring = self.ring
         return polynomial.compose(*(images.get(n, ring.generator(n)) for n in ring.names), ctx=ring.context)
 
-    def _pair(
-        self,
-        work: fmpz_mpoly,
-        number: int,
-        dispersion: Dispersion,
-        groups: Sequence[tuple[int, tuple[Angle, ...]]],
-    ) -> tuple[fmpz_mpoly, Factored] | None:
+    def _pair(self, work: fmpz_mpoly, number: int, dispersion: Dispersion, groups: Groups) -> Step:
         """Write ``cosh = K_0 + lambda^2 K_2``, ``sinh = lambda K_1 + lambda^3 K_3`` for both wavenumbers."""
         images: dict[str, fmpz_mpoly] = {}
         for i, group in groups:
@@ -224,13 +217,7 @@ class Invariants:
                     images[self.ring.index[coefficient_name(i, k)]] = value
         return compose_rational(self.ring, work, images).is_zero
 
-    def _bending(
-        self,
-        work: fmpz_mpoly,
-        number: int,
-        dispersion: Dispersion,
-        groups: Sequence[tuple[int, tuple[Angle, ...]]],
-    ) -> tuple[fmpz_mpoly, Factored] | None:
+    def _bending(self, work: fmpz_mpoly, number: int, dispersion: Dispersion, groups: Groups) -> Step:
         """Write ``exp(mu x (+-1 +-j))`` as ``K_0 + lambda K_1 + lambda^2 K_2 + lambda^3 K_3``."""
         del number
         (name,) = dispersion.wavenumbers
@@ -250,9 +237,7 @@ class Invariants:
         assert not any(int(m[index]) % 4 for m in work.monoms())
         return work, scale
 
-    def _character(
-        self, work: fmpz_mpoly, name: str, groups: Sequence[tuple[int, tuple[Angle, ...]]]
-    ) -> int | None:
+    def _character(self, work: fmpz_mpoly, name: str, groups: Groups) -> int | None:
         """Return the power of mu that makes a polynomial invariant under ``mu -> j mu``."""
         j = self.ring.generator(IMAGINARY)
         images = {name: j * self.ring.generator(name)}

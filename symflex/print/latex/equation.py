@@ -19,7 +19,7 @@ from symflex.print.width import EM_MM, FRACTION_EDGES, MINUS, QUAD, RELATION
 from symflex.print.writer import ExpressionWriter, Style, Written
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from symflex.model import Input, Model, Output
     from symflex.print.forms import PrintedForm
@@ -284,13 +284,15 @@ def _where_rows(form: PrintedForm, writer: Writer, width: float | None) -> list[
 
 def _laws(form: PrintedForm, writer: Writer) -> list[tuple[Written, str]]:
     """Return the differential equations of functions of x and their values at x = 0."""
-    rows = []
+    return [(writer.piece(left), writer.piece(right).markup) for left, right in laws_and_starts(form)]
+
+
+def laws_and_starts(form: PrintedForm) -> Iterator[tuple[Expression, Expression]]:
+    """Yield both sides of each differential equation, and of each value at x = 0."""
     for name, law in form.laws:
         order = max(node.order for node in names(law) if isinstance(node, Derivative))
-        rows.append((writer.piece(law.left), writer.piece(law.right).markup))
-        at_zero = [writer.piece(Call(name, number(0), k)) for k in range(order)]
-        rows += [(piece, "1" if k == order - 1 else "0") for k, piece in enumerate(at_zero)]
-    return rows
+        yield law.left, law.right
+        yield from ((Call(name, number(0), k), number(int(k == order - 1))) for k in range(order))
 
 
 def _broken_rows(

@@ -161,12 +161,7 @@ def audit_section(study: Study) -> ChapterPart | None:
     if not study.audits:
         return None
     blocks = tuple(
-        Section(
-            audit.tf.name,
-            _audited(audit),
-            f"{study.stem}-printed-{i + 1}",
-            ratio(audit.tf),
-        )
+        Section(audit.tf.name, _audited(audit), f"{study.stem}-printed-{i + 1}", ratio(audit.tf))
         for i, audit in enumerate(study.audits)
     )
     data = json.dumps(audit_document(study.audits), indent=1, ensure_ascii=True).encode()

@@ -9,8 +9,8 @@ from inspect import signature
 import pytest
 
 from symflex.errors import SpecError
-from symflex.report import find_claims, find_specifications
-from symflex.report.claims import PREDICATES, read_claims
+from symflex.report.claims.predicates import PREDICATES
+from symflex.report.claims.read import read_claims
 from symflex.report.facts import (
     ColocationFact,
     LoopFacts,
@@ -19,6 +19,7 @@ from symflex.report.facts import (
     TransferFacts,
     TruncationFacts,
 )
+from symflex.report.report import find_claims, find_specifications
 from tests.house.repository import ROOT
 
 HEAD = 'symflex-claims = 1\npublication = "Nobody 2001"\ntitle = "On carts"\nmodels = ["cart"]\n'

@@ -10,9 +10,11 @@ import pytest
 
 from symflex.budget import Silent
 from symflex.errors import BudgetError, Diagnostic, SpecError
-from symflex.report import compose, name_specifications, report_article, report_page, write_chapters
 from symflex.report import report as report_module
+from symflex.report.article import report_article
 from symflex.report.chapter import chapter_of
+from symflex.report.page import report_page
+from symflex.report.report import compose, name_specifications, write_chapters
 from symflex.report.study import Study, attempt
 from tests.unit.report.models import SMALL, SYMBOLIC
 

@@ -14,17 +14,16 @@ import pytest
 
 from symflex.budget import Silent
 from symflex.errors import SpecError, UsageError
-from symflex.report import (
+from symflex.report.article import report_article
+from symflex.report.comparison import COLUMNS, LOOP_COLUMNS
+from symflex.report.page import inline_svg, report_page
+from symflex.report.report import (
     compose,
     find_measurements,
     find_specifications,
     name_specifications,
-    report_article,
-    report_page,
     write_chapters,
 )
-from symflex.report.comparison import COLUMNS, LOOP_COLUMNS
-from symflex.report.page import inline_svg
 from symflex.report.sections import SECTIONS
 from tests.unit.report.models import HOSTILE, SMALL, SYMBOLIC
 from tests.unit.report.pages import Page
