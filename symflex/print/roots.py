@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from symflex.roots import PoleZeroMap, Region, Root
     from symflex.roots.root import RootDecimals
 
-KINDS: Final = {"poles": "pole", "zeros": "zero", "hidden": "hidden root"}
-"""What a :class:`~symflex.roots.PoleZeroMap` holds, and what one of it is called."""
+KINDS: Final = {"poles": "Poles", "zeros": "Zeros", "hidden": "Hidden roots"}
+"""What a :class:`~symflex.roots.PoleZeroMap` holds, and the titles of tables of it."""
 _FREQUENCY_BITS: Final = 256
 
 

@@ -169,21 +169,18 @@ def comparison_section(models: Sequence[ModelFacts]) -> Section | None:
     tables = [_table(rows, heads) for rows, heads in chosen if rows]
     explained: tuple[Paragraph, ...] = (
         text(
-            "Poles and zeros are counted with multiplicity, and against the same model with all its "
-            "springs and "
-            "massless beams made rigid (exact limits). For beams and other distributed parts those "
-            "through the "
-            "highest pole listed are counted. Of functions that agree in all of this one is shown. "
-            "A dash stands where the rigid model has no response to compare with, as where only springs hold "
-            "it to ground."
+            "Poles and zeros are counted with multiplicity, and against the same model with all its springs "
+            "and massless beams made rigid (exact limits). For beams and other distributed parts those "
+            "through the highest pole listed are counted. Of functions that agree in all of this one is "
+            "shown. A dash stands where the rigid model has no response to compare with, as where only "
+            "springs hold it to ground."
         ),
         text(
             "Minimum phase means: no zero in the open right half plane. “For all values” is proved for all "
-            "positive values of the parameters. A function is colocated when its output is taken where "
-            "the input "
-            "acts, or rigidly joined to it. A compliance with an end on ground belongs to the base, or is a "
-            "contact where its force is measured; between moving parts, one in bending belongs to a link, "
-            "another to the transmission."
+            "positive values of the parameters. A function is colocated when its output is taken where the "
+            "input acts, or rigidly joined to it. A compliance with an end on ground belongs to the base, or "
+            "is a contact where its force is measured; between moving parts, one in bending belongs to a "
+            "link, another to the transmission."
         ),
     )
     if controlled:

@@ -362,8 +362,7 @@ def _overview(
         blocks.append(
             text(
                 f"Of {counted(len(findings), 'claim')} of the publication {held} hold, {failed} do not, "
-                f"and {open_} "
-                "are not examined here: ",
+                f"and {open_} are not examined here: ",
                 PageLink("the claims", "#claims"),
                 ".",
             )
@@ -405,9 +404,8 @@ def _provenance(date: str) -> Section:
             text(
                 f"Written by symflex {_version('symflex')}{when}. Every formula is derived exactly from the "
                 "specification printed with its model; every root marked certified is enclosed in ball "
-                "arithmetic, "
-                "and none is missing from the region named. What was sampled rather than proved is said "
-                "to be."
+                "arithmetic, and none is missing from the region named. What was sampled rather than proved "
+                "is said to be."
             ),
             Table(columns("Program", ("Version", "plain")), rows),
         ),

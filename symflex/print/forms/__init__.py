@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from importlib import import_module
 from typing import TYPE_CHECKING
 
@@ -11,7 +12,7 @@ from symflex.expressions import format_expression
 from symflex.print.forms.arrange import Arranger
 from symflex.print.forms.definitions import definitions_form
 from symflex.print.forms.hidden import hidden_expressions, with_hidden
-from symflex.print.forms.kept import with_definitions
+from symflex.print.forms.notation import reachable
 from symflex.print.forms.polynomial import (
     constant_form,
     factored_form,
@@ -95,7 +96,11 @@ def print_form(tf: AnyTransferFunction, form: str | None = None, digits: int = 6
 def _made(tf: TransferFunction, form: str, digits: int) -> PrintedForm:
     require(tf, form)
     arguments = (tf, digits) if form in DECIMAL_FORMS else (tf,)
-    return with_definitions(tf, FORMS[form](*arguments))
+    made = FORMS[form](*arguments)
+    explained = {name for name, _ in made.where}
+    parts = (made.num, made.den, *(e for _, e in made.where), *(law for _, law in made.laws))
+    known = ((d.name, d.expression) for d in tf.model.definitions if d.name not in explained)
+    return replace(made, where=(*made.where, *reachable(parts, known)))
 
 
 def print_forms(

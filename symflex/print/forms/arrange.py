@@ -219,15 +219,10 @@ class Arranger:
         return [self._split(terms)]
 
     def _split(self, terms: dict[tuple[int, ...], int]) -> Expression:
-        shared = self._most_shared(terms)
-        if shared is None or max(sum(m[1:]) for m in terms) > DEEPEST_NEST:
+        if self._most_shared(terms) is None or max(sum(m[1:]) for m in terms) > DEEPEST_NEST:
             return self._sum(terms)
-        chosen = {m: c for m, c in terms.items() if m[shared]}
-        others = {m: c for m, c in terms.items() if not m[shared]}
-        parts = [(self._rank(chosen), self._group(chosen))]
-        if others:
-            parts += self._parts(others)
-        return sum_of(_share_sums([part for _, part in sorted(parts, key=lambda p: p[0])]))
+        parts = sorted(self._parts(terms), key=lambda p: p[0])
+        return sum_of(_share_sums([part for _, part in parts]))
 
     def _parts(self, terms: dict[tuple[int, ...], int]) -> list[tuple[tuple[int, ...], Expression]]:
         """Return the groups of a sum with their places in print."""
@@ -252,8 +247,7 @@ class Arranger:
 
     def _rank(self, terms: dict[tuple[int, ...], int]) -> tuple[int, ...]:
         """Return a sort key: descending degree in s, then closed sums, then declared order."""
-        best = min(terms, key=self._monomial_key)
-        return self._monomial_key(best)
+        return min(map(self._monomial_key, terms))
 
     def _monomial_key(self, monomial: tuple[int, ...]) -> tuple[int, ...]:
         degree = sum([monomial[i] * d for i, d in self._s_degree])

@@ -10,12 +10,12 @@ Output: the same ring with a generator per definition, and polynomials of fewer 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE, Ring
-from symflex.expressions import Name, names
+from symflex.expressions import Name
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
     from symflex.algebra import Factored
-    from symflex.print.forms.printed import PrintedForm
     from symflex.transfer import TransferFunction
 
 REWRITE_LIMIT = 5_000
@@ -121,19 +120,3 @@ def _in_powers_of(polynomial: fmpz_mpoly, divisor: fmpz_mpoly, symbol: fmpz_mpol
         result = result + remainder * place
         place = place * symbol
     return result
-
-
-def with_definitions(tf: TransferFunction, form: PrintedForm) -> PrintedForm:
-    """Return the form with a line for each definition it uses, also those used by definitions."""
-    definitions = {d.name: d.expression for d in tf.model.definitions}
-    explained = {name for name, _ in form.where}
-    pending = [form.num, form.den, *(e for _, e in form.where), *(law for _, law in form.laws)]
-    used: set[str] = set()
-    while pending:
-        for found in names(pending.pop()):
-            name = found.name
-            if isinstance(found, Name) and name in definitions and name not in (*used, *explained):
-                used.add(name)
-                pending.append(definitions[name])
-    lines = tuple((d.name, d.expression) for d in tf.model.definitions if d.name in used)
-    return replace(form, where=(*form.where, *lines)) if lines else form

@@ -10,6 +10,8 @@ from flint import arb, fmpz
 from symflex.algebra import LAPLACE
 from symflex.expressions import Expression, Name, number, power, product_of, sum_of
 from symflex.print.forms.printed import PrintedForm
+from symflex.roots import precision
+from symflex.roots.locate import locate
 from symflex.transfer import EnclosedTransferFunction, bind
 
 if TYPE_CHECKING:
@@ -27,8 +29,6 @@ def zpk_form(tf: TransferFunction, digits: int) -> PrintedForm:
 
     Raises ModelError: SF229 when a parameter has no value.
     """
-    from symflex.roots.locate import locate  # imports numpy
-
     bound = bind(tf)
     if bound.ratio.is_zero:
         return PrintedForm("zpk", number(0), number(1))
@@ -44,8 +44,6 @@ def zpk_form(tf: TransferFunction, digits: int) -> PrintedForm:
 
 def _gain(bound: BoundTransferFunction, digits: int) -> arb:
     """Return the ratio of the leading coefficients of numerator and denominator."""
-    from symflex.roots import precision  # imports numpy
-
     bits = 64 + BITS_PER_DIGIT * (digits + GUARD_DIGITS)
     enclosed = bound.enclosed(bits)
     assert isinstance(enclosed, EnclosedTransferFunction)
@@ -58,8 +56,6 @@ def _gain(bound: BoundTransferFunction, digits: int) -> arb:
 
 def _factors(roots: Sequence[Root], digits: int) -> list[Expression]:
     """Return one factor per real root or conjugate pair, in the order of the roots."""
-    from symflex.roots import precision  # imports numpy
-
     s = Name(LAPLACE)
     factors: list[Expression] = []
     for root in roots:

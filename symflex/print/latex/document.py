@@ -182,9 +182,8 @@ def _blocks(
             yield _Block("\n".join((r"\noindent", *hidden)) + "\n\n")
         for found in of_tf:
             yield _Block("\n".join((r"\noindent", *hidden, *_about_roots(tf, found))) + "\n\n")
-            for kind in KINDS:
+            for kind, title in KINDS.items():
                 if roots_of(found, kind):
-                    title = f"{kind.capitalize() if kind != 'hidden' else 'Hidden roots'}"
                     yield _Block(f"\\medskip\\noindent {title}:{_BEFORE_TABLE}")
                     table = root_table(found, kind, width_mm=width_mm)
                     yield _table(table, f"{_stem(tf)}_{kind}", f"{title} of {_comment(tf.name)}")

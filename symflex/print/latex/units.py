@@ -37,11 +37,8 @@ def siunitx_unit(unit: str) -> str | None:
     factors = _factors(unit)
     if factors is None:
         return None
-    above = [(symbol, power) for symbol, power, sign in factors if sign > 0]
-    below = [(symbol, power) for symbol, power, sign in factors if sign < 0]
-    written = [f"{symbol}{_power(power)}" for symbol, power in above]
-    written += [rf"\per{symbol}{_power(power)}" for symbol, power in below]
-    return "".join(written)
+    ordered = sorted(factors, key=lambda factor: factor[2] < 0)
+    return "".join(r"\per" * (sign < 0) + symbol + _power(power) for symbol, power, sign in ordered)
 
 
 def quantity_latex(number: str, unit: str) -> str:

@@ -87,16 +87,15 @@ def _of(found: PoleZeroMap, told: ZeroExplanation | None) -> tuple[Block, ...]:
                 f"accumulate."
             )
         )
-    for kind, noun in KINDS.items():
+    for kind, title in KINDS.items():
         roots = roots_of(found, kind)
         entries = one_of_each_pair(roots)
-        title = {"poles": "Poles", "zeros": "Zeros", "hidden": "Hidden roots"}[kind]
         if entries:
             rows = tuple(map(_row, entries[:LONGEST]))
             count = sum(r.multiplicity for r in roots)
             cut = f" ({LONGEST} of {len(entries)} lines)" if len(entries) > LONGEST else ""
             blocks.append(Table(HEADS, rows, f"{title}: {count}{cut}", root_table(found, kind)))
-        elif noun != "hidden root":
+        elif kind != "hidden":
             blocks.append(text(f"{title}: none."))
     if told is not None:
         blocks += [text(*lines) for lines in _told(told)]
