@@ -189,13 +189,7 @@ def _call(name: str, kind: Kind, *arguments: Term) -> Term:
 
 
 def complex_term(x: Term) -> Term:
-    """Return the same number as a complex one.
-
-    Examples
-    --------
-    >>> complex_term(Term("a", Kind.REAL)).text
-    'cx_of(a, 0.0)'
-    """
+    """Return the same number as a complex one."""
     zero = Term("0.0", Kind.REAL)
     match x.kind:
         case Kind.REAL:
@@ -207,26 +201,14 @@ def complex_term(x: Term) -> Term:
 
 
 def negative(x: Term) -> Term:
-    """Return minus a number.
-
-    Examples
-    --------
-    >>> negative(Term("a * b", Kind.IMAGINARY, binding=1)).text
-    '-(a * b)'
-    """
+    """Return minus a number."""
     if x.kind is Kind.COMPLEX:
         return _call("cx_neg", Kind.COMPLEX, x)
     return replace(x, text=f"-{x.within(_LEAF)}", binding=_SIGN)
 
 
 def total(x: Term, y: Term) -> Term:
-    """Return the sum of two numbers.
-
-    Examples
-    --------
-    >>> total(Term("a", Kind.REAL), Term("b", Kind.IMAGINARY)).text
-    'cx_of(a, b)'
-    """
+    """Return the sum of two numbers."""
     match x.kind, y.kind:
         case (Kind.COMPLEX, Kind.COMPLEX):
             return _call("cx_add", Kind.COMPLEX, x, y)
@@ -244,13 +226,7 @@ def total(x: Term, y: Term) -> Term:
 
 
 def difference(x: Term, y: Term) -> Term:
-    """Return one number less another.
-
-    Examples
-    --------
-    >>> difference(Term("a", Kind.REAL), Term("b", Kind.REAL)).text
-    'a - b'
-    """
+    """Return one number less another."""
     match x.kind, y.kind:
         case (Kind.COMPLEX, Kind.COMPLEX):
             return _call("cx_sub", Kind.COMPLEX, x, y)
@@ -286,13 +262,7 @@ def product(x: Term, y: Term) -> Term:
 
 
 def quotient(x: Term, y: Term) -> Term:
-    """Return the quotient of two numbers.
-
-    Examples
-    --------
-    >>> quotient(Term("a", Kind.REAL), Term("w", Kind.IMAGINARY)).text
-    '-(a / w)'
-    """
+    """Return the quotient of two numbers."""
     match x.kind, y.kind:
         case (_, Kind.COMPLEX):
             return _call("cx_div", Kind.COMPLEX, complex_term(x), y)
