@@ -93,19 +93,6 @@ def expand_at_zero(bound: BoundTransferFunction, last: int, digits: int) -> Laur
     """Return the Laurent series at s = 0 up to the power ``last``, and at least its leading term.
 
     Every coefficient that is not zero has so many significant digits. SF405 when they cannot be told.
-
-    Examples
-    --------
-    >>> from symflex import pipeline
-    >>> model = pipeline.loads('''
-    ... symflex = 1
-    ... elements.rod = { type = "rod", between = ["x", "y"], E = 2, A = 1, rho = 1, l = 3 }
-    ... inputs.F = { force = "x" }
-    ... outputs.Y = "y"
-    ... ''')
-    >>> series = expand_at_zero(pipeline.derive_bound(model, [("Y", "F")])[0], 0, 15)
-    >>> series.order, [round(float(c.real.mid()), 12) for c in series.coefficients]
-    (-2, [0.333333333333, 0.0, -0.25])
     """
     named = any(law.wavenumbers for law in bound.kernels.dispersions)
     branches = BRANCHES if named else 1
@@ -374,20 +361,11 @@ class PrincipalPart:
 def find_residues(
     bound: BoundTransferFunction, region: Region | None = None, digits: int = 15, budget: Budget | None = None
 ) -> tuple[PrincipalPart, ...]:
-    r"""Return the principal parts at the poles in a region, in their order; both members of a conjugate pair.
+    """Return the principal parts at the poles in a region, in their order; both members of a conjugate pair.
 
     The region is one of :func:`symflex.roots.locate.locate`; the budget limits the search for poles, which
     raises SF505 or SF506 when it takes too long. SF405 when poles cannot be told apart, or the behaviour at
     one cannot be told.
-
-    Examples
-    --------
-    >>> from symflex import pipeline
-    >>> model = pipeline.loads('symflex = 1\ninputs.u = {}\noutputs.y = "(s + 3)/(s^2*(s + 1))*u"')
-    >>> for residue in find_residues(pipeline.derive_bound(model, [("y", "u")])[0]):
-    ...     print([round(float(c.real.mid()), 12) for c in residue.coefficients])
-    [-2.0, 3.0]
-    [2.0]
     """
     bound = without_lengths_of_zero(bound)
     return residues_at(bound, locate(bound, region, digits, budget).complete().all_poles, digits)

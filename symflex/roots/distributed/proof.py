@@ -222,16 +222,7 @@ def _images(hole: Cell) -> tuple[Cell, ...]:
 
 
 def decider(cell: Cell) -> Callable[[Root], bool | None]:
-    """Return what tells whether a root lies in a cell, ``None`` where its enclosure does not decide that.
-
-    Examples
-    --------
-    >>> from flint import arb
-    >>> is_inside = decider(Cell(0.0, 1.0, -pi, pi))
-    >>> frequencies = (arb(2), arb(3), arb(1, 0.1))
-    >>> [is_inside(Root(arb(0), f, 1, on_imaginary_axis=True, is_real=False)) for f in frequencies]
-    [True, False, None]
-    """
+    """Return what tells whether a root lies in a cell, ``None`` where its enclosure does not decide that."""
     with precision(FLOAT_BITS):
         low, high = arb(cell.low).exp(), arb(cell.high).exp()
 

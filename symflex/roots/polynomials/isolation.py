@@ -68,15 +68,6 @@ def isolations(
     of the ``proposers`` is asked when a guess does not certify.
 
     SF404 when the bound on precision is reached without isolating discs, SF506 when the time is over.
-
-    Examples
-    --------
-    >>> from symflex.roots.polynomials.discs import propose_by_durand_kerner
-    >>> from symflex.roots.problem import PolynomialInS
-    >>> polynomial = PolynomialInS.from_integers([-2, 0, 1])
-    >>> [found] = isolations(polynomial, 10, in_square=False, proposers=[propose_by_durand_kerner])
-    >>> len(found)
-    2
     """
     bits = first_bits(polynomial, digits)
     growth = GROWTH_EXACT if polynomial.is_exact else GROWTH_WITH_CONSTANTS
@@ -222,14 +213,6 @@ def prove_singly(
     The polynomial in s, or in z = s^2, is square-free and without the root 0; digits are those of
     :func:`symflex.roots.polynomials.isolation.isolations`. The budget is heeded between roots and between
     steps: SF506.
-
-    Examples
-    --------
-    >>> from symflex.budget import Budget
-    >>> from symflex.roots.problem import PolynomialInS
-    >>> discs = prove_singly(PolynomialInS.from_integers([2, -3, 1]), 10, Budget(), in_square=False)
-    >>> [round(float(disc.centre.real.mid()), 12) for disc in discs]
-    [1.0, 2.0]
     """
     bits = first_bits(polynomial, digits)
     goal = goal_of(digits, in_square=in_square)
