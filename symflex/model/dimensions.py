@@ -137,29 +137,15 @@ def turned_name(name: str, cycles: int) -> Expression:
 
 
 class DimensionSystem:
-    """Collects dimension equations of one model and solves them.
-
-    Parameters
-    ----------
-    scope : ModelScope
-        The model's names.
-    quantities : mapping of str to Quantity or None
-        Per parameter, what was declared; ``None`` when without unit.
-    definitions : mapping of str to Expression
-        Per definition, its expression.
-    known : mapping of Variable to Dimension
-        Variables whose dimension their domain fixes.
-    block_measures : mapping of str to Measure
-        Per block, what its transfer function is measured in.
-    """
+    """Collects dimension equations of one model and solves them."""
 
     def __init__(
         self,
         scope: ModelScope,
-        quantities: Mapping[str, Quantity | None],
+        quantities: Mapping[str, Quantity | None],  # what was declared; ``None`` when without unit
         definitions: Mapping[str, Expression],
-        known: Mapping[Variable, Dimension],
-        block_measures: Mapping[str, Measure],
+        known: Mapping[Variable, Dimension],  # variables whose dimension their domain fixes
+        block_measures: Mapping[str, Measure],  # what transfer functions of blocks are measured in
     ) -> None:
         self._scope = scope
         self._quantities = quantities
@@ -173,6 +159,9 @@ class DimensionSystem:
         self._axes: dict[str, Measure] = {}
         self._sound_points: set[tuple[str, Expression]] = set()
         self.problems: list[Diagnostic] = []
+
+    def _note(self, code: str, message: str, span: Span | None, hint: str | None = None) -> None:
+        self.problems.append(Diagnostic(code, message, span, hint))
 
     def require(self, expression: Expression, unit: str, what: str, a_what: str) -> None:
         """Demand that the value of a port is measured in the port's SI unit; an empty one accepts anything.
@@ -192,15 +181,8 @@ class DimensionSystem:
         reduced = self._reduce(measure.times(Measure(wanted.dimension).power(-1)))
         if not self._learn(reduced):
             found = self._reduce(measure).dimension
-            declared = self._declaration(expression)
-            self.problems.append(
-                Diagnostic(
-                    "SF203",
-                    f"{what} is in '{found}'; {a_what} is in '{unit}'",
-                    expression.span,
-                    declared,
-                )
-            )
+            message = f"{what} is in '{found}'; {a_what} is in '{unit}'"
+            self._note("SF203", message, expression.span, self._declaration(expression))
 
     def read(self, expression: Expression) -> None:
         """Take an expression as whole: nothing around it tells how cycles in it are meant."""
@@ -215,13 +197,8 @@ class DimensionSystem:
         left = self.variable(variable)
         if not self._learn(self._reduce(measure.times(left.power(-1)))) and not measure.literal:
             found, wanted = self._reduce(measure).dimension, self._reduce(left).dimension
-            self.problems.append(
-                Diagnostic(
-                    "SF203",
-                    f"'{variable}' is used in '{wanted}' but its expression is in '{found}'",
-                    expression.span,
-                )
-            )
+            message = f"'{variable}' is used in '{wanted}' but its expression is in '{found}'"
+            self._note("SF203", message, expression.span)
 
     def place_field(self, unknowns: Sequence[str], ends: Sequence[Expression]) -> None:
         """Take x of a field to be measured as its ends are; a bare number may stand for any unit."""
@@ -285,7 +262,7 @@ class DimensionSystem:
         if first != second:
             message = f"'{first}' is read as {here}{place}, '{second}' as {there}, and here they are compared"
         hint = "write 2*pi*f wherever an angular frequency is meant, or give the value in rad/s"
-        self.problems.append(Diagnostic("SF204", message, other.span, hint))
+        self._note("SF204", message, other.span, hint)
 
     def readings(self) -> Iterator[Diagnostic]:
         """Yield a warning for every use whose reading its place left open."""
@@ -363,7 +340,7 @@ class DimensionSystem:
             message = f"the point is in '{found}'; the domain of '{name}' is in '{wanted}'"
             if name in self._scope.along:
                 message = f"the point is in '{found}'; x along {self._scope.along[name]} is in '{wanted}'"
-            self.problems.append(Diagnostic("SF203", message, place.span))
+            self._note("SF203", message, place.span)
             return
         self._sound_points.add((name, place))
 
@@ -424,14 +401,8 @@ class DimensionSystem:
         self._read_cycles(inner, True, argument.span)
         reduced = self._reduce(inner)
         if not (reduced.open or reduced.unknowns or reduced.literal) and reduced.dimension != DIMENSIONLESS:
-            self.problems.append(
-                Diagnostic(
-                    "SF203",
-                    f"the argument of {name} is in '{reduced.dimension}'; it must be a pure number",
-                    argument.span,
-                    f"divide it by a value in '{reduced.dimension}'",
-                )
-            )
+            message = f"the argument of {name} is in '{reduced.dimension}'; it must be a pure number"
+            self._note("SF203", message, argument.span, f"divide it by a value in '{reduced.dimension}'")
         return Measure()
 
     def _sum(self, expression: Expression, terms: tuple[Expression, ...]) -> Measure:
@@ -455,15 +426,9 @@ class DimensionSystem:
                 continue
             loose = measure.literal or first.literal
             if not self._learn(self._reduce(measure.times(first.power(-1))), only_check=loose) and not loose:
-                here = self._reduce(measure).dimension
-                there = self._reduce(first).dimension
-                self.problems.append(
-                    Diagnostic(
-                        "SF205",
-                        f"terms of a sum disagree: '{there}' and '{here}'",
-                        term.span or expression.span,
-                    )
-                )
+                here, there = self._reduce(measure).dimension, self._reduce(first).dimension
+                message = f"terms of a sum disagree: '{there}' and '{here}'"
+                self._note("SF205", message, term.span or expression.span)
         result = self._reduce(first)
         if mixed:
             return replace(result, cycles=Fraction(0), pis=Fraction(0), cyclic=frozenset())

@@ -15,6 +15,7 @@ from symflex.model.spec import ArrayValue
 if TYPE_CHECKING:
     from collections.abc import Collection
 
+    from symflex.errors import Span
     from symflex.model.reading import Reader
     from symflex.model.spec import KeyValue, TableValue
 
@@ -90,9 +91,7 @@ def _unknowns(
     if not texts:
         reader.note("SF242", f"{what} has no unknowns", place, "leave the key out to name one as the field")
         return None
-    if len(texts) > UNKNOWN_LIMIT:
-        message = f"{what} has {len(texts)} unknowns; at most {UNKNOWN_LIMIT} are allowed"
-        reader.note("SF103", message, place, SPLIT)
+    if _few(reader, texts, f"{what} has", "unknowns", UNKNOWN_LIMIT, place) is None:
         return None
     good = True
     for text in texts:
@@ -156,11 +155,7 @@ def _equations(reader: Reader, entry: KeyValue, table: TableValue) -> tuple[Equa
         texts = None if text is None else (text,)
     else:
         texts = reader.strings(given, f"equations of {what}", "an array of equations")
-    if texts is not None and len(texts) > UNKNOWN_LIMIT:
-        message = f"{what} has {len(texts)} equations; at most {UNKNOWN_LIMIT} are allowed"
-        reader.note("SF103", message, given.value.span, SPLIT)
-        return None
-    return _parsed(reader, texts)
+    return _parsed(reader, _few(reader, texts, f"{what} has", "equations", UNKNOWN_LIMIT, given.value.span))
 
 
 def _conditions(reader: Reader, entry: KeyValue, table: TableValue) -> tuple[Equation, ...] | None:
@@ -171,11 +166,18 @@ def _conditions(reader: Reader, entry: KeyValue, table: TableValue) -> tuple[Equ
         reader.note("SF214", message, entry.key_span, hint)
         return None
     texts = reader.strings(given, f"conditions of field '{entry.key}'", "an array of equations")
-    if texts is not None and len(texts) > CONDITION_LIMIT:
-        message = f"field '{entry.key}' has {len(texts)} conditions; at most {CONDITION_LIMIT} are allowed"
-        reader.note("SF103", message, given.value.span, SPLIT)
-        return None
-    return _parsed(reader, texts)
+    who = f"field '{entry.key}' has"
+    return _parsed(reader, _few(reader, texts, who, "conditions", CONDITION_LIMIT, given.value.span))
+
+
+def _few(
+    reader: Reader, texts: tuple[Text, ...] | None, who: str, what: str, limit: int, span: Span
+) -> tuple[Text, ...] | None:
+    """Return the texts when they are no more than the limit."""
+    if texts is None or len(texts) <= limit:
+        return texts
+    reader.note("SF103", f"{who} {len(texts)} {what}; at most {limit} are allowed", span, SPLIT)
+    return None
 
 
 def _parsed(reader: Reader, texts: tuple[Text, ...] | None) -> tuple[Equation, ...] | None:

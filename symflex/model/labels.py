@@ -42,39 +42,27 @@ def check_label(label: Text) -> str:
     """
     value = label.value
     if not value or len(value) > LABEL_LIMIT:
-        raise _refused(
-            label,
-            0,
-            len(value),
-            f"a LaTeX label has 1 to {LABEL_LIMIT} characters",
-            "leave the key out for the usual label" if not value else "shorten it",
-        )
+        hint = "shorten it" if value else "leave the key out for the usual label"
+        raise _refused(label, 0, len(value), f"a LaTeX label has 1 to {LABEL_LIMIT} characters", hint)
     depth = position = 0
     while position < len(value):
         match = _TOKEN.match(value, position)
         if match is None:
-            raise _refused(
-                label, position, position + 1, f"{value[position]!r} may not stand in a LaTeX label"
-            )
+            message = f"{value[position]!r} may not stand in a LaTeX label"
+            raise _refused(label, position, position + 1, message)
         command = match["command"]
         if command and command not in ALLOWED_COMMANDS:
             raise _refused(label, match.start(), match.end(), f"\\{command} is not an allowed LaTeX command")
         depth += {"{": 1, "}": -1}.get(match["plain"] or "", 0)
         if depth < 0:
-            raise _refused(
-                label, position, position + 1, "closing brace without an opening one", "remove it or add '{'"
-            )
+            message = "closing brace without an opening one"
+            raise _refused(label, position, position + 1, message, "remove it or add '{'")
         position = match.end()
     if depth:
         raise _refused(label, 0, len(value), "a brace is not closed", "add '}'")
     if not _scripts_are_single(value):
-        raise _refused(
-            label,
-            0,
-            len(value),
-            "a subscript or superscript is empty or doubled",
-            "put what belongs to one script into braces: k_{a,b}",
-        )
+        hint = "put what belongs to one script into braces: k_{a,b}"
+        raise _refused(label, 0, len(value), "a subscript or superscript is empty or doubled", hint)
     return value
 
 

@@ -160,64 +160,40 @@ def checked_response(
             place = "" if span else f"'{file}', line {i + 1} of {response.name}: "
             problems.append(Diagnostic(code, place + say(i), span, hint))
 
-    note(
-        "SF603",
-        ~np.isfinite(frequency) | (frequency < 0),
-        "frequency",
-        lambda i: f"frequency {frequency[i]:g} Hz",
-        "frequencies are positive numbers [Hz]",
-    )
-    note(
-        "SF603",
-        ~np.isfinite(values),
-        "value",
-        lambda i: "the value is not a finite number",
-        "leave the line out",
-    )
-    note(
-        "SF603",
-        np.isfinite(values) & (values == 0),
-        "value",
-        lambda i: "the value is zero, which no measurement is",
-        "leave the line out",
-    )
+    def note_value(wrong: npt.NDArray[np.bool_], say: Callable[[int], str], hint: str) -> None:
+        note("SF603", wrong, "value", say, hint)
+
+    wrong = ~np.isfinite(frequency) | (frequency < 0)
+    hint = "frequencies are positive numbers [Hz]"
+    note("SF603", wrong, "frequency", lambda i: f"frequency {frequency[i]:g} Hz", hint)
+    is_finite = np.isfinite(values)
+    note_value(~is_finite, lambda i: "the value is not a finite number", "leave the line out")
+    wrong = is_finite & (values == 0)
+    note_value(wrong, lambda i: "the value is zero, which no measurement is", "leave the line out")
     with np.errstate(over="ignore"):
         size = np.abs(values)
-    note(
-        "SF603",
-        np.isfinite(values) & (values != 0) & ~((size >= SMALLEST) & (size <= LARGEST)),
-        "value",
+    note_value(
+        is_finite & (values != 0) & ~((size >= SMALLEST) & (size <= LARGEST)),
         lambda i: f"the value {values[i]:.3g} has a magnitude beyond {SMALLEST:g} to {LARGEST:g}",
         "check the unit of the values",
     )
     if coherence is not None:
-        note(
-            "SF603",
-            ~((coherence >= 0) & (coherence <= 1)),
-            "coherence",
-            lambda i: f"coherence {coherence[i]:g}",
-            "coherence lies between 0 and 1",
-        )
+        shares, hint = coherence, "coherence lies between 0 and 1"
+        wrong = ~((shares >= 0) & (shares <= 1))
+        note("SF603", wrong, "coherence", lambda i: f"coherence {shares[i]:g}", hint)
     if not problems and frequency.size:
         steps = np.diff(frequency, prepend=-1.0)
-        note(
-            "SF604",
-            steps == 0,
-            "frequency",
-            lambda i: f"frequency {frequency[i]:.9g} Hz repeats",
-            "one line per frequency",
-        )
+        hint = "one line per frequency"
+        note("SF604", steps == 0, "frequency", lambda i: f"frequency {frequency[i]:.9g} Hz repeats", hint)
         backwards = steps < 0
         others = int(backwards.sum()) - 1
+        more = f", and {others} more lines are out of order" if others else ""
         # The first one tells: in a file sorted downwards every line would be named.
         note(
             "SF604",
             backwards & (np.cumsum(backwards) == 1),
             "frequency",
-            lambda i: (
-                f"frequency {frequency[i]:.9g} Hz follows {frequency[i - 1]:.9g} Hz"
-                + (f", and {others} more lines are out of order" if others else "")
-            ),
+            lambda i: f"frequency {frequency[i]:.9g} Hz follows {frequency[i - 1]:.9g} Hz{more}",
             "sort the lines by frequency",
         )
     if problems:
