@@ -59,28 +59,15 @@ PROGRAM_LIMITS = Limits(
 
 
 class Size(NamedTuple):
-    """Bounds on a subtree.
-
-    Parameters
-    ----------
-    depth : int
-        Depth of the tree.
-    exponent : int
-        Largest product of exponents nested in one another.
-    upper, lower : int
-        Bits of any coefficient of the numerator, of the denominator.
-    constant : bool
-        Whether the subtree contains no name.
-    value : Fraction or None
-        The value of a small constant; ``None`` when it is large, undefined or not a constant.
-    """
+    """Bounds on a subtree."""
 
     depth: int
-    exponent: int
+    exponent: int  # largest product of exponents nested in one another
+    # upper and lower: bits of any coefficient of the numerator, of the denominator.
     upper: int
     lower: int
-    constant: bool
-    value: Fraction | None
+    constant: bool  # whether the subtree contains no name
+    value: Fraction | None  # of a small constant; ``None`` when it is large, undefined or not a constant
 
 
 SIZE_OF_NAME = Size(1, 1, 0, 0, constant=False, value=None)

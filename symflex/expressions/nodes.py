@@ -229,10 +229,7 @@ def product_of(factors: Iterable[Expression]) -> Expression:
 def quotient(numerator: Expression, denominator: Expression) -> Expression:
     """Return a quotient, with the sign of both parts in front.
 
-    Raises
-    ------
-    ZeroDivisionError
-        When the denominator is the number zero.
+    Raises ZeroDivisionError when the denominator is the number zero.
 
     Examples
     --------
@@ -253,12 +250,8 @@ def quotient(numerator: Expression, denominator: Expression) -> Expression:
 def power(base: Expression, exponent: Expression | int) -> Expression:
     """Return a power; the sign of the base leaves it when the exponent is an integer.
 
-    ``x^0`` is 1 for every x, as in polynomials.
-
-    Raises
-    ------
-    ZeroDivisionError
-        When the base is the number zero and the exponent a negative number.
+    ``x^0`` is 1 for every x, as in polynomials. Raises ZeroDivisionError when the base is the number zero and
+    the exponent a negative number.
 
     Examples
     --------

@@ -63,25 +63,11 @@ STACK_PER_LEVEL = 4
 
 
 def parse(text: Text, *, limits: Limits = USER_LIMITS) -> Expression:
-    """Read an expression.
+    """Read an expression: sums and products are flat, parentheses leave no trace, numbers are exact.
 
-    Parameters
-    ----------
-    text : Text
-        The characters and where they stand.
-    limits : Limits, optional
-        What is refused; :data:`PROGRAM_LIMITS` for text the program itself has written.
-
-    Returns
-    -------
-    Expression
-        The tree; sums and products are flat, parentheses leave no trace, numbers are exact.
-
-    Raises
-    ------
-    SpecError
-        SF111 for a character or word that cannot stand where it stands, SF112 for a name that is too long or
-        begins with an underscore, SF103 for text beyond the limits. Only the first problem is reported.
+    Text that the program itself has written takes :data:`PROGRAM_LIMITS`. Raises SpecError: SF111 for a
+    character or word that cannot stand where it stands, SF112 for a name that is too long or begins with an
+    underscore, SF103 for text beyond the limits. Only the first problem is reported.
 
     Examples
     --------
@@ -99,22 +85,7 @@ def parse(text: Text, *, limits: Limits = USER_LIMITS) -> Expression:
 def parse_equation(text: Text, *, limits: Limits = USER_LIMITS) -> Equation:
     """Read ``left = right``, as fields write their equations and conditions.
 
-    Parameters
-    ----------
-    text : Text
-        The characters and where they stand.
-    limits : Limits, optional
-        As in :func:`parse`.
-
-    Returns
-    -------
-    Equation
-        Both sides.
-
-    Raises
-    ------
-    SpecError
-        As :func:`parse`; SF111 also when there is not exactly one ``=``.
+    Raises SpecError as :func:`parse`; SF111 also when there is not exactly one ``=``.
 
     Examples
     --------

@@ -20,13 +20,9 @@ def write_atomically(path: Path, data: bytes) -> None:
     """Write a file so that at every moment its path holds the old content or the new, never a part.
 
     The data go to a temporary file in the same folder, reach the disk, and then take the place of ``path``.
-    An existing file keeps its permissions; a new one gets those of the process's umask. The folder
-    exists, and the path is not a symbolic link, a folder or a device.
-
-    Raises
-    ------
-    UsageError
-        SF903, with the reason; the old content, if any, is untouched and no temporary file remains.
+    An existing file keeps its permissions; a new one gets those of the process's umask. The folder exists,
+    and the path is not a symbolic link, a folder or a device. Raises UsageError: SF903, with the reason; the
+    old content, if any, is untouched and no temporary file remains.
 
     Examples
     --------
@@ -48,10 +44,7 @@ def write_atomically(path: Path, data: bytes) -> None:
 def check_writable(path: Path) -> None:
     """Refuse, before anything is computed for it, a file that could not be written afterwards.
 
-    Raises
-    ------
-    UsageError
-        SF903 as :func:`write_atomically`, as far as it can be told beforehand.
+    Raises UsageError: SF903 as :func:`write_atomically`, as far as it can be told beforehand.
 
     Examples
     --------
@@ -74,10 +67,7 @@ def check_writable(path: Path) -> None:
 def check_folder(folder: Path) -> None:
     """Refuse, before anything is computed for it, a folder that could not be made or written into afterwards.
 
-    Raises
-    ------
-    UsageError
-        SF903.
+    Raises UsageError: SF903.
     """
     name = os.fspath(folder)
     if folder.exists() and not folder.is_dir():
@@ -96,14 +86,8 @@ def _check_entry(folder: Path, name: str) -> None:
 def write_folder(folder: Path, files: Mapping[str, str]) -> None:
     """Write text files into a folder, which is made when it is missing, each as a whole or not at all.
 
-    Texts are given by name of file, and names lead nowhere else.
-
-    Raises
-    ------
-    ValueError
-        For a name that is a path.
-    UsageError
-        SF903 when something cannot be written, see :func:`write_atomically`.
+    Texts are given by name of file, and names lead nowhere else. Raises ValueError for a name that is a path.
+    Raises UsageError: SF903 when something cannot be written, see :func:`write_atomically`.
     """
     for name in files:
         if name in ("", ".", "..") or Path(name).name != name or "\\" in name or "\0" in name:

@@ -277,10 +277,7 @@ def _coupled(matrix: Matrix) -> list[tuple[int, ...]]:
 def faddeev_leverrier(matrix: Matrix) -> tuple[tuple[Factored, ...], tuple[Matrix, ...]]:
     """Return ``c_0, ..., c_(n-1)`` and ``B_0, ..., B_(n-1)`` (Faddeev & Faddeeva 1963, section 47).
 
-    Raises
-    ------
-    BudgetError
-        SF501 when densely coupled equations grow beyond what a closed form can hold.
+    Raises BudgetError: SF501 when densely coupled equations grow beyond what a closed form can hold.
     """
     n = len(matrix)
     zero = matrix[0][0] * 0

@@ -77,20 +77,14 @@ class RandomPoint:
     def constant(self, expression: Expression) -> int:
         """Return the value of an expression without unknowns.
 
-        Raises
-        ------
-        ZeroDivisionError
-            When it divides by zero.
+        Raises ZeroDivisionError when it divides by zero.
         """
         return self.form(expression).get(None, 0)
 
     def form(self, expression: Expression) -> Form:
         """Return a linear expression as a form.
 
-        Raises
-        ------
-        ZeroDivisionError
-            When it divides by zero.
+        Raises ZeroDivisionError when it divides by zero.
         """
         match lower(expression):
             case Number(value):

@@ -28,10 +28,7 @@ _TOKEN = re.compile(r"\\(?P<command>[A-Za-z]+)|\\(?P<space>[,;:! ])|(?P<plain>[A
 def check_label(label: Text) -> str:
     r"""Return the label when it is harmless LaTeX mathematics.
 
-    Raises
-    ------
-    SpecError
-        SF230, at the offending characters.
+    Raises SpecError: SF230, at the offending characters.
 
     Examples
     --------

@@ -63,10 +63,7 @@ class Reader:
     def take(self, diagnostics: Iterable[Diagnostic]) -> None:
         """Add problems found elsewhere.
 
-        Raises
-        ------
-        SpecError
-            With what was found so far, when that is more than anybody would read.
+        Raises SpecError with what was found so far, when that is more than anybody would read.
         """
         self.problems.extend(diagnostics)
         if len(self.problems) > MAX_PROBLEMS:

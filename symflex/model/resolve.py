@@ -111,11 +111,7 @@ def load_model(
 
     Files of ``model`` blocks are found relative to ``source.name``, in its folder and those of
     ``allow_outside``; ``ancestors`` are the files whose blocks led here, ``loads`` what was read for blocks.
-
-    Raises
-    ------
-    SpecError
-        With every problem found, in the order of the text.
+    Raises SpecError with every problem found, in the order of the text.
     """
     spec, syntax = parse_with_recovery(source)
     own = ancestors or (Path(source.name).resolve(),)
@@ -135,14 +131,9 @@ def load_with(
 ) -> Model:
     """Parse and resolve a text with values in place of declared ones, checked as those in the text are.
 
-    Settings are quantities, or numbers in SI units, by parameter, also of nested models.
-
-    Raises
-    ------
-    SpecError
-        What is wrong with the text itself.
-    UsageError
-        SF902 an unknown name; SF203, SF209 and others that the same value in the text would cause.
+    Settings are quantities, or numbers in SI units, by parameter, also of nested models. Raises SpecError for
+    what is wrong with the text itself, UsageError: SF902 an unknown name; SF203, SF209 and others that
+    the same value in the text would cause.
     """
     folders = tuple(allow_outside)
     model = load_model(source, allow_outside=folders)
@@ -158,10 +149,7 @@ def load_with(
 def resolve(spec: Spec, origin: Origin) -> Model:
     """Give every name, node, unit and value of a specification its meaning.
 
-    Raises
-    ------
-    SpecError
-        SF2xx, with every problem found.
+    Raises SpecError: SF2xx, with every problem found.
     """
     reader = Reader()
     _check_header(reader, spec)

@@ -85,11 +85,8 @@ class ModelScope:
     def lookup(self, expression: Name | Attribute, *, constant: bool) -> Meaning:
         """Return the meaning of a name; in a constant stand parameters, definitions, blocks, s and pi only.
 
-        Raises
-        ------
-        SpecError
-            SF210 unknown, SF211 ambiguous, SF212 not allowed here, SF241 a field without a point,
-            SF245 not allowed in the equations of a field.
+        Raises SpecError: SF210 unknown, SF211 ambiguous, SF212 not allowed here, SF241 a field without a
+        point, SF245 not allowed in the equations of a field.
         """
         if isinstance(expression, Attribute):
             return self._lookup_attribute(expression, constant=constant)

@@ -33,10 +33,7 @@ OPTION = "--set"
 def read_settings(texts: Sequence[str]) -> dict[str, str]:
     """Return what ``NAME=VALUE`` texts say.
 
-    Raises
-    ------
-    UsageError
-        SF902 for a text that is not NAME=VALUE, or a name that is given twice.
+    Raises UsageError: SF902 for a text that is not NAME=VALUE, or a name that is given twice.
 
     Examples
     --------
@@ -60,10 +57,7 @@ def read_settings(texts: Sequence[str]) -> dict[str, str]:
 def check_names(model: Model, settings: Mapping[str, Setting]) -> None:
     """Refuse names that are not parameters of a model.
 
-    Raises
-    ------
-    UsageError
-        SF902 with the nearest name.
+    Raises UsageError: SF902 with the nearest name.
     """
     known = [p.name for p in model.parameters]
     others = {d.name: "a definition, and follows from parameters" for d in model.definitions}

@@ -239,12 +239,8 @@ def check_ranges(reader: Reader, draft: Draft, line: Line, unsound: set[Span | N
 def check_value(model: Model, name: str, value: ExactValue, varied: Collection[str]) -> None:
     """Refuse a value of a parameter with which a distributed part is what none can be.
 
-    All other parameters keep their declared values, but for those ``varied``, which do not count.
-
-    Raises
-    ------
-    UsageError
-        SF209 a length, stiffness or dead time of a sign it cannot have.
+    All other parameters keep their declared values, but for those ``varied``, which do not count. Raises
+    UsageError: SF209 a length, stiffness or dead time of a sign it cannot have.
     """
     known = {p.name: p.value for p in model.parameters if p.value and p.name not in varied} | {name: value}
     line = Line(

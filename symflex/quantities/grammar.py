@@ -144,10 +144,7 @@ _NO_CONSTANT: Final = Constant(Fraction(1), 0, -1, -1)
 def evaluate(value: str, kind: str) -> tuple[Constant, PlacedUnit]:
     """Read a text as a ``"quantity"`` or a ``"unit"``; a part that is not there is 1.
 
-    Raises
-    ------
-    RejectedError
-        With offsets in ``value``.
+    Raises RejectedError with offsets in ``value``.
 
     Examples
     --------

@@ -131,10 +131,7 @@ class Reading:
     def words(self) -> Iterator[Token]:
         """Yield each word before it is read.
 
-        Raises
-        ------
-        UnexpectedError
-            Where the text is not of the language.
+        Raises UnexpectedError where the text is not of the language.
         """
         place = 0
         while token := self._grammar.word(self._text, place, self._states[-1]):

@@ -62,11 +62,8 @@ def parse_quantity(text: Text) -> Quantity:
 
     Between constant and unit stands a space; a plain number may touch a unit's first letter (``3kg``). The
     text is untrusted, of at most 200 characters. Cycles (Hz, rev, rpm) are counted, not multiplied by 2 pi.
-
-    Raises
-    ------
-    SpecError
-        SF201 for an unknown unit, SF202 for a malformed quantity, SF103 for one beyond the limits.
+    Raises SpecError: SF201 for an unknown unit, SF202 for a malformed quantity, SF103 for one beyond the
+    limits.
 
     Examples
     --------
@@ -90,10 +87,7 @@ def parse_quantity(text: Text) -> Quantity:
 def parse_unit(text: Text) -> Unit:
     """Read a unit alone, from an untrusted text; ``1`` is the unit of a pure number.
 
-    Raises
-    ------
-    SpecError
-        SF201 for an unknown unit, SF202 for a malformed one, SF103 for one beyond the limits.
+    Raises SpecError: SF201 for an unknown unit, SF202 for a malformed one, SF103 for one beyond the limits.
 
     Examples
     --------

@@ -28,11 +28,8 @@ _KEY_PARTS = re.compile(KEY_PART)
 def parse(source: Source) -> Spec:
     r"""Parse a specification: TOML 1.0, with or without a byte order mark, any line ends.
 
-    Raises
-    ------
-    SpecError
-        SF101 (syntax) and SF102 (a key or table defined twice), one diagnostic for each error, at most
-        20; or one SF103 when the text passes a limit (size, nesting, entries, length of numbers).
+    Raises SpecError: SF101 (syntax) and SF102 (a key or table defined twice), one diagnostic for each error,
+    at most 20; or one SF103 when the text passes a limit (size, nesting, entries, length of numbers).
 
     Examples
     --------
@@ -52,12 +49,8 @@ def parse_with_recovery(source: Source) -> tuple[Spec, tuple[Diagnostic, ...]]:
     r"""Parse what is right of a specification, and report what is not, in the order of the text.
 
     A key whose value is wrong keeps an ``OtherValue("invalid", ...)``, so that its name is still known; under
-    a header that is wrong or repeated, entries go to the table it seems to name.
-
-    Raises
-    ------
-    SpecError
-        SF103 when the text passes a limit; nothing is then kept of it.
+    a header that is wrong or repeated, entries go to the table it seems to name. Raises SpecError: SF103 when
+    the text passes a limit; nothing is then kept of it.
 
     Examples
     --------

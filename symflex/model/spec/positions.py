@@ -83,10 +83,7 @@ def _frozen(value: _Table | _Tables | Value) -> Value:
 def locate(document: Document, decoded: Mapping[str, Any]) -> TableValue:
     """Give every value that tomllib made of a text its place, floats being :class:`Literal`.
 
-    Raises
-    ------
-    SpecError
-        SF101 where tomllib accepts what is not TOML 1.0 (it is newer in later Pythons).
+    Raises SpecError: SF101 where tomllib accepts what is not TOML 1.0 (it is newer in later Pythons).
     """
     tree = Parser(_TOML).parse(document.masked.encode("ascii"))
     if tree.root_node.has_error:

@@ -18,14 +18,9 @@ _UTF16_MARKS = (b"\xff\xfe", b"\xfe\xff")
 def read(path: str | Path) -> Source:
     r"""Read the text of a specification, without its byte order mark; line ends are kept as they are.
 
-    It is a regular file, in UTF-8, of at most 1 MB.
-
-    Raises
-    ------
-    UsageError
-        SF901 when there is no such regular file or it cannot be opened.
-    SpecError
-        SF901 when it is too large or not UTF-8, with the byte offset.
+    It is a regular file, in UTF-8, of at most 1 MB. Raises UsageError: SF901 when there is no such regular
+    file or it cannot be opened. Raises SpecError: SF901 when it is too large or not UTF-8, with the byte
+    offset.
 
     Examples
     --------
@@ -57,12 +52,8 @@ def read_file(name: str, limit: int) -> bytes:
 def read_bytes(name: str, limit: int) -> bytes:
     """Return the bytes of a regular file, and of a larger one a byte more than the limit.
 
-    Raises
-    ------
-    UsageError
-        SF901 when it is not a regular file.
-    OSError, ValueError
-        When it cannot be opened.
+    Raises UsageError: SF901 when it is not a regular file. Raises OSError, ValueError when it cannot be
+    opened.
     """
     # O_NONBLOCK: a FIFO that takes the file's place after the first look must not hang the open.
     if not stat.S_ISREG(os.stat(name).st_mode):

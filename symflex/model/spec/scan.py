@@ -214,10 +214,7 @@ class Scan:
 def scan(source: Source) -> Scan:
     r"""Cut a text into statements, and mask the inside of its strings.
 
-    Raises
-    ------
-    SpecError
-        SF103 when a limit is passed; SF101 when the text holds half a surrogate pair.
+    Raises SpecError: SF103 when a limit is passed; SF101 when the text holds half a surrogate pair.
 
     Examples
     --------
