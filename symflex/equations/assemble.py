@@ -40,9 +40,10 @@ if TYPE_CHECKING:
 
 PI = "pi"
 GENERATOR_LIMIT = 1_000
-"""Names over a dense ring, whose monomials hold an exponent for each of them."""
+"""Names over a dense ring, whose monomials hold an exponent for each; a round number, not a measured one."""
 UNKNOWN_LIMIT = 2_500
-"""Unknowns over a dense ring; a singular system of so many can still be explained with a dense matrix."""
+"""Unknowns over a dense ring; a singular system of so many can still be explained with a dense matrix, which
+is 50 MB of doubles."""
 SPARSE_LIMIT = 500_000
 """Names, and unknowns, of equations over a sparse ring."""
 

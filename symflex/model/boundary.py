@@ -27,6 +27,7 @@ from symflex.library.elements import LineElement
 from symflex.model.independence import RandomPoint, repetitions
 from symflex.model.linearity import check_equation, check_expression
 from symflex.model.reading import QuantityLiteral
+from symflex.model.units import lower
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -172,7 +173,7 @@ def _values_at_points(expression: Expression, scope: ModelScope) -> Iterator[Cal
 
 
 def _difference(left: Expression, right: Expression) -> Expression:
-    return Sum((left, Negative(right)))
+    return Sum((lower(left), Negative(lower(right))))
 
 
 def _written(place: Expression) -> str:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 FIELD_LIMIT = 100
 UNKNOWN_LIMIT = 12
+"""As many as the order in x that a field may have, :data:`symflex.model.boundary.ORDER_LIMIT`."""
 CONDITION_LIMIT = 200
 SPLIT = "split it into several fields, which conditions may join"
 KEYS = ("domain", "unknowns", "equation", "equations", "conditions", "latex", "doc")

@@ -94,7 +94,8 @@ SECTIONS = (
     "figures",
 )
 MAX_PAIRS = 10_000
-"""Transfer functions of one model: every list of them is printed in full."""
+"""Transfer functions of one model, as of 100 outputs and 100 inputs: every list of them is printed in full. A
+round number, not a measured one."""
 CONSEQUENCES = ("SF210", "SF218")
 """What is noted of a name that was lost with a mistake elsewhere."""
 TOP_KEYS = ("symflex", "title", "source", "doc", *SECTIONS)

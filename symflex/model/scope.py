@@ -37,7 +37,7 @@ RESERVED: dict[str, str] = {
 LISTED_NAMES = 8
 """Names that a hint lists."""
 COMPARED_NAMES = 500
-"""Names among which the nearest to a misspelt one is sought: comparing costs time for each."""
+"""Names among which the nearest to a misspelt one is sought: comparing so many takes 3 ms a mistake."""
 
 
 @dataclass(frozen=True, slots=True)

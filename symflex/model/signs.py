@@ -9,10 +9,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import reduce
 from typing import TYPE_CHECKING
 
 from symflex.errors import Diagnostic, UsageError
-from symflex.expressions import Expression, Name, Negative, Number, Power, Product, Quotient, Sum, names
+from symflex.expressions import Expression, Name, fold, names
 from symflex.library.elements import LineElement
 from symflex.model.linearity import integer_exponent
 from symflex.model.model import PI_NEARLY
@@ -20,7 +21,7 @@ from symflex.model.reading import literal_value
 from symflex.model.units import lower
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Hashable, Iterable, Iterator, Mapping
+    from collections.abc import Collection, Hashable, Iterable, Iterator, Mapping, Sequence
 
     from symflex.errors import Span
     from symflex.library.elements import Sign
@@ -43,6 +44,7 @@ class Line:
 
     Examples
     --------
+    >>> from symflex.expressions import Negative, Number, Quotient, Sum
     >>> l, half = Name("l"), Quotient(Name("l"), Number(Fraction(2)))
     >>> line = Line({}, frozenset({"l"}), frozenset(), {})
     >>> line.sign(Sum((l, Negative(half)))), line.sign(Sum((half, Negative(l)))), line.sign(Name("x_s"))
@@ -93,6 +95,7 @@ class Line:
     def key(self, place: Expression) -> Hashable:
         """Return what is equal of equal places: the number, else the polynomial, else the place as written.
 
+        >>> from symflex.expressions import Number, Product, Quotient
         >>> half = Quotient(Name("l"), Number(Fraction(2)))
         >>> line = Line({}, frozenset({"l"}), frozenset(), {})
         >>> line.key(half) == line.key(Product((Number(Fraction(1, 2)), Name("l"))))
@@ -117,50 +120,47 @@ class Line:
         return total
 
     def _read(self, expression: Expression) -> Polynomial | None:
-        match lower(expression):  # a quantity is a number here
-            case Number(value):
-                return {(): value} if value else {}
-            case Name(name):
-                return self._name(name)
-            case Negative(operand):
-                inner = self._read(operand)
-                return None if inner is None else {m: -c for m, c in inner.items()}
-            case Sum(terms):
-                parts = [self._read(t) for t in terms]
-                return None if None in parts else _sum([p for p in parts if p is not None])
-            case Product(factors):
-                result: Polynomial | None = {(): Fraction(1)}
-                for factor in factors:
-                    other = self._read(factor)
-                    result = None if result is None or other is None else _product(result, other)
-                return result
-            case Quotient(numerator, denominator):
-                top, bottom = self._read(numerator), self._read(denominator)
-                inverse = None if bottom is None else _power(bottom, -1)
-                return None if top is None or inverse is None else _product(top, inverse)
-            case Power(base, exponent):
-                inner, n = self._read(base), integer_exponent(exponent)
-                return None if inner is None or n is None else _power(inner, n)
-            case _:
-                return None
+        try:
+            return fold(
+                lower(expression),  # a quantity is a number here
+                number=lambda value: {(): value} if value else {},
+                name=self._name,
+                power=lambda base, exponent: _power(base, integer_exponent(exponent)),
+                call=_unread,
+                negative=lambda inner: {m: -c for m, c in inner.items()},
+                total=_sum,
+                product=lambda factors: reduce(_product, factors, {(): Fraction(1)}),
+                quotient=lambda above, below: _product(above, _power(below, -1)),
+            )
+        except (_UnreadError, TypeError):  # derivatives and their like have no value by themselves
+            return None
 
-    def _name(self, name: str) -> Polynomial | None:
-        return self._opened[name] if name in self._opened else {((name, 1),): Fraction(1)}
+    def _name(self, name: str) -> Polynomial:
+        known = self._opened.get(name, {((name, 1),): Fraction(1)})
+        return _unread() if known is None or "." in name else known
 
 
-def _sum(parts: list[Polynomial]) -> Polynomial | None:
+class _UnreadError(Exception):
+    """An expression is no polynomial, or too large a one."""
+
+
+def _unread(*_: object) -> Polynomial:
+    raise _UnreadError
+
+
+def _sum(parts: Sequence[Polynomial]) -> Polynomial:
     total: Polynomial = {}
     for part in parts:
         for monomial, coefficient in part.items():
             total[monomial] = total.get(monomial, Fraction(0)) + coefficient
     kept = {m: c for m, c in total.items() if c}
     small = all(max(c.numerator.bit_length(), c.denominator.bit_length()) < BIT_LIMIT for c in kept.values())
-    return kept if small and len(kept) <= TERM_LIMIT else None
+    return kept if small and len(kept) <= TERM_LIMIT else _unread()
 
 
-def _product(left: Polynomial, right: Polynomial) -> Polynomial | None:
+def _product(left: Polynomial, right: Polynomial) -> Polynomial:
     if len(left) * len(right) > TERM_LIMIT:
-        return None
+        return _unread()
     parts: list[Polynomial] = []
     for one, a in left.items():
         for other, b in right.items():
@@ -168,21 +168,21 @@ def _product(left: Polynomial, right: Polynomial) -> Polynomial | None:
             for name, e in other:
                 exponents[name] = exponents.get(name, 0) + e
             if any(abs(e) > DEGREE_LIMIT for e in exponents.values()):
-                return None
+                return _unread()
             monomial = tuple(sorted((n, e) for n, e in exponents.items() if e))
             parts.append({monomial: a * b})
     return _sum(parts)
 
 
-def _power(base: Polynomial, exponent: int) -> Polynomial | None:
+def _power(base: Polynomial, exponent: int | None) -> Polynomial:
     """Return a power of a single term; sums are not multiplied out."""
     if exponent == 1:
         return base
-    if len(base) != 1 or abs(exponent) > DEGREE_LIMIT:
-        return None
+    if exponent is None or len(base) != 1 or abs(exponent) > DEGREE_LIMIT:
+        return _unread()
     ((monomial, coefficient),) = base.items()
     if any(abs(e * exponent) > DEGREE_LIMIT for _, e in monomial):
-        return None
+        return _unread()
     return _sum([{tuple((n, e * exponent) for n, e in monomial if exponent): coefficient**exponent}])
 
 

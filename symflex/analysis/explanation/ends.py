@@ -25,7 +25,8 @@ from symflex.expressions import (
     names,
 )
 from symflex.library.elements import LineElement, Variable
-from symflex.library.elements.line import Beam, MasslessBeam
+from symflex.library.elements.line import Beam
+from symflex.library.elements.rigid import MasslessBeam
 
 if TYPE_CHECKING:
     from collections.abc import Collection

@@ -123,14 +123,13 @@ def csv_bytes(response: MeasuredResponse) -> bytes:
     """Return a response as text in columns, with what else is known in comment lines."""
     lines = [f"# {note}" for note in response.notes]
     lines.append(f"# tf: {response.name}")
-    if response.unit:
-        lines.append(f"# unit: {response.unit}")
-    if response.averages:
-        lines.append(f"# averages: {response.averages:g}")
-    if response.window:
-        lines.append(f"# window: {response.window}")
-    if response.is_synthetic:
-        lines.append("# synthetic: yes")
+    known = (
+        ("unit", response.unit),
+        ("averages", f"{response.averages:g}" if response.averages else ""),
+        ("window", response.window),
+        ("synthetic", "yes" if response.is_synthetic else ""),
+    )
+    lines += [f"# {key}: {value}" for key, value in known if value]
     has_coherence = response.coherence is not None
     lines.append("frequency_hz,re,im" + ",coherence" * has_coherence)
     coherence = response.coherence if response.coherence is not None else np.ones(response.values.size)
@@ -158,6 +157,7 @@ def npz_bytes(response: MeasuredResponse) -> bytes:
     if response.unit:
         arrays["unit"] = np.array(response.unit)
     buffer = BytesIO()
+    # An array called allow_pickle would be taken for numpy's option, whose type mypy sees; none is.
     np.savez(buffer, **arrays)  # type: ignore[arg-type]
     return buffer.getvalue()
 

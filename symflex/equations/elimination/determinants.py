@@ -98,7 +98,8 @@ class Determinants:
 MINOR_LIMIT = 200_000
 """Minors of one system. A full matrix of 17 rows has 2^17 = 131,072 of them; those of a chain are few."""
 ROW_LIMIT = 700
-"""Unknowns left after elimination; systems of more are given as nested expressions."""
+"""Unknowns left after elimination; systems of more are given as nested expressions. Not a measured limit:
+nested, a chain of 700 masses takes 2.4 s and 60 MB."""
 MEMORY_LIMIT = 300_000_000
 """Bytes that all minors of a system may take together: a free chain of sixteen masses needs 270 MB. The
 engine takes almost three times as much for a while."""

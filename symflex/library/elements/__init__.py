@@ -21,7 +21,7 @@ from symflex.library.elements.element import (
     Stamp,
     Variable,
 )
-from symflex.library.elements.line import Beam, LineElement, MasslessBeam, Rod, Shaft, String
+from symflex.library.elements.line import Beam, LineElement, Rod, Shaft, String
 from symflex.library.elements.lumped import (
     Capacitor,
     CurrentSource,
@@ -37,7 +37,7 @@ from symflex.library.elements.lumped import (
     TorsionSpring,
     VoltageSource,
 )
-from symflex.library.elements.rigid import Fixed, Pin, RigidBody, RigidLink, Slider
+from symflex.library.elements.rigid import Fixed, MasslessBeam, Pin, RigidBody, RigidLink, Slider
 
 ELEMENTS: dict[str, Element] = {
     element.type_name: element

@@ -1,4 +1,4 @@
-"""Planar rigid parts: a body with inertia, a massless link, and supports (fixed, slider, pin).
+"""Planar parts: a body with inertia, a rigid link and a beam without mass, supports (fixed, slider, pin).
 
 Reactions of supports are unknowns that the elimination removes first.
 """
@@ -23,6 +23,7 @@ from symflex.library.elements.element import (
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from symflex.algebra import Factored
     from symflex.library.elements.element import Placing, Variable
 
 
@@ -83,24 +84,70 @@ class RigidLink(Element):
         force, moment = use.unknown("f"), use.unknown("tau")
         one, length = use.one, use.values["length"]
         scale = length.denominator()
-        return Stamp(
-            unknowns=(force, moment),
-            rows=(
-                EquationRow(
-                    force,
-                    LinearForm.of((b.y, scale), (a.y, -scale), (a.theta, -length * scale)),
-                    "constraint",
-                ),
-                EquationRow(moment, LinearForm.of((b.theta, one), (a.theta, -one)), "constraint"),
-            ),
-            injections=(
-                Injection(b.y, LinearForm.of((force, one))),
-                Injection(b.theta, LinearForm.of((moment, one))),
-                Injection(a.y, LinearForm.of((force, -one))),
-                Injection(a.theta, LinearForm.of((moment, -one), (force, -length))),
-            ),
-            through=(("f", LinearForm.of((force, one))), ("tau", LinearForm.of((moment, one)))),
+        deflection = LinearForm.of((b.y, scale), (a.y, -scale), (a.theta, -length * scale))
+        slope = LinearForm.of((b.theta, one), (a.theta, -one))
+        rows = (EquationRow(force, deflection, "constraint"), EquationRow(moment, slope, "constraint"))
+        return _carried(use, length, rows)
+
+
+class MasslessBeam(Element):
+    """A massless beam of bending stiffness EI [N m^2] and length l [m].
+
+    ``f`` [N] and ``tau`` [N m] are the force and moment the beam delivers at its second end.
+    Written as the flexibility of a cantilever (Timoshenko & Gere 1972, table of beam deflections),
+    which keeps the rows polynomial: relative to the rigid motion of the first end, the second end
+    deflects by ``(P*l^3/3 + M*l^2/2)/EI`` and turns by ``(P*l^2/2 + M*l)/EI`` under P and M applied to it.
+    """
+
+    type_name = "massless_beam"
+    summary = "Massless Euler-Bernoulli beam between two planar nodes"
+    ports = (Port("between", 2, "planar", "the two ends, the second one l further along x"),)
+    parameters = (
+        ParameterPort("EI", "N*m^2", "a bending stiffness"),
+        ParameterPort("l", "m", "a length"),
+    )
+    through = ("f", "tau")
+    passive = Passivity()
+    compliance = "bending"
+    stiffness = "EI"
+
+    def stamp(self, use: ElementUse) -> Stamp:
+        """Contribute the end force and moment and the two flexibility rows."""
+        a, b = use.terminals["between"]
+        force, moment = use.unknown("f"), use.unknown("tau")
+        stiffness, length = use.values["EI"], use.values["l"]
+        # Force and moment on the beam's end are minus what the beam delivers there.
+        deflection = LinearForm.of(
+            (b.y, stiffness * 6),
+            (a.y, stiffness * -6),
+            (a.theta, stiffness * length * -6),
+            (force, length**3 * 2),
+            (moment, length**2 * 3),
         )
+        slope = LinearForm.of(
+            (b.theta, stiffness * 2),
+            (a.theta, stiffness * -2),
+            (force, length**2),
+            (moment, length * 2),
+        )
+        return _carried(use, length, (EquationRow(force, deflection), EquationRow(moment, slope)))
+
+
+def _carried(use: ElementUse, length: Factored, rows: tuple[EquationRow, ...]) -> Stamp:
+    """Return the stamp of a part without mass that carries a force and a moment over its length."""
+    a, b = use.terminals["between"]
+    force, moment, one = use.unknown("f"), use.unknown("tau"), use.one
+    return Stamp(
+        unknowns=(force, moment),
+        rows=rows,
+        injections=(
+            Injection(b.y, LinearForm.of((force, one))),
+            Injection(b.theta, LinearForm.of((moment, one))),
+            Injection(a.y, LinearForm.of((force, -one))),
+            Injection(a.theta, LinearForm.of((moment, -one), (force, -length))),
+        ),
+        through=(("f", LinearForm.of((force, one))), ("tau", LinearForm.of((moment, one)))),
+    )
 
 
 def _hold(use: ElementUse, held: tuple[tuple[str, Variable | None], ...]) -> Stamp:
