@@ -15,7 +15,7 @@ from symflex.library.blocks import BLOCKS, MODEL_BLOCK
 from symflex.model.analysis import named_pairs, pick_tf
 from symflex.model.linearity import EXPONENT_LIMIT
 from symflex.model.model import PlacedBlock
-from symflex.model.reading import signed_number
+from symflex.model.reading import read_entries, signed_number
 from symflex.model.scope import RESERVED
 from symflex.model.spec import ArrayValue, parse_with_recovery, read
 from symflex.model.units import lower
@@ -81,8 +81,7 @@ class Origin:
 
 def read_blocks(reader: Reader, section: TableValue | None, origin: Origin) -> tuple[PlacedBlock, ...]:
     """Return the blocks in order."""
-    found = [_read_block(reader, e, origin) for e in section.entries] if section else []
-    return tuple(b for b in found if b is not None)
+    return read_entries(section, lambda entry: _read_block(reader, entry, origin))
 
 
 def _read_block(reader: Reader, entry: KeyValue, origin: Origin) -> PlacedBlock | None:

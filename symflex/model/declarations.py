@@ -11,7 +11,7 @@ from symflex.errors import Diagnostic, SpecError, Text
 from symflex.expressions import names, names_among
 from symflex.model.labels import check_label
 from symflex.model.model import ONE, Assumption, Definition, ExactValue, ModelParameter, Output, Signal
-from symflex.model.reading import Reader
+from symflex.model.reading import Reader, read_entries
 from symflex.model.scope import RESERVED
 from symflex.model.spec import NumberValue, StringValue, TableValue
 from symflex.quantities import DIMENSIONLESS, Quantity, parse_unit, unit_of
@@ -135,8 +135,7 @@ def read_label(reader: Reader, table: TableValue, what: str) -> str:
 
 def read_parameters(reader: Reader, section: TableValue | None) -> tuple[DeclaredParameter, ...]:
     """Return the declared parameters in order."""
-    found = [_read_parameter(reader, e) for e in section.entries] if section else []
-    return tuple(p for p in found if p is not None)
+    return read_entries(section, lambda entry: _read_parameter(reader, entry))
 
 
 def _read_parameter(reader: Reader, entry: KeyValue) -> DeclaredParameter | None:
@@ -324,27 +323,24 @@ def _without_circles(reader: Reader, definitions: Sequence[Definition]) -> tuple
 
 def read_signals(reader: Reader, section: TableValue | None) -> tuple[Signal, ...]:
     """Return the signals in order."""
-    found: list[Signal] = []
-    for entry in section.entries if section else ():
-        if reader.name(entry, "a signal", RESERVED):
-            expression = reader.expression(entry.value, f"signal '{entry.key}'", quantities=False)
-            if expression is not None:
-                found.append(Signal(entry.key, expression, entry.key_span))
-    return tuple(found)
+    return read_entries(section, lambda entry: _read_signal(reader, entry))
+
+
+def _read_signal(reader: Reader, entry: KeyValue) -> Signal | None:
+    if not reader.name(entry, "a signal", RESERVED):
+        return None
+    expression = reader.expression(entry.value, f"signal '{entry.key}'", quantities=False)
+    return None if expression is None else Signal(entry.key, expression, entry.key_span)
 
 
 def read_outputs(reader: Reader, section: TableValue | None) -> tuple[Output, ...]:
     """Return the outputs in order."""
-    found: list[Output] = []
-    for entry in section.entries if section else ():
-        if reader.name(entry, "an output"):
-            output = _read_output(reader, entry)
-            if output is not None:
-                found.append(output)
-    return tuple(found)
+    return read_entries(section, lambda entry: _read_output(reader, entry))
 
 
 def _read_output(reader: Reader, entry: KeyValue) -> Output | None:
+    if not reader.name(entry, "an output"):
+        return None
     what, value, label = f"output '{entry.key}'", entry.value, ""
     if isinstance(value, TableValue):
         reader.keys(value, ("expr", "latex", "doc"), what)

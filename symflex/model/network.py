@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fractions import Fraction
 from heapq import heapify, heappop, heappush
 from typing import TYPE_CHECKING
@@ -22,7 +22,7 @@ from symflex.model.model import (
     PlacedBlock,
     Signal,
 )
-from symflex.model.reading import NAME, Reader, signed_number
+from symflex.model.reading import NAME, Reader, read_entries, signed_number
 from symflex.model.scope import RESERVED
 from symflex.model.spec import ArrayValue, StringValue, TableValue
 from symflex.quantities import parse_unit, unit_of
@@ -84,269 +84,258 @@ class DraftInput:
         return [Attachment(r, domain, f"input '{self.input.name}'") for r in self.input.nodes]
 
 
-@dataclass(slots=True)
-class NetworkReader:
-    """Reads ``[elements]`` and ``[inputs]``."""
+def read_elements(reader: Reader, section: TableValue | None) -> tuple[DraftElement, ...]:
+    """Return every element; what is wrong is noted and the element left out."""
+    return read_entries(section, lambda entry: _read_element(reader, entry))
 
-    reader: Reader
-    elements: list[DraftElement] = field(default_factory=list)
-    inputs: list[DraftInput] = field(default_factory=list)
 
-    def read_elements(self, section: TableValue | None) -> None:
-        """Read every element; what is wrong is noted and the element left out."""
-        for entry in section.entries if section else ():
-            element = self._read_element(entry)
-            if element is not None:
-                self.elements.append(element)
+def _read_element(reader: Reader, entry: KeyValue) -> DraftElement | None:
+    what = f"element '{entry.key}'"
+    if not reader.name(entry, "an element"):
+        return None
+    hint = 'for instance { type = "spring", between = ["a", "b"], k = "k" }'
+    table = reader.table(entry, what, hint)
+    element = _element_type(reader, table, entry) if table else None
+    if table is None or element is None:
+        return None
+    keys = [key for p in element.ports for key in (p.name, p.pair) if key]
+    keys += [p.name for p in element.parameters]
+    keys += [c.name for c in element.choices]
+    reader.keys(table, ("type", *keys, "doc"), f"{element.type_name} '{entry.key}'")
+    nodes = [(port, _references(reader, table, port, entry, element)) for port in element.ports]
+    choices = _choices(reader, table, entry, element)
+    values = None if choices is None else _values(reader, table, entry, element, dict(choices))
+    if any(references is None for _, references in nodes):
+        return None
+    if all(r.is_ground for _, references in nodes for r in references or ()):
+        message = f"{element.type_name} '{entry.key}' is attached to ground only"
+        reader.note("SF218", message, entry.key_span, "the ground does not move; name a node")
+        return None
+    attached = tuple((p, r) for p, r in nodes if r is not None)
+    return DraftElement(entry.key, element, attached, values or (), entry.key_span, choices or ())
 
-    def _read_element(self, entry: KeyValue) -> DraftElement | None:
-        reader, what = self.reader, f"element '{entry.key}'"
-        if not reader.name(entry, "an element"):
-            return None
-        hint = 'for instance { type = "spring", between = ["a", "b"], k = "k" }'
-        table = reader.table(entry, what, hint)
-        element = self._element_type(table, entry) if table else None
-        if table is None or element is None:
-            return None
-        keys = [key for p in element.ports for key in (p.name, p.pair) if key]
-        keys += [p.name for p in element.parameters]
-        keys += [c.name for c in element.choices]
-        reader.keys(table, ("type", *keys, "doc"), f"{element.type_name} '{entry.key}'")
-        nodes = [(port, self._references(table, port, entry, element)) for port in element.ports]
-        choices = self._choices(table, entry, element)
-        values = None if choices is None else self._values(table, entry, element, dict(choices))
-        if any(references is None for _, references in nodes):
-            return None
-        if all(r.is_ground for _, references in nodes for r in references or ()):
-            message = f"{element.type_name} '{entry.key}' is attached to ground only"
-            reader.note("SF218", message, entry.key_span, "the ground does not move; name a node")
-            return None
-        attached = tuple((p, r) for p, r in nodes if r is not None)
-        return DraftElement(entry.key, element, attached, values or (), entry.key_span, choices or ())
 
-    def _choices(
-        self, table: TableValue, entry: KeyValue, element: Element
-    ) -> tuple[tuple[str, str], ...] | None:
-        """Return what was chosen for every choice; ``None`` when a word is unknown."""
-        found: list[tuple[str, str]] = []
-        for choice in element.choices:
-            given = table.get(choice.name)
-            what = f"{choice.name} of {element.type_name} '{entry.key}'"
-            text = self.reader.string(given, what) if given else None
-            if given is None:
-                found.append((choice.name, choice.default))
-            elif text is not None and text.value in choice.values:
-                found.append((choice.name, text.value))
-            elif text is not None:
-                hint = nearest(text.value, choice.values) or "known: " + ", ".join(choice.values)
-                who = f"{element.type_name} '{entry.key}'"
-                message = f"unknown {choice.name} '{text.value[:60]}' of {who}"
-                self.reader.note("SF208", message, text.span, hint)
-        return tuple(found) if len(found) == len(element.choices) else None
+def _choices(
+    reader: Reader, table: TableValue, entry: KeyValue, element: Element
+) -> tuple[tuple[str, str], ...] | None:
+    """Return what was chosen for every choice; ``None`` when a word is unknown."""
+    found: list[tuple[str, str]] = []
+    for choice in element.choices:
+        given = table.get(choice.name)
+        what = f"{choice.name} of {element.type_name} '{entry.key}'"
+        text = reader.string(given, what) if given else None
+        if given is None:
+            found.append((choice.name, choice.default))
+        elif text is not None and text.value in choice.values:
+            found.append((choice.name, text.value))
+        elif text is not None:
+            hint = nearest(text.value, choice.values) or "known: " + ", ".join(choice.values)
+            who = f"{element.type_name} '{entry.key}'"
+            message = f"unknown {choice.name} '{text.value[:60]}' of {who}"
+            reader.note("SF208", message, text.span, hint)
+    return tuple(found) if len(found) == len(element.choices) else None
 
-    def _values(
-        self, table: TableValue, entry: KeyValue, element: Element, choices: Mapping[str, str]
-    ) -> tuple[tuple[str, Expression], ...] | None:
-        """Return an expression for every parameter that goes with the choices; ``None`` when one is wrong."""
-        reader, who = self.reader, f"{element.type_name} '{entry.key}'"
-        given: dict[str, Expression] = {}
-        complete = True
-        for parameter in element.parameters:
-            expression: Expression | None = None
-            found, applies = table.get(parameter.name), parameter.applies(choices.values())
-            if found is not None and not applies:
-                chosen = ", ".join(f'{name} = "{value}"' for name, value in choices.items())
-                others = " or ".join(f'"{value}"' for value in parameter.only)
-                reader.note(
-                    "SF247",
-                    f"{parameter.name} of {who} does not go with {chosen}",
-                    found.key_span,
-                    f"it goes with {others}",
-                )
-            elif found is not None:
-                expression = reader.expression(found.value, f"{parameter.name} of {who}")
-            elif parameter.default is not None:
-                like = any(p.name == parameter.default for p in element.parameters)
-                expression = (
-                    given.get(parameter.default) if like else signed_number(Fraction(parameter.default))
-                )
-            elif applies:
-                names = ", ".join(p.name for p in element.parameters if p.applies(choices.values()))
-                reader.note(
-                    "SF214",
-                    f"{who} lacks {parameter.name}, {parameter.doc}",
-                    entry.key_span,
-                    f"parameters of {element.type_name}: {names}",
-                )
-            else:
-                continue
-            if expression is None:
-                complete = False
-            else:
-                given[parameter.name] = expression
-        return tuple(given.items()) if complete else None
 
-    def _element_type(self, table: TableValue, entry: KeyValue) -> Element | None:
-        kind = table.get("type")
-        if kind is None:
-            self.reader.note("SF214", f"element '{entry.key}' has no type", entry.key_span, TYPES_HINT)
-            return None
-        text = self.reader.string(kind, f"type of element '{entry.key}'")
-        if text is None:
-            return None
-        element = ELEMENTS.get(text.value)
-        if element is None:
-            hint = nearest(text.value, ELEMENTS) or TYPES_HINT
-            self.reader.note("SF216", f"unknown element type '{text.value[:60]}'", text.span, hint)
-        return element
-
-    def _references(
-        self, table: TableValue, port: Port, entry: KeyValue, element: Element
-    ) -> tuple[NodeReference, ...] | None:
-        what = f"{port.name} of {element.type_name} '{entry.key}'"
-        found, wanted = table.get(port.name), port.terminals
-        both = table.get(port.pair) if port.pair else None
-        if found is not None and both is not None:
-            message = f"{element.type_name} '{entry.key}' takes {port.name} or {port.pair}, not both"
-            self.reader.note("SF217", message, both.key_span)
-            return None
-        if both is not None:
-            what, found, wanted = f"{port.pair} of {element.type_name} '{entry.key}'", both, 2
-        if found is None:
-            if port.default is not None:
-                return tuple(NodeReference(n) for n in port.default)
-            ports = ", ".join(p.name for p in element.ports)
-            self.reader.note(
-                "SF217",
-                f"{element.type_name} '{entry.key}' lacks its port '{port.name}' ({port.doc})",
-                entry.key_span,
-                f"ports of {element.type_name}: {ports}",
-            )
-            return None
-        kind = "the name of a node" if wanted == 1 else f"an array of {wanted} nodes"
-        texts = self.reader.strings(found, what, kind)
-        if texts is None:
-            return None
-        if len(texts) != wanted:
-            plural = "node" if wanted == 1 else "nodes"
-            hint = f"two nodes are written {port.pair} = [...]" if port.pair else None
-            self.reader.note(
-                "SF217",
-                f"{what} takes {wanted} {plural}, found {len(texts)}",
-                found.value.span,
-                'an end that does not move is at "ground"' if len(texts) < wanted else hint,
-            )
-            return None
-        references = [self._reference(t, port.domain, what) for t in texts]
-        if any(r is None for r in references):
-            return None
-        kept = tuple(r for r in references if r is not None)
-        if len(kept) == 2 and (kept[0].node, kept[0].component) == (kept[1].node, kept[1].component):  # noqa: PLR2004
-            self.reader.note(
-                "SF218",
-                f"both ends of {element.type_name} '{entry.key}' are at '{texts[0].value}'",
-                found.value.span,
-            )
-            return None
-        return kept
-
-    def _reference(self, text: Text, domain: PortDomain, what: str) -> NodeReference | None:
-        node, dot, component = text.value.partition(".")
-        good = NAME.match(node) and (not dot or component in ("y", "theta"))
-        if not good or (dot and node == "ground"):
-            self.reader.note(
-                "SF213",
-                f"{what}: '{text.value[:80]}' is not a node",
-                text.span,
-                "a node is a name, or name.y or name.theta of a planar node",
-            )
-            return None
-        if dot and domain in ("planar", "whole"):
-            self.reader.note(
-                "SF219", f"{what} takes a whole node, not '{text.value}'", text.span, f"write '{node}'"
-            )
-            return None
-        if dot and (domain, component) in (("translation", "theta"), ("rotation", "y")):
-            kind = "translational" if domain == "translation" else "rotational"
-            self.reader.note("SF219", f"{what} is {kind}; '{text.value}' is not", text.span)
-            return None
-        if dot and domain == "electrical":
-            self.reader.note("SF219", f"{what} is electrical; '{text.value}' is mechanical", text.span)
-            return None
-        return NodeReference(node, component, text.span)
-
-    def read_inputs(self, section: TableValue | None) -> None:
-        """Read every input."""
-        for entry in section.entries if section else ():
-            found = self._read_input(entry)
-            if found is not None:
-                self.inputs.append(found)
-
-    def _read_input(self, entry: KeyValue) -> DraftInput | None:
-        reader, what = self.reader, f"input '{entry.key}'"
-        if not reader.name(entry, "an input", RESERVED):
-            return None
-        table = reader.table(entry, what, 'for instance { force = "x_act" }, or {} for a free signal')
-        if table is None:
-            return None
-        reader.keys(table, (*INPUT_KINDS, "unit", "latex", "doc"), what)
-        label = read_label(reader, table, what)
-        kinds = [e for e in table.entries if e.key in INPUT_KINDS]
-        if len(kinds) > 1:
-            keys = " and ".join(e.key for e in kinds)
-            reader.note("SF217", f"{what} is given as {keys}; it can be only one", kinds[1].key_span)
-            return None
-        if not kinds:
-            free = Input(entry.key, "signal", (), None, "", label, entry.key_span)
-            return DraftInput(free, self._unit(table, what, None))
-        (place,) = kinds
-        kind, law = place.key, INPUT_KINDS[place.key]
-        self._unit(table, what, kind)
-        texts = reader.strings(place, f"{kind} of {what}", "the name of a node, or two")
-        if texts is None:
-            return None
-        if len(texts) not in (1, 2):
+def _values(
+    reader: Reader, table: TableValue, entry: KeyValue, element: Element, choices: Mapping[str, str]
+) -> tuple[tuple[str, Expression], ...] | None:
+    """Return an expression for every parameter that goes with the choices; ``None`` when one is wrong."""
+    who = f"{element.type_name} '{entry.key}'"
+    given: dict[str, Expression] = {}
+    complete = True
+    for parameter in element.parameters:
+        expression: Expression | None = None
+        found, applies = table.get(parameter.name), parameter.applies(choices.values())
+        if found is not None and not applies:
+            chosen = ", ".join(f'{name} = "{value}"' for name, value in choices.items())
+            others = " or ".join(f'"{value}"' for value in parameter.only)
             reader.note(
-                "SF217",
-                f"{what} acts on one node, or on one with its reaction on a second, found {len(texts)}",
-                place.value.span,
+                "SF247",
+                f"{parameter.name} of {who} does not go with {chosen}",
+                found.key_span,
+                f"it goes with {others}",
             )
-            return None
-        references = [self._reference(t, law.domain, what) for t in texts]
-        kept = tuple(r for r in references if r is not None)
-        if len(kept) != len(texts):
-            return None
-        if all(r.is_ground for r in kept):
-            verb = (
-                "moves the ground" if law.is_imposed and law.domain != "electrical" else "acts on ground only"
+        elif found is not None:
+            expression = reader.expression(found.value, f"{parameter.name} of {who}")
+        elif parameter.default is not None:
+            like = any(p.name == parameter.default for p in element.parameters)
+            expression = given.get(parameter.default) if like else signed_number(Fraction(parameter.default))
+        elif applies:
+            names = ", ".join(p.name for p in element.parameters if p.applies(choices.values()))
+            reader.note(
+                "SF214",
+                f"{who} lacks {parameter.name}, {parameter.doc}",
+                entry.key_span,
+                f"parameters of {element.type_name}: {names}",
             )
-            hint = "the ground does not move; name a node of its own, to which the elements are attached"
-            reader.note("SF218", f"{what} {verb}", place.value.span, hint if law.is_imposed else None)
-            return None
-        if len({(r.node, r.component) for r in kept}) != len(kept):
-            reader.note("SF218", f"{what} acts and reacts on the same node", place.value.span)
-            return None
-        return DraftInput(Input(entry.key, kind, kept, None, law.unit, label, entry.key_span))
+        else:
+            continue
+        if expression is None:
+            complete = False
+        else:
+            given[parameter.name] = expression
+    return tuple(given.items()) if complete else None
 
-    def _unit(self, table: TableValue, what: str, kind: str | None) -> str:
-        """Return the unit an input declares; transfer functions are per SI unit, so it must be one."""
-        entry = table.get("unit")
-        text = self.reader.string(entry, f"unit of {what}") if entry else None
-        if text is None:
-            return ""
-        try:
-            unit = parse_unit(text)
-        except SpecError as error:
-            self.reader.take(error.diagnostics)
-            return ""
-        if kind is not None and unit.dimension != unit_of(INPUT_KINDS[kind].unit).dimension:
-            a_kind = f"{'an' if kind.startswith('a') else 'a'} {kind.replace('_', ' ')}"
-            message = f"unit of {what} is '{text.value}'; {a_kind} is in '{INPUT_KINDS[kind].unit}'"
-            self.reader.note("SF203", message, text.span)
-        elif unit.scale != 1 or unit.pi_power or unit.cycles:
-            message = f"unit of {what} is '{text.value}'; transfer functions are per SI unit"
-            self.reader.note("SF203", message, text.span, f"write '{unit.dimension}'")
-        return text.value
+
+def _element_type(reader: Reader, table: TableValue, entry: KeyValue) -> Element | None:
+    kind = table.get("type")
+    if kind is None:
+        reader.note("SF214", f"element '{entry.key}' has no type", entry.key_span, TYPES_HINT)
+        return None
+    text = reader.string(kind, f"type of element '{entry.key}'")
+    if text is None:
+        return None
+    element = ELEMENTS.get(text.value)
+    if element is None:
+        hint = nearest(text.value, ELEMENTS) or TYPES_HINT
+        reader.note("SF216", f"unknown element type '{text.value[:60]}'", text.span, hint)
+    return element
+
+
+def _references(
+    reader: Reader, table: TableValue, port: Port, entry: KeyValue, element: Element
+) -> tuple[NodeReference, ...] | None:
+    what = f"{port.name} of {element.type_name} '{entry.key}'"
+    found, wanted = table.get(port.name), port.terminals
+    both = table.get(port.pair) if port.pair else None
+    if found is not None and both is not None:
+        message = f"{element.type_name} '{entry.key}' takes {port.name} or {port.pair}, not both"
+        reader.note("SF217", message, both.key_span)
+        return None
+    if both is not None:
+        what, found, wanted = f"{port.pair} of {element.type_name} '{entry.key}'", both, 2
+    if found is None:
+        if port.default is not None:
+            return tuple(NodeReference(n) for n in port.default)
+        ports = ", ".join(p.name for p in element.ports)
+        reader.note(
+            "SF217",
+            f"{element.type_name} '{entry.key}' lacks its port '{port.name}' ({port.doc})",
+            entry.key_span,
+            f"ports of {element.type_name}: {ports}",
+        )
+        return None
+    kind = "the name of a node" if wanted == 1 else f"an array of {wanted} nodes"
+    texts = reader.strings(found, what, kind)
+    if texts is None:
+        return None
+    if len(texts) != wanted:
+        plural = "node" if wanted == 1 else "nodes"
+        hint = f"two nodes are written {port.pair} = [...]" if port.pair else None
+        reader.note(
+            "SF217",
+            f"{what} takes {wanted} {plural}, found {len(texts)}",
+            found.value.span,
+            'an end that does not move is at "ground"' if len(texts) < wanted else hint,
+        )
+        return None
+    references = [_reference(reader, t, port.domain, what) for t in texts]
+    if any(r is None for r in references):
+        return None
+    kept = tuple(r for r in references if r is not None)
+    if len(kept) == 2 and (kept[0].node, kept[0].component) == (kept[1].node, kept[1].component):  # noqa: PLR2004
+        reader.note(
+            "SF218",
+            f"both ends of {element.type_name} '{entry.key}' are at '{texts[0].value}'",
+            found.value.span,
+        )
+        return None
+    return kept
+
+
+def _reference(reader: Reader, text: Text, domain: PortDomain, what: str) -> NodeReference | None:
+    node, dot, component = text.value.partition(".")
+    good = NAME.match(node) and (not dot or component in ("y", "theta"))
+    if not good or (dot and node == "ground"):
+        reader.note(
+            "SF213",
+            f"{what}: '{text.value[:80]}' is not a node",
+            text.span,
+            "a node is a name, or name.y or name.theta of a planar node",
+        )
+        return None
+    if dot and domain in ("planar", "whole"):
+        reader.note("SF219", f"{what} takes a whole node, not '{text.value}'", text.span, f"write '{node}'")
+        return None
+    if dot and (domain, component) in (("translation", "theta"), ("rotation", "y")):
+        kind = "translational" if domain == "translation" else "rotational"
+        reader.note("SF219", f"{what} is {kind}; '{text.value}' is not", text.span)
+        return None
+    if dot and domain == "electrical":
+        reader.note("SF219", f"{what} is electrical; '{text.value}' is mechanical", text.span)
+        return None
+    return NodeReference(node, component, text.span)
+
+
+def read_inputs(reader: Reader, section: TableValue | None) -> tuple[DraftInput, ...]:
+    """Return every input; what is wrong is noted and the input left out."""
+    return read_entries(section, lambda entry: _read_input(reader, entry))
+
+
+def _read_input(reader: Reader, entry: KeyValue) -> DraftInput | None:
+    what = f"input '{entry.key}'"
+    if not reader.name(entry, "an input", RESERVED):
+        return None
+    table = reader.table(entry, what, 'for instance { force = "x_act" }, or {} for a free signal')
+    if table is None:
+        return None
+    reader.keys(table, (*INPUT_KINDS, "unit", "latex", "doc"), what)
+    label = read_label(reader, table, what)
+    kinds = [e for e in table.entries if e.key in INPUT_KINDS]
+    if len(kinds) > 1:
+        keys = " and ".join(e.key for e in kinds)
+        reader.note("SF217", f"{what} is given as {keys}; it can be only one", kinds[1].key_span)
+        return None
+    if not kinds:
+        free = Input(entry.key, "signal", (), None, "", label, entry.key_span)
+        return DraftInput(free, _unit(reader, table, what, None))
+    (place,) = kinds
+    kind, law = place.key, INPUT_KINDS[place.key]
+    _unit(reader, table, what, kind)
+    texts = reader.strings(place, f"{kind} of {what}", "the name of a node, or two")
+    if texts is None:
+        return None
+    if len(texts) not in (1, 2):
+        reader.note(
+            "SF217",
+            f"{what} acts on one node, or on one with its reaction on a second, found {len(texts)}",
+            place.value.span,
+        )
+        return None
+    references = [_reference(reader, t, law.domain, what) for t in texts]
+    kept = tuple(r for r in references if r is not None)
+    if len(kept) != len(texts):
+        return None
+    if all(r.is_ground for r in kept):
+        verb = "moves the ground" if law.is_imposed and law.domain != "electrical" else "acts on ground only"
+        hint = "the ground does not move; name a node of its own, to which the elements are attached"
+        reader.note("SF218", f"{what} {verb}", place.value.span, hint if law.is_imposed else None)
+        return None
+    if len({(r.node, r.component) for r in kept}) != len(kept):
+        reader.note("SF218", f"{what} acts and reacts on the same node", place.value.span)
+        return None
+    return DraftInput(Input(entry.key, kind, kept, None, law.unit, label, entry.key_span))
+
+
+def _unit(reader: Reader, table: TableValue, what: str, kind: str | None) -> str:
+    """Return the unit an input declares; transfer functions are per SI unit, so it must be one."""
+    entry = table.get("unit")
+    text = reader.string(entry, f"unit of {what}") if entry else None
+    if text is None:
+        return ""
+    try:
+        unit = parse_unit(text)
+    except SpecError as error:
+        reader.take(error.diagnostics)
+        return ""
+    if kind is not None and unit.dimension != unit_of(INPUT_KINDS[kind].unit).dimension:
+        a_kind = f"{'an' if kind.startswith('a') else 'a'} {kind.replace('_', ' ')}"
+        message = f"unit of {what} is '{text.value}'; {a_kind} is in '{INPUT_KINDS[kind].unit}'"
+        reader.note("SF203", message, text.span)
+    elif unit.scale != 1 or unit.pi_power or unit.cycles:
+        message = f"unit of {what} is '{text.value}'; transfer functions are per SI unit"
+        reader.note("SF203", message, text.span, f"write '{unit.dimension}'")
+    return text.value
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from symflex.errors import Diagnostic, SpecError, nearest
 from symflex.expressions import Expression, Negative, Number, parse
@@ -13,10 +13,12 @@ from symflex.model.spec import ArrayValue, BooleanValue, NumberValue, OtherValue
 from symflex.quantities import Quantity, looks_like_quantity, parse_quantity
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Callable, Iterable, Mapping
 
     from symflex.errors import Span, Text
     from symflex.model.spec import KeyValue, Value
+
+Made = TypeVar("Made")
 
 SHOWN = 40
 """Characters of a value that a message repeats."""
@@ -52,6 +54,12 @@ def describe(value: Value) -> str:
             return "a table"
         case _:
             return value.kind if value.kind in ("inf", "nan") else f"a {value.kind}"
+
+
+def read_entries(section: TableValue | None, read: Callable[[KeyValue], Made | None]) -> tuple[Made, ...]:
+    """Return what can be read of a section's entries, in order."""
+    found = [read(entry) for entry in section.entries] if section else []
+    return tuple(each for each in found if each is not None)
 
 
 @dataclass(slots=True)

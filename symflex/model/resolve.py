@@ -47,10 +47,11 @@ from symflex.model.network import (
     Draft,
     DraftElement,
     DraftInput,
-    NetworkReader,
     broken_names,
     domain_of,
     infer_nodes,
+    read_elements,
+    read_inputs,
 )
 from symflex.model.reading import QuantityLiteral, Reader, describe
 from symflex.model.scope import ModelScope, build_scope
@@ -158,13 +159,12 @@ def resolve(spec: Spec, origin: Origin) -> Model:
     declared = read_parameters(reader, sections["parameters"])
     declared = settled(reader, declared, origin.loads.settings)
     definitions = read_definitions(reader, sections["definitions"])
-    network = NetworkReader(reader)
-    network.read_elements(sections["elements"])
-    network.read_inputs(sections["inputs"])
+    elements = read_elements(reader, sections["elements"])
+    inputs = read_inputs(reader, sections["inputs"])
     blocks = read_blocks(reader, sections["blocks"], origin)
     signals = read_signals(reader, sections["signals"])
     outputs = read_outputs(reader, sections["outputs"])
-    _check_count(reader, spec, outputs, network.inputs)
+    _check_count(reader, spec, outputs, inputs)
     inherited = _inherited_parameters(reader, declared, blocks)
     twins = _refuse_twins(
         reader, [*(p.name for p in declared), *(p.name for p in inherited)], definitions, blocks
@@ -173,8 +173,8 @@ def resolve(spec: Spec, origin: Origin) -> Model:
     taken |= {d.name for d in definitions} | {b.name for b in blocks}
     fields = read_fields(reader, sections["fields"], taken)
     measure = constant_measure(declared, inherited, definitions)
-    attachments = [a for element in network.elements for a in element.attachments(measure)]
-    attachments += [a for source in network.inputs for a in source.attachments()]
+    attachments = [a for element in elements for a in element.attachments(measure)]
+    attachments += [a for source in inputs for a in source.attachments()]
     nodes, contradictions = infer_nodes(attachments)
     reader.take(contradictions)
     draft = Draft(
@@ -182,8 +182,8 @@ def resolve(spec: Spec, origin: Origin) -> Model:
         inherited,
         definitions,
         nodes,
-        tuple(network.elements),
-        tuple(network.inputs),
+        elements,
+        inputs,
         blocks,
         signals,
         outputs,
@@ -208,7 +208,7 @@ def resolve(spec: Spec, origin: Origin) -> Model:
     # A transfer function is missing where its output or input could not be read: no second mistake.
     whole = all(
         len(found) == len(section.entries)
-        for found, section in ((outputs, sections["outputs"]), (network.inputs, sections["inputs"]))
+        for found, section in ((outputs, sections["outputs"]), (inputs, sections["inputs"]))
         if section
     )
     reader.take([p for p in later.problems if whole or p.code != "SF218"])

@@ -235,17 +235,13 @@ def quotients(draft: Draft, system: DimensionSystem) -> Iterator[tuple[tuple[str
 
 def implied_units(placed: Sequence[PlacedElement], blocks: Sequence[PlacedBlock]) -> dict[str, str]:
     """Return the units that ports give to parameters standing there alone."""
+    given = [(e, port_unit(use, name)) for use in placed for name, e in use.values]
+    given = [(e, "1" if unit.startswith("(") else unit) for e, unit in given]
+    given += [(e, block_unit(block, name)) for block in blocks for name, e in block.values]
     implied: dict[str, str] = {}
-    for use in placed:
-        for name, expression in use.values:
-            unit = port_unit(use, name)
-            if isinstance(expression, Name) and unit:
-                implied.setdefault(expression.name, "1" if unit.startswith("(") else unit)
-    for block in blocks:
-        for name, expression in block.values:
-            unit = block_unit(block, name)
-            if isinstance(expression, Name) and unit:
-                implied.setdefault(expression.name, unit)
+    for expression, unit in given:
+        if isinstance(expression, Name) and unit:
+            implied.setdefault(expression.name, unit)
     return implied
 
 
