@@ -359,25 +359,10 @@ def fold(
 ) -> Value:
     """Return the value of an expression in some arithmetic, made from the values of its parts.
 
-    What is not given is done with Python's operators, sums from zero and products from one.
-
-    Parameters
-    ----------
-    number : callable
-        Of the value of a number.
-    name : callable
-        Of a name, or of ``owner.name`` for an attribute.
-    power : callable
-        Of the base's value and the exponent, which is left as it is written.
-    call : callable
-        Of a call and its argument's value.
-    negative, total, product, quotient : callable, optional
-        Of values.
-
-    Raises
-    ------
-    TypeError
-        On what has no value by itself, such as an equation.
+    What is not given is done with Python's operators, sums from zero and products from one. ``name`` takes a
+    name, or ``owner.name`` for an attribute; ``power`` the base's value and the exponent, which is left as it
+    is written; ``call`` a call and its argument's value; the others values. Raises TypeError on what has no
+    value by itself, such as an equation.
 
     Examples
     --------

@@ -25,22 +25,12 @@ for _name in ("O_NOFOLLOW", "O_CLOEXEC", "O_NONBLOCK"):
 
 @contextmanager
 def held(path: Path, *, waits: bool = False) -> Iterator[None]:
-    """Hold a file, or folder, while the context lasts; it needs not exist.
+    """Hold a file, or folder, while the context lasts; it needs not exist, but its folder does.
 
     The lock is the operating system's, on the file ``PATH.lock`` beside it, so it ends with the process
     however that ends; what a kill leaves of the file locks nothing. Windows, which has none, goes without.
-
-    Parameters
-    ----------
-    path : Path
-        In a folder that exists.
-    waits : bool
-        Whether to wait for another process rather than refuse.
-
-    Raises
-    ------
-    UsageError
-        SF919 another process holds it, with its number, computer and time; SF903 the lock cannot be made.
+    ``waits`` says whether to wait for another process rather than refuse. Raises UsageError: SF919 another
+    process holds it, with its number, computer and time; SF903 the lock cannot be made.
     """
     if sys.platform == "win32":
         yield

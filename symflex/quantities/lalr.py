@@ -57,14 +57,8 @@ class UnexpectedError(Exception):
 class Grammar:
     """The tables of one grammar, and the methods that build what its rules stand for.
 
-    Parameters
-    ----------
-    path : Path
-        Of the tables.
-    builder : object
-        With one method per rule, which takes what the parts of the rule stand for.
-    is_contextual : bool
-        A character is read as what can stand there, where several terminals begin with it.
+    The builder has one method per rule, which takes what the parts of the rule stand for. In a contextual one
+    a character is read as what can stand there, where several terminals begin with it.
     """
 
     def __init__(self, path: Path, builder: object, *, is_contextual: bool) -> None:

@@ -34,16 +34,10 @@ class LineElement(Element):
     quantities, in the order of ``through``: what the part beyond x exerts on the part before it. So the
     element delivers the through state at x = 0 into its first node and minus the through state at x = l
     into its second. ``f`` [N] and ``tau`` [N m] are what it delivers at its second end.
-
-    Attributes
-    ----------
-    length : str
-        Name of the parameter that is the length.
-    ends : tuple of str
-        The across components of a terminal: ``("y", "theta")`` of a planar one, else ``("across",)``.
     """
 
-    length: ClassVar[str] = "l"
+    length: ClassVar[str] = "l"  # the parameter that is the length
+    # The across components of a terminal: ``("y", "theta")`` of a planar one, else ``("across",)``.
     ends: ClassVar[tuple[str, ...]]
 
     @property

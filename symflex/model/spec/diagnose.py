@@ -55,13 +55,7 @@ def diagnose_unclosed(source: Source, text: str, statement: Statement) -> Diagno
 
 
 def diagnose_toml(source: Source, scan: Scan, statement: Statement, message: str, offset: int) -> Diagnostic:
-    """Return the diagnostic of a statement tomllib refuses.
-
-    Returns
-    -------
-    Diagnostic
-        SF102 when something is defined twice, else SF101.
-    """
+    """Return the diagnostic of a statement tomllib refuses: SF102 when it is there twice, else SF101."""
     text = scan.text
     if message.startswith(_TWICE):
         return _twice(source, scan, statement, message)
