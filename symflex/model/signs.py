@@ -123,13 +123,13 @@ class Line:
         try:
             return fold(
                 lower(expression),  # a quantity is a number here
-                number=lambda value: {(): value} if value else {},
+                number=_constant,
                 name=self._name,
                 power=lambda base, exponent: _power(base, integer_exponent(exponent)),
                 call=_unread,
                 negative=lambda inner: {m: -c for m, c in inner.items()},
                 total=_sum,
-                product=lambda factors: reduce(_product, factors, {(): Fraction(1)}),
+                product=lambda factors: reduce(_product, factors, _constant(Fraction(1))),
                 quotient=lambda above, below: _product(above, _power(below, -1)),
             )
         except (_UnreadError, TypeError):  # derivatives and their like have no value by themselves
@@ -156,6 +156,10 @@ def _sum(parts: Sequence[Polynomial]) -> Polynomial:
     kept = {m: c for m, c in total.items() if c}
     small = all(max(c.numerator.bit_length(), c.denominator.bit_length()) < BIT_LIMIT for c in kept.values())
     return kept if small and len(kept) <= TERM_LIMIT else _unread()
+
+
+def _constant(value: Fraction) -> Polynomial:
+    return {(): value} if value else {}
 
 
 def _product(left: Polynomial, right: Polynomial) -> Polynomial:
