@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import ast
+from pathlib import Path
+
 import pytest
 
 from symflex import pipeline
@@ -87,3 +90,25 @@ def test_a_model_block_is_derived_within_its_own_file(tmp_path):
     whole = pipeline.bind(pipeline.derive_all(pipeline.load(outer))[0])
     # V/F = s/(m s^2 + k) at s = 2j: 2j/(18 - 8)
     assert whole(2j) == inner(2j) == pytest.approx(0.2j)
+
+
+def imported_for_types():
+    """Return what ``pipeline.py`` imports for the sake of types: the room and the name there, by name."""
+    tree = ast.parse(Path(pipeline.__file__).read_text(encoding="utf-8"))
+    blocks = [node.body for node in tree.body if isinstance(node, ast.If)]
+    found = [each for body in blocks for each in body if isinstance(each, ast.ImportFrom)]
+    return {
+        alias.asname or alias.name: (each.module.removeprefix("symflex."), alias.name)
+        for each in found
+        for alias in each.names
+    }
+
+
+def test_every_arrow_is_there_and_listed_once():
+    assert len(set(pipeline.__all__)) == len(pipeline.__all__)
+    assert all(callable(getattr(pipeline, name)) for name in pipeline.__all__)
+
+
+@pytest.mark.parametrize("name", pipeline.LATER)
+def test_an_arrow_that_is_imported_later_is_the_one_that_types_are_checked_with(name):
+    assert pipeline.LATER[name] == imported_for_types()[name]
