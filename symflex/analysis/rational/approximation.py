@@ -22,7 +22,8 @@ from symflex.errors import Diagnostic, ModelError
 from symflex.errors.optional import installed
 from symflex.roots.pole_zero_map import NOT_EXAMINED, StabilityVerdict
 from symflex.state_space import Channel
-from symflex.state_space.numeric import BoundState, BoundStateSpace, cascade
+from symflex.state_space.cascade import cascade
+from symflex.state_space.numeric import BoundState, BoundStateSpace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

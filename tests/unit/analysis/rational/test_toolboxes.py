@@ -16,7 +16,8 @@ from sympy.physics.control import TransferFunction as SympyTransferFunction
 
 import symflex
 from symflex.errors import ModelError, UsageError
-from symflex.state_space.numeric import cascade, response
+from symflex.state_space.cascade import cascade
+from symflex.state_space.numeric import response
 
 DERIVATIONS = Path(__file__).parents[4] / "derivations"
 PAPER = DERIVATIONS / "eppinger1988"
