@@ -19,9 +19,8 @@ from symflex.expressions import (
     Product,
     Quotient,
     Sum,
-    names_among,
 )
-from symflex.model.analysis import check_printed, readable_names
+from symflex.model.analysis import check_printed, lines_in_order, readable_names
 from symflex.transfer.balls import rational_value
 from symflex.transfer.expansion import compose_rational
 
@@ -72,21 +71,9 @@ def formula_of(published: Published, model: Model) -> Formula:
         raise SpecError(*problems)
     known = {d.name: d.expression for d in model.definitions} | dict(published.where)
     parameters = frozenset(p.name for p in model.parameters)
-    return Formula(published.expression, published.scale, tuple(_in_order(roots, known)), parameters)
-
-
-def _in_order(roots: Sequence[Expression], known: Mapping[str, Expression]) -> list[tuple[str, Expression]]:
-    """Return the lines that occur, each after those it uses; none of them use each other in a circle."""
-    done: dict[str, Expression] = {}
-    pending = [(n, False) for r in reversed(roots) for n in reversed(names_among(r, known))]
-    while pending:
-        name, is_ready = pending.pop()
-        if is_ready:
-            done.setdefault(name, known[name])
-        elif name not in done:
-            pending.append((name, True))
-            pending += [(n, False) for n in reversed(names_among(known[name], known))]
-    return list(done.items())
+    occurring, _ = lines_in_order(roots, known)
+    lines = tuple((name, known[name]) for name in occurring)
+    return Formula(published.expression, published.scale, lines, parameters)
 
 
 @dataclass(frozen=True, eq=False)

@@ -319,20 +319,31 @@ def _exponent_problems(expression: Expression) -> Iterator[Diagnostic]:
 
 
 def _circles(roots: Sequence[Expression], known: Mapping[str, Expression]) -> list[Diagnostic]:
-    """Return the first circle among the lines that occur; the walk is not recursive, chains may be long."""
-    done: set[str] = set()
+    _, circle = lines_in_order(roots, known)
+    if not circle:
+        return []
+    message = f"lines of a printed formula use each other in a circle: {' -> '.join(circle)}"
+    return [Diagnostic("SF215", message, known[circle[-1]].span)]
+
+
+def lines_in_order(
+    roots: Sequence[Expression], known: Mapping[str, Expression]
+) -> tuple[list[str], list[str]]:
+    """Return the lines that occur, each after those it uses, and the first circle of lines if there is one.
+
+    The walk is not recursive, as chains may be long; a circle ends it.
+    """
+    done: dict[str, None] = {}
     followed: list[str] = []
     pending = [(name, False) for root in reversed(roots) for name in reversed(names_among(root, known))]
     while pending:
         name, is_left = pending.pop()
         if is_left:
-            done.add(followed.pop())
+            done[followed.pop()] = None
         elif name in followed:
-            circle = " -> ".join((*followed[followed.index(name) :], name))
-            message = f"lines of a printed formula use each other in a circle: {circle}"
-            return [Diagnostic("SF215", message, known[name].span)]
+            return list(done), [*followed[followed.index(name) :], name]
         elif name not in done:
             followed.append(name)
             pending.append((name, True))
             pending += [(other, False) for other in reversed(names_among(known[name], known))]
-    return []
+    return list(done), []
