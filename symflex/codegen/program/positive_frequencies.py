@@ -283,12 +283,16 @@ def _fraction(value: _Value) -> tree.CodeNode:
         own.extend([tree.RealNumber(Fraction(whole))] if whole != 1 else [])
     for node, exponent in powers.items():
         sides[exponent < 0].append(node if abs(exponent) == 1 else tree.IntegerPower(node, abs(exponent)))
-    above, below = (
-        own[0] if len(own) == 1 else tree.Multiply(tuple(own)) if own else tree.RealNumber(Fraction(1))
-        for own in sides
-    )
+    above, below = map(_multiplied, sides)
     whole_node = tree.Divide(above, below) if sides[1] else above
     return whole_node if len(powers) == len(value[0]) else tree.Negate(whole_node)
+
+
+def _multiplied(factors: Sequence[tree.CodeNode]) -> tree.CodeNode:
+    """Return a product; of no factors, one."""
+    if len(factors) == 1:
+        return factors[0]
+    return tree.Multiply(tuple(factors)) if factors else tree.RealNumber(Fraction(1))
 
 
 def _hyperbolic(polynomial: fmpq_mpoly, degree: int) -> fmpq_mpoly:
@@ -313,7 +317,7 @@ def _sum(polynomial: fmpq_mpoly, t: tree.CodeNode, h: tree.CodeNode, both: tree.
         factors = [*([t] * (i - shared)), *([h] * (j - shared))]
         if abs(number) != 1 or not factors:
             factors.insert(0, tree.RealNumber(abs(number)))
-        term: tree.CodeNode = factors[0] if len(factors) == 1 else tree.Multiply(tuple(factors))
+        term = _multiplied(factors)
         groups.setdefault(shared, []).append(term if number > 0 else tree.Negate(term))
     summands: list[tree.CodeNode] = []
     for shared, terms in sorted(groups.items()):
@@ -323,7 +327,7 @@ def _sum(polynomial: fmpq_mpoly, t: tree.CodeNode, h: tree.CodeNode, both: tree.
         factors = [both] * shared
         if not (shared and size == tree.RealNumber(Fraction(1))):
             factors.append(size)
-        product: tree.CodeNode = factors[0] if len(factors) == 1 else tree.Multiply(tuple(factors))
+        product = _multiplied(factors)
         summands.append(tree.Negate(product) if minus else product)
     return _total(summands)
 
