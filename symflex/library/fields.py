@@ -342,10 +342,13 @@ def classify(coefficients: Sequence[Factored]) -> Characteristic:
 
 
 def _even_kind(c: Sequence[Factored]) -> DispersionKind:
-    if len(c) == 2 and not c[0].is_zero:  # noqa: PLR2004
-        return "wave"
-    if len(c) == 4 and c[1].is_zero and not c[0].is_zero:  # noqa: PLR2004
-        return "bending" if c[2].is_zero else "pair"
+    match [x.is_zero for x in c]:
+        case [False, _]:
+            return "wave"
+        case [False, True, True, _]:
+            return "bending"
+        case [False, True, False, _]:
+            return "pair"
     return "general"
 
 

@@ -233,13 +233,11 @@ def _references(
     if any(r is None for r in references):
         return None
     kept = tuple(r for r in references if r is not None)
-    if len(kept) == 2 and (kept[0].node, kept[0].component) == (kept[1].node, kept[1].component):  # noqa: PLR2004
-        reader.note(
-            "SF218",
-            f"both ends of {element.type_name} '{entry.key}' are at '{texts[0].value}'",
-            found.value.span,
-        )
-        return None
+    match kept:
+        case (a, b) if (a.node, a.component) == (b.node, b.component):
+            message = f"both ends of {element.type_name} '{entry.key}' are at '{texts[0].value}'"
+            reader.note("SF218", message, found.value.span)
+            return None
     return kept
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import re
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -143,7 +144,7 @@ def export_section(study: Study) -> ChapterPart:
     code = 0
     for target in TARGETS:
         exporter = EXPORTERS[target]
-        made = attempt(lambda e=exporter: e.export(study.model, study.tfs, study.stem, is_alone=False))  # type: ignore[misc]
+        made = attempt(partial(exporter.export, study.model, study.tfs, study.stem, is_alone=False))
         if isinstance(made, SymflexError):
             blocks.append(Notice(f"No {target} code: {made.diagnostics[0].message}"))
             code = max(code, code_of(made))

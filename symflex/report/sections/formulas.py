@@ -49,12 +49,12 @@ from symflex.report.document import (
 from symflex.report.study import MOST_FUNCTIONS
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from symflex.audit import Audit
     from symflex.expressions import Expression
     from symflex.print.forms import PrintedForm
-    from symflex.report.document import Block, Cell, Run
+    from symflex.report.document import Block, Cell, Run, Tone
     from symflex.report.study import Study
     from symflex.transfer import TransferFunction
 
@@ -148,7 +148,7 @@ def _introduction(tf: TransferFunction) -> str:
     return f"{tf.quantity.capitalize()}{unit}; {counts}."
 
 
-JUDGED: Final = {
+JUDGED: Final[Mapping[str, tuple[str, Tone]]] = {
     "equal": ("right as printed (proved)", "good"),
     "differs": ("not right as printed (proved)", "bad"),
     "agrees": ("agrees at all points tried (not proved)", "fair"),
@@ -171,7 +171,7 @@ def audit_section(study: Study) -> ChapterPart | None:
 def _audited(audit: Audit) -> tuple[Block, ...]:
     word, tone = JUDGED[audit.verdict]
     source = f", printed in {audit.published.source}" if audit.published.source else ""
-    blocks: list[Block] = [text(Badge(word, tone), f"{source}:")]  # type: ignore[arg-type]
+    blocks: list[Block] = [text(Badge(word, tone), f"{source}:")]
     where = audit.formula.lines
     scale = audit.published.scale
     blocks.append(_formula(audit, audit.published.expression, where, f"{audit.tf.name} as printed"))
