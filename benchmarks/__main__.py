@@ -10,7 +10,19 @@ from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
 
-from benchmarks import chains, distributed, exports, lumped, nested, numeric_chain, roots, startup, sweep
+from benchmarks import (
+    chains,
+    distributed,
+    exports,
+    frames,
+    lumped,
+    members,
+    nested,
+    numeric_chain,
+    roots,
+    startup,
+    sweep,
+)
 from benchmarks.measure import Claim, Measurement
 from symflex import __version__
 
@@ -24,7 +36,18 @@ def main(arguments: list[str] | None = None) -> int:
     asked = parser.parse_args(arguments)
 
     measurements, claims = startup.measure()
-    for benchmark in (chains, numeric_chain, nested, distributed, exports, lumped, roots, sweep):
+    for benchmark in (
+        chains,
+        numeric_chain,
+        nested,
+        distributed,
+        members,
+        frames,
+        exports,
+        lumped,
+        roots,
+        sweep,
+    ):
         measured, bounds = benchmark.measure(asked.limit)
         measurements += measured
         claims += bounds

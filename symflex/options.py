@@ -128,6 +128,12 @@ class ExportOptions:
         None, "-o", "--output", is_path=True, help="File to write; standard output by default."
     )
     is_minimal: bool = option(False, "--minimal", help="state-space: without hidden states.")
+    sample: str | None = option(
+        None,
+        "--sample",
+        metavar="TIME",
+        help="state-space: the step from one sample to the next, 1ms, exactly, with the declared values.",
+    )
     strict: bool = option(False, "--strict", help="Exit with 4 when the verified accuracy falls short.")
 
 
@@ -178,6 +184,58 @@ class RationalOptions:
     )
     form: str = option(
         "product", "--form", choices=("product", "modal"), **SHOWN, help="Poles and zeros, or residues."
+    )
+    as_json: bool = option(False, "--json", **JSON)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class RespondOptions:
+    """Of ``symflex respond``."""
+
+    tf: str | None = option(None, "--tf", **ONE_TF)
+    to: str = option(
+        "step",
+        "--to",
+        **SHOWN,
+        metavar="step|impulse|ramp|FILE.csv",
+        help="What the input does from t = 0 on; a file has two columns, time_s and the value.",
+    )
+    until: str | None = option(
+        None, "--until", metavar="TIME", help="Last time: 0.5s, '20 ms', 0.5.  [default of a file: its last]"
+    )
+    points: int | None = option(
+        None,
+        "--points",
+        least=2,
+        most=1_000_000,
+        help="Times, evenly spaced from 0 on.  [default: 201, or those of a file]",
+    )
+    digits: int = option(
+        12, "--digits", least=1, most=1000, **SHOWN, help="Correct digits, of the largest value."
+    )
+    output: str | None = option(
+        None, "-o", "--output", is_path=True, help="File to write: .csv, .pdf, .pgf, .png or .svg."
+    )
+    strict: bool = option(False, "--strict", help="Exit with code 4 where a value is not certified.")
+    as_json: bool = option(False, "--json", **JSON)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ShapeOptions:
+    """Of ``symflex shape``."""
+
+    tf: str | None = option(None, "--tf", **ONE_TF)
+    modes: int = option(1, "--modes", least=1, most=20, **SHOWN, help="For how many modes, the lowest ones.")
+    kind: str = option(
+        "zv",
+        "--kind",
+        choices=("zv", "zvd", "ei"),
+        **SHOWN,
+        help="Zero vibration, zero derivative besides, or insensitive with 5 % left.",
+    )
+    digits: int = option(15, "--digits", least=1, most=1000, **SHOWN, help="Correct significant digits.")
+    output: str | None = option(
+        None, "-o", "--output", is_path=True, help="Figure of residual vibration: .pdf, .pgf, .png or .svg."
     )
     as_json: bool = option(False, "--json", **JSON)
 
@@ -277,13 +335,29 @@ class PlotOptions:
     xlim: Ends | None = option(None, "--xlim", **TWO, help="Ends of the axis across; rad/s in an s plane.")
     ylim: Ends | None = option(None, "--ylim", **TWO, help="Ends of the axis upwards; dB of a Bode plot.")
     phase: Ends | None = option(None, "--phase", **TWO, help="Ends of the phases of a Bode plot [deg].")
-    limits: Ends | None = option(None, "--range", **TWO, help="First and last gain of a locus.")
+    limits: tuple[Stated | None, Stated | None] | None = option(
+        None, "--range", **TWO, help="First and last gain of a locus."
+    )
     modes: int | None = option(None, "--modes", least=1, help="How many modes are shown, the lowest ones.")
     output: str | None = option(
         None, "-o", "--output", is_path=True, help="File to write: .pdf, .pgf, .svg or .png."
     )
-    width: str | None = option(
+    width: float | str | None = option(
         None, "--width", metavar=WIDTHS, help="Width of the figure: 88.5, 170 or so many mm."
+    )
+    font: str | None = option(None, "--font", metavar="FONT", help="times (the default), latex or sans.")
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class DrawOptions:
+    """Of ``symflex draw``."""
+
+    values: bool = option(False, "--values", help="Write numbers with units at the symbols.")
+    output: str | None = option(
+        None, "-o", "--output", is_path=True, help="File to write: .pdf, .pgf, .svg or .png."
+    )
+    width: str | None = option(
+        None, "--width", metavar=WIDTHS, help="Width of the drawing: 88.5, 170 or so many mm."
     )
     font: str | None = option(None, "--font", metavar="FONT", help="times (the default), latex or sans.")
 
@@ -470,6 +544,32 @@ def frequency(given: Stated, flag: str, example: str, *, is_hertz: bool = False)
     if not quantity.unit or bool(quantity.cycles) == is_hertz:
         return number
     return number / (2 * PI_NEARLY) if is_hertz else number * 2 * PI_NEARLY
+
+
+def duration(given: str, flag: str) -> Fraction:
+    """Return a positive time [s] from a text with or without a unit.
+
+    Raises
+    ------
+    UsageError
+        SF902 for a text that is no positive time.
+
+    Examples
+    --------
+    >>> duration("20 ms", "--until")
+    Fraction(1, 50)
+    """
+    from symflex.model.analysis import SECOND, in_limits
+
+    message = f"{flag} takes a positive time such as 0.5 or '20 ms', found '{given[:60]}'"
+    wrong = UsageError(Diagnostic("SF902", message))
+    quantity = _quantity(given, flag, wrong)
+    if quantity.unit and quantity.dimension != SECOND:
+        raise wrong
+    found = in_limits(quantity)
+    if not found > 0:
+        raise wrong
+    return found
 
 
 def highest_frequency(given: Stated) -> float:

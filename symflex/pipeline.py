@@ -4,6 +4,7 @@ text --parse--> Spec --resolve--> Model --assemble--> Equations --derive--> Tran
                                                                                    | bind(values)
           --roots--> PoleZeroMap                                         BoundTransferFunction
           --response--> SampledResponse                                            |
+          --time_response--> EnclosedResponse                                      |
           --rational--> RationalApproximation                <---------------------+
 
 any of them --print, codegen--> text, JSON, LaTeX, numpy, figure
@@ -25,11 +26,13 @@ from symflex.print.warnings import warnings
 from symflex.transfer import bind, derive, nested_transfer
 from symflex.transfer.of_model import (
     assemble,
+    assemble_for_checks,
     assemble_sparse,
     check_solvable,
     derive_all,
     derive_as,
     derive_bound,
+    derive_for_roots,
     derive_nested,
     pick_pairs,
 )
@@ -39,9 +42,10 @@ if TYPE_CHECKING:
 
     from symflex.analysis.explanation import ZeroExplanation
     from symflex.analysis.measured import fit, measure
-    from symflex.analysis.rational import approximate as rational
     from symflex.analysis.rational import find_residues as residues
+    from symflex.analysis.rational.approximate import approximate as rational
     from symflex.analysis.sensitivity.sensitivity import sensitivities
+    from symflex.analysis.time_response import forced_response, time_response
     from symflex.audit import audit, check_published
     from symflex.data.fitting.specification import fit_specification
     from symflex.loops.of_model import characteristic_loop, colocation, stability
@@ -50,10 +54,11 @@ if TYPE_CHECKING:
     from symflex.roots import Budget, PoleZeroMap, Region
     from symflex.state_space import StateSpace
     from symflex.sweep.run import plan_sweep, sweep
-    from symflex.transfer import BoundTransferFunction
+    from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 
 __all__ = [
     "assemble",
+    "assemble_for_checks",
     "assemble_sparse",
     "audit",
     "bind",
@@ -65,10 +70,12 @@ __all__ = [
     "derive_all",
     "derive_as",
     "derive_bound",
+    "derive_for_roots",
     "derive_nested",
     "explain_zeros",
     "fit",
     "fit_specification",
+    "forced_response",
     "load",
     "loads",
     "measure",
@@ -82,6 +89,7 @@ __all__ = [
     "stability",
     "state_space",
     "sweep",
+    "time_response",
     "warnings",
 ]
 
@@ -89,9 +97,11 @@ __all__ = [
 LATER: Final = {
     "audit": ("audit", "audit"),
     "check_published": ("audit", "check_published"),
-    "rational": ("analysis.rational", "approximate"),
+    "rational": ("analysis.rational.approximate", "approximate"),
     "residues": ("analysis.rational", "find_residues"),
     "sensitivities": ("analysis.sensitivity.sensitivity", "sensitivities"),
+    "forced_response": ("analysis.time_response", "forced_response"),
+    "time_response": ("analysis.time_response", "time_response"),
     "stability": ("loops.of_model", "stability"),
     "characteristic_loop": ("loops.of_model", "characteristic_loop"),
     "colocation": ("loops.of_model", "colocation"),
@@ -145,7 +155,7 @@ def loads(
 
 
 def roots(
-    bound: BoundTransferFunction, region: Region | None = None, digits: int = 15, budget: Budget | None = None
+    bound: AnyBoundFunction, region: Region | None = None, digits: int = 15, budget: Budget | None = None
 ) -> PoleZeroMap:
     """Return poles, zeros and hidden modes, proved; see :func:`symflex.roots.locate.locate`."""
     from symflex.roots.locate import locate  # imports numpy

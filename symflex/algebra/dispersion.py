@@ -10,14 +10,16 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
+from symflex.errors import Diagnostic, ModelError
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Container, Iterable, Sequence
 
     from symflex.algebra.factored import Factored
 
 Value = TypeVar("Value", bound=Any)
-DispersionKind = Literal["exponential", "wave", "bending", "pair", "general"]
-KernelFunction = Literal["cosh", "sinh", "cos", "sin", "exp", "fundamental"]
+DispersionKind = Literal["exponential", "wave", "bending", "pair", "general", "varying"]
+KernelFunction = Literal["cosh", "sinh", "cos", "sin", "exp", "fundamental", "entry"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -30,19 +32,38 @@ class Dispersion:
     name: str  # the field, element or block it was first needed for
     # ``exponential``: no roots but the shift; ``wave``: ``gamma^2 = -c_0``; ``bending``: ``4 mu^4 = c_0``,
     # the four roots ``mu*(+-1 +-j)``; ``pair``: ``lambda^4 + c_2 lambda^2 + c_0`` with roots ``+-lambda_1``,
-    # ``+-lambda_2``; ``general``: any order, roots without a name.
+    # ``+-lambda_2``; ``general``: any order, roots without a name; ``varying``: equations whose coefficients
+    # vary along x, which have no exponents.
     kind: DispersionKind
     # ``c_0, ..., c_(n-1)`` of the monic polynomial whose roots are the exponents plus ``shift``; rational in
-    # s and the parameters. Empty for ``exponential``.
+    # s and the parameters. Empty for ``exponential`` and ``varying``.
     characteristic: tuple[Factored, ...]
     shift: Factored  # every solution is ``exp(-shift*x)`` times one of the polynomial above; zero for most
     # Generator names: none, ``(gamma,)``, ``(mu,)`` or ``(lambda_1, lambda_2)``.
     wavenumbers: tuple[str, ...] = ()
+    # Of a varying one, A in ``z' = A(x, s) z``, and where x begins.
+    matrix: tuple[tuple[Factored, ...], ...] = ()
+    start: tuple[Factored, ...] = ()
 
     @property
     def order(self) -> int:
-        """Order of the scalar differential equation in x."""
-        return max(len(self.characteristic), 1)
+        """Order of the differential equation in x; of a varying one, the number of states."""
+        return max(len(self.characteristic), len(self.matrix), 1)
+
+    @property
+    def coefficients(self) -> tuple[Factored, ...]:
+        """All that solutions are made of."""
+        return (*self.characteristic, self.shift, *(x for row in self.matrix for x in row), *self.start)
+
+    def replaced(self, image: Callable[[Factored], Factored]) -> Dispersion:
+        """Return the law with every coefficient replaced."""
+        return replace(
+            self,
+            characteristic=tuple(map(image, self.characteristic)),
+            shift=image(self.shift),
+            matrix=tuple(tuple(map(image, row)) for row in self.matrix),
+            start=tuple(map(image, self.start)),
+        )
 
     def roots(self, c: Sequence[Value], square_root: Callable[[Value], Value]) -> dict[str, Value]:
         """Return the wavenumbers by their names, given ``c_0, ...``, numbers or series.
@@ -69,12 +90,13 @@ class Kernel:
     generator: str  # its name in the ring
     # ``cosh``, ``sinh``, ``cos``, ``sin`` of wavenumber times length; ``exp`` for ``exp(-shift*length)``;
     # ``fundamental`` for the derivative of the given order, at x = length, of the solution h of the
-    # characteristic equation with ``h(0) = ... = h^(n-2)(0) = 0`` and ``h^(n-1)(0) = 1``.
+    # characteristic equation with ``h(0) = ... = h^(n-2)(0) = 0`` and ``h^(n-1)(0) = 1``; ``entry`` for one
+    # of Z(start + length), where ``Z' = A Z`` and Z(start) is the unit matrix.
     function: KernelFunction
     dispersion: Dispersion  # whose wavenumber it is a function of
-    wavenumber: str  # generator of the wavenumber; empty for ``exp`` and ``fundamental``
+    wavenumber: str  # generator of the wavenumber; empty for ``exp``, ``fundamental`` and ``entry``
     length: Factored  # [m]; of the parameters alone. For a delay, a time [s].
-    order: int = 0  # of the derivative, for ``fundamental``
+    order: int = 0  # of the derivative, for ``fundamental``; of an ``entry`` its number, row by row
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -90,6 +112,17 @@ class KernelTable:
     def __bool__(self) -> bool:
         return bool(self.dispersions)
 
+    def without_tapers(self, what: str) -> None:
+        """Return if no coefficient varies along x.
+
+        Raises ModelError: SF910 when one does, saying that ``what`` is not available then.
+        """
+        tapered = next((d for d in self.dispersions if d.matrix), None)
+        if tapered is not None:
+            message = f"{what} not available yet where coefficients vary along x, as in '{tapered.name}'"
+            hint = "its poles, zeros and values at frequencies are"
+            raise ModelError(Diagnostic("SF910", message, None, hint))
+
     @property
     def wavenumbers(self) -> tuple[str, ...]:
         """Generators of the wavenumbers."""
@@ -102,8 +135,8 @@ class KernelTable:
 
     @property
     def coefficients(self) -> tuple[Factored, ...]:
-        """The coefficients of all characteristic polynomials, and shifts."""
-        return tuple(v for d in self.dispersions for v in (*d.characteristic, d.shift))
+        """The coefficients of all laws."""
+        return tuple(v for d in self.dispersions for v in d.coefficients)
 
     @property
     def values(self) -> tuple[Factored, ...]:
@@ -140,10 +173,7 @@ class KernelTable:
     def embedded(self, images: Iterable[tuple[Factored, Factored]]) -> KernelTable:
         """Return the table with its values replaced, by identity."""
         found = dict(images)
-        dispersions = {
-            d: replace(d, characteristic=tuple(found[c] for c in d.characteristic), shift=found[d.shift])
-            for d in self.dispersions
-        }
+        dispersions = {d: d.replaced(found.__getitem__) for d in self.dispersions}
         return KernelTable(
             tuple(dispersions.values()),
             tuple(

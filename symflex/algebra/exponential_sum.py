@@ -195,7 +195,7 @@ def arguments_of(table: KernelTable) -> tuple[Argument, ...] | None:
     """Return the arguments of all kernels, ``None`` where some have no formula."""
     found: list[Argument] = []
     for kernel in table.kernels:
-        if kernel.function == "fundamental":
+        if kernel.function in ("fundamental", "entry"):
             return None
         if not any(argument.is_of(kernel) for argument in found):
             found.append(Argument(kernel.wavenumber, kernel.dispersion.shift, kernel.length))

@@ -65,6 +65,11 @@ class Exponentials:
         """The ring with exponentials and half-angle functions in place of kernels."""
         return Ring((*self._kept, *(c for a in self.angles for c in a.coordinates)))
 
+    @cached_property
+    def _both(self) -> Ring:
+        """The ring with kernels and coordinates."""
+        return Ring((*self.ring.names, *(c for a in self.angles for c in a.coordinates)))
+
     def transform(self, polynomial: fmpz_mpoly) -> Factored:
         """Return a polynomial in kernels over the coordinates."""
         target = self.coordinates
@@ -112,34 +117,29 @@ class Exponentials:
         The polynomial is of even degree in every angle (see :meth:`parity`) and not divisible by any E; it is
         ``f * prod(E^n)``, and returned are f and n per hyperbolic angle.
         """
-        source = self.coordinates
+        source, both = self.coordinates, self._both
         center = [int(polynomial.degrees()[source.index[a.coordinates[0]]]) // 2 for a in self.angles]
-        places = [tuple(source.index[c] for c in a.coordinates) for a in self.angles]
-        parts: dict[tuple[tuple[int, ...], ...], dict[tuple[int, ...], int]] = {}
-        target_index = [self.ring.index[n] for n in self._kept]
+        total = polynomial.compose(*(both.generator(n) for n in source.names), ctx=both.context)
         halves = 0
-        for monomial, coefficient in polynomial.terms():
-            key = tuple(tuple(int(monomial[i]) for i in place) for place in places)
-            exponents = [0] * len(self.ring.names)
-            for i, target in enumerate(target_index):
-                exponents[target] = int(monomial[i])
-            parts.setdefault(key, {})[tuple(exponents)] = int(coefficient)
-        total = self.ring.constant(0)
-        for key, terms in parts.items():
-            part = self.ring.context.from_dict(terms)
-            halves_here = 0
-            for angle, powers, middle in zip(self.angles, key, center, strict=True):
-                c, s = self.ring.generator(angle.even.generator), self.ring.generator(angle.odd.generator)
+        # One angle after the other: terms take each other out before the next multiplies them.
+        for angle, middle in zip(self.angles, center, strict=True):
+            c, s = both.generator(angle.even.generator), both.generator(angle.odd.generator)
+            parts = coefficients_of(both, total, [both.index[name] for name in angle.coordinates])
+            total = both.constant(0)
+            for powers, part in parts.items():
                 if angle.kind == "hyperbolic":
                     n = powers[0] - middle
-                    part = part * ((c + s) ** n if n >= 0 else (c - s) ** -n)
+                    even, odd = _multiple(both, c, s, abs(n))
+                    total = total + part * (even + odd if n >= 0 else even - odd)
                 else:
                     a, b = powers
-                    halves_here += (a + b) // 2
-                    part = part * (1 - c) ** (a // 2) * (1 + c) ** (b // 2) * s ** (a % 2)
-            halves = halves_here
-            total = total + part
-        return Factored.polynomial(self.ring, total) * Fraction(1, 2**halves), tuple(
+                    total = total + part * (1 - c) ** (a // 2) * (1 + c) ** (b // 2) * s ** (a % 2)
+            if angle.kind == "circular":
+                halves += sum(next(iter(parts))) // 2 if parts else 0
+        own = [self.ring.generator(n) for n in self.ring.names]
+        images = own + [self.ring.constant(0)] * (len(both.names) - len(own))  # no coordinate is left
+        restored = Factored.polynomial(self.ring, total.compose(*images, ctx=self.ring.context))
+        return restored * Fraction(1, 2**halves), tuple(
             n for n, a in zip(center, self.angles, strict=True) if a.kind == "hyperbolic"
         )
 

@@ -264,8 +264,8 @@ def random_point(names: Sequence[str]) -> dict[str, int]:
     return {name: random.randrange(1, PRIME) for name in names}
 
 
-def residue(value: Factored, point: Mapping[str, int]) -> int:
-    """Return a factored rational function at a point, modulo ``PRIME``.
+def residue(value: Factored, point: Mapping[str, int], prime: int = PRIME) -> int:
+    """Return a factored rational function at a point, modulo a prime.
 
     Raises ZeroDivisionError when its denominator is zero there.
 
@@ -278,24 +278,24 @@ def residue(value: Factored, point: Mapping[str, int]) -> int:
     (2, 0)
     """
     names = value.ring.names
-    number = value.unit.numerator % PRIME * _power(value.unit.denominator, -1) % PRIME
+    number = value.unit.numerator % prime * _power(value.unit.denominator, -1, prime) % prime
     for factor, exponent in value.factors:
-        number = number * _power(_polynomial(factor, names, point), exponent) % PRIME
+        number = number * _power(_polynomial(factor, names, point, prime), exponent, prime) % prime
     return number
 
 
-def _power(base: int, exponent: int) -> int:
-    if exponent < 0 and base % PRIME == 0:
+def _power(base: int, exponent: int, prime: int) -> int:
+    if exponent < 0 and base % prime == 0:
         message = "division by zero"
         raise ZeroDivisionError(message)
-    return pow(base, exponent, PRIME)
+    return pow(base, exponent, prime)
 
 
-def _polynomial(polynomial: fmpz_mpoly, names: Sequence[str], point: Mapping[str, int]) -> int:
+def _polynomial(polynomial: fmpz_mpoly, names: Sequence[str], point: Mapping[str, int], prime: int) -> int:
     total = 0
     for monomial, coefficient in terms_of(polynomial):
-        product = coefficient % PRIME
+        product = coefficient % prime
         for i, exponent in monomial:
-            product = product * pow(point[names[i]], exponent, PRIME) % PRIME
+            product = product * pow(point[names[i]], exponent, prime) % prime
         total += product
-    return total % PRIME
+    return total % prime

@@ -2,7 +2,8 @@
 
 The relations ``sinh^2 = cosh^2 - 1``, ``sin^2 = 1 - cos^2`` and the dispersion relations of the wavenumbers
 have coprime leading monomials, so replacing these leaves one form of every residue class (Cox, Little &
-O'Shea 2015, chapter 2, sections 6 and 9).
+O'Shea 2015, chapter 2, sections 6 and 9). The same holds of constants: sine and cosine of one angle, and
+square roots of whole numbers.
 """
 
 from __future__ import annotations
@@ -19,6 +20,8 @@ from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from flint import fmpz_mpoly
 
     from symflex.algebra.dispersion import Dispersion, KernelTable
@@ -38,13 +41,23 @@ class NormalForm:
 
     @cached_property
     def _squares(self) -> tuple[tuple[int, fmpz_mpoly], ...]:
-        """Positions of sinh and sin with what their squares are."""
-        found = []
+        """Positions of sinh and sin, and of constants, with what their squares are."""
+        found = list(self._squares_of_constants())
         for even, odd in self.table.pairs:
             c = self.ring.generator(even.generator)
             square = c * c - 1 if even.function == "cosh" else 1 - c * c
             found.append((self.ring.index[odd.generator], square))
         return tuple(found)
+
+    def _squares_of_constants(self) -> Iterator[tuple[int, fmpz_mpoly]]:
+        """Yield what squares of functions of constants are, whose names in the ring are what they mean."""
+        for name, i in self.ring.index.items():
+            function, bracket, rest = name.partition("(")
+            if function == "sin" and bracket and f"cos({rest}" in self.ring.index:
+                cos = self.ring.generator(f"cos({rest}")
+                yield i, 1 - cos * cos
+            elif function == "sqrt" and rest[:-1].isdecimal():
+                yield i, self.ring.constant(int(rest[:-1]))
 
     def reduce(self, polynomial: fmpz_mpoly, *, pairs: bool = True) -> Factored:
         """Return a polynomial in normal form; its denominators come from the dispersion relations.

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 from flint import fmpq, fmpq_mat, fmpz_mat
 
 from symflex.algebra.dispersion import Dispersion, Kernel, KernelTable
-from symflex.algebra.factored import Factored, common_denominator
+from symflex.algebra.factored import Factored, common_denominator, random_point, residue
 from symflex.algebra.ring import Ring
 
 if TYPE_CHECKING:
@@ -38,7 +38,8 @@ class Propagator:
     """One generator of the equations.
 
     For ``wave``, ``bending`` and ``pair`` it is the numerator of ``h^(order)(length)`` over a monomial in the
-    wavenumbers and ``lambda_1^2 - lambda_2^2``; for ``general`` it is ``h^(order)(length)`` itself.
+    wavenumbers and ``lambda_1^2 - lambda_2^2``; for ``general`` it is ``h^(order)(length)`` itself, for
+    ``varying`` an entry of the fundamental matrix.
     """
 
     generator: str  # its name
@@ -65,10 +66,18 @@ class Propagation:
         """Return a value of the base ring over ``ring``."""
         if value.ring == self.ring:
             return value
-        images = self.ring.context.gens()[: len(self.base.names)]
-        context = self.ring.context
-        factors = tuple((f.compose(*images, ctx=context), e) for f, e in value.factors)
+        factors = tuple((self.ring.taken_over(f), e) for f, e in value.factors)
         return Factored(self.ring, value.unit, factors)
+
+    @cached_property
+    def _places(self) -> tuple[Mapping[int, int], ...]:
+        """Per dispersion, the positions of its lengths by their residues."""
+        point = self._point
+        return tuple({residue(x, point): i for i, x in enumerate(lengths)} for lengths in self.lengths)
+
+    @cached_property
+    def _point(self) -> Mapping[str, int]:
+        return random_point(self.base.names)
 
     @cached_property
     def _known(self) -> Mapping[tuple[int, int, int], Factored]:
@@ -78,13 +87,18 @@ class Propagation:
         }
 
     def fundamental(self, dispersion: int, length: Factored) -> tuple[Factored, ...]:
-        """Return ``h, h', ..., h^(n-1)`` of a dispersion at a length, over ``ring``."""
+        """Return ``h, h', ..., h^(n-1)`` of a dispersion at a length, over ``ring``.
+
+        Of a varying one, the entries of the fundamental matrix, row by row.
+        """
         law = self.table.dispersions[dispersion]
+        if law.kind == "varying":
+            return self._entries(dispersion, length)
         one = Factored.number(self.ring, 1)
         n = law.order
         if length.is_zero:
             return tuple(one if k == n - 1 else one * 0 for k in range(n))
-        position = _position(self.lengths[dispersion], length)
+        position = self._places[dispersion][residue(length, self._point)]
         if law.kind == "exponential":
             return (self._known[dispersion, position, EXPONENTIAL],)
         below = _denominators(law, self.ring)
@@ -101,18 +115,42 @@ class Propagation:
             found.append(total * decay)
         return tuple(found)
 
+    def _entries(self, dispersion: int, length: Factored) -> tuple[Factored, ...]:
+        law = self.table.dispersions[dispersion]
+        n, one = law.order, Factored.number(self.ring, 1)
+        if length.is_zero:
+            return tuple(one * int(i == j) for i in range(n) for j in range(n))
+        position = self._places[dispersion][residue(length, self._point)]
+        found = []
+        for i, reached in enumerate(reachable(law)):
+            for j in range(n):
+                known = self._known.get((dispersion, position, i * n + j))
+                found.append(known if known is not None else one * int(i == j and i not in reached))
+        return tuple(found)
 
-def _position(lengths: Sequence[Factored], length: Factored) -> int:
-    return next(i for i, known in enumerate(lengths) if (known - length).is_zero)
+
+def reachable(law: Dispersion) -> list[set[int]]:
+    """Return, per state, the states that it depends on, itself if its slope does so: along x.
+
+    An entry of the fundamental matrix is 0 elsewhere, or 1 on the diagonal.
+    """
+    n = law.order
+    found = [{j for j in range(n) if not law.matrix[i][j].is_zero} for i in range(n)]
+    for _ in range(n):
+        found = [set.union(own, *(found[j] for j in own)) for own in found]
+    return found
 
 
 def distinct(lengths: Sequence[Factored]) -> tuple[Factored, ...]:
     """Return the lengths that differ and are not zero, in order."""
-    found: list[Factored] = []
+    if not lengths:
+        return ()
+    point = random_point(lengths[0].ring.names)
+    found: dict[int, Factored] = {}
     for length in lengths:
-        if not length.is_zero and not any((known - length).is_zero for known in found):
-            found.append(length)
-    return tuple(found)
+        if not length.is_zero:
+            found.setdefault(residue(length, point), length)
+    return tuple(found.values())
 
 
 def _denominators(law: Dispersion, ring: Ring) -> tuple[Factored, ...]:
@@ -137,7 +175,8 @@ def propagate(base: Ring, demands: Sequence[tuple[Dispersion, Sequence[Factored]
     """Return generators for the fundamental functions of every dispersion at every length.
 
     Each dispersion is demanded once, without wavenumber names, with the lengths it is needed at; both live
-    over the base.
+    over the base. Over a sparse base, where nothing is multiplied out, fundamental functions are their own
+    kernels, so dispersions are to be ``general`` or ``exponential``.
     """
     dispersions: list[Dispersion] = []
     kernels: list[Kernel] = []
@@ -151,9 +190,10 @@ def propagate(base: Ring, demands: Sequence[tuple[Dispersion, Sequence[Factored]
         shapes.append(shape)
         kernels += shape.kernels
     table = KernelTable(tuple(dispersions), tuple(kernels))
-    kernel_ring = Ring((*base.names, *table.generators))
+    kernel_ring = Ring((*base.names, *table.generators), base.is_sparse)
     propagators = tuple(p for shape in shapes for p in shape.propagators(kernel_ring))
-    ring = Ring((*base.names, *table.wavenumbers, *(p.generator for p in propagators)))
+    names = (*base.names, *table.wavenumbers, *(p.generator for p in propagators))
+    ring = Ring(names, base.is_sparse)
     return Propagation(
         base,
         ring,
@@ -176,14 +216,22 @@ class _Shape:
         decays = law.kind == "exponential" or not law.shift.is_zero
         self.base = lengths
         self.coordinates = tuple(tuple(int(i == j) for j in range(len(lengths))) for i in range(len(lengths)))
-        if law.kind != "general" and lengths:
+        if law.kind not in ("general", "varying") and lengths and not lengths[0].ring.is_sparse:
             found = length_base(lengths, positive=decays)
             if max(sum(map(abs, c)) for c in found.coordinates) <= MULTIPLE_LIMIT:
                 self.base, self.coordinates = found.base, found.coordinates
         self.kernels = [k for i, length in enumerate(self.base) for k in self._kernels(i, length)]
 
+    @property
+    def _entries(self) -> list[int]:
+        """The numbers of the entries of a fundamental matrix that are not 0 or 1."""
+        n = self.law.order
+        return [i * n + j for i, reached in enumerate(reachable(self.law)) for j in sorted(reached)]
+
     def _kernels(self, i: int, length: Factored) -> list[Kernel]:
         law, found = self.law, []
+        if law.kind == "varying":
+            return [Kernel(f"T{k}[{self.number},{i}]", "entry", law, "", length, k) for k in self._entries]
         if law.kind == "general":
             for k in range(law.order):
                 name = f"h{k}[{self.number},{i}]"
@@ -209,6 +257,8 @@ class _Shape:
     def _images(self, ring: Ring, position: int, multiples: tuple[int, ...]) -> list[tuple[int, fmpz_mpoly]]:
         law = self.law
         found: list[tuple[int, fmpz_mpoly]] = []
+        if law.kind == "varying":
+            return [(k, ring.generator(f"T{k}[{self.number},{position}]")) for k in self._entries]
         if law.kind == "general":
             found += [(k, ring.generator(f"h{k}[{self.number},{position}]")) for k in range(law.order)]
         elif law.kind == "wave":

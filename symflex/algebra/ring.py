@@ -91,6 +91,14 @@ class Ring:
         """Return an integer as a polynomial."""
         return self.context.constant(value)
 
+    def taken_over(self, polynomial: fmpz_mpoly) -> fmpz_mpoly:
+        """Return a polynomial of a ring whose names are the first ones of this."""
+        if (sparse := _sparse(polynomial)) is not None:
+            context = cast("SparseContext", self.context)
+            return cast("fmpz_mpoly", SparsePolynomial(context, sparse.parts))
+        own = polynomial.context().nvars()
+        return polynomial.compose(*self.context.gens()[:own], ctx=self.context)
+
     def compose(
         self,
         polynomial: fmpz_mpoly,

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 from flint import fmpz, nmod_poly
 from flint.utils.flint_exceptions import DomainError
 
-from symflex.algebra.ring import by_powers, degree_in
+from symflex.algebra.ring import by_powers, degree_in, terms_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -199,14 +199,12 @@ class TaylorField:
         """Return a polynomial with series in place of its generators."""
         total = self.constant(0)
         powers: dict[tuple[int, int], nmod_poly] = {}
-        for monomial, coefficient in polynomial.terms():
-            product = self.constant(int(coefficient))
-            for i, exponent in enumerate(monomial):
-                if exponent:
-                    key = (i, int(exponent))
-                    if key not in powers:
-                        powers[key] = values[names[i]].pow_trunc(int(exponent), self.terms)
-                    product = self.times(product, powers[key])
+        for monomial, coefficient in terms_of(polynomial):
+            product = self.constant(coefficient)
+            for key in monomial:
+                if key not in powers:
+                    powers[key] = values[names[key[0]]].pow_trunc(key[1], self.terms)
+                product = self.times(product, powers[key])
             total = total + product
         return total
 
@@ -263,8 +261,8 @@ TRIALS = 4
 class OriginSeries:
     """Orders at s = 0, or where another polynomial in s and parameters vanishes, of functions over one ring.
 
-    General dispersions are not covered. With ``at``, linear in s or in a parameter, that vanishes instead of
-    s. Orders above ``terms``, in the fourth root of s, are not found.
+    General and varying dispersions are not covered. With ``at``, linear in s or in a parameter, that vanishes
+    instead of s. Orders above ``terms``, in the fourth root of s, are not found.
     """
 
     def __init__(
@@ -291,7 +289,7 @@ def _find_point(
     ring: Ring, table: KernelTable, at: fmpz_mpoly, terms: int
 ) -> tuple[TaylorField, dict[str, nmod_poly]] | None:
     """Return series for all generators near where a polynomial vanishes."""
-    if any(d.kind == "general" for d in table.dispersions):
+    if any(d.kind in ("general", "varying") for d in table.dispersions):
         return None
     linear = next((i for i in range(len(ring.names)) if degree_in(at, i) == 1), None)
     if linear is None:
@@ -337,7 +335,7 @@ def _with_kernels(
     starts: dict[tuple[str, Factored], int] = {}
     known: dict[tuple[Dispersion, str, Factored, bool], tuple[nmod_poly, nmod_poly]] = {}
     for kernel in table.kernels:
-        if kernel.function == "fundamental":
+        if kernel.function in ("fundamental", "entry"):
             continue
         key = (kernel.wavenumber, kernel.length)
         start = starts.setdefault(key, pow(BASE, 1001 + 2 * len(starts), field.prime))

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 from math import ceil, exp, inf, log, nan, pi
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, NoReturn, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -32,10 +32,12 @@ from symflex.errors import Diagnostic, SymflexError, UncertifiedError, UsageErro
 from symflex.roots import Band, Certificate, Everything, PoleZeroMap
 from symflex.roots.counting.winding import Winding, continuous_step
 from symflex.roots.functions.kernel_function import KernelFunction, Sample
+from symflex.roots.functions.nested_function import NestedFunction
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import locate
 from symflex.roots.root import exact_fraction
 from symflex.transfer.bind import EnclosedDistributed
+from symflex.transfer.nested_form import BoundNested, EnclosedNested
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -43,7 +45,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from symflex.roots import Root
-    from symflex.transfer import BoundTransferFunction, EnclosedTransferFunction
+    from symflex.transfer import AnyBoundFunction, EnclosedTransferFunction
 
 
 def count_turns(
@@ -62,9 +64,7 @@ def count_turns(
     >>> count_turns(omega, (1j * omega + 1) ** -3, found)
     array([ 0, -1])
     """
-    integrators = sum(root.multiplicity for root in roots.poles if root.is_zero)
-    differentiators = sum(root.multiplicity for root in roots.zeros if root.is_zero)
-    order = differentiators - integrators
+    order = _order_at_rest(roots)
     phase = order * np.pi / 2 * np.sign(omega) + _phase_of(roots.zeros, omega) - _phase_of(roots.poles, omega)
     usable = np.isfinite(values) & (values != 0)
     principal = np.angle(np.where(usable, values, 1))
@@ -72,6 +72,12 @@ def count_turns(
     if np.sum(np.cos(phase - principal)[usable]) < 0:
         phase = phase + (np.pi if order < 0 else -np.pi) * np.where(omega < 0, -1, 1)
     return np.rint((phase - principal) / (2 * np.pi)).astype(np.int64)
+
+
+def _order_at_rest(roots: PoleZeroMap) -> int:
+    """Return the power of s that a function begins with at s = 0."""
+    integrators = sum(root.multiplicity for root in roots.poles if root.is_zero)
+    return sum(root.multiplicity for root in roots.zeros if root.is_zero) - integrators
 
 
 def _phase_of(roots: Iterable[Root], omega: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
@@ -102,7 +108,7 @@ SHORTEST_SHARE = 1e-6
 Point = tuple[complex, "Sample"]
 
 
-def follow_phase(bound: BoundTransferFunction, omega: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def follow_phase(bound: AnyBoundFunction, omega: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     """Return the continuous phase [rad] of a distributed system; NaN exactly at a root.
 
     Frequencies [rad/s] are positive and increase; the function is not identically zero. SF505 when the band
@@ -128,9 +134,14 @@ def follow_phase(bound: BoundTransferFunction, omega: npt.NDArray[np.float64]) -
 class _Walk:
     """Follows the argument of one function."""
 
-    def __init__(self, bound: BoundTransferFunction) -> None:
-        self.function = KernelFunction(bound, bound.ratio)
-        sides = [KernelFunction(bound, part) for part in (bound.num, bound.den)]
+    def __init__(self, bound: AnyBoundFunction) -> None:
+        if isinstance(bound, BoundNested):
+            # It has all that paths ask for.
+            self.function = cast("KernelFunction", NestedFunction(bound))
+            sides = [self.function]
+        else:
+            self.function = KernelFunction(bound, bound.ratio)
+            sides = [KernelFunction(bound, part) for part in (bound.num, bound.den)]
         self.start = min(Winding(f, entered_budget()).smallest(pi / 2 if f.is_even else pi) for f in sides)
         """ln of a radius below the lowest pole and zero."""
         self._winding = Winding(self.function, entered_budget())
@@ -139,7 +150,7 @@ class _Walk:
         """Return a point low on the axis, and the phase there."""
         first = self._winding.sample(complex(start, 0.0))
         phase = 0.0
-        if (round(first.log.imag / pi) % 2 == 1) != (self.function.part.unit < 0):
+        if (round(first.log.imag / pi) % 2 == 1) != self.function.is_negated:
             phase = pi if round(first.slope.real) < 0 else -pi
         end = complex(start, pi / 2)
         return (end, self._winding.sample(end)), phase + self._winding.turn(complex(start, 0.0), end)
@@ -282,7 +293,7 @@ DOUBLE_BITS = 54
 
 
 def respond(
-    bound: BoundTransferFunction, omega: npt.ArrayLike, roots: PoleZeroMap | None = None
+    bound: AnyBoundFunction, omega: npt.ArrayLike, roots: PoleZeroMap | None = None
 ) -> SampledResponse:
     """Evaluate a transfer function on the imaginary axis to double precision.
 
@@ -312,40 +323,91 @@ def respond(
     if grid.ndim != 1 or not np.isfinite(grid).all():
         message = "omega must be a one-dimensional array of finite numbers"
         raise ValueError(message)
-    settled = without_lengths_of_zero(bound)
+    settled = bound if isinstance(bound, BoundNested) else without_lengths_of_zero(bound)
     if settled is not bound:
         bound, roots = settled, None
     quantity, unit = bound.source.quantity, bound.source.unit
-    if bound.ratio.is_zero:
+    if bound.is_zero:
         return SampledResponse(bound.name, grid, np.zeros(grid.shape, np.complex128), quantity, unit)
     values = evaluate(bound, grid)
-    if bound.is_distributed:
+    of_network = _network_turns(bound, grid, values) if isinstance(bound, BoundNested) else None
+    if of_network is not None:
+        turns = of_network
+    elif bound.is_distributed:
         turns = _follow_turns(bound, grid, values)
     else:
         turns = count_turns(grid, values, locate(bound) if roots is None else roots)
     return SampledResponse(bound.name, grid, values, quantity, unit, turns)
 
 
+BEYOND_BAND = (1.5, 1.1)
+"""Roots are taken out of a network's phase up to so many times its highest frequency, the second where not
+all so far up can be proved; the rest turns slowly."""
+TO_REST = 12
+"""Frequencies below the lowest at which that rest is followed to s = 0, over three decades."""
+
+
+def _network_turns(
+    bound: BoundNested, omega: npt.NDArray[np.float64], values: npt.NDArray[np.complex128]
+) -> npt.NDArray[np.int64] | None:
+    """Return the whole turns that the principal values of a network's phase lack; None without its roots.
+
+    Without the poles and zeros in a disc, which are proved to be all, no value is zero in it and none is a
+    pole: what is left turns little from one frequency to the next.
+    """
+    highest = float(np.max(np.abs(omega), initial=0.0))
+    if highest == 0:
+        return None
+    sought = (Band(Fraction(0), Fraction(share * highest / (2 * pi))) for share in BEYOND_BAND)
+    found = (roots_if_found(bound, band) for band in sought)
+    roots = next((roots for roots in found if roots.certificate.certified), None)
+    if roots is None:
+        return None
+    steps, places = np.unique(np.abs(omega), return_inverse=True)
+    lowest = float(steps[steps > 0][0])
+    below = np.geomspace(lowest / 1000, lowest, TO_REST, endpoint=False)
+    path = np.concatenate((below, steps))
+    known = evaluate(bound, path)
+    order = _order_at_rest(roots)
+    phase = order * np.pi / 2 + _phase_of(roots.zeros, path) - _phase_of(roots.poles, path)
+    usable = np.isfinite(known) & (known != 0) & (path > 0)
+    rest = np.angle(np.where(usable, known, 1) * np.exp(-1j * phase))
+    rest[usable] = np.unwrap(rest[usable])
+    start = rest[usable][0]
+    if np.cos(start) < 0:
+        rest += (np.pi if order < 0 else -np.pi) - start
+    return _turns_to(np.where(usable, phase + rest, np.nan)[len(below) :][places], omega, values)
+
+
 def _follow_turns(
-    bound: BoundTransferFunction, omega: npt.NDArray[np.float64], values: npt.NDArray[np.complex128]
+    bound: AnyBoundFunction, omega: npt.NDArray[np.float64], values: npt.NDArray[np.complex128]
 ) -> npt.NDArray[np.int64]:
     """Return the whole turns that the principal values of a distributed system's phase lack."""
     steps, places = np.unique(np.abs(omega), return_inverse=True)
     phase = np.zeros(steps.shape)
     moving = steps > 0
     phase[moving] = follow_phase(bound, steps[moving])
+    return _turns_to(phase[places], omega, values)
+
+
+def _turns_to(
+    phase: npt.NDArray[np.float64], omega: npt.NDArray[np.float64], values: npt.NDArray[np.complex128]
+) -> npt.NDArray[np.int64]:
+    """Return the whole turns from principal values to the phase at positive frequencies; 0 where none is."""
     usable = np.isfinite(values) & (values != 0)
     principal = np.angle(np.where(usable, values, 1))
-    wanted = np.where(omega < 0, -1, 1) * phase[places]
+    wanted = np.where(omega < 0, -1, 1) * phase
     usable &= np.isfinite(wanted) & (omega != 0)
     turns = np.rint((np.where(usable, wanted, principal) - principal) / (2 * np.pi))
     return turns.astype(np.int64)
 
 
-def evaluate(bound: BoundTransferFunction, omega: npt.NDArray[np.float64]) -> npt.NDArray[np.complex128]:
+def evaluate(bound: AnyBoundFunction, omega: npt.NDArray[np.float64]) -> npt.NDArray[np.complex128]:
     """Return the values at angular frequencies, with more bits where cancellation asks for them."""
     values = np.zeros(omega.shape, np.complex128)
     pending, bits = list(enumerate(omega.tolist())), FIRST_BITS
+    if isinstance(bound, BoundNested) and pending:
+        bits = _bits_for(bound, pending[-1][1])
     if bound.is_distributed:
         # Where wavenumbers vanish, there is a limit but no value.
         values[omega == 0] = bound(0j)
@@ -365,11 +427,21 @@ def evaluate(bound: BoundTransferFunction, omega: npt.NDArray[np.float64]) -> np
     return values
 
 
-def _enclose(function: EnclosedTransferFunction | EnclosedDistributed, omega: Sequence[float]) -> list[acb]:
+def _bits_for(bound: BoundNested, omega: float) -> int:
+    """Return the precision at which a point is settled: all ask for about as much, in long chains more."""
+    bits = FIRST_BITS
+    while bits < LAST_BITS and not bound.enclosed(bits)(acb(0, omega)).rel_accuracy_bits() >= DOUBLE_BITS:
+        bits *= 2
+    return bits
+
+
+def _enclose(
+    function: EnclosedTransferFunction | EnclosedDistributed | EnclosedNested, omega: Sequence[float]
+) -> list[acb]:
     """Return balls around the values, one polynomial after the other, for all points at once."""
     with ctx.workprec(function.bits):
         points = [acb(0, value) for value in omega]
-        if isinstance(function, EnclosedDistributed):
+        if isinstance(function, EnclosedDistributed | EnclosedNested):
             return [function(point) for point in points]
         values = [function.unit] * len(points)
         for polynomial, exponent in function.factors:
@@ -421,7 +493,7 @@ def default_band(*maps: PoleZeroMap) -> tuple[float, float]:
     return (min(lows) / 10, max(highs)) if lows else DEFAULT_BAND_HZ
 
 
-def roots_if_found(bound: BoundTransferFunction, band: Band | None = None) -> PoleZeroMap:
+def roots_if_found(bound: AnyBoundFunction, band: Band | None = None) -> PoleZeroMap:
     """Return the poles and zeros, or as many as can be had: a response needs none.
 
     The certificate says why where roots may be missing. Without a band all are sought, of a distributed
@@ -439,7 +511,7 @@ def roots_if_found(bound: BoundTransferFunction, band: Band | None = None) -> Po
 
 
 def adaptive_grid(
-    bound: BoundTransferFunction,
+    bound: AnyBoundFunction,
     low_hz: float,
     high_hz: float,
     points: int = 600,
@@ -490,7 +562,7 @@ def check_band(low_hz: float, high_hz: float) -> None:
         raise UsageError(Diagnostic("SF227", message))
 
 
-def _followed(bound: BoundTransferFunction, grid: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def _followed(bound: AnyBoundFunction, grid: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     """Return a grid with points added where a straight line misses the logarithm of the values between."""
     known = dict(zip(grid.tolist(), evaluate(bound, grid).tolist(), strict=True))
     pending = list(pairwise(grid.tolist()))

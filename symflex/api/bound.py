@@ -3,28 +3,45 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from math import inf
 from typing import TYPE_CHECKING
 
 from symflex import pipeline
 from symflex.analysis import response as response_room
+from symflex.analysis.time_response import StepInfo
 from symflex.api.mode_shape import ModeShape
-from symflex.api.root import Mode, PoleZeroMap, Residue, Root, Sensitivity, plain_mode
+from symflex.api.plots import plot_functions
+from symflex.api.response import FrequencyResponse, TimeResponse
+from symflex.api.root import (
+    Mode,
+    PoleZeroMap,
+    Residue,
+    ResidueTable,
+    Root,
+    RootTable,
+    Sensitivity,
+    SensitivityTable,
+    plain_mode,
+)
 from symflex.budget import Budget, entered_budget
 from symflex.errors import Diagnostic, UsageError
-from symflex.options import RootsOptions
+from symflex.options import PlotOptions, RootsOptions
 from symflex.roots.region import region_of
 
 if TYPE_CHECKING:
     import numpy as np
     import sympy
+    from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
     from symflex import roots as roots_room
     from symflex import transfer as transfer_room
     from symflex.analysis import rational as rational_room
     from symflex.analysis.explanation import ZeroExplanation
+    from symflex.analysis.input_shaping import InputShaper
+    from symflex.figures import AxesGiven
+    from symflex.options import Ends
     from symflex.state_space.numeric import BoundStateSpace
 
 
@@ -68,6 +85,118 @@ class BoundTransferFunction:
     def frequency_response(self, omega: ArrayLike) -> FrequencyResponse:
         """Return the response at real angular frequencies [rad/s]."""
         return FrequencyResponse.of(response_room.respond(self.bound, omega))
+
+    def step_response(self, times: ArrayLike, digits: int = 12) -> TimeResponse:
+        r"""Return the response to a unit step at t = 0, from rest, at increasing times [s] from 0 on.
+
+        Every value has a radius, within which the true one is proved to lie where the result says
+        ``certified``: ``digits`` digits of the largest value are correct.
+
+        Raises
+        ------
+        UsageError
+            SF811 for times that are negative or do not increase; SF812, from ``values``, where a response
+            grows beyond the range of doubles.
+        UncertifiedError
+            SF810 when poles cannot be told apart.
+
+        Examples
+        --------
+        >>> from symflex import loads
+        >>> lag = loads('symflex = 1\ninputs.u = {}\noutputs.y = "u/(s + 1)"').transfer_function("y", "u")
+        >>> found = lag.bind().step_response([0.0, 1.0, 2.0])
+        >>> found.values.round(9).tolist(), bool(found.radius.max() < 1e-12)
+        ([0.0, 0.632120559, 0.864664717], True)
+        """
+        return self._in_time("step", times, digits)
+
+    def step_info(self, digits: int = 12) -> StepInfo | None:
+        r"""Return final value, peak, overshoot, rise and settling time of the step response, each a ball.
+
+        That no later peak is higher, and no later crossing of a level follows, is proved. None where the
+        response does not come to rest, or at 0, and of functions with waves or delays.
+
+        Examples
+        --------
+        >>> from symflex import loads
+        >>> text = 'symflex = 1\ninputs.u = {}\noutputs.y = "9*u/(s^2 + 6*s/10 + 9)"'
+        >>> info = loads(text).transfer_function("y", "u").bind().step_info()
+        >>> round(float(info.overshoot), 9), round(float(info.settling_time), 6)
+        (0.729247614, 12.794427)
+        """
+        from symflex.analysis.time_response import find_step_info
+
+        return find_step_info(self.bound, digits)
+
+    def impulse_response(self, times: ArrayLike, digits: int = 12) -> TimeResponse:
+        r"""Return the response to a unit impulse at t = 0; see :meth:`step_response`.
+
+        What passes straight through to the output is an impulse itself. It is no value: ``impulses`` holds
+        its time and weight, and those of its derivatives.
+
+        Examples
+        --------
+        >>> from symflex import loads
+        >>> lead = loads('symflex = 1\ninputs.u = {}\noutputs.y = "u*(s + 2)/(s + 1)"')
+        >>> found = lead.transfer_function("y", "u").bind().impulse_response([0.0])
+        >>> found.values.tolist(), [float(i.weight) for i in found.impulses]
+        ([1.0], [1.0])
+        """
+        return self._in_time("impulse", times, digits)
+
+    def ramp_response(self, times: ArrayLike, digits: int = 12) -> TimeResponse:
+        """Return the response to the input t from t = 0 on; see :meth:`step_response`."""
+        return self._in_time("ramp", times, digits)
+
+    def forced_response(self, times: ArrayLike, u: ArrayLike, digits: int = 12) -> TimeResponse:
+        r"""Return the response, from rest, to an input that is a straight line between samples.
+
+        Parameters
+        ----------
+        times : array_like of float, shape (n,)
+            Increasing times [s] of the samples, at which the response is given too. Those that are evenly
+            spaced but for rounding count as even.
+        u : array_like of float, shape (n,)
+            The input at these times. It is 0 before the first; where it does not begin with 0, it jumps.
+        digits : int
+            As for :meth:`step_response`.
+
+        Raises
+        ------
+        UsageError
+            SF811 for times that do not increase, or values that are no numbers or not as many.
+        UncertifiedError
+            SF810 as for :meth:`step_response`, and where the transfer function differentiates its input.
+
+        Examples
+        --------
+        >>> from symflex import loads
+        >>> integrator = loads('symflex = 1\ninputs.u = {}\noutputs.y = "u/s"').transfer_function("y", "u")
+        >>> integrator.bind().forced_response([0.0, 1.0, 3.0], [0.0, 2.0, 2.0]).values.tolist()
+        [0.0, 1.0, 5.0]
+        """
+        from symflex.analysis.time_response import SampleTimes, exact_values
+
+        instants = SampleTimes.of(times)
+        exactly = instants.exactly()
+        given = exact_values(u, len(exactly))
+        found = pipeline.forced_response(self.bound, exactly, given, exactly, digits)
+        return TimeResponse(**{f.name: getattr(found, f.name) for f in fields(found)})
+
+    def input_shaper(self, modes: int = 1, kind: str = "zv", digits: int = 15) -> InputShaper:
+        """Return impulses by which a command is convolved so that the lowest modes do not ring after it.
+
+        See :func:`symflex.analysis.input_shaping.input_shaper`.
+        """
+        from symflex.analysis.input_shaping import input_shaper
+
+        return input_shaper(self.bound, modes, kind, digits)
+
+    def _in_time(self, kind: str, times: ArrayLike, digits: int) -> TimeResponse:
+        from symflex.analysis.time_response import SampleTimes
+
+        found = pipeline.time_response(self.bound, kind, SampleTimes.of(times), digits)
+        return TimeResponse(**{f.name: getattr(found, f.name) for f in fields(found)})
 
     def poles(
         self,
@@ -130,7 +259,7 @@ class BoundTransferFunction:
         [1.570796, -1.570796, 4.712389, -4.712389]
         """
         found = self._found(RootsOptions(None, modes, mode, band, digits=digits), budget)
-        return tuple(Root(r) for r in found.all_poles)
+        return RootTable(Root(r) for r in found.all_poles)
 
     def zeros(
         self,
@@ -143,7 +272,7 @@ class BoundTransferFunction:
     ) -> tuple[Root, ...]:
         """Return the zeros; see :meth:`poles`."""
         found = self._found(RootsOptions(None, modes, mode, band, digits=digits), budget)
-        return tuple(Root(r) for r in found.zeros)
+        return RootTable(Root(r) for r in found.zeros)
 
     def _found(self, given: RootsOptions, budget: float | None) -> PoleZeroMap:
         """Return the map if the budget suffices: a tuple of roots could not say that it did not."""
@@ -224,7 +353,9 @@ class BoundTransferFunction:
         [(-0.5+0j)]
         """
         region = region_of(RootsOptions(None, modes, mode, band))
-        return tuple(Residue(r) for r in pipeline.residues(self.bound, region, digits, budget_of(budget)))
+        return ResidueTable(
+            Residue(r) for r in pipeline.residues(self.bound, region, digits, budget_of(budget))
+        )
 
     def rational(
         self, modes: int | None = None, form: str = "product", *, band: tuple[float, float] | None = None
@@ -281,7 +412,7 @@ class BoundTransferFunction:
         """
         found = self._found(RootsOptions(None, modes, mode, band, digits=digits), budget)
         model = self.bound.source.model
-        return tuple(
+        return SensitivityTable(
             Sensitivity(m) for m in pipeline.sensitivities(model, self.bound, found, parameters, digits)
         )
 
@@ -332,7 +463,7 @@ class BoundTransferFunction:
         """
         from symflex.analysis.modes import mode_shape
 
-        return ModeShape(mode_shape(self.bound, plain_mode(mode), digits))
+        return ModeShape(mode_shape(self.bound, plain_mode(mode), digits), self.bound.source.model)
 
     def mode_shapes(self, mode: Mode, digits: int = 15) -> tuple[ModeShape, ...]:
         """Return all independent shapes of a mode's pole: more than one where equal parts move alike.
@@ -342,7 +473,133 @@ class BoundTransferFunction:
         """
         from symflex.analysis.modes import mode_shapes
 
-        return tuple(ModeShape(shape) for shape in mode_shapes(self.bound, plain_mode(mode), digits))
+        found = mode_shapes(self.bound, plain_mode(mode), digits)
+        return tuple(ModeShape(shape, self.bound.source.model) for shape in found)
+
+    def bode(
+        self,
+        *others: BoundTransferFunction,
+        band: Ends | None = None,
+        ylim: Ends | None = None,
+        phase: Ends | None = None,
+        width: float | str | None = None,
+        font: str | None = None,
+        ax: AxesGiven | None = None,
+    ) -> Figure:
+        r"""Return a Bode plot, of other transfer functions too, as ``symflex plot bode`` draws it.
+
+        Parameters
+        ----------
+        *others : BoundTransferFunction
+            Drawn over it.
+        band : (float, float), optional
+            Frequencies shown [Hz], or texts with units; by default the model's, or all poles and zeros.
+        ylim, phase : (float, float), optional
+            Ends of the axes of magnitudes [dB] and phases [deg].
+        width : float or str, optional
+            Of the figure [mm], or ``"ieee"`` or ``"a4"``.
+        font : str, optional
+            ``times``, ``latex`` or ``sans``.
+        ax : two matplotlib axes, optional
+            Of your own, to draw on, in your own style; where there are lines already, the next colours are
+            taken. One alone shows magnitudes.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            A figure of no window: a notebook shows it, ``savefig`` writes it, its ``axes`` can be added to.
+            For a window give axes of :func:`matplotlib.pyplot.subplots`.
+
+        Raises
+        ------
+        UsageError
+            SF902 for limits that are none, and for too many axes or too few.
+        ModelError
+            SF402 where a function is identically zero.
+
+        Examples
+        --------
+        >>> from symflex import loads
+        >>> loop = loads('symflex = 1\ninputs.u = {}\noutputs.y = "u/((s + 1)*(s + 3))"')
+        >>> figure = loop.transfer_function("y", "u").bind().bode(band=(0.01, 10), ylim=(-60, 0))
+        >>> [axes.get_ylabel() for axes in figure.axes], figure.axes[0].get_ylim() == (-60, 0)
+        (['Magnitude [dB, 0 dB = 1 $\\mathrm{s^{2}}$]', 'Phase [deg]'], True)
+        """
+        given = PlotOptions("bode", band=band, ylim=ylim, phase=phase, width=width, font=font)
+        return plot_functions(given, [self.bound, *(other.bound for other in others)], ax)
+
+    def pole_zero_plot(
+        self,
+        *others: BoundTransferFunction,
+        modes: int | None = None,
+        band: Ends | None = None,
+        xlim: Ends | None = None,
+        ylim: Ends | None = None,
+        width: float | str | None = None,
+        font: str | None = None,
+        ax: AxesGiven | None = None,
+    ) -> Figure:
+        r"""Return the poles and zeros in the s plane, of other transfer functions in panels beside it.
+
+        Roots far outside of what is shown are named at the border, where an arrow points to them.
+
+        Parameters
+        ----------
+        *others, width, font, ax : optional
+            As for :meth:`bode`; one axes per function.
+        modes : int, optional
+            Of a distributed system, how many modes are shown; by default the model's, or five.
+        band : (float, float), optional
+            What is shown ends with that of the band [Hz].
+        xlim, ylim : (float, float), optional
+            Ends of the axes [rad/s].
+
+        Examples
+        --------
+        >>> from symflex import loads
+        >>> loop = loads('symflex = 1\ninputs.u = {}\noutputs.y = "u/((s + 1)*(s + 3))"')
+        >>> (panel,) = loop.transfer_function("y", "u").bind().pole_zero_plot(xlim=(-4, 1)).axes
+        >>> panel.get_xlim() == (-4, 1), panel.get_title()
+        (True, '$y/u$')
+        """
+        given = PlotOptions(
+            "poles_zeros", band=band, xlim=xlim, ylim=ylim, modes=modes, width=width, font=font
+        )
+        return plot_functions(given, [self.bound, *(other.bound for other in others)], ax)
+
+    def nyquist(
+        self,
+        *others: BoundTransferFunction,
+        band: Ends | None = None,
+        xlim: Ends | None = None,
+        ylim: Ends | None = None,
+        width: float | str | None = None,
+        font: str | None = None,
+        ax: AxesGiven | None = None,
+    ) -> Figure:
+        r"""Return the values on the imaginary axis as a curve, with the number of unstable poles.
+
+        :meth:`Model.nyquist` draws the gain of a loop that is closed in the model.
+
+        Parameters
+        ----------
+        *others, width, font, ax : optional
+            As for :meth:`bode`; one axes for all.
+        band : (float, float), optional
+            Frequencies drawn [Hz].
+        xlim, ylim : (float, float), optional
+            Ends of the axes.
+
+        Examples
+        --------
+        >>> from symflex import loads
+        >>> loop = loads('symflex = 1\ninputs.u = {}\noutputs.y = "u/((s - 1)*(s + 3))"')
+        >>> figure = loop.transfer_function("y", "u").bind().nyquist()
+        >>> figure.legends[0].get_title().get_text()
+        '1 pole in the right half plane'
+        """
+        given = PlotOptions("nyquist", band=band, xlim=xlim, ylim=ylim, width=width, font=font)
+        return plot_functions(given, [self.bound, *(other.bound for other in others)], ax)
 
     def state_space(self, *, minimal: bool = False) -> BoundStateSpace:
         """Return state equations of the model's network as arrays, every entry rounded once.
@@ -452,45 +709,6 @@ class BoundTransferFunction:
     def dcgain(self) -> float:
         """Return the limit for s -> 0 from the right, possibly infinite."""
         return self.bound.limit_at_zero()
-
-
-LARGEST_DRAWING = 4000
-"""Frequencies up to which the picture is a drawing, which grows with their number, and beyond a raster."""
-
-
-@dataclass(frozen=True, eq=False)
-class FrequencyResponse(response_room.SampledResponse):
-    """Values on the imaginary axis; in a notebook, a Bode plot.
-
-    See :class:`symflex.analysis.response.SampledResponse`.
-    """
-
-    @staticmethod
-    def of(response: response_room.SampledResponse) -> FrequencyResponse:
-        """Return the face of a response."""
-        return FrequencyResponse(
-            response.tf, response.omega, response.values, response.quantity, response.unit, response.turns
-        )
-
-    def __repr__(self) -> str:
-        count = len(self.omega)
-        if not count:
-            return f"<FrequencyResponse {self.tf}: {self.quantity}, no frequency>"
-        low, high = self.omega.min(), self.omega.max()
-        return f"<FrequencyResponse {self.tf}: {self.quantity}, {count} from {low:.6g} to {high:.6g} rad/s>"
-
-    def _repr_svg_(self) -> str | None:
-        picture = self._picture("svg") if len(self.omega) <= LARGEST_DRAWING else None
-        return None if picture is None else picture.decode()
-
-    def _repr_png_(self) -> bytes | None:
-        return self._picture("png") if len(self.omega) > LARGEST_DRAWING else None
-
-    def _picture(self, format: str) -> bytes | None:
-        from symflex.figures import draw_response, render  # imports matplotlib
-
-        figure = draw_response(self)
-        return None if figure is None else render(figure, format)
 
 
 def budget_of(seconds: float | None) -> Budget:

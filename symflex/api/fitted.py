@@ -16,9 +16,11 @@ from symflex.options import FitOptions
 
 if TYPE_CHECKING:
     import numpy.typing as npt
+    from matplotlib.figure import Figure
 
     from symflex.data import fitting
     from symflex.data.fitting.resonances import Resonances
+    from symflex.figures import AxesGiven
 
     Real = npt.NDArray[np.float64]
     Complex = npt.NDArray[np.complex128]
@@ -85,6 +87,20 @@ class Fit:
         allowed = {folder for base in self.found.bases for folder in base.folders}
         return loads(self.specification(Path()), "<fit>", allow_outside=allowed)
 
+    def plot(self, response: int = 0, *, ax: AxesGiven | None = None) -> Figure:
+        """Return data and fit of one response, magnitude over phase, as ``symflex fit --plot`` draws them.
+
+        Two axes of your own, ``ax``, are drawn on in your own style.
+
+        Raises
+        ------
+        UsageError
+            SF902 for too many axes or too few.
+        """
+        from symflex.figures import draw_fit  # imports matplotlib
+
+        return draw_fit(self.found, response, ax)
+
     def to_json_dict(self) -> dict[str, object]:
         """Return the result in the schema ``symflex.fit/1``."""
         from symflex.data.fitting.text import fit_json
@@ -95,6 +111,11 @@ class Fit:
         from symflex.data.fitting.text import fit_text
 
         return fit_text(self.found)
+
+    def _repr_html_(self) -> str:
+        from symflex.print.html import text_html  # only notebooks ask
+
+        return text_html(str(self))
 
     def __repr__(self) -> str:
         modes = ", ".join(f"{f:.3g}" for f in self.frequencies_hz)
@@ -176,8 +197,8 @@ def fit(
     <Fit to synthetic data: 11, 38, 44, 67, 77 Hz>
     >>> bool(max(found.standard_errors.zeta_p) < 0.0005), found.is_minimum_phase
     (True, (True,))
-    >>> found.model().outputs
-    ('A_tip',)
+    >>> found.model().outputs, len(found.plot().axes)
+    (('A_tip',), 2)
     """
     given = [data] if isinstance(data, str | Path | MeasuredResponse) else list(data)
     responses: list[MeasuredResponse] = []

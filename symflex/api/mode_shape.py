@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import mpmath
 
+from symflex.api.plots import width_of
 from symflex.api.root import Root, radius_of
 from symflex.errors import Diagnostic, UsageError
 from symflex.roots import precision
@@ -16,9 +17,12 @@ from symflex.roots.precision import to_complex_mpmath
 if TYPE_CHECKING:
     import numpy as np
     from flint import acb
+    from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
+    from symflex import model as model_room
     from symflex.analysis import modes as modes_room
+    from symflex.figures import AxesGiven
 
 END_TOLERANCE = 1e-12
 """Relative distance by which rounding may put a place beyond the end of a beam."""
@@ -36,6 +40,8 @@ class ModeShape:
     ----------
     enclosed : symflex.analysis.modes.EnclosedModeShape
         With a ball around every amplitude.
+    model : symflex.model.Model
+        What moves.
 
     Examples
     --------
@@ -54,6 +60,7 @@ class ModeShape:
     """
 
     enclosed: modes_room.EnclosedModeShape
+    model: model_room.Model = field(repr=False)
 
     @property
     def pole(self) -> Root:
@@ -156,6 +163,50 @@ class ModeShape:
         found = [float(radius_of(ball)) for ball in self._balls(part, places, quantity)]
         return np.array(found, dtype=float).reshape(places.shape)
 
+    def plot(
+        self, *, width: float | str | None = None, font: str | None = None, ax: AxesGiven | None = None
+    ) -> Figure:
+        """Return a figure: displacements along distributed parts, and of nodes side by side.
+
+        What moves in phase with the largest displacement is drawn in full, what moves in quadrature dashed.
+
+        Parameters
+        ----------
+        width : float or str, optional
+            Of the figure [mm], or ``"ieee"`` or ``"a4"``.
+        font : str, optional
+            ``times``, ``latex`` or ``sans``.
+        ax : matplotlib axes, optional
+            Of your own, to draw on, as many as there are panels.
+
+        Raises
+        ------
+        ModelError
+            SF402 when nothing moves that could be drawn.
+        UsageError
+            SF902 for too many axes or too few.
+
+        Examples
+        --------
+        >>> from symflex import Model
+        >>> model = Model(
+        ...     elements={
+        ...         "bar": {"type": "rod", "between": ["ground", "x"], "E": "1 Pa", "A": "1 m^2",
+        ...                 "rho": "1 kg/m^3", "l": "1 m"},
+        ...     },
+        ...     inputs={"F": {"force": "x"}},
+        ...     outputs={"X": "x"},
+        ... )
+        >>> figure = model.transfer_function("X", "F").bind().mode_shape(1).plot()
+        >>> figure.axes[0].get_title(loc="left"), figure.axes[0].get_xlabel()  # (pi/2)/(2 pi) Hz
+        ('$0.2500$ Hz', '$x$ [m]')
+        """
+        from symflex.figures import DEFAULT_FONT, draw_shape  # imports matplotlib
+
+        return draw_shape(
+            self.model, self.enclosed, width_mm=width_of(width), font=font or DEFAULT_FONT, ax=ax
+        )
+
     def _balls(self, part: str, places: NDArray[np.float64], quantity: str | None) -> list[acb]:
         found = self.enclosed.along(part)
         position = found.position(quantity)
@@ -166,6 +217,11 @@ class ModeShape:
                 message = f"x = {place:g} lies outside '{part}', which reaches from {start:g} to {end:g}"
                 raise UsageError(Diagnostic("SF240", message))
         return [found.at(Fraction(float(place)))[position] for place in places.ravel()]
+
+    def _repr_png_(self) -> tuple[bytes, dict[str, int]] | None:
+        from symflex.figures import picture_of_shape  # only notebooks ask
+
+        return picture_of_shape(self.model, self.enclosed)
 
     def __repr__(self) -> str:
         damping = self.damping_ratio

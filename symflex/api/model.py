@@ -9,24 +9,30 @@ from typing import TYPE_CHECKING
 
 from symflex import pipeline
 from symflex.api.bound import budget_of
+from symflex.api.plots import plot_loop
 from symflex.api.stability import Stability
 from symflex.api.state_space import StateSpace
 from symflex.api.transfer_function import NestedTransferFunction, Number, TransferFunction
 from symflex.model.spec import write
-from symflex.options import ColocationOptions, MeasureOptions, StabilityOptions, SweepOptions
+from symflex.options import ColocationOptions, MeasureOptions, PlotOptions, StabilityOptions, SweepOptions
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
+    from matplotlib.figure import Figure
+
     from symflex import model as model_room
+    from symflex.api.sweep import Sweep
     from symflex.data.measurement import MeasuredResponse
     from symflex.errors import Diagnostic
+    from symflex.figures import AxesGiven
     from symflex.loops import DynamicColocation
     from symflex.model import Setting
-    from symflex.sweep import Sweep
+    from symflex.options import Ends
 
 Table = Mapping[str, object]
-SHOWN_PAIRS = 6
+LARGEST_DRAWING = 60
+"""Elements of a model that a notebook draws."""
 
 
 @dataclass(frozen=True, init=False)
@@ -102,14 +108,58 @@ class Model:
         return model
 
     def __repr__(self) -> str:
-        names = ", ".join("/".join(pair) for pair in self.resolved.transfer_functions[:SHOWN_PAIRS])
-        more = ", ..." if len(self.resolved.transfer_functions) > SHOWN_PAIRS else ""
-        return f"<Model {self.title or 'without title'}: {names}{more}>"
+        return repr(self.resolved)
 
     def _repr_html_(self) -> str:
-        from symflex.print.html import model_html  # only notebooks ask
+        from symflex.drawing import drawing_of, render_drawing  # only notebooks ask
+        from symflex.print.html import model_html
 
-        return model_html(self.resolved)
+        if len(self.resolved.elements) > LARGEST_DRAWING:
+            return model_html(self.resolved)
+        drawn = render_drawing(drawing_of(self.resolved), "svg").decode()
+        # Without its own style, which would be that of the whole notebook.
+        head, _, tail = drawn[drawn.index("<svg") :].partition("<style")
+        return f"<div>{head}{tail.partition('</style>')[2]}</div>\n{model_html(self.resolved)}"
+
+    def draw(self, *, values: bool = False, width: float | None = None, font: str = "times") -> Figure:
+        """Draw the model as a textbook draws it, as ``symflex draw`` does.
+
+        Parameters
+        ----------
+        values : bool
+            Write numbers with units at the symbols.
+        width : float, optional
+            Of the figure [mm]; by default a column (88.5), a page (170), or what the model needs.
+        font : str
+            ``times``, ``latex`` or ``sans``.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            Lengths in it are what they are in print.
+
+        Raises
+        ------
+        UsageError
+            SF902 a width that has no room for the model, or is not between 80 and 1000 mm; SF208 an unknown
+            font.
+
+        Examples
+        --------
+        >>> model = Model(
+        ...     elements={
+        ...         "body": {"type": "mass", "at": "x", "m": "2 kg"},
+        ...         "wall": {"type": "spring", "between": ["x", "ground"], "k": "8 N/m"},
+        ...     },
+        ...     inputs={"F": {"force": "x"}},
+        ...     outputs={"X": "x"},
+        ... )
+        >>> round(25.4 * float(model.draw().get_figwidth()), 1)
+        88.5
+        """
+        from symflex.drawing import draw_model  # imports matplotlib
+
+        return draw_model(self.resolved, values=values, width_mm=width, font=font)
 
     @property
     def title(self) -> str:
@@ -172,7 +222,7 @@ class Model:
         UsageError
             SF902 when there is no such output or input.
         ModelError
-            SF30x when the equations are singular; SF910 for beams, rods and delays.
+            SF30x when the equations are singular, with the reason.
 
         Examples
         --------
@@ -280,6 +330,99 @@ class Model:
         """
         given = StabilityOptions(gain, limits, up_to_hz, digits)
         return Stability(pipeline.stability(self.resolved, given, values, budget_of(budget)))
+
+    def locus(
+        self,
+        gain: str,
+        limits: tuple[float | None, float | None] | None = None,
+        *,
+        modes: int | None = None,
+        band: Ends | None = None,
+        xlim: Ends | None = None,
+        ylim: Ends | None = None,
+        width: float | str | None = None,
+        font: str | None = None,
+        ax: AxesGiven | None = None,
+        **values: Number,
+    ) -> Figure:
+        r"""Return the root locus: where the closed-loop poles go as a gain grows.
+
+        Parameters
+        ----------
+        gain : str
+            A parameter; the loop is closed in the model's signals.
+        limits : (float, float), optional
+            First and last gain in SI units; from 0 to ten times the declared value by default.
+        modes : int, optional
+            Of a distributed system, how many modes are traced.
+        band : (float, float), optional
+            What is shown ends with that of the band [Hz].
+        xlim, ylim : (float, float), optional
+            Ends of the axes [rad/s].
+        width, font, ax : optional
+            As for :meth:`BoundTransferFunction.bode`; one axes.
+        **values : number or str
+            In place of declared values.
+
+        Raises
+        ------
+        UsageError
+            SF902 no such parameter, SF804 no range, SF806 no straight line in the gain.
+        ModelError
+            SF801 no pole depends on the parameter.
+        UncertifiedError
+            SF807 the curves do not end in proved poles.
+
+        Examples
+        --------
+        >>> model = Model(
+        ...     parameters={"K": 1},
+        ...     signals={"y": "K/(s*(s + 1)*(s + 2))*(r - y)"},
+        ...     inputs={"r": {}},
+        ...     outputs={"Y": "y"},
+        ... )
+        >>> figure = model.locus("K", (0, 20), ylim=(-4, 4))
+        >>> figure.axes[0].get_ylim() == (-4, 4), figure.axes[0].get_xlabel()
+        (True, '$\\mathrm{Re}(s)$ [rad/s]')
+        """
+        loop = pipeline.characteristic_loop(self.resolved, gain, values)
+        given = PlotOptions(
+            "locus", band=band, xlim=xlim, ylim=ylim, limits=limits, modes=modes, width=width, font=font
+        )
+        return plot_loop(given, loop, ax)
+
+    def nyquist(
+        self,
+        gain: str,
+        *,
+        band: Ends | None = None,
+        xlim: Ends | None = None,
+        ylim: Ends | None = None,
+        width: float | str | None = None,
+        font: str | None = None,
+        ax: AxesGiven | None = None,
+        **values: Number,
+    ) -> Figure:
+        """Return the Nyquist plot of the loop that a gain closes, about the point -1.
+
+        It says how many poles of the open loop lie in the right half plane, and whether the closed one is
+        stable. Parameters and errors are those of :meth:`locus`; ``band`` holds the frequencies drawn [Hz].
+
+        Examples
+        --------
+        >>> model = Model(
+        ...     parameters={"K": 1},
+        ...     signals={"y": "K/(s*(s + 1)*(s + 2))*(r - y)"},
+        ...     inputs={"r": {}},
+        ...     outputs={"Y": "y"},
+        ... )
+        >>> print(model.nyquist("K").legends[0].get_title().get_text())
+        open loop: no pole in the right half plane
+        closed loop stable
+        """
+        loop = pipeline.characteristic_loop(self.resolved, gain, values)
+        given = PlotOptions("nyquist", band=band, xlim=xlim, ylim=ylim, width=width, font=font)
+        return plot_loop(given, loop, ax)
 
     def colocation(
         self,
@@ -426,8 +569,8 @@ class Model:
 
         Returns
         -------
-        symflex.sweep.Sweep
-            Labelled arrays; ``to_xarray()`` makes a dataset of them.
+        Sweep
+            Labelled arrays; ``to_xarray()`` makes a dataset of them, ``plot()`` a figure.
 
         Raises
         ------
@@ -448,10 +591,13 @@ class Model:
         ...     outputs={"X": "x"},
         ... )
         >>> sweep = model.sweep({"k": [1, 4, 9]})
+        >>> sweep
+        <Sweep X/F: poles at 3 points, k, certified>
         >>> sweep["im"].tolist(), sweep.is_certified
         ([[1.0], [2.0], [3.0]], True)
         """
         from symflex import sweep as sweep_room  # imports numpy and scipy
+        from symflex.api.sweep import Sweep
         from symflex.errors import Diagnostic, UsageError
 
         if of not in sweep_room.QUANTITIES:
@@ -461,7 +607,7 @@ class Model:
             raise UsageError(Diagnostic("SF902", "a response needs frequencies"))
         given = SweepOptions(over, draws, seed, of, tf, modes, band, gain=gain, output=output, fresh=fresh)
         task, design = pipeline.plan_sweep(self.resolved, given, frequencies)
-        return pipeline.sweep(task, design, given, executor, workers=workers)
+        return Sweep.of_plain(pipeline.sweep(task, design, given, executor, workers=workers))
 
     def export_numpy(self) -> str:
         """Return a numpy module with a function per transfer function."""
@@ -510,7 +656,9 @@ class Model:
     def _export(self, target: str, name: str = "") -> str:
         from symflex.codegen.exporters import EXPORTERS  # the numeric exporters import numpy
 
-        return EXPORTERS[target].export(self.resolved, pipeline.derive_all(self.resolved), name).text
+        exporter, pairs = EXPORTERS[target], self.resolved.transfer_functions
+        derived, _ = pipeline.derive_as(self.resolved, pairs, solves=exporter.solves)
+        return exporter.export(self.resolved, derived, name).text
 
 
 def load(

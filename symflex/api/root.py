@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import mpmath
 
@@ -17,10 +19,12 @@ if TYPE_CHECKING:
 
     from symflex.analysis import rational as rational_room
     from symflex.analysis import sensitivity as sensitivity_room
+    from symflex.roots.root import RootDecimals
 
 
 SHOWN_DIGITS = 12
 RADIUS_BITS = 64
+_POWER: Final = re.compile(r"e\+?(-?\d+)$")
 
 
 def radius_of(ball: acb) -> mpmath.mpf:
@@ -109,6 +113,54 @@ class Root:
     def __complex__(self) -> complex:
         return complex(self.re, self.im)
 
+    def _repr_latex_(self) -> str:
+        times = rf"\quad ({self.multiplicity}\times)" if self.multiplicity > 1 else ""
+        return rf"$s = {complex_latex(self.certified_root.decimal(SHOWN_DIGITS))}\ \mathrm{{rad/s}}{times}$"
+
+
+def complex_latex(printed: RootDecimals) -> str:
+    r"""Return a complex number in LaTeX.
+
+    Examples
+    --------
+    >>> from symflex.roots.root import RootDecimals
+    >>> print(complex_latex(RootDecimals("-1.5", "-2.0e-7", "1e-12")))
+    -1.5 - 2.0\cdot 10^{-7}\,\mathrm{j}
+    """
+    real, imaginary = (_POWER.sub(r"\\cdot 10^{\1}", part) for part in (printed.re, printed.im))
+    if printed.im == "0":
+        return real
+    sign = "-" if imaginary.startswith("-") else "+"
+    return rf"{real} {sign} {imaginary.removeprefix('-')}\,\mathrm{{j}}"
+
+
+class RootTable(tuple[Root, ...]):
+    """Poles or zeros; in a notebook, a table."""
+
+    __slots__ = ()
+
+    def _repr_html_(self) -> str:
+        printed = [root.certified_root.decimal(SHOWN_DIGITS) for root in self]
+        rows = [
+            (
+                str(i),
+                p.re,
+                p.im,
+                f"{root.frequency_hz:.8g}",
+                "" if root.damping_ratio is None else f"{root.damping_ratio:.6g}",
+                f"{root.multiplicity}",
+            )
+            for i, (root, p) in enumerate(zip(self, printed, strict=True))
+        ]
+        return _table(("", "Re [rad/s]", "Im [rad/s]", "f [Hz]", "&zeta;", "times"), rows)
+
+
+def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    from symflex.print.html import NUMBER, html_table  # only notebooks ask
+
+    written = [[cell.replace("-", "\u2212") for cell in row] for row in rows]
+    return html_table(head, [NUMBER] * len(head), written)
+
 
 Mode = int | Root | CertifiedRoot | HiddenRoot
 
@@ -126,7 +178,7 @@ def plain_mode(mode: Mode) -> int | CertifiedRoot:
     return mode.root if isinstance(mode, HiddenRoot) else mode
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class PoleZeroMap(roots_room.PoleZeroMap):
     """Poles, zeros and hidden modes; in a notebook, a table. See :class:`symflex.roots.PoleZeroMap`."""
 
@@ -184,6 +236,20 @@ class Residue:
 
     def __complex__(self) -> complex:
         return complex(self.value)
+
+
+class ResidueTable(tuple[Residue, ...]):
+    """Residues at poles; in a notebook, a table."""
+
+    __slots__ = ()
+
+    def _repr_html_(self) -> str:
+        rows = []
+        for residue in self:
+            pole = residue.pole.certified_root.decimal(SHOWN_DIGITS)
+            parts = (mpmath.nstr(part, SHOWN_DIGITS) for part in (residue.value.real, residue.value.imag))
+            rows.append((pole.re, pole.im, *parts))
+        return _table(("Re pole [rad/s]", "Im pole [rad/s]", "Re residue", "Im residue"), rows)
 
 
 @dataclass(frozen=True)
@@ -252,3 +318,27 @@ class Sensitivity:
         derivative = self.moved.derivative
         printed = decimals(derivative.real, derivative.imag, SHOWN_DIGITS)
         return f"<Sensitivity of a {self.kind} to {self.parameter}: {printed.re}, {printed.im} j>"
+
+
+def _short(number: mpmath.mpf) -> str:
+    return f"{float(number):.6g}"
+
+
+class SensitivityTable(tuple[Sensitivity, ...]):
+    """How roots move with parameters; in a notebook, a table of relative changes."""
+
+    __slots__ = ()
+
+    def _repr_html_(self) -> str:
+        from symflex.print.html import escape_html  # only notebooks ask
+
+        rows = []
+        for moved in self:
+            root = moved.root.certified_root.decimal(SHOWN_DIGITS)
+            relative = None if moved.normalised is None else complex(moved.normalised)
+            share = (
+                (moved.status, "") if relative is None else (f"{relative.real:.6g}", f"{relative.imag:.6g}")
+            )
+            rows.append((moved.kind, root.re, root.im, escape_html(moved.parameter), *share))
+        head = ("", "Re [rad/s]", "Im [rad/s]", "p", "Re (p/s) ds/dp", "Im (p/s) ds/dp")
+        return _table(head, rows)

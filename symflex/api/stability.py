@@ -37,6 +37,10 @@ class StabilityBoundary:
     frequencies_hz: tuple[float, ...]
     entering: int
 
+    def __repr__(self) -> str:
+        where = ", ".join(f"{f:.6g} Hz" for f in self.frequencies_hz) or "infinity"
+        return f"<StabilityBoundary {mpmath.nstr(self.gain, 8)}: {self.entering:+d} unstable, at {where}>"
+
 
 @dataclass(frozen=True)
 class Stability:
@@ -129,6 +133,11 @@ class Stability:
         from symflex.loops.stability_map import stability_text
 
         return stability_text(self.proved)
+
+    def _repr_html_(self) -> str:
+        from symflex.print.html import text_html  # only notebooks ask
+
+        return text_html(str(self))
 
     def __repr__(self) -> str:
         pieces = (f"{mpmath.nstr(a, 8)} < {self.proved.gain} < {mpmath.nstr(b, 8)}" for a, b in self.stable)

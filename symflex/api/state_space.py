@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from symflex.codegen.state_space import StateEquations
+from symflex.options import duration, exact
 from symflex.print.sympy import symbols_of, to_sympy
 from symflex.transfer.bind import read_values
 
@@ -17,8 +18,14 @@ if TYPE_CHECKING:
     import sympy
 
     from symflex import state_space as state_space_room
+    from symflex.model import ExactValue
     from symflex.state_space.numeric import BoundStateSpace
     from symflex.state_space.popov import Vector
+    from symflex.state_space.sampled import SampledStateSpace
+
+
+MOST_STATES: Final = 8
+"""Whose matrices fit on a page."""
 
 
 @dataclass(frozen=True)
@@ -140,15 +147,71 @@ class StateSpace:
         """
         from symflex.state_space.numeric import bound_state_space  # numpy
 
+        return bound_state_space(self.exact, self._known(values))
+
+    def discretise(
+        self,
+        dt: float | Fraction | str,
+        delay: float | Fraction | str = 0,
+        **values: int | float | Fraction | Decimal | str,
+    ) -> SampledStateSpace:
+        """Return the system as it is seen at samples, its inputs held from one to the next: exactly.
+
+        Every entry is the double nearest to that of the matrix exponential, which is computed in balls.
+
+        Parameters
+        ----------
+        dt : float, Fraction or str
+            The sampling time, [s] or with a unit, ``"1 ms"``.
+        delay : float, Fraction or str
+            A dead time of all inputs [s], of any fraction of samples: past inputs become states.
+        **values : optional
+            As for :meth:`bind`.
+
+        Raises
+        ------
+        ModelError
+            As of :meth:`bind`; SF233 where the system grows beyond double precision within a sample.
+        UsageError
+            SF902 for an unknown parameter, or a sampling time that is not positive.
+
+        Examples
+        --------
+        >>> import symflex
+        >>> model = symflex.Model(
+        ...     parameters={"m": "2 kg"},
+        ...     elements={"body": {"type": "mass", "at": "x", "m": "m"}},
+        ...     inputs={"F": {"force": "x"}},
+        ...     outputs={"X": "x"},
+        ... )
+        >>> step = model.state_space().discretise("100 ms")
+        >>> step.A.tolist(), step.B.tolist()  # 1, h and h^2/(2 m), h/m
+        ([[1.0, 0.1], [0.0, 1.0]], [[0.0025], [0.05]])
+        """
+        from symflex.state_space.sampled import sampled_state_space  # numpy
+
+        times = [duration(t, "a sampling time") if isinstance(t, str) else exact(t) for t in (dt, delay)]
+        return sampled_state_space(self.exact, self._known(values), times[0], times[1])
+
+    def _known(self, values: dict[str, int | float | Fraction | Decimal | str]) -> dict[str, ExactValue]:
+        """Return the values of all parameters that have one."""
         model = self.exact.model
         # One without value may be a parameter that does not occur.
         valued = tuple(p for p in model.parameters if p.value is not None or p.name in values)
         names = {p.name for p in model.parameters}
-        known = read_values(valued if values.keys() <= names else model.parameters, values)
-        return bound_state_space(self.exact, dict(known))
+        return dict(read_values(valued if values.keys() <= names else model.parameters, values))
 
     def __str__(self) -> str:
         return "\n".join(self._printed.lines())
+
+    def _repr_latex_(self) -> str | None:
+        """Return the matrices for a notebook; None where they would not fit on a page."""
+        from sympy import latex
+
+        if len(self.states) > MOST_STATES:
+            return None
+        pairs = ((name, getattr(self, name)) for name in "ABCD")
+        return "$" + r",\quad ".join(f"{name} = {latex(matrix)}" for name, matrix in pairs) + "$"
 
     def __repr__(self) -> str:
         counts = f"{len(self.states)} states, {len(self.inputs)} inputs, {len(self.outputs)} outputs"

@@ -46,6 +46,9 @@ class Audit:
     deviation: Deviation | None = None
     laws: tuple[LawCheck, ...] = ()  # structural laws
 
+    def __repr__(self) -> str:
+        return f"<Audit {self.tf.name}: {self.verdict}>"
+
     @property
     def is_certified(self) -> bool:
         """True when the verdict is proved."""

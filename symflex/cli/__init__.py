@@ -23,9 +23,12 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "derive": ("formulas", "Print transfer functions in closed form."),
     "roots": ("analyses", "Print poles and zeros with proved enclosures."),
     "rational": ("analyses", "Print rational approximations and where they are valid."),
+    "respond": ("respond", "Print the response in time to a step, an impulse or a ramp, enclosed."),
+    "shape": ("respond", "Print an input shaper: impulses after which modes do not ring."),
     "sweep": ("analyses", "Solve a model at many values of its parameters."),
     "stability": ("analyses", "Print for which values of a gain a feedback loop is stable."),
     "colocation": ("analyses", "Print up to which frequency two outputs move together."),
+    "draw": ("plot", "Draw the model as a textbook draws it."),
     "plot": ("plot", "Draw a Bode plot, a pole-zero array, mode shapes, a root locus or a Nyquist plot."),
     "export": ("formulas", "Write numeric code or LaTeX."),
     "audit": ("formulas", "Compare printed formulas with derived ones."),
@@ -34,6 +37,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "report": ("report", "Write a report: a page, a PDF, figures, code, data."),
     "new": ("library", "Write a specification to start from."),
     "elements": ("library", "List the element and block library."),
+    "units": ("library", "List the units and prefixes that quantities may have."),
 }
 """The module of each, in which its function has its name, and what it does."""
 

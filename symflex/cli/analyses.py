@@ -36,6 +36,7 @@ def roots(spec: Specification, given: RootsOptions) -> int:
     from symflex.cli.progress import ProgressBar
     from symflex.print.roots import roots_text
     from symflex.roots.region import region_of
+    from symflex.transfer import BoundNested
 
     chosen = region_of(given, "--")
     # However short the time is, what is sought is told, and how many roots there are.
@@ -43,17 +44,25 @@ def roots(spec: Specification, given: RootsOptions) -> int:
         model = spec.load()
         pair = first_pair(model, given.tf, "showing")
         shown = given.digits or model.analysis.digits or 15
-        (bound,) = pipeline.derive_bound(model, [pair])
+        is_explained = bool(given.sensitivity) or given.explain
+        (bound,) = pipeline.derive_for_roots(model, [pair], is_explained=is_explained)
     with ProgressBar() as bar:
         found = pipeline.roots(bound, chosen, shown, entered_budget().told(bar))
     moved: tuple[RootDerivative, ...] = ()
     explained: ZeroExplanation | None = None
     wanted, is_over = bool(given.sensitivity), found.certificate.is_exceeded
     try:
-        if wanted:
+        if isinstance(bound, BoundNested):
+            if wanted or given.explain:
+                message = "--sensitivity and --explain need the closed form, which is too large here"
+                raise BudgetError(
+                    Diagnostic("SF502", message, None, "split the model, or ask for the roots alone")
+                )
+        elif wanted:
             names = [] if "" in given.sensitivity else given.sensitivity
             moved = pipeline.sensitivities(model, bound, found, names, shown)
-        explained = pipeline.explain_zeros(model, bound, found) if given.explain else None
+        if given.explain and not isinstance(bound, BoundNested):
+            explained = pipeline.explain_zeros(model, bound, found)
     except BudgetError as error:
         show_error(error)
         wanted, is_over = False, True

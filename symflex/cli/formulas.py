@@ -13,7 +13,7 @@ from symflex.cli.command import Specification, command_of
 from symflex.cli.reporting import diagnostic_json, emit_json, listed, note, say, show, terminal_width
 from symflex.errors import Diagnostic, SymflexError, UsageError
 from symflex.errors.diagnostic import nearest, printable
-from symflex.options import AuditOptions, CheckOptions, DeriveOptions, ExportOptions
+from symflex.options import AuditOptions, CheckOptions, DeriveOptions, ExportOptions, duration
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -38,7 +38,7 @@ def check(spec: Specification, given: CheckOptions) -> int:
 
     try:
         model = pipeline.load(spec.path, spec.allow_outside, spec.settings)
-        equations = pipeline.assemble(model)
+        equations = pipeline.assemble_for_checks(model)
         pipeline.check_solvable(equations)
     except SymflexError as error:
         if not given.as_json:
@@ -191,9 +191,9 @@ def export(spec: Specification, given: ExportOptions) -> int:
     if given.output:
         (check_folder if is_folder else check_writable)(Path(given.output))
     model = spec.load()
-    derived, reason = pipeline.derive_as(
-        model, pipeline.pick_pairs(model, given.tfs), chosen_representation(given.representation, given.form)
-    )
+    representation = chosen_representation(given.representation, given.form)
+    pairs = pipeline.pick_pairs(model, given.tfs)
+    derived, reason = pipeline.derive_as(model, pairs, representation, solves=exporter.solves)
     if reason:
         note(reason)
     if isinstance(exporter, LatexExporter) and given.output and is_folder:
@@ -229,9 +229,10 @@ def _chosen(exporter: Exporter, given: ExportOptions) -> Exporter:
     elif given.form is not None or given.width is not None or given.no_figures:
         raise UsageError(Diagnostic("SF902", "--form, --width and --no-figures are for --to latex"))
     if isinstance(exporter, StateSpaceExporter):
-        exporter = replace(exporter, is_minimal=given.is_minimal)
-    elif given.is_minimal:
-        raise UsageError(Diagnostic("SF902", "--minimal is for --to state-space"))
+        sample = None if given.sample is None else duration(given.sample, "--sample")
+        exporter = replace(exporter, is_minimal=given.is_minimal, sample=sample)
+    elif given.is_minimal or given.sample:
+        raise UsageError(Diagnostic("SF902", "--minimal and --sample are for --to state-space"))
     return exporter
 
 

@@ -1,8 +1,10 @@
-"""What models are made of: ``new`` and ``elements``."""
+"""What models are made of: ``new``, ``elements`` and ``units``."""
 
 from __future__ import annotations
 
 import textwrap
+from decimal import Decimal
+from fractions import Fraction
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,7 +12,7 @@ from typing import TYPE_CHECKING
 import click
 
 from symflex.cli.reporting import emit_json, note, reporting, say, terminal_width
-from symflex.errors import Diagnostic, UsageError
+from symflex.errors import Diagnostic, Source, Span, SpecError, Text, UsageError
 from symflex.errors.diagnostic import nearest
 
 if TYPE_CHECKING:
@@ -18,6 +20,7 @@ if TYPE_CHECKING:
 
     from symflex.library.blocks import Block
     from symflex.library.elements import Element, ParameterPort
+    from symflex.quantities.units import Unit
 
 
 TEMPLATES: dict[str, str] = {
@@ -74,7 +77,7 @@ MODEL_DOC = (
     "specification that uses it."
 )
 SIGNATURE_WIDTH = 30
-DOMAIN_WORDS = {"any": "any domain", "whole": "planar or not"}
+DOMAIN_WORDS = {"any": "any domain", "plane": "in the plane", "whole": "planar or not"}
 
 
 @click.command("elements")
@@ -240,3 +243,92 @@ def _parameter_json(parameter: ParameterPort) -> dict[str, object]:
         "doc": parameter.doc,
         "default": parameter.default,
     }
+
+
+LONGEST_FACTOR = 16
+"""Characters of an exact factor beyond which it is said about how large it is."""
+
+
+@click.command("units")
+@click.argument("unit", required=False)
+@click.option("--json", "as_json", is_flag=True, help="Print the units, or UNIT alone, as JSON.")
+@reporting
+def units(unit: str | None, *, as_json: bool) -> int:
+    """List the units and prefixes that quantities may have, or say what UNIT is, such as 'lbf*s/in'.
+
+    Units are multiplied, divided and raised to powers: 'N*m/A', 'kg*m^2', 'mm/rev'. Factors are exact.
+    """
+    from symflex.quantities.units import PLAIN_UNITS, PREFIXABLE_UNITS, PREFIXES
+
+    known = {**PREFIXABLE_UNITS, **PLAIN_UNITS} if unit is None else {unit: _checked_unit(unit)}
+    if as_json:
+        rows = [
+            {"unit": name, **_unit_json(one), "takes_prefix": name in PREFIXABLE_UNITS}
+            for name, one in known.items()
+        ]
+        prefixes = {name: str(factor) for name, factor in PREFIXES.items()} if unit is None else {}
+        emit_json({"schema": "symflex.units/1", "units": rows, "prefixes": prefixes})
+    elif unit is not None:
+        say(f"{unit} = {in_si(known[unit])}")
+    else:
+        for title, table in (("with a prefix", PREFIXABLE_UNITS), ("without", PLAIN_UNITS)):
+            say(title)
+            say("\n".join(f"  {name:8} {in_si(one)}" for name, one in table.items()))
+        say("prefixes")
+        say(_paragraph(", ".join(f"{n} {_power(f)}" for n, f in PREFIXES.items()), "  ", "  "))
+    return 0
+
+
+def _checked_unit(text: str) -> Unit:
+    from symflex.quantities import parse_unit
+
+    try:
+        return parse_unit(Text(text, Span(Source("<unit>", text), 0, len(text))))
+    except SpecError as problem:
+        (wrong, *_) = problem.diagnostics
+        raise UsageError(Diagnostic("SF902", wrong.message, None, wrong.hint or "symflex units")) from None
+
+
+def _unit_json(unit: Unit) -> dict[str, object]:
+    return {
+        "factor": str(unit.scale),
+        "power_of_pi": unit.pi_power,
+        "si": str(unit.dimension),
+        "cycles": unit.cycles,
+        "radians": unit.radians,
+    }
+
+
+def in_si(unit: Unit) -> str:
+    """Return a unit in SI base units, exactly where that is short.
+
+    Examples
+    --------
+    >>> from symflex.quantities import unit_of
+    >>> in_si(unit_of("in")), in_si(unit_of("deg")), in_si(unit_of("rpm")), in_si(unit_of("lbf"))
+    ('0.0254 m', 'pi/180 rad', '1/60 cycle/s', '4.4482216152605 N')
+    """
+    above, below = unit.scale.numerator, unit.scale.denominator
+    decimal = f"{Decimal(f'{float(unit.scale):.14g}'):f}"
+    if unit.pi_power:
+        factor = f"{'' if above == 1 else f'{above}*'}pi{'' if below == 1 else f'/{below}'}"
+    else:
+        factor = decimal if Fraction(decimal) == unit.scale else str(unit.scale)
+    si = str(unit.dimension)
+    for name, count in (("rad", unit.radians), ("cycle", unit.cycles)):
+        power = name + ("" if abs(count) == 1 else f"^{abs(count)}")
+        if count > 0:
+            si = power if si == "1" else f"{power}/{si[2:]}" if si.startswith("1/") else f"{power}*{si}"
+        elif count < 0:
+            si = f"{si}/{power}"
+    exactly = f"{factor} {si}".removesuffix(" 1")
+    return (
+        exactly
+        if len(factor) <= LONGEST_FACTOR
+        else f"{exactly}, about {Decimal(f'{float(unit.scale):.6g}'):f}"
+    )
+
+
+def _power(factor: Fraction) -> str:
+    digits = max(factor.numerator, factor.denominator)
+    return f"10^{'-' if factor < 1 else ''}{len(str(digits)) - 1}"

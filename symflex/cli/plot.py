@@ -1,4 +1,4 @@
-"""``symflex plot``."""
+"""``symflex draw`` and ``symflex plot``."""
 
 from __future__ import annotations
 
@@ -10,25 +10,44 @@ from symflex.cli.command import Specification, command_of
 from symflex.cli.reporting import note
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
-from symflex.options import PlotOptions, axis_ends, band_ends, gain_ends
+from symflex.options import DrawOptions, PlotOptions, gain_ends
 
 if TYPE_CHECKING:
-    from fractions import Fraction
-
-    from symflex.figures import AxisLimits
     from symflex.model import Model
     from symflex.model.model import Figure
 
 SUFFIXES = (".pdf", ".pgf", ".png", ".svg")
 SWEEP = "sweep"
-CURVES = ("bode", "nyquist")
-"""Kinds over the logarithm of the frequency, which has no 0."""
-S_PLANES = ("locus", "poles_zeros")
+
+
+@command_of("draw", DrawOptions)
+def draw(spec: Specification, given: DrawOptions) -> int:
+    """Draw the model as a textbook draws it: masses, springs, members, circuits, motors, loops.
+
+    All places are found from the specification. The drawing is as wide as a column of a journal, the text of
+    a page, or what the model needs; --width sets it. With --values numbers stand at the symbols.
+
+    Without -o it is written to the current folder as SPEC_drawing.svg. A .pgf is for papers set with LaTeX,
+    as for plot.
+    """
+    from symflex.drawing import drawing_of, render_drawing
+    from symflex.files.write import write_atomically
+    from symflex.print.latex import column_width
+
+    path = _checked_path(given.output or f"{Path(spec.path).stem}_drawing.svg")
+    font = _checked_font(given.font, path)
+    width_mm = None if given.width is None else column_width(given.width)
+    drawing = drawing_of(spec.load(), values=given.values, width_mm=width_mm, font=font)
+    write_atomically(path, render_drawing(drawing, path.suffix.removeprefix("."), font=font))
+    note(f"wrote {path}")
+    return 0
 
 
 @command_of("plot", PlotOptions)
 def plot(spec: Specification, given: PlotOptions) -> int:
-    """Draw KIND (bode, locus, modes, nyquist, poles_zeros) or a figure that SPEC defines in [figures].
+    """Draw KIND, or a figure that SPEC defines in [figures].
+
+    Kinds are bode, impulse, locus, modes, nyquist, poles_zeros and step.
 
     modes draws the shapes of the lowest modes of the model, --modes or [analysis] modes of them, else five.
     locus --gain K draws where the closed-loop poles go as K grows, from proved poles to proved zeros; of a
@@ -40,7 +59,8 @@ def plot(spec: Specification, given: PlotOptions) -> int:
 
     --band shows a band of frequencies: of bode and nyquist the curves, of modes those in it, and of what is
     drawn in the s plane all up to its end. --xlim, --ylim and --phase set the ends of axes; those of a
-    frequency or in the s plane may have a unit, '1 kHz'.
+    frequency or in the s plane may have a unit, '1 kHz'. step and impulse are drawn up to the end of --xlim
+    [s], by default until the slowest motion has died away.
 
     Without -o the figure is written to the current folder as SPEC_KIND.pdf.
 
@@ -49,7 +69,7 @@ def plot(spec: Specification, given: PlotOptions) -> int:
     needed to write one.
     """
     from symflex import pipeline
-    from symflex.figures import LOOP_FIGURES, draw, draw_loop, save
+    from symflex.figures import LOOP_FIGURES, draw, draw_loop, part_shown, save
     from symflex.loops import pick_gain
     from symflex.print.latex import column_width
 
@@ -67,8 +87,10 @@ def plot(spec: Specification, given: PlotOptions) -> int:
     if (given.gain or given.limits) and drawn not in LOOP_FIGURES:
         message = f"--gain and --range are for {' and '.join(LOOP_FIGURES)}, not for '{drawn}'"
         raise UsageError(Diagnostic("SF902", message))
-    shown, frame = _part_shown(drawn, given)
+    shown, frame = part_shown(drawn, given)
     shown = shown or (figure.band if figure else None)
+    if figure and figure.until and frame.x is None:
+        frame = replace(frame, x=(0.0, float(figure.until)))
     if drawn == "locus" and not gain:
         message = "a locus is drawn of a loop"
         raise UsageError(Diagnostic("SF902", message, None, "name its gain: --gain K, or gain in [figures]"))
@@ -90,12 +112,12 @@ def plot(spec: Specification, given: PlotOptions) -> int:
         pairs = figure.of if figure and figure.of and not given.tfs else pipeline.pick_pairs(model, given.tfs)
         if drawn == "modes":
             pairs = pairs[:1]  # all functions of a model have the same modes, seen or hidden
-        bounds = pipeline.derive_bound(model, pairs)
+        bounds = pipeline.derive_for_roots(model, pairs)
         if not given.tfs and not figure:
             for bound in bounds:
-                if bound.ratio.is_zero:
+                if bound.is_zero:
                     note(f"{bound.name} is identically zero and is left out")
-            bounds = tuple(bound for bound in bounds if not bound.ratio.is_zero) or bounds
+            bounds = tuple(bound for bound in bounds if not bound.is_zero) or bounds
         sources = [bound.source for bound in bounds]
         drawing = draw(
             drawn, sources, bounds, band_hz=shown, frame=frame, title=title, width_mm=width_mm, font=font
@@ -131,44 +153,16 @@ def _named(model: Model, kind: str) -> tuple[Figure | None, str]:
     Raises
     ------
     UsageError
-        SF902 when there is none of that name; SF911 when its kind is not available yet.
+        SF902 when there is none of that name.
     """
-    from symflex.figures import FIGURES, LOOP_FIGURES, unavailable
-    from symflex.model.analysis import FIGURE_KINDS
+    from symflex.figures import FIGURES, LOOP_FIGURES
 
     figure = next((f for f in model.figures if f.name == kind), None)
-    if figure is None and kind not in (*FIGURES, *FIGURE_KINDS):
+    if figure is None and kind not in (*FIGURES, *LOOP_FIGURES):
         names = [*FIGURES, "locus", *(f.name for f in model.figures)]
         hint = nearest(kind, names) or "choose from: " + ", ".join(names)
         raise UsageError(Diagnostic("SF902", f"there is no figure '{kind[:64]}'", None, hint))
-    drawn = figure.kind if figure else kind
-    if drawn not in (*FIGURES, *LOOP_FIGURES):
-        raise UsageError(unavailable(drawn))
-    return figure, drawn
-
-
-def _part_shown(kind: str, given: PlotOptions) -> tuple[tuple[Fraction, Fraction] | None, AxisLimits]:
-    """Return the band [Hz] and the limits of axes that options say.
-
-    Raises
-    ------
-    UsageError
-        SF902 for what are not limits, and for two of the frequencies of a Bode plot.
-    """
-    from symflex.figures import AxisLimits
-
-    band, xlim = given.band, given.xlim
-    if xlim and kind == "bode":
-        if band:
-            raise UsageError(Diagnostic("SF902", "give only one of --band and --xlim"))
-        band, xlim = xlim, None
-    is_plane = kind in S_PLANES
-    frame = AxisLimits(
-        axis_ends(xlim, "--xlim", is_frequency=is_plane),
-        axis_ends(given.ylim, "--ylim", is_frequency=is_plane),
-        axis_ends(given.phase, "--phase"),
-    )
-    return None if band is None else band_ends(band, above_zero=kind in CURVES), frame
+    return figure, figure.kind if figure else kind
 
 
 def _checked_path(name: str) -> Path:

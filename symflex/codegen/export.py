@@ -20,8 +20,10 @@ from importlib import resources
 from math import isfinite
 from typing import TYPE_CHECKING, Protocol
 
-from symflex.codegen.module_text import identifiers
+from symflex.codegen.module_text import formula_of, identifiers
 from symflex.codegen.program.verify import SAMPLES, choose_programs
+from symflex.errors import Diagnostic, ModelError
+from symflex.transfer import NestedTransferFunction
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
@@ -29,7 +31,7 @@ if TYPE_CHECKING:
 
     from symflex.codegen.program.nodes import Piecewise
     from symflex.codegen.program.verify import Verification
-    from symflex.model import Model
+    from symflex.model import Model, ModelParameter
     from symflex.transfer import AnyTransferFunction
 
 
@@ -63,6 +65,11 @@ class Exporter(Protocol):
         """What is made, in a line."""
         ...
 
+    @property
+    def solves(self) -> bool:
+        """True where there is code that solves networks of line elements."""
+        ...
+
     def export(
         self, model: Model, tfs: Sequence[AnyTransferFunction], stem: str = "", *, is_alone: bool = True
     ) -> Export:
@@ -82,6 +89,12 @@ class Member:
     program: Piecewise  # of s; of the angular frequency where it is real
     wanted: str  # the name it has where the language and the other names admit it
     verification: Verification  # how well it agrees with ball arithmetic
+    formula: tuple[str, ...]  # in paragraphs, or a sentence on one that is long
+
+    @property
+    def parameters(self) -> tuple[ModelParameter, ...]:
+        """The parameters it takes, in declared order."""
+        return tuple(p for p in self.tf.model.parameters if p.name in self.program.parameters)
 
     @property
     def key(self) -> str:
@@ -124,6 +137,7 @@ class Language:
     suffix: str  # of the file's name
     summary: str  # what is made, in a line
     print: Callable[[Contents], Export]  # makes the file of its contents
+    solves: bool = False  # true where there is what solves networks of line elements
 
     def export(
         self,
@@ -145,7 +159,8 @@ class Language:
         comments.
 
         Raises BudgetError: SF503 when a function's text would be too long; ModelError: SF233 when a number
-        does not fit in double precision; UsageError: SF902 when ``stem`` cannot be the name of a companion.
+        does not fit in double precision, SF910 when the language has no code for a network of many beams;
+        UsageError: SF902 when ``stem`` cannot be the name of a companion.
 
         Examples
         --------
@@ -163,11 +178,27 @@ class Language:
         >>> next(line for line in text.splitlines() if line.startswith("function V_over_F("))
         'function V_over_F(s::Number; m::Number = 2.0, b::Number = 3.0)'
         """
+        if not self.solves:
+            _refuse_networks(tfs)
+        for tf in tfs:
+            if not isinstance(tf, NestedTransferFunction):
+                tf.kernels.without_tapers("exported code is")
         members = _members(tfs, band_hz or model.analysis.band, samples)
         contents = Contents(model, members, stem, is_alone, digits)
         made = self.print(contents)
         warnings = (*shortfalls(contents.verified), *made.warnings)
         return replace(made, warnings=warnings, verified=contents.verified)
+
+
+def _refuse_networks(tfs: Sequence[AnyTransferFunction]) -> None:
+    """Raise SF910 for a function of a network of line elements, which has no formula."""
+    for tf in tfs:
+        if isinstance(tf, NestedTransferFunction) and tf.is_distributed:
+            message = (
+                f"{tf.name} is solved as a network of beams, rods or delays, for which there is no code yet"
+            )
+            hint = "export it to numpy or c; small networks have a formula with --representation expanded"
+            raise ModelError(Diagnostic("SF910", message, None, hint))
 
 
 def _members(
@@ -176,10 +207,10 @@ def _members(
     found: list[Member] = []
     for tf in {tf.name: tf for tf in tfs}.values():
         (program, verification), real = choose_programs(tf, band_hz, samples)
-        wanted = f"{tf.output.name}_over_{tf.input.name}"
-        found.append(Member(tf, program, wanted, verification))
+        wanted, formula = f"{tf.output.name}_over_{tf.input.name}", formula_of(tf)
+        found.append(Member(tf, program, wanted, verification, formula))
         if real is not None:
-            found.append(Member(tf, real[0], f"{wanted}_at", real[1]))
+            found.append(Member(tf, real[0], f"{wanted}_at", real[1], formula))
     return tuple(found)
 
 

@@ -256,7 +256,7 @@ def _public(member: Member, functions: JuliaFunctions, digits: int) -> str:
     opening = f"{functions.name}({variable}::{kind}"
     lines = [f"    {functions.name}({variable}{'; ...' if parameters else ''})", ""]
     lines += [_disarmed(headline(tf, is_real=member.program.is_real)), ""]
-    lines += [f"    {_disarmed(line)}" for line in formula_lines(tf, WIDTH - 4)]
+    lines += [f"    {_disarmed(line)}" for line in formula_lines(member.formula, WIDTH - 4)]
     what = "angular frequency" if member.program.is_real else "Laplace variable"
     lines += ["", "# Arguments", f"- {variable}: {what} [rad/s]."]
     for p, name in parameters:

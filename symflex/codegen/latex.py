@@ -50,6 +50,7 @@ class LatexExporter:
 
     suffix = ".tex"
     summary = "standalone LaTeX document: parameters, transfer functions, poles, zeros, modes"
+    solves = False
 
     def export(
         self, model: Model, tfs: Sequence[AnyTransferFunction], stem: str = "", *, is_alone: bool = True

@@ -475,7 +475,7 @@ class _File:
     def _handle(self, member: Member, functions: LocalFunctions) -> str:
         """Return the function behind a handle."""
         tf, name = member.tf, functions.name
-        help_text = ["", *(_disarmed(line) for line in formula_lines(tf, ROOM)), ""]
+        help_text = ["", *(_disarmed(line) for line in formula_lines(member.formula, ROOM)), ""]
         if origin := origin_lines(tf.model, ROOM):
             help_text += [*(_disarmed(line) for line in origin), ""]
         help_text += wrapped(_text(member.verification.text(self.digits)), ROOM)

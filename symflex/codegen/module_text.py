@@ -12,26 +12,33 @@ from typing import TYPE_CHECKING
 
 from symflex.codegen.program.evaluate import nearest_double
 from symflex.expressions import Quotient, format_expression, is_number
+from symflex.library.elements import LineElement
 from symflex.print.forms import print_form
 from symflex.print.latex.table import decimal_text
 from symflex.transfer import NestedTransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping
+    from collections.abc import Collection, Mapping, Sequence
 
     from symflex.model import Model, ModelParameter
     from symflex.print.forms import PrintedForm
     from symflex.transfer import AnyTransferFunction
 
 
-FORMULA_LINES = 20
-"""Lines of a formula that a docstring shows."""
+FORMULA_LENGTH = 1_600
+"""Characters of a formula that a docstring shows: twenty lines, which fill a terminal of 24."""
 
 FORMULA_TERMS = 1000
-"""Terms up to which a formula is written out."""
+"""Terms up to which a formula is formatted; those of nested sums may print in few characters each."""
+
+KERNEL_TERMS = FORMULA_LENGTH // 16
+"""The same with kernels: a product of two takes some twenty characters, and nesting spares a few."""
 
 NESTED_SIZE = 300
 """Operations of a nested form up to which its formula is written out."""
+
+NAMED = 12
+"""Members of a network that a docstring names: three lines."""
 
 COST = (
     "Exponents without a formula are found numerically, which costs some hundred times a complex exponential."
@@ -45,35 +52,51 @@ ITERATED = (
 """What is said of those that find their exponents otherwise than the code that was measured."""
 
 
-def formula_lines(tf: AnyTransferFunction, width: int) -> list[str]:
-    """Return the formula in lines of inert text of so many columns, shortened when it is long."""
+def formula_of(tf: AnyTransferFunction) -> tuple[str, ...]:
+    """Return the formula in paragraphs of inert text, or a sentence on it where nobody would read it."""
+    if isinstance(tf, NestedTransferFunction) and tf.is_distributed:
+        return (inert(_members_of(tf.model)),)
+    form = _readable_form(tf)
+    if form is not None:
+        whole = format_expression(form.num if is_number(form.den, 1) else Quotient(form.num, form.den))
+        lines = [inert(f"{tf.name} = {whole}")]
+        for i, (symbol, expression) in enumerate(form.where):
+            word = "where" if i == 0 else "     "
+            lines.append(f"{word} {inert(f'{symbol} = {format_expression(expression)}')}")
+        if sum(map(len, lines)) <= FORMULA_LENGTH:
+            return tuple(lines)
     if isinstance(tf, NestedTransferFunction):
-        return (
-            _lines_of(tf.name, print_form(tf), width)
-            if tf.size <= NESTED_SIZE
-            else [f"A quotient of nested expressions of {tf.size} operations."]
-        )
-    above, below = tf.order
-    if tf.length <= FORMULA_TERMS:
-        form = print_form(tf)
-    elif tf.closed is not None and len(tf.closed.num) + len(tf.closed.den) <= FORMULA_TERMS:
-        form = print_form(tf, "definitions")
+        kind = f"nested expressions of {tf.size} operations"
+    elif tf.is_distributed:
+        kind = f"sums of kernels of {tf.length} terms"
     else:
-        kind = "sums of kernels" if tf.is_distributed else f"polynomials of degree {above} and {below}"
-        return [f"A quotient of {kind} in s."]
-    return _lines_of(tf.name, form, width)
+        above, below = tf.order
+        kind = f"polynomials of degree {above} and {below}"
+    return (f"A quotient of {kind} in s, which symflex derive --tf {inert(tf.name)} prints.",)
 
 
-def _lines_of(name: str, form: PrintedForm, width: int) -> list[str]:
-    whole = format_expression(form.num if is_number(form.den, 1) else Quotient(form.num, form.den))
-    lines = wrapped(inert(f"{name} = {whole}"), width, "", "    ")
-    for i, (symbol, expression) in enumerate(form.where):
-        word = "where" if i == 0 else "     "
-        lines += wrapped(f"{word} {inert(f'{symbol} = {format_expression(expression)}')}", width, "", "    ")
-    if len(lines) <= FORMULA_LINES:
-        return lines
-    kept = lines[: FORMULA_LINES - 1]
-    return [*kept, f"    ... and {len(lines) - len(kept)} lines more."]
+def _members_of(model: Model) -> str:
+    """Return a sentence that names the distributed parts of a network, which has no formula."""
+    parts = [f"{u.element.type_name} {u.name}" for u in model.elements if isinstance(u.element, LineElement)]
+    parts += [f"field {f.name}" for f in model.fields]
+    more = [f"{len(parts) - NAMED} more"] if len(parts) > NAMED else []
+    return f"No formula: the network is solved at every s, {', '.join([*parts[:NAMED], *more])}."
+
+
+def _readable_form(tf: AnyTransferFunction) -> PrintedForm | None:
+    """Return a function in its shortest form, ``None`` where that is known to be long."""
+    if isinstance(tf, NestedTransferFunction):
+        return print_form(tf) if tf.size <= NESTED_SIZE else None
+    if tf.length <= (KERNEL_TERMS if tf.is_distributed else FORMULA_TERMS):
+        return print_form(tf)
+    if tf.closed is not None and len(tf.closed.num) + len(tf.closed.den) <= FORMULA_TERMS:
+        return print_form(tf, "definitions")
+    return None
+
+
+def formula_lines(formula: Sequence[str], width: int) -> list[str]:
+    """Return the paragraphs of a formula in lines of so many columns."""
+    return [line for paragraph in formula for line in wrapped(paragraph, width, "", "    ")]
 
 
 def origin_lines(model: Model, width: int) -> list[str]:

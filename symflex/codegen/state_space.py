@@ -43,6 +43,8 @@ from symflex.model.linearity import integer_exponent
 from symflex.print.forms.arrange import Arranger
 from symflex.state_space import minimal, realise
 from symflex.state_space.numeric import Arrays, response
+from symflex.state_space.sampled import sampled_state_space
+from symflex.transfer.bind import read_values
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -389,13 +391,47 @@ class StateSpaceExporter:
     """State equations as a function of the parameters, in one numpy module."""
 
     is_minimal: bool = False  # leave out what no input reaches or no output shows
+    sample: Fraction | None = None  # the sampling time [s] of a module of one step, with numbers
 
     suffix = ".py"
     summary = "numpy module with A, B, C, D as a function of the parameters, states named"
+    solves = False
 
     def export(
         self, model: Model, tfs: Sequence[AnyTransferFunction], stem: str = "", *, is_alone: bool = True
     ) -> Export:
         """Return the module; accuracy that was not reached is a warning."""
         system = realise(model, [(tf.output.name, tf.input.name) for tf in tfs])
-        return state_space_module(minimal(system) if self.is_minimal else system, tfs, model.analysis.band)
+        system = minimal(system) if self.is_minimal else system
+        if self.sample is not None:
+            return Export(sampled_module(system, self.sample), ())
+        return state_space_module(system, tfs, model.analysis.band)
+
+
+def sampled_module(system: StateSpace, sample: Fraction) -> str:
+    """Return a module with the matrices of one sampling time, the inputs held from sample to sample.
+
+    Raises ModelError: SF229 for parameters without value, SF233 where an entry does not fit in a double.
+    """
+    valued = tuple(p for p in system.model.parameters if p.value is not None)
+    found = sampled_state_space(system, dict(read_values(valued, {})), sample)
+    lines = ["One step of a linear system from a sample to the next, its inputs held between.", ""]
+    lines += origin(system.model, "")
+    lines += ["Written by symflex. With w the states, u the inputs and y the outputs, in every step", ""]
+    lines += ["    w[k + 1] = A w[k] + B u[k],    y[k] = C w[k] + D u[k].", ""]
+    lines += wrapped("Every entry is the double nearest to its exact value, a matrix exponential.", WIDTH)
+    if valued:
+        given = ", ".join(f"{p.name} = {default_value(p)}" for p in valued)
+        lines += ["", *wrapped(inert(f"Values: {given}."), WIDTH)]
+    header = docstring(lines, "")
+    blocks = [
+        f"SAMPLE_TIME = {float(sample)!r}  # [s]\n",
+        _table("STATES", [(x.name, x.unit, "") for x in system.states]),
+        _table("INPUTS", [(x.name, x.unit, "") for x in system.inputs]),
+        _table("OUTPUTS", [(x.name, x.unit, "") for x in system.outputs]),
+    ]
+    for letter, array in zip(LETTERS, (found.A, found.B, found.C, found.D), strict=True):
+        rows = [f"    [{', '.join(map(repr, row))}]," for row in array.tolist()]
+        shape = f".reshape({array.shape})"
+        blocks.append("\n".join([f"{letter}: NDArray[np.float64] = np.array([", *rows, f"]){shape}"]) + "\n")
+    return f"{header}{IMPORTS.format(lints=LINTS)}\n" + "\n\n".join(blocks)

@@ -24,17 +24,26 @@ from symflex.budget import spend
 from symflex.equations.equations import ConstantFunction, Continuum, Equations, OutputRow
 from symflex.equations.evaluate import ExactEvaluator, Opener, written_denominator
 from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError
-from symflex.expressions import Call, Expression, Name, format_expression, names
-from symflex.library.elements import ElementUse, EquationRow, LinearForm, PortTerminal, Stamp, Variable
+from symflex.expressions import Call, Expression, Name, format_expression, names, substitute
+from symflex.library.elements import (
+    COMPONENTS,
+    ElementUse,
+    EquationRow,
+    LinearForm,
+    PortTerminal,
+    Stamp,
+    Variable,
+)
 from symflex.library.elements.line import LineElement
 from symflex.model import scope_of
+from symflex.model.along import COORDINATE, is_tapered, varies_along_x
 from symflex.model.model import INPUT_KINDS
 from symflex.model.network import variable_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
-    from symflex.equations.distributed import Distributed, FieldSolution
+    from symflex.equations.distributed import AlongPoint, Distributed, FieldSolution, State
     from symflex.library.elements import Admittance, Injection, Placing
     from symflex.model import Model, NetworkNode, NodeReference, PlacedBlock, PlacedElement
 
@@ -55,16 +64,18 @@ def assemble(
     is_nameless: bool = False,
     is_sparse: bool = False,
     is_joined: bool = False,
+    is_cut: bool = False,
 ) -> Equations:
     """Stamp every element and signal of a model into one linear system.
 
     ``nested`` returns the transfer function of a ``model`` block over a given ring. With ``is_nameless`` no
     wavenumber has a name: a quotient with named and nameless ones has no form in which what cancels is seen.
     With ``is_sparse`` the ring has any number of names, nothing is expanded, and rows are not cleared of
-    denominators; not for distributed models. With ``is_joined`` line elements of one law that meet are taken
-    as one, see :mod:`symflex.equations.distributed`. Raises ModelError: SF224 division by zero, SF910 a
-    function of s; with positions, all at once; BudgetError: SF502 when there are more names or more unknowns
-    than can be computed with exactly.
+    denominators; a distributed model has to be nameless, too. With ``is_joined`` line elements of one law
+    that meet are taken as one, see :mod:`symflex.equations.distributed`. With ``is_cut`` states at points
+    along x are unknowns, and what relates them, the laws of ``continua``, is not among the rows. Raises
+    ModelError: SF224 division by zero, SF910 a function of s; with positions, all at once; BudgetError: SF502
+    when there are more names or more unknowns than can be computed with exactly.
     """
     constants = _constant_functions(model)
     count = len(model.parameters) + len(model.definitions) + len(constants)
@@ -78,15 +89,16 @@ def assemble(
             *(p.name for p in model.parameters),
             *(d.name for d in model.definitions),
             PI,
+            *([COORDINATE] if is_tapered(model) else []),
             *(c.generator for c in constants),
         ),
         is_sparse,
     )
     distributed = _Assembly(model, ring, constants, nested).survey(
-        is_nameless=is_nameless, is_joined=is_joined
+        is_nameless=is_nameless, is_joined=is_joined, is_cut=is_cut
     )
     whole = ring if distributed is None else distributed.propagation.ring
-    return _Assembly(model, whole, constants, nested, distributed).run()
+    return _Assembly(model, whole, constants, nested, distributed, is_cut).run()
 
 
 def _too_large(message: str, hint: str) -> BudgetError:
@@ -103,7 +115,30 @@ def _constant_functions(model: Model) -> tuple[ConstantFunction, ...]:
                     opened = opener.open(call)
                     text = format_expression(opened)
                     found.setdefault(text, ConstantFunction(text, opened))
+    if is_tapered(model):
+        found |= _of_the_coordinate(model, found)
     return tuple(found.values())
+
+
+def _of_the_coordinate(model: Model, known: Mapping[str, ConstantFunction]) -> dict[str, ConstantFunction]:
+    """Return the derivatives of functions of x, and their values at all points of the model."""
+    scope, opener = scope_of(model), Opener({d.name: d.expression for d in model.definitions})
+    calls = [c.expression for c in known.values() if varies_along_x(c.expression)]
+    twins = {"sin": "cos", "cos": "sin", "sinh": "cosh", "cosh": "sinh"}
+    calls += [Call(twins[c.name], c.argument) for c in calls if c.name in twins]
+    points = dict.fromkeys(
+        n.argument
+        for _, e in model.expressions()
+        for n in names(e)
+        if isinstance(n, Call) and (n.name in scope.unknowns or n.name in scope.along)
+    )
+    found: dict[str, ConstantFunction] = {}
+    for call in calls:
+        for put_in in (call, *(substitute(call, {COORDINATE: p}) for p in points)):
+            opened = opener.open(put_in) if isinstance(put_in, Call) else call
+            text = format_expression(opened)
+            found.setdefault(text, ConstantFunction(text, opened))
+    return found
 
 
 def _with_submodels(model: Model) -> Iterable[Model]:
@@ -111,6 +146,14 @@ def _with_submodels(model: Model) -> Iterable[Model]:
     for block in model.blocks:
         if block.submodel is not None:
             yield from _with_submodels(block.submodel)
+
+
+@dataclass(frozen=True, eq=False)
+class Cut:
+    """A point of a line element or field, by its distance from the start, and the state there."""
+
+    at: Factored
+    state: tuple[Variable, ...]
 
 
 @dataclass
@@ -122,6 +165,7 @@ class _Assembly:
     constants: tuple[ConstantFunction, ...]
     nested: Callable[[PlacedBlock, Ring], Factored] | None
     distributed: Distributed | None = None
+    is_cut: bool = False
     problems: list[Diagnostic] = field(default_factory=list)
     branches: dict[tuple[Variable | None, Variable | None], Factored] = field(default_factory=dict)
     balance: dict[Variable, LinearForm] = field(default_factory=dict)
@@ -131,8 +175,10 @@ class _Assembly:
     continua: list[Continuum] = field(default_factory=list)
     states: dict[str, tuple[Variable | None, ...]] = field(default_factory=dict)
     lines: dict[str, tuple[LineElement, ElementUse]] = field(default_factory=dict)
+    # Per line element or field, the points within at which it is cut.
+    cuts: dict[str, list[Cut]] = field(default_factory=dict)
 
-    def survey(self, *, is_nameless: bool, is_joined: bool) -> Distributed | None:
+    def survey(self, *, is_nameless: bool, is_joined: bool, is_cut: bool) -> Distributed | None:
         """Return the model's distributed parts; this assembly is over the ring without kernels."""
         lines = any(isinstance(use.element, LineElement) for use in self.model.elements)
         delays = any(b.block is not None and b.block.kernel_time for b in self.model.blocks)
@@ -144,7 +190,22 @@ class _Assembly:
         if self.problems:
             raise ModelError(*self.problems)
         expressions = [e for _, e in self.model.expressions()]
-        return survey(self.model, evaluator, expressions, is_nameless=is_nameless, is_joined=is_joined)
+        return survey(
+            self.model,
+            evaluator,
+            expressions,
+            is_nameless=is_nameless,
+            is_joined=is_joined,
+            is_cut=is_cut,
+            functions=self._along,
+        )
+
+    @property
+    def _along(self) -> tuple[tuple[str, Call], ...] | None:
+        """The functions of x among the generators, None where nothing varies along it."""
+        if not is_tapered(self.model):
+            return None
+        return tuple((c.generator, c.expression) for c in self.constants if varies_along_x(c.expression))
 
     def _evaluator(self, blocks: Mapping[str, Factored]) -> tuple[ExactEvaluator, dict[str, int]]:
         known = {d.name for d in self.model.definitions}
@@ -162,7 +223,45 @@ class _Assembly:
         if self.distributed is None:
             message = "without kernels nothing has a value at a point"
             raise TypeError(message)
-        return self.distributed.value(call, self.states)
+        if not self.is_cut:
+            return self.distributed.value(call, self.states)
+        place = self.distributed.place(call)
+        return place.value(self._state_at(place), self.distributed.propagation)
+
+    def _state_at(self, place: AlongPoint) -> State:
+        """Return the state at a point, unknowns of its own unless the point is an end."""
+        one = Factored.number(self.ring, 1)
+        if place.at.is_zero:
+            initial = place.initial or self.states[place.owner]
+            return tuple((v, one) for v in initial)
+        if place.owner in self.lines and (place.at - place.length).is_zero:
+            element, use = self.lines[place.owner]
+            return tuple(element.final_state(use))
+        cuts = self.cuts.setdefault(place.owner, [])
+        known = next((c for c in cuts if (c.at - place.at).is_zero), None)
+        if known is None:
+            names = place.medium.system.states
+            known = Cut(
+                place.at, tuple(Variable("field", place.owner, f"{n}({len(cuts) + 1})") for n in names)
+            )
+            cuts.append(known)
+            self.unknowns += known.state
+        return tuple((v, one) for v in known.state)
+
+    def _pieces(self) -> Iterable[Continuum]:
+        """Return the distributed parts, cut where their states are unknowns."""
+        from symflex.equations.distributed import guess  # loaded with what is cut
+
+        numbers = {p.name: p.value for p in self.model.parameters}
+        for whole in self.continua:
+            cuts = sorted(self.cuts.get(whole.name, ()), key=lambda c: guess(c.at, numbers))
+            at, state = whole.start * 0, whole.initial
+            for cut in cuts:
+                final = tuple((v, 1) for v in cut.state)
+                yield replace(whole, start=whole.start + at, length=cut.at - at, initial=state, final=final)
+                at, state = cut.at, cut.state
+            if whole.final:
+                yield replace(whole, start=whole.start + at, length=whole.length - at, initial=state)
 
     def run(self) -> Equations:
         """Return the finished equations."""
@@ -206,8 +305,8 @@ class _Assembly:
             tuple(self._polynomial(row) for row in (*self._balances(), *self.rows)),
             tuple(o for o in outputs if o is not None),
             None if self.distributed is None else self.distributed.propagation,
-            None if self.distributed is None else self._cleared(),
-            tuple(self.continua),
+            None if self.distributed is None or self.ring.is_sparse or self.is_cut else self._cleared(),
+            tuple(self._pieces() if self.is_cut else self.continua),
             self.distributed is not None and bool(self.distributed.links),
         )
 
@@ -222,7 +321,7 @@ class _Assembly:
 
     def _join(self) -> None:
         """Let the ends of a chain follow from its start and what enters on the way."""
-        if self.distributed is None:
+        if self.distributed is None or self.is_cut:
             return
         from symflex.equations.distributed import transfer_matrix  # loaded with what is joined
 
@@ -376,14 +475,14 @@ class _Assembly:
         constants: dict[str, Factored] = {}
         forms: dict[str, LinearForm] = {}
         one = Factored.number(self.ring, 1)
-        for name, expression in use.values:
+        for name, expression in use.all_values:
             if name in signal_ports:
                 variable = Variable("value", use.name, name)
                 values.append((variable, expression))
                 forms[name] = LinearForm.of((variable, one))
                 continue
             try:
-                constants[name] = evaluator.constant(expression)
+                constants[name] = evaluator.along_x().constant(expression)
             except SymflexError as error:
                 self.problems.extend(error.diagnostics)
                 return None
@@ -408,8 +507,11 @@ class _Assembly:
             if self.distributed is not None:
                 medium, length = self.distributed.lines[use.name]
                 self.states[use.name] = state = use.element.initial_state(element_use)
-                kind = use.element.type_name
-                self.continua.append(Continuum(use.name, kind, medium.system, length * 0, length, state))
+                final = tuple((v, int(c.unit)) for v, c in use.element.final_state(element_use))
+                kind, start = use.element.type_name, length * 0
+                self.continua.append(
+                    Continuum(use.name, kind, medium.system, start, length, state, final=final)
+                )
         return use.element.stamp(element_use)
 
     @staticmethod
@@ -419,9 +521,10 @@ class _Assembly:
         if reference.is_ground:
             return PortTerminal()
         node = nodes[reference.node]
-        if domain == "planar":
+        if domain in COMPONENTS:
             name = reference.node
-            return PortTerminal(None, Variable("node", name, "y"), Variable("node", name, "theta"))
+            moving = {c: Variable("node", name, c) for c in COMPONENTS[domain]}
+            return PortTerminal(None, moving["y"], moving["theta"], moving.get("x"))
         return PortTerminal(variable_of(reference, node, domain))
 
     def _take(self, use: PlacedElement, stamp: Stamp) -> None:

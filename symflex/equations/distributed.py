@@ -14,12 +14,14 @@ from collections import Counter
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import chain
-from math import factorial
+from math import factorial, pi, prod
 from typing import TYPE_CHECKING
 
 from symflex.algebra import Dispersion, Factored
 from symflex.algebra.propagators import propagate
+from symflex.algebra.ring import terms_of
 from symflex.budget import spend
+from symflex.equations.along import AlongX
 from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError
 from symflex.expressions import (
     Call,
@@ -35,7 +37,19 @@ from symflex.expressions import (
 )
 from symflex.library.elements import LinearForm, Variable
 from symflex.library.elements.line import LineElement
-from symflex.library.fields import FIELDS, Component, FieldEquation, FieldSystem, components, first_order
+from symflex.library.fields import (
+    FIELDS,
+    Component,
+    FieldEquation,
+    FieldSystem,
+    components,
+    first_order,
+    text,
+    varies,
+    varying_components,
+)
+from symflex.model.along import varies_along_x
+from symflex.model.brackets import named_brackets
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
@@ -45,7 +59,7 @@ if TYPE_CHECKING:
     from symflex.errors import Span
     from symflex.expressions import Equation
     from symflex.library.fields import Matrix
-    from symflex.model import FieldProblem, Model, PlacedElement
+    from symflex.model import ExactValue, FieldProblem, Model, PlacedElement
 
 
 POLYNOMIAL = -1
@@ -58,6 +72,8 @@ class Medium:
 
     system: FieldSystem
     parts: tuple[tuple[Component, int], ...]
+
+    along: AlongX | None = None  # where its coefficients vary along x
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,9 +90,10 @@ class FieldSolution:
         """The unknowns: the state at the start."""
         return tuple(Variable("field", self.field.name, name) for name in self.medium.system.states)
 
-    def value(self, unknown: str, order: int, length: Factored, propagation: Propagation) -> LinearForm:
-        """Return a derivative of an unknown at a distance from the start."""
-        return _value(self.medium, self.initial, self.inputs, unknown, order, length, propagation)
+    def value(self, call: Call, length: Factored, propagation: Propagation) -> LinearForm:
+        """Return what a call names, at a distance from the start."""
+        own = self.medium, self.initial, self.inputs
+        return _value(*own, call.name, call.order, length, propagation, call.argument)
 
 
 def _value(
@@ -87,18 +104,14 @@ def _value(
     order: int,
     length: Factored,
     propagation: Propagation,
+    point: Expression,
 ) -> LinearForm:
-    """Return a derivative of a state at a distance from the start, where the state is ``initial``."""
-    states = medium.system.states
-    highest = max(k for k in range(order + 1) if unknown + "'" * k in states)
+    """Return a derivative of a state at a distance from the start, where the state is ``initial``.
+
+    ``point`` is the same as it is written.
+    """
     zero = Factored.number(propagation.ring, 0)
-    row = [zero + int(state == unknown + "'" * highest) for state in states]
-    matrix = [[propagation.embed(x) for x in line] for line in medium.system.matrix]
-    loads = [[propagation.embed(x) for x in column] for column in medium.system.loads]
-    direct = [zero for _ in inputs]
-    for _ in range(order - highest):
-        direct = [_dot(row, column, zero) for column in loads]
-        row = [_dot(row, [line[j] for line in matrix], zero) for j in range(len(states))]
+    row, direct = _local(medium, unknown, order, propagation, point)
     transfer = transfer_matrix(medium, length, propagation)
     terms = [
         (variable, _dot(row, [line[j] for line in transfer], zero)) for j, variable in enumerate(initial)
@@ -108,6 +121,70 @@ def _value(
         direct = [d + _dot(row, column, zero) for d, column in zip(direct, driven, strict=True)]
     terms += list(zip(inputs, direct, strict=True))
     return LinearForm.total(LinearForm.of(term) for term in terms)
+
+
+def _local(
+    medium: Medium, unknown: str, order: int, propagation: Propagation, point: Expression
+) -> tuple[list[Factored], list[Factored]]:
+    """Return a derivative of a state in terms of the state, and of the inputs, at the same point."""
+    states, axes = medium.system.states, medium.system.axes
+    zero = medium.system.matrix[0][0] * 0
+    turned = {} if axes is None else axes.readings()
+    if unknown in turned:
+        highest, row = 0, list(turned[unknown])
+    else:
+        highest = max(k for k in range(order + 1) if unknown + "'" * k in states)
+        row = [zero + int(state == unknown + "'" * highest) for state in states]
+    matrix, loads, along = medium.system.matrix, medium.system.loads, medium.along
+    direct = [zero for _ in loads]
+    for _ in range(order - highest):
+        slopes = [zero] * len(row) if along is None else [along.slope(x) for x in row]
+        # Loads are uniform along x, and so is what they did before; where they are not, that moves as well.
+        moved = [zero] * len(direct) if along is None else [along.slope(x) for x in direct]
+        direct = [_dot(row, column, x) for column, x in zip(loads, moved, strict=True)]
+        row = [_dot(row, [line[j] for line in matrix], slopes[j]) for j in range(len(states))]
+    if along is not None:
+        row, direct = ([along.at(x, point) for x in values] for values in (row, direct))
+    return [propagation.embed(x) for x in row], [propagation.embed(x) for x in direct]
+
+
+State = tuple[tuple["Variable | None", Factored], ...]
+"""Per state, the variable it equals, and the factor with which it does; None where it is zero."""
+
+
+@dataclass(frozen=True, eq=False)
+class AlongPoint:
+    """A quantity at a point of a line element or field."""
+
+    owner: str  # the element's or field's name
+    medium: Medium  # its equations
+    initial: tuple[Variable, ...]  # a field's state at its start
+    inputs: tuple[Variable, ...]  # what loads it all along
+    length: Factored  # of a line element
+    at: Factored  # distance from the start
+    unknown: str
+    order: int  # of its derivative
+    point: Expression  # as it is written
+
+    def value(self, state: State, propagation: Propagation) -> LinearForm:
+        """Return the quantity in terms of the state at the point."""
+        row, direct = _local(self.medium, self.unknown, self.order, propagation, self.point)
+        terms = [(v, c * factor) for (v, factor), c in zip(state, row, strict=True)]
+        return LinearForm.of(*terms, *zip(self.inputs, direct, strict=True))
+
+
+def guess(value: Factored, numbers: Mapping[str, ExactValue | None]) -> float:
+    """Return about what a value is, where a parameter has none with one in its place.
+
+    It tells which of two points along x comes first.
+    """
+    known = {n: float(v.rational) * pi**v.pi_power for n, v in numbers.items() if v is not None} | {"pi": pi}
+    names = value.ring.names
+    found = float(value.unit)
+    for factor, exponent in value.factors:
+        terms = (int(c) * prod(known.get(names[i], 1.0) ** e for i, e in m) for m, c in terms_of(factor))
+        found *= sum(terms) ** exponent
+    return found
 
 
 def _dot(left: Iterable[Factored], right: Iterable[Factored], zero: Factored) -> Factored:
@@ -130,6 +207,19 @@ class Distributed:
     along: Mapping[str, str]  # per quantity of a line element along x, the state of its field theory
     links: tuple[ChainEnd, ...] = ()  # of elements that follow from the start of a chain
 
+    def place(self, call: Call) -> AlongPoint:
+        """Return the quantity that a call names."""
+        owner, dot, _ = call.name.partition(".")
+        at = self.evaluator.constant(call.argument)
+        if dot:
+            medium, length = self.lines[owner]
+            unknown, order = self.along[call.name], call.order
+            return AlongPoint(owner, medium, (), (), length, at, unknown, order, call.argument)
+        found = self.solutions[call.name]
+        at, name = at - found.origin, found.field.name
+        own = found.medium, found.initial, found.inputs
+        return AlongPoint(name, *own, at, at, call.name, call.order, call.argument)
+
     def value(self, call: Call, states: Mapping[str, Sequence[Variable | None]]) -> LinearForm:
         """Return a field's unknown, an element's quantity, or a derivative, at the point a call names.
 
@@ -139,26 +229,34 @@ class Distributed:
         if dot:
             medium, _ = self.lines[owner]
             at, state = self.evaluator.constant(call.argument), self.along[call.name]
-            return _value(medium, states[owner], (), state, call.order, at, self.propagation)
+            own = medium, states[owner], ()
+            return _value(*own, state, call.order, at, self.propagation, call.argument)
         solution = self.solutions[call.name]
         length = self.evaluator.constant(call.argument) - solution.origin
-        return solution.value(call.name, call.order, length, self.propagation)
+        return solution.value(call, length, self.propagation)
 
 
 class _Demands:
     """Collects dispersions, each once, with the lengths it is needed at."""
 
-    def __init__(self) -> None:
+    def __init__(self, along: AlongX | None) -> None:
+        self.along = along
         self.keys: dict[tuple[str, ...], int] = {}
+        self.found: dict[tuple[str, ...], tuple[Component, ...]] = {}
         self.demands: list[tuple[Dispersion, list[Factored]]] = []
 
-    def medium(self, name: str, system: FieldSystem, span: Span | None) -> Medium:
-        """Return the system with the numbers of its dispersions."""
+    def medium(self, name: str, system: FieldSystem, span: Span | None, start: Factored) -> Medium:
+        """Return the system with the numbers of its dispersions; ``start`` is where x begins."""
+        if self.along is not None and varies(system, self.along.names):
+            return self._varying(name, system, span, start)
         parts = []
+        key = tuple(text(x) for row in system.matrix for x in row)
         try:
-            found = components(system)
+            # Members of one material and section have equal equations, mostly.
+            found = self.found.get(key) or components(system)
         except BudgetError as error:
             raise BudgetError(*(replace(d, span=span) for d in error.diagnostics)) from None
+        self.found[key] = found
         for part in found:
             law = part.characteristic
             if law.kind == "polynomial":
@@ -167,6 +265,18 @@ class _Demands:
             dispersion = Dispersion(name, law.kind, law.coefficients, law.shift)  # type: ignore[arg-type]
             parts.append((part, self._number((law.kind, *law.key), dispersion)))
         return Medium(system, tuple(parts))
+
+    def _varying(self, name: str, system: FieldSystem, span: Span | None, start: Factored) -> Medium:
+        if system.axes is not None:
+            message = f"a member of a frame that varies along x ('{name}') is not available yet"
+            hint = "cut it into uniform pieces, or model its bending as a beam"
+            raise ModelError(Diagnostic("SF910", message, span, hint))
+        parts = []
+        for part in varying_components(system):
+            law = Dispersion(name, "varying", (), start * 0, (), part.matrix, (start,))
+            key = ("varying", text(start), *(text(x) for row in part.matrix for x in row))
+            parts.append((part, self._number(key, law)))
+        return Medium(system, tuple(parts), self.along)
 
     def delay(self, name: str, s: Factored, time: Factored) -> int:
         """Return the number of the dispersion all delays share."""
@@ -194,14 +304,17 @@ def survey(
     *,
     is_nameless: bool = False,
     is_joined: bool = False,
+    is_cut: bool = False,
+    functions: tuple[tuple[str, Call], ...] | None = None,
 ) -> Distributed | None:
     """Return the distributed parts of a model, ``None`` when it has none.
 
     The evaluator is over the ring without kernels, with the rational blocks; a field may be evaluated at a
-    point in any of the expressions. For the two flags see :func:`symflex.equations.assemble.assemble`. Raises
+    point in any of the expressions. ``functions`` are those of x, None
+    where nothing varies along it. For the flags see :func:`symflex.equations.assemble.assemble`. Raises
     ModelError: SF305 when the highest derivatives of a field are not determined, and what evaluation raises.
     """
-    demands = _Demands()
+    demands = _Demands(None if functions is None else AlongX(evaluator.along_x(), functions))
     problems: list[Diagnostic] = []
     lines: list[tuple[str, Medium, Factored]] = []
     delays: list[tuple[str, int, Factored]] = []
@@ -213,15 +326,17 @@ def survey(
             if isinstance(use.element, LineElement):
                 medium, length = _line(use, evaluator, demands, s)
                 lines.append((use.name, medium, length))
-                for state, quantity in zip(medium.system.states, use.element.along, strict=True):
+                own = medium.system.axes
+                read = (*medium.system.states, *(() if own is None else own.readings()))
+                for state, quantity in zip(read, use.element.along, strict=True):
                     along.update((f"{use.name}.{name}", state) for name in quantity)
-        known = {name: (medium.system, length) for name, medium, length in lines}
+        known = {name: (medium.system, length) for name, medium, length in lines if medium.along is None}
         links = find_links(model, known) if is_joined else ()
         linked = {link.name: link for link in links}
         media = {name: medium for name, medium, _ in lines}
         wanted = [(media[link.name], (link.length, *(x for _, _, x in link.entries))) for link in links]
         wanted += [(medium, (length,)) for name, medium, length in lines if name not in linked]
-        for medium, lengths in wanted:
+        for medium, lengths in () if is_cut else wanted:
             for length in lengths:
                 demands.need(medium, length)
         for block in model.blocks:
@@ -231,7 +346,7 @@ def survey(
         for field in model.fields:
             solution = _solution(field, evaluator, demands)
             solutions.update(dict.fromkeys(field.unknowns, solution))
-        for call in (c for e in expressions for c in names(e) if isinstance(c, Call)):
+        for call in (c for e in expressions for c in names(e) if isinstance(c, Call) and not is_cut):
             if call.name in solutions:
                 solution = solutions[call.name]
                 demands.need(solution.medium, evaluator.constant(call.argument) - solution.origin)
@@ -246,6 +361,7 @@ def survey(
         raise (BudgetError if all(d.code.startswith("SF5") for d in problems) else ModelError)(*problems)
     if not (lines or delays or solutions):
         return None
+    is_nameless = is_nameless or is_cut
     propagation = propagate(evaluator.ring, _nameless(demands.demands) if is_nameless else demands.demands)
     one = Factored.number(propagation.ring, 1)
     return Distributed(
@@ -253,6 +369,7 @@ def survey(
         {
             name: transfer_matrix(medium, linked[name].length if name in linked else length, propagation)
             for name, medium, length in lines
+            if not is_cut
         },
         {
             name: one if time.is_zero else propagation.fundamental(number, time)[0]
@@ -271,7 +388,7 @@ def _nameless(
 ) -> list[tuple[Dispersion, Sequence[Factored]]]:
     """Return all dispersions without names for their roots: fundamental functions are their kernels."""
     return [
-        (law if law.kind == "exponential" else replace(law, kind="general"), lengths)
+        (law if law.kind in ("exponential", "varying") else replace(law, kind="general"), lengths)
         for law, lengths in demands
     ]
 
@@ -283,7 +400,8 @@ def _line(
     if not isinstance(element, LineElement):
         message = f"'{use.name}' is not a line element"
         raise TypeError(message)
-    values = {name: evaluator.constant(e) for name, e in use.values}
+    evaluator = evaluator.along_x()
+    values = {name: evaluator.constant(e) for name, e in use.all_values}
     zero = s * 0
     for parameter in element.parameters:
         values.setdefault(parameter.name, zero)
@@ -293,15 +411,18 @@ def _line(
     except ZeroDivisionError:
         message = f"a stiffness of {element.type_name} '{use.name}' is zero"
         raise ModelError(Diagnostic("SF224", message, use.span)) from None
-    return demands.medium(use.name, system, use.span), values[element.length]
+    return demands.medium(use.name, system, use.span, zero), values[element.length]
 
 
 def _solution(field: FieldProblem, evaluator: ExactEvaluator, demands: _Demands) -> FieldSolution:
-    equations = [read_equation(e, field.unknowns, evaluator) for e in field.equations]
+    inside, given, unknowns = evaluator.along_x(), field.equations, field.unknowns
+    if field.written and any(map(varies_along_x, field.equations)):
+        given, unknowns = named_brackets(field.written, unknowns)
+    equations = [read_equation(e, unknowns, inside) for e in given]
     inputs = tuple(dict.fromkeys(v for e in equations for v in e.loads))
     zero = Factored.number(evaluator.ring, 0)
     by_name = {str(v): v for v in inputs}
-    system = first_order(field.unknowns, list(by_name), [e.named() for e in equations], zero)
+    system = first_order(unknowns, list(by_name), [e.named() for e in equations], zero)
     if system is None:
         raise ModelError(
             Diagnostic(
@@ -316,9 +437,14 @@ def _solution(field: FieldProblem, evaluator: ExactEvaluator, demands: _Demands)
         message = f"the equations of field '{field.name}' hold no derivative of " + " and ".join(static)
         hint = "put what it equals in its place in the other equations and conditions"
         raise ModelError(Diagnostic("SF305", message, field.span, hint))
-    medium = demands.medium(field.name, system, field.span)
+    medium = demands.medium(field.name, system, field.span, evaluator.constant(field.start))
     for part, number in medium.parts:
-        if number != POLYNOMIAL and part.coefficients[0].is_zero and _is_loaded(part, system):
+        if (
+            part.coefficients
+            and number != POLYNOMIAL
+            and part.coefficients[0].is_zero
+            and _is_loaded(part, system)
+        ):
             message = (
                 f"field '{field.name}' has a solution constant in x; a uniform load on it is not available"
             )
@@ -334,7 +460,7 @@ def _fundamental(
     part: Component, number: int, length: Factored, propagation: Propagation
 ) -> tuple[Factored, ...]:
     """Return ``h, ..., h^(n-1)`` of a part at a length."""
-    n = len(part.states)
+    n = len(part.coefficients)
     if number != POLYNOMIAL:
         return propagation.fundamental(number, length)
     x = propagation.embed(length)
@@ -354,11 +480,11 @@ def transfer_matrix(medium: Medium, length: Factored, propagation: Propagation) 
         h = _fundamental(part, number, length, propagation)
         for i, row in enumerate(part.states):
             for j, column in enumerate(part.states):
-                total = zero
+                if part.matrix:
+                    entries[row][column] = h[i * len(part.matrix) + j]
                 for k, b in enumerate(part.adjugate):
                     if not b[i][j].is_zero:
-                        total = total + h[k] * propagation.embed(b[i][j])
-                entries[row][column] = total
+                        entries[row][column] += h[k] * propagation.embed(b[i][j])
     return tuple(map(tuple, entries))
 
 
@@ -375,6 +501,11 @@ def _driven(medium: Medium, length: Factored, propagation: Propagation) -> list[
         if not _is_loaded(part, medium.system):
             continue
         h = _fundamental(part, number, length, propagation)
+        if part.matrix:
+            for k, column in enumerate(columns):
+                for i, row in enumerate(part.states):
+                    column[row] = h[i * len(part.matrix) + n + k]
+            continue
         if number == POLYNOMIAL:
             integral = _monomial(propagation.embed(length), n)
         else:
@@ -416,6 +547,8 @@ def find_links(model: Model, lines: Mapping[str, tuple[FieldSystem, Factored]]) 
         and touched[b[0]] == 2  # noqa: PLR2004 (the two elements)
         and b[0] != "ground"
         and starting[b] != name
+        and name in lines
+        and starting[b] in lines
         and _is_same(lines[name][0], lines[starting[b]][0])
     }
     found = []
@@ -426,6 +559,14 @@ def find_links(model: Model, lines: Mapping[str, tuple[FieldSystem, Factored]]) 
         is_driven = [ends[name][0][0] in driven for name in path]
         found += _links(path, [lines[name][1] for name in path], is_driven)
     return tuple(found)
+
+
+def may_join(model: Model) -> bool:
+    """Tell whether anywhere two line elements meet, and nothing else does."""
+    touched = Counter(r.node for use in model.elements for _, references in use.nodes for r in references)
+    lines = [use for use in model.elements if isinstance(use.element, LineElement)]
+    met = Counter(end for use in lines for end, _ in _ends(use) if end != "ground")
+    return any(count == 2 == touched[end] for end, count in met.items())  # noqa: PLR2004 (the two elements)
 
 
 def _ends(use: PlacedElement) -> tuple[tuple[str, str], tuple[str, str]]:

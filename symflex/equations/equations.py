@@ -47,6 +47,8 @@ class Continuum:
     # Per state, the unknown it equals at the start; None where it is zero there.
     initial: tuple[Variable | None, ...]
     loads: tuple[Variable, ...] = ()  # what acts all along it, per column of ``system.loads``
+    # Of a line element, per state, the unknown it equals at the end, and the sign with which it does.
+    final: tuple[tuple[Variable | None, int], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -68,3 +70,7 @@ class Equations:
     cleared: Factored | None = None
     continua: tuple[Continuum, ...] = ()  # the distributed parts
     is_joined: bool = False  # elements of one law that meet were taken as one
+
+    def __repr__(self) -> str:
+        counts = f"{len(self.unknowns)} unknowns, {len(self.inputs)} inputs, {len(self.outputs)} outputs"
+        return f"<Equations: {counts}>"

@@ -6,7 +6,7 @@ cancels between blocks in it is a hidden mode, not nothing.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from math import isqrt
@@ -65,6 +65,10 @@ class ExactEvaluator:
     def opener(self) -> Opener:
         """Opens the definitions inside the arguments of functions."""
         return Opener(self.definitions)
+
+    def along_x(self) -> ExactEvaluator:
+        """Return the same for what may vary along x."""
+        return replace(self, scope=self.scope.varying())
 
     def constant(self, expression: Expression) -> Factored:
         """Return the value of an expression without unknowns.

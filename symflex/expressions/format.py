@@ -11,6 +11,7 @@ from symflex.expressions.nodes import (
     Attribute,
     Call,
     Derivative,
+    Differentiated,
     Equation,
     Expression,
     Name,
@@ -98,6 +99,9 @@ def _parts(
             return [_leaf_text(node)], _BARE_LEAF
         case Call(name=name, argument=argument, order=order):
             return [name + "'" * order + "(", (argument, _Position.ALONE), ")"], _BARE_LEAF
+        case Differentiated(operand=operand, order=order, point=point):
+            at: _Work = [] if point is None else ["(", (point, _Position.ALONE), ")"]
+            return ["(", (operand, _Position.ALONE), ")" + "'" * order, *at], _BARE_LEAF
         case Negative(operand=operand):
             # A sign before a product is the whole product's, a sign inside one its next factor's alone.
             within = _Position.FACTOR if place is _Position.FACTOR else _Position.TERM

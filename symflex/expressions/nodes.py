@@ -88,6 +88,23 @@ class Derivative(Expression):
 
 
 @dataclass(frozen=True, slots=True)
+class Differentiated(Expression):
+    """A bracket differentiated along x, ``(E*I*w'')''``, and perhaps taken at a point, ``(E*I*w'')'(l)``.
+
+    Where fields are read it is opened, see :mod:`symflex.model.brackets`; nothing beyond meets one.
+    """
+
+    operand: Expression
+    order: int
+    point: Expression | None = None
+
+    @property
+    def children(self) -> tuple[Expression, ...]:
+        """The operands, from left to right."""
+        return (self.operand,) if self.point is None else (self.operand, self.point)
+
+
+@dataclass(frozen=True, slots=True)
 class Negative(Expression):
     """Minus its operand."""
 
@@ -416,8 +433,8 @@ def substitute(expression: Expression, mapping: Mapping[str, Expression]) -> Exp
     return _replaced(expression, lambda node: _replacement(node, mapping))
 
 
-def replace_values(expression: Expression, mapping: Mapping[Call, Expression]) -> Expression:
-    """Replace values of fields at points by expressions.
+def replace_values(expression: Expression, mapping: Mapping[Expression, Expression]) -> Expression:
+    """Replace values of fields at points, and their derivatives along x, by expressions.
 
     Examples
     --------
@@ -425,7 +442,21 @@ def replace_values(expression: Expression, mapping: Mapping[Call, Expression]) -
     >>> replace_values(Sum((value, Name("x"))), {value: Name("tip")})
     Sum(terms=(Name(name='tip'), Name(name='x')))
     """
-    return _replaced(expression, lambda node: mapping.get(node, node) if isinstance(node, Call) else node)
+    return _replaced(
+        expression, lambda node: mapping.get(node, node) if isinstance(node, Call | Derivative) else node
+    )
+
+
+def replace_node(expression: Expression, old: Expression, new: Expression) -> Expression:
+    """Replace every part of an expression that is equal to one.
+
+    Examples
+    --------
+    >>> power = Power(Name("x"), Number(Fraction(2)))
+    >>> replace_node(Sum((power, Name("x"))), power, Name("y"))
+    Sum(terms=(Name(name='y'), Name(name='x')))
+    """
+    return _replaced(expression, lambda node: new if node == old else node)
 
 
 def _replaced(expression: Expression, new: Callable[[Expression], Expression]) -> Expression:
@@ -466,6 +497,8 @@ def _rebuilt(node: Expression, children: Sequence[Expression]) -> Expression:
             return Product(tuple(_flat(children, Product)), span=span)
         case Call(name=name, order=order):
             return Call(name, children[0], order, span=span)
+        case Differentiated(order=order):
+            return Differentiated(children[0], order, children[1] if len(children) > 1 else None, span=span)
         case Negative():
             return Negative(children[0], span=span)
         case Quotient():

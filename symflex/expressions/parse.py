@@ -36,6 +36,7 @@ from symflex.expressions.nodes import (
     Attribute,
     Call,
     Derivative,
+    Differentiated,
     Equation,
     Expression,
     Measured,
@@ -47,6 +48,7 @@ from symflex.expressions.nodes import (
     Quotient,
     Sum,
     measured,
+    nodes,
 )
 from symflex.expressions.slips import FUNCTIONS, Slip, character_slip, end_slip, token_slip
 from symflex.quantities import parse_quantity
@@ -67,7 +69,8 @@ def parse(text: Text, *, limits: Limits = USER_LIMITS) -> Expression:
 
     Text that the program itself has written takes :data:`PROGRAM_LIMITS`. Raises SpecError: SF111 for a
     character or word that cannot stand where it stands, SF112 for a name that is too long or begins with an
-    underscore, SF103 for text beyond the limits. Only the first problem is reported.
+    underscore, SF103 for text beyond the limits, SF223 for a bracket with primes. Only the first problem is
+    reported.
 
     Examples
     --------
@@ -79,7 +82,13 @@ def parse(text: Text, *, limits: Limits = USER_LIMITS) -> Expression:
     >>> str(tree.terms[1].span), tree.terms[1].span.text
     ('robot.toml:1:7', '2.5e-3')
     """
-    return _read(text, limits, "sum").node
+    found = _read(text, limits, "sum").node
+    if bracket := next((n for n in nodes(found) if isinstance(n, Differentiated)), None):
+        message = "a derivative along x of a bracket stands in the equations and conditions of [fields]"
+        raise SpecError(
+            Diagnostic("SF223", message, bracket.span, "a derivative in time is written with s: s*x")
+        )
+    return found
 
 
 def parse_equation(text: Text, *, limits: Limits = USER_LIMITS) -> Equation:
@@ -228,6 +237,14 @@ class _TreeBuilder:
     ) -> _Piece:
         return _called(owner, len(primes), argument, right, name)
 
+    def bracket(self, left: Token, inner: _Piece, _right: Token, primes: Token) -> _Piece:
+        return _differentiated(left.start, inner, primes, primes.end)
+
+    def bracket_at(
+        self, left: Token, inner: _Piece, _right: Token, primes: Token, _left: Token, at: _Piece, right: Token
+    ) -> _Piece:
+        return _differentiated(left.start, inner, primes, right.end, at)
+
     def group(self, left: Token, inner: _Piece, right: Token) -> _Piece:
         return inner._replace(start=left.start, end=right.end)
 
@@ -256,6 +273,15 @@ def _called(name: Token, order: int, argument: _Piece, right: Token, quantity: T
         raise SpecError(Diagnostic("SF111", message, lengths[0].span, hint))
     node = Call(whole, argument.node, order, span=reading.text.at(start, end))
     return _checked(_Piece(node, start, end, size_of_call(argument.size), reading))
+
+
+def _differentiated(
+    start: int, inner: _Piece, primes: Token, end: int, point: _Piece | None = None
+) -> _Piece:
+    reading, order = inner.reading, len(primes)
+    at = None if point is None else point.node
+    node = Differentiated(inner.node, order, at, span=reading.text.at(start, end))
+    return _checked(_Piece(node, start, end, size_of_call(inner.size), reading))
 
 
 def _product(pieces: Sequence[_Piece]) -> _Piece:

@@ -5,6 +5,7 @@ A new kind is one file with a drawing function, and one line in :data:`FIGURES`.
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from typing import TYPE_CHECKING
 
 from matplotlib.text import Text
@@ -12,33 +13,54 @@ from matplotlib.text import Text
 from symflex.analysis.response import roots_if_found
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.errors.diagnostic import nearest
-from symflex.figures.axes import FREE, AxisLimits, Canvas, Drawing
+from symflex.figures.axes import FREE, AxesGiven, AxisLimits, Canvas, Drawing, axes_of
 from symflex.figures.bode import draw_bode, draw_fit, draw_measured, draw_response
-from symflex.figures.loops import draw_locus, draw_nyquist, number_label
-from symflex.figures.modes import draw_modes
+from symflex.figures.in_time import draw_impulse, draw_in_time, draw_step
+from symflex.figures.input_shaping import draw_residual
+from symflex.figures.loops import draw_locus, draw_nyquist
+from symflex.figures.modes import draw_modes, draw_shapes
 from symflex.figures.poles_zeros import draw_poles_zeros
+from symflex.figures.runs import panels_of
 from symflex.figures.save import FORMATS, MM_PER_INCH, render, save
-from symflex.figures.style import DEFAULT_FONT, FONTS, family_of, label_of_name, paper_style
+from symflex.figures.style import (
+    DEFAULT_FONT,
+    FONTS,
+    Raster,
+    family_of,
+    label_of_name,
+    number_label,
+    paper_style,
+    raster_of,
+)
 from symflex.figures.sweep import draw_sweep
 from symflex.loops import closed_loop, loop_gain, require_arrival, trace_locus
-from symflex.model.analysis import FIGURE_KINDS
+from symflex.options import PlotOptions, axis_ends, band_ends
 from symflex.print.latex.page import checked_width
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from contextlib import AbstractContextManager
     from fractions import Fraction
 
     from matplotlib.figure import Figure
 
+    from symflex.analysis.modes import EnclosedModeShape
     from symflex.loops import Loop
-    from symflex.transfer import BoundTransferFunction, TransferFunction
+    from symflex.model import Model
+    from symflex.transfer import AnyBoundFunction, AnyTransferFunction
 
 FIGURES: dict[str, Drawing] = {
     "bode": draw_bode,
+    "impulse": draw_impulse,
     "modes": draw_modes,
     "nyquist": draw_nyquist,
     "poles_zeros": draw_poles_zeros,
+    "step": draw_step,
 }
+
+CURVES = ("bode", "nyquist")
+"""Kinds over the logarithm of the frequency, which has no 0."""
+S_PLANES = ("locus", "poles_zeros")
 
 LOOP_FIGURES: tuple[str, ...] = ("locus", "nyquist")
 """Kinds that are drawn of a loop and its gain, by :func:`draw_loop`."""
@@ -49,30 +71,36 @@ __all__ = [
     "FONTS",
     "FORMATS",
     "LOOP_FIGURES",
+    "AxesGiven",
     "AxisLimits",
     "Drawing",
     "draw",
     "draw_fit",
+    "draw_in_time",
     "draw_loop",
     "draw_measured",
+    "draw_residual",
     "draw_response",
+    "draw_shape",
     "draw_sweep",
+    "part_shown",
+    "picture_of_shape",
     "render",
     "save",
-    "unavailable",
 ]
 
 
 def draw(
     kind: str,
-    tfs: Sequence[TransferFunction],
-    bounds: Sequence[BoundTransferFunction],
+    tfs: Sequence[AnyTransferFunction],
+    bounds: Sequence[AnyBoundFunction],
     *,
     band_hz: tuple[float | Fraction, float | Fraction] | None = None,
     frame: AxisLimits = FREE,
     title: str | None = None,
     width_mm: float | None = None,
     font: str = DEFAULT_FONT,
+    ax: AxesGiven | None = None,
 ) -> Figure:
     """Draw a figure of one or several transfer functions.
 
@@ -82,10 +110,12 @@ def draw(
     it shows those up to its end; of modes, the lowest are shown, or those in it. ``frame`` takes the place of
     limits that suit what is drawn; ``title`` is printed as it is, never read as mathematics. The figure is
     3.5 inches wide by default, or 7.16 for what needs the width of a page. :func:`render` is to be told the
-    same ``font``, a key of :data:`FONTS`. Raises UsageError: SF208 an unknown kind; SF911 a kind that is not
-    available yet; SF227 an empty band; SF208 an unknown font; SF902 the width is not between 80 and 1000 mm
-    or too small for what is drawn, or limits are of axes that the figure has not; ModelError: SF402 a
-    transfer function is identically zero.
+    same ``font``, a key of :data:`FONTS`. On ``ax``, axes of the user's own, it is drawn in the user's style,
+    with as many of them as it has panels; of a Bode plot, the first alone shows magnitudes. Raises
+    UsageError: SF208 an unknown kind; SF227 an empty band; SF208 an
+    unknown font; SF902 the width is not between 80 and 1000 mm or too small for what is drawn, ``ax`` are too
+    many or too few, or limits are of axes that the figure has not; ModelError: SF402 a transfer function is
+    identically zero.
     """
     if kind not in FIGURES:
         if kind in LOOP_FIGURES:
@@ -93,8 +123,6 @@ def draw(
             raise UsageError(
                 Diagnostic("SF902", message, None, "name its gain: --gain K, or gain in [figures]")
             )
-        if kind in FIGURE_KINDS:
-            raise UsageError(unavailable(kind))
         hint = nearest(kind, FIGURES) or "kinds: " + ", ".join(FIGURES)
         raise UsageError(Diagnostic("SF208", f"there is no figure of kind '{kind[:64]}'", None, hint))
     _check_frame(kind, frame)
@@ -104,18 +132,61 @@ def draw(
         )
         raise ValueError(message)
     for bound in bounds:
-        if bound.ratio.is_zero:
+        if bound.is_zero:
             raise ModelError(Diagnostic("SF402", f"{bound.name} is identically zero: nothing to draw"))
-    canvas = _canvas(band_hz, frame, title, width_mm)
-    with paper_style(font):
+    canvas = _canvas(band_hz, frame, title, width_mm, ax)
+    with _style(font, canvas):
         figure = FIGURES[kind](tfs, bounds, canvas)
-    return _with_every_letter(figure, font)
+    return figure if canvas.axes else _with_every_letter(figure, font)
 
 
-def unavailable(kind: str) -> Diagnostic:
-    """Return what is said of a kind that is announced and not drawn yet."""
-    hint = "there are " + ", ".join((*FIGURES, *LOOP_FIGURES))
-    return Diagnostic("SF911", f"figures of kind '{kind}' are not available yet", None, hint)
+def draw_shape(
+    model: Model,
+    shape: EnclosedModeShape,
+    *,
+    width_mm: float | None = None,
+    font: str = DEFAULT_FONT,
+    ax: AxesGiven | None = None,
+) -> Figure:
+    """Draw one mode shape of a model, as :func:`draw` draws several.
+
+    Raises ModelError: SF402 nothing moves that could be drawn.
+    """
+    canvas = _canvas(None, FREE, None, width_mm, ax)
+    if not panels_of(model, [shape]):
+        raise ModelError(Diagnostic("SF402", "nothing that moves in this mode could be drawn"))
+    with _style(font, canvas):
+        figure = draw_shapes(model, [shape], canvas)
+    return figure if canvas.axes else _with_every_letter(figure, font)
+
+
+def picture_of_shape(model: Model, shape: EnclosedModeShape) -> Raster | None:
+    """Return one mode shape as a notebook shows it; None where nothing moves that could be drawn."""
+    return raster_of(draw_shape(model, shape)) if panels_of(model, [shape]) else None
+
+
+def part_shown(kind: str, given: PlotOptions) -> tuple[tuple[Fraction, Fraction] | None, AxisLimits]:
+    """Return the band [Hz] and the limits of axes that options say.
+
+    Raises UsageError: SF902 for what are not limits, and for two of the frequencies of a Bode plot.
+
+    Examples
+    --------
+    >>> part_shown("bode", PlotOptions(band=("1", "1 kHz"), ylim=("-60 dB", "0")))[0]
+    (Fraction(1, 1), Fraction(1000, 1))
+    """
+    band, xlim = given.band, given.xlim
+    if xlim and kind == "bode":
+        if band:
+            raise UsageError(Diagnostic("SF902", "give only one of --band and --xlim"))
+        band, xlim = xlim, None
+    is_plane = kind in S_PLANES
+    frame = AxisLimits(
+        axis_ends(xlim, "--xlim", is_frequency=is_plane),
+        axis_ends(given.ylim, "--ylim", is_frequency=is_plane),
+        axis_ends(given.phase, "--phase"),
+    )
+    return None if band is None else band_ends(band, above_zero=kind in CURVES), frame
 
 
 def _canvas(
@@ -123,6 +194,7 @@ def _canvas(
     frame: AxisLimits,
     title: str | None,
     width_mm: float | None,
+    ax: AxesGiven | None,
 ) -> Canvas:
     """Return what is asked of a figure, checked and in the units of matplotlib."""
     band = None if band_hz is None else (float(band_hz[0]), float(band_hz[1]))
@@ -130,7 +202,11 @@ def _canvas(
         message = f"a band runs from a lower to a higher frequency, not from {band[0]:g} to {band[1]:g} Hz"
         raise UsageError(Diagnostic("SF227", message))
     width = None if width_mm is None else checked_width(width_mm) / MM_PER_INCH
-    return Canvas(band, frame, title, width)
+    return Canvas(band, frame, title, width, axes_of(ax))
+
+
+def _style(font: str, canvas: Canvas) -> AbstractContextManager[None]:
+    return nullcontext() if canvas.axes else paper_style(font)
 
 
 def _check_frame(kind: str, frame: AxisLimits) -> None:
@@ -163,6 +239,7 @@ def draw_loop(
     title: str | None = None,
     width_mm: float | None = None,
     font: str = DEFAULT_FONT,
+    ax: AxesGiven | None = None,
 ) -> Figure:
     """Draw a root locus, or the Nyquist plot of a loop gain ``K B/A``.
 
@@ -178,13 +255,24 @@ def draw_loop(
             Diagnostic("SF208", f"no figure of kind '{kind[:64]}' is drawn of a loop", None, hint)
         )
     _check_frame(kind, frame)
-    canvas = _canvas(band_hz, frame, title, width_mm)
-    with paper_style(font):
-        if kind == "locus":
-            locus = trace_locus(loop, limits, modes, band_hz=canvas.band_hz)
-            require_arrival(locus)
-            return _with_every_letter(draw_locus(locus, canvas), font)
-        bound = loop_gain(loop)
-        label = f"loop gain, ${label_of_name(loop.gain.name)} = {number_label(float(loop.nominal or 0))}$"
-        verdict = f"closed loop {roots_if_found(closed_loop(loop)).verdict.headline}"
-        return _with_every_letter(draw_nyquist([bound.source], [bound], canvas, [label], verdict), font)
+    canvas = _canvas(band_hz, frame, title, width_mm, ax)
+    with _style(font, canvas):
+        figure = _drawn_loop(kind, loop, limits, modes, canvas)
+    return figure if canvas.axes else _with_every_letter(figure, font)
+
+
+def _drawn_loop(
+    kind: str,
+    loop: Loop,
+    limits: tuple[Fraction | None, Fraction | None] | None,
+    modes: int | None,
+    canvas: Canvas,
+) -> Figure:
+    if kind == "locus":
+        locus = trace_locus(loop, limits, modes, band_hz=canvas.band_hz)
+        require_arrival(locus)
+        return draw_locus(locus, canvas)
+    bound = loop_gain(loop)
+    label = f"loop gain, ${label_of_name(loop.gain.name)} = {number_label(float(loop.nominal or 0))}$"
+    verdict = f"closed loop {roots_if_found(closed_loop(loop)).verdict.headline}"
+    return draw_nyquist([bound.source], [bound], canvas, [label], verdict)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import log10
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import numpy.typing as npt
+from matplotlib.axes import Axes
 from matplotlib.ticker import (
     FuncFormatter,
     LogLocator,
@@ -20,6 +21,7 @@ from matplotlib.ticker import (
 
 from symflex.errors import Diagnostic, UsageError
 from symflex.figures.style import (
+    COLUMN_INCHES,
     QUIET,
     TITLE_POINTS,
     TITLE_SPACING,
@@ -29,13 +31,11 @@ from symflex.figures.style import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.legend import Legend
 
     from symflex.roots import Root
-    from symflex.transfer import BoundTransferFunction, TransferFunction
+    from symflex.transfer import AnyBoundFunction, AnyTransferFunction
 
 
 SHORT_BAND_DECADES: Final = 1.3
@@ -50,20 +50,20 @@ RIGHT_HALF_PLANE: Final = "#FBEDE4"
 # ------------------------------------------------------------------------------------ magnitude over phase
 
 
-def magnitude_over_phase(width: float, height: float, ratio: float) -> tuple[Figure, Axes, Axes]:
-    """Return a figure [inches]: a panel for magnitudes, ``ratio`` times as high as the one for phases."""
+def magnitude_over_phase(width: float, height: float, ratio: float) -> tuple[Axes, Axes]:
+    """Return axes of a new figure [inches]: for magnitudes, ``ratio`` times as high as those for phases."""
     figure = new_figure(width, height)
     figure.set_layout_engine("constrained", h_pad=0.02, w_pad=0.03, hspace=0.03)
     top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=[ratio, 1])
     for axes in (top, bottom):
         axes.grid(visible=True)
-    return figure, top, bottom
+    return top, bottom
 
 
 def label_magnitudes(axes: Axes, unit: str) -> None:
     """Label an axis of magnitudes over one of a unit."""
     label = label_of_unit(unit)
-    axes.set_ylabel(f"Magnitude [dB re 1 {label}]" if label else "Magnitude [dB]")
+    axes.set_ylabel(f"Magnitude [dB, 0 dB = 1 {label}]" if label else "Magnitude [dB]")
 
 
 def set_magnitude_ticks(axes: Axes) -> None:
@@ -89,7 +89,7 @@ def set_frequency_axis(axes: Axes, low: float, high: float) -> None:
 
 def add_legend_above(axes: Axes, columns: int, title: str | None = None, *, is_tight: bool = False) -> None:
     """Put a legend over a panel; a tight one has shorter lines and gaps."""
-    axes.legend(
+    legend = axes.legend(
         title=title,
         loc="lower center",
         bbox_to_anchor=(0.5, 1.0),
@@ -100,6 +100,7 @@ def add_legend_above(axes: Axes, columns: int, title: str | None = None, *, is_t
         borderaxespad=0.2,
         borderpad=0.1,
     )
+    legend.get_title().set(parse_math=False, multialignment="center")
 
 
 def write_title(figure: Figure, lines: Sequence[str]) -> None:
@@ -128,6 +129,7 @@ def set_round_ticks(axes: Axes, across: int, upwards: int) -> None:
     """Put at most so many intervals between ticks, at round numbers."""
     for axis, count in ((axes.xaxis, across), (axes.yaxis, upwards)):
         axis.set_major_locator(MaxNLocator(nbins=count, steps=[1, 2, 2.5, 5, 10]))
+        axis.set_major_formatter(ScalarFormatter(useMathText=True))
 
 
 def draw_points(
@@ -206,6 +208,23 @@ class AxisLimits:
                 raise UsageError(Diagnostic("SF902", message))
 
 
+AxesGiven = Axes | Sequence[Axes] | npt.NDArray[np.object_]
+"""What a user may give to draw on: as :func:`matplotlib.pyplot.subplots` returns them."""
+
+
+def axes_of(given: AxesGiven | None) -> tuple[Axes, ...]:
+    """Return axes in a row."""
+    return () if given is None else tuple(np.ravel(np.asarray(given, dtype=object)))
+
+
+def root_figure(axes: Axes) -> Figure:
+    """Return the figure that axes stand in."""
+    figure = axes.get_figure(root=True)
+    if figure is None:
+        raise UsageError(Diagnostic("SF902", "these axes are of no figure"))
+    return figure
+
+
 FREE = AxisLimits()
 """Every axis is as the figure chooses it."""
 
@@ -218,12 +237,35 @@ class Canvas:
     frame: AxisLimits = FREE  # of axes, in place of those that suit what is drawn
     title: str | None = None  # printed as it is
     width: float | None = None  # [inches]; by default what suits the figure
+    axes: tuple[Axes, ...] = ()  # to draw on, in place of those of a new figure
 
-    def band_of(self, tf: TransferFunction) -> Limits | None:
+    def own_axes(self, *counts: int) -> tuple[Axes, ...]:
+        """Return the axes to draw on, if there are as many as a figure has panels; UsageError: SF902."""
+        if len(self.axes) not in counts:
+            needed = " or ".join(map(str, counts))
+            message = f"this figure has {needed} panel{'s' if needed != '1' else ''}, not {len(self.axes)}"
+            raise UsageError(Diagnostic("SF902", message, None, "give ax as many axes"))
+        return self.axes
+
+    def one_panel(self, height: float) -> Axes:
+        """Return the only axes, of a new figure [inches] if there are none to draw on."""
+        if self.axes:
+            return self.own_axes(1)[0]
+        figure = new_figure(self.width or COLUMN_INCHES, height)
+        figure.set_layout_engine("constrained", h_pad=0.03, w_pad=0.03)
+        return figure.subplots()
+
+    def legend(self, axes: Axes, **look: object) -> Legend:
+        """Put a legend over axes: outside of them in a new figure, which makes room for it."""
+        if self.axes:
+            return axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), **look)
+        return root_figure(axes).legend(loc="outside upper center", **look)
+
+    def band_of(self, tf: AnyTransferFunction) -> Limits | None:
         """Return the band asked for, else that of a model [Hz]."""
         band = tf.model.analysis.band
         return self.band_hz or (None if band is None else (float(band[0]), float(band[1])))
 
 
-Drawing = Callable[["Sequence[TransferFunction]", "Sequence[BoundTransferFunction]", Canvas], "Figure"]
+Drawing = Callable[["Sequence[AnyTransferFunction]", "Sequence[AnyBoundFunction]", Canvas], "Figure"]
 """A function that draws transfer functions; :func:`symflex.figures.draw` sets the style."""

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from fractions import Fraction
-from itertools import cycle
+from itertools import cycle, islice
 from math import ceil
 from typing import TYPE_CHECKING, Final
 
@@ -12,9 +13,12 @@ from matplotlib.ticker import MaxNLocator, MultipleLocator
 
 from symflex.analysis.response import adaptive_grid, default_band, respond, roots_if_found
 from symflex.figures.axes import (
+    Canvas,
     add_legend_above,
+    axes_of,
     label_magnitudes,
     magnitude_over_phase,
+    root_figure,
     set_frequency_axis,
     set_magnitude_ticks,
     write_title,
@@ -43,9 +47,9 @@ if TYPE_CHECKING:
     from symflex.analysis.response import SampledResponse
     from symflex.data.fitting import ResonanceFit
     from symflex.data.measurement import MeasuredResponse
-    from symflex.figures.axes import Canvas, Limits
+    from symflex.figures.axes import AxesGiven, Limits
     from symflex.roots import PoleZeroMap
-    from symflex.transfer import BoundTransferFunction, TransferFunction
+    from symflex.transfer import AnyBoundFunction, AnyTransferFunction
 
 
 HEIGHT_INCHES: Final = 3.2
@@ -65,7 +69,7 @@ UNDAMPED_MARGIN_DB: Final = 15.0
 
 
 def draw_bode(
-    tfs: Sequence[TransferFunction], bounds: Sequence[BoundTransferFunction], canvas: Canvas
+    tfs: Sequence[AnyTransferFunction], bounds: Sequence[AnyBoundFunction], canvas: Canvas
 ) -> Figure:
     """Draw magnitude and phase of transfer functions in one figure; see :func:`symflex.figures.draw`.
 
@@ -91,24 +95,50 @@ def draw_bode(
     units = {response.unit for response in responses}
     legend_columns = min(len(tfs), LEGEND_COLUMNS if len(units) == 1 else LEGEND_COLUMNS_WITH_UNITS)
     height = HEIGHT_INCHES + LINE_INCHES * (len(lines) + len(said) + ceil(len(tfs) / legend_columns))
-    figure, top, bottom = magnitude_over_phase(width, height, RATIO)
+    top, *below = canvas.own_axes(1, 2) if canvas.axes else magnitude_over_phase(width, height, RATIO)
     limits = canvas.frame.y or _magnitude_limits(responses, maps)
+    drawn = len(top.get_lines())  # on the user's axes
+    if drawn and canvas.frame.y is None:
+        limits = min(limits[0], top.get_ylim()[0]), max(limits[1], top.get_ylim()[1])
     looks = zip(cycle(COLOURS), cycle(DASHES), strict=False)
-    for tf, response, found, (colour, dash) in zip(tfs, responses, maps, looks, strict=False):
+    for tf, response, found, (colour, dash) in zip(
+        tfs, responses, maps, islice(looks, drawn, None), strict=False
+    ):
         label = label_of_tf(tf)
         if len(units) > 1 and (unit := label_of_unit(response.unit)):
             label = f"{label} [{unit}]"
         top.plot(*_magnitude_curve(response, found, limits), color=colour, linestyle=dash, label=label)
-        bottom.plot(response.frequency_hz, np.degrees(response.phase), color=colour, linestyle=dash)
+        for axes in below:
+            axes.plot(response.frequency_hz, np.degrees(response.phase), color=colour, linestyle=dash)
     top.set_ylim(*limits)
     set_magnitude_ticks(top)
     label_magnitudes(top, units.pop() if len(units) == 1 else "")
-    _set_phase_axis(bottom, responses, canvas.frame.phase)
-    set_frequency_axis(bottom, low, high)
-    figure.align_ylabels([top, bottom])
-    add_legend_above(top, legend_columns, "\n".join(said) or None)
-    write_title(figure, lines)
+    for axes in below:
+        _set_phase_axis(axes, responses, canvas.frame.phase)
+    _set_frequency_axes((top, *below), low, high)
+    figure = root_figure(top)
+    add_legend_above(top, legend_columns, "\n".join((*lines, *said) if canvas.axes else said) or None)
+    if not canvas.axes:
+        write_title(figure, lines)
     return figure
+
+
+def _panels(own: tuple[Axes, ...], height: float, ratio: float) -> tuple[Axes, Axes]:
+    """Return axes for magnitudes and phases, the user's if there are any."""
+    if not own:
+        return magnitude_over_phase(COLUMN_INCHES, height, ratio)
+    top, bottom = Canvas(axes=own).own_axes(2)
+    return top, bottom
+
+
+def _set_frequency_axes(panels: Sequence[Axes], low: float, high: float) -> None:
+    """Label the lowest of panels that stand below each other."""
+    for axes in panels:
+        set_frequency_axis(axes, low, high)
+    for axes in panels[:-1]:
+        axes.set_xlabel("")
+        axes.tick_params(labelbottom=False)
+    root_figure(panels[0]).align_ylabels(panels)
 
 
 def said_of_grid(found: PoleZeroMap) -> str:
@@ -119,10 +149,10 @@ def said_of_grid(found: PoleZeroMap) -> str:
     return f"{found.tf}: {certificate.reason}; drawn where its values turn, without knowing all roots"
 
 
-def draw_response(response: SampledResponse) -> Figure | None:
+def draw_response(response: SampledResponse, ax: AxesGiven | None = None) -> Figure | None:
     """Draw magnitude and phase of one frequency response, at its own frequencies.
 
-    None when it has less than two positive frequencies.
+    On two axes of the user's own if they are given. None when it has less than two positive frequencies.
     """
     frequency = response.frequency_hz
     kept = frequency > 0
@@ -132,15 +162,18 @@ def draw_response(response: SampledResponse) -> Figure | None:
         return None
     level = response.magnitude_db[kept][order]
     level = np.where(np.isfinite(level), level, np.nan)
-    with paper_style():
-        figure, top, bottom = magnitude_over_phase(COLUMN_INCHES, HEIGHT_INCHES + LINE_INCHES, RATIO)
-        top.plot(frequency, level, color=COLOURS[0])
-        bottom.plot(frequency, np.degrees(response.phase[kept][order]), color=COLOURS[0])
+    own = axes_of(ax)
+    with nullcontext() if own else paper_style():
+        top, bottom = _panels(own, HEIGHT_INCHES + LINE_INCHES, RATIO)
+        figure = root_figure(top)
+        colour = COLOURS[len(top.get_lines()) % len(COLOURS)]
+        top.plot(frequency, level, color=colour, label=response.tf)
+        bottom.plot(frequency, np.degrees(response.phase[kept][order]), color=colour)
         label_magnitudes(top, response.unit)
         _set_phase_axis(bottom, [response])
-        set_frequency_axis(bottom, float(frequency[0]), float(frequency[-1]))
-        figure.align_ylabels([top, bottom])
-        write_title(figure, title_lines(response.tf, COLUMN_INCHES))
+        _set_frequency_axes((top, bottom), float(frequency[0]), float(frequency[-1]))
+        if not own:
+            write_title(figure, title_lines(response.tf, COLUMN_INCHES))
     return figure
 
 
@@ -218,27 +251,27 @@ def draw_measured(measured: MeasuredResponse, model: npt.NDArray[np.complex128],
     Synthetic data are called so in the title.
     """
     with paper_style():
-        figure, top, bottom = magnitude_over_phase(COLUMN_INCHES, MEASURED_INCHES, MEASURED_RATIO)
+        top, bottom = magnitude_over_phase(COLUMN_INCHES, MEASURED_INCHES, MEASURED_RATIO)
         phase = _unwrapped(model)
         _draw_data(top, bottom, measured, model, phase)
         top.plot(measured.frequency_hz, _decibels(model), color=COLOURS[0], label="model")
         bottom.plot(measured.frequency_hz, phase, color=COLOURS[0])
-        _finish(figure, top, bottom, measured, unit, 2)
-    return figure
+        return _finish(top, bottom, measured, unit, 2, is_new=True)
 
 
-def draw_fit(fit: ResonanceFit, response: int = 0) -> Figure:
+def draw_fit(fit: ResonanceFit, response: int = 0, ax: AxesGiven | None = None) -> Figure:
     """Draw one response of a fit: data, start, fit; and the phase of the magnitude-only fit where it parts.
 
-    Synthetic data are called so in the title.
+    Synthetic data are called so in the title. On two axes of the user's own if they are given.
     """
     line, test = fit.problem.lines[response], fit.phase_tests[response]
     measured = line.measured
     frequency = measured.frequency_hz
     model = fit.values(response)
     start = fit.values(response, fit.candidate.start)
-    with paper_style():
-        figure, top, bottom = magnitude_over_phase(COLUMN_INCHES, MEASURED_INCHES, MEASURED_RATIO)
+    own = axes_of(ax)
+    with nullcontext() if own else paper_style():
+        top, bottom = _panels(own, MEASURED_INCHES, MEASURED_RATIO)
         for axes in (top, bottom):
             for band in () if test.is_minimum_phase else test.bands:
                 axes.axvspan(band.low_hz, band.high_hz, color=PARTED_COLOUR, linewidth=0, zorder=0)
@@ -261,8 +294,8 @@ def draw_fit(fit: ResonanceFit, response: int = 0) -> Figure:
             top.plot([], [], color=COLOURS[1], linestyle=DASHES[1], label="phase from magnitude")
         for omega in fit.resonances.omega_p.tolist():
             bottom.axvline(omega / (2 * np.pi), color=QUIET, linewidth=0.4, zorder=0)
-        _finish(figure, top, bottom, measured, fit.bases[response].unit, 3 if test.is_minimum_phase else 2)
-    return figure
+        columns = 3 if test.is_minimum_phase else 2
+        return _finish(top, bottom, measured, fit.bases[response].unit, columns, is_new=not own)
 
 
 def _draw_data(
@@ -280,18 +313,21 @@ def _draw_data(
 
 
 def _finish(
-    figure: Figure, top: Axes, bottom: Axes, measured: MeasuredResponse, unit: str, columns: int
-) -> None:
-    """Label the panels and give them a legend and a title."""
+    top: Axes, bottom: Axes, measured: MeasuredResponse, unit: str, columns: int, *, is_new: bool
+) -> Figure:
+    """Label the panels, give them a legend and a new figure a title, and return the figure."""
     label_magnitudes(top, measured.unit or unit)
     set_magnitude_ticks(top)
     bottom.set_ylabel("Phase [deg]")
     bottom.yaxis.set_major_locator(MaxNLocator(nbins=6, steps=[1, 1.5, 3, 4.5, 9, 10]))
-    set_frequency_axis(bottom, float(measured.frequency_hz[0]), float(measured.frequency_hz[-1]))
-    figure.align_ylabels([top, bottom])
+    _set_frequency_axes((top, bottom), float(measured.frequency_hz[0]), float(measured.frequency_hz[-1]))
+    figure = root_figure(top)
     add_legend_above(top, columns, is_tight=True)
+    if not is_new:
+        return figure
     title = measured.name + (" (synthetic data)" if measured.is_synthetic else "")
     write_title(figure, title_lines(title, COLUMN_INCHES))
+    return figure
 
 
 def _unwrapped(values: npt.NDArray[np.complex128]) -> npt.NDArray[np.float64]:

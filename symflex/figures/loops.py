@@ -2,24 +2,39 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import cycle
 from math import pi
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+from matplotlib.font_manager import FontProperties
 from matplotlib.patches import Circle
 
 from symflex.analysis.response import adaptive_grid, default_band, respond, roots_if_found
 from symflex.figures.axes import (
+    FREE,
     RIGHT_HALF_PLANE,
     draw_points,
     draw_zero_lines,
     drawable,
     label_s_plane,
     point_of,
+    root_figure,
     set_round_ticks,
     write_title,
+)
+from symflex.figures.s_plane import (
+    POINTS_PER_INCH,
+    Kind,
+    Panel,
+    RootMark,
+    View,
+    choose_view,
+    first_run,
+    inches_of,
+    point_outside,
 )
 from symflex.figures.style import (
     COLOURS,
@@ -30,7 +45,8 @@ from symflex.figures.style import (
     TITLE_SPACING,
     label_of_name,
     label_of_tf,
-    new_figure,
+    number_label,
+    size_of_text,
     title_lines,
 )
 from symflex.roots import Band
@@ -44,16 +60,26 @@ if TYPE_CHECKING:
 
     from symflex.figures.axes import Canvas
     from symflex.loops import RootLocus
+    from symflex.roots import PoleZeroMap
     from symflex.roots.pole_zero_map import StabilityVerdict
-    from symflex.transfer import BoundTransferFunction, TransferFunction
+    from symflex.transfer import AnyBoundFunction, AnyTransferFunction
 
 
 HEIGHT_INCHES: Final = 3.3
 ROOM: Final = 1.12
-ZERO_REACH: Final = 1.6
-"""Zeros are shown up to so many times the largest pole."""
-END_REACH: Final = 10.0
-"""Poles that run away are shown at the last gain up to so many times the largest at the first."""
+ZERO_REACH: Final = 2.0
+"""Zeros are shown up to so many times the largest pole shown."""
+CURVE_REACH: Final = 1.6
+"""Curves are shown up to so many times the largest root shown."""
+ZERO: Final = "zero"
+LOOKS: Final[dict[Kind, tuple[str, str, float]]] = {
+    "pole": ("x", COLOURS[1], 5),
+    "nominal": ("*", "black", 6),
+    "last": ("s", COLOURS[0], 3.4),
+    "zero": ("o", COLOURS[2], 5),
+}
+"""Shape, colour and size of marks."""
+COLOUR_OF: Final = {kind: colour for kind, (_, colour, _) in LOOKS.items()}
 LEGEND_LETTERS: Final = 18.0
 """So many letters of three labels have room in a line, per inch."""
 CLOSE: Final = 0.3
@@ -63,111 +89,123 @@ CLOSE: Final = 0.3
 def draw_locus(locus: RootLocus, canvas: Canvas) -> Figure:
     """Draw a root locus, of what lies up to the end of a band, or within limits.
 
-    Crosses are the poles at the first gain, squares those at the last, circles the zeros; all three are
-    proved. The lines between are traced numerically: solid from poles at the first gain, dashed from
-    infinity, dotted from where none is marked. The legend says how many of each lie outside. Grey circles
-    surround points at which poles accumulate. Right of the imaginary axis the ground is tinted. Poles there
-    are among those marked wherever they lie, and the title says how many there are at both gains.
+    Crosses are the poles at the first gain, squares those at the last, stars those at the gain's own
+    value, circles the zeros; all of them are proved. The lines between are traced numerically: solid from
+    poles at the first gain, dashed from infinity, dotted from where none is marked. The roots that belong
+    together are shown; the legend says how many of each lie outside, and arrows at the border where. Grey
+    circles surround points at which poles accumulate. Right of the imaginary axis the ground is tinted, and
+    the title says at each of these gains whether the loop is stable.
     """
     width = canvas.width or COLUMN_INCHES
-    reach = None if canvas.band_hz is None else 2 * pi * canvas.band_hz[1]
     lines = title_lines(canvas.title, width)
-    figure = new_figure(width, HEIGHT_INCHES + LINE_INCHES * (len(lines) + 3))
-    figure.set_layout_engine("constrained", h_pad=0.03, w_pad=0.03)
-    axes = figure.subplots()
-    starts, zeros = (
-        [point_of(root) for root in roots] for roots in (locus.start.all_poles, locus.start.zeros)
-    )
-    ends = list(locus.ends)
-    _set_view(axes, locus, starts, zeros, reach)
-    axes.set_xlim(*(canvas.frame.x or axes.get_xlim()))
-    axes.set_ylim(*(canvas.frame.y or axes.get_ylim()))
-    right, seen = max(axes.get_xlim()[1], 0.0), float(np.max(np.abs([axes.get_xlim(), axes.get_ylim()])))
-    axes.axvspan(0, right, color=RIGHT_HALF_PLANE, zorder=0, linewidth=0)
+    stages = _stages(locus)
+    axes = canvas.one_panel(HEIGHT_INCHES + LINE_INCHES * (len(lines) + len(stages) + 1))
+    marks = [
+        *(RootMark(stage.kind, s) for stage in stages for s in stage.points),
+        *(RootMark("zero", point_of(root)) for root in locus.start.zeros),
+    ]
+    view = _view(locus, marks, canvas)
+    axes.set_xlim(*view.re)
+    axes.set_ylim(*view.im)
+    seen = float(np.max(np.abs([view.re, view.im])))
+    axes.axvspan(0, max(view.re[1], 0.0), color=RIGHT_HALF_PLANE, zorder=0, linewidth=0)
     draw_zero_lines(axes)
-    low, high = (number_label(float(x)) for x in locus.limits)
     name = label_of_name(locus.gain)
-    marks = (
-        (starts, "x", COLOURS[1], f"poles, ${name} = {low}$"),
-        (ends, "s", COLOURS[0], f"poles, ${name} = {high}$"),
-        (zeros, "o", COLOURS[2], "zeros"),
-    )
-    for points, shape, colour, label in marks:
+    labels: dict[Kind, str] = {stage.kind: f"poles, ${name} = {stage.gain}$" for stage in stages}
+    for kind, label in {**labels, ZERO: "zeros"}.items():
+        points = [mark.s for mark in marks if mark.kind == kind]
         inside = [s for s in points if _is_seen(axes, s)]
         # Infinitely many zeros have no number that those listed could tell.
-        outside = 0 if points is zeros and locus.start.is_infinite else len(points) - len(inside)
-        if inside or (points and points is not zeros):
+        outside = 0 if kind == ZERO and locus.start.is_infinite else len(points) - len(inside)
+        if inside or (points and kind != ZERO):
             told = f"{label} ({outside if inside else 'all'} outside)" if outside else label
-            draw_points(axes, inside, (shape, colour, 3.4 if shape == "s" else 5), told)
+            draw_points(axes, inside, LOOKS[kind], told)
     kinds = (
         (locus.branches, "-", None),
         (locus.entering, "--", "poles from infinity"),
         (locus.joining, ":", "from poles not marked"),
     )
-    for branches, line, legend in kinds:
+    for branches, line, told_of in kinds:
         shown = [b for b in branches if any(_is_seen(axes, s) for s in b)]
         for i, branch in enumerate(shown):
             s = drawable(np.array(branch), seen)
             axes.plot(
-                s.real, s.imag, line, color=COLOURS[0], linewidth=1.0, zorder=2, label=None if i else legend
+                s.real, s.imag, line, color=COLOURS[0], linewidth=1.0, zorder=2, label=None if i else told_of
             )
     _draw_holes(axes, locus)
     label_s_plane(axes)
-    verdicts = (locus.start.verdict.headline, locus.end.verdict.headline)
-    said = [f"${name} = {gain}$, {verdict}" for gain, verdict in zip((low, high), verdicts, strict=True)]
+    said = [f"${name} = {stage.gain}$, {stage.found.verdict.headline}" for stage in stages]
     letters = sum(len(str(label).replace("$", "")) for label in axes.get_legend_handles_labels()[1])
-    figure.legend(
+    legend = canvas.legend(
+        axes,
         title="\n".join(said),
-        loc="outside upper center",
         ncols=3 if letters <= LEGEND_LETTERS * width else 2,
         frameon=False,
         handletextpad=0.2,
         columnspacing=1.0,
     )
-    write_title(figure, lines)
+    legend.get_title().set_multialignment("center")
+    figure = root_figure(axes)
+    if not canvas.axes:
+        write_title(figure, lines)
+        figure.draw_without_rendering()  # what is above takes its room
+    if canvas.frame == FREE:
+        named = [mark for mark in marks if mark.kind != ZERO or not locus.start.is_infinite]
+        point_outside(axes, named, Panel.of(view, *inches_of(axes), marks), COLOUR_OF)
     return figure
 
 
-def number_label(value: float) -> str:
-    r"""Return a number in four digits in matplotlib's mathematics.
+@dataclass(frozen=True, slots=True)
+class Stage:
+    """The poles at one value of the gain."""
 
-    Examples
-    --------
-    >>> number_label(25.0), number_label(1e6), number_label(2.5e-7)
-    ('25', '10^{6}', '2.5\\times 10^{-7}')
+    kind: Kind
+    gain: str  # in matplotlib's mathematics
+    found: PoleZeroMap
+    points: tuple[complex, ...]  # [rad/s]
+
+
+def _stages(locus: RootLocus) -> list[Stage]:
+    """Return the gains whose poles are marked, ascending."""
+    low, high = locus.limits
+    found: list[tuple[Kind, Fraction, PoleZeroMap, Sequence[complex]]] = [
+        ("pole", low, locus.start, [point_of(root) for root in locus.start.all_poles])
+    ]
+    if locus.nominal is not None:
+        gain, poles = locus.nominal
+        found.append(("nominal", gain, poles, [point_of(root) for root in poles.all_poles]))
+    found.append(("last", high, locus.end, locus.ends))
+    return [Stage(kind, number_label(float(gain)), p, tuple(points)) for kind, gain, p, points in found]
+
+
+def _view(locus: RootLocus, marks: Sequence[RootMark], canvas: Canvas) -> View:
+    """Return what is shown: the roots that belong together, and the curves between them."""
+    high_hz = None if canvas.band_hz is None else canvas.band_hz[1]
+    view = choose_view(marks, high_hz, (CLOSE, 1 / CLOSE), _belonging_together(marks))
+    size = max(map(abs, view.shown), default=0.0)
+    curves = (
+        s for branch in (*locus.branches, *locus.joining) for s in branch if abs(s) <= CURVE_REACH * size
+    )
+    reach = 0.0 if high_hz is None else ROOM * 2 * pi * high_hz
+    re, im = view.re, (min(view.im[0], -reach), max(view.im[1], reach))
+    for s in curves:
+        re = min(re[0], ROOM * s.real), max(re[1], ROOM * s.real)
+        im = min(im[0], ROOM * s.imag), max(im[1], ROOM * s.imag)
+    return View(
+        canvas.frame.x or re, canvas.frame.y or im, view.shown if canvas.frame == FREE else frozenset()
+    )
+
+
+def _belonging_together(marks: Sequence[RootMark]) -> set[complex]:
+    """Return the poles that no gap parts from the smallest ones, and others not much further out.
+
+    Where these are the smaller part of all, those behind the gap are shown as well.
     """
-    text = f"{value:.4g}"
-    if "e" not in text:
-        return text
-    mantissa, exponent = text.split("e")
-    power = f"10^{{{int(exponent)}}}"
-    return power if mantissa == "1" else rf"{mantissa}\times {power}"
-
-
-def _set_view(
-    axes: Axes, locus: RootLocus, starts: list[complex], zeros: list[complex], reach: float | None
-) -> None:
-    """Show all poles at both gains but those that run far away, and the zeros not much further out."""
-    entered = [branch[-1] for branch in (*locus.entering, *locus.joining) if branch]
-    size = max((abs(s) for s in (*starts, *entered)), default=0.0)
-    size = size or max((abs(s) for s in (*locus.ends, *zeros)), default=1.0) or 1.0
-    held = [*starts, *(s for s in locus.ends if abs(s) <= END_REACH * size)]
-    size = max(map(abs, held), default=size) or size
-    traced = [s for branch in locus.branches for s in branch]
-    near = [*held, *(s for s in (*traced, *zeros) if abs(s) <= ZERO_REACH * size)]
-    if reach is not None:
-        size, near = reach, [s for s in (*starts, *locus.ends, *traced, *zeros) if abs(s) <= reach]
-        near.append(reach * 1j)
-    high = ROOM * max((abs(s.imag) for s in near), default=size) or size
-    left = min((s.real for s in near), default=0.0)
-    right = max((s.real for s in near), default=0.0)
-    left, right = min(left, 0.0), max(right, 0.0)
-    missing = CLOSE * 2 * high - (right - left)
-    if missing > 0:
-        left, right = left - 0.6 * missing, right + 0.4 * missing
-    margin = 0.06 * (right - left)
-    axes.set_xlim(left - margin, right + margin)
-    axes.set_ylim(-high, high)
+    poles = [abs(m.s) for m in marks if m.kind != ZERO and m.s]
+    radius = first_run(poles) or first_run(abs(m.s) for m in marks if m.s)
+    while 2 * sum(size > radius for size in poles) > len(poles):
+        radius = first_run(size for size in poles if size > radius)
+    return {m.s for m in marks if abs(m.s) <= radius * (ZERO_REACH if m.kind == ZERO else 1.0)}
 
 
 def _is_seen(axes: Axes, s: complex) -> bool:
@@ -193,6 +231,18 @@ REACHES: Final = (1.5, 2.5)
 """Half the side of the square shown of a loop gain, about -1."""
 OBLONG: Final = 4.0
 """Limits asked for whose ratio exceeds this have a scale each."""
+TICK_PAD: Final = 4.5
+"""Between the numbers of ticks and the frame [points]."""
+ALMOST: Final = 0.01
+"""Of its size at the end of a band, where a curve has reached the origin to the eye."""
+FARTHEST_DECADES: Final = 1e4
+"""Times the end of the band up to which a curve may go on."""
+ONWARDS: Final = 60
+"""Values on the way, which is nearly straight."""
+MOST_COLUMNS: Final = 3
+LEGEND_POINTS: Final = 8.0
+LINE_POINTS: Final = 34.0
+"""Length of a legend's line with the gaps beside it: 2 of handle, 0.8 and 1.4 of gaps, in letters."""
 QUANTILE: Final = 0.9
 """Share of the values of a function that is not a loop gain for which the square is made."""
 WITHIN: Final = 0.9
@@ -202,8 +252,8 @@ SHAFT: Final = 0.01
 
 
 def draw_nyquist(
-    tfs: Sequence[TransferFunction],
-    bounds: Sequence[BoundTransferFunction],
+    tfs: Sequence[AnyTransferFunction],
+    bounds: Sequence[AnyBoundFunction],
     canvas: Canvas,
     labels: Sequence[str] = (),
     verdict: str | None = None,
@@ -211,28 +261,32 @@ def draw_nyquist(
     """Draw the values of transfer functions for positive frequencies and, dashed, for negative ones.
 
     Of a loop gain, which ``labels`` tell apart, the part of the plane about -1 is shown; where a curve leaves
-    it, it goes on outside. Arrows point to growing frequency. P is the number of poles of what is drawn in
-    the right half plane: a closed loop is stable if the curve winds P times counterclockwise about -1.
-    ``verdict`` says below the title whether it is.
+    it, it goes on outside. Where no band is asked for, the curve of a rational function goes on until it is
+    next to where it ends, mostly the origin. Arrows point to growing frequency. The title says how many poles
+    of what is drawn lie in the right half plane, P of them: a closed loop is stable if the curve winds P
+    times counterclockwise about -1. ``verdict`` says whether it is.
     """
     width = canvas.width or COLUMN_INCHES
-    lines = [*title_lines(canvas.title, width), *title_lines(verdict, width)]
-    figure = new_figure(width, HEIGHT_INCHES + LINE_INCHES * (len(lines) + 1))
-    figure.set_layout_engine("constrained", h_pad=0.03, w_pad=0.03)
-    axes = figure.subplots()
+    found = [_curve(bound, canvas) for bound in bounds]
+    told = [labels[i] if labels else label_of_tf(tf) for i, tf in enumerate(tfs)]
+    if len(found) > 1:
+        told = [f"{label}, {_open_poles(poles)}" for label, (_, poles) in zip(told, found, strict=True)]
+    columns = _columns(told, width)
+    counted = _sentence_of_poles([poles for _, poles in found], is_loop=bool(labels))
+    lines = [line for said in (canvas.title, counted, verdict) for line in title_lines(said, width)]
+    rows = -(-len(told) // columns)
+    axes = canvas.one_panel(HEIGHT_INCHES + LINE_INCHES * (len(lines) + rows))
     draw_zero_lines(axes)
     circle = np.exp(1j * np.linspace(0, 2 * np.pi, 361))
     axes.plot(circle.real, circle.imag, ":", color=QUIET, linewidth=0.7, zorder=1)
-    found = [_curve(bound, canvas.band_of(bound.source)) for bound in bounds]
     curves = [curve for curve, _ in found]
     reach = _reach(np.concatenate(curves), is_loop=bool(labels))
     across, upwards = canvas.frame.x or (-reach, reach), canvas.frame.y or (-reach, reach)
     axes.set_xlim(*across)
     axes.set_ylim(*upwards)
     reach = max(map(abs, (*across, *upwards)))
-    for i, ((curve, poles), colour) in enumerate(zip(found, cycle(COLOURS), strict=False)):
+    for curve, label, colour in zip(curves, told, cycle(COLOURS), strict=False):
         values = drawable(curve, reach)
-        label = f"{labels[i] if labels else label_of_tf(tfs[i])}, {_open_poles(poles)}"
         axes.plot(values.real, values.imag, "-", color=colour, linewidth=1.0, zorder=2, label=label)
         axes.plot(values.real, -values.imag, "--", color=colour, linewidth=0.6, zorder=2)
     if reach > 1:
@@ -242,12 +296,15 @@ def draw_nyquist(
     for values, colour in zip(curves, cycle(COLOURS), strict=False):
         _point_along(axes, values, colour)
     set_round_ticks(axes, 5, 5)
+    axes.tick_params(pad=TICK_PAD)  # ends of a square may have ticks next to their corner
     axes.set_xlabel("Real part")
     axes.set_ylabel("Imaginary part")
     # A title of the figure would stand over a legend outside of the axes.
-    legend = figure.legend(loc="outside upper center", ncols=3, frameon=False, title="\n".join(lines))
-    legend.get_title().set(fontsize=TITLE_POINTS, linespacing=TITLE_SPACING, parse_math=False, ha="center")
-    return figure
+    legend = canvas.legend(axes, ncols=columns, frameon=False, title="\n".join(lines))
+    legend.get_title().set(
+        fontsize=TITLE_POINTS, linespacing=TITLE_SPACING, parse_math=False, multialignment="center"
+    )
+    return root_figure(axes)
 
 
 def _open_poles(verdict: StabilityVerdict) -> str:
@@ -264,10 +321,50 @@ def _open_poles(verdict: StabilityVerdict) -> str:
     return rf"$P \geq {verdict.found}$" if verdict.found else "$P$ not known"
 
 
-def _curve(
-    bound: BoundTransferFunction, band: tuple[float, float] | None
-) -> tuple[npt.NDArray[np.complex128], StabilityVerdict]:
+def _sentence_of_poles(verdicts: Sequence[StabilityVerdict], *, is_loop: bool) -> str:
+    """Say what P is, and of a single curve how large it is.
+
+    Examples
+    --------
+    >>> from symflex.roots.pole_zero_map import StabilityVerdict
+    >>> _sentence_of_poles([StabilityVerdict("unstable", 1, True, "", 1)], is_loop=True)
+    'open loop: 1 pole in the right half plane'
+    """
+    if len(verdicts) > 1:
+        return "P: number of poles in the right half plane"
+    (verdict,) = verdicts
+    if verdict.right is None:
+        number = f"at least {verdict.found}" if verdict.found else "an unknown number of"
+    else:
+        number = str(verdict.right or "no")
+    plural = "" if verdict.right in (0, 1) else "s"
+    return f"{'open loop: ' if is_loop else ''}{number} pole{plural} in the right half plane"
+
+
+def _columns(labels: Sequence[str], width: float) -> int:
+    """Return how many columns of a legend have room in a width [inches]."""
+    points = max(size_of_text(label, FontProperties(size=LEGEND_POINTS))[0] for label in labels)
+    return max(
+        1, min(len(labels), 3, int((POINTS_PER_INCH * width - LEGEND_POINTS) / (points + LINE_POINTS)))
+    )
+
+
+def _onwards(bound: AnyBoundFunction, high: float) -> npt.NDArray[np.complex128]:
+    """Return values of a rational function beyond a frequency [Hz], until they have almost reached their end.
+
+    There it falls, or rises, as a power of s: that is drawn until it has fallen to a hundredth.
+    """
+    last = abs(bound(2j * pi * high))
+    frequency = high
+    while frequency < FARTHEST_DECADES * high and abs(bound(2j * pi * frequency)) > ALMOST * last:
+        frequency *= 10.0
+    steps = np.geomspace(high, frequency, ONWARDS)[1:] if frequency > high else np.array([])
+    return np.array([bound(2j * pi * f) for f in steps.tolist()], dtype=np.complex128)
+
+
+def _curve(bound: AnyBoundFunction, canvas: Canvas) -> tuple[npt.NDArray[np.complex128], StabilityVerdict]:
     """Return values along the axis, dense where a resonance turns them, and what is known of its poles."""
+    band = canvas.band_of(bound.source)
     if band is None:
         low, high = default_band(roots_if_found(bound))
         low, high = low / WIDENED, high * WIDENED
@@ -276,6 +373,8 @@ def _curve(
     found = roots_if_found(bound, Band(Fraction(low), Fraction(high)))
     response = respond(bound, adaptive_grid(bound, low, high, roots=found), found)
     values: npt.NDArray[np.complex128] = np.array(response.values, dtype=np.complex128)
+    if canvas.band_hz is None and not bound.is_distributed:
+        values = np.concatenate((values, _onwards(bound, high)))
     finite: npt.NDArray[np.complex128] = values[np.isfinite(values)]
     return finite, found.verdict
 

@@ -13,7 +13,8 @@ from matplotlib.ticker import FixedLocator, MaxNLocator, NullFormatter
 
 from symflex.analysis.modes import lowest_modes
 from symflex.errors import Diagnostic, ModelError, UsageError
-from symflex.figures.runs import Run, Stems, panels_of
+from symflex.figures.axes import root_figure
+from symflex.figures.runs import Plan, Run, Stems, panels_of
 from symflex.figures.save import MM_PER_INCH
 from symflex.figures.style import (
     COLOURS,
@@ -31,7 +32,7 @@ from symflex.figures.style import (
 from symflex.roots import Band
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     import numpy.typing as npt
     from matplotlib.axes import Axes
@@ -40,11 +41,12 @@ if TYPE_CHECKING:
     from symflex.analysis.modes import EnclosedModeShape
     from symflex.figures.axes import Canvas
     from symflex.figures.runs import Panel
-    from symflex.transfer import BoundTransferFunction, TransferFunction
+    from symflex.model import Model
+    from symflex.transfer import AnyBoundFunction, AnyTransferFunction
 
 DEFAULT_MODES: Final = 5
 MODES_LIMIT: Final = 40
-ROW_INCHES, HEADING_INCHES, AXIS_INCHES, LEGEND_INCHES = 0.56, 0.17, 0.38, 0.06
+ROW_INCHES, PLAN_INCHES, HEADING_INCHES, AXIS_INCHES, LEGEND_INCHES = 0.56, 1.1, 0.17, 0.38, 0.06
 LEFT, RIGHT = 0.46, 0.08
 GAP, LABELLED_GAP = 0.34, 0.54
 LABEL_OFFSET: Final = 0.35
@@ -54,6 +56,8 @@ PANELS_IN_COLUMN: Final = 3
 NAMES_LIMIT: Final = 12
 NAME_INCHES: Final = 0.06
 MARGIN: Final = 1.2
+SWING: Final = 0.15
+"""How far the largest displacement is drawn in a plan, as a share of its size."""
 VISIBLE: Final = 0.1
 """Share of the largest motion from which what moves in quadrature is drawn."""
 LEAST: Final = 1e-6
@@ -64,7 +68,7 @@ Curve = tuple["npt.NDArray[np.float64]", "npt.NDArray[np.complex128]"]
 
 
 def draw_modes(
-    tfs: Sequence[TransferFunction], bounds: Sequence[BoundTransferFunction], canvas: Canvas
+    tfs: Sequence[AnyTransferFunction], bounds: Sequence[AnyBoundFunction], canvas: Canvas
 ) -> Figure:
     """Draw the shapes of the lowest modes of the first function's model, hidden ones among them.
 
@@ -79,39 +83,59 @@ def draw_modes(
     count = min(tfs[0].model.analysis.modes or (MODES_LIMIT if band else DEFAULT_MODES), MODES_LIMIT)
     numbered, verdict = lowest_modes(bounds[0], count, band)
     shapes = [found.shape for found in numbered]
-    panels = panels_of(tfs[0].model, shapes)
-    if not panels:
+    if not panels_of(tfs[0].model, shapes):
         where = "" if band_hz is None else f" between {band_hz[0]:g} and {band_hz[1]:g} Hz"
         message = f"{bounds[0].name} has no mode other than at 0 that has a shape{where}"
         raise ModelError(Diagnostic("SF402", message))
+    return draw_shapes(tfs[0].model, shapes, canvas, verdict.headline)
+
+
+def draw_shapes(
+    model: Model, shapes: Sequence[EnclosedModeShape], canvas: Canvas, said: str | None = None
+) -> Figure:
+    """Draw shapes of a model below each other; what is ``said`` of it stands below the title.
+
+    As :func:`draw_modes` otherwise. On axes of the user's own, one per panel, no title is written.
+    """
+    panels = panels_of(model, shapes)
     width = canvas.width or (COLUMN_INCHES if len(panels) <= PANELS_IN_COLUMN else PAGE_INCHES)
-    titles = (title_lines(canvas.title, width), title_lines(verdict.headline, width))
+    titles = (title_lines(canvas.title, width), title_lines(said, width))
     lines = [line for group in titles for line in group]
     per_metre = all(_unit_of_reference(shape) == "m" for shape in shapes)
     names = {**UNIT_NAMES, "rad": "angle [rad/m]"} if per_metre else UNIT_NAMES
     labels = [names[_unit_of(panel)] for panel in panels]
     gaps = [LEFT, *(GAP if a == b else LABELLED_GAP for a, b in pairwise(labels))]
     columns = _widths(panels, width - RIGHT - sum(gaps))
-    if min(columns) < NARROWEST_PANEL:
+    own = canvas.own_axes(len(panels) * len(shapes)) if canvas.axes else ()
+    if min(columns) < NARROWEST_PANEL and not own:
         message = f"{len(panels)} panels side by side have no room in {MM_PER_INCH * width:.4g} mm"
         raise UsageError(Diagnostic("SF902", message, None, "the width of a page is 170 mm"))
     is_lagging = any(_lags(panel, shape) for shape in shapes for panel in panels)
     below = AXIS_INCHES + _name_inches(panels, columns)
     above = LINE_INCHES * len(lines) + (LEGEND_INCHES if is_lagging else 0) + 0.02
-    height = above + len(shapes) * (HEADING_INCHES + ROW_INCHES) + below
-    figure = new_figure(width, height)
+    row = PLAN_INCHES if any(isinstance(panel, Plan) for panel in panels) else ROW_INCHES
+    height = above + len(shapes) * (HEADING_INCHES + row) + below
+    figure = root_figure(own[0]) if own else new_figure(width, height)
     runs = sum(isinstance(panel, Run) for panel in panels)
     for i, shape in enumerate(shapes):
-        bottom = height - above - (i + 1) * (HEADING_INCHES + ROW_INCHES)
+        bottom = height - above - (i + 1) * (HEADING_INCHES + row)
         left = 0.0
         for j, (panel, room, gap) in enumerate(zip(panels, columns, gaps, strict=True)):
             left += gap
-            axes = figure.add_axes((left / width, bottom / height, room / width, ROW_INCHES / height))
-            _draw_panel(axes, panel, shape)
-            _set_x_axis(axes, panel, room, is_last=i == len(shapes) - 1, is_named=runs > 1)
+            box = (left / width, bottom / height, room / width, row / height)
+            axes = own[i * len(panels) + j] if own else figure.add_axes(box)
+            if isinstance(panel, Plan):
+                _draw_plan(axes, panel, shape)
+            else:
+                _draw_panel(axes, panel, shape)
+                _set_x_axis(axes, panel, room, is_last=i == len(shapes) - 1, is_named=runs > 1)
             if j == 0:
                 axes.set_title(heading(shape), loc="left", pad=2.5, fontsize=7.5)
+            if own:
+                axes.set_ylabel(labels[j])
             left += room
+    if own:
+        return figure
     _label_columns(figure, labels, columns, gaps, (below + (height - above - below) / 2) / height)
     if is_lagging:
         _add_legend(figure, panels, 1 - (LINE_INCHES * len(lines) + 0.03) / height)
@@ -161,13 +185,13 @@ def _widths(panels: Sequence[Panel], room: float) -> list[float]:
         max(NARROWEST_STEMS, STEM_INCHES * min(len(p.names), NAMES_LIMIT)) if isinstance(p, Stems) else 0.0
         for p in panels
     ]
-    runs = sum(isinstance(p, Run) for p in panels)
+    runs = sum(isinstance(p, Run | Plan) for p in panels)
     if not runs:
         return [room * s / sum(stems) for s in stems]
     most = max(room - NARROWEST_RUN * runs, NARROWEST_STEMS)
     shrink = min(1.0, most / sum(stems)) if any(stems) else 1.0
     left = (room - shrink * sum(stems)) / runs
-    return [left if isinstance(p, Run) else s * shrink for p, s in zip(panels, stems, strict=True)]
+    return [s * shrink if isinstance(p, Stems) else left for p, s in zip(panels, stems, strict=True)]
 
 
 def _curves(panel: Run, shape: EnclosedModeShape) -> list[Curve]:
@@ -185,6 +209,8 @@ def _curves(panel: Run, shape: EnclosedModeShape) -> list[Curve]:
 def _amplitudes(panel: Panel, shape: EnclosedModeShape) -> npt.NDArray[np.complex128]:
     if isinstance(panel, Stems):
         return np.array([complex(shape.motion(name).value.mid()) for name in panel.names])
+    if isinstance(panel, Plan):
+        return np.concatenate([moved.ravel() for *_, moved in _members(panel, shape)])
     return np.concatenate([values for _, values in _curves(panel, shape)])
 
 
@@ -193,6 +219,48 @@ def _lags(panel: Panel, shape: EnclosedModeShape) -> bool:
     values = _amplitudes(panel, shape)
     largest = 1.0 if _is_normalised(panel, shape) else float(np.abs(values).max())
     return bool(np.abs(values.imag).max() > VISIBLE * largest)
+
+
+def _members(
+    panel: Plan, shape: EnclosedModeShape
+) -> Iterator[tuple[npt.NDArray[np.float64], npt.NDArray[np.complex128]]]:
+    """Yield points of every member where it rests, and by how much they move; a row for x and one for y."""
+    for name, x, y in panel.members:
+        part = shape.along(name)
+        points = list(part.sampled(part.intervals()))
+        along = float(part.length.mid()) * np.array([float(share) for share, _ in points])
+        c, s = (float(value.mid()) for value in part.direction)
+        moved = np.array([[complex(z[i].mid()) for _, z in points] for i in part.displacements])
+        yield np.array([x + c * along, y + s * along]), moved
+
+
+def _draw_plan(axes: Axes, panel: Plan, shape: EnclosedModeShape) -> None:
+    members = list(_members(panel, shape))
+    rest = np.concatenate([place for place, _ in members], axis=1)
+    size = float(max(np.ptp(rest, axis=1)))
+    largest = float(max(np.abs(moved).max() for _, moved in members)) or 1.0
+    scale = SWING * size / largest
+    is_lagging = _lags(panel, shape)
+    for place, moved in members:
+        axes.plot(*place, color=QUIET, linewidth=0.5, zorder=1)
+        if is_lagging:
+            swung = place + scale * moved.imag
+            axes.plot(*swung, color=COLOURS[1], linestyle=LAGGING, linewidth=0.9, zorder=2)
+        axes.plot(*(place + scale * moved.real), color=COLOURS[0], zorder=3, solid_capstyle="round")
+    for node, x, y in panel.loaded:
+        right, up = (complex(shape.motion(f"{node}.{c}").value.mid()).real for c in ("x", "y"))
+        axes.plot(
+            [x + scale * right],
+            [y + scale * up],
+            "o",
+            color=COLOURS[0],
+            markersize=4.2,
+            clip_on=False,
+            zorder=4,
+        )
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.margins(SWING + 0.02)
+    axes.set_axis_off()
 
 
 def _draw_panel(axes: Axes, panel: Panel, shape: EnclosedModeShape) -> None:
@@ -223,11 +291,12 @@ def _is_normalised(panel: Panel, shape: EnclosedModeShape) -> bool:
 def _unit_of(panel: Panel) -> str:
     if isinstance(panel, Stems):
         return panel.unit
-    return "rad" if panel.is_turning else "m"
+    return "rad" if isinstance(panel, Run) and panel.is_turning else "m"
 
 
 def _unit_of_reference(shape: EnclosedModeShape) -> str:
-    part = next((p for p in shape.distributed if shape.reference.startswith(f"{p.name}(")), None)
+    owner = shape.reference.partition("(")[0].partition(".")[0] if shape.reference.endswith(")") else ""
+    part = next((p for p in shape.distributed if p.name == owner), None)
     if part is not None:
         return "rad" if part.kind == "shaft" else "m"
     return shape.motion(shape.reference).unit
@@ -269,7 +338,7 @@ def _draw_stems(axes: Axes, values: npt.NDArray[np.complex128], *, is_lagging: b
     axes.set_xlim(0.5, len(values) + 0.5)
 
 
-def _set_x_axis(axes: Axes, panel: Panel, room: float, *, is_last: bool, is_named: bool) -> None:
+def _set_x_axis(axes: Axes, panel: Run | Stems, room: float, *, is_last: bool, is_named: bool) -> None:
     if isinstance(panel, Run):
         axes.xaxis.set_major_locator(MaxNLocator(nbins=max(2, int(room / 0.42)), steps=[1, 2, 2.5, 5, 10]))
         if is_last:
@@ -341,7 +410,7 @@ def _add_legend(figure: Figure, panels: Sequence[Panel], top: float) -> None:
             [],
             [],
             color=COLOURS[1],
-            linestyle=LAGGING if any(isinstance(panel, Run) for panel in panels) else "",
+            linestyle="" if all(isinstance(panel, Stems) for panel in panels) else LAGGING,
             linewidth=0.9,
             marker=marker,
             markersize=2.8,

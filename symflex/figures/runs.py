@@ -49,19 +49,32 @@ class Stems:
     unit: str
 
 
-Panel = Run | Stems
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """Members of frames where they lie in the plane [m]."""
+
+    members: tuple[tuple[str, float, float], ...]  # names, and where their first ends are
+    loaded: tuple[tuple[str, float, float], ...]  # nodes that carry inertia
+
+
+Panel = Run | Plan | Stems
 
 
 def panels_of(model: Model, shapes: Sequence[EnclosedModeShape]) -> tuple[Panel, ...]:
     """Return what a figure of the modes shows, from left to right.
 
-    Nodes at the ends of distributed parts are shown there; what rests in all modes, and what turns where a
-    beam shows the slope, is left out. Voltages and signals are shown when nothing else moves.
+    Members of frames are drawn in the plane, other distributed parts along an axis. Nodes at their ends are
+    shown there; what rests in all modes, and what turns where a beam shows the slope, is left out. Voltages
+    and signals are shown when nothing else moves.
     """
     if not shapes:
         return ()
     parts = {part.name: part for part in shapes[0].distributed}
-    runs = [*_runs_of_elements(model, parts), *_runs_of_fields(model, parts)]
+    runs: list[Panel] = [
+        *_plan(model, parts),
+        *_runs_of_elements(model, parts),
+        *_runs_of_fields(model, parts),
+    ]
     shown = _nodes_on(model)
     stems = []
     for unit in ("m", "rad"):
@@ -98,19 +111,76 @@ def _nodes_on(model: Model) -> set[str]:
     for use in _lines(model):
         for node in _ends(use):
             found |= {node, f"{node}.y", f"{node}.theta"}
+            if isinstance(use.element, LineElement) and "x" in use.element.ends:
+                found.add(f"{node}.x")
     return found
 
 
-def _runs_of_elements(model: Model, parts: dict[str, DistributedShape]) -> Iterator[Run]:
-    """Yield elements of one kind that follow each other, laid end to end."""
-    carrying = {
+def _carrying(model: Model) -> set[str]:
+    """Return the nodes that inertia moves with."""
+    return {
         reference.node
         for use in model.elements
         if use.element.is_inertia
         for _, references in use.nodes
         for reference in references
     }
-    lines = list(_lines(model))
+
+
+def _plan(model: Model, parts: dict[str, DistributedShape]) -> Iterator[Plan]:
+    """Yield the members of frames, those that are joined placed by their lengths and directions.
+
+    What pins, joints and links join is drawn at one place. Each end at ground is a place of its own; what is
+    not joined to what was placed before begins where that ends.
+    """
+    members = [(use.name, *_ends(use)) for use in _lines(model) if parts[use.name].direction]
+    joined = {
+        r.node: references[0].node
+        for use in model.elements
+        if use.element.carries_x
+        for _, references in use.nodes
+        for r in references[1:]
+        if not (r.is_ground or references[0].is_ground)
+    }
+
+    def joint(node: str) -> str:
+        while node in joined:
+            node = joined[node]
+        return node
+
+    places: dict[str, tuple[float, float]] = {}
+    starts: dict[str, tuple[float, float]] = {}
+    waiting = list(members)
+    while waiting:
+        name, a, b = next(
+            ((n, a, b) for n, a, b in waiting if joint(a) in places or joint(b) in places), waiting[0]
+        )
+        waiting.remove((name, a, b))
+        part = parts[name]
+        dx, dy = (float(part.length.mid()) * float(x.mid()) for x in part.direction)
+        if joint(a) in places:
+            x, y = places[joint(a)]
+        elif joint(b) in places:
+            x, y = places[joint(b)][0] - dx, places[joint(b)][1] - dy
+        else:
+            x, y = 1.2 * max((x for x, _ in places.values()), default=0.0), 0.0
+        starts[name] = (x, y)
+        for node, place in ((a, (x, y)), (b, (x + dx, y + dy))):
+            if node != "ground":
+                places.setdefault(joint(node), place)
+    if members:
+        carrying = _carrying(model)
+        at = {node: places[joint(node)] for _, *ends in members for node in ends if node in carrying}
+        yield Plan(
+            tuple((name, *start) for name, start in starts.items()),
+            tuple((node, *place) for node, place in at.items()),
+        )
+
+
+def _runs_of_elements(model: Model, parts: dict[str, DistributedShape]) -> Iterator[Run]:
+    """Yield elements of one kind that follow each other, laid end to end."""
+    carrying = _carrying(model)
+    lines = [use for use in _lines(model) if not parts[use.name].direction]
     waiting = list(lines)
     while waiting:
         chain = _chain(waiting[0], lines)

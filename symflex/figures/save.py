@@ -16,6 +16,7 @@ from io import BytesIO
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+from matplotlib import rc_context
 from matplotlib.backend_bases import RendererBase
 from matplotlib.colors import to_rgba
 from matplotlib.path import Path as Outline
@@ -49,11 +50,12 @@ FORMATS: Final[dict[str, dict[str, str | None]]] = {
 }
 
 
-def render(figure: Figure, format: str, *, font: str = DEFAULT_FONT) -> bytes:
+def render(figure: Figure, format: str, *, font: str = DEFAULT_FONT, has_text: bool = False) -> bytes:
     """Return a figure as the content of a file; equal figures give equal bytes.
 
-    ``format`` is ``pdf``, ``pgf``, ``png`` or ``svg``; ``font`` is that in which the figure was drawn. Raises
-    UsageError: SF208 for any other format or font.
+    ``format`` is ``pdf``, ``pgf``, ``png`` or ``svg``; ``font`` is that in which the figure was drawn. With
+    ``has_text`` an SVG holds texts, not outlines of letters. Raises UsageError: SF208 for any other format or
+    font.
     """
     if format not in FORMATS:
         hint = nearest(format, FORMATS) or "formats: " + ", ".join(FORMATS)
@@ -62,7 +64,7 @@ def render(figure: Figure, format: str, *, font: str = DEFAULT_FONT) -> bytes:
     with paper_style(font):
         if format == "pgf":
             return pgf_figure(figure).encode("ascii")
-        with _quietly():
+        with _quietly(), rc_context({"svg.fonttype": "none"} if has_text else {}):
             figure.savefig(buffer, format=format, metadata=FORMATS[format])
     return buffer.getvalue()
 

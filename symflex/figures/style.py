@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import textwrap
+from io import BytesIO
 from typing import TYPE_CHECKING, Final
 
 from matplotlib import style
@@ -20,9 +21,11 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from contextlib import AbstractContextManager
 
+    from matplotlib.font_manager import FontProperties
+
     from symflex.model import Input, Output
     from symflex.roots import PoleZeroMap
-    from symflex.transfer import TransferFunction
+    from symflex.transfer import AnyTransferFunction
 
 
 COLUMN_INCHES: Final = 3.5
@@ -33,6 +36,10 @@ TITLE_POINTS: Final = 8.0
 LINE_INCHES: Final = 0.13
 """Height of a line of a title."""
 TITLE_SPACING: Final = 0.95
+DOTS_SHOWN: Final = 120
+"""Of a page, per inch of a figure in a notebook: a column is then as wide as its lines of text."""
+SHARPNESS: Final = 2
+"""Dots of a screen per dot of a page."""
 LETTERS_PER_INCH: Final = 18
 """Of a title in eight points, so that lines are broken before they are too long."""
 
@@ -120,9 +127,34 @@ def family_of(text: str, font: str) -> list[str] | None:
     return _FALLBACK
 
 
-def new_figure(width: float, height: float) -> Figure:
-    """Return an empty figure [inches] that belongs to no window."""
-    figure = Figure(figsize=(width, height))
+Raster = tuple[bytes, dict[str, int]]
+
+
+class ShownFigure(Figure):
+    r"""A figure that belongs to no window, and that a notebook shows where it is a cell's value.
+
+    Examples
+    --------
+    >>> data, size = ShownFigure(figsize=(3.5, 2.0))._repr_png_()
+    >>> data[:4], size
+    (b'\x89PNG', {'width': 420, 'height': 240})
+    """
+
+    def _repr_png_(self) -> Raster:
+        return raster_of(self)
+
+
+def raster_of(figure: Figure) -> Raster:
+    """Return a figure as a notebook takes it: a PNG, and how large it is to be shown."""
+    buffer = BytesIO()
+    figure.savefig(buffer, format="png", dpi=SHARPNESS * DOTS_SHOWN)
+    across, upwards = (round(inches * DOTS_SHOWN) for inches in figure.get_size_inches())
+    return buffer.getvalue(), {"width": across, "height": upwards}
+
+
+def new_figure(width: float, height: float) -> ShownFigure:
+    """Return an empty figure [inches]."""
+    figure = ShownFigure(figsize=(width, height))
     FigureCanvasAgg(figure)
     return figure
 
@@ -173,7 +205,7 @@ _UNIT_TOKEN: Final = re.compile(
 PLAIN_LOW, PLAIN_HIGH = 1e-3, 1e5
 
 
-def label_of_tf(tf: TransferFunction) -> str:
+def label_of_tf(tf: AnyTransferFunction) -> str:
     """Return ``output/input`` in matplotlib's mathematics."""
     return f"${label_of(tf.output)}/{label_of(tf.input)}$"
 
@@ -221,6 +253,12 @@ def _is_typeset(label: str) -> bool:
     return True
 
 
+def size_of_text(text: str, font: FontProperties) -> tuple[float, float]:
+    """Return how wide and high a line of a figure is [points], mathematics between dollar signs in it."""
+    width, height, *_ = _PARSER.parse(text, 72, font)
+    return float(width), float(height)
+
+
 def label_of_unit(unit: str) -> str:
     r"""Return a unit in upright mathematics, empty for a pure or unknown one.
 
@@ -256,3 +294,19 @@ def label_of_frequency(value: float) -> str:
     mantissa, exponent = f"{value:.0e}".split("e")
     power = f"10^{{{int(exponent)}}}"
     return f"${power}$" if mantissa == "1" else rf"${mantissa}\!\cdot\!{power}$"
+
+
+def number_label(value: float) -> str:
+    r"""Return a number in four digits in matplotlib's mathematics.
+
+    Examples
+    --------
+    >>> number_label(25.0), number_label(1e6), number_label(2.5e-7)
+    ('25', '10^{6}', '2.5\\times 10^{-7}')
+    """
+    text = f"{value:.4g}"
+    if "e" not in text:
+        return text
+    mantissa, exponent = text.split("e")
+    power = f"10^{{{int(exponent)}}}"
+    return power if mantissa == "1" else rf"{mantissa}\times {power}"

@@ -11,7 +11,15 @@ from matplotlib.colors import ListedColormap, LogNorm, Normalize
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from symflex.errors import Diagnostic, ModelError
-from symflex.figures.axes import RIGHT_HALF_PLANE, label_s_plane, set_frequency_axis, write_title
+from symflex.figures.axes import (
+    RIGHT_HALF_PLANE,
+    Canvas,
+    axes_of,
+    label_s_plane,
+    root_figure,
+    set_frequency_axis,
+    write_title,
+)
 from symflex.figures.style import (
     COLOURS,
     COLUMN_INCHES,
@@ -23,6 +31,7 @@ from symflex.figures.style import (
     label_of_name,
     label_of_unit,
     new_figure,
+    number_label,
     paper_style,
     title_lines,
 )
@@ -37,6 +46,7 @@ if TYPE_CHECKING:
     from matplotlib.colors import Colormap
     from matplotlib.figure import Figure
 
+    from symflex.figures.axes import AxesGiven
     from symflex.sweep import Labelled, Sweep
 
     Doubles = npt.NDArray[np.float64]
@@ -50,7 +60,9 @@ DECADES: Final = 15.0
 """Values that span more than this factor stand on a logarithmic axis."""
 BAND: Final = (5, 95)
 MEDIAN: Final = 50
-PLAIN: Final = (1e3, 1e5)
+THREE_DIGITS: Final = 1e3
+PLAIN: Final = 1e5
+"""Numbers from here on are written with a power of ten."""
 FEW_DECADES: Final = 300.0
 """Below this factor, decades are divided."""
 OVERDAMPED: Final = 1.5
@@ -71,6 +83,7 @@ def draw_sweep(
     title: str | None = None,
     width: float | None = None,
     font: str = DEFAULT_FONT,
+    ax: AxesGiven | None = None,
 ) -> Figure:
     """Draw a sweep.
 
@@ -79,13 +92,19 @@ def draw_sweep(
     line for each of these. Otherwise, and of draws: medians and what holds 90 % of the points, from the 5th
     to the 95th percentile.
 
-    ``modes`` are the names of those shown, from the first; ``width`` is in inches, a column by default.
-    Raises ModelError: SF402 there is nothing to draw.
+    ``modes`` are the names of those shown, from the first; ``width`` is in inches, a column by default. On
+    ``ax``, as many axes as there are panels, it is drawn in the user's style and without a title. Raises
+    ModelError: SF402 there is nothing to draw; UsageError: SF902 ``ax`` are too many or too few.
     """
+    panels = _panels(sweep, modes)
+    if ax is not None:
+        own = Canvas(axes=axes_of(ax)).own_axes(len(panels))
+        for axes, panel in zip(own, panels, strict=True):
+            PANELS[panel](axes, sweep, modes)
+        return root_figure(own[0])
     with paper_style(font):
         width = width or COLUMN_INCHES
         lines = title_lines(sweep.attribute("title") if title is None else title, width)
-        panels = _panels(sweep, modes)
         figure = new_figure(width, PANEL_INCHES * len(panels) + 0.3 + LINE_INCHES * len(lines))
         figure.set_layout_engine("constrained", h_pad=0.03, w_pad=0.03)
         every = figure.subplots(len(panels), squeeze=False)[:, 0]
@@ -259,7 +278,9 @@ def _frequency_bands(axes: Axes, sweep: Sweep, modes: int | None) -> None:
 
 
 def _short(value: float) -> str:
-    return f"{value:.3g}" if value < PLAIN[0] else f"{value:.0f}" if value < PLAIN[1] else f"{value:.1e}"
+    if value < PLAIN:
+        return f"{value:.3g}" if value < THREE_DIGITS else f"{value:.0f}"
+    return f"${number_label(float(f'{value:.1e}'))}$"
 
 
 def _colours(values: Doubles) -> tuple[Normalize, Colormap]:

@@ -25,6 +25,10 @@ class ParameterPort:
     # What the value must be: ``any``, ``nonnegative`` or ``positive``; of distributed elements, told as far
     # as values and assumptions tell. A distributed element's length is always positive.
     sign: Sign = "any"
+    # An angle from the x axis, which enters by its cosine and sine: the element is given both as values
+    # ``cos`` and ``sin``, and their products ``cos_cos`` and ``cos_sin``.
+    is_direction: bool = False
+    varies: bool = False  # true when the value may vary along x, from 0 at the first end
 
     def applies(self, chosen: Collection[str]) -> bool:
         """Tell whether the key may be given with the chosen values."""

@@ -2,10 +2,10 @@
 
     EI w'''' + rho A s^2 w = 0   ->   z' = M z,  z = (w, w', w'', w''')
 
-A theory is one function and one line in :data:`FIELDS`: rod, shaft, string, and bending after
-Euler-Bernoulli, Rayleigh and Timoshenko. Equations of any order, given by the coefficient of every derivative
-of every unknown and of every load, become a :class:`FieldSystem` whose states are the unknowns and their
-derivatives below the highest.
+A theory is one function and one line in :data:`FIELDS`: rod, shaft, string, bending after
+Euler-Bernoulli, Rayleigh and Timoshenko, and each of these with stretching, at an angle. Equations of any
+order, given by the coefficient of every derivative of every unknown and of every load, become a
+:class:`FieldSystem` whose states are the unknowns and their derivatives below the highest.
 
 With ``chi(lambda) = det(lambda I - A)`` and ``adj(lambda I - A) = sum_k lambda^k B_k``, the inverse Laplace
 transform in x of ``adj/chi`` is ``exp(A x) = sum_k h^(k)(x) B_k``, where ``chi(d/dx) h = 0`` and
@@ -24,7 +24,7 @@ from symflex.algebra.dispersion import DispersionKind
 from symflex.errors import BudgetError, Diagnostic
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
     from symflex.algebra import Factored
 
@@ -39,6 +39,61 @@ class FieldSystem:
     states: tuple[str, ...]
     matrix: Matrix  # constant in x, rational in s and the parameters
     loads: Matrix = ()  # one column per input that acts all along the field, uniform in x
+    axes: Axes | None = None  # of a member at an angle, whose states are along the axes of the plane
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Axes:
+    """The axes of a member, u along it and v across, as seen from the axes x and y of the plane.
+
+    Products are given besides, as a root in the cosine of 45 deg is none in its square.
+    """
+
+    own: FieldSystem  # the equations in the member's axes, loads none
+    cos: Factored
+    sin: Factored
+    cos_cos: Factored
+    cos_sin: Factored
+
+    def turned(self, matrix: Matrix) -> Matrix:
+        """Return ``R^T matrix R``, in the plane's axes; R takes these to the member's.
+
+        Every pair of states that :data:`VECTORS` lists turns, the others stay.
+        """
+        size = len(matrix)
+        found = [list(row) for row in matrix]
+        partner = {i: j for pair in VECTORS for i, j in (pair, pair[::-1])}
+        for u, v in VECTORS:
+            for p in range(size):
+                if p not in partner:
+                    found[u][p], found[v][p] = self._components(matrix[u][p], matrix[v][p])
+                    found[p][u], found[p][v] = self._components(matrix[p][u], matrix[p][v])
+            for p, q in VECTORS:
+                block = (matrix[u][p], matrix[u][q], matrix[v][p], matrix[v][q])
+                found[u][p], found[u][q], found[v][p], found[v][q] = self._block(*block)
+        return tuple(map(tuple, found))
+
+    def _components(self, u: Factored, v: Factored) -> tuple[Factored, Factored]:
+        return self.cos * u - self.sin * v, self.sin * u + self.cos * v
+
+    def _block(
+        self, uu: Factored, uv: Factored, vu: Factored, vv: Factored
+    ) -> tuple[Factored, Factored, Factored, Factored]:
+        square, mixed = self.cos_cos, self.cos_sin
+        across, skew = (uu - vv) * square, (uv + vu) * mixed
+        even, odd = (uu - vv) * mixed, (uv + vu) * square
+        return vv + across - skew, even + odd - vu, even + odd - uv, uu - across + skew
+
+    def readings(self) -> Mapping[str, tuple[Factored, ...]]:
+        """Return what the member's own states are in those along the plane's axes, by their names."""
+        zero = self.cos * 0
+        found: dict[str, tuple[Factored, ...]] = {}
+        for u, v in VECTORS:
+            along, across = [zero] * len(self.own.states), [zero] * len(self.own.states)
+            along[u], along[v] = self.cos, self.sin
+            across[u], across[v] = -self.sin, self.cos
+            found[self.own.states[u]], found[self.own.states[v]] = tuple(along), tuple(across)
+        return found
 
 
 class FieldTheory(Protocol):
@@ -204,10 +259,38 @@ def timoshenko(s: Factored, values: Mapping[str, Factored]) -> FieldSystem:
     return system_of(BENDING_STATES, entries, one * 0)
 
 
+FRAME_STATES = ("u", "v", "theta", "f_u", "f_v", "tau")
+VECTORS = ((0, 1), (3, 4))
+"""The pairs of states of a member of a frame that turn with the axes."""
+
+
+def _in_the_plane(bending: FieldTheory) -> FieldTheory:
+    """Return the theory of a member that bends after the given one and stretches, along the plane's axes."""
+
+    def frame(s: Factored, values: Mapping[str, Factored]) -> FieldSystem:
+        across, stretching = bending(s, values), rod(s, values)
+        zero = s * 0
+        names = [dict(zip(BENDING_STATES, ("v", "theta", "f_v", "tau"), strict=True)), {"u": "u", "f": "f_u"}]
+        entries = {
+            (called[row], called[column]): x
+            for system, called in zip((across, stretching), names, strict=True)
+            for row, line in zip(system.states, system.matrix, strict=True)
+            for column, x in zip(system.states, line, strict=True)
+        }
+        own = system_of(FRAME_STATES, entries, zero)
+        axes = Axes(own, *(values[name] for name in ("cos", "sin", "cos_cos", "cos_sin")))
+        return FieldSystem(("x", "y", "theta", "f_x", "f_y", "tau"), axes.turned(own.matrix), axes=axes)
+
+    return frame
+
+
 FIELDS: dict[str, FieldTheory] = {
     "euler-bernoulli": euler_bernoulli,
     "rayleigh": rayleigh,
     "timoshenko": timoshenko,
+    "frame-euler-bernoulli": _in_the_plane(euler_bernoulli),
+    "frame-rayleigh": _in_the_plane(rayleigh),
+    "frame-timoshenko": _in_the_plane(timoshenko),
     "rod": rod,
     "shaft": shaft,
     "string": string,
@@ -230,37 +313,78 @@ class Characteristic:
     @property
     def key(self) -> tuple[str, ...]:
         """Equal for equal polynomials, so that elements of one material share their wavenumbers."""
-        return tuple(_text(c) for c in (*self.coefficients, self.shift))
+        return tuple(text(c) for c in (*self.coefficients, self.shift))
 
 
-def _text(value: Factored) -> str:
+def text(value: Factored) -> str:
+    """Return what is equal for equal values of few factors, which need not stand in the same order."""
     parts = sorted(f"({f})^{e}" for f, e in value.factors)
     return f"{value.unit}*" + "*".join(parts)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Component:
-    """A part of a field's states that is coupled to no other part."""
+    """A part of a field's states that is coupled to no other part.
 
-    states: tuple[int, ...]  # their positions among the system's states
+    Of a member at an angle, the parts in its own axes: stretching and bending both move x and y.
+    """
+
+    states: tuple[int, ...]  # the positions, among the system's states, of those it moves
     characteristic: Characteristic  # of this part alone
     coefficients: tuple[Factored, ...]  # ``c_0, ..., c_(n-1)`` of the same polynomial, not shifted
     adjugate: tuple[Matrix, ...]  # ``B_0, ..., B_(n-1)``
+    # Of a part whose coefficients vary along x, which has no such polynomial: the coefficients of its states
+    # and then of the loads, which are states that stay what they are.
+    matrix: Matrix = ()
+
+
+def varies(system: FieldSystem, along: Collection[str]) -> bool:
+    """Tell whether coefficients of a system hold one of the generators that vary along x."""
+    every = [x for row in (*system.matrix, *system.loads) for x in row]
+    return any(x.depends_on(name) for name in along for x in every)
+
+
+def varying_components(system: FieldSystem) -> tuple[Component, ...]:
+    """Return the uncoupled parts of equations whose coefficients vary along x."""
+    n, zero = len(system.states), system.matrix[0][0] * 0
+    places = {(i, j) for i in range(n) for j in range(n) if not system.matrix[i][j].is_zero}
+    found = []
+    for own in coupled_states(n, places):
+        rows = [(*(system.matrix[i][j] for j in own), *(load[i] for load in system.loads)) for i in own]
+        rows += [(zero,) * len(rows[0]) for _ in system.loads]
+        found.append(Component(own, Characteristic("varying", (), zero), (), (), tuple(rows)))
+    return tuple(found)
 
 
 def components(system: FieldSystem) -> tuple[Component, ...]:
     """Return the uncoupled parts of a field's equations, each with its characteristic polynomial."""
     found = []
-    for states in _coupled(system.matrix):
-        matrix = tuple(tuple(system.matrix[i][j] for j in states) for i in states)
+    axes = system.axes
+    whole = system.matrix if axes is None else axes.own.matrix
+    size = len(whole)
+    places = {(i, j) for i in range(size) for j in range(size) if not whole[i][j].is_zero}
+    for own in coupled_states(size, places):
+        states, matrix = own, tuple(tuple(whole[i][j] for j in own) for i in own)
         coefficients, adjugate = faddeev_leverrier(matrix)
+        if axes is not None:
+            adjugate = tuple(axes.turned(_spread(b, own, whole[0][0] * 0, len(whole))) for b in adjugate)
+            states = tuple(range(len(whole)))
         found.append(Component(states, classify(coefficients), coefficients, adjugate))
     return tuple(found)
 
 
-def _coupled(matrix: Matrix) -> list[tuple[int, ...]]:
-    """Return the connected parts of the states, in order."""
-    left, found = list(range(len(matrix))), []
+def _spread(matrix: Matrix, states: Sequence[int], zero: Factored, size: int) -> Matrix:
+    """Return the matrix of a part as one of all states."""
+    place = {state: i for i, state in enumerate(states)}
+    return tuple(
+        tuple(matrix[place[i]][place[j]] if i in place and j in place else zero for j in range(size))
+        for i in range(size)
+    )
+
+
+def coupled_states(count: int, places: Collection[tuple[int, int]]) -> list[tuple[int, ...]]:
+    """Return the connected parts of the states of a matrix that has entries at some places, in order."""
+    left, found = list(range(count)), []
     while left:
         part, pending = set(), [left[0]]
         while pending:
@@ -268,7 +392,7 @@ def _coupled(matrix: Matrix) -> list[tuple[int, ...]]:
             if i in part:
                 continue
             part.add(i)
-            pending += [j for j in left if not (matrix[i][j].is_zero and matrix[j][i].is_zero)]
+            pending += [j for j in left if (i, j) in places or (j, i) in places]
         found.append(tuple(i for i in left if i in part))
         left = [i for i in left if i not in part]
     return found
@@ -336,7 +460,9 @@ def classify(coefficients: Sequence[Factored]) -> Characteristic:
     shift = coefficients[-1] / n
     shifted = tuple(coefficients) if shift.is_zero else _shifted(coefficients, shift)
     kind = _even_kind(shifted)
-    if kind == "general":
+    # Shifted pairs hold the shift's square, for which no parameter can be solved: what is common, and where
+    # the parts are entire, is then not seen in names for the roots.
+    if kind == "general" or (kind == "pair" and not shift.is_zero):
         return Characteristic("general", tuple(coefficients), zero)
     return Characteristic(kind, shifted, shift)
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from math import exp, inf, pi
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from flint import acb, arb
 
@@ -42,6 +42,13 @@ NEWTON_STEPS = 60
 """Each nearly doubles the digits, so that few are ever taken."""
 
 
+class OnAxis(Protocol):
+    """A and B of a characteristic function ``A + K B``, enclosed along the imaginary axis."""
+
+    def on(self, omega: arb, bits: int, order: int = 1) -> tuple[LoopValue, LoopValue]:
+        """Return the values on a ball of frequencies, and those in its middle, with so many derivatives."""
+
+
 @dataclass(frozen=True, slots=True)
 class AxisRoots:
     """What was found between two frequencies."""
@@ -51,7 +58,7 @@ class AxisRoots:
 
 
 def find_on_axis(
-    function: LoopFunction,
+    function: OnAxis,
     equation: Callable[[LoopValue], tuple[arb, arb]],
     is_excluded: Callable[[LoopValue], bool],
     limits: tuple[float, float],
@@ -111,7 +118,7 @@ def _between(start: float, end: float) -> arb:
 
 
 def _refined(
-    function: LoopFunction,
+    function: OnAxis,
     equation: Callable[[LoopValue], tuple[arb, arb]],
     ball: arb,
     digits: int,

@@ -66,6 +66,10 @@ class DynamicColocation:
     cause: str
     begins: bool
 
+    def __repr__(self) -> str:
+        edge = "no end found" if self.edge is None else f"up to {float(hertz(self.edge).mid()):.6g} Hz"
+        return f"<DynamicColocation {self.tf} with {self.reference}: {edge if self.begins else 'nowhere'}>"
+
     def to_json_dict(self) -> dict[str, object]:
         """Return the band in the schema ``symflex.colocation/1``."""
         edge = None if self.edge is None else real_json(hertz(self.edge), 15)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from math import log, pi
+from math import exp, log, pi
 from typing import TYPE_CHECKING
 
 from flint import acb, arb
@@ -17,10 +17,11 @@ from flint import acb, arb
 from symflex.algebra import Factored
 from symflex.algebra.vanishing import OriginSeries
 from symflex.errors import Diagnostic, UncertifiedError
-from symflex.loops.axis import AxisRoots, LoopAtOrigin, find_on_axis, loop_at_origin
-from symflex.loops.loop import GainPolynomial, LoopFunction, LoopValue
-from symflex.loops.stability_map import Crossing, PoleCount
-from symflex.roots import Band, Budget, precision
+from symflex.loops.axis import LoopAtOrigin, loop_at_origin
+from symflex.loops.axis_factors import AxisFactors
+from symflex.loops.loop import GainPolynomial, LoopFunction
+from symflex.loops.stability_map import PoleCount
+from symflex.roots import Band, Budget
 from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.winding import Cell, RootOnPathError, Winding
 from symflex.roots.distributed.right_half_plane import right_tail
@@ -31,7 +32,6 @@ from symflex.roots.root import exact_fraction
 from symflex.transfer.balls import ball
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from fractions import Fraction
 
     from symflex.transfer import BoundTransferFunction
@@ -49,7 +49,7 @@ SHRINKINGS = 30
 
 
 @dataclass
-class DistributedFactors:
+class DistributedFactors(AxisFactors[LoopFunction]):
     """The factors of a characteristic function that hold kernels, together.
 
     ``reasons`` say why something is not certified.
@@ -86,7 +86,7 @@ class DistributedFactors:
             b = factor.coefficients[1] if factor.degree else Factored.number(self.bound.ratio.ring, 0)
             function = LoopFunction.of(self.bound, factor.coefficients[0], b)
             tail = right_tail(
-                self.bound, (function.a, function.b), (acb(1), acb(low.union(high))), self._scale
+                self.bound, (function.a, function.b), (acb(1), acb(low.union(high))), self.scale
             )
             if tail.radius is None:
                 self.reasons.append(tail.reason)
@@ -94,8 +94,14 @@ class DistributedFactors:
             proved.append(tail.radius)
         return max(proved), True
 
+    @property
+    def axis_end(self) -> float:
+        """How far crossings of the axis are searched [rad/s]: to the largest circle on which is counted."""
+        end, is_proved = self.radius
+        return end if is_proved else end * exp(NUDGES[-1])
+
     @cached_property
-    def _scale(self) -> float:
+    def scale(self) -> float:
         """A frequency at which the largest argument of a kernel is about one [rad/s]."""
         return self._function(self.limits[1]).frequency_of(1.0)
 
@@ -114,60 +120,7 @@ class DistributedFactors:
         s = whole.ring.context.gen(0)
         return KernelFunction(*without_squares(self.bound, whole.filter(lambda f: f != s)))
 
-    def crossings(self, digits: int) -> list[Crossing]:
-        """Return where poles cross the axis for gains in the range; the search's gaps go to ``reasons``."""
-        found: list[Crossing] = []
-        for function in self.with_gain:
-            found += self._crossings(function, digits)
-        return found
-
-    def _crossings(self, function: LoopFunction, digits: int) -> list[Crossing]:
-        found: list[Crossing] = []
-        is_mirrored = self._never_leaves(function)
-        if is_mirrored and function.sums is None:
-            self.reasons.append("where poles that mirror each other meet on the axis is not searched")
-            return []
-        first, origin = self.next_to_zero(function, is_mirrored=is_mirrored)
-        if origin is not None:
-            gain = origin.gain()
-            if gain is not None and self._may_be_in_range(gain):
-                found.append(Crossing(gain, (arb(0),)))
-        equation = LoopValue.meeting if is_mirrored else LoopValue.crossing
-        order = 2 if is_mirrored else 1
-        result = self.on_axis(function, equation, self._is_far, (first, self.radius[0]), digits, order)
-        for omega in result.roots:
-            bits = max(BITS, 2 * omega.bits())
-            around, _ = function.on(omega, bits)
-            with precision(bits):
-                if self._is_far(around):
-                    continue
-                if around.b.contains(0):
-                    place = float((omega.mid() / (2 * arb.pi())).mid())
-                    self.reasons.append(f"poles near {place:.6g} Hz may stay on the axis for every gain")
-                    continue
-                gain = around.gain()
-            if self._may_be_in_range(gain):
-                found.append(Crossing(gain, (omega,), is_symmetric=is_mirrored))
-        return found
-
-    def on_axis(
-        self,
-        function: LoopFunction,
-        equation: Callable[[LoopValue], tuple[arb, arb]],
-        is_excluded: Callable[[LoopValue], bool],
-        limits: tuple[float, float],
-        digits: int,
-        order: int = 1,
-    ) -> AxisRoots:
-        """Return the roots of a real function along the axis between two frequencies."""
-        low, high = limits
-        result = find_on_axis(function, equation, is_excluded, (low, high * 1.01), digits, self.budget, order)
-        for gap in result.undecided:
-            place = float((gap.mid() / (2 * arb.pi())).mid())
-            self.reasons.append(f"whether poles cross the axis near {place:.6g} Hz is not decided")
-        return result
-
-    def _never_leaves(self, function: LoopFunction) -> bool:
+    def is_mirrored(self, function: LoopFunction) -> bool:
         """Tell whether A and B are even or odd alike, so that roots mirror each other for every gain."""
         ring = self.bound.ratio.ring
         parts = [KernelFunction(self.bound, Factored.polynomial(ring, f)) for f in (function.a, function.b)]
@@ -176,52 +129,25 @@ class DistributedFactors:
         powers = [{int(m[0]) % 2 for m in f.monoms()} for f in (function.a, function.b)]
         return powers[0] == powers[1]
 
-    def next_to_zero(
-        self, function: LoopFunction, *, is_mirrored: bool = False
-    ) -> tuple[float, LoopAtOrigin | None]:
-        """Return a frequency [rad/s] within which no pole crosses the axis but at 0, as far as proved."""
-        origin = loop_at_origin(function, self.budget)
-        if origin is None:
-            self.reasons.append("what poles do next to s = 0 is not proved")
-            return self._scale * 1e-6, None
-        radius = origin.series[0].reach / 4
-        for _ in range(SHRINKINGS):
-            is_proved = origin.moves_away(radius) if is_mirrored else origin.turns_away(radius)
-            if is_proved or self._beyond_all_gains(origin, radius):
-                break
-            radius = radius / 2
-        else:
-            # Several crossings meet at 0: nothing is gained by going closer.
-            self.reasons.append("what poles do next to s = 0 is not proved")
-            radius = origin.series[0].reach / 4
-        return float(radius.lower()), origin
+    def tells_meetings(self, function: LoopFunction) -> bool:
+        """Tell whether it is a sum of exponentials."""
+        return function.sums is not None
 
-    def _beyond_all_gains(self, origin: LoopAtOrigin, radius: arb) -> bool:
-        first, second = origin.orders
-        if first > second:
-            return False
-        a, b = origin.sizes(radius)
-        most = max(abs(x) for x in self.limits)
-        bound = ball(most) * b.abs_upper() * radius ** (second - first)
-        return bool(a.abs_lower() > bound)
+    def origin(self, function: LoopFunction) -> LoopAtOrigin | None:
+        """Return A and B near 0, ``None`` where their orders or series cannot be told."""
+        return loop_at_origin(function, self.budget)
 
-    def _is_far(self, value: LoopValue) -> bool:
-        """Tell whether the gain of a pole at these values is out of the range."""
-        low, high = (ball(x) for x in self.limits)
-        most = abs(low).max(abs(high))
-        size = value.a.abs_lower()
-        if size > most * value.b.abs_upper():
-            return True
-        if low > 0 and value.a.abs_upper() < low * value.b.abs_lower():
-            return True
-        if value.b.contains(0):
-            return False
-        gain = value.gain()
-        return bool(gain < low) or bool(gain > high)
-
-    def _may_be_in_range(self, gain: arb) -> bool:
-        low, high = (ball(x) for x in self.limits)
-        return not (gain < low or gain > high)
+    def last_crossover(self, function: LoopFunction, gain: arb) -> float:
+        """Return the frequency [rad/s] beyond which the loop gain is not one, as far as it is searched."""
+        last, is_proved = self.radius
+        if not is_proved:
+            return last
+        most = abs(gain).upper()
+        disc = acb(arb(0, most), arb(0, most))
+        tail = right_tail(function.bound, (function.a, function.b), (acb(1), disc), last)
+        if tail.radius is None:
+            self.reasons.append("whether the loop gain is one at high frequencies is not proved")
+        return tail.radius or last
 
     def count(self, gain: Fraction) -> PoleCount:
         """Return how many poles lie right of the axis and on it, as far as they are searched.

@@ -11,15 +11,18 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from flint import acb, arb
 
 from symflex.algebra import Factored, degree_in
 from symflex.budget import Budget, entered_budget
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
+from symflex.loops.axis_factors import AxisFactors
 from symflex.loops.distributed import DistributedFactors
+from symflex.loops.loop import Loop
 from symflex.loops.lumped import LumpedFactor
+from symflex.loops.networks import NetworkFactors, NetworkLoop
 from symflex.loops.stability_map import (
     AllowedBandwidth,
     Boundary,
@@ -31,7 +34,6 @@ from symflex.loops.stability_map import (
     StabilityMap,
 )
 from symflex.roots import RootProblem, find_polynomial_roots, precision
-from symflex.roots.distributed.right_half_plane import right_tail
 from symflex.roots.problem import polynomial_in_s
 from symflex.roots.root import exact_fraction
 from symflex.transfer.balls import ball
@@ -39,7 +41,7 @@ from symflex.transfer.balls import ball
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.loops.loop import GainPolynomial, Loop, LoopValue
+    from symflex.loops.loop import GainPolynomial, LoopValue
     from symflex.transfer import BoundTransferFunction
 
 
@@ -55,7 +57,7 @@ Limits = tuple[Fraction | None, Fraction | None]
 
 
 def find_stable_gains(
-    loop: Loop,
+    loop: Loop | NetworkLoop,
     limits: Limits | None = None,
     digits: int = 15,
     budget: Budget | None = None,
@@ -72,27 +74,16 @@ def find_stable_gains(
     SF505, SF506.
     """
     budget = budget or entered_budget()
-    plain, mixed = _split(loop)
-    low, high = _limits(loop, limits, is_distributed=bool(mixed))
-    lumped = [LumpedFactor.of(loop.bound, factor) for factor in plain]
-    distributed = None
-    if mixed:
-        if any(factor.degree > 1 for factor in mixed):
-            message = f"a loop with beams, rods or delays must be a straight line in '{loop.gain.name}'"
-            hint = "let the parameter occur as one gain, not squared"
-            raise ModelError(Diagnostic("SF803", message, loop.gain.span, hint))
-        if low is None or high is None:
-            raise _range_needed(loop)
-        distributed = DistributedFactors(loop.bound, mixed, (low, high), up_to, budget)
+    lumped, along, (low, high) = _factors(loop, limits, digits, up_to, budget)
     crossings = [c for factor in lumped for c in factor.crossings(digits + GUARD_DIGITS, budget)]
-    if distributed is not None:
-        crossings += distributed.crossings(digits + GUARD_DIGITS)
-    search = _GainSearch(lumped, distributed, (low, high), budget)
+    if along is not None:
+        crossings += along.crossings(digits + GUARD_DIGITS)
+    search = _GainSearch(lumped, along, (low, high), budget)
     boundaries, intervals = search.between(crossings)
     nominal = loop.nominal
-    reasons = [] if distributed is None else distributed.reasons
-    radius = None if distributed is None else distributed.radius[0]
-    is_complete = distributed is None or distributed.radius[1]
+    reasons = [] if along is None else along.reasons
+    radius = None if along is None else along.radius[0]
+    is_complete = along is None or along.radius[1]
     found = StabilityMap(
         loop.gain.name,
         loop.gain.unit,
@@ -108,7 +99,7 @@ def find_stable_gains(
         digits,
         None,
     )
-    loop_gain = _loop_gain(plain, distributed, loop, digits + GUARD_DIGITS, budget)
+    loop_gain = _loop_gain(loop, along, digits + GUARD_DIGITS, budget)
     phase_margins: tuple[PhaseMargin, ...] = ()
     bandwidth = None
     if loop_gain is not None:
@@ -122,6 +113,26 @@ def find_stable_gains(
         bandwidth=bandwidth,
         reasons=tuple(dict.fromkeys((*search.reasons, *reasons))),
     )
+
+
+def _factors(
+    loop: Loop | NetworkLoop, limits: Limits | None, digits: int, up_to: float | None, budget: Budget
+) -> tuple[list[LumpedFactor], AxisFactors[Any] | None, Limits]:
+    """Return the factors of polynomials, those of all else, and the range of the gain."""
+    plain, mixed = _split(loop) if isinstance(loop, Loop) else ((), ())
+    low, high = _limits(loop, limits, is_distributed=bool(mixed) or isinstance(loop, NetworkLoop))
+    if isinstance(loop, Loop) and not mixed:
+        return [LumpedFactor.of(loop.bound, factor) for factor in plain], None, (low, high)
+    if any(factor.degree > 1 for factor in mixed):
+        message = f"a loop with beams, rods or delays must be a straight line in '{loop.gain.name}'"
+        hint = "let the parameter occur as one gain, not squared"
+        raise ModelError(Diagnostic("SF803", message, loop.gain.span, hint))
+    if low is None or high is None:
+        raise _range_needed(loop)
+    if isinstance(loop, NetworkLoop):
+        return [], NetworkFactors(loop, (low, high), up_to, digits + GUARD_DIGITS, budget), (low, high)
+    lumped = [LumpedFactor.of(loop.bound, factor) for factor in plain]
+    return lumped, DistributedFactors(loop.bound, mixed, (low, high), up_to, budget), (low, high)
 
 
 def _split(loop: Loop) -> tuple[tuple[GainPolynomial, ...], tuple[GainPolynomial, ...]]:
@@ -140,7 +151,7 @@ def _split(loop: Loop) -> tuple[tuple[GainPolynomial, ...], tuple[GainPolynomial
     return tuple(plain), tuple(mixed)
 
 
-def _limits(loop: Loop, given: Limits | None, *, is_distributed: bool) -> Limits:
+def _limits(loop: Loop | NetworkLoop, given: Limits | None, *, is_distributed: bool) -> Limits:
     if given is not None:
         low, high = given
         if low is not None and high is not None and not low < high:
@@ -156,7 +167,7 @@ def _limits(loop: Loop, given: Limits | None, *, is_distributed: bool) -> Limits
     return (-reach if low is None else low), reach
 
 
-def _range_needed(loop: Loop) -> UsageError:
+def _range_needed(loop: Loop | NetworkLoop) -> UsageError:
     message = f"a loop with kernels needs a bounded range of '{loop.gain.name}'"
     return UsageError(Diagnostic("SF804", message, None, "give the parameter a value, or say --range LO HI"))
 
@@ -166,12 +177,17 @@ class _GainSearch:
     """Puts crossings in order, and counts poles between them."""
 
     lumped: Sequence[LumpedFactor]
-    distributed: DistributedFactors | None
+    along: AxisFactors[Any] | None
     limits: Limits
     budget: Budget
 
     def __post_init__(self) -> None:
         self.reasons: list[str] = []
+
+    @property
+    def _is_open(self) -> bool:
+        """Poles are counted up to a frequency only."""
+        return self.along is not None and not self.along.radius[1]
 
     def between(self, crossings: Sequence[Crossing]) -> tuple[tuple[Boundary, ...], tuple[GainInterval, ...]]:
         """Return the boundaries inside the range, and the intervals they part it into.
@@ -209,6 +225,10 @@ class _GainSearch:
                 continue
             intervals.append(GainInterval(start, gain, counts[i]))
             boundaries.append(Boundary(gain, tuple(group)))
+            known = sum((4 if c.is_symmetric else 2) * len(c.frequencies) for c in group)
+            if self._is_open and abs(counts[i + 1].right - counts[i].right) > max(known, 2):
+                where = f"near a gain of {float(gain.mid()):.6g}"
+                self.reasons.append(f"poles come from beyond the frequency counted up to, {where}")
             start = gain
         intervals.append(GainInterval(start, ends[-1], counts[-1]))
         return tuple(boundaries), tuple(intervals)
@@ -218,8 +238,8 @@ class _GainSearch:
         total = PoleCount(0, 0)
         for factor in self.lumped:
             total = total + factor.count(gain, self.budget)
-        if self.distributed is not None:
-            total = total + self.distributed.count(gain)
+        if self.along is not None:
+            total = total + self.along.count(gain)
         return total
 
 
@@ -291,18 +311,17 @@ def _gain_margins(found: StabilityMap) -> tuple[GainMargin, ...]:
 
 
 def _loop_gain(
-    plain: Sequence[GainPolynomial],
-    distributed: DistributedFactors | None,
-    loop: Loop,
-    digits: int,
-    budget: Budget,
+    loop: Loop | NetworkLoop, along: AxisFactors[Any] | None, digits: int, budget: Budget
 ) -> LoopGain | None:
     """Return the loop gain of a loop that is a straight line in its gain, and closed once."""
+    if isinstance(loop, NetworkLoop):
+        return None if along is None else LoopGain(along, digits, budget)
     with_gain = loop.with_gain
     if len(with_gain) != 1 or with_gain[0].degree != 1 or with_gain[0].multiplicity != 1:
         return None
     (factor,) = with_gain
-    return LoopGain(loop.bound, factor, None if factor in plain else distributed, digits, budget)
+    is_plain = along is None or factor in _split(loop)[0]
+    return LoopGain((loop.bound, factor) if is_plain or along is None else along, digits, budget)
 
 
 def _phase_margins(loop_gain: LoopGain, nominal: Fraction) -> tuple[PhaseMargin, ...]:
@@ -323,29 +342,29 @@ SHRINKINGS = 30
 class LoopGain:
     """The loop gain ``K B/A`` of a loop closed once, on the imaginary axis."""
 
-    bound: BoundTransferFunction  # carries ring, constants and kernels
-    factor: GainPolynomial  # a + K B
-    distributed: DistributedFactors | None  # where it has kernels
+    # A polynomial factor A + K B with what carries its ring and constants, or one that is known on the axis.
+    source: tuple[BoundTransferFunction, GainPolynomial] | AxisFactors[Any]
     digits: int  # of frequencies
     budget: Budget  # limits the search
 
     def crossovers(self, gain: Fraction) -> list[tuple[arb, acb]]:
         """Return the frequencies [rad/s] at which it is one in magnitude, ascending, and B/A there."""
-        if self.distributed is None:
-            found = lumped_crossovers(self.bound, self.factor, gain, self.digits, self.budget)
+        if isinstance(self.source, AxisFactors):
+            found = distributed_crossovers(self.source, gain, self.digits)
         else:
-            found = distributed_crossovers(self.distributed, gain, self.digits)
+            found = lumped_crossovers(*self.source, gain, self.digits, self.budget)
         return sorted(found, key=lambda pair: float(pair[0].mid()))
 
     def ratio(self, omega: arb) -> acb:
         """Return an enclosure of B/A at a frequency [rad/s]."""
-        if self.distributed is None:
+        if not isinstance(self.source, AxisFactors):
             with precision(BITS):
-                return _ratio(self.bound, self.factor, omega)
-        (function,) = self.distributed.with_gain
+                return _ratio(*self.source, omega)
+        (function,) = self.source.with_gain
         around, _ = function.on(omega, BITS)
         with precision(BITS):
-            return around.b / around.a
+            ratio: acb = around.b / around.a
+            return ratio
 
 
 def lumped_crossovers(
@@ -395,17 +414,15 @@ def _value(bound: BoundTransferFunction, part: Factored, s: acb) -> acb:
     return total
 
 
-def distributed_crossovers(
-    distributed: DistributedFactors, nominal: Fraction, digits: int
-) -> list[tuple[arb, acb]]:
+def distributed_crossovers(along: AxisFactors[Any], nominal: Fraction, digits: int) -> list[tuple[arb, acb]]:
     """Return the same for a loop with kernels; where it is not proved is added to its reasons."""
-    (function,) = distributed.with_gain
+    (function,) = along.with_gain
     gain = ball(nominal)
 
     def equation(value: LoopValue) -> tuple[arb, arb]:
         return value.excess(gain)
 
-    first, origin = distributed.next_to_zero(function)
+    first, origin = along.next_to_zero(function)
     if origin is not None:
         start = first
         for _ in range(SHRINKINGS):
@@ -419,17 +436,10 @@ def distributed_crossovers(
             first /= 2
         else:
             # As where it is one at s = 0 itself: nothing is gained by going closer.
-            distributed.reasons.append("whether the loop gain is one next to s = 0 is not proved")
+            along.reasons.append("whether the loop gain is one next to s = 0 is not proved")
             first = start
-    last = distributed.radius[0]
-    if distributed.radius[1]:
-        most = abs(gain).upper()
-        disc = acb(arb(0, most), arb(0, most))
-        tail = right_tail(function.bound, (function.a, function.b), (acb(1), disc), last)
-        if tail.radius is None:
-            distributed.reasons.append("whether the loop gain is one at high frequencies is not proved")
-        last = tail.radius or last
-    result = distributed.on_axis(function, equation, lambda value: False, (first, last), digits)
+    last = along.last_crossover(function, gain)
+    result = along.on_axis(function, equation, lambda value: False, (first, last), digits)
     found = []
     for omega in result.roots:
         bits = max(BITS, 2 * omega.bits())

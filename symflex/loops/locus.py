@@ -69,6 +69,12 @@ class RootLocus:
     # Curves to poles at the last gain from where none is marked: from higher modes at the first gain, or from
     # where poles accumulate.
     joining: tuple[tuple[complex, ...], ...] = ()
+    # The gain's own value and the proved poles there, where it has one between the limits.
+    nominal: tuple[Fraction, PoleZeroMap] | None = None
+
+    def __repr__(self) -> str:
+        low, high = (float(gain) for gain in self.limits)
+        return f"<RootLocus: {low:g} <= {self.gain} <= {high:g}, {len(self.branches)} branches>"
 
 
 def loop_gain(loop: Loop, gain: Fraction | None = None) -> BoundTransferFunction:
@@ -198,7 +204,16 @@ def trace_locus(
         tuple(kept),
         tuple(entering),
         tuple(joining),
+        _at_nominal(loop, (low, high), region, budget),
     )
+
+
+def _at_nominal(
+    loop: Loop, limits: tuple[Fraction, Fraction], region: Region | None, budget: Budget
+) -> tuple[Fraction, PoleZeroMap] | None:
+    if loop.nominal is None or not limits[0] < loop.nominal < limits[1]:
+        return None
+    return loop.nominal, locate(closed_loop(loop, loop.nominal), region, 15, budget)
 
 
 def _until_parting(

@@ -68,6 +68,9 @@ class Loop:
     # Whose product the characteristic function is, up to what has no roots.
     factors: tuple[GainPolynomial, ...]
 
+    def __repr__(self) -> str:
+        return f"<Loop of {self.bound.name} with gain {self.gain.name}>"
+
     @property
     def with_gain(self) -> tuple[GainPolynomial, ...]:
         """The factors that depend on the gain."""

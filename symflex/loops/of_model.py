@@ -9,6 +9,7 @@ from symflex.loops import loop as loop_room
 from symflex.loops.colocation import DynamicColocation, dynamic_colocation
 from symflex.loops.find import find_stable_gains
 from symflex.loops.loop import Loop, pick_gain
+from symflex.loops.networks import NetworkLoop, network_loop
 from symflex.model import Model, with_numbers
 from symflex.options import (
     ColocationOptions,
@@ -18,7 +19,15 @@ from symflex.options import (
     highest_frequency,
     tolerance,
 )
-from symflex.transfer.of_model import assemble, derive_all, derive_bound, pick_pairs
+from symflex.transfer.bind import read_values
+from symflex.transfer.of_model import (
+    assemble,
+    assemble_sparse,
+    derive_all,
+    derive_bound,
+    is_large_network,
+    pick_pairs,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -31,7 +40,7 @@ if TYPE_CHECKING:
 def characteristic_loop(model: Model, gain: str, values: Mapping[str, Given] | None = None) -> Loop:
     """Return the characteristic function in a gain; see :func:`.loop.characteristic_loop`.
 
-    SF902 when there is no such parameter.
+    SF902 when there is no such parameter; SF501, SF502 when it is too large written out.
     """
     parameter = pick_gain(model.parameters, gain)
     given = dict(values or {})
@@ -46,6 +55,23 @@ def characteristic_loop(model: Model, gain: str, values: Mapping[str, Given] | N
     return loop_room.characteristic_loop(tf, parameter, given)
 
 
+def any_loop(model: Model, gain: str, values: Mapping[str, Given] | None = None) -> Loop | NetworkLoop:
+    """Return the characteristic function in a gain, of a large network without writing it out.
+
+    SF902 when there is no such parameter, SF801 when no pole depends on it.
+    """
+    parameter = pick_gain(model.parameters, gain)
+    if not is_large_network(model):
+        return characteristic_loop(model, gain, values)
+    has_value = parameter.value is not None or gain in (values or {})
+    valued = tuple(p for p in model.parameters if p.name != gain or has_value)
+    known = dict(read_values(valued, values or {}))
+    value = known.pop(gain, None)
+    nominal = None if value is None or value.pi_power else value.rational
+    equations = assemble_sparse(with_numbers(model, (gain,), known, in_kernels=True))
+    return network_loop(equations, parameter, nominal) or characteristic_loop(model, gain, values)
+
+
 def stability(
     model: Model,
     given: StabilityOptions,
@@ -58,7 +84,7 @@ def stability(
     """
     limits = gain_ends(given.limits, pick_gain(model.parameters, given.gain))
     radians = None if given.up_to is None else 2 * pi * highest_frequency(given.up_to)
-    loop = characteristic_loop(model, given.gain, values)
+    loop = any_loop(model, given.gain, values)
     return find_stable_gains(loop, limits, given.digits or model.analysis.digits or 15, budget, radians)
 
 

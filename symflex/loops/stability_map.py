@@ -122,6 +122,11 @@ class StabilityMap:
     digits: int
     bandwidth: AllowedBandwidth | None
 
+    def __repr__(self) -> str:
+        count = len(self.boundaries)
+        status = "certified" if self.certified else "not certified"
+        return f"<StabilityMap of {self.gain}: {count} boundar{'y' if count == 1 else 'ies'}, {status}>"
+
     def __post_init__(self) -> None:
         if not self.is_complete and not self.reasons:
             message = "what is not counted needs a reason"

@@ -39,11 +39,13 @@ if TYPE_CHECKING:
     from symflex.model.spec import KeyValue, Value
     from symflex.quantities import Quantity
 
-FIGURE_KINDS = ("bode", "poles_zeros", "nyquist", "locus", "modes", "step")
+FIGURE_KINDS = ("bode", "poles_zeros", "nyquist", "locus", "modes", "step", "impulse")
 OF_A_LOOP = ("nyquist", "locus")
+IN_TIME = ("step", "impulse")
 MODES_LIMIT = 1_000_000
 DIGITS_LIMIT = 10_000
 PER_SECOND = unit_of("1/s").dimension
+SECOND = unit_of("s").dimension
 
 
 def read_analysis(reader: Reader, section: TableValue | None) -> Analysis:
@@ -136,7 +138,7 @@ def read_figures(reader: Reader, section: TableValue | None, model: Model) -> tu
         table = reader.table(entry, what) if reader.name(entry, "a figure") else None
         if table is None:
             continue
-        reader.keys(table, ("kind", "of", "gain", "band", "data", "title", "doc"), what)
+        reader.keys(table, ("kind", "of", "gain", "band", "until", "data", "title", "doc"), what)
         kind = _kind(reader, table, entry, what)
         of = table.get("of")
         texts = reader.strings(of, f"of of {what}") if of else ()
@@ -146,8 +148,35 @@ def read_figures(reader: Reader, section: TableValue | None, model: Model) -> tu
         has_data = _has_data(reader, table, kind, chosen, what)
         limits = table.get("band")
         band = _band(reader, limits) if limits else None
-        found.append(Figure(entry.key, kind, chosen, title, gain, entry.key_span, has_data, band))
+        until = _until(reader, table, kind, what)
+        found.append(Figure(entry.key, kind, chosen, title, gain, entry.key_span, has_data, band, until))
     return tuple(found)
+
+
+def _until(reader: Reader, table: TableValue, kind: str, what: str) -> Fraction | None:
+    """Return the last time that a figure shows [s], None where it does not say."""
+    entry = table.get("until")
+    if entry is None:
+        return None
+    if kind not in IN_TIME:
+        hint = "kinds with an end in time: " + ", ".join(IN_TIME)
+        reader.note("SF207", f"{what} is of kind '{kind}', which has no 'until'", entry.key_span, hint)
+        return None
+    value = entry.value
+    if isinstance(value, NumberValue):
+        number = value.value
+    else:
+        quantity = reader.quantity(value, "a time")
+        if quantity is None:
+            return None
+        if quantity.unit and quantity.dimension != SECOND:
+            reader.note("SF203", f"a time is in 's', found '{quantity.unit}'", value.span)
+            return None
+        number = in_limits(quantity)
+    if number > 0:
+        return number
+    reader.note("SF227", "the end of what is shown does not lie after t = 0", value.span, 'as in "0.5 s"')
+    return None
 
 
 def _has_data(

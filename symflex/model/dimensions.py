@@ -157,18 +157,24 @@ class DimensionSystem:
         self._ratios: list[tuple[tuple[str, ...], Span | None]] = []
         self._defined: dict[str, Measure] = {}
         self._axes: dict[str, Measure] = {}
+        self._coordinate: Measure | None = None
         self._sound_points: set[tuple[str, Expression]] = set()
         self.problems: list[Diagnostic] = []
 
     def _note(self, code: str, message: str, span: Span | None, hint: str | None = None) -> None:
         self.problems.append(Diagnostic(code, message, span, hint))
 
-    def require(self, expression: Expression, unit: str, what: str, a_what: str) -> None:
+    def require(
+        self, expression: Expression, unit: str, what: str, a_what: str, *, varies: bool = False
+    ) -> None:
         """Demand that the value of a port is measured in the port's SI unit; an empty one accepts anything.
 
-        In the message it is called ``what``, "m of mass 'tip'", and ``a_what``, "a mass".
+        In the message it is called ``what``, "m of mass 'tip'", and ``a_what``, "a mass". If it ``varies``
+        along x, that is a length.
         """
+        self._coordinate = Measure(unit_of("m").dimension) if varies else None
         measure = self.measure(expression)
+        self._coordinate = None
         if not unit:
             self._read_cycles(measure, None, expression.span)
             return
@@ -219,7 +225,9 @@ class DimensionSystem:
         """Demand that all terms of an equation are measured alike; bare ``unknowns`` are those of a field."""
         whole = substitute(equation, {name: Derivative(name, 0) for name in unknowns})
         terms = [t for side in whole.children for t in (side.terms if isinstance(side, Sum) else (side,))]
+        self._coordinate = self._axes[unknowns[0]] if unknowns else None
         measure = self._sum(Sum(tuple(terms), span=equation.span), tuple(terms))
+        self._coordinate = None
         self._read_cycles(measure, None, equation.span)
 
     def dimension(self, measure: Measure) -> Dimension | None:
@@ -345,6 +353,9 @@ class DimensionSystem:
         self._sound_points.add((name, place))
 
     def _name(self, expression: Name | Attribute) -> Measure:
+        if self._coordinate is not None and isinstance(expression, Name):
+            if self._scope.is_coordinate(expression.name):
+                return self._coordinate
         meaning = self._scope.find(expression)
         if meaning is None:
             return Measure(open=True)

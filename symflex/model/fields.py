@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from symflex.errors import SpecError, Text
 from symflex.expressions import FUNCTIONS, Equation, Expression, parse_equation
+from symflex.model.brackets import open_brackets
 from symflex.model.declarations import read_label
 from symflex.model.model import FieldProblem
 from symflex.model.reading import NAME
@@ -13,7 +15,7 @@ from symflex.model.scope import RESERVED
 from symflex.model.spec import ArrayValue
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Collection, Sequence
 
     from symflex.errors import Span
     from symflex.model.reading import Reader
@@ -43,6 +45,35 @@ def read_fields(
         field = _read_field(reader, entry, taken, owners)
         if field is not None:
             found.append(field)
+    return tuple(found)
+
+
+def with_brackets_opened(
+    reader: Reader, fields: Sequence[FieldProblem], *, has_coordinate: bool
+) -> tuple[FieldProblem, ...]:
+    """Return fields whose equations and conditions hold no brackets with primes.
+
+    A field with a bracket that cannot be opened is left out.
+    """
+    found = []
+    for each in fields:
+        every = [u for other in fields for u in other.unknowns]
+        opened = [
+            [
+                open_brackets(e, unknowns, has_coordinate=has_coordinate, is_condition=is_condition)
+                for e in equations
+            ]
+            for equations, unknowns, is_condition in (
+                (each.equations, each.unknowns, False),
+                (each.conditions, every, True),
+            )
+        ]
+        problems = [p for group in opened for _, noted in group for p in noted]
+        reader.take(problems)
+        if not problems:
+            equations, conditions = (tuple(e for e, _ in group) for group in opened)
+            written = each.equations if equations != each.equations else ()
+            found.append(replace(each, equations=equations, conditions=conditions, written=written))
     return tuple(found)
 
 

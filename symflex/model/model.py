@@ -9,7 +9,8 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING, Final, Literal
 
-from symflex.library.elements import THROUGH_NAME, LineElement, Variable
+from symflex.library.elements import COMPONENTS, THROUGH_NAME, LineElement, Variable
+from symflex.model.direction import direction_of
 from symflex.quantities import Dimension
 
 if TYPE_CHECKING:
@@ -39,6 +40,8 @@ class ExactValue:
 
 
 ONE: Final = ExactValue(Fraction(1))
+PAIRS_SHOWN: Final = 6
+"""Of a model's transfer functions, where it is named."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +61,11 @@ class ModelParameter:
     # The unit as it was declared; empty when it was not, or when its cycles are meant as radians.
     written_unit: str = ""
     scale: ExactValue = ONE  # what one of that unit is in the unit of ``value``
+
+    def __repr__(self) -> str:
+        value, unit = self.as_written()
+        number = "no value" if value is None else f"{float(value.nearly):.10g}"
+        return f"<ModelParameter {self.name}: {number}{f' {unit}' if unit else ''}>"
 
     def as_written(self, value: ExactValue | None = None) -> tuple[ExactValue | None, str]:
         """Return a value, by default the parameter's own, in the unit that was written, with that unit.
@@ -98,13 +106,13 @@ class NetworkNode:
 
     @property
     def components(self) -> tuple[str, ...]:
-        """The degrees of freedom: ``("",)``, or ``("y", "theta")`` of a planar node."""
-        return ("y", "theta") if self.domain == "planar" else ("",)
+        """The degrees of freedom: ``("",)``, or ``("y", "theta")`` of a planar node, and x in the plane."""
+        return COMPONENTS.get(self.domain, ("",))
 
 
 @dataclass(frozen=True, slots=True)
 class NodeReference:
-    """A node as a port names it; ``component`` is ``y`` or ``theta`` when one was picked."""
+    """A node as a port names it; ``component`` is ``x``, ``y`` or ``theta`` when one was picked."""
 
     node: str
     component: str = ""
@@ -128,6 +136,15 @@ class PlacedElement:
     span: Span | None = field(default=None, compare=False, repr=False)
     choices: tuple[tuple[str, str], ...] = ()
 
+    @property
+    def all_values(self) -> tuple[tuple[str, Expression], ...]:
+        """The values, and of an angle in the plane the cosine and sine by which it enters."""
+        if not any(p.is_direction for p in self.element.parameters):
+            return self.values
+        directions = {p.name for p in self.element.parameters if p.is_direction}
+        turned = (direction_of(e) for name, e in self.values if name in directions)
+        return (*self.values, *(pair for found in turned for pair in found.items()))
+
 
 @dataclass(frozen=True, slots=True)
 class FieldProblem:
@@ -139,7 +156,7 @@ class FieldProblem:
     start: Expression
     end: Expression
     # One for each unknown, which stands as ``Name("w")`` or, differentiated k times along x, as
-    # ``Derivative("w", k)``; linear, with coefficients constant in x.
+    # ``Derivative("w", k)``; linear, with coefficients that may hold the coordinate, ``Name("x")``.
     equations: tuple[Equation, ...]
     # As many as the order in x; an unknown of any field stands as ``Call("w", point, order)``.
     conditions: tuple[Equation, ...]
@@ -147,6 +164,8 @@ class FieldProblem:
     # latex and doc: label and description; empty when not given.
     latex: str = ""
     doc: str = ""
+    # The equations as they are written, where brackets in them bear primes.
+    written: tuple[Equation, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -212,7 +231,7 @@ class Analysis:
 class Figure:
     """A figure the specification asks for; of a loop when a gain is named, in reports over measured data.
 
-    ``band`` holds the frequencies it shows [Hz], where it says so itself.
+    ``band`` holds the frequencies it shows [Hz], ``until`` the last time [s], where it says so itself.
     """
 
     name: str
@@ -223,6 +242,7 @@ class Figure:
     span: Span | None = field(default=None, compare=False, repr=False)
     has_data: bool = False
     band: tuple[Fraction, Fraction] | None = None
+    until: Fraction | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -269,6 +289,11 @@ class Model:
     quotients: tuple[tuple[tuple[str, str], Dimension], ...] = ()
     warnings: tuple[Diagnostic, ...] = field(default=(), compare=False, repr=False)
 
+    def __repr__(self) -> str:
+        pairs = ", ".join("/".join(pair) for pair in self.transfer_functions[:PAIRS_SHOWN])
+        more = ", ..." if len(self.transfer_functions) > PAIRS_SHOWN else ""
+        return f"<Model {self.title or 'without title'}: {pairs}{more}>"
+
     @property
     def is_distributed(self) -> bool:
         """True when something in it extends along x or delays: its transfer functions are not rational."""
@@ -285,7 +310,7 @@ class Model:
     def expressions(self) -> Iterator[tuple[str, Expression]]:
         """Yield all expressions but printed ones, each with the name it defines or an empty one."""
         yield from ((d.name, d.expression) for d in self.definitions)
-        yield from (("", e) for use in self.elements for _, e in use.values)
+        yield from (("", e) for use in self.elements for _, e in use.all_values)
         yield from ((b.name, e) for b in self.blocks for _, e in b.values)
         yield from ((x.name, x.expression) for x in self.signals)
         yield from (("", o.expression) for o in self.outputs)

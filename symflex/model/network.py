@@ -8,7 +8,7 @@ from heapq import heapify, heappop, heappush
 from typing import TYPE_CHECKING
 
 from symflex.errors import Diagnostic, SpecError, nearest
-from symflex.library.elements import ELEMENTS, Element, Port, Variable
+from symflex.library.elements import COMPONENT_DOMAIN, COMPONENTS, ELEMENTS, Element, Port, Variable
 from symflex.model.declarations import DeclaredParameter, read_label
 from symflex.model.model import (
     INPUT_KINDS,
@@ -57,7 +57,10 @@ class DraftElement:
         found = []
         for port, references in self.nodes:
             coupling = self._coupling(port, measure) if port.domain == "any" else None
-            found += [Attachment(r, port.domain, who, coupling) for r in references]
+            found += [
+                Attachment(r, port.domain, who, coupling, self.element.carries_x and not r.component)
+                for r in references
+            ]
         return found
 
     def _coupling(self, port: Port, measure: Callable[[Expression], Dimension | None]) -> Coupling | None:
@@ -243,19 +246,19 @@ def _references(
 
 def _reference(reader: Reader, text: Text, domain: PortDomain, what: str) -> NodeReference | None:
     node, dot, component = text.value.partition(".")
-    good = NAME.match(node) and (not dot or component in ("y", "theta"))
+    good = NAME.match(node) and (not dot or component in COMPONENT_DOMAIN)
     if not good or (dot and node == "ground"):
         reader.note(
             "SF213",
             f"{what}: '{text.value[:80]}' is not a node",
             text.span,
-            "a node is a name, or name.y or name.theta of a planar node",
+            "a node is a name, or name.x, name.y or name.theta of a planar node",
         )
         return None
-    if dot and domain in ("planar", "whole"):
+    if dot and domain in COMPONENTS:
         reader.note("SF219", f"{what} takes a whole node, not '{text.value}'", text.span, f"write '{node}'")
         return None
-    if dot and (domain, component) in (("translation", "theta"), ("rotation", "y")):
+    if dot and domain in DOMAINS[:2] and COMPONENT_DOMAIN[component] != domain:
         kind = "translational" if domain == "translation" else "rotational"
         reader.note("SF219", f"{what} is {kind}; '{text.value}' is not", text.span)
         return None
@@ -366,6 +369,7 @@ class Attachment:
     domain: PortDomain
     who: str
     coupling: Coupling | None = None
+    is_carried: bool = False  # where another node of the same element moves along x, this one does, too
 
 
 DOMAINS: tuple[Domain, ...] = ("translation", "rotation", "electrical")
@@ -374,6 +378,7 @@ WORDS = {
     "rotation": "an angle",
     "electrical": "a voltage",
     "planar": "a planar node",
+    "plane": "a node of the plane",
 }
 
 
@@ -381,7 +386,9 @@ def infer_nodes(attachments: Sequence[Attachment]) -> tuple[tuple[NetworkNode, .
     """Return the nodes in order of appearance, with every contradiction found.
 
     A node touched by a planar element, or named with ``.y`` or ``.theta``, is planar; translational
-    elements then act on y and rotational ones on theta. Otherwise all elements must agree.
+    elements then act on y and rotational ones on theta. Where it is touched by a frame, named with ``.x`` or
+    carried along, it moves along x as well, and a translational element says which of the two it acts on.
+    Otherwise all elements must agree.
     """
     problems: list[Diagnostic] = []
     first: dict[str, Attachment] = {}
@@ -391,24 +398,62 @@ def infer_nodes(attachments: Sequence[Attachment]) -> tuple[tuple[NetworkNode, .
         if reference.is_ground:
             continue
         first.setdefault(reference.node, attachment)
-        claim = "planar" if reference.component else attachment.domain
-        claims.setdefault(reference.node, {}).setdefault(claim, attachment)
+        claims.setdefault(reference.node, {}).setdefault(_claim(attachment), attachment)
+    moving = _moving_along(attachments)
     nodes: dict[str, NetworkNode] = {}
     for name, claimed in claims.items():
         span = first[name].reference.span
         definite = [d for d in claimed if d in DOMAINS]
-        if "planar" in claimed:
+        if any(d in COMPONENTS for d in claimed):
             if "electrical" in claimed:
-                one, other = (d for d in claimed if d in ("planar", "electrical"))
+                one, other, *_ = (d for d in claimed if d in (*COMPONENTS, "electrical"))
                 problems.append(_contradiction(name, claimed[one], claimed[other]))
-            nodes[name] = NetworkNode(name, "planar", span)
+            nodes[name] = NetworkNode(name, "plane" if name in moving else "planar", span)
             continue
         for other in definite[1:]:
             problems.append(_contradiction(name, claimed[definite[0]], claimed[other]))
         if definite:
             nodes[name] = NetworkNode(name, definite[0], span)
     _spread(attachments, nodes, first)
+    problems += _undirected(attachments, nodes)
     return tuple(nodes[name] for name in first), problems
+
+
+def _claim(attachment: Attachment) -> PortDomain:
+    component = attachment.reference.component
+    return attachment.domain if not component else "plane" if component == "x" else "planar"
+
+
+def _moving_along(attachments: Sequence[Attachment]) -> set[str]:
+    """Return the nodes that move along x: by themselves, or as a link, pin or joint carries them along."""
+    carried: dict[str, list[str]] = {}
+    for attachment in attachments:
+        if attachment.is_carried and not attachment.reference.is_ground:
+            carried.setdefault(attachment.who, []).append(attachment.reference.node)
+    beside: dict[str, set[str]] = {}
+    for together in carried.values():
+        for name in together:
+            beside.setdefault(name, set()).update(together)
+    found: set[str] = set()
+    pending = [a.reference.node for a in attachments if _claim(a) == "plane" and not a.reference.is_ground]
+    while pending:
+        name = pending.pop()
+        if name not in found:
+            found.add(name)
+            pending += beside.get(name, ())
+    return found
+
+
+def _undirected(attachments: Sequence[Attachment], nodes: Mapping[str, NetworkNode]) -> Iterator[Diagnostic]:
+    """Yield what does not say whether it acts along x or y."""
+    for attachment in attachments:
+        name, domain = attachment.reference.node, attachment.domain
+        if attachment.reference.component or domain not in ("translation", "any") or name not in nodes:
+            continue
+        if nodes[name].domain == "plane":
+            message = f"node '{name}' moves along x and y; {attachment.who} acts on one of them"
+            hint = f"write '{name}.x' or '{name}.y'; a mass that moves both ways is a rigid_body"
+            yield Diagnostic("SF219", message, attachment.reference.span, hint)
 
 
 def _spread(
@@ -436,24 +481,26 @@ def _spread(
 
 def domain_of(reference: NodeReference, node: NetworkNode) -> Domain:
     """Return the domain a one-variable port sees at a node; a bare planar node is its deflection y."""
-    if node.domain == "planar":
-        return "rotation" if reference.component == "theta" else "translation"
-    return node.domain
+    match node.domain:
+        case "planar" | "plane":
+            return COMPONENT_DOMAIN[reference.component or "y"]
+        case domain:
+            return domain
 
 
 def variable_of(reference: NodeReference, node: NetworkNode, domain: PortDomain) -> Variable:
     """Return the across variable a port of the given domain acts on."""
-    if node.domain != "planar":
+    if node.domain not in COMPONENTS:
         return Variable("node", node.name)
     component = reference.component or ("theta" if domain == "rotation" else "y")
     return Variable("node", node.name, component)
 
 
 def _contradiction(name: str, one: Attachment, other: Attachment) -> Diagnostic:
-    claims = ["planar" if a.reference.component else a.domain for a in (one, other)]
+    claims = [_claim(a) for a in (one, other)]
     hint = (
         "use two nodes and couple them, with a transformer for instance; a node that both moves and turns "
-        "is planar: name its parts with .y and .theta"
+        "is planar: name its parts with .x, .y and .theta"
     )
     if "electrical" in claims:
         hint = "use two nodes and couple them, with a dc_motor or a gyrator for instance"

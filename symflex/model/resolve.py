@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from symflex.errors import Diagnostic, Span, SpecError, UsageError
 from symflex.expressions import Equation, Expression, substitute
-from symflex.library.elements import Placing
+from symflex.library.elements import COMPONENTS, Placing
 from symflex.model.analysis import check_printed, read_analysis, read_figures, read_published, readable_names
 from symflex.model.blocks import Loads, Origin, read_blocks
 from symflex.model.boundary import (
@@ -32,7 +32,7 @@ from symflex.model.declarations import (
     read_signals,
 )
 from symflex.model.dimensions import turned_name
-from symflex.model.fields import read_fields
+from symflex.model.fields import read_fields, with_brackets_opened
 from symflex.model.linearity import check_expression, without_signal
 from symflex.model.model import (
     Definition,
@@ -54,7 +54,7 @@ from symflex.model.network import (
     read_inputs,
 )
 from symflex.model.reading import QuantityLiteral, Reader, describe
-from symflex.model.scope import ModelScope, build_scope
+from symflex.model.scope import COORDINATE, ModelScope, build_scope
 from symflex.model.settings import check_names, settled
 from symflex.model.signs import Line, check_ranges, ranged_values
 from symflex.model.spec import ArrayValue, TableValue, parse_with_recovery
@@ -80,6 +80,8 @@ if TYPE_CHECKING:
     from symflex.model.settings import Setting
     from symflex.model.spec import Spec
 
+Kind = Literal["constant", "varying", "signal"]
+"""What an expression may be: constant, varying along x, or varying in time."""
 FORMAT_VERSION = 1
 SECTIONS = (
     "parameters",
@@ -171,7 +173,12 @@ def resolve(spec: Spec, origin: Origin) -> Model:
     )
     taken = {p.name for p in declared} | {p.name for p in inherited}
     taken |= {d.name for d in definitions} | {b.name for b in blocks}
-    fields = read_fields(reader, sections["fields"], taken)
+    loads = {x.name for x in signals} | {d.input.name for d in inputs}
+    fields = with_brackets_opened(
+        reader,
+        read_fields(reader, sections["fields"], taken),
+        has_coordinate=COORDINATE not in taken | loads,
+    )
     measure = constant_measure(declared, inherited, definitions)
     attachments = [a for element in elements for a in element.attachments(measure)]
     attachments += [a for source in inputs for a in source.attachments()]
@@ -360,8 +367,9 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> tuple[Model
         draft.fields,
     )
     unsound: set[Span | None] = set()
-    for expression, constant in _all_expressions(draft):
-        problems = _check(expression, scope, constant=constant)
+    along = scope.varying()
+    for expression, kind in _all_expressions(draft):
+        problems = _check(expression, along if kind == "varying" else scope, constant=kind != "signal")
         reader.take(problems)
         if problems:
             unsound.add(expression.span)
@@ -405,6 +413,7 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> tuple[Model
                 end=whole(f.end),
                 equations=tuple(_turned(e, turned) for e in f.equations),
                 conditions=tuple(_turned(e, turned) for e in f.conditions),
+                written=tuple(_turned(e, turned) for e in f.written),
             )
             for f in draft.fields
         ),
@@ -440,8 +449,8 @@ def _place(draft: DraftElement, nodes: Mapping[str, NetworkNode]) -> PlacedEleme
                 domain = port.domain
             case _ if live is None:
                 domain = "translation"
-            case "whole" | "planar" if nodes[live.node].domain == "planar":
-                domain = "planar"
+            case "whole" | "planar" | "plane" if nodes[live.node].domain in COMPONENTS and not live.component:
+                domain = nodes[live.node].domain
             case _:
                 domain = domain_of(live, nodes[live.node])
         domains.append((port.name, domain))
@@ -490,7 +499,7 @@ def _check_points(
 ) -> None:
     along = stretches([f for f in draft.fields if f.name in fields_placed], elements)
     expressions: list[Expression] = [c for f in draft.fields for c in f.conditions]
-    expressions += [e for e, constant in _all_expressions(draft) if not constant]
+    expressions += [e for e, kind in _all_expressions(draft) if kind == "signal"]
     for expression in expressions if along else ():
         check_points(reader, expression, along, around)
 
@@ -505,12 +514,13 @@ def _check(expression: Expression, scope: ModelScope, *, constant: bool) -> list
     return [] if constant or not expression.quantity.magnitude else [without_signal(expression.span)]
 
 
-def _all_expressions(draft: Draft) -> list[tuple[Expression, bool]]:
-    """Return every expression with whether it must be constant."""
-    found: list[tuple[Expression, bool]] = [(d.expression, True) for d in draft.definitions]
+def _all_expressions(draft: Draft) -> list[tuple[Expression, Kind]]:
+    """Return every expression with what it may be."""
+    found: list[tuple[Expression, Kind]] = [(d.expression, "constant") for d in draft.definitions]
     for use in draft.elements:
-        signal = {p.name for p in use.element.parameters if p.signal}
-        found += [(e, name not in signal) for name, e in use.values]
-    found += [(e, True) for b in draft.blocks for _, e in b.values]
-    found += [(x.expression, False) for x in draft.signals]
-    return found + [(x.expression, False) for x in draft.outputs]
+        kinds: dict[str, Kind] = {p.name: "signal" for p in use.element.parameters if p.signal}
+        kinds |= {p.name: "varying" for p in use.element.parameters if p.varies}
+        found += [(e, kinds.get(name, "constant")) for name, e in use.values]
+    found += [(e, "constant") for b in draft.blocks for _, e in b.values]
+    found += [(x.expression, "signal") for x in draft.signals]
+    return found + [(x.expression, "signal") for x in draft.outputs]

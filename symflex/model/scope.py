@@ -26,8 +26,14 @@ if TYPE_CHECKING:
         Signal,
     )
 
-Kind = Literal["laplace", "pi", "parameter", "definition", "block", "variable", "through", "broken"]
-CONSTANT_KINDS: frozenset[Kind] = frozenset({"laplace", "pi", "parameter", "definition", "block", "broken"})
+COORDINATE = "x"
+"""The coordinate in coefficients that vary along it, unless the model calls something else by this name."""
+Kind = Literal[
+    "laplace", "pi", "coordinate", "parameter", "definition", "block", "variable", "through", "broken"
+]
+CONSTANT_KINDS: frozenset[Kind] = frozenset(
+    {"laplace", "pi", "coordinate", "parameter", "definition", "block", "broken"}
+)
 RESERVED: dict[str, str] = {
     LAPLACE: "it is the Laplace variable",
     "pi": "it is the number pi",
@@ -68,10 +74,15 @@ class ModelScope:
     inside: frozenset[str] = frozenset()
     # Quantities of elements that extend along x, ``arm.y``, each with its element in words.
     along: Mapping[str, str] = field(default_factory=dict)
+    has_coordinate: bool = False  # true where coefficients may vary along x
+
+    def varying(self) -> ModelScope:
+        """Return the scope of what may vary along x."""
+        return replace(self, has_coordinate=True)
 
     def within(self, unknowns: Iterable[str]) -> ModelScope:
         """Return the scope of the equations of the field with these unknowns."""
-        return replace(self, inside=frozenset(unknowns))
+        return replace(self, inside=frozenset(unknowns), has_coordinate=True)
 
     def find(self, expression: Name | Attribute) -> Meaning | None:
         """Return the only meaning of a name, among constants when it has others too, or ``None``."""
@@ -81,6 +92,11 @@ class ModelScope:
         found = self.meanings.get(expression.name, ())
         constants = [m for m in found if m.kind in CONSTANT_KINDS]
         return found[0] if len(found) == 1 else constants[0] if len(constants) == 1 else None
+
+    def is_coordinate(self, name: str) -> bool:
+        """Tell whether a name is the coordinate's: nothing else that may stand in a coefficient has it."""
+        others = (m.kind in CONSTANT_KINDS or _is_load(m) for m in self.meanings.get(name, ()))
+        return name == COORDINATE and name not in self.broken and not any(others)
 
     def lookup(self, expression: Name | Attribute, *, constant: bool) -> Meaning:
         """Return the meaning of a name; in a constant stand parameters, definitions, blocks, s and pi only.
@@ -94,6 +110,8 @@ class ModelScope:
             variable = Variable("field", expression.name)
             return Meaning("variable", expression.name, f"the unknown '{expression.name}'", variable)
         found = self.meanings.get(expression.name, ())
+        if self.has_coordinate and self.is_coordinate(expression.name):
+            return Meaning("coordinate", expression.name, "the coordinate x")
         if self.inside:
             found = self._along(expression, found)
         readable = [m for m in found if not constant or m.kind in CONSTANT_KINDS]
@@ -112,7 +130,7 @@ class ModelScope:
 
     def _along(self, expression: Name, found: tuple[Meaning, ...]) -> tuple[Meaning, ...]:
         """Return the meanings that may stand in the equations of a field."""
-        kept = tuple(m for m in found if m.variable is None or m.variable.kind in ("signal", "input"))
+        kept = tuple(m for m in found if m.variable is None or _is_load(m))
         if found and not kept:
             raise SpecError(outside(expression.name, found[0].described, expression.span))
         if not found and expression.name in self.unknowns:
@@ -122,13 +140,15 @@ class ModelScope:
 
     def _hint(self, name: str, *, constant: bool) -> str | None:
         """Say what may have been meant by an unknown name."""
-        if name == "x" and self.inside:
-            return "the coefficients of a field are constant along x; split the domain where they change"
+        if name == COORDINATE:
+            return "x is the coordinate in the equations of [fields] and in what may vary along an element"
         if name == "ground":
             return "the reference node is at zero; leave it out"
         if name in self.owners:
             names = ", ".join(f"{name}.{a}" for a in self.owners[name])
-            return f"an element has no value of its own; it offers {names}"
+            kinds = {m.kind for a in self.owners[name] for m in self.attributes[name, a]}
+            what = "an element" if "through" in kinds else "a node of the plane"
+            return f"{what} has no value of its own; it offers {names}"
         known = [
             n
             for n, ms in self.meanings.items()
@@ -162,6 +182,11 @@ class ModelScope:
         if constant:
             raise SpecError(_varying(text, meaning, expression.span))
         return meaning
+
+
+def _is_load(meaning: Meaning) -> bool:
+    """Tell whether a name may load a field all along."""
+    return meaning.variable is not None and meaning.variable.kind in ("signal", "input")
 
 
 def _ambiguous(name: str, readable: Sequence[Meaning], span: Span | None) -> Diagnostic:
@@ -252,6 +277,8 @@ def build_scope(
             variable = Variable("node", node.name, component)
             if component:
                 offer(node.name, component, Meaning("variable", node.name, f"node '{variable}'", variable))
+        if node.domain == "plane":
+            continue  # bare, it could be x or y
         first = Variable("node", node.name, node.components[0])
         add(node.name, Meaning("variable", node.name, f"the node '{node.name}'", first))
     for signal in signals:

@@ -20,7 +20,7 @@ from symflex.quantities import DIMENSIONLESS, Quantity, parse_quantity
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
-    from symflex.expressions import Expression
+    from symflex.expressions import Equation, Expression
     from symflex.model.declarations import DeclaredParameter
     from symflex.model.model import ExactValue, Model
     from symflex.model.reading import Reader
@@ -121,15 +121,20 @@ Values = tuple[tuple[str, "Expression"], ...]
 
 
 def with_numbers(
-    model: Model, symbolic: Collection[str] = (), values: Mapping[str, ExactValue] | None = None
+    model: Model,
+    symbolic: Collection[str] = (),
+    values: Mapping[str, ExactValue] | None = None,
+    *,
+    in_kernels: bool = False,
 ) -> Model:
     """Return a model whose valued parameters are replaced by exact numbers; the others stay symbolic.
 
-    Its transfer functions, bound, are those of the model; deriving them costs no symbols. A distributed model
-    is returned as it is. Parameters in ``symbolic`` stay so; ``values`` stand in place of declared ones.
+    Its transfer functions, bound, are those of the model; deriving them costs no symbols. Parameters in
+    ``symbolic`` stay so; ``values`` stand in place of declared ones. A distributed model is returned as it
+    is: wavenumbers and kernels are named by their parameters, and values are put in when they are bound. With
+    ``in_kernels`` numbers stand there, too, as they may in the nested form.
     """
-    if model.is_distributed:
-        # Wavenumbers and kernels are named by their parameters; values are put in when they are bound.
+    if model.is_distributed and not in_kernels:
         return model
     given = {**{p.name: p.value for p in model.parameters}, **(values or {})}
     numbers = {
@@ -140,6 +145,11 @@ def with_numbers(
 
     def put_in(given: Values) -> Values:
         return tuple((name, substitute(e, numbers)) for name, e in given)
+
+    def equations(given: Sequence[Equation]) -> tuple[Equation, ...]:
+        return tuple(
+            replace(e, left=substitute(e.left, numbers), right=substitute(e.right, numbers)) for e in given
+        )
 
     return replace(
         model,
@@ -156,6 +166,17 @@ def with_numbers(
                 submodel=None if b.submodel is None else with_numbers(b.submodel, symbolic, values),
             )
             for b in model.blocks
+        ),
+        fields=tuple(
+            replace(
+                f,
+                start=substitute(f.start, numbers),
+                end=substitute(f.end, numbers),
+                equations=equations(f.equations),
+                conditions=equations(f.conditions),
+                written=equations(f.written),
+            )
+            for f in model.fields
         ),
         outputs=tuple(replace(o, expression=substitute(o.expression, numbers)) for o in model.outputs),
     )

@@ -12,12 +12,16 @@ from fractions import Fraction
 from functools import reduce
 from typing import TYPE_CHECKING
 
+from flint import arb, fmpq
+
+from symflex.algebra import FUNCTIONS
 from symflex.errors import Diagnostic, UsageError
-from symflex.expressions import Expression, Name, fold, names
+from symflex.expressions import Expression, Name, Number, fold, names, substitute
 from symflex.library.elements import LineElement
 from symflex.model.linearity import integer_exponent
 from symflex.model.model import PI_NEARLY
 from symflex.model.reading import literal_value
+from symflex.model.scope import COORDINATE
 from symflex.model.units import lower
 
 if TYPE_CHECKING:
@@ -214,6 +218,12 @@ def ranged_values(draft: Draft | Model) -> Iterator[RangedValue]:
                 reason = f"{port.doc} is positive" if sign == "positive" else f"{port.doc} cannot be"
                 what = f"{port.name} of {element.type_name} '{use.name}'"
                 yield RangedValue(what, given[port.name], sign, reason, port.name == element.length)
+                # What varies along x is told at the ends, where it mostly is least.
+                ends = {"0": Number(Fraction(0)), element.length: given.get(element.length)}
+                for place, end in ends.items() if port.varies else ():
+                    if end is not None and COORDINATE in {n.name for n in names(given[port.name])}:
+                        at = substitute(given[port.name], {COORDINATE: lower(end)})
+                        yield RangedValue(f"{what} at x = {place}", at, sign, reason)
     for placed in draft.blocks:
         block = placed.block
         if block is not None and block.kernel_time:
@@ -267,6 +277,44 @@ def _message(ranged: RangedValue, sign: int, value: Fraction | None) -> str:
     return f"{ranged.what} is {'negative' if sign < 0 else '0'}{shown}; {ranged.reason}"
 
 
+PIECES = 64
+"""Of a member, on each of which a value that varies along x is enclosed."""
+
+
+def _sign_along(value: Expression, length: Fraction, line: Line) -> int | None:
+    """Return 1 where a value is proved to be positive all along a member, else None."""
+
+    def ball(number: Fraction) -> arb:
+        return arb(fmpq(number.numerator, number.denominator))
+
+    def at(x: arb) -> arb:
+        def named(name: str) -> arb:
+            if name == COORDINATE:
+                return x
+            if name in line.definitions:
+                return inside(line.definitions[name])
+            return arb.pi() if name == "pi" else ball(line.values[name])
+
+        def inside(expression: Expression) -> arb:
+            found: arb = fold(
+                lower(expression),
+                number=ball,
+                name=named,
+                power=lambda base, exponent: base ** (integer_exponent(exponent) or 0),
+                call=lambda call, argument: FUNCTIONS[call.name].evaluate(argument),
+            )
+            return found
+
+        return inside(value)
+
+    half = ball(length) / (2 * PIECES)
+    try:
+        is_positive = all(at((2 * k + 1) * half + arb(0, half.upper())) > 0 for k in range(PIECES))
+    except (KeyError, TypeError):
+        return None  # a parameter without value, or a quantity that is no number
+    return 1 if is_positive else None
+
+
 def is_passive(model: Model, values: Iterable[tuple[str, ExactValue]]) -> bool:
     """Tell whether it is proved that nothing in a model supplies energy but its inputs.
 
@@ -311,4 +359,9 @@ def _is_passive(use: PlacedElement, line: Line, inputs: set[str]) -> bool:
     if law is None or any(given[name] != given[law.equal[0]] for name in law.equal):
         return False
     signs = {name: line.sign(value) for name, value in given.items()}
+    if isinstance(element, LineElement) and None in signs.values():
+        length = line.value(given[element.length])
+        along = {p.name for p in element.parameters if p.varies}
+        for name in (n for n, sign in signs.items() if sign is None and n in along and length is not None):
+            signs[name] = _sign_along(given[name], length or Fraction(0), line)
     return all(sign is not None and (sign >= 0 or name in law.of_any_sign) for name, sign in signs.items())

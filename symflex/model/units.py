@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from symflex.errors import Span
 from symflex.expressions import Expression, Name, names, power, product_of, substitute
-from symflex.library.elements import ACROSS_UNIT, THROUGH_UNIT, LineElement, Variable
+from symflex.library.elements import ACROSS_UNIT, COMPONENT_DOMAIN, THROUGH_UNIT, LineElement, Variable
 from symflex.model.declarations import CycleReading, DeclaredParameter
 from symflex.model.dimensions import DimensionSystem, Measure
 from symflex.model.model import (
@@ -51,11 +51,11 @@ def check_units(
         scope, quantities, {d.name: d.expression for d in draft.definitions}, known, blocks
     )
 
-    def require(expression: Expression, unit: str, what: str, doc: str) -> None:
+    def require(expression: Expression, unit: str, what: str, doc: str, *, varies: bool = False) -> None:
         if expression.span in unsound:
             system.measure(expression)
         elif not isinstance(expression, QuantityLiteral):
-            system.require(expression, unit, what, doc)
+            system.require(expression, unit, what, doc, varies=varies)
         elif unit and expression.quantity.dimension != unit_of(unit).dimension:
             message = f"{what} is in '{expression.quantity.unit}'; {doc} is in '{unit}'"
             reader.note("SF203", message, expression.span)
@@ -67,8 +67,8 @@ def check_units(
     for use in placed:
         for name, expression in use.values:
             where = f"{name} of {use.element.type_name} '{use.name}'"
-            doc = next(p.doc for p in use.element.parameters if p.name == name)
-            require(expression, port_unit(use, name), where, doc)
+            port = next(p for p in use.element.parameters if p.name == name)
+            require(expression, port_unit(use, name), where, port.doc, varies=port.varies)
     for block in draft.blocks:
         for name, expression in block.values:
             doc = next(p.doc for p in block.block.parameters if p.name == name) if block.block else ""
@@ -166,7 +166,7 @@ def _known_dimensions(draft: Draft, placed: Sequence[PlacedElement]) -> dict[Var
     known: dict[Variable, Dimension] = {}
     for node in draft.nodes:
         for component in node.components:
-            domain = {"y": "translation", "theta": "rotation"}.get(component, node.domain)
+            domain = COMPONENT_DOMAIN.get(component, node.domain)
             known[Variable("node", node.name, component)] = unit_of(ACROSS_UNIT[domain]).dimension
     for use in placed:
         domains = dict(use.domains)
@@ -174,7 +174,7 @@ def _known_dimensions(draft: Draft, placed: Sequence[PlacedElement]) -> dict[Var
             unit = use.element.unit_of(quantity, domains)
             known[Variable("through", use.name, quantity)] = unit_of(unit).dimension
         if isinstance(use.element, LineElement):
-            units = {"u": "m", "y": "m", "theta": "rad"}
+            units = {"u": "m", "v": "m", "x": "m", "y": "m", "theta": "rad"}
             for name in (name for quantity in use.element.along for name in quantity):
                 unit = units.get(name) or use.element.unit_of(name, domains)
                 known[Variable("field", f"{use.name}.{name}")] = unit_of(unit).dimension

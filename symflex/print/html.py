@@ -36,7 +36,7 @@ def escape_html(text: str) -> str:
     &lt;b&gt;5 &amp; 6&lt;/b&gt; <span>\</span>(x<span>\</span>)
     """
     plain = "".join(c for c in " ".join(text.split()) if c.isprintable())
-    return "".join(_ALONE.get(c, html.escape(c)) for c in plain)
+    return _alone(plain)
 
 
 TEXT: Final = "left"
@@ -70,6 +70,21 @@ def _html_row(tag: str, cells: Sequence[str], columns: Sequence[str]) -> str:
         f'<{tag} style="text-align: {side}">{cell}</{tag}>' for cell, side in zip(cells, columns, strict=True)
     ]
     return f"<tr>{''.join(written)}</tr>"
+
+
+def text_html(text: str) -> str:
+    """Return lines made for a terminal as HTML that keeps them.
+
+    Examples
+    --------
+    >>> text_html("a < b")
+    '<pre>a &lt; b</pre>'
+    """
+    return f"<pre>{_alone(''.join(c for c in text if c.isprintable() or c == chr(10)))}</pre>"
+
+
+def _alone(plain: str) -> str:
+    return "".join(_ALONE.get(c, html.escape(c)) for c in plain)
 
 
 LONGEST_TEXT: Final = 400

@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     from symflex.expressions import Expression
     from symflex.model import Input, Output
     from symflex.print.forms import PrintedForm
-    from symflex.transfer import TransferFunction
+    from symflex.transfer import AnyTransferFunction
 
 
 INVISIBLE_TIMES: Final = "<mo>&#x2062;</mo>"
@@ -259,12 +259,12 @@ class MathRow:
     is_where: bool = False  # it says what a name stands for
 
 
-def ratio_mathml(tf: TransferFunction) -> str:
+def ratio_mathml(tf: AnyTransferFunction) -> str:
     """Return output over input, one above the other."""
     return f"<mfrac>{_end(tf.output)}{_end(tf.input)}</mfrac>"
 
 
-def transfer_function_mathml(tf: TransferFunction, form: PrintedForm) -> tuple[MathRow, ...] | None:
+def transfer_function_mathml(tf: AnyTransferFunction, form: PrintedForm) -> tuple[MathRow, ...] | None:
     """Return a transfer function as equations below each other.
 
     The quotient is one row where it is at most :data:`WIDEST_FRACTION` wide, else it has names for what is
@@ -284,7 +284,7 @@ def _end(end: Input | Output) -> str:
 
 
 def _formula(
-    tf: TransferFunction, form: PrintedForm, writer: MathmlWriter, labels: dict[str, str]
+    tf: AnyTransferFunction, form: PrintedForm, writer: MathmlWriter, labels: dict[str, str]
 ) -> list[MathRow]:
     left = ratio_mathml(tf)
     if is_number(form.den, 1):

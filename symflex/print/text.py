@@ -7,6 +7,7 @@ from re import compile as compile_pattern
 from typing import TYPE_CHECKING
 
 from symflex.expressions import (
+    Call,
     Derivative,
     Equation,
     Expression,
@@ -62,7 +63,9 @@ def derive_text(tf: AnyTransferFunction, form: PrintedForm, width: int = WIDTH) 
     for word, (name, expression) in zip(chain(["where"], repeat("     ")), form.where, strict=False):
         lines += hanging(f"{INDENT}{word} {name} = ", expression, width)
     for line in (line for law in form.laws for line in law_lines(*law)):
-        word = "     " if form.where or lines[-1].startswith(f"{INDENT}where") else "where"
+        word = (
+            "     " if form.where or any(given.startswith(f"{INDENT}where") for given in lines) else "where"
+        )
         first, *more = _lay_out(line, width - len(word) - 3, hanging=len(INDENT))
         lines += [f"{INDENT}{word} {first}", *(" " * (len(word) + 3) + text for text in more)]
     if form.where or form.laws:
@@ -94,6 +97,8 @@ def hanging(head: str, expression: Expression, width: int, tail: str = "") -> li
 
 def law_lines(name: str, law: Equation) -> list[str]:
     """Return the differential equation of a function of x, and where it starts."""
+    if isinstance(law.left, Derivative | Call):
+        return [format_expression(law)]
     order = max(node.order for node in names(law) if isinstance(node, Derivative))
     zero = [f"{name}{chr(39) * k}(0) = " for k in range(order - 1)]
     start = f"{''.join(zero)}0, " if zero else ""

@@ -8,7 +8,7 @@ from symflex.equations.elimination import is_singular, unreached
 from symflex.errors import Diagnostic, SymflexError
 from symflex.expressions import Sum
 from symflex.model.unused import unnamed_definitions, unused_name
-from symflex.transfer.of_model import NEVER_LARGE, assemble, derive_all
+from symflex.transfer.of_model import FEW_UNKNOWNS, NEVER_LARGE, assemble_for_checks, derive_all
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -27,8 +27,8 @@ def warnings(model: Model, equations: Equations | None = None) -> tuple[Diagnost
     inputs, outputs and elements without effect. Those of the model's own text come first.
     """
     try:
-        equations = equations or assemble(model)
-        is_solvable = not is_singular(equations)
+        equations = equations or assemble_for_checks(model)
+        is_solvable = len(equations.unknowns) <= FEW_UNKNOWNS and not is_singular(equations)
         found = (*unreached(equations), *_unused_definitions(model)) if is_solvable else ()
     except SymflexError:
         found = ()  # what is wrong with the equations is said by what derives

@@ -18,6 +18,7 @@ from symflex.options import ColocationOptions
 from symflex.print.forms import print_forms
 from symflex.report.facts import facts_of
 from symflex.report.structure import rigid_counts, undamped_counts
+from symflex.transfer import BoundTransferFunction, TransferFunction
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -36,7 +37,7 @@ if TYPE_CHECKING:
     from symflex.report.facts import ModelFacts
     from symflex.report.structure import Counts, RigidCounts
     from symflex.roots import PoleZeroMap
-    from symflex.transfer import BoundTransferFunction, TransferFunction
+    from symflex.transfer import AnyBoundFunction, AnyTransferFunction
 
 
 MOST_FUNCTIONS: Final = 24
@@ -70,7 +71,7 @@ class Study:
         """
         model = pipeline.load(path, allow_outside)
         pipeline.check_published(model, model.published)
-        pipeline.check_solvable(pipeline.assemble(with_numbers(model)))
+        pipeline.check_solvable(pipeline.assemble_for_checks(with_numbers(model)))
         return Study(path, stem, path.read_text(encoding="utf-8"), model, measured)
 
     @property
@@ -79,7 +80,7 @@ class Study:
         return self.model.transfer_functions[:MOST_FUNCTIONS]
 
     @property
-    def tfs(self) -> tuple[TransferFunction, ...]:
+    def tfs(self) -> tuple[AnyTransferFunction, ...]:
         """The transfer functions in symbols.
 
         Raises ModelError, BudgetError when the equations have no unique solution, or their symbolic one
@@ -88,9 +89,21 @@ class Study:
         return _result(self._derived)
 
     @cached_property
-    def _derived(self) -> tuple[TransferFunction, ...] | SymflexError:
+    def _derived(self) -> tuple[AnyTransferFunction, ...] | SymflexError:
         # A derivation that fails may take long: once is enough.
+        if self.model.is_distributed:
+            return attempt(lambda: pipeline.derive_as(self.model, self.pairs)[0])
         return attempt(lambda: pipeline.derive_all(self.model, self.pairs))
+
+    @cached_property
+    def exported(self) -> tuple[AnyTransferFunction, ...]:
+        """The same for code that solves networks, which is shorter than that of their formula.
+
+        Raises what :attr:`tfs` raises.
+        """
+        if not self.model.is_distributed:
+            return self.tfs
+        return pipeline.derive_as(self.model, self.pairs, solves=True)[0]
 
     @property
     def has_symbols(self) -> bool:
@@ -103,7 +116,7 @@ class Study:
         return print_forms(self.tfs)[0]
 
     @property
-    def bounds(self) -> tuple[BoundTransferFunction, ...]:
+    def bounds(self) -> tuple[AnyBoundFunction, ...]:
         """The same functions with numbers.
 
         Raises ModelError: SF229 when a parameter has no value.
@@ -111,8 +124,8 @@ class Study:
         return _result(self._bound)
 
     @cached_property
-    def _bound(self) -> tuple[BoundTransferFunction, ...] | SymflexError:
-        return attempt(lambda: pipeline.derive_bound(self.model, self.pairs))
+    def _bound(self) -> tuple[AnyBoundFunction, ...] | SymflexError:
+        return attempt(lambda: pipeline.derive_for_roots(self.model, self.pairs))
 
     @cached_property
     def maps(self) -> tuple[PoleZeroMap, ...]:
@@ -130,7 +143,7 @@ class Study:
         return tuple(
             (b.name, attempt(partial(pipeline.roots, b, None, digits, entered_budget())))
             for b in self.bounds
-            if not b.ratio.is_zero
+            if not b.is_zero
         )
 
     @cached_property
@@ -138,15 +151,16 @@ class Study:
         """Every function with numbers that is not zero, with its roots and what its zeros mean.
 
         The function is the one in symbols where :attr:`has_symbols` says that there is one. Empty where the
-        model has no numbers.
+        model has no numbers; of networks in nested form it is not known what their zeros mean.
         """
         if isinstance(self._bound, SymflexError):
             return ()
         by_name = {each.tf: each for each in self.maps}
-        symbolic = {tf.name: tf for tf in self.tfs} if self.has_symbols else {}
+        derived = self.tfs if self.has_symbols else ()
+        symbolic = {tf.name: tf for tf in derived if isinstance(tf, TransferFunction)}
         rows = []
         for bound in self.bounds:
-            if bound.name in by_name:
+            if bound.name in by_name and isinstance(bound, BoundTransferFunction):
                 found = by_name[bound.name]
                 explained = pipeline.explain_zeros(self.model, bound, found)
                 rows.append((symbolic.get(bound.name, bound.source), found, explained))
@@ -180,7 +194,7 @@ class Study:
         band = self.model.analysis.band
         found = []
         for bound in self.bounds:
-            if bound.ratio.is_zero:
+            if bound.is_zero:
                 continue
             low, high = (float(f) for f in band) if band else default_band(pipeline.roots(bound))
             found.append(respond(bound, adaptive_grid(bound, low, high)))
@@ -191,7 +205,7 @@ class Study:
         """Measured responses that a transfer function of the model is named like, with that function."""
         if isinstance(self._bound, SymflexError):
             return ()
-        named = {b.name: b for b in self.bounds if not b.ratio.is_zero}
+        named = {b.name: b for b in self.bounds if not b.is_zero}
         return tuple(compared(one, named[one.name]) for one in self.measured if one.name in named)
 
     @cached_property
@@ -240,7 +254,9 @@ class Study:
 
     def rational(self, tf: TransferFunction) -> RationalApproximation | None:
         """Return the product of the lowest modes of a function, None where there is no such approximation."""
-        (bound,) = (b for b in self.bounds if b.name == tf.name)
+        bound = next(b for b in self.bounds if b.name == tf.name)
+        if not isinstance(bound, BoundTransferFunction):
+            return None
         modes = self.model.analysis.modes or MODES
         found = attempt(lambda: pipeline.rational(bound, modes))
         return None if isinstance(found, SymflexError) else found
@@ -292,7 +308,7 @@ class DataComparison:
     degrees: float
 
 
-def compared(measured: MeasuredResponse, bound: BoundTransferFunction) -> DataComparison:
+def compared(measured: MeasuredResponse, bound: AnyBoundFunction) -> DataComparison:
     """Return a comparison with the values of the data as they stand, windows and sensors included."""
     model = np.asarray(respond(bound, measured.omega).values, np.complex128)
     unit = bound.source.unit

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from symflex.algebra import Factored
 from symflex.budget import Budget, entered_budget
 from symflex.errors import BudgetError, Diagnostic, SymflexError
+from symflex.model import with_numbers
 from symflex.model.signs import is_passive
 from symflex.roots.distributed.right_half_plane import DEGENERATE, PASSIVE, search_right
 from symflex.roots.distributed.side import ACCUMULATION_DIGITS, Side, groups, polynomial_roots
@@ -32,16 +33,18 @@ from symflex.roots.polynomial_roots import in_order
 from symflex.roots.problem import problem_of
 from symflex.roots.region import Band, Everything, Mode, Modes, Position, Region
 from symflex.roots.root import ROUNDING, Root, overlap
+from symflex.transfer import BoundNested, bind
+from symflex.transfer.of_model import assemble_sparse, derive_all, derive_bound, may_be_expanded
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symflex.roots.counting.winding import Cell
-    from symflex.transfer import BoundTransferFunction
+    from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 
 
 def locate(
-    bound: BoundTransferFunction,
+    bound: AnyBoundFunction,
     region: Region | None = None,
     digits: int = 30,
     budget: Budget | None = None,
@@ -51,8 +54,11 @@ def locate(
     Each root has so many correct significant digits. A transfer function that is identically zero has neither
     poles nor zeros; all its modes are hidden. Those of a distributed system, of which there are infinitely
     many, are searched in :func:`default_region` when everything is asked for, and the search is limited by
-    its work where no budget is given.
+    its work where no budget is given. Of one in nested form, a network of beams, roots are counted
+    without expanding anything.
     """
+    if isinstance(bound, BoundNested):
+        return _locate_nested(bound, region, digits, budget or entered_budget())
     bound = without_lengths_of_zero(bound)
     if bound.is_distributed:
         return locate_distributed(bound, region, digits, budget or entered_budget())
@@ -70,13 +76,42 @@ def locate(
     )
 
 
+def _locate_nested(bound: BoundNested, region: Region | None, digits: int, budget: Budget) -> PoleZeroMap:
+    """Find poles and zeros of a function in nested form, from the equations it solves."""
+    from symflex.roots.networks.poles_zeros import locate_in_network  # few models are so large
+
+    source = bound.source
+    model = with_numbers(source.model, (), dict(bound.values), in_kernels=True)
+    pair = (source.output.name, source.input.name)
+    if not model.is_distributed:
+        (lumped,) = derive_bound(model, [pair])
+        return locate(lumped, region, digits, budget)
+    is_default = region is None or isinstance(region, Everything)
+    where = default_region(bound) if region is None or isinstance(region, Everything) else region
+    equations = source.equations if model == source.model else None
+    found = locate_in_network(
+        equations or assemble_sparse(model), bound.name, pair, where, digits, budget, is_default=is_default
+    )
+    is_open = not found.certificate.certified and found.certificate.code is None
+    if not is_open or not may_be_expanded(model, pair):
+        return found
+    # What resists the counts of a network may yield to those of its formula, where that is not too large.
+    try:
+        (expanded,) = derive_all(source.model, [pair])
+        other = locate(bind(expanded, dict(bound.values)), region, digits, budget)
+    except BudgetError:
+        return found
+    is_better = other.certificate.certified or other.certificate.found > found.certificate.found
+    return other if is_better else found
+
+
 DEFAULT_MODES = 5
 """Where neither the model nor the user says how many."""
 MATCHING_ROUNDS = 4
 """Searches that go further because poles and zeros took each other out."""
 
 
-def default_region(bound: BoundTransferFunction) -> Region:
+def default_region(bound: AnyBoundFunction) -> Region:
     """Return where to search when nothing is said: the model's modes, or its band, or five modes.
 
     A distributed system has infinitely many poles.
@@ -178,7 +213,8 @@ class _Searched:
                 side.numbered(where.number)
             return
         shared = _find(self.sides, where)
-        highest = max((root.frequency_hz() for root in self.chosen()[0]), default=0.0)
+        # A little more, so that what lies at the highest pole itself is in.
+        highest = max((root.frequency_hz() for root in self.chosen()[0]), default=0.0) * (1 + 4 * ROUNDING)
         # Modes are of the poles; what cancelled has none of its own.
         within = Band(Fraction(0), Fraction(highest)) if isinstance(where, Modes) and highest else where
         factors = tuple((h.polynomial, h.multiplicity) for h in bound.hidden)

@@ -194,6 +194,11 @@ class Exclusion:
         return {"re": self.re, "im": self.im, "radius": self.radius, "reason": self.reason}
 
 
+def _times(roots: Sequence[Root]) -> int:
+    """Return how many roots there are, multiple ones counted as often as they occur."""
+    return sum(root.multiplicity for root in roots)
+
+
 @dataclass(frozen=True, slots=True)
 class PoleZeroMap:
     """Poles and zeros in a region of the s plane.
@@ -237,6 +242,11 @@ class PoleZeroMap:
     is_infinite: bool = False
     verdict: StabilityVerdict = NOT_EXAMINED
     unstable: tuple[Root, ...] = ()
+
+    def __repr__(self) -> str:
+        counts = f"{_times(self.all_poles)} poles, {_times(self.zeros)} zeros"
+        status = "certified" if self.certificate.certified else "not certified"
+        return f"<PoleZeroMap {self.tf}: {counts}, {status}, {self.verdict.headline}>"
 
     @property
     def all_poles(self) -> tuple[Root, ...]:

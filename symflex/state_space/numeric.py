@@ -213,6 +213,13 @@ class Rounding:
             raise ModelError(Diagnostic("SF233", message, None, hint))
         return found
 
+    def enclosed(self, value: FieldElement, bits: int) -> arb:
+        """Return a ball around a quotient, at a precision that is to be the current one."""
+        below = self._enclosed(value.den, bits)
+        if below == 0:
+            raise _zero_denominator()
+        return self._enclosed(value.num, bits) / below
+
     def _rational(self, value: FieldElement) -> Fraction | None:
         above, below = (self._exact_value(part) for part in (value.num, value.den))
         if above is None or below is None:

@@ -25,7 +25,7 @@ from symflex.errors import Diagnostic, ModelError
 from symflex.expressions import Attribute, Expression, Name, names, product_of
 from symflex.expressions import power as power_of
 from symflex.library.elements import LinearForm, Variable
-from symflex.library.elements.element import ACROSS_UNIT, COMPONENT_UNIT
+from symflex.library.elements.element import ACROSS_UNIT, COMPONENT_DOMAIN, COMPONENT_UNIT
 from symflex.quantities import unit_of
 from symflex.state_space.opened import opened, with_filters_apart
 from symflex.state_space.popov import (
@@ -424,8 +424,8 @@ class _Realisation:
         domains = {n.name: n.domain for n in self.model.nodes}
         unit = ""
         if variable.kind == "node":
-            component = {"y": "m", "theta": "rad"}
-            unit = component.get(variable.component) or ACROSS_UNIT.get(domains.get(variable.owner, ""), "")
+            domain = COMPONENT_DOMAIN.get(variable.component) or domains.get(variable.owner)
+            unit = ACROSS_UNIT.get(str(domain), "")
         elif variable.component in THROUGH_UNITS:
             unit = THROUGH_UNITS.get(variable.component, "")
         elif variable in dict(self.model.signal_units):
@@ -522,6 +522,10 @@ class StateSpace:
     c: tuple[Vector, ...]
     d: tuple[Vector, ...]
     is_minimal: bool = False  # almost everywhere every state is controllable and observable
+
+    def __repr__(self) -> str:
+        counts = f"{self.order} states, {len(self.inputs)} inputs, {len(self.outputs)} outputs"
+        return f"<StateSpace: {counts}>"
 
     @property
     def order(self) -> int:

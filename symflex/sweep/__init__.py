@@ -8,7 +8,7 @@ workers, nor the order in which they finish, nor a restart in between changes a 
 from symflex.sweep.design import Axis, Design, Range, Task, check_design, design_of, fingerprint, read_design
 from symflex.sweep.points import QUANTITIES, solve_chunk
 from symflex.sweep.run import Journal, chunk_size, plan_sweep, run_sweep, sweep, sweep_key, sweep_task
-from symflex.sweep.sweep import Labelled, Sweep
+from symflex.sweep.sweep import Labelled, Sweep, sweep_html
 
 __all__ = [
     "QUANTITIES",
@@ -28,6 +28,7 @@ __all__ = [
     "run_sweep",
     "solve_chunk",
     "sweep",
+    "sweep_html",
     "sweep_key",
     "sweep_task",
 ]

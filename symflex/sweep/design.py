@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from symflex.roots import Region
-    from symflex.transfer import Given, TransferFunction
+    from symflex.transfer import AnyTransferFunction, Given
 
 
 Scale = Literal["lin", "log"]
@@ -198,7 +198,7 @@ Rows = dict[str, Array]
 CODE_LENGTH = 5
 
 
-Derive = Callable[["Model", Sequence[tuple[str, str]]], tuple["TransferFunction", ...]]
+Derive = Callable[["Model", Sequence[tuple[str, str]]], tuple["AnyTransferFunction", ...]]
 """From a model and pairs to transfer functions; one a worker can import by its name."""
 
 
@@ -227,7 +227,7 @@ def fingerprint(task: Task) -> str:
     return re.sub(r" at 0x[0-9a-fA-F]+", "", repr(plain))
 
 
-def derived(task: Task, *symbols: str) -> TransferFunction:
+def derived(task: Task, *symbols: str) -> AnyTransferFunction:
     """Return the task's transfer function, with the swept parameters and others as symbols."""
     return task.derive(with_numbers(task.model, (*task.names, *symbols)), [task.pair])[0]
 

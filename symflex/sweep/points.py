@@ -22,7 +22,7 @@ import numpy as np
 from flint import arb
 
 from symflex.budget import spend
-from symflex.errors import SymflexError
+from symflex.errors import BudgetError, Diagnostic, SymflexError
 from symflex.loops import StabilityMap, characteristic_loop, find_stable_gains, pick_gain
 from symflex.loops.stability_map import degrees, hertz
 from symflex.model import ExactValue
@@ -31,7 +31,7 @@ from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import locate
 from symflex.sweep.design import Point, Range, Rows, Solver, Task, between, codes_of, derived
 from symflex.sweep.similarity import Similarities, Similarity
-from symflex.transfer import BoundTransferFunction, TransferFunction, bind
+from symflex.transfer import AnyBoundFunction, AnyTransferFunction, BoundNested, TransferFunction, bind_any
 
 LARGEST = 1023
 """Exponent of two beyond which nothing is told."""
@@ -169,13 +169,14 @@ class RootSolver:
     """
 
     def __init__(
-        self, tf: TransferFunction, names: Sequence[str], kind: RootKind, region: Region | None
+        self, tf: AnyTransferFunction, names: Sequence[str], kind: RootKind, region: Region | None
     ) -> None:
         self._tf, self._names, self._kind, self._region = tf, tuple(names), kind, region
         # A band or a rectangle does not scale with the roots.
         scalable = region is None or isinstance(region, Modes | Everything)
-        self._similarities = Similarities(tf) if scalable else None
-        used = {p.name: p.value for p in (*tf.parameters, *tf.hidden_parameters)}
+        self._similarities = Similarities(tf) if scalable and isinstance(tf, TransferFunction) else None
+        hidden = tf.hidden_parameters if isinstance(tf, TransferFunction) else ()
+        used = {p.name: p.value for p in (*tf.parameters, *hidden)}
         self._declared = {name: value for name, value in used.items() if value is not None}
         if any(value is None and name not in self._names for name, value in used.items()):
             self._similarities = None
@@ -189,8 +190,9 @@ class RootSolver:
             spend()  # that the time is over says nothing of a point
             return PointRoots((), 0, PointStatus.FAILED, error.diagnostics[0].code)
 
-    def _bound(self, values: dict[str, ExactValue]) -> BoundTransferFunction:
-        return without_lengths_of_zero(bind(self._tf, values))
+    def _bound(self, values: dict[str, ExactValue]) -> AnyBoundFunction:
+        bound = bind_any(self._tf, values)
+        return bound if isinstance(bound, BoundNested) else without_lengths_of_zero(bound)
 
     def _solve(self, values: dict[str, ExactValue]) -> PointRoots:
         similarity = None
@@ -222,7 +224,7 @@ class RootSolver:
             return _Known(similarity, model, roots)
         return _Known(similarity, None, ())
 
-    def _searched(self, bound: BoundTransferFunction, family: int) -> PointRoots:
+    def _searched(self, bound: AnyBoundFunction, family: int) -> PointRoots:
         for digits in LADDER:
             result = self._chosen(locate(bound, self._region, digits), family)
             if all(r.place.is_nearest or r.status is RootStatus.TOGETHER for r in result.roots):
@@ -319,7 +321,7 @@ def solve_response(task: Task) -> Solver:
         values = np.full((len(points), len(omega)), complex(nan, nan))
 
         def one(i: int, point: Point) -> PointStatus:
-            bound = bind(tf, dict(zip(task.names, point, strict=True)))
+            bound = bind_any(tf, dict(zip(task.names, point, strict=True)))
             values[i] = [bound(complex(0, w)) for w in omega]
             return PointStatus.CERTIFIED
 
@@ -338,6 +340,9 @@ def solve_margins(task: Task) -> Solver:
     """Return what finds gain and phase margins of the loop closed with the task's gain."""
     parameter = pick_gain(task.model.parameters, task.gain)
     tf = derived(task, task.gain)
+    if not isinstance(tf, TransferFunction):
+        message = "margins need the closed form, which is too large here"
+        raise BudgetError(Diagnostic("SF502", message, None, "split the model, or sweep its poles"))
 
     def solve(points: Sequence[Point]) -> Rows:
         values = {name: np.full(len(points), np.nan) for name in MARGINS}

@@ -1,8 +1,8 @@
 """Running a sweep: chunks of points go to this process, to others or to a cluster, in any order.
 
 Input: a model and ``--over k=1:5:lin:9 --modes 3``.
-Output: ``Task(model, ("X", "F"), "poles", ("k",), derive_all, Modes(3))`` and a design of 9 points, solved;
-and the file it goes to.
+Output: ``Task(model, ("X", "F"), "poles", ("k",), derive_for_values, Modes(3))`` and a design of 9 points,
+solved; and the file it goes to.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ from symflex.sweep.design import (
 from symflex.sweep.files import check_writable, open_journal, sweep_bytes
 from symflex.sweep.points import PointStatus, logarithmic, solve_chunk
 from symflex.sweep.sweep import Sweep, assembled
-from symflex.transfer.of_model import derive_all, pick_pairs
+from symflex.transfer.of_model import derive_for_values, pick_pairs
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -349,7 +349,9 @@ def sweep_task(
     if of == "margins":
         pick_gain(model.parameters, gain)
     check_design(model, design)
-    return Task(model, pair, of, design.names, derive_all, region, tuple(map(float, frequencies)), gain)
+    return Task(
+        model, pair, of, design.names, derive_for_values, region, tuple(map(float, frequencies)), gain
+    )
 
 
 def sweep(

@@ -39,6 +39,9 @@ class Labelled:
     unit: str = ""
     doc: str = ""
 
+    def __repr__(self) -> str:
+        return f"<Labelled {self.name}: {' x '.join(self.dims) or 'a number'}, {self.values.shape}>"
+
     def __post_init__(self) -> None:
         values = np.array(self.values)
         values.setflags(write=False)
@@ -57,6 +60,12 @@ class Sweep:
     # Values of the swept parameters in SI units; numbers of modes or frequencies [Hz].
     coordinates: tuple[Labelled, ...]
     variables: tuple[Labelled, ...]  # the results; their first axes are those of the design
+
+    def __repr__(self) -> str:
+        status = "certified" if self.is_certified else "not certified"
+        names = ", ".join(each.name for each in self.parameters)
+        points = counted(self["point_status"].size, "point")
+        return f"<Sweep {self.attribute('tf')}: {self.of} at {points}, {names}, {status}>"
 
     def __getitem__(self, name: str) -> Array:
         """Return an array by its name."""
@@ -243,6 +252,27 @@ STATES = {
 
 def sweep_text(sweep: Sweep, width: int = 80) -> str:
     """Return what was swept, how much of it is proved, and between which values each mode moves."""
+    lines = _said(sweep)
+    if sweep.of in ("poles", "zeros"):
+        lines += _root_table(sweep)
+    elif sweep.of == "margins":
+        lines += _margins(sweep)
+    return "\n".join(piece for line in lines for piece in _fitted(line, width))
+
+
+def sweep_html(sweep: Sweep) -> str:
+    """Return the same for a notebook: modes as a table."""
+    from symflex.print.html import NUMBER, escape_html, html_table, text_html  # only notebooks ask
+
+    if sweep.of not in ("poles", "zeros"):
+        return text_html(sweep_text(sweep))
+    head, *rows = _mode_rows(sweep)
+    said = [line for line in (*_said(sweep), *_doubts(sweep), *_left_out(sweep)) if line]
+    return html_table(head, [NUMBER] * len(head), rows, "<br>".join(map(escape_html, said)))
+
+
+def _said(sweep: Sweep) -> list[str]:
+    """Return what was swept, and how much of it is proved."""
     status = sweep["point_status"]
     shape = " x ".join(map(str, status.shape))
     points = counted(status.size, "point") + (f" ({shape})" if status.ndim > 1 else "")
@@ -263,11 +293,7 @@ def sweep_text(sweep: Sweep, width: int = 80) -> str:
             if unstable
             else f"{INDENT}stability not known: no pole shown grows; others and hidden modes are not examined"
         )
-    if sweep.of in ("poles", "zeros"):
-        lines += _root_table(sweep)
-    elif sweep.of == "margins":
-        lines += _margins(sweep)
-    return "\n".join(piece for line in lines for piece in _fitted(line, width))
+    return lines
 
 
 def _unstable_points(sweep: Sweep) -> int:
@@ -292,12 +318,27 @@ def _fitted(line: str, width: int) -> list[str]:
     return wrap(line, width, subsequent_indent=2 * INDENT, drop_whitespace=True, replace_whitespace=False)
 
 
-def _root_table(sweep: Sweep) -> list[str]:
+def _doubts(sweep: Sweep) -> list[str]:
+    """Return where roots, or the names of modes, are not told apart."""
     together = int(np.sum(sweep["status"] == RootStatus.TOGETHER))
     holding = f"{counted(together, 'enclosure')} {'holds' if together == 1 else 'hold'}"
     lines = [f"{INDENT}{holding} roots that cannot be told apart"] if together else []
-    lines += [f"{INDENT}{text}" for text in _links(sweep)]
-    rows = [("mode", "frequency [Hz]", "damping ratio", "points")]
+    return lines + [f"{INDENT}{text}" for text in _links(sweep)]
+
+
+def _root_table(sweep: Sweep) -> list[str]:
+    return [*_doubts(sweep), "", *aligned(_mode_rows(sweep), INDENT), *_left_out(sweep)]
+
+
+def _left_out(sweep: Sweep) -> list[str]:
+    """Say how many modes are in no table."""
+    more = sweep["status"].shape[-1] - MODES_SHOWN
+    return [f"{INDENT}and {more} more"] if more > 0 else []
+
+
+def _mode_rows(sweep: Sweep) -> list[tuple[str, ...]]:
+    """Return a table of the lowest modes: between which values each moves."""
+    rows: list[tuple[str, ...]] = [("mode", "frequency [Hz]", "damping ratio", "points")]
     every = range(sweep["status"].shape[-1])
     for k in every[:MODES_SHOWN]:
         there = sweep["status"][..., k] > 0
@@ -309,10 +350,7 @@ def _root_table(sweep: Sweep) -> list[str]:
                 str(int(np.sum(there))),
             )
         )
-    lines += ["", *aligned(rows, INDENT)]
-    if len(every) > MODES_SHOWN:
-        lines.append(f"{INDENT}and {len(every) - MODES_SHOWN} more")
-    return lines
+    return rows
 
 
 def _links(sweep: Sweep) -> list[str]:

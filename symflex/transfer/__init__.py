@@ -10,15 +10,18 @@ from symflex.transfer.bind import (
 )
 from symflex.transfer.derive import derive, derive_all, nested_transfer
 from symflex.transfer.nested_form import (
+    AnyBoundFunction,
     AnyTransferFunction,
     BoundNested,
     NestedTransferFunction,
+    bind_any,
     bind_nested,
     derive_nested,
 )
 from symflex.transfer.transfer_function import ClosedForm, HiddenFactor, TransferFunction
 
 __all__ = [
+    "AnyBoundFunction",
     "AnyTransferFunction",
     "BoundNested",
     "BoundTransferFunction",
@@ -29,6 +32,7 @@ __all__ = [
     "NestedTransferFunction",
     "TransferFunction",
     "bind",
+    "bind_any",
     "bind_nested",
     "bind_polynomials",
     "coefficients_in_s",

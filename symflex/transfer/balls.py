@@ -5,6 +5,7 @@ Polynomials are prepared for evaluation: products shared by successive terms are
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
 from math import inf, isfinite, nan
@@ -17,7 +18,7 @@ from symflex.errors import Diagnostic, ModelError
 from symflex.expressions import Expression, fold, format_expression
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from flint import fmpz_mpoly
 
@@ -37,6 +38,17 @@ def ball(value: Fraction) -> arb:
 def expansion(s: acb) -> acb_series:
     """Return ``s + x`` to first order in x."""
     return acb_series([s, acb(1)], 2)
+
+
+@contextmanager
+def series_terms(count: int) -> Iterator[None]:
+    """Compute power series to so many terms inside the block; restore the former number on every exit."""
+    former = ctx.cap
+    ctx.cap = count
+    try:
+        yield
+    finally:
+        ctx.cap = former
 
 
 def at_centre(value: Value) -> acb:

@@ -28,10 +28,12 @@ from symflex.equations import assemble
 from symflex.errors import Diagnostic, ModelError, Source, Span, Text, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.model import ExactValue, with_numbers
+from symflex.model.along import COORDINATE, varies_along_x
 from symflex.quantities import parse_quantity, unit_of
 from symflex.transfer.balls import (
     FIRST_BITS,
     EvaluationPlan,
+    at_centre,
     ball,
     double_value,
     enclosure,
@@ -52,8 +54,10 @@ if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
     from symflex.algebra.modal_sum import ModalSums
+    from symflex.expressions import Call
     from symflex.model import Model, ModelParameter
     from symflex.transfer.enclose_kernels import KernelValues
+    from symflex.transfer.enclose_varying import VaryingMatrices
 
 Given = int | float | Fraction | Decimal | str | ExactValue
 """A value as a user gives it; one that was read before stays exact."""
@@ -86,6 +90,10 @@ class EnclosedTransferFunction:
                 total = total + exponent * polynomial.derivative()(s) / polynomial(s)
             return total
 
+    def value_and_slope(self, s: acb) -> tuple[acb, acb]:
+        """Return balls around ``G(s)`` and ``G'(s)/G(s)``."""
+        return self(s), self.logarithmic_derivative(s)
+
 
 @dataclass(frozen=True)
 class EnclosedDistributed:
@@ -104,14 +112,19 @@ class EnclosedDistributed:
 
     def logarithmic_derivative(self, s: acb) -> acb:
         """Return a ball around ``G'(s)/G(s)``."""
+        return self.value_and_slope(s)[1]
+
+    def value_and_slope(self, s: acb) -> tuple[acb, acb]:
+        """Return balls around ``G(s)`` and ``G'(s)/G(s)``, for which kernels are evaluated once."""
         with ctx.workprec(self.bits):
             values = self.kernels.at(expansion(s))
-            total = acb(0)
+            value, slope = acb(ball(self.ratio.unit)), acb(0)
             for factor, exponent in self.ratio.factors:
                 series = self.kernels.polynomial(factor, values)
                 if isinstance(series, acb_series):
-                    total = total + exponent * series[1] / series[0]
-            return total
+                    slope = slope + exponent * series[1] / series[0]
+                value = value * at_centre(series) ** exponent
+            return value, slope
 
 
 Enclosed = EnclosedTransferFunction | EnclosedDistributed
@@ -130,10 +143,18 @@ class BoundTransferFunction:
     parts: tuple[Factored, Factored] | None = None  # of a distributed system, :attr:`num` and :attr:`den`
     is_of_model: bool = True  # its poles are those of the source's model; not so of a loop gain
 
+    def __repr__(self) -> str:
+        return f"<BoundTransferFunction {self.name}>"
+
     @property
     def is_distributed(self) -> bool:
         """True when the function is transcendental."""
         return bool(self.kernels)
+
+    @property
+    def is_zero(self) -> bool:
+        """True when the output does not depend on the input."""
+        return self.ratio.is_zero
 
     @property
     def num(self) -> Factored:
@@ -156,8 +177,30 @@ class BoundTransferFunction:
         values: dict[str, Callable[[], arb]] = {name: enclosure(value) for name, value in self.values}
         known: dict[str, Callable[[], arb]] = {"pi": arb.pi}
         for constant in self.source.constants:
-            known[constant.generator] = later(constant.expression, values)
+            if constant.generator not in self.along:
+                known[constant.generator] = later(constant.expression, values)
         return tuple((name, known[name]) for name in self.ratio.ring.names[1:] if name in known)
+
+    @cached_property
+    def along(self) -> Mapping[str, Call]:
+        """The functions of the coordinate along x among the generators."""
+        names = self.ratio.ring.index
+        if COORDINATE not in names:
+            return {}
+        used = ((c.generator, c.expression) for c in self.source.constants if c.generator in names)
+        return {name: call for name, call in used if varies_along_x(call)}
+
+    @cached_property
+    def _matrices(self) -> VaryingMatrices | None:
+        """The fundamental matrices of laws that vary along x, expanded once for all precisions."""
+        if not any(law.matrix for law in self.kernels.dispersions):
+            return None
+        from symflex.algebra.minors import MinorSums  # few beams are tapered
+        from symflex.transfer.enclose_varying import VaryingMatrices
+
+        values = {name: enclosure(value) for name, value in self.values}
+        minors = MinorSums(self.ratio.ring, self.kernels)
+        return VaryingMatrices(minors, dict(self.constants), self.along, values)
 
     def enclosed(self, bits: int) -> Enclosed:
         """Return the function with ball coefficients of the given precision."""
@@ -183,7 +226,9 @@ class BoundTransferFunction:
         from symflex.transfer.enclose_kernels import KernelValues  # only with beams
 
         constants = {name: evaluate() for name, evaluate in self.constants}
-        return KernelValues(self.ratio.ring.names, self.kernels, constants, self._modal_sums, self._plans)
+        return KernelValues(
+            self.ratio.ring.names, self.kernels, constants, self._modal_sums, self._plans, self._matrices
+        )
 
     @cached_property
     def _plans(self) -> PolynomialMemo[EvaluationPlan]:
@@ -339,7 +384,8 @@ def bind(tf: TransferFunction, values: Mapping[str, Given] | None = None) -> Bou
     table = dict(exact)
     if tf.is_large:
         return _derived_with_numbers(tf, exact)
-    ring = Ring((LAPLACE, "pi", *_used_constants(tf), *tf.kernels.generators))
+    coordinate = [COORDINATE] if any(law.matrix for law in tf.kernels.dispersions) else []
+    ring = Ring((LAPLACE, "pi", *coordinate, *_used_constants(tf), *tf.kernels.generators))
     images = _Substitution(ring, tf.ratio.ring, table, _rational_squares(tf, ring, table))
     # Kept apart, so that factors which these values make equal are still seen to cancel.
     above, below = Factored.number(ring, tf.ratio.unit), Factored.number(ring, 1)

@@ -30,7 +30,9 @@ if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
     from symflex.algebra import Dispersion, Factored, Kernel, KernelTable, PolynomialMemo
+    from symflex.algebra.minors import Minor
     from symflex.transfer.balls import EvaluationPlan
+    from symflex.transfer.enclose_varying import VaryingMatrices
 
 
 SIGNS = (1, -1)
@@ -46,6 +48,7 @@ class KernelValues:
     constants: Mapping[str, arb]  # enclosures of the constants
     sums: ModalSums  # over the same ring
     plans: PolynomialMemo[EvaluationPlan]  # shared by all precisions
+    matrices: VaryingMatrices | None = None  # of laws whose coefficients vary along x
 
     def at(self, s: Value, near: Mapping[str, Value] | None = None) -> dict[str, Value]:
         """Return the values of all generators at ``s`` [rad/s], and characteristic roots without names.
@@ -175,9 +178,26 @@ class KernelValues:
     def polynomial(self, polynomial: fmpz_mpoly, values: Mapping[str, Value]) -> Value:
         """Return a polynomial of the ring."""
         named = self._laws and all(_root_name(n, 0) in values for n, _ in self._laws)
+        if self.matrices is not None and self.matrices.minors.has_entries(polynomial):
+            return self._sum_of_minors(self.matrices, polynomial, values)
         if named and self.sums.has_functions(polynomial):
             return self._modal_sum(polynomial, values)
         return self._monomials(polynomial, values)
+
+    def _sum_of_minors(
+        self, matrices: VaryingMatrices, polynomial: fmpz_mpoly, values: Mapping[str, Value]
+    ) -> Value:
+        """Return a polynomial in entries of fundamental matrices, by minors of these."""
+        known: dict[Minor, Value] = {}
+        total: Value = acb(0)
+        for coefficient, product in matrices.minors.of(polynomial):
+            term = self.polynomial(coefficient, values)
+            for minor in product:
+                if minor not in known:
+                    known[minor] = matrices.value(minor, values["s"])
+                term = term * known[minor]
+            total = total + term
+        return total
 
     def _monomials(self, polynomial: fmpz_mpoly, values: Mapping[str, Value]) -> Value:
         plan = self.plans(polynomial)
@@ -261,6 +281,8 @@ def fundamental_functions(coefficients: Sequence[Value], length: Value) -> tuple
             companion[n - 1, j] = -number
         grown = (companion * length).exp()
         return tuple(grown[i, n - 1] for i in range(n))
+    if (found := _by_homogeneity(coefficients, length)) is not None:
+        return found
     # First order about a point: the derivative of h with respect to c_k is minus h * h^(k), a convolution,
     # and is the block above the diagonal of the exponential of a block matrix (Van Loan 1978).
     base = [at_centre(c) for c in coefficients]
@@ -276,6 +298,30 @@ def fundamental_functions(coefficients: Sequence[Value], length: Value) -> tuple
         block[n - 1, n + j] = -c
     grown = (block * reach).exp()
     return tuple(acb_series([grown[i, n - 1], grown[i, 2 * n - 1]], 2) for i in range(n))
+
+
+def _by_homogeneity(coefficients: Sequence[Value], length: Value) -> tuple[Value, ...] | None:
+    """Return fundamental functions of ``lambda^n + c_0`` to first order; None for others, and of few waves.
+
+    ``h^(j)(x)`` is ``x^(n-1-j)`` times a function of ``c_0 x^n``. So its derivative by c_0 follows from that
+    by x: ``n c_0 dh^(j)/dc_0 = x h^(j+1) - (n - 1 - j) h^(j)``, and ``h^(n) = -c_0 h``. Of few waves that is
+    a small difference.
+    """
+    first, *others = coefficients
+    if not isinstance(first, acb_series) or not all(at_centre(c) == 0 for c in others):
+        return None
+    if any(isinstance(c, acb_series) and c[1] != 0 for c in (*others, length)):
+        return None
+    n, c, x = len(coefficients), first[0], at_centre(length)
+    plain = fundamental_functions([c, *([ZERO] * (n - 1))], x)
+    beyond = (*(at_centre(h) for h in plain), -c * at_centre(plain[0]))
+    found = []
+    for j in range(n):
+        slope = (x * beyond[j + 1] - (n - 1 - j) * beyond[j]) / (n * c)
+        if not (slope.is_finite() and slope.rel_accuracy_bits() >= ctx.prec / 2):
+            return None
+        found.append(acb_series([beyond[j], slope * first[1]], 2))
+    return tuple(found)
 
 
 NOWHERE = acb("nan", "nan")

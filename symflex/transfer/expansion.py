@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE, Factored, Ring
 from symflex.errors import Diagnostic, ModelError
+from symflex.model.along import COORDINATE, is_tapered
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -38,6 +39,7 @@ class Expansion:
             LAPLACE,
             *(p.name for p in equations.model.parameters),
             "pi",
+            *([COORDINATE] if is_tapered(equations.model) else []),
             *(c.generator for c in equations.constants),
         )
         propagation = equations.propagation

@@ -1,40 +1,93 @@
 """Transfer functions as straight-line programs: the exact representation that does not grow by expansion.
 
-Input: a lumped model's equations, and which transfer functions are wanted.
+Input: a model's equations, and which transfer functions are wanted.
 Output: a :class:`NestedTransferFunction` each. Its numerator and denominator are nested expressions whose
 shared parts exist once, so their size grows with the work of eliminating a sparse network: in proportion to
 the length of a chain, ring, tree or ladder. They are evaluated in balls or in double precision as they are.
+
+Of beams, rods and delays the generators are fundamental functions: of a beam of length l, whose deflection
+has a fourth derivative of ``-c_0`` times itself, they are ``h`` and its first three derivatives at l, where
+h solves the same equation, with ``h = h' = h'' = 0`` and a third derivative of 1 at the start. They are
+entire in s; at a point each is a ball as narrow as is asked for. Elimination divides by what is zero where
+a member vibrates between fixed ends. The quotient has a value there, but wide balls of s lead to none: such
+functions are evaluated at points.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
+from math import prod
+from operator import truediv
 from typing import TYPE_CHECKING, Any
 
-from flint import acb, arb, ctx
+from flint import acb, acb_series, arb, ctx
 
-from symflex.algebra import LAPLACE
+from symflex.algebra import LAPLACE, uncollected
 from symflex.algebra.straight_line import Operation, Step, StraightLine
 from symflex.budget import spend
-from symflex.errors import Diagnostic, ModelError
+from symflex.equations import assemble
 from symflex.expressions import Name, names
 from symflex.transfer.balls import FIRST_BITS, ball, double_value, enclosure, later
-from symflex.transfer.bind import values_for
+from symflex.transfer.bind import BoundTransferFunction, Given, bind, values_for
 from symflex.transfer.transfer_function import TransferFunction, name_quantity, unit_of_quotient
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-    from decimal import Decimal
+    from collections.abc import Callable, Iterator, Mapping, Sequence
     from fractions import Fraction
 
     import numpy as np
     import numpy.typing as npt
 
     from symflex.equations import ConstantFunction, Equations
+    from symflex.equations.elimination.star_mesh import Waves
+    from symflex.equations.line_network import LineNetwork
     from symflex.model import ExactValue, Input, Model, ModelParameter, Output
+    from symflex.transfer.balls import Value
+    from symflex.transfer.enclosed_network import EnclosedNetwork, NetworkResponses
 
 CONSTANT_BITS = 256
+
+
+@dataclass(frozen=True, eq=False)
+class CutModel:
+    """A distributed model, of which the network that double precision solves is made when it is wanted."""
+
+    model: Model
+    _known: dict[object, NetworkResponses] = field(default_factory=dict)
+
+    @cached_property
+    def network(self) -> LineNetwork:
+        """The equations as a table of numbers."""
+        from symflex.equations.line_network import line_network
+        from symflex.transfer.derive import nested_transfer  # exports of networks alone need these
+
+        is_sparse = not any(block.submodel is not None for block in self.model.blocks)
+        with uncollected():
+            return line_network(assemble(self.model, nested_transfer, is_sparse=is_sparse, is_cut=True))
+
+    def responses(self, bits: int, values: Mapping[str, ExactValue]) -> NetworkResponses:
+        """Return the network with numbers, solved in balls at a precision."""
+        from symflex.transfer.enclosed_network import NetworkResponses  # few functions are of so many members
+
+        declared = {p.name: p.value for p in self.model.parameters if p.value is not None}
+        key = bits, tuple(sorted((declared | dict(values)).items()))
+        if key not in self._known:
+            with ctx.workprec(bits):
+                constants = {n: acb(x()) for n, x in self.constants(values).items()}
+            self._known[key] = NetworkResponses(bits, self.network, constants)
+        return self._known[key]
+
+    def constants(self, values: Mapping[str, ExactValue]) -> dict[str, Callable[[], arb]]:
+        """Return, per name of the entries but s, how to enclose it at the current precision."""
+        declared = {p.name: p.value for p in self.model.parameters if p.value is not None}
+        # A function does not depend on a parameter without value, though its network may.
+        known = {p.name: _one for p in self.model.parameters} | {
+            name: enclosure(value) for name, value in (declared | dict(values)).items()
+        }
+        return {**known, "pi": arb.pi} | {
+            c.generator: later(c.expression, known) for c in self.network.equations.constants
+        }
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +108,13 @@ class NestedTransferFunction:
     unit: str  # SI unit, empty when unknown
     constants: tuple[ConstantFunction, ...]  # what generators such as ``sqrt(k*m)`` stand for
     model: Model  # where it comes from
+    # The equations it solves, and the fundamental functions in them, of all members; of a distributed model.
+    equations: Equations | None = None
+    every_wave: tuple[Waves, ...] = ()
+    cut: CutModel | None = None  # the same for double precision; functions of a model share it
+
+    def __repr__(self) -> str:
+        return f"<NestedTransferFunction {self.name}, {self.size} operations>"
 
     @property
     def name(self) -> str:
@@ -68,8 +128,8 @@ class NestedTransferFunction:
 
     @property
     def is_distributed(self) -> bool:
-        """False: the nested form is of lumped models."""
-        return False
+        """True when fundamental functions of beams, rods, fields or delays are among the generators."""
+        return bool(self.waves)
 
     @property
     def is_nameless(self) -> bool:
@@ -77,14 +137,30 @@ class NestedTransferFunction:
         return False
 
     @cached_property
+    def waves(self) -> tuple[Waves, ...]:
+        """The fundamental functions that occur."""
+        kinds, operands = self.program.kinds, self.program.operands
+        used = {operands[i][0] for i in self.program.steps_of(self.num, self.den) if kinds[i] == _GENERATOR}
+        return tuple(w for w in self.every_wave if any(position in used for position, _ in w.generators))
+
+    @cached_property
+    def wave_of(self) -> Mapping[int, tuple[Waves, int]]:
+        """Per position of a generator that is a fundamental function, its group, and its place in it."""
+        return {position: (w, i) for w in self.waves for i, (position, _) in enumerate(w.generators)}
+
+    @cached_property
+    def _roots(self) -> tuple[int, ...]:
+        return (self.num, self.den, *(i for w in self.waves for i in w.arguments))
+
+    @cached_property
     def steps(self) -> tuple[int, ...]:
-        """The steps numerator and denominator are made of, in order."""
-        return tuple(self.program.steps_of(self.num, self.den))
+        """The steps numerator and denominator are made of, in order, arguments of functions among them."""
+        return tuple(self.program.steps_of(*self._roots))
 
     @cached_property
     def operations(self) -> tuple[Operation, ...]:
         """The steps with their operands, and with the steps that nothing needs after each."""
-        program, kept = self.program, {self.num, self.den}
+        program, kept = self.program, set(self._roots)
         found: list[Operation] = []
         for i in reversed(self.steps):
             gone = tuple(x for x in dict.fromkeys(program.inner(i)) if x not in kept)
@@ -99,9 +175,10 @@ class NestedTransferFunction:
 
     @cached_property
     def generators(self) -> frozenset[str]:
-        """The names of the generators that occur."""
+        """The names of the generators that occur, but for fundamental functions."""
         kinds, operands = self.program.kinds, self.program.operands
-        return frozenset(self.program.names[operands[i][0]] for i in self.steps if kinds[i] == Step.GENERATOR)
+        used = {operands[i][0] for i in self.steps if kinds[i] == _GENERATOR}
+        return frozenset(self.program.names[i] for i in used if i not in self.wave_of)
 
     @cached_property
     def parameters(self) -> tuple[ModelParameter, ...]:
@@ -122,12 +199,11 @@ def derive_nested(
 ) -> tuple[NestedTransferFunction, ...]:
     """Return transfer functions in nested form.
 
-    Raises ModelError: SF30x when the equations are singular; SF910 for a distributed model.
+    Those of a distributed model are nameless, see :func:`symflex.equations.assemble.assemble`. Raises
+    ModelError: SF30x when the equations are singular.
     """
     model = equations.model
-    if model.is_distributed:
-        message = "the nested form of a model with beams, rods, fields or delays is not available yet"
-        raise ModelError(Diagnostic("SF910", message, None, "leave the representation to the program"))
+    cut = None if equations.propagation is None else CutModel(model)
     from symflex.equations.elimination.star_mesh import eliminate  # few models are so large
 
     found = eliminate(equations, pairs)
@@ -147,6 +223,9 @@ def derive_nested(
                 unit_of_quotient(*ends, dimension),
                 equations.constants,
                 model,
+                None if equations.propagation is None else equations,
+                found.waves,
+                cut,
             )
         )
     return tuple(made)
@@ -159,6 +238,9 @@ class BoundNested:
     source: NestedTransferFunction  # the symbolic function
     values: tuple[tuple[str, ExactValue], ...]  # every parameter's value, in declared order
 
+    def __repr__(self) -> str:
+        return f"<BoundNested {self.name}, {self.source.size} operations>"
+
     @property
     def name(self) -> str:
         """``OUT/IN``."""
@@ -168,6 +250,11 @@ class BoundNested:
     def is_zero(self) -> bool:
         """True when the output does not depend on the input."""
         return self.source.is_zero
+
+    @property
+    def is_distributed(self) -> bool:
+        """True when the function is transcendental."""
+        return self.source.is_distributed
 
     @cached_property
     def _enclosures(self) -> dict[str, Callable[[], arb]]:
@@ -184,6 +271,15 @@ class BoundNested:
         with ctx.workprec(bits):
             used = self.source.generators - {LAPLACE}
             return EnclosedNested(bits, self.source, {n: acb(self._enclosures[n]()) for n in used})
+
+    def solved(self, bits: int) -> EnclosedNetwork | None:
+        """Return the same for points, where a network of line elements is solved with fewer bits."""
+        if self.source.cut is None or not self.source.is_distributed:
+            return None
+        from symflex.transfer.enclosed_network import EnclosedNetwork  # few functions are of so many members
+
+        numbers = self.source.cut.network.numbers(self.source.output.name, self.source.input.name)
+        return EnclosedNetwork(self.source.cut.responses(bits, dict(self.values)), *numbers)
 
     @cached_property
     def _first(self) -> EnclosedNested:
@@ -217,6 +313,8 @@ class BoundNested:
         import numpy as np  # binding and ball arithmetic need none of it
 
         points = np.asarray(s, dtype=complex)
+        if self.source.is_distributed and self.source.cut is not None:
+            return self._solved(self.source.cut, points)
         with ctx.workprec(CONSTANT_BITS):
             known: dict[str, Any] = {
                 n: float(self._enclosures[n]().mid()) for n in self.source.generators - {LAPLACE}
@@ -225,6 +323,27 @@ class BoundNested:
         with np.errstate(all="ignore"):
             num, den = _values(self.source, known, lambda f: f.numerator / f.denominator)
             value = num / np.asarray(den, dtype=complex)
+        return np.array(np.broadcast_to(value, points.shape), dtype=complex)
+
+    def _solved(self, cut: CutModel, points: npt.NDArray[np.complex128]) -> npt.NDArray[np.complex128]:
+        """Return the values of a network of line elements."""
+        import numpy as np
+
+        from symflex.algebra.line_networks import network_value  # few functions are of so many members
+
+        network, known = cut.network, cut.constants(dict(self.values))
+        with ctx.workprec(CONSTANT_BITS), np.errstate(all="ignore"):
+            entries = network.values(
+                name=lambda name: points if name == LAPLACE else float(known[name]().mid()),
+                number=lambda x: x.numerator / x.denominator,
+                total=sum,
+                product=prod,
+                quotient=truediv,
+                power=pow,
+                exponential=np.exp,
+            )
+            numbers = network.numbers(self.source.output.name, self.source.input.name)
+            value = network_value(entries, network.table, *numbers)
         return np.array(np.broadcast_to(value, points.shape), dtype=complex)
 
 
@@ -242,6 +361,21 @@ class EnclosedNested:
             num, den = _values(self.source, {**self.constants, LAPLACE: s}, ball)
             return acb(num) / acb(den)
 
+    def wave_arguments(self, s: acb) -> list[tuple[list[acb], acb, acb]]:
+        """Return the coefficients, shift and length of each group of fundamental functions."""
+        program, waves = self.source.program, self.source.waves
+        names = program.names
+        known = {**self.constants, LAPLACE: s}
+        wanted = program.steps_of(*(i for w in waves for i in w.arguments))
+        with ctx.workprec(self.bits):
+            values = program.values(
+                program.operations(wanted), name=lambda position: known[names[position]], number=ball
+            )
+            return [
+                ([acb(values[i]) for i in w.coefficients], acb(values[w.shift]), acb(values[w.length]))
+                for w in waves
+            ]
+
     def value_and_slope(self, s: acb) -> tuple[acb, acb]:
         """Return balls around the value and around ``G'(s)/G(s)``."""
         with ctx.workprec(self.bits):
@@ -256,12 +390,43 @@ def _values(
     tf: NestedTransferFunction, known: Mapping[str, Any], number: Callable[[Fraction], Any]
 ) -> tuple[Any, Any]:
     """Return numerator and denominator in whatever arithmetic the generators' values have."""
-    names = tf.program.names
-    values = tf.program.values(tf.operations, name=lambda position: known[names[position]], number=number)
+    names, wave_of = tf.program.names, tf.wave_of
+    values: dict[int, Any] = {}
+    found: dict[Waves, tuple[Value, ...]] = {}
+
+    def generator(position: int) -> Any:  # noqa: ANN401 (whatever the values are)
+        if position not in wave_of:
+            return known[names[position]]
+        waves, place = wave_of[position]
+        if waves not in found:
+            found[waves] = _functions(waves, [acb(values[i]) for i in waves.arguments])
+        return found[waves][place]
+
+    tf.program.values(tf.operations, name=generator, number=number, known=values)
     return values[tf.num], values[tf.den]
 
 
-def _values_and_slopes(  # noqa: PLR0912  (one branch per kind of step, in one loop for speed)
+def _functions(waves: Waves, arguments: Sequence[Value]) -> tuple[Value, ...]:
+    """Return fundamental functions, in the order of their generators."""
+    from symflex.transfer.enclose_kernels import fundamental_functions  # only with beams
+
+    *coefficients, shift, length = arguments
+    orders = [order for _, order in waves.generators]
+    plain = fundamental_functions(coefficients, length) if any(n >= 0 for n in orders) else ()
+    return tuple(plain[n] if n >= 0 else (-shift * length).exp() for n in orders)
+
+
+def _lines(
+    waves: Waves, values: Mapping[int, acb], slopes: Mapping[int, acb]
+) -> Iterator[tuple[int, tuple[acb, acb]]]:
+    """Yield the position of each fundamental function with its value and its derivative by s."""
+    lines = [acb_series([values[i], slopes.get(i, acb(0))], 2) for i in waves.arguments]
+    for (position, _), series in zip(waves.generators, _functions(waves, lines), strict=True):
+        if isinstance(series, acb_series):
+            yield position, (series[0], series[1])
+
+
+def _values_and_slopes(  # noqa: PLR0912, PLR0915  (one branch per kind of step, in one loop)
     tf: NestedTransferFunction, known: Mapping[str, acb], s: acb
 ) -> tuple[acb, acb, acb, acb]:
     """Return numerator and denominator, and their derivatives by s; what is free of s has none on the way."""
@@ -269,6 +434,7 @@ def _values_and_slopes(  # noqa: PLR0912  (one branch per kind of step, in one l
     values: dict[int, acb] = {}
     spend()
     slopes: dict[int, acb] = {}
+    functions: dict[int, tuple[acb, acb]] = {}
     for kind, i, args, gone in tf.operations:
         if kind == _MULTIPLY:
             value, slope = values[args[0]], slopes.get(args[0])
@@ -296,7 +462,12 @@ def _values_and_slopes(  # noqa: PLR0912  (one branch per kind of step, in one l
                 slope = slope / values[below]
         elif kind == _GENERATOR:
             name = program.names[args[0]]
-            value, slope = (s, acb(1)) if name == LAPLACE else (known[name], None)
+            if args[0] in tf.wave_of:
+                if args[0] not in functions:
+                    functions.update(_lines(tf.wave_of[args[0]][0], values, slopes))
+                value, slope = functions[args[0]]
+            else:
+                value, slope = (s, acb(1)) if name == LAPLACE else (known[name], None)
         elif kind == _NEGATE:
             value, slope = -values[args[0]], slopes.get(args[0])
             slope = None if slope is None else -slope
@@ -317,12 +488,26 @@ def _values_and_slopes(  # noqa: PLR0912  (one branch per kind of step, in one l
     return values[tf.num], values[tf.den], slopes.get(tf.num, zero), slopes.get(tf.den, zero)
 
 
-def bind_nested(
-    tf: NestedTransferFunction, values: Mapping[str, int | float | Fraction | Decimal | str] | None = None
-) -> BoundNested:
+def _one() -> arb:
+    return arb(1)
+
+
+AnyBoundFunction = BoundTransferFunction | BoundNested
+"""Either of the two representations, with numbers."""
+
+
+def bind_nested(tf: NestedTransferFunction, values: Mapping[str, Given] | None = None) -> BoundNested:
     """Return a nested transfer function with the declared values, or the given ones in their place.
 
     Values are in SI units or have a unit ("0.8 m"). Raises ModelError: SF229 a parameter without value;
     UsageError: SF902 an unknown parameter.
     """
     return BoundNested(tf, values_for(tf.model, tf.parameters, dict(values or {})))
+
+
+def bind_any(tf: AnyTransferFunction, values: Mapping[str, Given] | None = None) -> AnyBoundFunction:
+    """Return a transfer function in either form with the declared values, or the given ones in their place.
+
+    Raises what :func:`symflex.transfer.bind` raises.
+    """
+    return bind_nested(tf, values) if isinstance(tf, NestedTransferFunction) else bind(tf, values)

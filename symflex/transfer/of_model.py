@@ -11,16 +11,20 @@ from math import inf
 from typing import TYPE_CHECKING
 
 from symflex import equations as equations_room
-from symflex.algebra import uncollected
+from symflex.algebra import LAPLACE, terms_of, uncollected
 from symflex.budget import spend
 from symflex.equations.elimination import expanded_terms, explain_singular, is_singular
-from symflex.errors import BudgetError, Diagnostic, UsageError
+from symflex.errors import BudgetError, Diagnostic, ModelError, UsageError
 from symflex.errors.diagnostic import nearest
+from symflex.library.elements import LineElement
 from symflex.model import with_numbers
+from symflex.model.along import is_tapered
+from symflex.model.signs import is_passive
 from symflex.transfer import nested_form
 from symflex.transfer.bind import bind
 from symflex.transfer.derive import derive_all as derive_from
 from symflex.transfer.derive import nested_transfer
+from symflex.transfer.nested_form import bind_nested
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -28,13 +32,33 @@ if TYPE_CHECKING:
     from symflex.equations import Equations
     from symflex.model import Model
     from symflex.transfer.bind import BoundTransferFunction
-    from symflex.transfer.nested_form import AnyTransferFunction, NestedTransferFunction
+    from symflex.transfer.nested_form import (
+        AnyBoundFunction,
+        AnyTransferFunction,
+        NestedTransferFunction,
+    )
     from symflex.transfer.transfer_function import TransferFunction
 
 EXPANDED_TERMS = 5_000
 """Terms of a closed determinant beyond which nobody reads it: more than fifty pages."""
+EXPANDED_PRODUCTS = 500
+"""The same of a distributed model, where a term holds kernels of every member: four beams on springs have
+900, which print on 1,500 lines, three have 120."""
+CODE_PRODUCTS = 8
+"""The same of numeric code of several members: two beams at an angle have 12, and 90 kB of code."""
+QUICK_PRODUCTS = 50
+"""The same, beyond which roots are found faster without the expanded form: two links with a motor have 88."""
+CODE_MEMBERS = 4
+"""Members up to which code of a formula keeps its digits; of ten equal spans it loses all of them."""
+MOST_PRODUCTS = 20_000
+"""The same, beyond which nothing expanded fits into memory: five beams have 8,000, six 70,000."""
+SOLVED = "solved as a network: code of the formula would be long (--representation expanded)"
 NEVER_LARGE = 20
-"""Elements up to which it is not estimated either."""
+"""Elements of a lumped model up to which it is not estimated either."""
+FEW_MEMBERS = 2
+"""The same of distributed members."""
+FEW_UNKNOWNS = 1_000
+"""Unknowns up to which dense matrices of numbers take half a second."""
 
 
 def pick_pairs(model: Model, names: Sequence[str]) -> tuple[tuple[str, str], ...]:
@@ -55,9 +79,21 @@ def assemble(model: Model) -> Equations:
     return equations_room.assemble(model, nested_transfer)
 
 
+def assemble_for_checks(model: Model) -> Equations:
+    """Return the model's equations for what needs no closed form.
+
+    They are sparse where distributed members are many, as kernels take the ordinary ring long.
+    """
+    return assemble_sparse(model) if model.is_distributed and _may_be_large(model) else assemble(model)
+
+
 def check_solvable(equations: Equations) -> None:
     """Raise the explanation when the equations have no unique solution."""
-    if is_singular(equations):
+    if equations.ring.is_sparse and len(equations.unknowns) > FEW_UNKNOWNS:
+        from symflex.equations.elimination.star_mesh import eliminate  # few models are so large
+
+        eliminate(equations, equations.model.transfer_functions[:1])
+    elif is_singular(equations):
         raise explain_singular(equations)
 
 
@@ -65,8 +101,20 @@ def derive_all(model: Model, pairs: Sequence[tuple[str, str]] | None = None) -> 
     """Return the transfer functions of the given pairs, all by default, from one elimination.
 
     Those in which some wavenumbers have a formula and others have none take a second one, without names.
+    Raises BudgetError: SF501, SF502 when they are too large expanded.
     """
     wanted = model.transfer_functions if pairs is None else tuple(pairs)
+    if model.is_distributed and _may_be_large(model):
+        terms = _expanded_terms(model, assemble_sparse(model), wanted[0])
+        if terms > MOST_PRODUCTS:
+            message = f"the closed form is too large: its determinant would have {_some(terms)} terms"
+            hint = "roots, Bode plots, sweeps, stability and exports do without it; or split the model"
+            raise BudgetError(Diagnostic("SF502", message, None, hint))
+    return _derive_expanded(model, wanted)
+
+
+def _derive_expanded(model: Model, wanted: Sequence[tuple[str, str]]) -> tuple[TransferFunction, ...]:
+    """Return what :func:`derive_all` does, of a model known not to be too large."""
     try:
         found = derive_from(assemble(model), wanted)
     except BudgetError as error:
@@ -85,15 +133,19 @@ def derive_all(model: Model, pairs: Sequence[tuple[str, str]] | None = None) -> 
     return tuple(again.get(i, tf) for i, tf in enumerate(found))
 
 
-def assemble_sparse(model: Model) -> Equations:
+def assemble_sparse(model: Model, *, is_joined: bool = False) -> Equations:
     """Return the equations over a ring of any number of names, for the nested form.
 
-    A model inside a block is expanded first, and needs the ordinary ring.
+    A model inside a block is expanded first, and needs the ordinary ring. With ``is_joined`` line elements
+    of one law that meet are taken as one. Raises ModelError: SF910 where coefficients vary along x.
     """
+    if is_tapered(model):
+        message = "the nested form of networks is not available yet where coefficients vary along x"
+        raise ModelError(Diagnostic("SF910", message, None, "ask for the expanded representation"))
     is_sparse = not any(block.submodel is not None for block in model.blocks)
     with uncollected():
         return equations_room.assemble(
-            model, nested_transfer, is_sparse=is_sparse and not model.is_distributed
+            model, nested_transfer, is_sparse=is_sparse, is_nameless=model.is_distributed, is_joined=is_joined
         )
 
 
@@ -109,34 +161,95 @@ def derive_nested(
 
 
 def derive_as(
-    model: Model, pairs: Sequence[tuple[str, str]], representation: str = "auto"
+    model: Model, pairs: Sequence[tuple[str, str]], representation: str = "auto", *, solves: bool = False
 ) -> tuple[tuple[AnyTransferFunction, ...], str]:
     """Return transfer functions in one of the two exact representations, and why in that one.
 
     ``expanded``: quotients of polynomials; ``nested``: straight-line programs; ``auto``: expanded, unless
-    that would explode, and then a sentence says why it is not. Raises BudgetError: SF501, SF502 when they are
-    too large expanded, and there is no nested form.
+    that would explode, and then a sentence says why it is not. With ``solves`` they are for code that solves
+    networks of distributed members, and is shorter than that of a formula already for small ones.
     """
     if representation == "nested":
         return derive_nested(model, pairs), ""
     if representation == "expanded":
         return derive_all(model, pairs), ""
-    if len(model.elements) > NEVER_LARGE and not model.is_distributed:
-        from symflex.equations.elimination.star_mesh import eliminate  # few models are so large
-
+    solves = solves and model.is_distributed
+    if _may_be_large(model, 1 if solves else FEW_MEMBERS):
         equations = assemble_sparse(model)
-        terms = expanded_terms(equations, eliminate(equations, pairs[:1]))
-        if terms > EXPANDED_TERMS:
-            count = f"some {terms:.0e}".replace("e+", "e") if terms < inf else "more than 1e300"
-            reason = f"in nested form: the expanded determinant would have {count} terms"
+        most = EXPANDED_PRODUCTS if model.is_distributed else EXPANDED_TERMS
+        terms = _expanded_terms(model, equations, pairs[0], CODE_PRODUCTS if solves else most)
+        if solves and terms <= most and (terms > CODE_PRODUCTS or _may_be_large(model, CODE_MEMBERS)):
+            return nested_form.derive_nested(equations, pairs), SOLVED
+        if terms > most:
+            reason = f"in nested form: the expanded determinant would have {_some(terms)} terms"
             return nested_form.derive_nested(equations, pairs), reason
     try:
-        return derive_all(model, pairs), ""
+        found = _derive_expanded(model, pairs)
+        # Where one beam's motion is another's, the estimate may be far too small.
+        if solves and _may_be_large(model) and max(map(_kernel_products, found)) > CODE_PRODUCTS:
+            return derive_nested(model, pairs), SOLVED
+        return found, ""
     except BudgetError as error:
         spend()
-        if model.is_distributed:
-            raise
         return derive_nested(model, pairs), f"in nested form: {error.diagnostics[0].message}"
+
+
+def _kernel_products(tf: TransferFunction) -> int:
+    """Return how many products of kernels the longest factor of a transfer function has."""
+    ring = tf.ratio.ring
+    kernels = {ring.index[name] for name in tf.kernels.generators}
+    factors = [f for f, _ in (*tf.num.factors, *tf.den.factors)]
+    return max(
+        (len({tuple(x for x in m if x[0] in kernels) for m, _ in terms_of(f)}) for f in factors), default=0
+    )
+
+
+def is_large_network(model: Model) -> bool:
+    """Tell whether a distributed model's expanded form is larger than anyone reads."""
+    if not model.is_distributed or not _may_be_large(model):
+        return False
+    return _expanded_terms(model, assemble_sparse(model), model.transfer_functions[0]) > EXPANDED_PRODUCTS
+
+
+def _some(terms: float) -> str:
+    return f"some {terms:.0e}".replace("e+", "e") if terms < inf else "more than 1e300"
+
+
+def _may_be_large(model: Model, few: int = FEW_MEMBERS) -> bool:
+    """Tell whether the expanded form is worth an estimate; of tapered members there is no other yet."""
+    if is_tapered(model):
+        return False
+    if not model.is_distributed:
+        return len(model.elements) > NEVER_LARGE
+    lines = sum(isinstance(use.element, LineElement) for use in model.elements)
+    return lines + len(model.fields) > few
+
+
+def _expanded_terms(
+    model: Model, equations: Equations, pair: tuple[str, str], most: float = EXPANDED_PRODUCTS
+) -> float:
+    """Return about how many terms the expanded determinant has.
+
+    Where these are too many, chains of one law are taken as one.
+    """
+    from symflex.equations.elimination.star_mesh import eliminate  # few models are so large
+
+    terms = expanded_terms(equations, eliminate(equations, (pair,)))
+    if equations.propagation is not None and terms > most:
+        from symflex.equations.distributed import may_join  # only with beams
+
+        joined = assemble_sparse(model, is_joined=True) if may_join(model) else equations
+        if joined.is_joined:
+            return min(terms, expanded_terms(joined, eliminate(joined, (pair,))))
+    return terms
+
+
+def derive_with_numbers(model: Model, pairs: Sequence[tuple[str, str]]) -> tuple[NestedTransferFunction, ...]:
+    """Return transfer functions in nested form, derived with the declared values in place.
+
+    Nothing is divided into symbols here: a frame of a hundred members takes half a second.
+    """
+    return derive_nested(with_numbers(model, in_kernels=True), pairs)
 
 
 def derive_bound(model: Model, pairs: Sequence[tuple[str, str]]) -> tuple[BoundTransferFunction, ...]:
@@ -146,3 +259,54 @@ def derive_bound(model: Model, pairs: Sequence[tuple[str, str]]) -> tuple[BoundT
     SF229 when a parameter that occurs has no value.
     """
     return tuple(bind(tf) for tf in derive_all(with_numbers(model), pairs))
+
+
+def derive_for_values(model: Model, pairs: Sequence[tuple[str, str]]) -> tuple[AnyTransferFunction, ...]:
+    """Return transfer functions that are to be bound to many values: of large networks in nested form.
+
+    Raises what :func:`derive_all` raises for lumped models.
+    """
+    if model.is_distributed:
+        return derive_as(model, pairs)[0]
+    return derive_all(model, pairs)
+
+
+def _accumulates(equations: Equations) -> bool:
+    """Tell whether roots accumulate at a finite s: where a law of waves has a pole, as Kelvin and Voigt's."""
+    laws = (x for c in equations.continua for row in c.system.matrix for x in row)
+    return any(x.denominator().depends_on(LAPLACE) for x in laws)
+
+
+def may_be_expanded(model: Model, pair: tuple[str, str]) -> bool:
+    """Tell whether roots of a model with numbers may be sought in its expanded form: it is not too large."""
+    return _expanded_terms(model, assemble_sparse(model), pair) <= EXPANDED_PRODUCTS
+
+
+def _supplies_nothing(model: Model) -> bool:
+    """Tell whether energy is nowhere supplied, so that a network's roots are counted without a formula."""
+    return is_passive(model, [(p.name, p.value) for p in model.parameters if p.value])
+
+
+def derive_for_roots(
+    model: Model, pairs: Sequence[tuple[str, str]], *, is_explained: bool = False
+) -> tuple[AnyBoundFunction, ...]:
+    """Return transfer functions with the declared values, in the form in which roots are found.
+
+    In nested form where a network of beams, rods, shafts or strings is too large for the expanded one, or its
+    roots are found faster without it. With ``is_explained`` the expanded form is wanted for more than roots.
+    Raises what :func:`derive_bound` raises otherwise.
+    """
+    if not model.is_distributed or not _may_be_large(model, 1):
+        return derive_bound(model, pairs)
+    numbered = with_numbers(model, in_kernels=True)
+    equations = assemble_sparse(numbered)
+    is_quick = not is_explained and not _accumulates(equations)
+    is_counted = is_quick and _may_be_large(model) and _supplies_nothing(model)
+    most = QUICK_PRODUCTS if is_quick else EXPANDED_PRODUCTS
+    if not is_counted and _expanded_terms(numbered, equations, pairs[0]) <= most:
+        try:
+            return tuple(bind(tf) for tf in _derive_expanded(model, pairs))
+        except BudgetError as error:
+            if error.diagnostics[0].code not in ("SF501", "SF502"):
+                raise
+    return tuple(bind_nested(tf) for tf in nested_form.derive_nested(equations, pairs))

@@ -115,6 +115,10 @@ class TransferFunction:
             raise ValueError(message)
         return self.closed.ratio
 
+    def __repr__(self) -> str:
+        kind = ", distributed" if self.is_distributed else ""
+        return f"<TransferFunction {self.name}: {self.quantity}{kind}>"
+
     @property
     def ring(self) -> Ring:
         """Where :attr:`ratio` lives."""
@@ -167,6 +171,11 @@ class TransferFunction:
         return any(
             self.ratio.depends_on(k.generator) for k in self.kernels.kernels if k.function == "fundamental"
         )
+
+    @property
+    def has_formula(self) -> bool:
+        """True when all its kernels are functions of wavenumbers with a formula."""
+        return not self.is_nameless and not any(k.function == "entry" for k in self.kernels.kernels)
 
     @property
     def is_mixed(self) -> bool:

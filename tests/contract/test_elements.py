@@ -13,6 +13,7 @@ from symflex.algebra import Factored, Ring
 from symflex.cli import run
 from symflex.library.elements import (
     ACROSS_UNIT,
+    COMPONENTS,
     ELEMENTS,
     THROUGH_NAME,
     THROUGH_UNIT,
@@ -27,8 +28,9 @@ from symflex.quantities import unit_of
 from tests.contract.smallest import MODELS, element_model
 
 EVERY = pytest.mark.parametrize("kind", ELEMENTS)
-PORT_DOMAINS = ("translation", "rotation", "electrical", "planar", "any", "whole")
+PORT_DOMAINS = ("translation", "rotation", "electrical", "planar", "plane", "any", "whole")
 RING = Ring(("s", "p", "q"))
+DIRECTION = ("cos", "sin", "cos_cos", "cos_sin")
 
 
 def domains_of(element, any_domain="translation"):
@@ -43,14 +45,16 @@ def use_of(element, any_domain="translation"):
         found = []
         for _ in range(port.terminals):
             count += 1
-            if domains[port.name] == "planar":
-                y, theta = (Variable("node", f"n{count}", c) for c in ("y", "theta"))
-                found.append(PortTerminal(None, y, theta))
+            if domains[port.name] in COMPONENTS:
+                moving = {c: Variable("node", f"n{count}", c) for c in COMPONENTS[domains[port.name]]}
+                found.append(PortTerminal(**moving))
             else:
                 found.append(PortTerminal(Variable("node", f"n{count}")))
         terminals[port.name] = tuple(found)
     p = Factored.generator(RING, "p")
     values = {x.name: p + i for i, x in enumerate(element.parameters) if not x.signal}
+    if any(x.is_direction for x in element.parameters):
+        values |= {name: p * (i + 2) for i, name in enumerate(DIRECTION)}
     signal = LinearForm.of((Variable("signal", "u"), p))
     forms = {x.name: signal for x in element.parameters if x.signal}
     s = Factored.generator(RING, "s")
@@ -257,7 +261,7 @@ def test_a_line_element_s_theories_are_registered_and_of_its_state(kind):
             p.name: Factored.generator(RING, "p")
             for p in element.parameters
             if p.applies(words) or p.default is not None
-        }
+        } | dict.fromkeys(DIRECTION, Factored.generator(RING, "p"))
         system = FIELDS[element.theory(choices)](Factored.generator(RING, "s"), values)
         assert len(system.states) == len(element.ends) + len(element.through)
         assert system.states[len(element.ends) :] == element.through
@@ -272,9 +276,9 @@ def test_a_line_element_that_transmits_its_state_unchanged_is_a_rigid_and_massle
     unit = tuple(tuple(one if i == j else zero for j in range(size)) for i in range(size))
     stamp = element.stamp(replace(use, transmission=unit))
     laws = [{str(v): c.unit for v, c in row.form.terms} for row in stamp.rows]
-    across = {"f": "y", "tau": "theta"} if "planar" in use.domains.values() else {}
-    for name, law in zip((*element.through, *element.through), laws, strict=True):
-        dot = f".{across[name]}" if across else ""
+    dots = [""] if element.ends == ("across",) else [f".{end}" for end in element.ends]
+    twice = zip((*element.through, *element.through), (*dots, *dots), laws, strict=True)
+    for name, dot, law in twice:
         # The ends move alike; what is delivered at one end is taken at the other.
         assert law in ({f"n2{dot}": 1, f"n1{dot}": -1}, {f"part.{name}": -1, f"part.{name}_a": -1})
 

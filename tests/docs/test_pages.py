@@ -11,11 +11,13 @@ import pytest
 
 import symflex
 from symflex.cli import run
+from tests.docs.reference import FORMULA, PLACE, with_tables
 from tests.house.repository import ROOT, all_blocks, blocks, pages, slow_ones
 
 SPECIFICATIONS = [block for block in all_blocks("toml") if block.text.startswith("symflex = 1")]
 SESSIONS = [block for block in all_blocks("console") if block.text.startswith("$ symflex")]
 PYTHON = [block for block in all_blocks("python") if ">>>" in block.text]
+WITH_TABLES = [p for p in pages() if any(found.search(p.read_text("utf-8")) for found in (PLACE, FORMULA))]
 FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
 
@@ -55,6 +57,15 @@ def test_there_is_something_to_check():
     assert SPECIFICATIONS
     assert SESSIONS
     assert PYTHON
+
+
+@pytest.mark.parametrize(
+    "page", [p for p in pages() if PLACE.search(p.read_text("utf-8"))], ids=lambda p: p.name
+)
+def test_tables_and_formulas_of_a_page_are_those_of_the_program(page, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    text = page.read_text("utf-8")
+    assert with_tables(text) == text, "write them anew: python -m tests.docs.update"
 
 
 @pytest.mark.parametrize("block", [b for b in SPECIFICATIONS if b.title != "wrong.toml"], ids=str)

@@ -1,6 +1,7 @@
 """Write into the pages what the program prints: ``python -m tests.docs.update [PAGE...]``, all by default.
 
-Sessions that still hold stay as they are, with their ``...``; look at what changed before you keep it.
+Tables of the program's registries are written too. Sessions that still hold stay as they are, with their
+``...``; look at what changed before you keep it.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import tempfile
 from pathlib import Path
 
 from symflex.cli import run
+from tests.docs.reference import with_tables
 from tests.house.repository import ROOT, blocks, pages
 
 
@@ -42,7 +44,7 @@ def shown_now(text):
 
 def update(page):
     """Rewrite the sessions of one page, in a folder with the files that it titles."""
-    text = page.read_text("utf-8")
+    text = with_tables(page.read_text("utf-8"))
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
         for block in blocks(page):
             if block.title:

@@ -6,8 +6,12 @@ import re
 import subprocess
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import pytest
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
 
 ROOT = Path(__file__).parents[2]
 
@@ -91,14 +95,14 @@ EACH_TIME = ("sliding_free_beam", "timoshenko_cantilever", "rod_tip_mass", "two_
 """Of the classics and loops, the models that go through every test in every run; others do with -m slow."""
 
 
-def slow_ones(values, is_slow):
-    """The values as parameters, some of them of slow tests."""
+def slow_ones(values: Iterable[Any], is_slow: Callable[[Any], bool]) -> list[Any]:
+    """Return the values as parameters, some of them of slow tests."""
     return [pytest.param(v, marks=pytest.mark.slow) if is_slow(v) else v for v in values]
 
 
-def in_turns(paths):
-    """The paths as parameters: most of the classics and loops, which all go the same way, are marked slow."""
-    found = []
+def in_turns(paths: Iterable[Path]) -> list[Any]:
+    """Return the paths as parameters; most classics and loops, which all go the same way, are marked slow."""
+    found: list[Any] = []
     for path in paths:
         is_turn = path.parent.name == "eppinger1988" or path.stem in EACH_TIME
         found.append(pytest.param(path, marks=[] if is_turn else [pytest.mark.slow], id=path.stem))

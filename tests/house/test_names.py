@@ -14,6 +14,7 @@ ONE_IDEA = {
     "PoleZeroMap",
     "Root",
     "StateSpace",
+    "Sweep",
     "TransferFunction",
 }
 """What a Python user holds bears the name of what the pipeline makes, which it wraps."""

@@ -58,7 +58,7 @@ def _si(written: object) -> Number:
     number, _, unit = str(written).partition(" ")
     if unit == "mm/rev":
         return mpf(number) / 1000 / (2 * pi)
-    coherent = re.fullmatch(r"(kg|N|V|A|ohm|m|s|rad)([*/^](kg|N|V|A|ohm|m|s|rad|\d))*", unit)
+    coherent = re.fullmatch(r"(kg|N|V|A|[oO]hm|m|s|rad)([*/^](kg|N|V|A|ohm|m|s|rad|\d))*", unit)
     return mpf(number) * mpf("1" if coherent else _SI[unit])
 
 

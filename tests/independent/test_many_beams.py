@@ -29,7 +29,7 @@ def chain(count):
         parameters += (
             f'E_{i} = "{v["E"]} GPa"\nI_{i} = "{10 + 3 * i}e-9 m^4"\nrho_{i} = "{v["rho"]} kg/m^3"\n'
         )
-        parameters += f'A_{i} = "{10 + i}e-5 m^2"\nl_{i} = "0.{2 + i} m"\n'
+        parameters += f'A_{i} = "{10 + i}e-5 m^2"\nl_{i} = "{(2 + i) / 10} m"\n'
         ends = f'["{f"p_{i - 1}" if i else "ground"}", "p_{i}"]'
         values = ", ".join(f'{name} = "{name}_{i}"' for name in v)
         elements += f'beam_{i} = {{ type = "beam", between = {ends}, {values} }}\n'
@@ -71,3 +71,13 @@ def test_a_chain_of_five_different_beams_is_refused_in_seconds():
     text, _ = chain(5)
     with pytest.raises(BudgetError, match=r"SF502.*200000 terms"):
         symflex.loads(text).transfer_function("X", "F")
+
+
+@pytest.mark.parametrize("count", [6, pytest.param(12, marks=pytest.mark.slow)])
+def test_the_nested_form_of_a_chain_has_the_response_of_its_boundary_value_problem(count):
+    text, beams = chain(count)
+    model = symflex.loads(text)
+    found = [model.nested(output, "F").bind() for output in ("X", "Y")]
+    for s in POINTS[:2]:
+        for function, expected in zip(found, reference(beams, s), strict=True):
+            assert abs(function(s) / expected - 1) < 1e-12

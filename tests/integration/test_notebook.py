@@ -35,25 +35,33 @@ nbformat.write(notebook, "shown.ipynb")
 """
 
 
-@pytest.fixture(scope="module")
-def outputs(tmp_path_factory):
-    """The data of each cell's result, by MIME type."""
+NOTEBOOKS = sorted((ROOT / "docs" / "notebooks").glob("*.ipynb"))
+
+
+def executed(notebook, folder):
+    """Run a notebook in a kernel, with the repository as its folder, and return its cells."""
     lacking = [name for name in PACKAGES if importlib.util.find_spec(name) is None]
     if lacking and os.environ.get(REQUIRE_TOOLS) == "1":
         pytest.fail(f"{REASON} {lacking[0]}, which is not installed, and {REQUIRE_TOOLS}=1", pytrace=False)
     if lacking:
         pytest.skip(f"{REASON} {lacking[0]}, which is not installed")
-    folder = tmp_path_factory.mktemp("notebook")
+    (folder / "shown.ipynb").write_text(notebook, encoding="utf-8")
+    own = {"PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "ignore", "IPYTHONDIR": str(folder)}
+    command = [sys.executable, "-c", RUN, str(ROOT)]
+    done = subprocess.run(
+        command, cwd=folder, env={**os.environ, **own}, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    return json.loads((folder / "shown.ipynb").read_text(encoding="utf-8"))["cells"]
+
+
+@pytest.fixture(scope="module")
+def outputs(tmp_path_factory):
+    """The data of each cell's result, by MIME type."""
     cell = {"cell_type": "code", "metadata": {}, "execution_count": None, "outputs": []}
     cells = [{**cell, "id": f"c{i}", "source": source} for i, source in enumerate(CELLS)]
     notebook = {"nbformat": 4, "nbformat_minor": 5, "metadata": {}, "cells": cells}
-    (folder / "shown.ipynb").write_text(json.dumps(notebook), encoding="utf-8")
-    own = {"PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "ignore", "IPYTHONDIR": str(folder)}
-    environment = {**os.environ, **own}
-    command = [sys.executable, "-c", RUN, str(ROOT)]
-    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    shown = json.loads((folder / "shown.ipynb").read_text(encoding="utf-8"))["cells"]
+    shown = executed(json.dumps(notebook), tmp_path_factory.mktemp("notebook"))
     return [
         next(o["data"] for o in cell["outputs"] if o["output_type"] == "execute_result") for cell in shown
     ]
@@ -92,3 +100,21 @@ def test_a_response_shows_as_a_drawing_and_a_long_one_as_a_raster(outputs):
     assert "<svg" in text(outputs[4]["image/svg+xml"])
     assert text(outputs[5]["image/png"]).startswith("iVBORw0KGgo")  # the signature of PNG in base 64
     assert text(outputs[6]["text/plain"]).startswith("<FrequencyResponse V_act/F")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_every_cell_of_a_notebook_of_the_documentation_shows_something(path, tmp_path):
+    rich = {"image/png", "image/svg+xml", "text/html", "text/latex"}
+    cells = [cell for cell in executed(path.read_text(encoding="utf-8"), tmp_path) if "outputs" in cell]
+    shown = [{kind for output in cell["outputs"] for kind in output.get("data", ())} for cell in cells]
+    assert all(shown)
+    plain = [text(cell["source"]) for cell, kinds in zip(cells, shown, strict=True) if not rich & kinds]
+    assert all(".along(" in source for source in plain)  # an array of numpy
+
+
+def test_notebooks_are_kept_without_what_they_print():
+    assert len(NOTEBOOKS) == 3
+    for path in NOTEBOOKS:
+        cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
+        assert not any(cell.get("outputs") for cell in cells)

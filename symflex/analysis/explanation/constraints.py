@@ -21,7 +21,7 @@ from symflex.expressions import (
     format_expression,
     names,
 )
-from symflex.library.elements import ELEMENTS, Placing, Variable
+from symflex.library.elements import COMPONENT_DOMAIN, ELEMENTS, Placing, Variable
 from symflex.model import FieldProblem, Input, Model, NodeReference, PlacedElement
 from symflex.model.model import INPUT_KINDS
 
@@ -72,12 +72,15 @@ def hold(model: Model, coordinates: Coordinates) -> Constraint:
         words = f"{first} and {second} locked to each other"
         return Constraint(_with(model, placed), f"{first} - {second} = 0", words, spec)
     ((variable, _),) = coordinates
-    kind = {"y": "pin", "theta": "slider", "": "fixed"}[variable.component]
     domain = nodes[variable.owner].domain
+    kind = {"y": "pin", "theta": "slider"}.get(variable.component if domain == "planar" else "", "fixed")
     reference = NodeReference(variable.owner)
+    if domain == "plane":
+        reference, domain = _reference(variable), _domain(model, variable)
     placed = PlacedElement(name, ELEMENTS[kind], (("at", (reference,)),), (("at", domain),), ())
     words = f"node {variable} short-circuited" if domain == "electrical" else f"{variable} held"
-    spec = f'{name} = {{ type = "{kind}", at = "{variable.owner}" }}'
+    at = f"{reference.node}.{reference.component}" if reference.component else reference.node
+    spec = f'{name} = {{ type = "{kind}", at = "{at}" }}'
     return Constraint(_with(model, placed), f"{variable} = 0", words, spec)
 
 
@@ -96,9 +99,7 @@ def _reference(variable: Variable) -> NodeReference:
 
 def _domain(model: Model, variable: Variable) -> Placing:
     domain = next(n.domain for n in model.nodes if n.name == variable.owner)
-    if domain != "planar":
-        return domain
-    return "rotation" if variable.component == "theta" else "translation"
+    return COMPONENT_DOMAIN.get(variable.component, domain)
 
 
 def open_circuit(model: Model, source: Input) -> Constraint | None:

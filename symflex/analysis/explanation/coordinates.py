@@ -28,7 +28,7 @@ from symflex.expressions import (
     names,
     replace_values,
 )
-from symflex.library.elements import Domain, LinearForm, LineElement, Variable
+from symflex.library.elements import COMPONENTS, Domain, LinearForm, LineElement, Variable
 from symflex.library.elements.lumped import CurrentSource, ForceSource, TorqueSource, VoltageSource
 from symflex.model.model import INPUT_KINDS
 from symflex.model.network import variable_of
@@ -67,8 +67,11 @@ def acting(model: Model, source: Input) -> Coordinates:
     if element is None or isinstance(element.element, VoltageSource):
         return ()
     ((port, references),) = element.nodes
-    domain = dict(element.domains)[port]
-    return () if domain == "planar" else _at(model, references, domain)
+    match dict(element.domains)[port]:
+        case "planar" | "plane":
+            return ()
+        case domain:
+            return _at(model, references, domain)
 
 
 def driven_source(model: Model, source: Input) -> PlacedElement | None:
@@ -196,7 +199,7 @@ def in_one_way(model: Model) -> Model:
     unknowns = {u for field in model.fields for u in field.unknowns}
 
     def written(expression: Expression) -> Expression:
-        changed: dict[Call, Expression] = {}
+        changed: dict[Expression, Expression] = {}
         for call in (n for n in names(expression) if isinstance(n, Call)):
             place = line.key(call.argument) if call.name in unknowns or "." in call.name else None
             if call.name in unknowns:
@@ -234,7 +237,7 @@ def _ends(
         if reference.is_ground or reference.node in read_otherwise:
             continue
         for component, called in zip(element.ends, element.along, strict=False):
-            picked = replace(reference, component=component) if domain == "planar" else reference
+            picked = replace(reference, component=component) if domain in COMPONENTS else reference
             moved = variable_of(picked, nodes[reference.node], domain)
             shown = Attribute(moved.owner, moved.component) if moved.component else Name(moved.owner)
             for name in called:

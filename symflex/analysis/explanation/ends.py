@@ -24,7 +24,7 @@ from symflex.expressions import (
     is_number,
     names,
 )
-from symflex.library.elements import LineElement, Variable
+from symflex.library.elements import COMPONENTS, LineElement, Variable
 from symflex.library.elements.line import Beam
 from symflex.library.elements.rigid import MasslessBeam
 
@@ -55,7 +55,7 @@ def ends_of_element(model: Model, use: PlacedElement, resting: Collection[Variab
     """Return how both ends of a line element are held, given the coordinates at rest."""
     (_, references), *_ = use.nodes
     domain = dict(use.domains)["between"]
-    return ", ".join(_end(model, use, r, domain == "planar", resting) for r in references)
+    return ", ".join(_end(model, use, r, domain in COMPONENTS, resting) for r in references)
 
 
 def _end(
@@ -64,8 +64,10 @@ def _end(
     if reference.is_ground:
         return f"{'clamped' if is_planar else 'held'} at ground"
     if is_planar:
-        own = tuple(Variable("node", reference.node, c) for c in ("y", "theta"))
-        word = BENDING[own[0] in resting, own[1] in resting]
+        own = tuple(v for v in coordinates_of(model, use) if v.owner == reference.node)
+        *across, theta = (v in resting for v in own)
+        held = " and ".join(v.component for v in own if v in resting)
+        word = f"held in {held}" if any(across) != all(across) else BENDING[any(across), theta]
     else:
         own = tuple(v for v in coordinates_of(model, use) if v.owner == reference.node)
         word = "held" if all(v in resting for v in own) else "free"
@@ -156,7 +158,7 @@ def bending_between(model: Model, equations: Equations, output: Output, source: 
         ends = {v for v, _ in motion.coordinates}
         for use in model.elements:
             if not isinstance(use.element, Beam | MasslessBeam):
-                continue
+                continue  # a member of a frame stretches besides: waves travel along it
             if not _reach(model, starts, without=None).isdisjoint(ends) and _reach(
                 model, starts, without=use
             ).isdisjoint(ends):

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from symflex.algebra import LAPLACE, Factored, degree_in
 from symflex.algebra.propagators import EXPONENTIAL
 from symflex.equations.elimination import Determinants
-from symflex.library.elements import EquationRow, LinearForm, Variable
+from symflex.library.elements import COMPONENTS, EquationRow, LinearForm, Variable
 from symflex.library.elements.rigid import Fixed, Pin, Slider
 from symflex.model.network import variable_of
 from symflex.transfer.expansion import compose_rational
@@ -205,7 +205,7 @@ def coordinates_of(model: Model, use: PlacedElement) -> tuple[Variable, ...]:
             if reference.is_ground:
                 continue
             node = nodes[reference.node]
-            if domains[port] == "planar":
+            if domains[port] in COMPONENTS:
                 found += [Variable("node", node.name, c) for c in node.components]
             else:
                 found.append(variable_of(reference, node, domains[port]))  # type: ignore[arg-type]

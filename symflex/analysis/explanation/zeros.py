@@ -157,6 +157,14 @@ class ZeroExplanation:
     bending: Bending | None = None
     has_zeros: bool = True
 
+    def __repr__(self) -> str:
+        return f"<ZeroExplanation {self.tf}: {self.kind}, {self.status}>"
+
+    def _repr_html_(self) -> str:
+        from symflex.print.html import text_html  # only notebooks ask
+
+        return text_html(str(self))
+
     def __str__(self) -> str:
         return explanation_text(self)
 

@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING
 
 from flint import acb, acb_mat, arb, arb_mat
 
-from symflex.algebra import LAPLACE, Factored
+from symflex.algebra import LAPLACE, Factored, terms_of
 from symflex.algebra.propagators import EXPONENTIAL, Propagation
 from symflex.analysis.modes.shape import DistributedShape
-from symflex.transfer.balls import ball, enclose, enclosure
+from symflex.transfer.balls import at_centre, ball, enclose, enclosure
+from symflex.transfer.enclose_kernels import fundamental_functions
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from symflex.equations import Continuum, Equations
     from symflex.library.elements import Variable
     from symflex.model import ExactValue
+    from symflex.transfer.balls import Value
 
 
 SEED = 7
@@ -140,6 +142,7 @@ class BoundEquations:
         values: Values = {LAPLACE: s, **{name: acb(value) for name, value in known.items()}}
         waiting = [(n, v) for n, v in equations.definitions if not _define(n, v, values)]
         if equations.propagation is not None:
+            equations.propagation.table.without_tapers("mode shapes are")
             values |= _propagators(equations.propagation, values)
         for name, value in waiting:
             _define(name, value, values)
@@ -174,6 +177,7 @@ class ContinuumAt:
     length: arb
     initial: tuple[Variable | None, ...]
     loads: tuple[Variable, ...]
+    direction: tuple[arb, ...]
 
     def shape(self, values: Mapping[Variable, acb], bits: int) -> DistributedShape:
         """Return how it moves when the unknowns have these values; inputs are at rest."""
@@ -183,8 +187,9 @@ class ContinuumAt:
             if variable in values:
                 load = [x + b * values[variable] for x, b in zip(load, column, strict=True)]
         matrix, states = self.matrix, self.states
+        within = (self.start, self.length)
         return DistributedShape(
-            self.name, self.kind, states, matrix, tuple(load), initial, self.start, self.length, bits
+            self.name, self.kind, states, matrix, tuple(load), initial, *within, bits, self.direction
         )
 
 
@@ -203,11 +208,10 @@ def evaluated(value: Factored, values: Mapping[str, acb]) -> acb:
     result = acb(ball(value.unit))
     for factor, exponent in value.factors:
         total = acb(0)
-        for monomial, coefficient in factor.terms():
-            term = acb(int(coefficient))
-            for name, power in zip(names, monomial, strict=True):
-                if power:
-                    term = term * values[name] ** int(power)
+        for monomial, coefficient in terms_of(factor):
+            term = acb(coefficient)
+            for i, power in monomial:
+                term = term * values[names[i]] ** power
             total = total + term
         result = result * total**exponent
     return result
@@ -225,7 +229,7 @@ def _define(name: str, value: Factored, values: Values) -> bool:
 def _propagators(propagation: Propagation, values: Values) -> Values:
     """Return the fundamental functions and exponentials at s."""
     found: Values = {}
-    columns: dict[tuple[int, int], list[acb]] = {}
+    columns: dict[tuple[int, int], tuple[Value, ...]] = {}
     for p in propagation.propagators:
         law = propagation.table.dispersions[p.dispersion]
         length = evaluated(propagation.lengths[p.dispersion][p.length], values)
@@ -234,22 +238,15 @@ def _propagators(propagation: Propagation, values: Values) -> Values:
             continue
         key = (p.dispersion, p.length)
         if key not in columns:
-            columns[key] = _fundamental([evaluated(c, values) for c in law.characteristic], length)
-        found[p.generator] = columns[key][p.order]
+            coefficients = [evaluated(c, values) for c in law.characteristic]
+            columns[key] = fundamental_functions(coefficients, length)
+        found[p.generator] = at_centre(columns[key][p.order])
     return found
-
-
-def _fundamental(characteristic: Sequence[acb], length: acb) -> list[acb]:
-    """Return ``h, h', ...`` at a length: the last column of the exponential of the companion matrix."""
-    n = len(characteristic)
-    rows = [[length if j == i + 1 else acb(0) for j in range(n)] for i in range(n)]
-    rows[-1] = [-c * length for c in characteristic]
-    whole = acb_mat(rows).exp()
-    return [whole[i, n - 1] for i in range(n)]
 
 
 def _continuum(continuum: Continuum, values: Values) -> ContinuumAt:
     system = continuum.system
+    axes = system.axes
     return ContinuumAt(
         continuum.name,
         continuum.kind,
@@ -260,4 +257,5 @@ def _continuum(continuum: Continuum, values: Values) -> ContinuumAt:
         evaluated(continuum.length, values).real,
         continuum.initial,
         continuum.loads,
+        () if axes is None else tuple(evaluated(x, values).real for x in (axes.cos, axes.sin)),
     )

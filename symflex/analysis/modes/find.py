@@ -18,10 +18,10 @@ from symflex.analysis.modes.shape import EnclosedModeShape, Motion, normalised
 from symflex.budget import spend
 from symflex.equations import assemble
 from symflex.errors import BudgetError, Diagnostic, UncertifiedError, UsageError
-from symflex.library.elements.element import ACROSS_UNIT, COMPONENT_UNIT
+from symflex.library.elements.element import ACROSS_UNIT, COMPONENT_DOMAIN, COMPONENT_UNIT
 from symflex.roots import Band, Modes, PoleZeroMap, Region, Root, precision
 from symflex.roots.locate import locate
-from symflex.transfer import BoundTransferFunction, nested_transfer
+from symflex.transfer import BoundNested, nested_transfer
 from symflex.transfer.bind import read_values
 
 if TYPE_CHECKING:
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
     from symflex.library.elements import Variable
     from symflex.roots.pole_zero_map import StabilityVerdict
+    from symflex.transfer import AnyBoundFunction
 
 DIGITS = 15
 SPARE_DIGITS = 15
@@ -54,7 +55,7 @@ class NumberedShape:
     is_hidden: bool  # the input does not reach it, or the output does not see it
 
 
-def mode_shape(bound: BoundTransferFunction, which: int | Root, digits: int = DIGITS) -> EnclosedModeShape:
+def mode_shape(bound: AnyBoundFunction, which: int | Root, digits: int = DIGITS) -> EnclosedModeShape:
     """Return the shape of one mode, of a pair the member with positive imaginary part.
 
     ``which`` is the number of the mode: 1 is the lowest pole other than 0, a conjugate pair or a real pole is
@@ -95,7 +96,7 @@ def mode_shape(bound: BoundTransferFunction, which: int | Root, digits: int = DI
 
 
 def mode_shapes(
-    bound: BoundTransferFunction, which: int | Root, digits: int = DIGITS
+    bound: AnyBoundFunction, which: int | Root, digits: int = DIGITS
 ) -> tuple[EnclosedModeShape, ...]:
     """Return all independent shapes of the pole that a mode belongs to; see :func:`mode_shape`.
 
@@ -105,7 +106,7 @@ def mode_shapes(
 
 
 def lowest_modes(
-    bound: BoundTransferFunction, count: int, band: Band | None = None
+    bound: AnyBoundFunction, count: int, band: Band | None = None
 ) -> tuple[tuple[NumberedShape, ...], StabilityVerdict]:
     """Return the shapes of the lowest modes, or of those in a band, other than at 0; hidden ones among them.
 
@@ -134,7 +135,7 @@ def lowest_modes(
 
 
 def _shapes(
-    bound: BoundTransferFunction, which: int | Root, digits: int
+    bound: AnyBoundFunction, which: int | Root, digits: int
 ) -> tuple[tuple[EnclosedModeShape, ...], int]:
     """Return the shapes of a pole, and the place of the mode asked for among them."""
     search = _ModeSearch(bound)
@@ -147,11 +148,12 @@ def _shapes(
 class _ModeSearch:
     """Finds poles of one bound transfer function to more and more digits, and solves for their shapes."""
 
-    def __init__(self, bound: BoundTransferFunction) -> None:
+    def __init__(self, bound: AnyBoundFunction) -> None:
         self.bound = bound
         self._maps: dict[tuple[Region | None, int], PoleZeroMap] = {}
         model = bound.source.model
-        equations = assemble(model, nested_transfer, is_nameless=True)
+        known = bound.source.equations if isinstance(bound, BoundNested) else None
+        equations = known or assemble(model, nested_transfer, is_nameless=True)
         given = dict(bound.values)
         missing = tuple(p for p in model.parameters if p.name not in given)
         self.equations = BoundEquations(equations, (*bound.values, *read_values(missing, {})))
@@ -273,9 +275,7 @@ def _name(variable: Variable, starts: Mapping[str, float]) -> str:
 
 def _unit(variable: Variable, domain: str) -> str:
     if variable.kind == "node":
-        if variable.component:
-            return "m" if variable.component == "y" else "rad"
-        return ACROSS_UNIT.get(domain, "")
+        return ACROSS_UNIT.get(COMPONENT_DOMAIN.get(variable.component, domain), "")
     if variable.kind == "through":
         return COMPONENT_UNIT.get(variable.component.removesuffix("_a"), "")
     return ""

@@ -50,14 +50,17 @@ class DistributedShape:
         The element's name and type; of a field, ``field``.
     states : tuple of str
         What is known along x. Of an element, displacements first, then what the part beyond x exerts on the
-        part before it: ``y theta f tau`` of a beam, ``u f`` of a rod, ``theta tau`` of a shaft, ``w f`` of a
-        string. Of a field, its unknowns and their derivatives: ``w w' w''``.
+        part before it: ``y theta f tau`` of a beam, ``x y theta f_x f_y tau`` of a frame, ``u f`` of a rod,
+        ``theta tau`` of a shaft, ``w f`` of a string. Of a field, its unknowns and their derivatives:
+        ``w w' w''``.
     matrix, load, initial : tuples of acb
         ``dz/dx = matrix z + load``, from ``initial`` on.
     start, length : arb
         Where x begins, and how far it reaches [m].
     bits : int
         The precision everything is computed at.
+    direction : tuple of arb
+        Cosine and sine of the angle of a member in the plane; else empty.
     """
 
     name: str
@@ -69,6 +72,12 @@ class DistributedShape:
     start: arb
     length: arb
     bits: int
+    direction: tuple[arb, ...] = ()
+
+    @property
+    def displacements(self) -> tuple[int, ...]:
+        """The places among the states of how far it moves: x and y in the plane, else the first."""
+        return (0, 1) if self.direction else (0,)
 
     def position(self, quantity: str | None = None) -> int:
         """Return the place of a quantity among the states, of the first for None.
@@ -173,7 +182,7 @@ class EnclosedModeShape:
     distributed : tuple of DistributedShape
         Of every beam, rod, shaft, string and field.
     reference : str
-        What is 1: a node, or ``element(x)`` with the place along it.
+        What is 1: a node, or ``element(x)`` with the place along it; of a frame ``element.y(x)``.
     certified : bool
         The pole is proved, and the shape is the only one it has: then every ball holds the true amplitude.
     """
@@ -183,6 +192,9 @@ class EnclosedModeShape:
     distributed: tuple[DistributedShape, ...]
     reference: str
     certified: bool
+
+    def __repr__(self) -> str:
+        return f"<EnclosedModeShape at {self.pole.frequency_hz():.6g} Hz, {self.reference} = 1>"
 
     @property
     def is_real(self) -> bool:
@@ -243,6 +255,7 @@ class _PlacedAmplitude:
     part: DistributedShape | None = None
     share: Fraction = Fraction(0)
     width: Fraction = Fraction(0)
+    place: int = 0  # among the part's states
 
     @property
     def size(self) -> float:
@@ -290,7 +303,9 @@ def _groups(shape: EnclosedModeShape) -> Iterator[Iterator[_PlacedAmplitude]]:
 def _along(part: DistributedShape) -> Iterator[_PlacedAmplitude]:
     intervals = part.intervals()
     for share, state in part.sampled(intervals):
-        yield _PlacedAmplitude(part.name, state[0], part, share, Fraction(1, intervals))
+        for i in part.displacements:
+            name = f"{part.name}.{part.states[i]}" if part.direction else part.name
+            yield _PlacedAmplitude(name, state[i], part, share, Fraction(1, intervals), i)
 
 
 def _largest(places: list[_PlacedAmplitude]) -> _PlacedAmplitude | None:
@@ -308,7 +323,7 @@ def _refined(place: _PlacedAmplitude) -> _PlacedAmplitude:
         return place
 
     def size(share: float) -> float:
-        return float(abs(part.state_at_share(Fraction(share))[0].mid()))
+        return float(abs(part.state_at_share(Fraction(share))[place.place].mid()))
 
     low, high = float(place.share - place.width), float(place.share + place.width)
     left, right = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
@@ -323,7 +338,7 @@ def _refined(place: _PlacedAmplitude) -> _PlacedAmplitude:
             left = high - GOLDEN * (high - low)
             at_left = size(left)
     share = Fraction((low + high) / 2)
-    return replace(place, share=share, value=part.state_at_share(share)[0])
+    return replace(place, share=share, value=part.state_at_share(share)[place.place])
 
 
 def _scaled(shape: EnclosedModeShape, reference: _PlacedAmplitude) -> EnclosedModeShape:
@@ -331,7 +346,7 @@ def _scaled(shape: EnclosedModeShape, reference: _PlacedAmplitude) -> EnclosedMo
     if part is not None:
         with precision(part.bits):
             x = part.start + part.length * reference.share.numerator / reference.share.denominator
-        name = f"{part.name}({float(x.mid()):.6g})"
+        name = f"{name}({float(x.mid()):.6g})"
     with precision(max(64, reference.value.bits()) + 32):
         factor = 1 / reference.value
         motions = tuple(

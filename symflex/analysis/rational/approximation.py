@@ -259,6 +259,16 @@ class RationalApproximation(Approximant, RationalFunction):
     band: tuple[float, float]
     stability: StabilityVerdict = NOT_EXAMINED
 
+    def __repr__(self) -> str:
+        modes = "1 mode" if self.modes == 1 else f"{self.modes} modes"
+        limit = "exact" if self.is_exact else f"within 1 % up to {self.valid_to(0.01):.4g} Hz"
+        return f"<RationalApproximation {self.tf}: {self.form} form, {modes}, {limit}>"
+
+    def _repr_html_(self) -> str:
+        from symflex.analysis.rational.text import rational_html  # only notebooks ask
+
+        return rational_html(self)
+
     @property
     def source(self) -> TransferFunction:
         """What it approximates."""

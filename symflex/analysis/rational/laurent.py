@@ -446,6 +446,8 @@ def local_values(
         for kernel in evaluator.table.kernels:
             length = at_centre(evaluator.value(kernel.length, plain))
             coefficients, shift = laws[kernel.dispersion]
+            if kernel.function == "entry":
+                continue  # evaluated where it stands, with others of its matrix
             if kernel.function == "exp":
                 values[kernel.generator] = _inflated((-shift * length).exp(), branches, terms)
             elif kernel.function == "fundamental":

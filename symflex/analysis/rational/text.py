@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 SCHEMA = "symflex.rational/1"
 INDENT = "  "
+ESTIMATE = "some poles or zeros could not be told apart, or are not proved"
 DIGITS = 10
 JSON_DIGITS = 17
 """So many give a double back exactly."""
@@ -46,26 +47,48 @@ def rational_text(found: RationalApproximation) -> str:
     <BLANKLINE>
       zeros: none
     """
-    source = found.bound.source
-    quantity = source.quantity + (f" [{source.unit}]" if source.unit else "")
-    modes = "1 mode" if found.modes == 1 else f"{found.modes} modes"
-    lines = [f"{found.tf}   {quantity}, {found.form} form, {modes}; {found.stability.headline}", ""]
-    lines += [INDENT + line for line in _validity(found)]
-    lines.append(f"{INDENT}gain: {_decimal(found.gain)}")
-    leading = f"{found.leading_coefficient:.{DIGITS}g}"
-    order = found.order_at_zero
-    lines.append(f"{INDENT}{f'near s = 0: {leading}*s^{order}' if order else f'static gain: {leading}'}")
-    for i, constant in enumerate(found.correction):
-        name = "static correction" if i == 0 else f"and of s^{i}"
-        lines.append(f"{INDENT}{name}: {_decimal(constant)}")
+    head, *said = _said(found)
+    lines = [head, "", *(INDENT + line for line in said)]
     if found.residues:
         lines += ["", _counted("poles and residues", found.poles), *_residue_table(found)]
     else:
         lines += ["", _counted("poles", found.poles), *_root_table(found.poles)]
     lines += ["", _counted("zeros", found.zeros), *_root_table(found.zeros)]
     if found.is_estimate:
-        lines += ["", f"{INDENT}some poles or zeros could not be told apart, or are not proved"]
+        lines += ["", f"{INDENT}{ESTIMATE}"]
     return "\n".join(lines)
+
+
+def rational_html(found: RationalApproximation) -> str:
+    """Return the same for a notebook: a table of poles and zeros, or what a terminal shows of residues."""
+    from symflex.print.html import NUMBER, TEXT, escape_html, html_table, text_html  # only notebooks ask
+
+    if found.residues:
+        return text_html(rational_text(found))
+    rows = [
+        (kind, *(cell.replace("+-", "&pm;").replace("-", "\u2212") for cell in _root_cells(*root)))
+        for kind, roots in (("pole", found.poles), ("zero", found.zeros))
+        for root in _unique(roots)
+    ]
+    head = ("", "times", "Re [rad/s]", "Im [rad/s]", "f [Hz]", "&zeta;")
+    said = [*_said(found), *([ESTIMATE] if found.is_estimate else [])]
+    return html_table(head, (TEXT, *[NUMBER] * 5), rows, "<br>".join(map(escape_html, said)))
+
+
+def _said(found: RationalApproximation) -> list[str]:
+    """Return a heading, how good the approximation is, and its behaviour at low frequency."""
+    source = found.bound.source
+    quantity = source.quantity + (f" [{source.unit}]" if source.unit else "")
+    modes = "1 mode" if found.modes == 1 else f"{found.modes} modes"
+    lines = [f"{found.tf}   {quantity}, {found.form} form, {modes}; {found.stability.headline}"]
+    lines += [*_validity(found), f"gain: {_decimal(found.gain)}"]
+    leading = f"{found.leading_coefficient:.{DIGITS}g}"
+    order = found.order_at_zero
+    lines.append(f"near s = 0: {leading}*s^{order}" if order else f"static gain: {leading}")
+    for i, constant in enumerate(found.correction):
+        name = "static correction" if i == 0 else f"and of s^{i}"
+        lines.append(f"{name}: {_decimal(constant)}")
+    return lines
 
 
 def _validity(found: RationalApproximation) -> list[str]:
@@ -112,13 +135,16 @@ def _root_table(roots: Sequence[mpmath.mpc]) -> list[str]:
     if not roots:
         return []
     rows = [("", "Re [rad/s]", "Im [rad/s]", "f [Hz]", "zeta")]
-    for root, count, paired in _unique(roots):
-        size = abs(complex(root))
-        times = f"x{count}" if count > 1 else ""
-        im = ("+-" if paired else "") + _decimal(root.imag)
-        zeta = f"{-float(root.real) / size + 0:.6g}" if size else ""
-        rows.append((times, _decimal(root.real), im, f"{size / (2 * pi):.6g}", zeta))
+    rows += [_root_cells(*root) for root in _unique(roots)]
     return aligned(rows)
+
+
+def _root_cells(root: mpmath.mpc, count: int, paired: bool) -> tuple[str, str, str, str, str]:
+    size = abs(complex(root))
+    times = f"x{count}" if count > 1 else ""
+    im = ("+-" if paired else "") + _decimal(root.imag)
+    zeta = f"{-float(root.real) / size + 0:.6g}" if size else ""
+    return times, _decimal(root.real), im, f"{size / (2 * pi):.6g}", zeta
 
 
 def _residue_table(found: RationalApproximation) -> list[str]:

@@ -383,6 +383,7 @@ class Tangents:
         for constant in self.tf.constants:
             if constant.generator in self._used:
                 point[constant.generator] = _complex(constant_tangent(constant.expression, real))
+        self.tf.kernels.without_tapers("derivatives of roots are")
         for law in self.tf.kernels.dispersions:
             coefficients = [self.product(c, point) for c in law.characteristic]
             shift = self.product(law.shift, point)

@@ -343,12 +343,12 @@ FUNCTIONS = frozenset(
     main size_t ptrdiff_t
     sqrt exp log log2 ldexp ceil fmax fmin sin cos tan sinh cosh tanh fabs hypot pow copysign
     creal cimag
-    memcpy uint64_t
+    memcpy uint64_t malloc free rint
     """.split()
 ).union(*PARTS)
 """What the code calls, and the types it uses."""
 
-LOCALS = frozenset("s p omega n i j w x g re im real imag sign value padded near is_near count".split())
+LOCALS = frozenset("s p omega n i j w x g re im real imag sign value padded near is_near count entry".split())
 """Arguments and variables that every function has under these names."""
 
 RESERVED = KEYWORDS | MACROS

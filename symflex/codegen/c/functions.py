@@ -9,7 +9,7 @@ compilers make it work on several values at once: in lanes.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import TYPE_CHECKING
 
 from symflex.codegen.c.body import (
@@ -29,6 +29,7 @@ from symflex.codegen.c.body import (
     conditions_of,
     limit_text,
     quotient,
+    statement,
 )
 from symflex.codegen.program import nodes as tree
 
@@ -77,17 +78,55 @@ class Functions:
     def text(self) -> str:
         """Return the definitions."""
         program = self.program
+        if program.network is not None:
+            return "\n\n".join("\n".join(block) for block in self._solving(program.network)) + "\n"
         blocks = [self._lumped_value(program)] if program.is_lumped else self._pieces(program)
         return "\n\n".join("\n".join(block) for block in (*blocks, self._frequency_response())) + "\n"
 
     @property
     def order(self) -> int:
         """The largest order of a differential equation, or degree of a polynomial, they solve; 0 for none."""
+        if self.program.network is not None:
+            return max((len(signs) for _, signs, _ in self.program.network.network[-1]), default=1)
         codes = [c for p in (self.program, self.axis) if p for c in (p.tests, *(x.code for x in p.code))]
         solving = (n for code in codes for n in code.nodes() if isinstance(n, tree.Solutions | tree.Roots))
         return max((len(n.coefficients) for n in solving), default=0)
 
     # ------------------------------------------------------------------------------------- at a complex s
+
+    def network(self, solve: tree.Solve) -> str:
+        """Return what all functions share that solve a network: its plan, and its entries."""
+        scope = Body.of(self.members, S)
+        scope.assign((*self.program.near.constants, *self.program.near.assignments))
+        for i, entry in enumerate(solve.entries):
+            scope.say(f"entry[{i}] =", complex_term(scope.term(entry)).text)
+        head = [f"static void network_entries(cx s, const {self.structure} *p, cx *entry)", "{"]
+        plan = statement(
+            "static const int network_plan[] =", f"{{{', '.join(map(str, network_plan(solve)))}}}", 0
+        )
+        return "\n".join([*plan, "", *self._ends(scope, head)]) + "\n"
+
+    def _solving(self, solve: tree.Solve) -> list[list[str]]:
+        """Return the functions of a network's output and input."""
+        ends = f"network_plan, {solve.output}, {solve.source}"
+        value = [
+            *self._head(f"value_of_{self.name}"),
+            f"{STEP}cx entry[{len(solve.entries)}];",
+            f"{STEP}network_entries(s, p, entry);",
+            f"{STEP}return cx_network(entry, {ends});",
+            "}",
+        ]
+        response = [
+            *self.freq_prototype.split("\n"),
+            "{",
+            f"{STEP}for (size_t i = 0; i < n; i++) {{",
+            f"{STEP * 2}const cx g = value_of_{self.name}(cx_of(0.0, omega[i]), p);",
+            f"{STEP * 2}real[i] = g.re;",
+            f"{STEP * 2}imag[i] = g.im;",
+            f"{STEP}}}",
+            "}",
+        ]
+        return [self._wrapped_value(value), response]
 
     def _head(self, name: str) -> list[str]:
         return [f"static cx {name}(cx s, const {self.structure} *p)", "{"]
@@ -259,6 +298,18 @@ def _lumped(
     other = inner.within()
     store(other, other.term(near.values[0]))
     inner.enclose(opening, [*block.lines, f"{STEP * inner.depth}}} else {{", *other.lines])
+
+
+def network_plan(solve: tree.Solve) -> list[int]:
+    """Return a network as a table of numbers in the order in which ``cx_network`` reads them."""
+    size, height, width, lumped, groups = solve.network
+    total = len(lumped) + sum(2 * len(signs) ** 2 * len(elements) for _, signs, elements in groups)
+    plan = [size, total, height, width, len(lumped), *chain.from_iterable(lumped), len(groups)]
+    for positions, signs, elements in groups:
+        plan += [len(signs), len(positions), *chain.from_iterable(positions), *signs, len(elements)]
+        for first, entries, length, start, end in elements:
+            plan += [first, *entries, length, *start, *end]
+    return plan
 
 
 LOOP = "for (int j = 0; j < LANES; j++) {"

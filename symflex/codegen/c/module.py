@@ -157,13 +157,17 @@ class _Files:
         files = f"{self.name}.h" if self.name else "C99"
         public = [f"{self.prefix}_{f.name}" for f in self.functions.values()]
         example = public[0] if public and len(public[0]) < WIDTH // 2 else f"{self.prefix}_OUT_over_IN"
+        is_solved = any(f.program.network for f in self.functions.values())
+        kept = "Nothing is allocated and nothing is kept between calls"
+        if is_solved:
+            kept = "Memory is allocated for one value at a time, which is NAN where there is none, and freed"
         paragraphs = [
             f"Written by symflex. For every transfer function OUT/IN there are {example}(s, p), its value at "
             f"the Laplace variable s, and {example}_freq(omega, real, imag, n, p), which writes the real and "
             "imaginary parts of the values at s = j omega[i] for all i < n. omega is an angular frequency "
             "[rad/s]: 2 pi times the frequency in Hz. It may be negative. One of real and imag may be the "
             "array omega.",
-            "Nothing is allocated and nothing is kept between calls: all functions are reentrant. Values at "
+            f"{kept}: all functions are reentrant. Values at "
             "poles are not finite. Parameters are real numbers in SI units; p may be "
             f"&{self.prefix}_defaults, or point to a changed copy of it. Link with the mathematical library, "
             "and compile without -ffast-math.",
@@ -212,7 +216,7 @@ class _Files:
         tf, program = member.tf, member.program
         unit = f" [{tf.unit}]" if tf.unit else ""
         lines = [inert(f"{tf.quantity[:1].upper()}{tf.quantity[1:]} {tf.name}{unit}."), ""]
-        lines += [f"  {line}" if line else "" for line in formula_lines(tf, WIDTH - 5)]
+        lines += [f"  {line}" if line else "" for line in formula_lines(member.formula, WIDTH - 5)]
         said = member.verification.text(self.digits)
         sentences = [f"At s = j omega, {said}."]
         if key in self.on_axis:
@@ -229,13 +233,20 @@ class _Files:
 
     def _source(self) -> str:
         printed = {key: functions.text() for key, functions in self.functions.items()}
+        network = next((f.network(x) for f in self.functions.values() if (x := f.program.network)), "")
         # Comments tell nothing about which functions are called.
         order = max((f.order for f in self.functions.values()), default=1)
-        below = helpers("\n".join(printed.values()), self.structure, order)
+        below = helpers("\n".join([network, *printed.values()]), self.structure, order)
         code = "\n".join("\n".join([*comment([inert(key)]), "", text]) for key, text in printed.items())
-        signs = {"float": "FLT_EVAL_METHOD", "math": "", "stdint": "uint64_t", "string": "memcpy("}
+        signs = {
+            "float": "FLT_EVAL_METHOD",
+            "math": "",
+            "stdint": "uint64_t",
+            "stdlib": "malloc(",
+            "string": "memcpy(",
+        }
         includes = "".join(f"#include <{name}.h>\n" for name, sign in signs.items() if sign in below)
-        parts = [includes, self._defaults(), below, code]
+        parts = [includes, self._defaults(), below, network, code]
         return "\n".join(part for part in parts if part)
 
     def _defaults(self) -> str:
@@ -264,5 +275,8 @@ def helpers(code: str, parameters: str, order: int) -> str:
 
 
 C99 = Language(
-    ".c", "C99 source and header, values at s and arrays of frequencies, verified likewise", c_files
+    ".c",
+    "C99 source and header, values at s and arrays of frequencies, verified likewise",
+    c_files,
+    solves=True,
 )

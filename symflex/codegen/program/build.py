@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 from symflex.algebra import LAPLACE, Factored
 from symflex.budget import spend
 from symflex.codegen.program.forge import Forge, schedule
+from symflex.codegen.program.nodes import ParameterValue
 from symflex.codegen.program.polynomials import (
     RingValues,
     degree_of,
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
 
     from symflex.algebra import Ring
     from symflex.codegen.program.nodes import Piecewise
+    from symflex.equations.line_network import LineNetwork
     from symflex.model import Model
     from symflex.transfer import ClosedForm, NestedTransferFunction, TransferFunction
 
@@ -268,10 +270,12 @@ OPERATION_LIMIT = 100_000
 
 
 def build_nested(tf: NestedTransferFunction) -> Piecewise:
-    """Return the program of a nested transfer function.
+    """Return the program of a nested transfer function; that of a distributed model solves its network.
 
     Raises BudgetError: SF503 when it would be too large.
     """
+    if tf.is_distributed and tf.cut is not None:
+        return _build_solved(tf, tf.cut.network)
     size = tf.size
     if size > OPERATION_LIMIT:
         message = f"a program for {tf.name} would have {size} operations, more than {OPERATION_LIMIT}"
@@ -303,3 +307,30 @@ def build_nested(tf: NestedTransferFunction) -> Piecewise:
         forge.label(forge.signed(made[i])[1], name)
     whole = forge.divide(made[tf.num], made[tf.den])
     return schedule(forge, tuple(p.name for p in tf.parameters), whole, None, inf)
+
+
+def _build_solved(tf: NestedTransferFunction, network: LineNetwork) -> Piecewise:
+    """Return the program of a transfer function of a network of line elements, which is solved as it is."""
+    forge = Forge()
+    names = {p.name for p in tf.model.parameters}
+    constants = {c.generator: c.expression for c in network.equations.constants}
+
+    def named(name: str) -> int:
+        if name == LAPLACE:
+            return forge.s
+        if name == PI:
+            return forge.constant(1, 1)
+        return forge.parameter(name) if name in names else constant_of(forge, tf.model, constants[name])
+
+    entries = network.values(
+        name=named,
+        number=forge.constant,
+        total=forge.add,
+        product=forge.multiply,
+        quotient=forge.divide,
+        power=forge.power,
+        exponential=lambda x: forge.apply("complex_exp", x),
+    )
+    used = {node.name for node in forge.nodes if isinstance(node, ParameterValue)}
+    value = forge.solve(entries, network.table, *network.numbers(tf.output.name, tf.input.name))
+    return schedule(forge, tuple(p.name for p in tf.model.parameters if p.name in used), value, None, inf)

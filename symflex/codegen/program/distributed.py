@@ -9,9 +9,9 @@ kernels that cancel each other do so before anything is rounded.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from itertools import product
+from functools import cache, partial
 from math import gcd
 from operator import mul
 from typing import TYPE_CHECKING
@@ -57,7 +57,10 @@ REACHES = (3.0, 2.0, 4.5)
 """Sizes of the largest exponent below which series are used; which serves best is measured."""
 
 CHOOSING = 3
-"""Base lengths up to which every one has series or exponentials by itself; more have series together only."""
+"""Base lengths up to which every one may have series by itself: eight pieces for three of them."""
+
+TOGETHER = 2
+"""Those up to which that is not more than a module should hold; of more it is measured whether it serves."""
 
 CUTS = 12
 """How often one base length is cut by another; two spans and a sensor need one or two."""
@@ -68,8 +71,12 @@ LOCAL_TERMS = 30_000
 REAL_TERMS = 1000
 """Terms of numerator and denominator up to which a program in real arithmetic is made besides."""
 
-SIGNING = 2
-"""Dispersions up to which a piece is made for every choice of signs of their wavenumbers."""
+SIGNING = 1
+"""Dispersions up to which a piece is made for every choice of signs of their wavenumbers; those of more are
+roots of squares, which costs half a rounding, and no second piece for each."""
+
+LOWEST, HIGHEST, STEPS = 1e-9, 1e12, 4000
+"""Frequencies [rad/s] at which it is looked which arguments are small together."""
 
 CONFLUENT = 2.0
 """Twice the squared distance of a pair's arguments below which means over a circle are taken."""
@@ -84,34 +91,78 @@ BASES: dict[str, Callable[[Iterable[Sequence[tuple[int, int]]]], LocalBasis]] = 
 }
 
 
-def reaches_of(tf: TransferFunction) -> tuple[float, ...]:
-    """Return the reaches of series that are worth trying, the usual one first."""
-    return MODAL_REACHES if tf.is_nameless else REACHES
+@dataclass(frozen=True, slots=True)
+class SeriesUse:
+    """Where a program uses power series."""
+
+    reach: float  # size of the largest exponent below which it does
+    # Base lengths up to which every one has series or exponentials by itself; more have series together only.
+    apart: int = CHOOSING
 
 
-def build_piecewise(tf: TransferFunction, reach: float | None = None) -> Piecewise:
-    """Return the program for complex s.
+def series_uses(tf: TransferFunction, *, is_measured: bool = True) -> tuple[SeriesUse, ...]:
+    """Return what is worth trying, the usual one first; the shortest one where it is measured what it loses.
 
-    Series are used up to ``reach``, a size of the largest exponent; see :func:`reaches_of`. Raises
-    BudgetError: SF503 when the program would be too large.
+    What one of several lengths gains from a series by itself is much where it is far shorter than the others.
     """
-    if tf.length > TERM_LIMIT:
-        message = f"a program for {tf.name} would have more than {TERM_LIMIT} terms"
-        raise BudgetError(Diagnostic("SF503", message, None, "keep repeated sums in [definitions]"))
-    chosen = reaches_of(tf)[0] if reach is None else reach
-    return build_modal(tf, chosen) if tf.is_nameless else _PieceMaker(tf, chosen).program()
+    if tf.is_nameless:
+        return tuple(map(SeriesUse, MODAL_REACHES))
+    lengths = {(k.dispersion, k.length) for k in tf.kernels.kernels if k.wavenumber}
+    shortest = (
+        [SeriesUse(REACHES[0], TOGETHER)] if is_measured and TOGETHER < len(lengths) <= CHOOSING else []
+    )
+    return (*shortest, *map(SeriesUse, REACHES))
 
 
-def build_real(tf: TransferFunction, reach: float = REACHES[0]) -> Piecewise | None:
-    """Return the program of the response at an angular frequency in real arithmetic.
+def build_piecewise(tf: TransferFunction) -> Piecewise:
+    """Return the program for complex s that is used where nothing is measured.
 
-    ``None`` with losses, and where it would be very long.
+    Raises BudgetError: SF503 when the program would be too large.
     """
-    if tf.length > REAL_TERMS:
-        return None
-    positive = tuple(p.name for p in tf.parameters if p.assume == "positive")
-    axis = RealAxis(tf.ratio.ring, tf.kernels, positive)
-    return _PieceMaker(tf, reach).real_program(axis) if axis.is_real else None
+    return Pieces(tf).of_s(series_uses(tf, is_measured=False)[0])
+
+
+@dataclass(frozen=True, eq=False)
+class Pieces:
+    """The programs of one function with kernels; what they share is made once."""
+
+    tf: TransferFunction
+    # Of all parameters, where they have values. Of several laws, or many lengths, what is not small together
+    # for these values gets no piece: with others it is computed from exponentials, and less accurately.
+    values: Mapping[str, float] | None = None
+    _makers: dict[SeriesUse, _PieceMaker] = field(default_factory=dict)
+    _programs: dict[SeriesUse, Piecewise] = field(default_factory=dict)
+
+    def of_s(self, use: SeriesUse) -> Piecewise:
+        """Return the program for complex s.
+
+        Raises BudgetError: SF503 when it would be too large.
+        """
+        if self.tf.length > TERM_LIMIT:
+            message = f"a program for {self.tf.name} would have more than {TERM_LIMIT} terms"
+            raise BudgetError(Diagnostic("SF503", message, None, "keep repeated sums in [definitions]"))
+        if use not in self._programs:
+            is_nameless = self.tf.is_nameless
+            self._programs[use] = (
+                build_modal(self.tf, use.reach) if is_nameless else self._maker(use).program()
+            )
+        return self._programs[use]
+
+    def of_frequency(self, use: SeriesUse) -> Piecewise | None:
+        """Return the program of the response at an angular frequency in real arithmetic.
+
+        ``None`` with losses, and where it would be very long.
+        """
+        if self.tf.length > REAL_TERMS:
+            return None
+        positive = tuple(p.name for p in self.tf.parameters if p.assume == "positive")
+        axis = RealAxis(self.tf.ratio.ring, self.tf.kernels, positive)
+        return self._maker(use).real_program(axis) if axis.is_real else None
+
+    def _maker(self, use: SeriesUse) -> _PieceMaker:
+        if use not in self._makers:
+            self._makers[use] = _PieceMaker(self.tf, use, self.values)
+        return self._makers[use]
 
 
 _Test = tuple[int, float, int]
@@ -120,6 +171,10 @@ _Test = tuple[int, float, int]
 
 _Choice = tuple[tuple[bool, ...], tuple[bool, ...], tuple["Dispersion", ...], bool, tuple["Dispersion", ...]]
 """What makes a piece: groups near zero, delays that grow, dispersions mirrored, meeting pairs, lone ones."""
+
+
+_LocalParts = dict[tuple[int, ...], dict["Key", Factored]]
+"""Per order of the derivatives in the small lengths, the coefficients of what remains."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -153,13 +208,16 @@ class _Half:
 
 
 class _PieceMaker:
-    def __init__(self, tf: TransferFunction, reach: float) -> None:
+    def __init__(self, tf: TransferFunction, use: SeriesUse, values: Mapping[str, float] | None) -> None:
         self.tf = tf
-        self.reach = reach
+        self.values = values
+        self.reach = use.reach
+        self.apart = use.apart
         self.ring: Ring = tf.ratio.ring
         self.table = tf.kernels
         self.normal = NormalForm(self.ring, self.table)
         self.work = 0
+        self._parts: dict[tuple[_Half, tuple[_Group, ...]], _LocalParts] = {}
         self.families = families_of(self.ring, self.table)
         self.waves = {self.ring.index[w] for w in self.table.wavenumbers}
         self.kernels = {self.ring.index[k.generator] for k in self.table.kernels}
@@ -320,7 +378,25 @@ class _PieceMaker:
         for count in counts:
             near.append(all(bits[at : at + count]))
             at += count
-        return tuple(near) if len(near) <= CHOOSING or all(near) else (False,) * len(near)
+        return tuple(near) if len(near) <= self.apart or all(near) else (False,) * len(near)
+
+    def _together(
+        self, forge: Forge, tests: Sequence[_Test], counts: Sequence[int], turn: int | None
+    ) -> Callable[[tuple[bool, ...]], bool]:
+        """Return what tells whether just some groups are small at any frequency."""
+        if self.values is None or (len(self.groups) <= TOGETHER and len(self.table.dispersions) == 1):
+            return lambda _: True
+        import numpy as np  # formulas are printed without it
+
+        from symflex.codegen.program.evaluate import numbers_of_pieces
+
+        omega = np.geomspace(LOWEST, HIGHEST, STEPS)
+        nothing = CodePiece(straight(forge, [forge.constant(0), forge.constant(1)]))
+        program = self._assembled(forge, tests[: sum(counts)], [], [nothing], turn)
+        with np.errstate(all="ignore"):
+            found = numbers_of_pieces(program, omega if program.is_real else 1j * omega, self.values)
+        bits = [[bool(number >> i & 1) for i in range(sum(counts))] for number in set(found.tolist())]
+        return {self._near(own, counts) for own in bits}.__contains__
 
     def program(self) -> Piecewise:
         """Return the program for complex s."""
@@ -341,12 +417,15 @@ class _PieceMaker:
         laws = [d for d in self.table.dispersions if any(self.groups[i].dispersion is d for i in pairs)]
         tests += [self._lone_test(site, d) for d in laws]
         fifth = len(tests)
+        occurs = self._together(forge, tests, counts, None)
         code: list[CodePiece] = []
         known: dict[_Choice, int] = {}
         numbers: list[int] = []
         for number in range(2 ** len(tests)):
             bits = [bool(number >> i & 1) for i in range(len(tests))]
             near = self._near(bits, counts)
+            if not occurs(near):
+                near = (False,) * len(near)
             grows = tuple(bits[first:third])
             small = [g.dispersion for g, n in zip(self.groups, near, strict=True) if n]
             mirrored = tuple(
@@ -466,19 +545,18 @@ class _PieceMaker:
         if len(near) == len(self.groups) or any(isinstance(g, _Lone) for g in near):
             taken = self._power_of_s(v for rest in parts.values() for v in rest.values())
         summands = []
+        solution = cache(partial(self._solution, site))
         for orders, rest in parts.items():
             leaves = {key: site.value(v / taken) for key, v in rest.items()}
             inner = site.sum_of_leaves(leaves, scales)
-            summands.append(forge.multiply([inner, *self._solutions(site, near, orders)]))
+            summands.append(forge.multiply([inner, *map(solution, near, orders)]))
         return forge.add(summands), taken
 
-    def _solutions(self, site: Site, near: Sequence[_Group], orders: Sequence[int]) -> list[int]:
-        return [
-            site.local_of_smaller(g.basis, g.dispersion, g.length, k, LONE * self.reach)
-            if isinstance(g, _Lone)
-            else site.local(g.basis, g.dispersion, g.length, k, self.reach)
-            for g, k in zip(near, orders, strict=True)
-        ]
+    def _solution(self, site: Site, group: _Group, k: int) -> int:
+        if isinstance(group, _Lone):
+            reach = LONE * self.reach
+            return site.local_of_smaller(group.basis, group.dispersion, group.length, k, reach)
+        return site.local(group.basis, group.dispersion, group.length, k, self.reach)
 
     def _power_of_s(self, values: Iterable[Factored]) -> Factored:
         """Return the power of s that all values share."""
@@ -486,25 +564,42 @@ class _PieceMaker:
         power = min(v.exponent_of(s) for v in values)
         return Factored.generator(self.ring, LAPLACE) ** power
 
-    def _local_parts(self, half: _Half, near: Sequence[_Group]) -> dict[tuple[int, ...], dict[Key, Factored]]:
-        """Return, per order of the derivatives in the small lengths, the coefficients of what remains."""
-        found: dict[tuple[int, ...], dict[Key, Factored]] = {}
-        for orders in product(*(range(g.basis.order) for g in near)):
+    def _local_parts(self, half: _Half, near: Sequence[_Group]) -> _LocalParts:
+        """Return what remains of a half where some lengths are small."""
+        key = (half, tuple(near))
+        if key not in self._parts:
+            self._parts[key] = self._new_parts(half, near)
+        return self._parts[key]
+
+    def _new_parts(self, half: _Half, near: Sequence[_Group]) -> _LocalParts:
+        found: _LocalParts = {}
+        lone = [g.dispersion for g in near if isinstance(g, _Lone)]
+        for orders, terms in self._derivatives(half.terms, near):
             spend()
             if len(near) == 1 and self._is_negligible(orders[0], found):
                 break
-            terms = half.terms
-            for group, order in zip(near, orders, strict=True):
-                terms = self._derivative(terms, group, order)
-            lone = [g.dispersion for g in near if isinstance(g, _Lone)]
             values = {
                 k: self._reduced(Factored.polynomial(self.ring, p * 2 ** self._still(k)) * half.waves, lone)
                 for k, p in terms.items()
-                if len(p)
             }
             if values := {k: v for k, v in values.items() if not v.is_zero}:
                 found[orders] = values
         return found
+
+    def _derivatives(
+        self, terms: KernelSum, near: Sequence[_Group]
+    ) -> Iterator[tuple[tuple[int, ...], KernelSum]]:
+        """Yield the derivatives of a sum with respect to lengths at zero that do not vanish, by their orders.
+
+        Those of the first length are taken once for all orders of the others.
+        """
+        if not near:
+            yield (), terms
+            return
+        first, *others = near
+        for order in range(first.basis.order):
+            if derived := self._derivative(terms, first, order):
+                yield from (((order, *rest), own) for rest, own in self._derivatives(derived, others))
 
     def _is_negligible(self, order: int, found: Iterable[tuple[int, ...]]) -> bool:
         """Tell whether a derivative in a small length, and all that follow, add nothing to those found."""
@@ -531,7 +626,7 @@ class _PieceMaker:
                 moved = [(tuple(rest), (gens[0] * a + gens[1] * b) ** order)]
             for k, factor in moved:
                 found[k] = found.get(k, self.ring.constant(0)) + polynomial * factor
-        return found
+        return {k: p for k, p in found.items() if len(p)}
 
     def _reduced(self, value: Factored, lone: Sequence[Dispersion]) -> Factored:
         """Return a value in normal form, free of wavenumbers where it is symmetric in them.
@@ -606,9 +701,12 @@ class _PieceMaker:
         known: dict[tuple[tuple[bool, ...], tuple[bool, ...]], int] = {}
         numbers: list[int] = []
         first_turn: int | None = None
+        occurs = self._together(forge, tests, counts, 0)
         for number in range(2 ** len(tests)):
             bits = [bool(number >> i & 1) for i in range(len(tests))]
             near, negative = self._near(bits, counts), tuple(bits[first:])
+            if not occurs(near):
+                near = (False,) * len(near)
             if all(near):
                 negative = (False,) * len(negative)
             key = (near, negative)
@@ -672,6 +770,7 @@ class _PieceMaker:
         taken = self._power_of_s(values.values())
         first: int | None = None
         summands = []
+        solution = cache(partial(self._solution, site))
         for orders, value in values.items():
             found = axis.real(value / taken)
             if found is None:
@@ -680,7 +779,7 @@ class _PieceMaker:
             first = turn if first is None else first
             if (turn - first) % 2:
                 return None
-            summand = forge.multiply([site.value(real), *self._solutions(site, self.groups, orders)])
+            summand = forge.multiply([site.value(real), *map(solution, self.groups, orders)])
             summands.append(forge.negate(summand) if (turn - first) % 4 else summand)
         return forge.add(summands), first or 0, taken
 

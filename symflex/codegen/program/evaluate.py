@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from flint import arb, ctx, fmpq
 
+from symflex.algebra.line_networks import network_value
 from symflex.algebra.modal_sum import modal_amplitudes, mode_values
 from symflex.codegen.program import nodes as tree
 from symflex.errors import Diagnostic, ModelError
@@ -227,6 +228,8 @@ class _ProgramRun:
                 return modal_value(
                     [self.value(m) for m in modes], [self.value(c) for c in coefficients], frames
                 )
+            case tree.Solve(entries, network, output, source):
+                return network_value([self.value(e) for e in entries], network, output, source)
             case tree.Item(values, position):
                 return self.value(values)[position]
         message = f"no value for {type(node).__name__}"

@@ -29,6 +29,8 @@ from symflex.codegen.program import nodes as tree
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
+    from symflex.equations.line_network import Table
+
 
 class Depends(IntFlag):
     """What a value varies with, besides parameters."""
@@ -198,6 +200,10 @@ class Forge:
         """Return a sum over its largest exponential, and the logarithm of that."""
         row = self.label(self._make(tree.ModalValue, tuple(modes), tuple(coefficients), frames), "total")
         return self.item(row, 0), self.item(row, 1)
+
+    def solve(self, entries: Sequence[int], network: Table, output: int, source: int) -> int:
+        """Return what an output of a network is per unit of an input; see :class:`nodes.Solve`."""
+        return self._make(tree.Solve, tuple(entries), network, output, source)
 
     def item(self, values: int, position: int) -> int:
         """Return one value of a list."""

@@ -21,6 +21,8 @@ from typing import TYPE_CHECKING, ClassVar, Self
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
+    from symflex.equations.line_network import Table
+
 Frames = tuple[
     tuple[tuple[int, ...], tuple[tuple[tuple[int, ...], int], ...], tuple[tuple[tuple[int, ...], int], ...]],
     ...,
@@ -245,6 +247,22 @@ class ModalValue(CodeNode):
 
 
 @dataclass(frozen=True, slots=True)
+class Solve(CodeNode):
+    """What an output of a network of line elements is per unit of an input.
+
+    See :mod:`symflex.algebra.line_networks`.
+    """
+
+    OPERANDS: ClassVar = ("entries",)
+
+    entries: tuple[CodeNode, ...]  # the values of the table's entries
+    network: Table  # which entries stand where
+    # output, source: their numbers in the table.
+    output: int
+    source: int
+
+
+@dataclass(frozen=True, slots=True)
 class Item(CodeNode):
     """One value of a list."""
 
@@ -341,6 +359,12 @@ class Piecewise:
         """True when exponents are roots of polynomials without a formula."""
         codes = (self.tests, *(piece.code for piece in self.code))
         return any(isinstance(n, Roots) for code in codes for n in code.nodes())
+
+    @property
+    def network(self) -> Solve | None:
+        """The network of line elements that is solved, where there is one."""
+        value = self.code[0].code.values[0]
+        return value if isinstance(value, Solve) else None
 
     @property
     def is_lumped(self) -> bool:

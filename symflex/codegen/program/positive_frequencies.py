@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import reduce
+from functools import cached_property, reduce
 from math import gcd, lcm
 from typing import TYPE_CHECKING
 
@@ -223,10 +223,25 @@ class _HalfAngleReader:
 
     def _varies(self, node: tree.CodeNode) -> bool:
         return any(
-            isinstance(n, tree.Laplace)
-            or (isinstance(n, tree.Assigned) and self._varies(self.values[n.name]))
+            isinstance(n, tree.Laplace) or (isinstance(n, tree.Assigned) and n.name in self._varying)
             for n in node.walk()
         )
+
+    @cached_property
+    def _varying(self) -> set[str]:
+        """The names of values that depend on the frequency."""
+        found: set[str] = set()
+        for name, value in self.values.items():  # each is made of earlier ones
+            for n in value.walk():
+                if isinstance(n, tree.Laplace) or (isinstance(n, tree.Assigned) and n.name in found):
+                    found.add(name)
+                    break
+        return found
+
+    @cached_property
+    def _known(self) -> dict[str, _Value]:
+        """Values by name, which are asked for wherever the name occurs."""
+        return {}
 
     def value(self, node: tree.CodeNode) -> _Value:
         """Return the value of an expression; sums and functions free of s count as symbols."""
@@ -239,8 +254,11 @@ class _HalfAngleReader:
                 return {}, OTHER
             case tree.Assigned(name) if name != "mu":
                 named = self.values[name]
-                if self._varies(named) or not isinstance(named, tree.Apply | tree.Add):
-                    return self.value(named)
+                if name in self._varying or not isinstance(named, tree.Apply | tree.Add):
+                    if name not in self._known:
+                        self._known[name] = self.value(named)
+                    powers, polynomial = self._known[name]
+                    return dict(powers), polynomial
             case tree.Negate(operand):
                 return _product(self.value(operand), MINUS)
             case tree.Divide(above, below):

@@ -58,6 +58,9 @@ class Site:
     is_signed: bool = True
     # Given for real arithmetic: the leaf of s is then the angular frequency, wavenumbers are magnitudes.
     axis: RealAxis | None = None
+    # What lengths and coefficients of dispersion relations became, which every term asks for.
+    _lengths: dict[Factored, int] = field(default_factory=dict)
+    _coefficients: dict[tuple[Dispersion, int], int] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.ring = self.tf.ratio.ring
@@ -93,9 +96,16 @@ class Site:
 
     def coefficient(self, dispersion: Dispersion, i: int = 0) -> int:
         """Return ``c_i`` of a dispersion relation."""
-        if self.axis is not None:
-            return self.value(self.axis.coefficient(dispersion))
-        return self.value(dispersion.characteristic[i])
+        if (dispersion, i) not in self._coefficients:
+            given = dispersion.characteristic[i] if self.axis is None else self.axis.coefficient(dispersion)
+            self._coefficients[dispersion, i] = self.value(given)
+        return self._coefficients[dispersion, i]
+
+    def length(self, length: Factored) -> int:
+        """Return a length."""
+        if length not in self._lengths:
+            self._lengths[length] = self.value(length)
+        return self._lengths[length]
 
     def wavenumber(self, name: str) -> int:
         """Return a wavenumber with nonnegative real part; in real arithmetic its magnitude."""
@@ -172,20 +182,20 @@ class Site:
         factor = forge.constant(1) if factor is None else factor
         if family.wavenumber:
             wavenumber = self._generators.generator(family.wavenumber)
-            return forge.multiply([factor, self.value(family.lengths[j]), wavenumber])
+            return forge.multiply([factor, self.length(family.lengths[j]), wavenumber])
         exponent = self.exponent(family, j)
         return forge.multiply([factor, forge.negate(exponent) if self.grows.get(i) else exponent])
 
     def exponent(self, family: Family, j: int) -> int:
         """Return the exponent of a delay, with a minus sign."""
-        return self.forge.multiply([self.value(family.lengths[j]), self.value(family.dispersion.shift)])
+        return self.forge.multiply([self.length(family.lengths[j]), self.value(family.dispersion.shift)])
 
     def sizes(self, dispersion: Dispersion, length: Factored) -> tuple[tuple[int, int, int], ...]:
         """Return pairs whose products go like powers of wavenumber times length, and these powers.
 
         The first of a pair depends on s, the second does not.
         """
-        forge, x = self.forge, self.value(length)
+        forge, x = self.forge, self.length(length)
         negative = self.axis.sign(dispersion) if self.axis is not None else False
         if negative is not None and (parts := self.plain_parts(dispersion)) is not None:
             power = 1 if dispersion.kind == "wave" else 2
@@ -205,7 +215,7 @@ class Site:
 
     def _argument(self, dispersion: Dispersion, length: Factored) -> int:
         """Return the square of a wave's argument, up to the sign, or the fourth power of one of bending."""
-        forge, x, c0 = self.forge, self.value(length), self.coefficient(dispersion)
+        forge, x, c0 = self.forge, self.length(length), self.coefficient(dispersion)
         if dispersion.kind == "wave":
             return forge.multiply([forge.power(x, 2), c0])
         return forge.multiply([forge.constant(Fraction(1, 4)), forge.power(x, 4), c0])
@@ -215,7 +225,7 @@ class Site:
         forge = self.forge
         c0, c2 = self.coefficient(dispersion), self.coefficient(dispersion, 2)
         quotient = forge.divide(forge.multiply([forge.constant(4), c0]), c2)
-        return forge.multiply([forge.power(self.value(length), 2), forge.add([c2, forge.negate(quotient)])])
+        return forge.multiply([forge.power(self.length(length), 2), forge.add([c2, forge.negate(quotient)])])
 
     def quotient(self, dispersion: Dispersion) -> int:
         """Return ``c_0/c_2`` of a pair: at least half the square of the smaller wavenumber in size."""
@@ -224,7 +234,7 @@ class Site:
     def fundamental(self, kernel: Kernel) -> int:
         """Return the derivative of a fundamental function at its length, or a decay."""
         forge, law = self.forge, kernel.dispersion
-        x, n = self.value(kernel.length), law.order
+        x, n = self.length(kernel.length), law.order
         if kernel.function == "exp":
             return forge.apply("complex_exp", forge.negate(forge.multiply([x, self.value(law.shift)])))
         scaled = [forge.multiply([forge.power(x, n - i), self.coefficient(law, i)]) for i in range(n)]
@@ -235,7 +245,7 @@ class Site:
 
     def local(self, basis: LocalBasis, dispersion: Dispersion, length: Factored, k: int, size: float) -> int:
         """Return solution k of an equation at a length, for exponents up to a size."""
-        forge, x = self.forge, self.value(length)
+        forge, x = self.forge, self.length(length)
         if basis.step > 1:
             argument = self._argument(dispersion, length)
             if dispersion.kind == "wave":
@@ -255,7 +265,7 @@ class Site:
         self, basis: LocalBasis, dispersion: Dispersion, length: Factored, k: int, size: float
     ) -> int:
         """Return what :meth:`local` does for the smaller wavenumber of a pair, on the basis of a wave."""
-        forge, x = self.forge, self.value(length)
+        forge, x = self.forge, self.length(length)
         wavenumber = self._generators.generator(dispersion.wavenumbers[1])
         argument = forge.multiply([forge.power(x, 2), wavenumber, wavenumber])
         return self._series(basis, argument, x, k, size)

@@ -17,16 +17,17 @@ from flint import acb, arb, ctx
 
 from symflex.budget import spend
 from symflex.codegen.program.build import available_forms, build_nested, build_program
-from symflex.codegen.program.distributed import build_piecewise, build_real, reaches_of
+from symflex.codegen.program.distributed import Pieces, series_uses
 from symflex.codegen.program.evaluate import evaluate, nearest_double
 from symflex.codegen.program.positive_frequencies import for_positive, in_half_angles
 from symflex.errors import BudgetError, ModelError
 from symflex.transfer import BoundNested, NestedTransferFunction, bind, bind_nested
 from symflex.transfer.bind import EnclosedTransferFunction
+from symflex.transfer.enclosed_network import EnclosedNetwork
 from symflex.transfer.nested_form import EnclosedNested
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from numpy.typing import NDArray
 
@@ -73,7 +74,7 @@ LIGHT_NESTED = 600
 """Operations of a nested form from which fewer frequencies are looked at."""
 
 LEAST = 0.05
-"""The part of them that is looked at in any case."""
+"""The part of them that is looked at in any case; of a network of beams a value takes 10 ms and more."""
 
 NAMED = 6
 """Parameters without value that are named."""
@@ -110,7 +111,7 @@ class Verification:
 
     name: str  # ``OUT/IN``
     # The form evaluated: ``closed``, ``closed in s``, ``nested`` or ``factors``; of a distributed system
-    # ``pieces`` or ``real``.
+    # ``pieces`` or ``real``, of a network of many members ``solved``.
     form: str
     # The worst ``|dG| / (|G| (1 + |s G'/G|))`` on the imaginary axis: the relative error beyond what one
     # rounding of ``s`` would cause. ``None`` when it was not measured.
@@ -220,6 +221,7 @@ class _Gauge:
 
     tf: AnyTransferFunction
     band: tuple[Fraction, Fraction]
+    pieces: Pieces | None  # of a distributed system
     references: References | None
     reason: str = ""
 
@@ -233,27 +235,33 @@ class _Gauge:
 def _gauge(tf: AnyTransferFunction, band_hz: tuple[Fraction, Fraction] | None, samples: int) -> _Gauge:
     band = band_hz or tf.model.analysis.band or DEFAULT_BAND
     missing = [p.name for p in tf.parameters if p.value is None]
+    pieces = None
+    if not isinstance(tf, NestedTransferFunction) and tf.is_distributed and not tf.is_zero:
+        values = {
+            p.name: nearest_double(p.value.rational, p.value.pi_power) for p in tf.parameters if p.value
+        }
+        pieces = Pieces(tf, None if missing else values)
     if missing:
         if isinstance(tf, NestedTransferFunction) and len(missing) > NAMED:
             missing[NAMED:] = [f"and {len(missing) - NAMED} more"]
-        return _Gauge(tf, band, None, "no values for " + ", ".join(missing))
+        return _Gauge(tf, band, pieces, None, "no values for " + ", ".join(missing))
     try:
         bound = bind_nested(tf) if isinstance(tf, NestedTransferFunction) else bind(tf)
-        return _Gauge(tf, band, References(bound, band, samples))
+        return _Gauge(tf, band, pieces, References(bound, band, samples, pieces=pieces))
     except ModelError as problem:
-        return _Gauge(tf, band, None, problem.diagnostics[0].message)
+        return _Gauge(tf, band, pieces, None, problem.diagnostics[0].message)
 
 
 def _choose(gauge: _Gauge) -> tuple[Piecewise, Verification]:
     tf, references = gauge.tf, gauge.references
     if isinstance(tf, NestedTransferFunction):
         nested = build_nested(tf)
+        form = "nested" if nested.network is None else "solved"
         worst = None if references is None else references.worst_error(nested)
-        return nested, gauge.verified("nested", worst)
-    if tf.is_distributed and not tf.is_zero:
-        usual, *others = reaches_of(tf)
-        rest = (build_piecewise(tf, reach) for reach in others)
-        return _choose_pieces(build_piecewise(tf, usual), rest, gauge, "pieces")
+        return nested, gauge.verified(form, worst)
+    if gauge.pieces is not None:
+        programs = map(gauge.pieces.of_s, series_uses(tf, is_measured=references is not None))
+        return _choose_pieces(programs, gauge, "pieces")
     forms = available_forms(tf)
     if references is None:
         return _unmeasured(gauge, tf, forms)
@@ -277,15 +285,15 @@ def _choose(gauge: _Gauge) -> tuple[Piecewise, Verification]:
 
 def _choose_real(gauge: _Gauge) -> tuple[Piecewise, Verification] | None:
     """Return the program of the frequency response, in half-angle tangents where that serves as well."""
-    tf, references = gauge.tf, gauge.references
-    if isinstance(tf, NestedTransferFunction) or not tf.is_distributed or tf.is_zero:
+    pieces, references = gauge.pieces, gauge.references
+    if pieces is None or (references is not None and references.are_complex):
         return None
-    usual, *others = reaches_of(tf)
-    first = build_real(tf, usual)
+    usual, *others = series_uses(pieces.tf, is_measured=references is not None)
+    first = pieces.of_frequency(usual)
     if first is None:
         return None
-    rest = (made for reach in others if (made := build_real(tf, reach)) is not None)
-    chosen, verification = _choose_pieces(first, rest, gauge, "real")
+    rest = (made for use in others if (made := pieces.of_frequency(use)) is not None)
+    chosen, verification = _choose_pieces(chain([first], rest), gauge, "real")
     program = for_positive(chosen)
     shorter = in_half_angles(program)
     if shorter is None or references is None or verification.error is None:
@@ -296,17 +304,15 @@ def _choose_real(gauge: _Gauge) -> tuple[Piecewise, Verification] | None:
     return shorter, replace(verification, error=error)
 
 
-def _choose_pieces(
-    first: Piecewise, others: Iterable[Piecewise], gauge: _Gauge, form: str
-) -> tuple[Piecewise, Verification]:
+def _choose_pieces(programs: Iterator[Piecewise], gauge: _Gauge, form: str) -> tuple[Piecewise, Verification]:
     """Return the program whose series reach as far as serves accuracy best, and its measured error."""
-    references = gauge.references
+    references, first = gauge.references, next(programs)
     if references is None:
         return first, gauge.verified(form, None)
     if first.solves:
-        return _choose_general(chain([first], others), gauge, references)
+        return _choose_general(chain([first], programs), gauge, references)
     candidates: list[tuple[bool, float, Piecewise]] = []
-    for program in chain([first], others):
+    for program in chain([first], programs):
         error, keeps = references.worst_error(program), keeps_its_value(program, references.bound)
         candidates.append((not keeps, error, program))
         if keeps and error < ACCURATE:
@@ -353,32 +359,47 @@ def _unmeasured(gauge: _Gauge, tf: TransferFunction, forms: Sequence[str]) -> tu
 
 
 def sample_frequencies(
-    bound: BoundTransferFunction | BoundNested, band_hz: tuple[Fraction, Fraction], samples: int
+    bound: BoundTransferFunction | BoundNested,
+    band_hz: tuple[Fraction, Fraction],
+    samples: int,
+    pieces: Pieces | None = None,
 ) -> NDArray[np.float64]:
-    """Return frequencies [Hz] over a band, denser around those of poles and zeros."""
+    """Return frequencies [Hz] over a band, denser around those of poles and zeros.
+
+    The ``pieces`` are those of a distributed system where it has been begun to make them.
+    """
     low, high = float(band_hz[0]), float(band_hz[1])
     frequencies = [np.geomspace(low, high, samples)]
-    around = np.array([1 + sign * x for x in ASIDE for sign in (1, -1)])
-    frequencies += [center * around for center in _centers(bound, low, high)]
+    is_costly = isinstance(bound, BoundNested) and bound.source.is_distributed
+    aside = ASIDE[::2] if is_costly else ASIDE
+    around = np.array([1 + sign * x for x in aside for sign in (1, -1)])
+    frequencies += [center * around for center in _centers(bound, low, high, pieces)]
     merged = np.unique(np.concatenate(frequencies))
     return merged[(merged >= low) & (merged <= high)]
 
 
-def _centers(bound: BoundTransferFunction | BoundNested, low: float, high: float) -> list[float]:
+def _centers(
+    bound: BoundTransferFunction | BoundNested, low: float, high: float, pieces: Pieces | None
+) -> list[float]:
     """Return the frequencies [Hz] of poles and zeros; of a distributed system where these show."""
     if _vanishes(bound):
         return []
     enclosed = bound.enclosed(FIRST_BITS)
     if not isinstance(enclosed, EnclosedTransferFunction):
-        return _extremes(bound, low, high)
+        return _extremes(bound, low, high, pieces)
     roots = np.concatenate([[], *(_roots(polynomial.coeffs()) for polynomial, _ in enclosed.factors)])
     return [*(np.abs(roots.imag) / tau), *(np.abs(roots) / tau)]
 
 
-def _extremes(bound: BoundTransferFunction | BoundNested, low: float, high: float) -> list[float]:
+def _extremes(
+    bound: BoundTransferFunction | BoundNested, low: float, high: float, pieces: Pieces | None
+) -> list[float]:
     """Return resonances and antiresonances [Hz]: where the magnitude on the axis is largest and smallest."""
     source = bound.source
-    program = build_nested(source) if isinstance(source, NestedTransferFunction) else build_piecewise(source)
+    if isinstance(source, NestedTransferFunction):
+        program = build_nested(source)
+    else:
+        program = (pieces or Pieces(source)).of_s(series_uses(source)[0])
     part = _part(bound)
     most = 2 * max(1, int(MOST_EXTREMES * part) // 2)
     values = doubles(bound)
@@ -411,6 +432,8 @@ def _vanishes(bound: BoundTransferFunction | BoundNested) -> bool:
 
 def _part(bound: BoundTransferFunction | BoundNested) -> float:
     """Return which part of the usual number of frequencies is looked at."""
+    if isinstance(bound, BoundNested) and bound.source.is_distributed:
+        return LEAST
     if isinstance(bound, BoundNested):
         return max(LEAST, min(1.0, LIGHT_NESTED / max(bound.source.size, 1)))
     if not bound.source.is_nameless:
@@ -451,18 +474,26 @@ class References:
         samples: int = SAMPLES,
         *,
         is_plain: bool = False,
+        pieces: Pieces | None = None,
     ) -> None:
         self.bound = bound
         self._first_bits = FIRST_BITS
-        self._known: dict[int, Enclosed | EnclosedNested] = {}
+        self._known: dict[int, Enclosed | EnclosedNested | EnclosedNetwork] = {}
         low, high = (float(f) for f in band_hz)
         count = max(1, int(samples * _part(bound)))
-        hertz = np.geomspace(low, high, count) if is_plain else sample_frequencies(bound, band_hz, count)
+        hertz = (
+            np.geomspace(low, high, count) if is_plain else sample_frequencies(bound, band_hz, count, pieces)
+        )
         points = 1j * (tau * hertz)
         found = [(s, self._reference(complex(s))) for s in points]
         self._lost = [s.imag for s, reference in found if reference is None]
         self._references = [reference for _, reference in found if reference is not None]
         self.s = np.array([s for s, reference in found if reference is not None], dtype=complex)
+
+    @property
+    def are_complex(self) -> bool:
+        """True when some value is proved to be neither real nor imaginary."""
+        return any(not (r.value.real.contains(0) or r.value.imag.contains(0)) for r in self._references)
 
     def worst_error(self, program: Piecewise) -> float:
         """Return a bound of the error at all frequencies, for a program that gets the nearest doubles."""
@@ -509,21 +540,19 @@ class References:
         while bits <= LAST_BITS:
             spend()
             function = self._at(bits)
-            if isinstance(function, EnclosedNested):
-                value, slope = function.value_and_slope(point)
-            else:
-                value, slope = function(point), function.logarithmic_derivative(point)
+            value, slope = function.value_and_slope(point)
             if value.is_finite() and slope.is_finite() and value.rel_accuracy_bits() >= ENOUGH_BITS:
-                if isinstance(function, EnclosedNested):
+                if isinstance(function, EnclosedNested | EnclosedNetwork):
                     self._first_bits = bits  # the next point most likely needs as many
                 with ctx.workprec(bits):
                     return _Reference(value, bits, value.abs_lower() * (1 + (point * slope).abs_lower()))
             bits *= 2
         return None
 
-    def _at(self, bits: int) -> Enclosed | EnclosedNested:
+    def _at(self, bits: int) -> Enclosed | EnclosedNested | EnclosedNetwork:
         if bits not in self._known:
-            self._known[bits] = self.bound.enclosed(bits)
+            solved = self.bound.solved(bits) if isinstance(self.bound, BoundNested) else None
+            self._known[bits] = solved or self.bound.enclosed(bits)
         return self._known[bits]
 
 
@@ -587,4 +616,8 @@ def keeps_its_value(program: Piecewise, bound: BoundTransferFunction | BoundNest
 
 def doubles(bound: BoundTransferFunction | BoundNested) -> dict[str, float]:
     """Return the double nearest to every parameter's value."""
-    return {name: nearest_double(value.rational, value.pi_power) for name, value in bound.values}
+    # A function does not depend on a parameter without value, though the network it is solved from may.
+    others = {p.name: 1.0 for p in bound.source.model.parameters}
+    declared = {p.name: p.value for p in bound.source.model.parameters if p.value is not None}
+    given = declared | dict(bound.values)
+    return others | {name: nearest_double(x.rational, x.pi_power) for name, x in given.items()}

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
+from symflex.algebra import line_networks
 from symflex.algebra.modal_sum import modal_amplitudes, mode_values
 from symflex.codegen.export import Export, Language, called_parts, parts_of
 from symflex.codegen.module_text import (
@@ -48,12 +49,25 @@ COPIED = (
     evaluate.characteristic_roots,
     mode_values,
     modal_amplitudes,
+    line_networks.network_value,
+    line_networks.solved_network,
+    line_networks.size_of,
+    line_networks.element_relations,
+    line_networks.series_exponential,
+    line_networks.doubled_relation,
+    line_networks.equilibrated,
+    line_networks.solved_value,
+    line_networks.eliminated,
+    line_networks.substituted,
     evaluate.modal_value,
     evaluate.mean_over_circle,
 )
 """Functions with which programs are measured; modules get copies where they have no others."""
 
 _COPIES = ("copies",)
+
+_OWN = "|".join(f.__name__ for f in COPIED)
+"""Names of functions that call each other."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,7 +173,7 @@ def private_copy(function: Callable[..., object]) -> str:
         raise ValueError(message)
     names = re.findall(r"(\w+): ", found.group(2))
     body = re.sub(r"(\w): Any = ", r"\1 = ", text[found.end() :])
-    body = re.sub(r"\b(complex_exp|modal_amplitudes)\(", r"_\1(", body)
+    body = re.sub(rf"(?<!\.)\b({_OWN})\(", r"_\1(", body)
     return f"def _{found.group(1)}({', '.join(names)}):\n{body}"
 
 
@@ -214,6 +228,10 @@ def python_module(contents: Contents, dialect: Dialect) -> Export:
         own = "\n".join(private.functions())
         blocks.append(f"{function.head()}\n\n\n{own}\n")
         code += "\n".join([*function.body(), own, ""])
+    if isinstance(private, BlockText) and (solve := private.given.network) is not None:
+        # Functions of one model solve the same network.
+        blocks.append("\n".join([*private.network(solve), ""]))
+        code += blocks[-1]
     blocks += dialect.support(code)
     blocks.append(function_table("TRANSFER_FUNCTIONS", functions))
     is_piecewise = not all(member.program.is_lumped for member in members)
@@ -237,7 +255,7 @@ class _Function:
     def head(self) -> str:
         """Return the function."""
         dialect, names = self.private.dialect, self.private.parameters
-        parameters = self.member.tf.parameters
+        parameters = self.member.parameters
         lines = [f"def {self.private.name}(", f"    {self.private.variable}: {dialect.argument},"]
         lines += ["    *,"] if parameters or dialect.is_argument else []
         for parameter in parameters:
@@ -251,7 +269,7 @@ class _Function:
     def body(self) -> list[str]:
         """Return its statements."""
         private = self.private
-        given = [private.variable, *(private.parameters[p.name] for p in self.member.tf.parameters)]
+        given = [private.variable, *(private.parameters[p.name] for p in self.member.parameters)]
         converter = "_real_numbers" if self.member.program.is_real else "_numbers"
         made = f"{converter}({private.leading}{', '.join(given)})"
         return [*statement(f"{private.leading}arguments", made, "    "), *private.call()]
@@ -265,11 +283,11 @@ class _Function:
         )
         array, is_real = dialect.array, program.is_real
         lines = [headline(tf, is_real=is_real), ""]
-        lines += [f"    {line}" if line else "" for line in formula_lines(tf, WIDTH - 4)]
+        lines += [f"    {line}" if line else "" for line in formula_lines(self.member.formula, WIDTH - 4)]
         kind, what = ("float", "Angular frequency") if is_real else ("complex", "Laplace variable")
         lines += ["", "    Parameters", "    ----------", f"    {self.private.variable} : {array} of {kind}"]
         lines.append(f"        {what} [rad/s]; it and all parameters are broadcast together.")
-        for parameter in tf.parameters:
+        for parameter in self.member.parameters:
             name = names[parameter.name]
             lines.append(f"    {name} : {array}{'' if parameter.value is None else ', optional'}")
             lines += wrapped(described(parameter, name), WIDTH, "        ")
@@ -364,6 +382,7 @@ NUMPY = Language(
     ".py",
     "numpy module, one function per transfer function, verified against ball arithmetic",
     partial(python_module, dialect=NUMPY_DIALECT),
+    solves=True,
 )
 ARRAY_API = Language(
     ".py",

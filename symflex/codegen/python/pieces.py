@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from symflex.codegen.infix import InfixPrinter
+from symflex.codegen.infix import InfixPrinter, in_lines
 from symflex.codegen.module_text import identifiers
 from symflex.codegen.program import nodes as tree
 from symflex.codegen.program.evaluate import NUMPY_FUNCTIONS, number_of, numbers_of_pieces, value_of_piece
@@ -131,6 +131,10 @@ class BlockText(PrivateText):
     def functions(self) -> list[str]:
         """Return the lines of all functions; no text of the model is in them."""
         program = self.given
+        if program.network is not None:
+            ends = f"{program.network.output}, {program.network.source}"
+            value = f"_network_value(_entries(*arguments), _NETWORK, {ends})"
+            return [f"def _value_of_{self.name}(*arguments):", *statement("return", value, "    ")]
         if program.is_lumped:
             return self._lumped(program)
         lines = [*(self._real_tests(program) if program.is_real else self._tests(program)), "", ""]
@@ -139,6 +143,21 @@ class BlockText(PrivateText):
         names = [f"_piece_{i}_of_{self.name}" for i in program.pieces]
         comma = "," if len(names) == 1 else ""
         return [*lines, *statement(f"_pieces_of_{self.name}", f"({', '.join(names)}{comma})", "")]
+
+    def network(self, solve: tree.Solve) -> list[str]:
+        """Return the lines of what all functions share that solve a network: its table, and its entries."""
+        lines, printer = self._body(self.given.near, self.variable)
+        entries = in_lines(", ".join(printer.print(e) for e in solve.entries), WIDTH - 8)
+        return [
+            *statement("_NETWORK", repr(solve.network), ""),
+            "",
+            "",
+            *self._head("_entries"),
+            *lines,
+            "    return [",
+            *(f"        {line}" for line in entries),
+            "    ]",
+        ]
 
     def _lumped(self, program: tree.Piecewise) -> list[str]:
         """Return the function that computes with numbers or arrays of any shape."""

@@ -393,6 +393,390 @@ static void cx_modal(const cx_mode *const *modes, const cx *c, const int *plan, 
     value[1] = cx_of(growth, 0.0);
 }
 
+//: cx_sum
+/* About the size of a number, without a root. */
+static inline double cx_sum(cx z)
+{
+    return fabs(z.re) + fabs(z.im);
+}
+
+//: cx_shift
+static inline cx cx_shift(cx z, int power)    /* z times a power of two */
+{
+    return cx_of(ldexp(z.re, power), ldexp(z.im, power));
+}
+
+//: cx_balance
+/* Powers of two by which states are scaled so that rows and columns of a are alike. */
+static void cx_balance(const cx *a, int n, int *power)
+{
+    double scale[CX_ORDER] = {0.0};
+    for (int turn = 0; turn < 4; turn++) {
+        for (int k = 0; k < n; k++) {
+            double above = -40.0, below = -40.0;
+            for (int j = 0; j < n; j++) {
+                if (j != k) {
+                    const double row = cx_sum(a[n * k + j]), column = cx_sum(a[n * j + k]);
+                    above = row > 0.0 ? fmax(above, log2(row) + scale[j] - scale[k]) : above;
+                    below = column > 0.0 ? fmax(below, log2(column) + scale[k] - scale[j]) : below;
+                }
+            }
+            scale[k] += 0.5 * (above - below);
+        }
+    }
+    for (int k = 0; k < n; k++) {
+        power[k] = fabs(scale[k]) < 1000.0 ? (int)rint(scale[k]) : 0;
+    }
+}
+
+//: cx_doubled
+/* The relation between the ends of two elements in a row, its largest coefficients about one. */
+static void cx_doubled(cx *relation, int n)
+{
+    cx row[6 * CX_ORDER * CX_ORDER];
+    const int w = 3 * n;
+    for (int i = 0; i < 2 * n * w; i++) {
+        row[i] = cx_of(0.0, 0.0);
+    }
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            row[w * i + n + j] = row[w * (n + i) + j] = relation[2 * n * i + j];
+            row[w * i + j] = row[w * (n + i) + 2 * n + j] = relation[2 * n * i + n + j];
+        }
+    }
+    for (int k = 0; k < n; k++) {
+        int pivot = k;
+        for (int i = k + 1; i < 2 * n; i++) {
+            pivot = cx_sum(row[w * i + k]) > cx_sum(row[w * pivot + k]) ? i : pivot;
+        }
+        for (int j = k; j < w; j++) {
+            const cx held = row[w * k + j];
+            row[w * k + j] = row[w * pivot + j];
+            row[w * pivot + j] = held;
+        }
+        const cx inverse = cx_div(cx_of(1.0, 0.0), row[w * k + k]);
+        for (int i = k + 1; i < 2 * n; i++) {
+            const cx factor = cx_mul(row[w * i + k], inverse);
+            for (int j = k + 1; j < w; j++) {
+                row[w * i + j] = cx_sub(row[w * i + j], cx_mul(factor, row[w * k + j]));
+            }
+        }
+    }
+    for (int i = 0; i < n; i++) {
+        double most = 0.0;
+        for (int j = 0; j < 2 * n; j++) {
+            most = fmax(most, cx_sum(row[w * (n + i) + n + j]));
+        }
+        const int power = most > 0.0 && most < HUGE_VAL ? -(int)rint(log2(most)) : 0;
+        for (int j = 0; j < 2 * n; j++) {
+            relation[2 * n * i + j] = cx_shift(row[w * (n + i) + n + j], power);
+        }
+    }
+}
+
+//: cx_relation
+/* The relation p z(0) + q z(1) = 0 of the ends of a line element dz/dx = a z, as rows (p, q);
+ * a is overwritten.
+ */
+static void cx_relation(cx *a, int n, cx *relation)
+{
+    cx term[CX_ORDER * CX_ORDER], next[CX_ORDER * CX_ORDER];
+    int power[CX_ORDER];
+    double norm = 1.0;
+    cx_balance(a, n, power);
+    for (int i = 0; i < n; i++) {
+        double sum = 0.0;
+        for (int j = 0; j < n; j++) {
+            a[n * i + j] = cx_shift(a[n * i + j], power[j] - power[i]);
+            sum += cx_abs(a[n * i + j]);
+        }
+        norm = fmax(norm, sum);
+    }
+    const int halvings = norm < HUGE_VAL ? (int)fmin(fmax(ceil(log2(norm)) - 1.0, 0.0), 60.0) : 0;
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            a[n * i + j] = cx_shift(a[n * i + j], -halvings);
+            term[n * i + j] = cx_of(i == j ? 1.0 : 0.0, 0.0);
+            relation[2 * n * i + j] = term[n * i + j];
+            relation[2 * n * i + n + j] = cx_of(i == j ? -1.0 : 0.0, 0.0);
+        }
+    }
+    for (int m = 1; m < 29; m++) {
+        for (int i = 0; i < n * n; i++) {
+            next[i] = cx_of(0.0, 0.0);
+        }
+        for (int i = 0; i < n * n; i++) {
+            for (int j = 0; j < n && cx_sum(a[i]) != 0.0; j++) {
+                const int at = n * (i / n) + j;
+                next[at] = cx_add(next[at], cx_mul(a[i], term[n * (i % n) + j]));
+            }
+        }
+        for (int i = 0; i < n * n; i++) {
+            const int at = 2 * n * (i / n) + i % n;
+            term[i] = cx_scale(1.0 / m, next[i]);
+            relation[at] = cx_add(relation[at], term[i]);
+        }
+    }
+    for (int k = 0; k < halvings; k++) {
+        cx_doubled(relation, n);
+    }
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < 2 * n; j++) {
+            relation[2 * n * i + j] = cx_shift(relation[2 * n * i + j], -power[j % n]);
+        }
+    }
+}
+
+//: cx_coefficients cx_place
+/* A coefficient and where it stands. */
+typedef struct { cx value; int row, column; } cx_place;
+
+/* The coefficients of a network, as the plan says after its first four numbers: the number of
+ * lumped ones, with row, column and entry of each; the number of groups of line elements, and
+ * for each the number n of states, that of coefficients, row and column of these, the signs of
+ * the n states at the end, and the number of elements; for each of these its first row, the
+ * entries of the coefficients and of the length, and the unknowns at both ends, -1 for none.
+ */
+static void cx_coefficients(const cx *entry, const int *plan, cx_place *place)
+{
+    const int *at = plan + 4;
+    cx a[CX_ORDER * CX_ORDER], relation[2 * CX_ORDER * CX_ORDER];
+    for (int left = *at++; left > 0; left--, at += 3, place++) {
+        place->value = entry[at[2]];
+        place->row = at[0];
+        place->column = at[1];
+    }
+    for (int groups = *at++; groups > 0; groups--) {
+        const int n = at[0], count = at[1], *const where = at + 2, *const sign = where + 2 * count;
+        int elements = sign[n];
+        for (at = sign + n + 1; elements > 0; elements--, at += 2 + count + 2 * n) {
+            const cx length = entry[at[1 + count]];
+            for (int i = 0; i < n * n; i++) {
+                a[i] = cx_of(0.0, 0.0);
+            }
+            for (int i = 0; i < count; i++) {
+                a[n * where[2 * i] + where[2 * i + 1]] = cx_mul(entry[at[1 + i]], length);
+            }
+            cx_relation(a, n, relation);
+            for (int i = 0; i < 2 * n * n; i++, place++) {
+                const int j = i % (2 * n), turned = j >= n && sign[j - n] < 0;
+                place->value = turned ? cx_neg(relation[i]) : relation[i];
+                place->row = at[0] + i / (2 * n);
+                place->column = at[2 + count + j];
+            }
+        }
+    }
+}
+
+//: cx_equilibrated
+/* Scale rows and columns by powers of two so that their largest coefficients are about one. */
+static void cx_equilibrated(cx_place *place, int count, int size, double *scale)
+{
+    double *const most = scale + 2 * (size + 1);
+    for (int i = 0; i < 2 * (size + 1); i++) {
+        scale[i] = 0.0;
+    }
+    for (int turn = 0; turn < 2; turn++) {
+        for (int i = 0; i < 2 * (size + 1); i++) {
+            most[i] = -HUGE_VAL;
+        }
+        for (int i = 0; i < count; i++) {
+            const int row = place[i].row, column = size + 1 + place[i].column;
+            if (row < size && column < 2 * size + 1) {
+                const double left = log2(cx_sum(place[i].value) + 1e-300) + scale[row] + scale[column];
+                most[row] = fmax(most[row], left);
+                most[column] = fmax(most[column], left);
+            }
+        }
+        for (int i = 0; i < 2 * (size + 1); i++) {
+            scale[i] -= fabs(most[i]) < HUGE_VAL ? 0.5 * most[i] : 0.0;
+        }
+    }
+    for (int i = 0; i < count; i++) {
+        const double power = rint(scale[place[i].row]) + rint(scale[size + 1 + place[i].column]);
+        place[i].value = cx_shift(place[i].value, (int)power);
+    }
+}
+
+//: cx_eliminated cx_pivot
+/* A step of an elimination: how many rows begin to be used, the place of the last one in use,
+ * the pivot's, with which it changes place, and how much of the pivot's row follows.
+ */
+typedef struct { int entering, high, pivot, length; cx inverse; } cx_pivot;
+
+/* The steps of Gauss's elimination with partial pivoting, the factors of the other rows, height
+ * for each step, and the rest of the pivot's rows, width for each. Rows stand in the order of
+ * their first columns; so many of them, and so many columns, are in use at a time. first has for
+ * each row where its coefficients begin.
+ */
+static void cx_eliminated(const cx_place *place, const int *first, int size, int height, int width,
+                          cx *window, cx_pivot *step, cx *factor, cx *top)
+{
+    int high = 0, entered = 0, end = 0;
+    for (int k = 0; k < size; k++, step++, factor += height, top += width) {
+        step->entering = 0;
+        while (entered < size && high < height) {
+            int left = size;
+            for (int i = first[entered]; i < first[entered + 1]; i++) {
+                left = place[i].column < left ? place[i].column : left;
+            }
+            if (left > k) {
+                break;
+            }
+            cx *const row = window + width * high;
+            for (int j = 0; j < width; j++) {
+                row[j] = cx_of(0.0, 0.0);
+            }
+            for (int i = first[entered]; i < first[entered + 1]; i++) {
+                const int column = place[i].column;
+                if (column < size) {
+                    row[column % width] = cx_add(row[column % width], place[i].value);
+                    end = column >= end ? column + 1 : end;
+                }
+            }
+            high++;
+            entered++;
+            step->entering++;
+        }
+        step->pivot = 0;
+        for (int i = 1; i < high; i++) {
+            const cx *const own = window + k % width;
+            step->pivot = cx_sum(own[width * i]) > cx_sum(own[width * step->pivot]) ? i : step->pivot;
+        }
+        step->high = --high;
+        step->length = end - k - 1;
+        cx *const chosen = window + width * step->pivot, *const other = window + width * high;
+        step->inverse = cx_div(cx_of(1.0, 0.0), chosen[k % width]);
+        for (int j = 0; j < step->length; j++) {
+            top[j] = chosen[(k + 1 + j) % width];
+        }
+        for (int j = 0; j < width; j++) {
+            chosen[j] = other[j];
+        }
+        for (int i = 0; i < high; i++) {
+            cx *const row = window + width * i;
+            factor[i] = cx_mul(row[k % width], step->inverse);
+            row[k % width] = cx_of(0.0, 0.0);
+            for (int j = 0; j < step->length && cx_sum(factor[i]) != 0.0; j++) {
+                cx *const own = row + (k + 1 + j) % width;
+                *own = cx_sub(*own, cx_mul(factor[i], top[j]));
+            }
+        }
+    }
+}
+
+//: cx_improved
+/* Subtract the solution for a right side, from the steps of an elimination. */
+static void cx_improved(const cx *right, int size, int height, int width, const cx_pivot *step,
+                        const cx *factor, const cx *top, cx *window, cx *driven, cx *found)
+{
+    for (int k = 0; k < size; k++) {
+        const cx_pivot own = step[k];
+        for (int i = own.high + 1 - own.entering; i <= own.high; i++) {
+            window[i] = *right++;
+        }
+        driven[k] = window[own.pivot];
+        window[own.pivot] = window[own.high];
+        for (int i = 0; i < own.high; i++) {
+            window[i] = cx_sub(window[i], cx_mul(factor[height * k + i], driven[k]));
+        }
+    }
+    for (int k = size - 1; k >= 0; k--) {
+        cx sum = cx_of(0.0, 0.0);
+        for (int j = 0; j < step[k].length; j++) {
+            sum = cx_add(sum, cx_mul(top[width * k + j], driven[k + 1 + j]));
+        }
+        driven[k] = cx_mul(cx_sub(driven[k], sum), step[k].inverse);
+    }
+    for (int k = 0; k < size; k++) {
+        found[k] = cx_sub(found[k], driven[k]);
+    }
+}
+
+//: cx_solved
+/* c x + d, where a x + b = 0, of the matrix ((a, b), (c, d)). A step of refinement makes small
+ * unknowns beside large ones as accurate as these (Skeel 1980).
+ */
+static cx cx_solved(const cx_place *place, const int *first, int size, int height, int width,
+                    cx_pivot *step, cx *work)
+{
+    cx *const window = work, *const factor = window + height * width;
+    cx *const top = factor + height * size, *const left = top + width * size;
+    cx *const driven = left + size + 1, *const found = driven + size + 1;
+    cx_eliminated(place, first, size, height, width, window, step, factor, top);
+    for (int i = 0; i <= size; i++) {
+        found[i] = cx_of(i == size ? 1.0 : 0.0, 0.0);
+    }
+    for (int turn = 0; turn < 3; turn++) {
+        for (int row = 0; row <= size; row++) {
+            left[row] = cx_of(0.0, 0.0);
+            for (int i = first[row]; i < first[row + 1]; i++) {
+                left[row] = cx_add(left[row], cx_mul(place[i].value, found[place[i].column]));
+            }
+        }
+        if (turn < 2) {
+            cx_improved(left, size, height, width, step, factor, top, window, driven, found);
+        }
+    }
+    return left[size];
+}
+
+//: cx_network
+/* What an output of a network of line elements is per unit of an input. The plan begins with
+ * the numbers of unknowns and of coefficients, and height and width of the window in which
+ * unknowns are eliminated. NAN where there is no memory.
+ */
+static cx cx_network(const cx *entry, const int *plan, int output, int source)
+{
+    const int size = plan[0], total = plan[1], height = plan[2], width = plan[3];
+    const size_t one = (size_t)size + 1, values = ((size_t)height + width) * one + 3 * one;
+    cx_place *const all = malloc(2 * (size_t)total * sizeof *all);
+    cx *const work = malloc((values + (size_t)height * width) * sizeof *work);
+    cx_pivot *const step = malloc(one * sizeof *step);
+    double *const scale = malloc(4 * one * sizeof *scale);
+    int *const first = malloc((one + 1) * sizeof *first);
+    cx found = cx_of(NAN, NAN);
+    if (all && work && step && scale && first) {
+        cx_place *const sorted = all + total;
+        int count = 0;
+        cx_coefficients(entry, plan, all);
+        for (int i = 0; i < total; i++) {
+            const int row = all[i].row, column = all[i].column;
+            const int is_kept = (row < size || row == size + output) && column >= 0;
+            if (is_kept && (column < size || column == size + source)) {
+                all[count] = all[i];
+                all[count].row = row < size ? row : size;
+                all[count].column = column < size ? column : size;
+                count++;
+            }
+        }
+        cx_equilibrated(all, count, size, scale);
+        for (int i = 0; i <= size + 1; i++) {
+            first[i] = 0;
+        }
+        for (int i = 0; i < count; i++) {
+            first[all[i].row + 1]++;
+        }
+        for (int i = 0; i <= size; i++) {
+            first[i + 1] += first[i];
+        }
+        for (int i = count - 1; i >= 0; i--) {
+            sorted[--first[all[i].row + 1]] = all[i];
+        }
+        for (int i = 0; i <= size; i++) {
+            first[i] = first[i + 1];
+        }
+        first[size + 1] = count;
+        found = cx_solved(sorted, first, size, height, width, step, work);
+    }
+    free(all);
+    free(work);
+    free(step);
+    free(scale);
+    free(first);
+    return found;
+}
+
 //: cx_circle
 /* Numerator over denominator at s, each the mean of its values on a circle around s,
  * because the formula itself is singular near s though they are not. At z, parts gives

@@ -86,6 +86,9 @@ class ResonanceFit:
     # not.
     poor: tuple[str, ...] = ()
 
+    def __repr__(self) -> str:
+        return f"<ResonanceFit: {self.resonances.count} resonances of {len(self.bases)} responses>"
+
     @property
     def resonances(self) -> Resonances:
         """The fitted resonances."""

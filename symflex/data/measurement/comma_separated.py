@@ -66,15 +66,15 @@ def read_columns(name: str, data: bytes, stem: str) -> tuple[MeasuredResponse, .
 
     SF601 no text; SF602 columns missing, unknown or in an unknown unit; SF603, SF604, SF605, SF607 values.
     """
-    text = _decoded(name, data)
+    text = decoded_text(name, data)
     source = Source(name, text)
-    lines = _content(source)
+    lines = data_lines(source)
     fields = _comment_fields(source)
     if not lines:
         raise DataError(Diagnostic("SF605", f"'{name}' holds no data", None, _HEADER_HINT))
     if len(lines) > MAX_LINES + 1:
         raise DataError(Diagnostic("SF607", f"'{name}' has more than {MAX_LINES} lines"))
-    split = _splitter(text[lines[0][0] : lines[0][1]])
+    split = cell_splitter(text[lines[0][0] : lines[0][1]])
     columns = _columns(source, split, *lines[0])
     table = _numbers(source, split, lines[1:], columns)
     unit_span = fields.get("averages")
@@ -115,7 +115,8 @@ def _complex(columns: list[DataColumn], table: np.ndarray, by_kind: dict[str, in
     return np.asarray(size * np.exp(1j * columns[phase].factor * table[:, phase]))
 
 
-def _decoded(name: str, data: bytes) -> str:
+def decoded_text(name: str, data: bytes) -> str:
+    """Return the text of a file, with newlines as line ends; DataError SF601 when it is none."""
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
         message = f"'{name}' is UTF-16 text"
         raise DataError(Diagnostic("SF601", message, None, "save the file as UTF-8"))
@@ -132,7 +133,7 @@ def _decoded(name: str, data: bytes) -> str:
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
-def _content(source: Source) -> list[tuple[int, int]]:
+def data_lines(source: Source) -> list[tuple[int, int]]:
     """Return start and end of every line that is neither empty nor a comment."""
     found, start = [], 0
     for line in source.text.split("\n"):
@@ -164,8 +165,8 @@ def _comment_fields(source: Source) -> dict[str, Span]:
     return found
 
 
-def _splitter(header: str) -> Callable[[Source, int, int], list[Span]]:
-    """Return the function that cuts a line into cells, as the header is cut."""
+def cell_splitter(header: str) -> Callable[[Source, int, int], list[Span]]:
+    """Return the function that cuts a line into cells, as the header, or the first line, is cut."""
     separator = next((c for c in (";", "\t", ",") if c in header), None)
 
     def split(source: Source, start: int, end: int) -> list[Span]:

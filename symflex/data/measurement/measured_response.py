@@ -64,6 +64,11 @@ class MeasuredResponse:
     is_synthetic: bool = False
     notes: tuple[str, ...] = field(default=(), repr=False)
 
+    def __repr__(self) -> str:
+        ends = f"{self.frequency_hz[0]:g} to {self.frequency_hz[-1]:g} Hz" if self.frequency_hz.size else "no"
+        kind = "synthetic, " if self.is_synthetic else ""
+        return f"<MeasuredResponse {self.name}: {kind}{self.frequency_hz.size} lines, {ends}>"
+
     def __post_init__(self) -> None:
         object.__setattr__(self, "frequency_hz", _frozen(np.array(self.frequency_hz, np.float64)))
         object.__setattr__(self, "values", _frozen(np.array(self.values, np.complex128)))

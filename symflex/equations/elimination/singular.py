@@ -16,7 +16,7 @@ from symflex.algebra import PRIME, random_point, residue
 from symflex.errors import Diagnostic, ModelError
 from symflex.errors.diagnostic import nearest
 from symflex.expressions import format_expression
-from symflex.library.elements import LineElement, Variable
+from symflex.library.elements import COMPONENTS, LineElement, Variable
 from symflex.model.network import domain_of, variable_of
 
 if TYPE_CHECKING:
@@ -140,7 +140,8 @@ def numbers_at_random(equations: Equations) -> tuple[int, Callable[[Factored], i
     """Return a prime, and what evaluates coefficients at a random point that fulfils the kernels' laws."""
     if equations.propagation is not None:
         field, values = _point_of_kernels(equations, equations.propagation)
-        return field.prime, lambda c: _number(field, c, equations.ring.names, values)
+        numbers = {name: int(series[0]) for name, series in values.items()}
+        return field.prime, lambda c: _number(c, numbers, field.prime)
     point = random_point(equations.ring.names)
     for name, value in equations.definitions:
         point[name] = residue(value, point)
@@ -167,11 +168,11 @@ def matrix_of(
     return nmod_mat(len(forms), len(columns), entries, prime)
 
 
-def _number(
-    field: TaylorField, value: Factored, names: Sequence[str], values: Mapping[str, nmod_poly]
-) -> int:
-    found = field.rational(value, names, values)
-    return 0 if found is None else int(found[0])
+def _number(value: Factored, point: Mapping[str, int], prime: int) -> int:
+    try:
+        return residue(value, point, prime)
+    except ZeroDivisionError:
+        return 0
 
 
 def _point_of_kernels(
@@ -306,7 +307,7 @@ def _ends(use: PlacedElement, model: Model) -> tuple[Variable, ...]:
     parameters = use.element.parameters
     if len(use.nodes) != 1 or isinstance(use.element, LineElement):
         return ()
-    if not parameters or any(p.signal for p in parameters) or use.domains[0][1] == "planar":
+    if not parameters or any(p.signal for p in parameters) or use.domains[0][1] in COMPONENTS:
         return ()
     nodes = {n.name: n for n in model.nodes}
     ((_, references),), domain = use.nodes, use.domains[0][1]

@@ -38,13 +38,17 @@ from symflex.equations.elimination.singular import explain_singular
 from symflex.errors import Diagnostic, ModelError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
+    from symflex.algebra.propagators import Propagation, Propagator
     from symflex.equations import Equations
     from symflex.library.elements import LinearForm, Variable
 
 KEPT_LAST = 8
 """Rows an input may act on and be eliminated last; one that acts on more acts everywhere."""
+
+NO_UNKNOWN = -2
+"""The own column of a row that is of no unknown, such as a condition of a field; inputs have column -1."""
 
 EXPLAINED = 2_500
 """Unknowns up to which a singular system is explained: that takes a dense matrix."""
@@ -58,6 +62,26 @@ class Elimination:
     # Per pair, numerator and denominator; neither need be a polynomial.
     quotients: tuple[tuple[int, int], ...]
     pivots: tuple[int, ...]  # what was divided by: the product of these is the determinant, up to its sign
+    waves: tuple[Waves, ...] = ()  # what generators that are functions of others stand for
+
+
+@dataclass(frozen=True, slots=True)
+class Waves:
+    """Fundamental functions of one dispersion at one length, which are generators of a program.
+
+    Their arguments are steps of the same program, and come before them.
+    """
+
+    # Position of every generator with the order of the derivative, or ``EXPONENTIAL``.
+    generators: tuple[tuple[int, int], ...]
+    coefficients: tuple[int, ...]  # ``c_0, ..., c_(n-1)`` of the monic characteristic polynomial
+    shift: int  # of its roots: the generator of order ``EXPONENTIAL`` is ``exp(-shift*length)``
+    length: int
+
+    @property
+    def arguments(self) -> tuple[int, ...]:
+        """The steps the functions are functions of."""
+        return (*self.coefficients, self.shift, self.length)
 
 
 @dataclass(slots=True)
@@ -94,8 +118,8 @@ class _SolvedUnknown:
 def eliminate(equations: Equations, pairs: Sequence[tuple[str, str]]) -> Elimination:
     """Return transfer functions, by name of output and input, as quotients of nested expressions.
 
-    The model is lumped; its equations are over a ring of either kind. Raises ModelError: SF30x when the
-    equations are singular.
+    The equations are over a ring of either kind; those of a distributed model are nameless, so that each
+    fundamental function is one generator. Raises ModelError: SF30x when the equations are singular.
     """
     if len(equations.rows) != len(equations.unknowns):
         raise _singular(equations, ())
@@ -108,6 +132,7 @@ def _eliminate(equations: Equations, pairs: Sequence[tuple[str, str]]) -> Elimin
     index = equations.ring.index
     for name, value in equations.definitions:
         bench.define(index[name], bench.factored(value))
+    waves = () if equations.propagation is None else tuple(_waves(equations.propagation, bench))
     network = _Network.of(equations, bench)
     outputs = {o.name: o for o in equations.outputs}
     found: dict[tuple[str, str], tuple[int, int]] = {}
@@ -121,7 +146,23 @@ def _eliminate(equations: Equations, pairs: Sequence[tuple[str, str]]) -> Elimin
         quotients = run.quotients([row for row, _ in rows], [load for _, load in rows])
         for name, (num, den) in zip(wanted, quotients, strict=True):
             found[name, source] = (num, bench.multiply(bench.factored(outputs[name].divisor), den))
-    return Elimination(bench.finished(), tuple(found[pair] for pair in pairs), pivots)
+    return Elimination(bench.finished(), tuple(found[pair] for pair in pairs), pivots, waves)
+
+
+def _waves(propagation: Propagation, bench: Workbench) -> Iterable[Waves]:
+    """Yield what the generators of a nameless propagation are functions of."""
+    index, embed = propagation.ring.index, propagation.embed
+    groups: dict[tuple[int, int], list[Propagator]] = {}
+    for p in propagation.propagators:
+        groups.setdefault((p.dispersion, p.length), []).append(p)
+    for (number, position), group in groups.items():
+        law = propagation.table.dispersions[number]
+        yield Waves(
+            tuple((index[p.generator], p.order) for p in group),
+            tuple(bench.factored(embed(c)) for c in law.characteristic),
+            bench.factored(embed(law.shift)),
+            bench.factored(embed(propagation.lengths[number][position])),
+        )
 
 
 def _singular(equations: Equations, columns: Sequence[int]) -> ModelError:
@@ -163,7 +204,7 @@ class _Network:
     ) -> tuple[_NetworkRow, dict[str, list[int]]]:
         """Return a row, and what inputs contribute to it."""
         bench, columns = self.bench, self.columns
-        own = columns[about.kind, about.owner, about.component]
+        own = columns.get((about.kind, about.owner, about.component), NO_UNKNOWN)
         row = _NetworkRow({}, own, is_balance=is_balance)
         loads: dict[str, list[int]] = {}
         diagonal: list[int] = []

@@ -4,7 +4,9 @@ from symflex.library import ParameterPort, Sign
 from symflex.library.elements.coupling import DcMotor, Gyrator, Piezo, Transformer
 from symflex.library.elements.element import (
     ACROSS_UNIT,
+    COMPONENT_DOMAIN,
     COMPONENT_UNIT,
+    COMPONENTS,
     THROUGH_NAME,
     THROUGH_UNIT,
     Admittance,
@@ -21,6 +23,7 @@ from symflex.library.elements.element import (
     Stamp,
     Variable,
 )
+from symflex.library.elements.frame import FrameMember
 from symflex.library.elements.line import Beam, LineElement, Rod, Shaft, String
 from symflex.library.elements.lumped import (
     Capacitor,
@@ -54,6 +57,7 @@ ELEMENTS: dict[str, Element] = {
         RigidLink(),
         MasslessBeam(),
         Beam(),
+        FrameMember(),
         Rod(),
         Shaft(),
         String(),
@@ -74,6 +78,8 @@ ELEMENTS: dict[str, Element] = {
 
 __all__ = [
     "ACROSS_UNIT",
+    "COMPONENTS",
+    "COMPONENT_DOMAIN",
     "COMPONENT_UNIT",
     "ELEMENTS",
     "THROUGH_NAME",

@@ -17,17 +17,25 @@ if TYPE_CHECKING:
     from symflex.library import ParameterPort
 
 Domain = Literal["translation", "rotation", "electrical"]
-PortDomain = Literal["translation", "rotation", "electrical", "planar", "any", "whole"]
+PortDomain = Literal["translation", "rotation", "electrical", "planar", "plane", "any", "whole"]
 
 Role = Literal["balance", "law", "constraint", "signal", "condition"]
 
-Placing = Literal["translation", "rotation", "electrical", "planar"]
+Placing = Literal["translation", "rotation", "electrical", "planar", "plane"]
+
+COMPONENTS: dict[str, tuple[str, ...]] = {"planar": ("y", "theta"), "plane": ("x", "y", "theta")}
+"""What a node of several degrees of freedom is made of; one ``plane`` moves along x, too."""
+COMPONENT_DOMAIN: dict[str, Domain] = {"x": "translation", "y": "translation", "theta": "rotation"}
 
 ACROSS_UNIT: dict[str, str] = {"translation": "m", "rotation": "rad", "electrical": "V"}
 THROUGH_UNIT: dict[str, str] = {"translation": "N", "rotation": "N*m", "electrical": "A"}
 THROUGH_NAME: dict[str, str] = {"translation": "f", "rotation": "tau", "electrical": "i"}
 COMPONENT_UNIT: dict[str, str] = {
     "f": "N",
+    "f_x": "N",
+    "f_y": "N",
+    "f_u": "N",
+    "f_v": "N",
     "tau": "N*m",
     "i": "A",
     "supplied": "A",
@@ -46,7 +54,9 @@ class Variable:
     # ``field`` (an unknown function of x, or one of the constants that fix it) or ``input``.
     kind: Literal["node", "through", "signal", "value", "field", "input"]
     owner: str  # name of the node, element, signal, output, field's unknown or input
-    component: str = ""  # ``y`` or ``theta`` of a planar node; the quantity's name for a through variable
+    component: str = (
+        ""  # ``x``, ``y`` or ``theta`` of a planar node; the quantity's name for a through variable
+    )
 
     def __str__(self) -> str:
         return f"{self.owner}.{self.component}" if self.component else self.owner
@@ -140,7 +150,7 @@ class Port:
     name: str  # the key
     terminals: int  # how many nodes it lists; one is written as a string, more as an array
     # What the port acts on. ``any`` takes the domain the node has from other elements; ``planar`` needs both
-    # deflection y and slope theta; ``whole`` takes the node as it is.
+    # deflection y and slope theta; ``plane`` needs x besides; ``whole`` takes the node as it is.
     domain: PortDomain
     doc: str  # what the node is
     default: tuple[str, ...] | None = None  # nodes used when the key is missing
@@ -172,12 +182,13 @@ class Passivity:
 class PortTerminal:
     """The across variables of one attached node, ``None`` where it is the reference.
 
-    A non-planar node has only ``across``; a planar one has ``y`` and ``theta``.
+    A non-planar node has only ``across``; a planar one has ``y`` and ``theta``, and ``x`` in the plane.
     """
 
     across: Variable | None = None
     y: Variable | None = None
     theta: Variable | None = None
+    x: Variable | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -232,6 +243,8 @@ class Element(ABC):
     """Where one of its nodes is, the others are."""
     compliance: ClassVar[Literal["", "stretching", "bending"]] = ""
     """How it gives way; torsion is stretching about an axis."""
+    carries_x: ClassVar[bool] = False
+    """Where one of its planar nodes moves along x, the others do."""
     stiffness: ClassVar[str] = ""
     """Of what gives way without mass, the parameter with which it becomes rigid."""
     damping: ClassVar[str] = ""
@@ -242,7 +255,7 @@ class Element(ABC):
         for parameter in self.parameters:
             if parameter.name == quantity and parameter.unit:
                 return parameter.unit
-        return {"f": "N", "tau": "N*m", "i": "A"}[quantity]
+        return COMPONENT_UNIT[quantity]
 
     def quantities(self, domains: Mapping[str, Placing]) -> tuple[str, ...]:
         """Return the through quantities an expression may name, given the ports' domains."""

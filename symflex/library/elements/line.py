@@ -60,6 +60,8 @@ class LineElement(Element):
 
         Of a beam: the unknowns ``f_a``, ``tau_a`` (delivered at the first end), ``f`` and ``tau`` (delivered
         at the second), and four rows.
+
+        Where the law is solved otherwise ``use`` has no matrix T, and there are no rows.
         """
         one = use.one
         a, b = use.terminals["between"]
@@ -70,7 +72,7 @@ class LineElement(Element):
         unknowns = (*first, *second)
         rows = [
             EquationRow(about, LinearForm.of(end, *((v, -c) for v, c in zip(state_a, line, strict=True))))
-            for about, end, line in zip(unknowns, state_b, use.transmission, strict=True)
+            for about, end, line in zip(unknowns, state_b, use.transmission, strict=bool(use.transmission))
         ]
         delivered = [*zip(self._across(a), first, strict=True), *zip(self._across(b), second, strict=True)]
         return Stamp(
@@ -109,12 +111,12 @@ class Rod(LineElement):
     ports = (Port("between", 2, "translation", "the two ends, the second one l further along x"),)
     parameters = (
         ParameterPort("E", "Pa", "a modulus of elasticity", sign="positive"),
-        ParameterPort("A", "m^2", "a cross-section", sign="positive"),
+        ParameterPort("A", "m^2", "a cross-section", sign="positive", varies=True),
         ParameterPort("rho", "kg/m^3", "a density", sign="nonnegative"),
         ParameterPort("l", "m", "a length"),
         ParameterPort("eta", "s", "a Kelvin-Voigt loss time", "0", sign="nonnegative"),
-        ParameterPort("c_f", "N*s/m^2", "a viscous foundation", "0"),
-        ParameterPort("k_f", "N/m^2", "an elastic foundation", "0"),
+        ParameterPort("c_f", "N*s/m^2", "a viscous foundation", "0", varies=True),
+        ParameterPort("k_f", "N/m^2", "an elastic foundation", "0", varies=True),
     )
     through = ("f",)
     ends = ("across",)
@@ -136,12 +138,12 @@ class Shaft(LineElement):
     ports = (Port("between", 2, "rotation", "the two ends, the second one l further along x"),)
     parameters = (
         ParameterPort("G", "Pa", "a shear modulus", sign="positive"),
-        ParameterPort("J", "m^4", "a polar second moment of area", sign="positive"),
+        ParameterPort("J", "m^4", "a polar second moment of area", sign="positive", varies=True),
         ParameterPort("rho", "kg/m^3", "a density", sign="nonnegative"),
         ParameterPort("l", "m", "a length"),
         ParameterPort("eta", "s", "a Kelvin-Voigt loss time", "0", sign="nonnegative"),
-        ParameterPort("c_f", "N*m*s/m", "a viscous foundation", "0"),
-        ParameterPort("k_f", "N*m/m", "an elastic foundation", "0"),
+        ParameterPort("c_f", "N*m*s/m", "a viscous foundation", "0", varies=True),
+        ParameterPort("k_f", "N*m/m", "an elastic foundation", "0", varies=True),
     )
     through = ("tau",)
     ends = ("across",)
@@ -161,12 +163,12 @@ class String(LineElement):
     summary = "Stretched string, deflected across its length"
     ports = (Port("between", 2, "translation", "the two ends, the second one l further along x"),)
     parameters = (
-        ParameterPort("N", "N", "a tension", sign="positive"),
+        ParameterPort("N", "N", "a tension", sign="positive", varies=True),
         ParameterPort("rho", "kg/m^3", "a density", sign="nonnegative"),
-        ParameterPort("A", "m^2", "a cross-section", sign="nonnegative"),
+        ParameterPort("A", "m^2", "a cross-section", sign="nonnegative", varies=True),
         ParameterPort("l", "m", "a length"),
-        ParameterPort("c_f", "N*s/m^2", "a viscous foundation", "0"),
-        ParameterPort("k_f", "N/m^2", "an elastic foundation", "0"),
+        ParameterPort("c_f", "N*s/m^2", "a viscous foundation", "0", varies=True),
+        ParameterPort("k_f", "N/m^2", "an elastic foundation", "0", varies=True),
     )
     through = ("f",)
     ends = ("across",)
@@ -193,14 +195,14 @@ class Beam(LineElement):
     ports = (Port("between", 2, "planar", "the two ends, the second one l further along x"),)
     parameters = (
         ParameterPort("E", "Pa", "a modulus of elasticity", sign="positive"),
-        ParameterPort("I", "m^4", "a second moment of area", sign="positive"),
+        ParameterPort("I", "m^4", "a second moment of area", sign="positive", varies=True),
         ParameterPort("rho", "kg/m^3", "a density", sign="nonnegative"),
-        ParameterPort("A", "m^2", "a cross-section", sign="nonnegative"),
+        ParameterPort("A", "m^2", "a cross-section", sign="nonnegative", varies=True),
         ParameterPort("l", "m", "a length"),
         ParameterPort("eta", "s", "a Kelvin-Voigt loss time", "0", sign="nonnegative"),
-        ParameterPort("c_f", "N*s/m^2", "a viscous foundation", "0"),
-        ParameterPort("k_f", "N/m^2", "an elastic foundation", "0"),
-        ParameterPort("N", "N", "an axial force", "0", only=("euler-bernoulli", "rayleigh")),
+        ParameterPort("c_f", "N*s/m^2", "a viscous foundation", "0", varies=True),
+        ParameterPort("k_f", "N/m^2", "an elastic foundation", "0", varies=True),
+        ParameterPort("N", "N", "an axial force", "0", only=("euler-bernoulli", "rayleigh"), varies=True),
         ParameterPort("kappa", "1", "a shear coefficient", only=("timoshenko",), sign="positive"),
         ParameterPort("G", "Pa", "a shear modulus", only=("timoshenko",), sign="positive"),
     )

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from symflex.library import ParameterPort
 from symflex.library.elements.element import (
+    COMPONENTS,
     THROUGH_NAME,
     Element,
     ElementUse,
@@ -17,6 +18,7 @@ from symflex.library.elements.element import (
     LinearForm,
     Passivity,
     Port,
+    PortTerminal,
     Stamp,
 )
 
@@ -31,7 +33,8 @@ class RigidBody(Element):
     """A planar body of mass m [kg] and moment of inertia J [kg m^2] about its mass centre.
 
     The mass centre lies cg [m] beyond the node along x, ``y_cg = y + cg*theta``. ``f`` and ``tau``
-    are the inertial force [N] and moment about the node [N m].
+    are the inertial force [N] and moment about the node [N m]. At a node that moves along x the mass does so
+    too, and ``f_x`` is the inertial force of that.
     """
 
     type_name = "rigid_body"
@@ -46,6 +49,10 @@ class RigidBody(Element):
     passive = Passivity(of_any_sign=("cg",))
     is_inertia = True
 
+    def quantities(self, domains: Mapping[str, Placing]) -> tuple[str, ...]:
+        """Return the inertial forces, by what the node is."""
+        return _with_x(self.through, domains["at"])
+
     def stamp(self, use: ElementUse) -> Stamp:
         """Contribute the inertial force and moment of the body."""
         (terminal,) = use.terminals["at"]
@@ -55,39 +62,77 @@ class RigidBody(Element):
         moment = LinearForm.of(
             (terminal.y, m * cg * s**2), (terminal.theta, inertia * s**2), (terminal.theta, m * cg**2 * s**2)
         )
+        # To first order the mass centre moves along x as the node does.
+        force_x = LinearForm.of((terminal.x, m * s**2))
+        forces = {"f": (terminal.y, force), "tau": (terminal.theta, moment), "f_x": (terminal.x, force_x)}
+        offered = [(name, *forces[name]) for name in self.quantities(use.domains)]
         return Stamp(
-            injections=(
-                Injection(terminal.y, force * (-use.one)),
-                Injection(terminal.theta, moment * (-use.one)),
-            ),
-            through=(("f", force), ("tau", moment)),
+            injections=tuple(Injection(node, form * (-use.one)) for _, node, form in offered),
+            through=tuple((name, form) for name, _, form in offered),
         )
 
 
-class RigidLink(Element):
-    """A massless rigid link of the given length [m]: ``y_b = y_a + length*theta_a``, ``theta_b = theta_a``.
+def _with_x(quantities: tuple[str, ...], domain: Placing) -> tuple[str, ...]:
+    """Return what a planar part offers, with the force along x where its nodes move along x."""
+    return (*quantities, "f_x") if domain == "plane" else quantities
 
-    ``f`` [N] and ``tau`` [N m] are the force and moment delivered at the second node.
+
+class RigidLink(Element):
+    """A massless rigid link of the given length [m], at an angle [rad] from the x axis.
+
+    ``y_b = y_a + length*cos(angle)*theta_a`` and ``theta_b = theta_a``; where its nodes move along x, also
+    ``x_b = x_a - length*sin(angle)*theta_a``. ``f`` [N] and ``tau`` [N m] are the force and moment delivered
+    at the second node, ``f_x`` [N] the force along x.
     """
 
     type_name = "rigid_link"
     summary = "Massless rigid link between two planar nodes"
-    ports = (Port("between", 2, "planar", "the two ends, the second one 'length' further along x"),)
-    parameters = (ParameterPort("length", "m", "a length"),)
+    ports = (Port("between", 2, "planar", "the two ends, the second one 'length' further in its direction"),)
+    parameters = (
+        ParameterPort("length", "m", "a length"),
+        ParameterPort("angle", "rad", "an angle from the x axis", "0", is_direction=True),
+    )
     through = ("f", "tau")
-    passive = Passivity(of_any_sign=("length",))
+    passive = Passivity(of_any_sign=("length", "angle"))
     moves_as_one = True
+    carries_x = True
+
+    def quantities(self, domains: Mapping[str, Placing]) -> tuple[str, ...]:
+        """Return what is delivered at the second node, by what the nodes are."""
+        return _with_x(self.through, domains["between"])
 
     def stamp(self, use: ElementUse) -> Stamp:
-        """Contribute the force and moment carried and the two kinematic rows."""
+        """Contribute the force and moment carried and the kinematic rows."""
         a, b = use.terminals["between"]
-        force, moment = use.unknown("f"), use.unknown("tau")
-        one, length = use.one, use.values["length"]
-        scale = length.denominator()
-        deflection = LinearForm.of((b.y, scale), (a.y, -scale), (a.theta, -length * scale))
+        force, moment, along = use.unknown("f"), use.unknown("tau"), use.unknown("f_x")
+        one = use.one
+        reach, rise = (use.values["length"] * use.values[name] for name in ("cos", "sin"))
         slope = LinearForm.of((b.theta, one), (a.theta, -one))
-        rows = (EquationRow(force, deflection, "constraint"), EquationRow(moment, slope, "constraint"))
-        return _carried(use, length, rows)
+        rows = (
+            EquationRow(force, _offset(a.y, b.y, a.theta, reach), "constraint"),
+            EquationRow(moment, slope, "constraint"),
+        )
+        carried = _carried(use, reach, rows)
+        if use.domains["between"] != "plane":
+            return carried
+        flow = LinearForm.of((along, one))
+        return Stamp(
+            unknowns=(*carried.unknowns, along),
+            rows=(*carried.rows, EquationRow(along, _offset(a.x, b.x, a.theta, -rise), "constraint")),
+            injections=(
+                *carried.injections,
+                Injection(b.x, flow),
+                Injection(a.x, flow * (-one)),
+                Injection(a.theta, flow * rise),
+            ),
+            through=(*carried.through, ("f_x", flow)),
+        )
+
+
+def _offset(a: Variable | None, b: Variable | None, theta: Variable | None, lever: Factored) -> LinearForm:
+    """Return ``b - a - lever*theta`` without a denominator."""
+    scale = lever.denominator()
+    return LinearForm.of((b, scale), (a, -scale), (theta, -lever * scale))
 
 
 class MasslessBeam(Element):
@@ -150,66 +195,98 @@ def _carried(use: ElementUse, length: Factored, rows: tuple[EquationRow, ...]) -
     )
 
 
-def _hold(use: ElementUse, held: tuple[tuple[str, Variable | None], ...]) -> Stamp:
-    """Return the stamp that keeps each variable at zero; the quantity is the reaction on the node."""
-    kept = [(use.unknown(quantity), quantity, variable) for quantity, variable in held]
+REACTIONS = {"x": "f_x", "y": "f", "theta": "tau"}
+"""What holds a component of a planar node."""
+
+
+def _hold(use: ElementUse, held: Mapping[str, str]) -> Stamp:
+    """Return the stamp that keeps components of a node at zero, or at those of a second node.
+
+    ``held`` gives the reaction, delivered into the (first) node, by component.
+    """
+    first, *others = use.terminals["at"]
+    second = others[0] if others else PortTerminal()
+    kept = [(use.unknown(q), q, getattr(first, c), getattr(second, c)) for c, q in held.items()]
+    one = use.one
     return Stamp(
-        unknowns=tuple(reaction for reaction, _, _ in kept),
+        unknowns=tuple(reaction for reaction, *_ in kept),
         rows=tuple(
-            EquationRow(reaction, LinearForm.of((v, use.one)), "constraint") for reaction, _, v in kept
+            EquationRow(reaction, LinearForm.of((a, one), (b, -one)), "constraint")
+            for reaction, _, a, b in kept
         ),
-        injections=tuple(Injection(v, LinearForm.of((reaction, use.one))) for reaction, _, v in kept),
-        through=tuple((quantity, LinearForm.of((reaction, use.one))) for reaction, quantity, _ in kept),
+        injections=tuple(
+            Injection(node, LinearForm.of((reaction, sign)))
+            for reaction, _, a, b in kept
+            for node, sign in ((a, one), (b, -one))
+        ),
+        through=tuple((quantity, LinearForm.of((reaction, one))) for reaction, quantity, *_ in kept),
     )
 
 
 class Fixed(Element):
-    """Everything at the node is zero; ``f``, ``tau`` or ``i`` is the reaction delivered to the node."""
+    """Everything at the node is zero; ``f``, ``f_x``, ``tau`` or ``i`` is the reaction delivered to the node.
+
+    At a component of a planar node, ``p.x``, that alone is held. Between two nodes a rigid joint: they move
+    alike, and the reaction is delivered to the first.
+    """
 
     type_name = "fixed"
-    summary = "Support: the node does not move (planar: y = 0 and theta = 0)"
-    ports = (Port("at", 1, "whole", "node that is held"),)
-    through = ("f", "tau", "i")
+    summary = "Support: the node does not move (planar: y, theta, and x in the plane, are 0)"
+    ports = (Port("at", 1, "whole", "node that is held, or a component of it", pair="between"),)
+    through = ("f", "tau", "f_x", "i")
     passive = Passivity()
+    carries_x = True
 
     def quantities(self, domains: Mapping[str, Placing]) -> tuple[str, ...]:
         """Return the reactions, by what the node is."""
-        domain = domains["at"]
-        return ("f", "tau") if domain == "planar" else (THROUGH_NAME[domain],)
+        return tuple(self._held(domains["at"]).values())
 
     def stamp(self, use: ElementUse) -> Stamp:
-        """Contribute a reaction and a zero row per degree of freedom."""
-        (terminal,) = use.terminals["at"]
-        if terminal.theta is not None:
-            return _hold(use, (("f", terminal.y), ("tau", terminal.theta)))
-        return _hold(use, ((THROUGH_NAME[use.domains["at"]], terminal.across),))
+        """Contribute a reaction and a row per degree of freedom."""
+        return _hold(use, self._held(use.domains["at"]))
+
+    @staticmethod
+    def _held(domain: Placing) -> Mapping[str, str]:
+        if domain not in COMPONENTS:
+            return {"across": THROUGH_NAME[domain]}
+        return {c: REACTIONS[c] for c in COMPONENTS[domain]}
 
 
 class Slider(Element):
-    """The slope theta is zero, the deflection is free; ``tau`` [N m] is the reaction."""
+    """The slope theta is zero, deflections are free; ``tau`` [N m] is the reaction.
+
+    Between two nodes, their slopes are the same.
+    """
 
     type_name = "slider"
-    summary = "Support: theta = 0, y free"
-    ports = (Port("at", 1, "planar", "node whose slope is held"),)
+    summary = "Support: theta = 0, deflections free"
+    ports = (Port("at", 1, "planar", "node whose slope is held", pair="between"),)
     through = ("tau",)
     passive = Passivity()
 
     def stamp(self, use: ElementUse) -> Stamp:
         """Contribute the reaction torque and the row ``theta = 0``."""
-        (terminal,) = use.terminals["at"]
-        return _hold(use, (("tau", terminal.theta),))
+        return _hold(use, {"theta": "tau"})
 
 
 class Pin(Element):
-    """The deflection y is zero, the slope is free; ``f`` [N] is the reaction."""
+    """The deflection y is zero, in the plane x as well, and the slope is free.
+
+    ``f`` [N] is the reaction along y, ``f_x`` [N] that along x. Between two nodes a hinge: they deflect
+    alike, and turn as they like.
+    """
 
     type_name = "pin"
-    summary = "Support: y = 0, theta free"
-    ports = (Port("at", 1, "planar", "node whose deflection is held"),)
+    summary = "Support: y = 0, and x in the plane, theta free"
+    ports = (Port("at", 1, "planar", "node whose deflection is held", pair="between"),)
     through = ("f",)
     passive = Passivity()
+    carries_x = True
+
+    def quantities(self, domains: Mapping[str, Placing]) -> tuple[str, ...]:
+        """Return the reactions, by what the node is."""
+        return _with_x(self.through, domains["at"])
 
     def stamp(self, use: ElementUse) -> Stamp:
-        """Contribute the reaction force and the row ``y = 0``."""
-        (terminal,) = use.terminals["at"]
-        return _hold(use, (("f", terminal.y),))
+        """Contribute the reaction forces and the rows of no deflection."""
+        return _hold(use, {c: REACTIONS[c] for c in COMPONENTS[use.domains["at"]] if c != "theta"})

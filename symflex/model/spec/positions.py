@@ -342,5 +342,8 @@ class Spec:
     source: Source
     root: TableValue
 
+    def __repr__(self) -> str:
+        return f"<Spec {self.source.name}: {len(self.source.text)} characters>"
+
 
 Value: TypeAlias = StringValue | NumberValue | BooleanValue | ArrayValue | TableValue | OtherValue

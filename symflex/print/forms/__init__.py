@@ -9,22 +9,24 @@ from typing import TYPE_CHECKING
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.expressions import format_expression
-from symflex.print.forms.arrange import Arranger
+from symflex.print.forms.arrange import Arranged, Arranger
 from symflex.print.forms.definitions import definitions_form
 from symflex.print.forms.hidden import hidden_expressions, with_hidden
 from symflex.print.forms.notation import reachable
 from symflex.print.forms.polynomial import (
     constant_form,
+    factored_draft,
     factored_form,
+    hyperbolic_draft,
     hyperbolic_form,
     monic_form,
     polynomial_form,
 )
-from symflex.print.forms.printed import Arrange, PrintedForm, counts_of, forms_of, require
+from symflex.print.forms.printed import Arrange, Begin, BegunForm, PrintedForm, counts_of, forms_of, require
 from symflex.transfer import NestedTransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from symflex.transfer import AnyTransferFunction, TransferFunction
 
@@ -38,6 +40,17 @@ def _later(name: str) -> Arrange:
         return made(*arguments)
 
     return form
+
+
+def _draft_later(name: str) -> Begin:
+    """Return what begins such a form."""
+
+    def draft(tf: TransferFunction, arranged: Arranged) -> BegunForm | None:
+        """Begin a form as the function of that name in its module says."""
+        begin: Begin = getattr(import_module(f"symflex.print.forms.{name}"), f"{name}_draft")
+        return begin(tf, arranged)
+
+    return draft
 
 
 FORMS: dict[str, Arrange] = {
@@ -59,17 +72,28 @@ LARGE = 300
 """Number of expanded terms from which only the closed form is tried: no expanded print is shorter."""
 CANDIDATES = ("definitions", "factored", "polynomial")
 """The symbolic forms of rational functions; the shortest print is the default, ties go to the first."""
-DISTRIBUTED_CANDIDATES = ("hyperbolic", "factored", "vaughan", "krylov")
+DISTRIBUTED_CANDIDATES: dict[str, Begin] = {
+    "hyperbolic": hyperbolic_draft,
+    "factored": factored_draft,
+    "vaughan": _draft_later("vaughan"),
+    "krylov": _draft_later("krylov"),
+}
 """The same for functions with kernels."""
+FEW = 60
+"""Terms up to which every form is arranged: that takes some hundredths of a second."""
+MORE = 1.25
+"""How many times the terms of the form with the fewest another one may have, and still print shorter."""
 
 
-def print_form(tf: AnyTransferFunction, form: str | None = None, digits: int = 6) -> PrintedForm:
+def print_form(
+    tf: AnyTransferFunction, form: str | None = None, digits: int = 6, arranged: Arranged | None = None
+) -> PrintedForm:
     """Return a transfer function in the named form, or in the one that prints shortest.
 
     ``form`` is a key of :data:`FORMS`; functions derived nested have the form ``nested`` and no other.
-    ``digits`` are the significant ones of forms that print decimals. Raises UsageError: SF902 when there is
-    no such form, or the function has none; ModelError: SF229 when the form needs numbers and a parameter has
-    none.
+    ``digits`` are the significant ones of forms that print decimals. What is ``arranged`` already, of
+    functions of the same model, is not arranged again. Raises UsageError: SF902 when there is no such form,
+    or the function has none; ModelError: SF229 when the form needs numbers and a parameter has none.
     """
     if isinstance(tf, NestedTransferFunction):
         if form not in (None, "nested"):
@@ -86,7 +110,12 @@ def print_form(tf: AnyTransferFunction, form: str | None = None, digits: int = 6
 
         tf = economical(tf)
     if form is None:
-        return min((_made(tf, name, digits) for name in _candidates(tf)), key=_length)
+        made = (
+            _drafted(tf, arranged or Arranged())
+            if tf.is_distributed
+            else (_made(tf, name, digits) for name in _candidates(tf))
+        )
+        return min(made, key=_length)
     if form not in FORMS:
         hint = nearest(form, FORMS) or "forms: " + ", ".join(FORMS)
         raise UsageError(Diagnostic("SF902", f"there is no form '{form[:64]}'", None, hint))
@@ -96,7 +125,19 @@ def print_form(tf: AnyTransferFunction, form: str | None = None, digits: int = 6
 def _made(tf: TransferFunction, form: str, digits: int) -> PrintedForm:
     require(tf, form)
     arguments = (tf, digits) if form in DECIMAL_FORMS else (tf,)
-    made = FORMS[form](*arguments)
+    return _explained(tf, FORMS[form](*arguments))
+
+
+def _drafted(tf: TransferFunction, arranged: Arranged) -> Iterator[PrintedForm]:
+    """Yield the forms of a function with kernels that might print shortest, always some."""
+    begun = [DISTRIBUTED_CANDIDATES[name](tf, arranged) for name in _candidates(tf)]
+    drafts = [draft for draft in begun if draft is not None]
+    most = max(FEW, MORE * min(draft.terms for draft in drafts))
+    yield from (_explained(tf, draft.finish()) for draft in drafts if draft.terms <= most)
+
+
+def _explained(tf: TransferFunction, made: PrintedForm) -> PrintedForm:
+    """Return a form with the definitions that occur in it."""
     explained = {name for name, _ in made.where}
     parts = (made.num, made.den, *(e for _, e in made.where), *(law for _, law in made.laws))
     known = ((d.name, d.expression) for d in tf.model.definitions if d.name not in explained)
@@ -113,12 +154,13 @@ def print_forms(
     found: list[PrintedForm] = []
     sentences: list[str] = []
     refusal: UsageError | None = None
+    arranged = Arranged()
     for tf in tfs:
         try:
-            found.append(print_form(tf, form, digits))
+            found.append(print_form(tf, form, digits, arranged))
         except UsageError as error:
             refusal = refusal or error
-            found.append(print_form(tf, None, digits))
+            found.append(print_form(tf, None, digits, arranged))
             sentences.append(f"{tf.name} has no {form} form: printed in its {found[-1].name} form")
     if refusal is not None and len(sentences) == len(found):
         raise refusal

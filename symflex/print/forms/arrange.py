@@ -5,7 +5,7 @@ Numerator and denominator are products of such sums, each in the arrangement tha
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cache, cached_property
 from itertools import accumulate
@@ -440,6 +440,22 @@ class ProductPrinter:
             terms = [t.operand if isinstance(t, Negative) else Negative(t) for t in found.terms]
             found = Negative(Sum(tuple(terms)))
         return found
+
+
+@dataclass(frozen=True, eq=False)
+class Arranged:
+    """Printers of functions that are printed together; those of equal symbols are one, and arrange once."""
+
+    _printers: dict[object, ProductPrinter] = field(default_factory=dict)
+
+    def printer(self, arranger: Arranger) -> ProductPrinter:
+        """Return a printer that prints as a new one of the arranger does."""
+        if arranger.kept is not None:
+            return ProductPrinter(arranger)
+        symbols = tuple((name, format_expression(e)) for name, e in sorted(arranger.names.items()))
+        degrees = tuple(sorted(arranger.degrees.items()))
+        key = (arranger.ring.names, symbols, degrees, arranger.apart)
+        return self._printers.setdefault(key, ProductPrinter(arranger))
 
 
 def _cost(expression: Expression) -> int:

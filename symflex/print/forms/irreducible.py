@@ -52,18 +52,22 @@ def _split(factor: fmpz_mpoly, coordinates: Exponentials, normal: NormalForm) ->
         for a in coordinates.angles
         if a.kind == "hyperbolic"
     ]
+    split = [
+        (part, times * exponent)
+        for polynomial, exponent in image.factors
+        if not any(polynomial == e for e in exponentials)
+        for part, times in irreducible_factors(polynomial)[1]
+    ]
+    if sum(times for _, times in split) == 1:
+        return whole
     found = Factored.number(normal.ring, 1)
     odd: dict[tuple[int, ...], list[fmpz_mpoly]] = {}
-    for polynomial, exponent in image.factors:
-        if any(polynomial == e for e in exponentials):
-            continue
-        _, parts = irreducible_factors(polynomial)
-        for part, times in parts:
-            parity = coordinates.parity(part)
-            if any(parity):
-                odd.setdefault(parity, []).extend([part] * (times * exponent))
-            else:
-                found = found * _restored(part, coordinates, normal) ** (times * exponent)
+    for part, times in split:
+        parity = coordinates.parity(part)
+        if any(parity):
+            odd.setdefault(parity, []).extend([part] * times)
+        else:
+            found = found * _restored(part, coordinates, normal) ** times
     rest = coordinates.coordinates.constant(1)
     for parts_of_parity in odd.values():
         first, *pairs = _paired(parts_of_parity)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from symflex.algebra import Factored
 from symflex.expressions import Expression, Name, negative, number, power, product_of, quotient, sum_of
-from symflex.print.forms.arrange import Arranger, ProductPrinter, shortest_sides
+from symflex.print.forms.arrange import Arranged, Arranger, shortest_sides
 from symflex.print.forms.invariants import Invariants, in_krylov_functions, krylov_name
 from symflex.print.forms.kept import KeptDefinitions
 from symflex.print.forms.notation import (
@@ -19,7 +20,7 @@ from symflex.print.forms.notation import (
     wavenumber_laws,
 )
 from symflex.print.forms.polynomial import in_kernels
-from symflex.print.forms.printed import PrintedForm
+from symflex.print.forms.printed import BegunForm, PrintedForm, terms_of
 
 if TYPE_CHECKING:
     from symflex.print.forms.notation import Angle
@@ -33,9 +34,19 @@ def krylov_form(tf: TransferFunction) -> PrintedForm:
     ``K_0 = cosh(q)``, ``K_1 = sinh(q)/gamma``. Where the exponents of field equations have no formula, the
     solutions and their derivatives at the ends stand as ``h(l)``, ``h'(l)``.
     """
-    if tf.is_nameless:
-        return in_kernels(tf, "krylov", tf.ratio)
+    return krylov_draft(tf, Arranged()).finish()
+
+
+def krylov_draft(tf: TransferFunction, arranged: Arranged) -> BegunForm:
+    """Return what :func:`krylov_form` arranges."""
+    if not tf.has_formula:
+        return BegunForm(terms_of(tf.ratio), partial(in_kernels, tf, "krylov", tf.ratio, arranged))
     change, value = in_krylov_functions(tf.ratio.ring, tf.kernels, tf.ratio)
+    return BegunForm(terms_of(value), partial(_krylov, tf, change, value, arranged))
+
+
+def _krylov(tf: TransferFunction, change: Invariants, value: Factored, arranged: Arranged) -> PrintedForm:
+    """Return the form of a value over the ring of the change."""
     ring = change.ring
     used = ring.used_in(f for f, _ in value.factors)
     naming = Naming.of(tf)
@@ -56,7 +67,7 @@ def krylov_form(tf: TransferFunction) -> PrintedForm:
     lines += notation.lines
     functions = (g for g in ring.names if g.startswith("K") and g in symbols and g not in tf.ratio.ring.index)
     decays = (k.generator for k in tf.kernels.kernels if not k.wavenumber)
-    printer = ProductPrinter(
+    printer = arranged.printer(
         Arranger.plain(ring, symbols, (*functions, *decays), KeptDefinitions.of(tf, ring))
     )
     sides = shortest_sides(printer, value, embedded_laws(tf, change))

@@ -2,7 +2,9 @@
 
 Input: a :class:`symflex.transfer.NestedTransferFunction`.
 Output: a :class:`PrintedForm` whose ``where`` lines use only those before them. What occurs once stands where
-it is used; what occurs more often, and what would be long or deep, has a name.
+it is used; what occurs more often, and what would be long or deep, has a name. Fundamental functions of
+beams, rods and shafts are ``h(l)``, ``h'(l)``, one h for all that have the same differential equation, its
+law.
 """
 
 from __future__ import annotations
@@ -12,15 +14,29 @@ from itertools import count
 from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE
-from symflex.algebra.straight_line import ONE, Step
+from symflex.algebra.straight_line import ONE, ZERO, Step
 from symflex.budget import spend
-from symflex.expressions import Expression, Name, Negative, Number, Power, Product, Quotient, Sum, number
-from symflex.print.forms.notation import names_of
+from symflex.expressions import (
+    Call,
+    Derivative,
+    Equation,
+    Expression,
+    Name,
+    Negative,
+    Number,
+    Power,
+    Product,
+    Quotient,
+    Sum,
+    number,
+)
+from symflex.print.forms.notation import free_names, names_of
 from symflex.print.forms.printed import PrintedForm
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from symflex.equations.elimination.star_mesh import Waves
     from symflex.transfer import NestedTransferFunction
 
 DEEPEST = 8
@@ -116,12 +132,20 @@ def _is_monomial(tf: NestedTransferFunction, i: int) -> bool:
 
 
 def _fresh_names(tf: NestedTransferFunction) -> dict[str, Iterator[str]]:
-    taken = names_of(tf.model) | tf.generators
+    taken = names_of(tf.model) | tf.generators | {name for name, _ in _laws(tf).values()}
 
     def numbered(stem: str) -> Iterator[str]:
         return (name for n in count(1) if (name := f"{stem}_{n}") not in taken)
 
     return {stem: numbered(stem) for stem in ("w", "Z", *dict.fromkeys(STEMS.values()))}
+
+
+def _laws(tf: NestedTransferFunction) -> dict[tuple[int, ...], tuple[str, Waves]]:
+    """Return, by the coefficients of a differential equation, what its solution is called, and a user."""
+    users = {w.coefficients: w for w in reversed(tf.waves) if w.coefficients}
+    ordered = [users[c] for c in dict.fromkeys(w.coefficients for w in tf.waves if w.coefficients)]
+    found = free_names("h", len(ordered), names_of(tf.model) | tf.generators)
+    return {w.coefficients: (name, w) for name, w in zip(found, ordered, strict=True)}
 
 
 @dataclass
@@ -141,6 +165,7 @@ class _Printer:
         self.order = {name: n for n, name in enumerate(tf.program.names)}
         self.order[LAPLACE] = len(self.order)
         self.sums = 0
+        self.functions = _laws(tf)
         for i in tf.steps:
             spend()
             expression = self._made(i)
@@ -151,17 +176,39 @@ class _Printer:
                 self.split.pop(i, None)
             self.known[i] = expression
         num, den = self.known[tf.num], self.known[tf.den]
+        where, laws = tuple(self.lines), tuple(map(self._law, self.functions.values()))
         if isinstance(den, Negative):
             num, den = _negated(num), den.operand
         if tf.den == ONE and isinstance(num, Quotient):
-            return PrintedForm("nested", num.numerator, num.denominator, tuple(self.lines))
-        return PrintedForm("nested", num, den, tuple(self.lines))
+            return PrintedForm("nested", num.numerator, num.denominator, where, laws)
+        return PrintedForm("nested", num, den, where, laws)
+
+    def _law(self, function: tuple[str, Waves]) -> tuple[str, Equation]:
+        """Return the differential equation of a fundamental function."""
+        name, waves = function
+        order = len(waves.coefficients)
+        terms: list[Expression] = [Derivative(name, order)]
+        for k in reversed(range(order)):
+            if waves.coefficients[k] != ZERO:
+                state = Derivative(name, k) if k else Name(name)
+                terms.append(_times(self.known[waves.coefficients[k]], state))
+        return name, Equation(Sum(tuple(terms)), number(0))
+
+    def _function(self, waves: Waves, order: int) -> Expression:
+        """Return a fundamental function at its length."""
+        length = self.known[waves.length]
+        if order >= 0:
+            return Call(self.functions[waves.coefficients][0], length, order)
+        return Call("exp", _negated(_times(self.known[waves.shift], length)))
 
     def _made(self, i: int) -> Expression:
         program = self.tf.program
         operands = program.operands[i]
         match program.kinds[i]:
             case Step.GENERATOR:
+                if operands[0] in self.tf.wave_of:
+                    waves, place = self.tf.wave_of[operands[0]]
+                    return self._function(waves, waves.generators[place][1])
                 name = program.names[operands[0]]
                 return self.symbols.get(name, Name(name))
             case Step.NUMBER:
@@ -230,6 +277,17 @@ def _multiplied(factors: Sequence[Expression]) -> Expression:
     if not factors:
         return number(1)
     return factors[0] if len(factors) == 1 else Product(tuple(factors))
+
+
+def _times(left: Expression, right: Expression) -> Expression:
+    """Return a product of two factors, a sign in front."""
+    if isinstance(left, Negative):
+        return _negated(_times(left.operand, right))
+    if isinstance(left, Quotient):
+        return Quotient(_times(left.numerator, right), left.denominator)
+    if left == number(1):
+        return right
+    return Product((*left.factors, right) if isinstance(left, Product) else (left, right))
 
 
 def _negated(expression: Expression) -> Expression:

@@ -14,6 +14,9 @@ from symflex.expressions import (
     Equation,
     Expression,
     Name,
+    Negative,
+    Product,
+    Sum,
     names,
     negative,
     number,
@@ -22,11 +25,11 @@ from symflex.expressions import (
     quotient,
     sum_of,
 )
-from symflex.print.forms.arrange import Arranger, ProductPrinter
+from symflex.print.forms.arrange import Arranger, ProductPrinter, Sides
 from symflex.print.forms.kept import KeptDefinitions
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
     from symflex.algebra import Ring
     from symflex.expressions import Expression
@@ -128,8 +131,50 @@ def notation_of(
         else:
             lines.append((q, wave_times_length(printer, wave, angle.length)))
     decays, laws = other_kernels(tf, used, naming, printer)
-    symbols |= {**waves.symbols, **decays}
-    return Notation(symbols, (*lines, *waves.lines), laws)
+    entries, systems = entries_of_matrices(tf, used, naming, printer)
+    symbols |= {**waves.symbols, **decays, **entries}
+    return Notation(symbols, (*lines, *waves.lines), (*laws, *systems))
+
+
+def entries_of_matrices(
+    tf: TransferFunction, used: Collection[str], naming: Naming, printer: ProductPrinter
+) -> tuple[dict[str, Expression], tuple[tuple[str, Equation], ...]]:
+    """Return entries of fundamental matrices, ``Z_12(l)``, and what determines them.
+
+    That is how the states, row i, of any column j change along x, and where they start.
+    """
+    symbols: dict[str, Expression] = {}
+    lines: list[tuple[str, Equation]] = []
+    for d in tf.kernels.dispersions:
+        kernels = [k for k in tf.kernels.kernels_of(d) if k.function == "entry" and k.generator in used]
+        if not kernels:
+            continue
+        n, (start,) = d.order, d.start
+        stem = next(s for s in _stems() if not any(name.startswith(f"{s}_") for name in naming.taken))
+        apart = "" if n < 10 else "_"  # noqa: PLR2004  (indices of two digits need one between them)
+        names_of_column = [f"{stem}_{i}{apart}j" for i in range(1, n + 1)]
+        naming.keep([*names_of_column, f"{stem}_ij"])
+        for kernel in kernels:
+            i, j = divmod(kernel.order, n)
+            place = printer.quotient(start + kernel.length)
+            symbols[kernel.generator] = Call(f"{stem}_{i + 1}{apart}{j + 1}", place)
+        for name, row in zip(names_of_column, d.matrix, strict=True):
+            terms = [
+                product_of([printer.quotient(c), Name(other)])
+                for c, other in zip(row, names_of_column, strict=True)
+                if not c.is_zero
+            ]
+            lines.append((name, Equation(Derivative(name, 1), sum_of(terms))))
+        first = number(0) if start.is_zero else printer.quotient(start)
+        ends = Call(f"{stem}_ij", first)
+        lines.append((ends.name, Equation(ends, Name("delta_ij"))))
+    return symbols, tuple(lines)
+
+
+def _stems() -> Iterator[str]:
+    """Yield letters for matrices, and then several of them."""
+    for length in count(1):
+        yield from (letter * length for letter in "ZYXWV")
 
 
 def _occurs(dispersion: Dispersion, used: Collection[str], angles: Iterable[Angle]) -> bool:
@@ -138,13 +183,26 @@ def _occurs(dispersion: Dispersion, used: Collection[str], angles: Iterable[Angl
 
 def wave_times_length(printer: ProductPrinter, wave: Expression, length: Factored) -> Expression:
     """Return a wavenumber times a length."""
-    above, below = printer.sides(length)
+    above, below = _length_sides(printer, length)
     return quotient(product_of([wave, above]), below)
+
+
+def _length_sides(printer: ProductPrinter, length: Factored) -> Sides:
+    """Return numerator and denominator of a length; ``-(x - l)`` is ``l - x``."""
+    above, below = printer.sides(length)
+    if isinstance(above, Negative):
+        factors = list(above.operand.factors if isinstance(above.operand, Product) else (above.operand,))
+        last = factors[-1]
+        if isinstance(last, Sum):
+            turned = [t.operand if isinstance(t, Negative) else Negative(t) for t in last.terms]
+            factors[-1] = Sum(tuple(sorted(turned, key=lambda t: isinstance(t, Negative))))
+            above = product_of(factors)
+    return above, below
 
 
 def times_length(printer: ProductPrinter, root: Expression, length: Factored) -> Expression:
     """Return a length times what a wavenumber is, s in front."""
-    above, below = printer.sides(length)
+    above, below = _length_sides(printer, length)
     s = Name(LAPLACE)
     inner = root.children if root.children and root.children[0] == s else (root,)
     front = [s] if inner[0] == s else []

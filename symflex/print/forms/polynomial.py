@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import partial
 from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE, Factored, Ring, by_powers, degree_in, irreducible_factors
 from symflex.expressions import Expression, Name, number, power, product_of, quotient, sum_of
-from symflex.print.forms.arrange import Arranger, ProductPrinter, shortest_sides
+from symflex.print.forms.arrange import Arranged, Arranger, ProductPrinter, shortest_sides
 from symflex.print.forms.kept import KeptDefinitions
 from symflex.print.forms.notation import Naming, Notation, constant_symbols, notation_of, wavenumber_laws
-from symflex.print.forms.printed import PrintedForm
+from symflex.print.forms.printed import BegunForm, PrintedForm, terms_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -122,21 +123,41 @@ def hyperbolic_form(tf: TransferFunction) -> PrintedForm:
     return in_kernels(tf, "hyperbolic", tf.ratio)
 
 
-def in_kernels(tf: TransferFunction, name: str, value: Factored) -> PrintedForm:
+def hyperbolic_draft(tf: TransferFunction, arranged: Arranged) -> BegunForm:
+    """Return what :func:`hyperbolic_form` arranges."""
+    return BegunForm(terms_of(tf.ratio), partial(in_kernels, tf, "hyperbolic", tf.ratio, arranged))
+
+
+def factored_draft(tf: TransferFunction, arranged: Arranged) -> BegunForm | None:
+    """Return what :func:`factored_form` arranges, ``None`` where kernels do not factor."""
+    from symflex.print.forms.irreducible import irreducible_kernels  # only with beams
+
+    value = irreducible_kernels(tf.ratio, tf.kernels)
+    if (value / tf.ratio).is_one:
+        return None
+    return BegunForm(terms_of(value), partial(in_kernels, tf, "factored", value, arranged))
+
+
+def in_kernels(
+    tf: TransferFunction, name: str, value: Factored, arranged: Arranged | None = None
+) -> PrintedForm:
     """Return a form of a value over the transfer function's ring."""
     used = tf.ratio.ring.used_in(f for f, _ in value.factors)
     notation = notation_of(tf, used, Naming.of(tf))
-    printer = kernel_printer(tf, notation)
+    printer = kernel_printer(tf, notation, arranged)
     sides = shortest_sides(printer, value, wavenumber_laws(tf))
     return PrintedForm(name, *sides, notation.lines, notation.laws)
 
 
-def kernel_printer(tf: TransferFunction, notation: Notation) -> ProductPrinter:
+def kernel_printer(
+    tf: TransferFunction, notation: Notation, arranged: Arranged | None = None
+) -> ProductPrinter:
     """Return a printer for values over the transfer function's ring."""
     symbols = {**constant_symbols(tf), **notation.symbols}
     apart = (k.generator for k in tf.kernels.kernels)
     ring = tf.ratio.ring
-    return ProductPrinter(Arranger.plain(ring, symbols, apart, KeptDefinitions.of(tf, ring)))
+    arranger = Arranger.plain(ring, symbols, apart, KeptDefinitions.of(tf, ring))
+    return (arranged or Arranged()).printer(arranger)
 
 
 def collected_form(tf: TransferFunction) -> PrintedForm:

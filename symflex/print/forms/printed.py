@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 from symflex.algebra import LAPLACE
 from symflex.errors import Diagnostic, UsageError
-from symflex.expressions import Expression, Name, format_expression
+from symflex.expressions import FUNCTIONS, Call, Expression, Name, format_expression, names
 from symflex.transfer.transfer_function import degree
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ class PrintedForm:
     where: tuple[tuple[str, Expression], ...] = ()
     # Functions of x that occur, with the differential equation each solves: at x = 0 the highest but one of
     # its derivatives is one and those before it are zero. Only for field equations whose exponents have no
-    # formula.
+    # formula. Where coefficients vary along x, a line per state: ``Z_1j' = ...``, and ``Z_ij(0) = delta_ij``.
     laws: tuple[tuple[str, Equation], ...] = ()
     argument: Expression = S  # of the transfer function: s, or the imaginary unit times the angular frequency
     # Of a form that lists poles: whether the model is stable, which hidden modes decide too.
@@ -52,8 +52,23 @@ class PrintedForm:
         return name if self.argument == S else f"{name}({format_expression(self.argument)})"
 
 
+@dataclass(frozen=True, slots=True)
+class BegunForm:
+    """A form of a function with kernels before its sums are arranged, which is what takes long."""
+
+    terms: int  # of numerator and denominator
+    finish: Callable[[], PrintedForm]
+
+
+def terms_of(value: Factored) -> int:
+    """Return the number of terms of all factors."""
+    return sum(len(factor) for factor, _ in value.factors)
+
+
 Arrange = Callable[..., PrintedForm]
 """A function that arranges a transfer function; one that prints decimals takes their digits, too."""
+Begin = Callable[..., BegunForm | None]
+"""A function that begins a form of a transfer function; ``None`` where it is no other than the first one."""
 RATIONAL = ("definitions", "factored", "polynomial", "monic", "constant", "zpk", "frequency")
 """The forms of a rational function."""
 DISTRIBUTED = ("hyperbolic", "factored", "krylov", "vaughan", "frequency", "polynomial")
@@ -64,11 +79,19 @@ KERNELS_ONLY, RATIONAL_ONLY = ("hyperbolic", "krylov", "vaughan"), ("monic", "co
 FORMULA_ONLY = ("vaughan", "frequency")
 
 
+def functions_in(form: PrintedForm) -> frozenset[str]:
+    """Return the functions of x that occur, by the names they have in print."""
+    every = (form.num, form.den, *(e for _, e in form.where))
+    return frozenset(
+        n.name for e in every for n in names(e) if isinstance(n, Call) and n.name not in FUNCTIONS
+    )
+
+
 def forms_of(tf: TransferFunction) -> tuple[str, ...]:
     """Return the forms a transfer function has."""
     if not tf.is_distributed:
         return RATIONAL
-    return WITHOUT_FORMULA if tf.is_nameless else DISTRIBUTED
+    return WITHOUT_FORMULA if not tf.has_formula else DISTRIBUTED
 
 
 def require(tf: TransferFunction, form: str) -> None:
@@ -80,7 +103,7 @@ def require(tf: TransferFunction, form: str) -> None:
         reason = "it is a rational function of s"
     elif form in RATIONAL_ONLY and tf.is_distributed:
         reason = "it is not a rational function of s"
-    elif form in FORMULA_ONLY and tf.is_nameless:
+    elif form in FORMULA_ONLY and not tf.has_formula:
         reason = "the exponents of its field equations have no formula"
     else:
         return

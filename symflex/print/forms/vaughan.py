@@ -8,7 +8,9 @@ Models", after Vaughan).
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE, Factored, Ring
@@ -24,7 +26,7 @@ from symflex.expressions import (
     quotient,
     sum_of,
 )
-from symflex.print.forms.arrange import Arranger, ProductPrinter, Sides, length
+from symflex.print.forms.arrange import Arranged, Arranger, Sides, length
 from symflex.print.forms.kept import KeptDefinitions
 from symflex.print.forms.notation import (
     Line,
@@ -40,9 +42,11 @@ from symflex.print.forms.notation import (
     wave_times_length,
     wavenumber_laws,
 )
-from symflex.print.forms.printed import PrintedForm
+from symflex.print.forms.printed import BegunForm, PrintedForm, terms_of
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from flint import fmpz_mpoly
 
     from symflex.algebra import Dispersion
@@ -60,18 +64,41 @@ def vaughan_form(tf: TransferFunction) -> PrintedForm:
     Here ``T = l^2/2`` and ``p = s/a``; with losses p is ``sqrt(c_0)``, which then takes the place of ``s/a``.
     Rods, shafts, strings and beams with shear or axial force are written in ``D = exp(-gamma*l)``.
     """
-    page = _DecayingPage(tf)
+    return vaughan_draft(tf, Arranged()).finish()
+
+
+def vaughan_draft(tf: TransferFunction, arranged: Arranged) -> BegunForm:
+    """Return what :func:`vaughan_form` arranges."""
+    page = _DecayingPage(tf, arranged)
+    variants = page.variants()
+    return BegunForm(min(terms_of(v.body) for v in variants), partial(_shortest, page, variants))
+
+
+def _shortest(page: _DecayingPage, variants: Sequence[_Variant]) -> PrintedForm:
     _, sides = min(
-        ((cost + length(sides := page.sides(value)), sides) for value, cost in page.variants()),
+        (
+            (variant.cost + length(sides := page.sides(value)), sides)
+            for variant in variants
+            for value in page.opened(variant)
+        ),
         key=lambda found: found[0],
     )
     return PrintedForm("vaughan", *sides, reachable(sides, page.lines))
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _Variant:
+    """The function over the ring of decaying functions, in one way of writing powers of s and p in front."""
+
+    body: Factored  # without these powers
+    fronts: tuple[Factored, ...]  # ways of writing them in s and p
+    cost: int  # how many characters it must save to be preferred
+
+
 class _DecayingPage:
     """The ring of decaying functions for one transfer function, and what is printed for its generators."""
 
-    def __init__(self, tf: TransferFunction) -> None:
+    def __init__(self, tf: TransferFunction, arranged: Arranged) -> None:
         self._tf = tf
         source = tf.ratio.ring
         used = source.used_in(f for f, _ in tf.ratio.factors)
@@ -97,7 +124,7 @@ class _DecayingPage:
         closed = {_of("w", i): 0 for i, a in enumerate(self._angles) if a.dispersion.kind == "bending"}
         kept = KeptDefinitions.of(tf, self.ring)
         ring = kept.ring if kept else self.ring
-        self._printer = ProductPrinter(
+        self._printer = arranged.printer(
             Arranger(ring, symbols, closed, frozenset((*kernels, *functions)), kept)
         )
 
@@ -163,20 +190,22 @@ class _DecayingPage:
         decays, _ = other_kernels(tf, used, naming, printer)
         return (*lines, *waves.lines), {**symbols, **decays}
 
-    def variants(self) -> list[tuple[Factored, int]]:
-        """Return the function over the ring, in all ways of writing powers of s and p in front.
-
-        With each stands how many characters it must save to be preferred.
-        """
+    def variants(self) -> list[_Variant]:
+        """Return the function over the ring, in all ways of trading powers of s for powers of p."""
         powers = [(self._tf.ratio, 0)]
         laws = wavenumber_laws(self._tf)
         for d in self._bending:
             (w,) = d.wavenumbers
             if self._tf.ratio.depends_on(w):
                 powers = [(v * laws[w] ** t, c + TRADE * abs(t)) for v, c in powers for t in (0, -1, 1)]
-        return [(found, cost) for value, cost in powers for found in self._changed(value)]
+        return [self._changed(value, cost) for value, cost in powers]
 
-    def _changed(self, value: Factored) -> list[Factored]:
+    def opened(self, variant: _Variant) -> list[Factored]:
+        """Return what is printed of a variant."""
+        body = self._opened(variant.body)
+        return [self._merged_roots(body * front) for front in variant.fronts]
+
+    def _changed(self, value: Factored, cost: int) -> _Variant:
         front: dict[str, int] = {}
         body = Factored.number(self.ring, value.unit)
         powers = [0] * len(self._angles)
@@ -191,8 +220,7 @@ class _DecayingPage:
             powers = [n - m * exponent for n, m in zip(powers, lowered, strict=True)]
         for i, (angle, n) in enumerate(zip(self._angles, powers, strict=True)):
             body = body * self._exponential(i, angle, n)
-        body = self._opened(body)
-        return [self._merged_roots(body * f) for f in self._front(front)]
+        return _Variant(body, tuple(self._front(front)), cost)
 
     def _merged_roots(self, value: Factored) -> Factored:
         """Return a value with ``sqrt(2*p)`` for ``2*sqrt(p/2)``."""

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 from symflex.algebra import LAPLACE
 from symflex.expressions import Call, Derivative, Expression, Name, Negative, is_number, names, number
+from symflex.print.forms.printed import functions_in
 from symflex.print.label import labels_of, symbol
 from symflex.print.latex.expression import Writer, break_lines
 from symflex.print.latex.page import NARROWEST_MM
@@ -174,6 +175,7 @@ def form_labels(tf: AnyTransferFunction, form: PrintedForm) -> dict[str, str]:
     """Return the labels of every name in a printed form: the model's, and those the form brings."""
     labels = model_labels(tf.model)
     own = [(name, "") for name, _ in (*form.where, *form.laws) if name not in labels]
+    own += [(name, "") for name in sorted(functions_in(form)) if name not in {*labels, *dict(own)}]
     return labels_of(own, labels)
 
 
@@ -248,7 +250,7 @@ def _named_parts(
 
 def varying_names(form: PrintedForm) -> frozenset[str]:
     """Return s, and the names that stand for functions of it."""
-    varying = {LAPLACE, *(name for name, _ in form.laws)}
+    varying = {LAPLACE, *functions_in(form)}
     # A line may use the names of any other.
     users: dict[str, list[str]] = {}
     for name, expression in form.where:
@@ -290,6 +292,9 @@ def _laws(form: PrintedForm, writer: Writer) -> list[tuple[Written, str]]:
 def laws_and_starts(form: PrintedForm) -> Iterator[tuple[Expression, Expression]]:
     """Yield both sides of each differential equation, and of each value at x = 0."""
     for name, law in form.laws:
+        if isinstance(law.left, Derivative | Call):
+            yield law.left, law.right
+            continue
         order = max(node.order for node in names(law) if isinstance(node, Derivative))
         yield law.left, law.right
         yield from ((Call(name, number(0), k), number(int(k == order - 1))) for k in range(order))

@@ -20,22 +20,24 @@ WIDEST_MM: Final = 1000.0
 _MILLIMETRES: Final = re.compile(r"([0-9]{1,6}(?:\.[0-9]{1,6})?) ?(?:mm)?")
 
 
-def column_width(text: str) -> float:
-    """Return the width of a column [mm] from its name or from millimetres.
+def column_width(said: float | str) -> float:
+    """Return the width of a column [mm] from its name or from millimetres, a number or a text.
 
     Raises UsageError: SF902 when it is neither, or not between 80 and 1000 mm.
 
     Examples
     --------
-    >>> column_width("ieee"), column_width("120 mm")
-    (88.5, 120.0)
+    >>> column_width("ieee"), column_width("120 mm"), column_width(120)
+    (88.5, 120.0, 120)
     """
-    if text in COLUMNS_MM:
-        return COLUMNS_MM[text]
-    match = _MILLIMETRES.fullmatch(text)
+    if not isinstance(said, str):
+        return checked_width(said)
+    if said in COLUMNS_MM:
+        return COLUMNS_MM[said]
+    match = _MILLIMETRES.fullmatch(said)
     if match is None:
         hint = f"{', '.join(COLUMNS_MM)} or millimetres such as 120mm"
-        raise UsageError(Diagnostic("SF902", f"'{text[:32]}' is not a width of a column", None, hint))
+        raise UsageError(Diagnostic("SF902", f"'{said[:32]}' is not a width of a column", None, hint))
     return checked_width(float(match[1]))
 
 

@@ -1,7 +1,7 @@
 """The sections of a model's chapter. A new one is a function here and a line in :data:`SECTIONS`."""
 
 from symflex.report.document import SectionMaker
-from symflex.report.sections.files import data_section, export_section, figure_section
+from symflex.report.sections.files import data_section, drawing_section, export_section, figure_section
 from symflex.report.sections.formulas import (
     audit_section,
     equation_section,
@@ -11,6 +11,7 @@ from symflex.report.sections.formulas import (
 from symflex.report.sections.roots import loop_section, root_section
 
 SECTIONS: dict[str, SectionMaker] = {
+    "drawing": drawing_section,
     "parameters": parameter_section,
     "equations": equation_section,
     "printed": audit_section,

@@ -47,6 +47,7 @@ from symflex.report.document import (
     unit_text,
 )
 from symflex.report.study import MOST_FUNCTIONS
+from symflex.transfer import TransferFunction
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -56,7 +57,7 @@ if TYPE_CHECKING:
     from symflex.print.forms import PrintedForm
     from symflex.report.document import Block, Cell, Run, Tone
     from symflex.report.study import Study
-    from symflex.transfer import TransferFunction
+    from symflex.transfer import AnyTransferFunction
 
 
 def specification_section(study: Study) -> ChapterPart:
@@ -110,18 +111,18 @@ def equation_section(study: Study) -> ChapterPart:
     return ChapterPart("Transfer functions", tuple(blocks), {f"data/{study.stem}_derive.json": data})
 
 
-def ratio(tf: TransferFunction) -> Mathematics:
+def ratio(tf: AnyTransferFunction) -> Mathematics:
     """Return output over input in one line."""
     above, below = ratio_mathml(tf).removeprefix("<mfrac>").removesuffix("</mfrac>").split("</mrow><mrow>", 1)
     return Mathematics(f"{above}</mrow><mo>/</mo><mrow>{below}", ratio_latex(tf))
 
 
-def _of(tf: TransferFunction, form: PrintedForm, label: str) -> tuple[Block, ...]:
+def _of(tf: AnyTransferFunction, form: PrintedForm, label: str) -> tuple[Block, ...]:
     form, hidden = with_hidden(tf, form)
     rows = transfer_function_mathml(tf, form)
     latex = transfer_function_latex(tf, form, width_mm=TEXT_WIDTH_MM, label=label)
     blocks: list[Block] = [text(_introduction(tf), " Form: ", Code(form.name), ".")]
-    if tf.ratio.is_zero:
+    if tf.is_zero:
         return (text("Identically zero: the input does not reach the output."),)
     if rows is None or len(latex) > LONGEST_LATEX:
         blocks.append(Notice("The closed form is too long for a page; the folder's data hold it."))
@@ -138,13 +139,15 @@ def _of(tf: TransferFunction, form: PrintedForm, label: str) -> tuple[Block, ...
     return tuple(blocks)
 
 
-def _introduction(tf: TransferFunction) -> str:
+def _introduction(tf: AnyTransferFunction) -> str:
+    unit = f" in {unit_text(tf.unit)}" if unit_text(tf.unit) else ""
+    if not isinstance(tf, TransferFunction):
+        return f"{tf.quantity.capitalize()}{unit}."
     zeros, poles = counts_of(tf)
     counts = ", ".join(
         f"infinitely many {noun}s" if n is None else counted(n, noun)
         for n, noun in ((zeros, "zero"), (poles, "pole"))
     )
-    unit = f" in {unit_text(tf.unit)}" if unit_text(tf.unit) else ""
     return f"{tf.quantity.capitalize()}{unit}; {counts}."
 
 

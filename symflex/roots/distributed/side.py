@@ -29,7 +29,12 @@ from symflex.roots.distributed.proof import (
     roots_at_zero,
 )
 from symflex.roots.engines import SEARCHES, SUBDIVISION, Sought
-from symflex.roots.functions.kernel_function import KernelFunction, has_kernels, split_off_kernels
+from symflex.roots.functions.kernel_function import (
+    KernelFunction,
+    divisors_in_s,
+    has_kernels,
+    split_off_kernels,
+)
 from symflex.roots.functions.simplified import without_squares
 from symflex.roots.plane.local_roots import prove_simple, prove_together
 from symflex.roots.plane.search import HIGHEST, MODES_LIMIT, RootSearch
@@ -376,7 +381,8 @@ def accumulation_points(bound: BoundTransferFunction) -> tuple[complex, ...]:
     """Return where the laws of waves have poles in s, such as -1/eta; upper half plane."""
     points: list[complex] = []
     for law in bound.kernels.dispersions:
-        for value in (v for v in (*law.characteristic, law.shift) if not v.is_zero):
+        laws = (*law.characteristic, law.shift, *divisors_in_s(law))
+        for value in (v for v in laws if not v.is_zero):
             for root in polynomial_roots(bound, value**-1, ACCUMULATION_DIGITS):
                 point = complex(float(root.re.mid()), float(root.im.mid()))
                 if point and point.imag >= 0 and point not in points:

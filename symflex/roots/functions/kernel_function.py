@@ -109,12 +109,17 @@ class KernelFunction:
             if any(kernel.dispersion is law for kernel in kernels)
             or any(self.part.depends_on(name) for name in law.wavenumbers)
         ]
-        laws = [value for law in dispersions for value in law.characteristic]
+        laws = [value for law in dispersions for value in law.coefficients if value is not law.shift]
         shifted = any(not law.shift.is_zero for law in dispersions)
         even = all(_parity(f) is not None for value in laws for f, _ in value.factors) and all(
             sum((_parity(f) or 0) * e for f, e in value.factors) % 2 == 0 for value in laws
         )
         return even and not shifted and all(_parity(f) is not None for f, _ in self.part.factors)
+
+    @property
+    def is_negated(self) -> bool:
+        """True when a minus sign stands in front of the factors."""
+        return self.part.unit < 0
 
     @cached_property
     def has_fundamental(self) -> bool:
@@ -182,9 +187,8 @@ class KernelFunction:
         with precision(bits):
             evaluator = self._values(bits)
             values: dict[str, Value] = {"s": disc, **{n: acb(c) for n, c in evaluator.constants.items()}}
-            laws = [
-                value for law in evaluator.table.dispersions for value in (*law.characteristic, law.shift)
-            ]
+            laws = [v for law in evaluator.table.dispersions for v in (*law.characteristic, law.shift)]
+            laws += [x for law in evaluator.table.dispersions for x in divisors_in_s(law)]
             return all(at_centre(evaluator.value(value, values)).is_finite() for value in laws)
 
     def fastest(self, z: complex) -> float:
@@ -248,7 +252,7 @@ class KernelFunction:
 
     def _anywhere(self) -> tuple[int, dict[str, Value], acb]:
         """Return a precision, the generators' values at a frequency like any other, and the product's."""
-        bits = BRANCH_BITS
+        bits = BRANCH_BITS if self.bound.kernels.wavenumbers else 2 * FIRST_BITS
         while bits <= LAST_BITS:
             with precision(bits):
                 evaluator = self._values(bits)
@@ -298,6 +302,9 @@ class KernelFunction:
                 law, length = kernel.dispersion, at_centre(evaluator.value(kernel.length, values))
                 if kernel.function == "exp":
                     rate = at_centre(evaluator.value(law.shift, values))
+                elif kernel.function == "entry" and evaluator.matrices is not None:
+                    sizes.append(arb(evaluator.matrices.reach(kernel.dispersion, kernel.length, acb(s))))
+                    continue
                 elif kernel.function == "fundamental":
                     rate = _spectral_size([at_centre(evaluator.value(c, values)) for c in law.characteristic])
                 else:
@@ -420,6 +427,16 @@ def _parity(polynomial: fmpz_mpoly) -> int | None:
     return found.pop() if len(found) == 1 else None
 
 
+def divisors_in_s(law: Dispersion) -> list[Factored]:
+    """Return one over what coefficients that vary along x are divided by, as far as that depends on s."""
+    return [
+        Factored(x.ring, Fraction(1), tuple((f, e) for f, e in x.factors if e < 0 and degree_in(f, 0)))
+        for row in law.matrix
+        for x in row
+        if any(e < 0 and degree_in(f, 0) for f, e in x.factors)
+    ]
+
+
 def _spectral_size(coefficients: Sequence[acb]) -> acb:
     """Return about the size of the largest root of a characteristic polynomial."""
     order = len(coefficients)
@@ -438,7 +455,7 @@ def split_off_kernels(value: Factored, table: KernelTable) -> tuple[Factored, Fa
     varying = [0] + [
         ring.index[name]
         for law in table.dispersions
-        if any(c.depends_on(ring.names[0]) for c in (*law.characteristic, law.shift))
+        if any(c.depends_on(ring.names[0]) for c in law.coefficients)
         for name in (*law.wavenumbers, *(k.generator for k in table.kernels_of(law)))
     ]
     generators = [ring.index[name] for name in table.generators]

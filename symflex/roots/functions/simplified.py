@@ -83,6 +83,8 @@ def without_lengths_of_zero(bound: BoundTransferFunction) -> BoundTransferFuncti
 
 
 def _value(kernel: Kernel) -> int:
+    if kernel.function == "entry":
+        return int(kernel.order % (kernel.dispersion.order + 1) == 0)
     if kernel.function == "fundamental":
         return int(kernel.order == kernel.dispersion.order - 1)
     return int(kernel.function in EVEN)
@@ -95,7 +97,7 @@ MOST_TERMS = 3000
 def without_squares(bound: BoundTransferFunction, part: Factored) -> tuple[BoundTransferFunction, Factored]:
     """Return a product of factors without squares, and the function with the kernels these are made of."""
     table = bound.kernels
-    if any(kernel.function == "fundamental" for kernel in table.kernels):
+    if any(kernel.function in ("fundamental", "entry") for kernel in table.kernels):
         return bound, part
     coordinates = Exponentials(part.ring, table)
     circular = [

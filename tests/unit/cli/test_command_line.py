@@ -70,7 +70,7 @@ def test_an_exceeded_budget_ends_with_code_5(shell, monkeypatch):
     def too_large(*_):
         raise BudgetError(Diagnostic("SF501", "too large, for this test"))
 
-    monkeypatch.setattr(of_model, "derive_all", too_large)
+    monkeypatch.setattr(of_model, "derive_from", too_large)
     done = shell("derive", "x.toml", "--representation", "expanded")
     assert (done.code, done.err) == (5, "error[SF501]: too large, for this test\n")
 
@@ -79,7 +79,7 @@ def test_what_the_system_refuses_is_an_error_with_a_code(shell, monkeypatch):
     def refuse(*_):
         raise OSError(errno.EMFILE, os.strerror(errno.EMFILE))
 
-    monkeypatch.setattr(of_model, "derive_all", refuse)
+    monkeypatch.setattr(of_model, "derive_from", refuse)
     done = shell("derive", "x.toml")
     assert (done.code, done.out) == (2, "")
     assert done.err == "error[SF905]: the system refused an operation: Too many open files\n"
@@ -89,7 +89,7 @@ def test_what_is_too_large_expanded_is_printed_in_nested_form(shell, monkeypatch
     def too_large(*_):
         raise BudgetError(Diagnostic("SF501", "too large, for this test"))
 
-    monkeypatch.setattr(of_model, "derive_all", too_large)
+    monkeypatch.setattr(of_model, "derive_from", too_large)
     done = shell("derive", "x.toml")
     assert (done.code, done.err) == (0, "in nested form: too large, for this test\n")
     assert "nested form" in done.out
@@ -99,7 +99,7 @@ def test_exhausted_memory_ends_with_code_5(shell, monkeypatch):
     def exhausted(*_):
         raise MemoryError
 
-    monkeypatch.setattr(of_model, "derive_all", exhausted)
+    monkeypatch.setattr(of_model, "derive_from", exhausted)
     done = shell("derive", "x.toml")
     assert (done.code, done.err.splitlines()[0]) == (5, "error[SF504]: out of memory")
 

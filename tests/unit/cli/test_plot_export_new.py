@@ -41,15 +41,15 @@ def test_a_figure_is_named_after_specification_and_kind_by_default(shell):
     assert (shell.folder / "x_bode.pdf").exists()
 
 
-def test_a_figure_of_the_specification_is_drawn_by_its_name(shell):
-    assert shell("plot", "x.toml", "paper", "-o", "paper.svg").code == 0
+@pytest.mark.parametrize("name", ["paper", "later"])
+def test_a_figure_of_the_specification_is_drawn_by_its_name(shell, name):
+    assert shell("plot", "x.toml", name, "-o", "paper.svg").code == 0
 
 
 @pytest.mark.parametrize(
     ("arguments", "code"),
     [
         (("bod",), "SF902"),
-        (("later",), "SF911"),
         (("bode", "-o", "a.gif"), "SF902"),
         (("bode", "-o", "no/such/folder/a.pdf"), "SF903"),
         (("bode", "--tf", "X/G"), "SF902"),
@@ -203,7 +203,7 @@ def test_hidden_states_are_left_out_when_asked_for(shell):
 def test_minimal_goes_with_state_equations_only(shell):
     done = shell("export", "x.toml", "--to", "numpy", "--minimal")
     assert done.code == 2
-    assert "--minimal is for --to state-space" in done.err
+    assert "--minimal and --sample are for --to state-space" in done.err
 
 
 @pytest.mark.parametrize(

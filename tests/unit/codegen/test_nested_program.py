@@ -5,7 +5,7 @@ import pytest
 
 from benchmarks.networks import chain, network
 from symflex import pipeline
-from symflex.codegen.module_text import formula_lines
+from symflex.codegen.module_text import formula_of
 from symflex.codegen.program.build import build_nested
 from symflex.codegen.program.evaluate import evaluate
 from symflex.codegen.program.verify import choose_programs
@@ -56,7 +56,12 @@ def test_without_values_a_few_missing_ones_are_named():
     (tf,) = pipeline.derive_nested(network(chain(30)), [("X_first", "F")])
     _, verification = choose_programs(tf)[0]
     assert verification.text() == "not verified: no values for m_1, m_2, m_3, m_4, m_5, m_6, and 82 more"
-    assert len(formula_lines(tf, 80)) <= 20
+
+
+def test_a_docstring_names_the_command_that_prints_a_formula_nobody_would_read():
+    (tf,) = pipeline.derive_nested(network(chain(200)), [("X_first", "F")])
+    (sentence,) = formula_of(tf)
+    assert sentence.endswith("in s, which symflex derive --tf X_first/F prints.")
 
 
 def test_a_program_beyond_the_limit_is_refused(monkeypatch):

@@ -142,3 +142,73 @@ def test_rough_roots_are_found_where_quotients_of_coefficients_are_beyond_double
     found = _roots(polynomial.coeffs())
     assert len(found) == 60
     assert abs(np.exp(np.mean(np.log(abs(found)))) / 1e12 - 1) < 1e-6
+
+
+ROD_ON_A_SPRING = """
+symflex = 1
+[parameters]
+E = "70 GPa"
+A = "150 mm^2"
+rho = "2700 kg/m^3"
+k = "50 MN/m"
+m = "1 kg"
+l_1 = "{length}"
+l_2 = "0.4 m"
+l_3 = "0.5 m"
+
+[elements]
+r_1 = {{ type = "rod", between = ["ground", "a"], E = "E", A = "A", rho = "rho", l = "l_1" }}
+r_2 = {{ type = "rod", between = ["a", "b"], E = "E", A = "A", rho = "rho", l = "l_2" }}
+r_3 = {{ type = "rod", between = ["b", "c"], E = "E", A = "A", rho = "rho", l = "l_3" }}
+k_1 = {{ type = "spring", between = ["a", "ground"], k = "k" }}
+m_1 = {{ type = "mass", at = "b", m = "m" }}
+
+[inputs]
+F = {{ force = "a" }}
+
+[outputs]
+X = "a"
+"""
+
+
+@pytest.mark.parametrize(("length", "pieces"), [("0.3 m", 2), ("1 mm", 4)])
+def test_three_lengths_have_series_each_by_itself_where_it_is_measured_to_serve(length, pieces):
+    (tf,) = pipeline.derive_all(pipeline.loads(ROD_ON_A_SPRING.format(length=length)))
+    (_, _), real = choose_programs(tf)
+    program, verification = real
+    assert (len(program.code), verification.error < 1e-14) == (pieces, True)
+
+
+BAR = """
+symflex = 1
+
+[parameters]
+E = "210 GPa"
+I = "1e-8 m^4"
+A = "1e-4 m^2"
+rho = "7800 kg/m^3"
+l = "0.5 m"
+m = "0.3 kg"
+b = DAMPING
+
+[elements]
+post = { type = "frame", between = ["ground", "tip"], E = "E", I = "I", A = "A", rho = "rho", l = "l" }
+load = { type = "rigid_body", at = "tip", m = "m" }
+loss = { type = "damper", between = ["tip.x", "tip.y"], b = "b" }
+
+[inputs]
+F = { force = "tip.x" }
+
+[outputs]
+X = "tip.x"
+"""
+
+
+def test_a_bar_gets_no_piece_where_it_bends_like_a_short_one_and_stretches_like_a_long_one():
+    valued, symbolic = (
+        pipeline.derive_all(pipeline.loads(BAR.replace("DAMPING", given)))[0] for given in ('"2 N*s/m"', "{}")
+    )
+    (program, verification), real = choose_programs(valued)
+    assert (len(program.code), real, verification.error < 1e-14) == (3, None, True)
+    (without_values, _), _ = choose_programs(symbolic)
+    assert len(without_values.code) == 4

@@ -6,13 +6,13 @@ import pytest
 
 from symflex import pipeline
 from symflex.figures import draw
-from symflex.figures.poles_zeros import Panel, View
+from symflex.figures.s_plane import Panel, View
 
 SQUARE = View((-10.0, 10.0), (-10.0, 10.0), frozenset())
 
 
 def panel(*roots):
-    return Panel(SQUARE, 1.0, tuple(map(complex, roots)))
+    return Panel(SQUARE, 1.0, 1.0, tuple(map(complex, roots)))
 
 
 def test_a_note_goes_where_fewest_roots_are():
@@ -23,11 +23,12 @@ def test_a_note_goes_where_fewest_roots_are():
 
 
 def test_an_arrow_ends_before_a_root_on_its_way():
-    assert panel(7).free_length(10 + 0j, 2.0) == 2.0
-    shortened = panel(8.5).free_length(10 + 0j, 2.0)
-    assert 0 < shortened < 1.5
+    # 72 points are 20 rad/s: 2 rad/s are 7.2 points
+    assert panel(7).free_length(10 + 0j, 7.2) == 7.2
+    shortened = panel(8.5).free_length(10 + 0j, 7.2)
+    assert 0 < shortened < 5.4
     # A root off the ray is none on the way.
-    assert panel(8.5 + 3j).free_length(10 + 0j, 2.0) == 2.0
+    assert panel(8.5 + 3j).free_length(10 + 0j, 7.2) == 7.2
 
 
 @pytest.mark.parametrize(

@@ -9,8 +9,9 @@ from symflex.algebra import Factored, Ring
 from symflex.library.fields import FIELDS, FieldEquation, components, first_order
 
 NAMES = ("s", "E", "I", "rho", "A", "G", "J", "kappa", "eta", "c_f", "k_f", "N")
-RING = Ring(NAMES)
-SYMBOLS = {name: Factored.generator(RING, name) for name in NAMES}
+DIRECTION = ("cos", "sin", "cos_cos", "cos_sin")
+RING = Ring((*NAMES, *DIRECTION))
+SYMBOLS = {name: Factored.generator(RING, name) for name in RING.names}
 S = SYMBOLS["s"]
 ZERO = S * 0
 NUMBERS = {
@@ -18,6 +19,13 @@ NUMBERS = {
     "G": mp.mpf(3), "J": mp.mpf("0.5"), "kappa": mp.mpf("0.83"), "eta": mp.mpf("0.01"), "c_f": mp.mpf("0.2"),
     "k_f": mp.mpf("0.4"), "N": mp.mpf("1.1"),
 }  # fmt: skip
+with mp.workdps(40):  # a point of the unit circle to as many digits as are compared
+    NUMBERS |= {
+        "cos": mp.mpf("0.6"),
+        "sin": mp.mpf("0.8"),
+        "cos_cos": mp.mpf("0.36"),
+        "cos_sin": mp.mpf("0.48"),
+    }
 
 
 def number(value):
@@ -25,7 +33,7 @@ def number(value):
     for f, e in value.factors:
         total *= (
             mp.fsum(
-                int(c) * mp.fprod(NUMBERS[n] ** int(k) for n, k in zip(NAMES, m, strict=True))
+                int(c) * mp.fprod(NUMBERS[n] ** int(k) for n, k in zip(RING.names, m, strict=True))
                 for m, c in f.terms()
             )
             ** e
@@ -48,16 +56,18 @@ def test_the_sum_over_fundamental_functions_is_the_matrix_exponential(name):
     system = FIELDS[name](S, SYMBOLS)
     length = mp.mpf("0.9")
     wanted = mp.expm(matrix(system.matrix) * length, method="taylor")
-    (part,) = components(system)
-    c = [number(x) for x in part.coefficients]
-    n = len(c)
-    companion = mp.matrix(n, n)
-    for i in range(n - 1):
-        companion[i, i + 1] = 1
-    for j in range(n):
-        companion[n - 1, j] = -c[j]
-    h = mp.expm(companion * length, method="taylor")
-    found = sum((matrix(b) * h[k, n - 1] for k, b in enumerate(part.adjugate)), mp.zeros(n))
+    found = mp.zeros(len(system.states))
+    for part in components(system):
+        c = [number(x) for x in part.coefficients]
+        n = len(c)
+        companion = mp.matrix(n, n)
+        for i in range(n - 1):
+            companion[i, i + 1] = 1
+        for j in range(n):
+            companion[n - 1, j] = -c[j]
+        h = mp.expm(companion * length, method="taylor")
+        for k, b in enumerate(part.adjugate):
+            found += matrix(b) * h[k, n - 1]
     assert mp.mnorm(found - wanted) < 1e-30
 
 
@@ -80,6 +90,13 @@ def test_the_through_states_are_conjugate_to_the_across_states(name):
 def test_theories_have_the_dispersion_relations_of_the_books(name, kind):
     (part,) = components(FIELDS[name](S, SYMBOLS))
     assert part.characteristic.kind == kind
+
+
+def test_a_member_of_a_frame_stretches_as_a_rod_and_bends_as_its_theory():
+    for theory in ("euler-bernoulli", "rayleigh", "timoshenko"):
+        kinds = {p.characteristic.key for p in components(FIELDS[f"frame-{theory}"](S, SYMBOLS))}
+        alone = {p.characteristic.key for n in (theory, "rod") for p in components(FIELDS[n](S, SYMBOLS))}
+        assert kinds == alone
 
 
 def test_without_axial_force_a_slender_beam_has_four_equal_wavenumbers():

@@ -243,7 +243,7 @@ def test_a_locus_has_the_limits_asked_for_and_counts_what_is_outside(loop):
     figure = draw_loop("locus", done, limits=(Fraction(0), Fraction(1000)), frame=frame)
     assert (figure.axes[0].get_xlim(), figure.axes[0].get_ylim()) == ((-3, 1), (0, 2))
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert labels == ["poles, $K = 0$", "poles, $K = 1000$ (all outside)"]
+    assert labels == ["poles, $K = 0$", "poles, $K = 1$ (all outside)", "poles, $K = 1000$ (all outside)"]
 
 
 def test_the_legend_names_what_is_seen(loop):
@@ -251,7 +251,7 @@ def test_the_legend_names_what_is_seen(loop):
     assert not any("zeros" in label for label in labels)
     assert axes.get_xlim()[0] > -300
     labels, _ = texts_and_frame(loop, "K/(s*(s + 1)*(s + 2))", (0, 10**9))
-    assert labels[1].endswith("(all outside)")
+    assert labels[2].endswith("(all outside)")
 
 
 @pytest.mark.parametrize(("gain", "said"), [(1, "stable"), (4, "unstable: 2 poles in the right half plane")])
@@ -259,4 +259,6 @@ def test_a_nyquist_plot_says_whether_the_closed_loop_is_stable(gain, said, loop)
     # K exp(-s/2)/s is stable up to K = pi, where a pair crosses; the next one does at 5 pi.
     figure = draw_loop("nyquist", characteristic(loop("K*D/s", K=gain)), title="A loop")
     (legend,) = figure.legends
-    assert legend.get_title().get_text() == f"A loop\nclosed loop {said}"
+    assert legend.get_title().get_text() == (
+        f"A loop\nopen loop: no pole in the right half plane\nclosed loop {said}"
+    )

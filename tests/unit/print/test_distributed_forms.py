@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from pathlib import Path
 
 import mpmath
 import pytest
@@ -20,7 +21,10 @@ from symflex.expressions import (
     Sum,
     format_expression,
 )
+from symflex.print import forms
 from symflex.print.forms import FORMS, hidden_expressions, print_form, with_hidden
+from symflex.print.forms.arrange import Arranged
+from symflex.print.forms.polynomial import factored_draft
 from symflex.print.forms.printed import forms_of
 from symflex.print.json_format import derive_json
 from symflex.print.latex import transfer_function_latex
@@ -31,6 +35,7 @@ from tests.house.repository import slow_ones
 from tests.unit.codegen.models_with_kernels import MODELS, NAMES, derived, spec
 from tests.unit.print.residues import PRIME, point_for
 
+CLASSICS = Path(__file__).parents[3] / "derivations" / "classics"
 EVERY_FORM = ("hyperbolic", "factored", "krylov", "vaughan", "frequency", "polynomial", "definitions", None)
 NO_FORMULA = {"third order"}
 LONG = {"two beams of pairs", "two beams", "robot_axis"}
@@ -408,3 +413,54 @@ def test_text_keeps_to_80_columns(name):
             rows = derive_text(tf, printed(name, number, form)).split("\n")
             # Nobody reads a formula of a hundred lines.
             assert max(map(len, rows)) <= 80 or len(rows) > 100
+
+
+@pytest.mark.parametrize("name", turns(NAMES))
+def test_a_form_that_is_given_up_for_its_terms_would_not_have_been_shorter(name, monkeypatch):
+    monkeypatch.setattr(forms, "FEW", 20)
+    for tf in of_case(name):
+        candidates = [print_form(tf, f) for f in forms.DISTRIBUTED_CANDIDATES if f in forms_of(tf)]
+        assert size(print_form(tf)) == min(map(size, candidates))
+
+
+def size(form):
+    return sum(len(format_expression(e)) for e in (form.num, form.den, *(line for _, line in form.where)))
+
+
+def test_a_function_whose_kernels_do_not_factor_is_not_arranged_twice():
+    model = pipeline.load(CLASSICS / "clamped_free.toml")
+    tip, *_ = pipeline.derive_all(model)
+    assert factored_draft(tip, Arranged()) is None
+
+
+@pytest.mark.parametrize("name", turns(NAMES))
+def test_functions_printed_together_print_as_each_alone_does(name):
+    together, _ = forms.print_forms(of_case(name))
+    assert together == tuple(printed(name, i, None) for i in range(len(together)))
+
+
+BETWEEN_POINTS = """
+symflex = 1
+parameters = { E = {}, A = {}, rho = {}, x_1 = {}, x_2 = {}, l = {} }
+inputs.F = { unit = "N" }
+outputs.X = "u_2(l)"
+
+[fields.u_1]
+domain = ["x_1", "x_2"]
+equation = "E*A*u_1'' - rho*A*s^2*u_1 = 0"
+conditions = ["u_1(x_1) = 0", "u_1(x_2) = u_2(x_2)"]
+
+[fields.u_2]
+domain = ["x_2", "l"]
+equation = "E*A*u_2'' - rho*A*s^2*u_2 = 0"
+conditions = ["u_1'(x_2) = u_2'(x_2)", "E*A*u_2'(l) = F"]
+"""
+
+
+def test_lengths_between_points_print_as_differences_that_are_positive_and_share_a_wavenumber():
+    (tf,) = pipeline.derive_all(pipeline.loads(BETWEEN_POINTS))
+    assert lines(tf, "hyperbolic") == [
+        "q_1 = gamma*(l - x_2)",
+        "q_2 = gamma*(x_2 - x_1)",
+        "gamma = s*sqrt(rho/E)",
+    ]

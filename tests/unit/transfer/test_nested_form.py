@@ -1,8 +1,12 @@
 """Nested transfer functions: values, binding, and what they are made of."""
 
+import cmath
+import math
+from pathlib import Path
+
 import numpy as np
 import pytest
-from flint import acb
+from flint import acb, ctx
 from hypothesis import given
 
 from symflex import pipeline
@@ -16,11 +20,13 @@ from symflex.expressions import (
     Product,
     Quotient,
     Sum,
+    format_expression,
     parse,
 )
 from symflex.print.forms.nested import nested_form
 from symflex.print.json_format import derive_json
 from symflex.transfer import bind, bind_nested
+from symflex.transfer.of_model import derive_with_numbers
 from tests.property.networks import networks, reciprocal_networks, to_toml
 from tests.property.test_random_networks import POINTS, assert_close, pairs, quiet, reference
 
@@ -237,10 +243,55 @@ outputs.y = "D*u"
 """
 
 
-def test_a_distributed_model_is_refused_by_name():
-    with pytest.raises(ModelError) as caught:
-        pipeline.derive_nested(pipeline.loads(DELAYED))
-    assert caught.value.diagnostics[0].code == "SF910"
+def test_a_delay_alone_is_its_own_exponential():
+    (tf,) = pipeline.derive_nested(pipeline.loads(DELAYED))
+    assert bind_nested(tf)(0.3 + 2j) == pytest.approx(cmath.exp(-0.3 - 2j), rel=1e-15)
+    assert format_expression(nested_form(tf).num) == "exp(-s*T)"
+
+
+@pytest.mark.parametrize("path", sorted(Path("derivations").glob("classics/*.toml")), ids=lambda p: p.stem)
+def test_nested_and_expanded_forms_of_distributed_models_have_equal_values(path):
+    model = pipeline.load(path)
+    for one, other in zip(pipeline.derive_all(model), pipeline.derive_nested(model), strict=True):
+        for s in (3 + 100j, -20 + 4000j):
+            assert bind_nested(other)(s) == pytest.approx(bind(one)(s), rel=1e-13)
+
+
+def test_the_slope_of_a_nested_beam_is_the_limit_of_differences():
+    model = pipeline.load("derivations/classics/kelvin_voigt_cantilever.toml")
+    enclosed = bind_nested(pipeline.derive_nested(model)[0]).enclosed(400)
+    s, step = acb(-3, 50), acb(2) ** -100
+    value, slope = enclosed.value_and_slope(s)
+    with ctx.workprec(400):
+        difference = (enclosed(s + step) - enclosed(s - step)) / (2 * step * value)
+        # Central differences err by a third derivative times the step squared, below 2^-190 here.
+        assert abs(complex((slope - difference).mid())) < 2.0**-180
+        assert value.overlaps(enclosed(s))
+
+
+def test_a_value_where_a_member_vibrates_between_fixed_ends_is_a_limit():
+    # A rod from ground to a node and on to ground: f_a of the first is divided by sin(s l/c), zero at pi c/l.
+    text = """
+    symflex = 1
+    inputs = { F = { force = "x" } }
+    outputs = { X = "x" }
+    [elements]
+    left = { type = "rod", between = ["ground", "x"], E = "1 Pa", A = "1 m^2", rho = "1 kg/m^3", l = "2 m" }
+    right = { type = "rod", between = ["x", "ground"], E = "1 Pa", A = "1 m^2", rho = "1 kg/m^3", l = "1 m" }
+    """
+    bound = bind_nested(pipeline.derive_nested(pipeline.loads(text))[0])
+    # sin(2 w) sin(w)/(w sin(3 w)) of the driven point of a rod 3 m long, held at both ends.
+    for w in (1.0, 1.5, math.pi / 2):
+        expected = math.sin(2 * w) * math.sin(w) / (w * math.sin(3 * w))
+        assert bound(1j * w) == pytest.approx(expected, rel=1e-12, abs=1e-15)
+
+
+def test_numbers_in_place_lead_to_the_same_values_as_symbols():
+    model = pipeline.load("derivations/eppinger1988/robot_axis.toml")
+    pair = model.transfer_functions[0]
+    (one,), (other,) = derive_with_numbers(model, [pair]), pipeline.derive_nested(model, [pair])
+    assert one.parameters == ()
+    assert bind_nested(one)(2 + 300j) == bind_nested(other)(2 + 300j)
 
 
 def test_the_representation_is_chosen_by_the_number_of_terms():
@@ -255,3 +306,21 @@ def test_the_representation_is_chosen_by_the_number_of_terms():
     assert "some 2e16 terms" in reason
     (tf,), reason = pipeline.derive_as(small, [("X_first", "F")], "nested")
     assert (type(tf).__name__, reason) == ("NestedTransferFunction", "")
+
+
+def test_code_of_many_equal_spans_is_solved_though_their_formula_is_short():
+    spans = "".join(
+        f'p{i} = {{ type = "pin", at = "n{i}" }}\n'
+        f'b{i} = {{ type = "beam", between = ["n{i}", "n{i + 1}"], E = "E", I = "I", '
+        'rho = "rho", A = "A", l = "l" }\n'
+        for i in range(5)
+    )
+    model = pipeline.loads(
+        "symflex = 1\nparameters = { E = {}, I = {}, rho = {}, A = {}, l = {} }\n"
+        f'[elements]\n{spans}[inputs]\nF = {{ force = "n5" }}\n[outputs]\nY = "n5"\n'
+    )
+    ((formula,), _), ((code,), why) = (
+        pipeline.derive_as(model, [("Y", "F")], solves=solves) for solves in (False, True)
+    )
+    assert (type(formula).__name__, type(code).__name__) == ("TransferFunction", "NestedTransferFunction")
+    assert "--representation expanded" in why

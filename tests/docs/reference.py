@@ -1,6 +1,7 @@
-"""Render the registries into the documentation, so that the reference cannot lag behind the program.
+"""Tables of elements, blocks, commands and units in the pages, and formulas, made by the program.
 
-A page asks for a part with a comment on a line of its own, ``<!-- reference: elements -->``.
+A table stands between two comments, each on a line of its own, ``<!-- reference: elements -->`` and
+``<!-- end of reference -->``. ``python -m tests.docs.update`` writes it, and a test compares.
 """
 
 from __future__ import annotations
@@ -12,10 +13,13 @@ from typing import TYPE_CHECKING
 
 import click
 
+import symflex
 from symflex.cli import group
+from symflex.cli.library import in_si
 from symflex.library.blocks import BLOCKS
 from symflex.library.elements import ELEMENTS
 from symflex.quantities.units import PLAIN_UNITS, PREFIXABLE_UNITS, PREFIXES
+from tests.house.repository import ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -23,12 +27,25 @@ if TYPE_CHECKING:
     from symflex.library.blocks import Block
     from symflex.library.elements import Choice, Element, ParameterPort, Port
 
-PLACE = re.compile(r"^<!-- reference: (\w+) -->$", re.MULTILINE)
+END = "<!-- end of reference -->"
+PLACE = re.compile(rf"^(<!-- reference: (\w+) -->)$.*?^{END}$", re.MULTILINE | re.DOTALL)
 
 
-def on_page_markdown(markdown: str, **_: object) -> str:
-    """Replace every place-holder of a page; an unknown one is an error of the build."""
-    return PLACE.sub(lambda match: PARTS[match[1]](), markdown)
+FORMULA_END = "<!-- end of formula -->"
+FORMULA = re.compile(rf"^(<!-- formula: (\S+) (\S+) -->)$.*?^{FORMULA_END}$", re.MULTILINE | re.DOTALL)
+
+
+def with_tables(markdown: str) -> str:
+    """Return a page with its tables and formulas as the program makes them now."""
+    markdown = PLACE.sub(lambda match: f"{match[1]}\n\n{PARTS[match[2]]()}\n\n{END}", markdown)
+    return FORMULA.sub(
+        lambda match: f"{match[1]}\n```math\n{_latex(match[2], match[3])}\n```\n{FORMULA_END}", markdown
+    )
+
+
+def _latex(path: str, pair: str) -> str:
+    output, source = pair.split("/")
+    return symflex.load(ROOT / path).transfer_function(output, source).latex()
 
 
 def elements() -> str:
@@ -43,7 +60,7 @@ def blocks() -> str:
 
 def commands() -> str:
     """Return one section per command, in the order of ``symflex --help``."""
-    with click.Context(group, info_name="symflex") as context:
+    with group.make_context("symflex", [], resilient_parsing=True) as context:
         found = ((name, group.get_command(context, name)) for name in group.list_commands(context))
         return "\n\n".join(_command(name, command, context) for name, command in found if command)
 
@@ -56,7 +73,10 @@ def units() -> str:
         ("prefixes", list(PREFIXES)),
     ]
     lines = [f"| {what} | {' '.join(f'`{name}`' for name in names)} |" for what, names in rows]
-    return "\n".join(["| | symbols |", "|---|---|", *lines])
+    factors = [f"| `{name}` | {in_si(unit)} |" for name, unit in PLAIN_UNITS.items()]
+    return "\n".join(
+        ["| | symbols |", "|---|---|", *lines, "", "| unit | in SI |", "|---|---|", *factors]
+    ).replace("*", r"\*")
 
 
 def _element(name: str, element: Element) -> str:

@@ -1,0 +1,170 @@
+"""The gallery, and formulas in the pages, derived while the site is built: nothing in them can lag behind.
+
+A page asks with a comment on a line of its own: ``<!-- gallery -->``; or for one formula, which the page has
+in LaTeX for those who read it in a clone, ``<!-- formula: FILE OUT/IN -->`` to ``<!-- end of formula -->``.
+"""
+
+from __future__ import annotations
+
+import html
+import re
+from dataclasses import dataclass
+from functools import cache
+from math import inf
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from mkdocs.structure.files import File, Files
+
+from symflex import pipeline
+from symflex.drawing import draw_model
+from symflex.errors import SymflexError
+from symflex.figures import draw, draw_loop, render
+from symflex.print.forms import print_form, with_hidden
+from symflex.print.mathml import EQUALS, math_element, transfer_function_mathml
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+
+    from matplotlib.figure import Figure
+    from mkdocs.config.defaults import MkDocsConfig
+
+    from symflex.model import Model
+    from symflex.transfer import AnyBoundFunction, AnyTransferFunction
+
+ROOT: Final = Path(__file__).parents[2]
+MODELS: Final = ROOT / "derivations"
+FOLDERS: Final = {
+    "eppinger1988": "One axis of a robot, and what bends in it",
+    "eppinger1988/loops": "Loops around it, of position and of force",
+    "classics": "Textbooks",
+    "frames": "Plane frames",
+}
+"""Sections of the gallery."""
+FUNCTIONS_SHOWN: Final = 2
+LONGEST: Final = 12_000
+"""Characters of MathML: some eight lines."""
+LONG_NUMBER: Final = re.compile(r"\d{12}")
+"""Of models whose parameters are numbers of many digits."""
+GAIN: Final = "K"
+"""Closes the loops in ``derivations/``."""
+FORMULA: Final = re.compile(
+    r"^<!-- formula: (\S+) (\S+) -->$.*?^<!-- end of formula -->$", re.MULTILINE | re.DOTALL
+)
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A model in the gallery."""
+
+    path: str  # below derivations/
+    title: str
+    source: str
+    formula: str  # HTML
+    figures: tuple[tuple[str, bytes], ...]  # what each shows, and the drawing
+
+    @property
+    def stem(self) -> str:
+        """Of the names of its files."""
+        return self.path.removesuffix(".toml").replace("/", "_")
+
+
+def on_files(files: Files, config: MkDocsConfig) -> Files:
+    """Add the figures and specifications of the gallery to the site."""
+    for entry in entries():
+        text = (MODELS / entry.path).read_bytes()
+        files.append(File.generated(config, f"gallery/{entry.stem}.toml", content=text))
+        for name, content in entry.figures:
+            files.append(File.generated(config, f"gallery/{entry.stem}_{name}.svg", content=content))
+    return files
+
+
+def on_page_markdown(markdown: str, **_: object) -> str:
+    """Put the gallery and the formulas where a page asks for them."""
+    if "<!-- gallery -->" in markdown:
+        markdown = markdown.replace("<!-- gallery -->", "\n".join(_sections()))
+    return FORMULA.sub(lambda match: formula_html(function_of(match[1], match[2])), markdown)
+
+
+def function_of(path: str, pair: str) -> AnyTransferFunction:
+    """Return a transfer function of a specification in the repository."""
+    model = pipeline.load(ROOT / path)
+    return pipeline.derive_all(model, pipeline.pick_pairs(model, [pair]))[0]
+
+
+@cache
+def entries() -> tuple[Entry, ...]:
+    """Return all models that are solvable, in the order of their sections."""
+    paths = [path for folder in FOLDERS for path in sorted((MODELS / folder).glob("*.toml"))]
+    return tuple(entry_of(path) for path in paths if path.name != "claims.toml")
+
+
+def entry_of(path: Path) -> Entry:
+    """Derive and draw one model."""
+    model = pipeline.load(path)
+    name = path.relative_to(MODELS).as_posix()
+    found = pipeline.derive_for_roots(model, model.transfer_functions[:FUNCTIONS_SHOWN])
+    bounds = [bound for bound in found if not bound.is_zero]
+    figures = tuple(_figures(model, bounds, is_loop="loops" in name))
+    (symbolic,), _ = pipeline.derive_as(model, model.transfer_functions[:1])
+    return Entry(name, model.title, model.source, formula_html(symbolic, LONGEST), figures)
+
+
+def _figures(
+    model: Model, bounds: Sequence[AnyBoundFunction], *, is_loop: bool
+) -> Iterator[tuple[str, bytes]]:
+    """Draw what can be drawn of a model."""
+    sources = [bound.source for bound in bounds]
+    kinds: dict[str, Callable[[], Figure]] = {
+        "drawing": lambda: draw_model(model),
+        "map": lambda: draw("poles_zeros", sources, bounds),
+        "bode": lambda: draw("bode", sources, bounds),
+    }
+    if is_loop:
+        kinds["map"] = lambda: draw_loop("locus", pipeline.characteristic_loop(model, GAIN))
+    for name, drawing in kinds.items():
+        try:
+            yield name, render(drawing(), "svg")
+        except SymflexError as problem:
+            print(f"gallery: no {name} of {model.title}: {problem.diagnostics[0].message}")  # noqa: T201
+
+
+def formula_html(tf: AnyTransferFunction, longest: float = inf) -> str:
+    """Return a transfer function in its shortest form, typeset without any program but the browser."""
+    form, _ = with_hidden(tf, print_form(tf))
+    rows = transfer_function_mathml(tf, form) or ()
+    markup = "".join(row.left + "".join(row.pieces) for row in rows)
+    if not 0 < len(markup) <= longest or (longest < inf and LONG_NUMBER.search(markup)):
+        return f"<p>The formula of {html.escape(tf.name)} takes a page: symflex derive prints it.</p>"
+    lines = ['<div class="formula">']
+    for row in rows:
+        left = math_element(f"<mrow>{row.left}{EQUALS}</mrow>", is_display=True)
+        right = " ".join(math_element(f"<mrow>{piece}</mrow>", is_display=True) for piece in row.pieces)
+        lines.append(f'<div class="row{" where" if row.is_where else ""}">{left} {right}</div>')
+    return "\n".join((*lines, "</div>"))
+
+
+CAPTIONS: Final = {"drawing": "the model", "map": "poles and zeros", "bode": "frequency response"}
+
+
+def _sections() -> Iterator[str]:
+    for folder, title in FOLDERS.items():
+        yield f"\n## {title}\n"
+        for entry in entries():
+            if Path(entry.path).parent.as_posix() != folder:
+                continue
+            yield f"### {entry.title}\n"
+            if entry.source:
+                yield f"{html.escape(entry.source)}\n"
+            yield f'<div class="gallery" id="{entry.stem}">'
+            for name, _ in entry.figures:
+                shown = "root locus" if name == "map" and "loops" in entry.path else CAPTIONS[name]
+                alt = html.escape(f"{entry.title}: {shown}", quote=True)
+                source = f"../gallery/{entry.stem}_{name}.svg"
+                yield f'<img class="{name}" src="{source}" alt="{alt}" loading="lazy">'
+                if name == "drawing":
+                    yield entry.formula
+            if not any(name == "drawing" for name, _ in entry.figures):
+                yield entry.formula
+            yield "</div>\n"
+            yield f"[Specification](gallery/{entry.stem}.toml)\n"

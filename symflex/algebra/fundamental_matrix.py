@@ -1,0 +1,425 @@
+"""Fundamental matrices of linear differential equations whose coefficients vary along x, in balls.
+
+Input: ``dz/dx = A(x, u) z`` with ``A = sum_q u^q A_q(x)``, as a :class:`VaryingSystem`.
+Output: a :class:`PowerExpansion`: Z(end), where Z(start) is the unit matrix, as polynomials in u with bounds
+on what they leave out. Once it is made, a value at another u costs the evaluation of polynomials.
+
+    y'' = u (1 + x) y, z = (y, y')      A_0 = ((0, 1), (0, 0)), A_1 = ((0, 0), (1 + x, 0))
+    order 0 in u: ((1, x), (0, 1))      order 1: A_1 times that, integrated: y' first, y after it
+    y(1) = 1 + 2/3 u + ..., where y(0) = 1 and y'(0) = 0
+
+On a step every order in u is a power series in x, one quadrature after the other. As Z is analytic in x and u
+together, Cauchy's estimate bounds what these leave out: a coefficient of ``x^k u^m`` is at most
+``exp(rho K)/(rho^k R^m)``, if the norm of A is at most K for abs(x) <= rho and abs(u) <= R. States are scaled
+so that this norm is about a wavenumber.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from math import ceil, factorial, inf, isfinite, log2
+from typing import TYPE_CHECKING, Protocol
+
+from flint import acb, acb_poly, arb, arb_poly, ctx
+
+from symflex.budget import spend
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+Place = tuple[int, int]
+"""Row and column."""
+Polynomial = arb_poly | acb_poly
+Number = arb | acb
+Coefficients = dict[Place, Polynomial]
+"""Entries of a matrix that are not zero, as polynomials in x less the point of expansion."""
+Matrix = list[list[Polynomial]]
+"""Entries as polynomials in u."""
+Weights = tuple[arb, ...]
+"""Powers of two by which states are scaled."""
+Lines = tuple[int, ...]
+"""Rows or columns of a minor."""
+
+BALANCINGS = 60
+"""Rounds of balancing the states: of four in a circle each leaves half of what is out of balance."""
+BALANCED = 0.1
+"""Bits by which rows and columns may differ."""
+SHARE = 3
+"""The radius on which coefficients are bounded, over the length of a step."""
+SHORTEST = 1e-5
+"""Share of the whole below which the radius of a step means that there is a singularity."""
+HALVINGS = 40
+"""Of an interval in which a singularity lies: it is told to six digits."""
+LAST = 1.2
+"""A step may be so much longer than others if it is the last."""
+RADII = tuple(4.0 * 0.8**k for k in range(80))
+"""Radii that are tried about a point, in lengths of the whole; the least is 1e-7 of it."""
+GUARD = 32
+"""Bits beyond those asked for: products of a few dozen steps round a few hundred times."""
+BEYOND = 32
+"""Polynomials in u are bounded on a disc so many times larger than what they are used on."""
+FEWEST_BITS = 30
+"""Of orders in u that hardly matter."""
+SAMPLES = 8
+"""Points at which the growth along x is sampled where about what it is suffices."""
+BITS_OF_E = 1.4426950408889634
+WIDE = 2.0**-30
+"""Relative radius of balls about whose middle a polynomial is expanded before it is evaluated."""
+
+
+class SingularCoefficientError(ValueError):
+    """A coefficient is not analytic about a point of the interval."""
+
+    def __init__(self, place: float) -> None:
+        super().__init__(place)
+        self.place = place
+
+
+class VaryingSystem(Protocol):
+    """The coefficients of a system, evaluated at the current precision."""
+
+    @property
+    def size(self) -> int:
+        """The number of states."""
+        ...
+
+    def ends(self) -> tuple[arb, arb]:
+        """Return where x begins and ends."""
+        ...
+
+    def series(self, x: arb, terms: int) -> Sequence[Coefficients]:
+        """Return, per power of u, the entries' Taylor polynomials about a point."""
+        ...
+
+    def bounds(self, x: acb, largest: arb) -> Mapping[Place, arb]:
+        """Return the sizes of entries on a ball of x for abs(u) <= ``largest``; not finite near a pole."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class PowerExpansion:
+    """A fundamental matrix as polynomials in u."""
+
+    entries: Matrix
+    terms: int  # of each polynomial
+    bits: int  # the precision of the polynomials
+    reach: arb  # up to which abs(u) the growth holds; values are for abs(u) well below it
+    growth: arb  # bounds every entry, over the weight of its row, times that of its column
+    # of the states, at the start and at the end
+    weights: tuple[Weights, Weights]
+    _minors: dict[tuple[Lines, Lines], Polynomial] = field(default_factory=dict, repr=False)
+
+    def series(self, rows: Lines, columns: Lines, u: acb, terms: int = 1) -> list[acb]:
+        """Return Taylor coefficients about ``u`` of a minor; of an entry, where there is one row."""
+        middle, size = u.mid(), abs(u).upper()
+        off = u - middle
+        found = []
+        # Terms of an alternating series are larger than their sum: more bits, and the middle of the ball.
+        with ctx.workprec(self.bits):
+            polynomial = self._polynomial(rows, columns)
+            if u.rad() > abs(middle) * WIDE:
+                polynomial, middle, off = acb_poly(polynomial)(acb_poly([middle, 1])), acb(0), acb(0)
+                at = u - u.mid()
+            else:
+                at = middle
+            for k in range(terms):
+                polynomial = polynomial.derivative() * (1 / acb(k)) if k else polynomial
+                value = acb(polynomial(at))
+                if off != 0:
+                    value += acb(polynomial.derivative()(u)) * off
+                rest = self._rest(rows, columns, size, k)
+                found.append(value + acb(arb(0, rest), arb(0, rest)))
+        return [+x for x in found]
+
+    def _rest(self, rows: Lines, columns: Lines, size: arb, k: int) -> arb:
+        """Return a bound on what a polynomial leaves out of the k-th Taylor coefficient, by Cauchy."""
+        if size == 0 and k < self.terms:
+            return arb(0)
+        whole = self.growth ** len(rows) * factorial(len(rows))
+        for i, j in zip(rows, columns, strict=True):
+            whole = whole * self.weights[1][i] / self.weights[0][j]
+        apart = max(size, self.reach / BEYOND) if k else arb(0)
+        room = (size + apart) / self.reach
+        if not room < 1:
+            return arb("inf")
+        return (whole * room**self.terms / (1 - room) / apart**k).abs_upper()
+
+    def _polynomial(self, rows: Lines, columns: Lines) -> Polynomial:
+        if len(rows) == 1:
+            return self.entries[rows[0]][columns[0]]
+        if (rows, columns) not in self._minors:
+            total: Polynomial = arb_poly([])
+            for n, column in enumerate(columns):
+                rest = self._polynomial(rows[1:], columns[:n] + columns[n + 1 :])
+                total += self.entries[rows[0]][column] * rest * (-1) ** n
+            self._minors[rows, columns] = total.truncate(self.terms)
+        return self._minors[rows, columns]
+
+
+@dataclass(frozen=True, slots=True)
+class _Step:
+    """A part of the interval."""
+
+    start: arb
+    end: arb
+    radius: arb  # about the start, in which coefficients are bounded
+    growth: float  # bits by which solutions grow on the radius at most
+    weights: Weights  # with which they do
+
+    @property
+    def length(self) -> arb:
+        """Its length, negative where x falls."""
+        return self.end - self.start
+
+
+def growth_along(system: VaryingSystem, largest: arb) -> float:
+    """Return about by which power of e solutions grow from end to end at most, for abs(u) <= ``largest``."""
+    start, end = system.ends()
+    share, total = (end - start) / SAMPLES, 0.0
+    for k in range(SAMPLES):
+        x = (start + share * (k + 0.5)).mid()
+        norm = _norm(system, acb(x), largest, _weights(system, x, largest))
+        total += float((norm * abs(share)).mid())
+    return total
+
+
+def expand(system: VaryingSystem, largest: arb, bits: int, orders: int = 0) -> PowerExpansion:
+    """Return the fundamental matrix from the start of x to its end, for abs(u) <= ``largest``.
+
+    It is exact to about so many bits relative to the minors that grow, or has ``orders`` in u where these
+    are given. Raises SingularCoefficientError where a coefficient has a singularity on the interval.
+    """
+    reach = (largest * BEYOND).abs_upper()
+    steps = _steps(system, *system.ends(), reach, bits)
+    growth, before = arb(0), None
+    for step in steps:
+        hull = acb(step.start + step.length / 2 + arb(0, (step.length / 2).abs_upper()))
+        growth += _norm(system, hull, reach, step.weights) * abs(step.length)
+        if before is not None:
+            growth += max(x / y for x, y in zip(before, step.weights, strict=True)).log()
+        before = step.weights
+    doublings = float(growth.upper()) * BITS_OF_E
+    terms = orders or max(2, ceil((bits + 2 * doublings) / log2(BEYOND / 2)))
+    total: Matrix | None = None
+    with ctx.workprec(bits + GUARD + ceil(doublings)):
+        start, end = system.ends()
+        steps[0] = replace(steps[0], start=start)
+        steps[-1] = replace(steps[-1], end=end)
+        for step in steps:
+            spend()
+            made = _stepped(system, step, reach, terms)
+            total = made if total is None else _product(made, total, terms)
+        ends = steps[0].weights, steps[-1].weights
+        return PowerExpansion(total or [], terms, ctx.prec, reach, growth.exp().abs_upper(), ends)
+
+
+def _weights(system: VaryingSystem, middle: arb, reach: arb) -> Weights:
+    """Return powers of two that make rows and columns of the coefficients alike (Osborne 1960)."""
+    sizes = {
+        place: log2(size)
+        for place, x in system.bounds(acb(middle), reach).items()
+        if place[0] != place[1] and 0 < (size := float(x.upper())) < inf
+    }
+    found = [0.0] * system.size
+    for _ in range(BALANCINGS):
+        before = list(found)
+        for i in range(system.size):
+            row = [x + found[k] for (j, k), x in sizes.items() if j == i]
+            column = [x - found[j] for (j, k), x in sizes.items() if k == i]
+            if row and column:
+                found[i] = (max(row) - max(column)) / 2
+        if max(abs(x - y) for x, y in zip(found, before, strict=True)) < BALANCED:
+            break
+    return tuple(arb(2.0**x) for x in found)
+
+
+def _norm(system: VaryingSystem, x: acb, reach: arb, weights: Sequence[arb]) -> arb:
+    """Return a bound on the norm of the scaled coefficients on a ball of x; not finite near a singularity."""
+    rows = [arb(0)] * system.size
+    for (i, j), size in system.bounds(x, reach).items():
+        rows[i] += size * weights[j] / weights[i]
+    return max((row.abs_upper() if row.is_finite() else arb("inf") for row in rows), key=float)
+
+
+def _steps(system: VaryingSystem, start: arb, end: arb, reach: arb, bits: int) -> list[_Step]:
+    """Return steps of which each costs few terms over its length."""
+    whole, at, found = end - start, start, list[_Step]()
+    while at is not end:
+        best: tuple[float, arb, float] | None = None
+        weights = _weights(system, at, reach)
+        for share in RADII:
+            radius = (abs(whole) * share).upper()
+            square = arb(0, radius)
+            norm = _norm(system, acb(at + square, square), reach, weights)
+            # One more, as this is rounded.
+            growth = float((norm * radius).upper()) * BITS_OF_E + 1
+            if not isfinite(growth):
+                continue
+            cost = (bits + growth) / min(float(radius), SHARE * float(abs(end - at).upper()))
+            if best is not None and cost > best[0]:
+                break
+            best = (cost, radius, growth)
+        if best is None or best[1] < abs(whole) * SHORTEST:
+            raise SingularCoefficientError(_singular_place(system, at, end, reach, weights))
+        _, radius, growth = best
+        length, left = (radius / SHARE).mid(), end - at
+        following = end if abs(left) <= length * LAST else (at + (length if left > 0 else -length)).mid()
+        found.append(_Step(at, following, radius, growth, weights))
+        at = following
+    return found
+
+
+def _singular_place(system: VaryingSystem, at: arb, end: arb, reach: arb, weights: Sequence[arb]) -> float:
+    """Return about where the first singularity behind a point is, which steps do not come closer to."""
+    low, high = at.mid(), end.mid()
+    for _ in range(HALVINGS):
+        middle = ((low + high) / 2).mid()
+        between = acb((low + middle) / 2 + arb(0, abs(middle - low) / 2))
+        finite = _norm(system, between, reach, weights).is_finite()
+        low, high = (middle, high) if finite else (low, middle)
+    return float(low)
+
+
+def _stepped(system: VaryingSystem, step: _Step, reach: arb, terms: int) -> Matrix:
+    """Return the fundamental matrix of a step."""
+    n, bits = system.size, ctx.prec
+    share = abs(step.length) / step.radius
+    doublings = -log2(float(share.upper()))
+    # An order in u is used times a power of the largest u, and needs so many bits fewer.
+    needed = [max(FEWEST_BITS, bits - int(m * log2(BEYOND))) for m in range(terms)]
+    counts = [ceil((x + step.growth) / doublings) for x in needed]
+    series = system.series(step.start, counts[0])
+    gauge = _gauge(series[0], n, counts[0])
+    if gauge is not None:
+        # z = U v, where U' = A_0 U: what is left of the coefficients has no order 0.
+        ahead, back = gauge
+        series = [{}, *(_conjugated(back, a, ahead, n, counts[0]) for a in series[1:])]
+    order = _order(series[0], n)
+    rows = [
+        [[(q, k, a) for (row, k), a in c.items() if row == i] for q, c in enumerate(series)] for i in range(n)
+    ]
+    made: Matrix = [[arb_poly([]) for _ in range(n)] for _ in range(n)]
+    for j in range(n):
+        orders: list[dict[int, Polynomial]] = []
+        # What no quadrature reaches is zero, and stays None.
+        values: list[list[Number | None]] = [[None] * terms for _ in range(n)]
+        for m, (precision, count) in enumerate(zip(needed, counts, strict=True)):
+            here: dict[int, Polynomial] = {}
+            orders.append(here)
+            with ctx.workprec(precision):
+                for i in order:
+                    parts = [
+                        (a * orders[m - q][k]).truncate(count - 1)
+                        for group in rows[i][: m + 1]
+                        for q, k, a in group
+                        if k in orders[m - q]
+                    ]
+                    if parts:
+                        here[i] = sum(parts[1:], parts[0]).integral()
+                    if m == 0 and i == j:
+                        here[i] = here[i] + 1 if i in here else arb_poly([1])
+                if gauge is not None:
+                    here = _applied(gauge[0], here, count, n)
+                for i, grown in here.items():
+                    values[i][m] = grown(step.length)
+        for i in range(n):
+            scale = arb(2) ** step.growth / (1 - share) * step.weights[i] / step.weights[j]
+            made[i][j] = polynomial_of(
+                [
+                    arb(0) if v is None else v + around((scale * share**count / reach**m).abs_upper(), v)
+                    for m, (v, count) in enumerate(zip(values[i], counts, strict=True))
+                ]
+            )
+    return made
+
+
+def polynomial_of(coefficients: Sequence[Number]) -> Polynomial:
+    """Return a polynomial, a real one where all coefficients are real."""
+    real = [c for c in coefficients if isinstance(c, arb)]
+    return arb_poly(real) if len(real) == len(coefficients) else acb_poly(list(coefficients))
+
+
+def around(radius: arb, value: Number) -> Number:
+    """Return a ball about 0, a real one for a real value."""
+    return arb(0, radius) if isinstance(value, arb) else acb(arb(0, radius), arb(0, radius))
+
+
+def _product(left: Matrix, right: Matrix, terms: int) -> Matrix:
+    n = len(left)
+    return [
+        [sum((left[i][k] * right[k][j] for k in range(n)), arb_poly([])).truncate(terms) for j in range(n)]
+        for i in range(n)
+    ]
+
+
+def _order(coefficients: Coefficients, n: int) -> list[int]:
+    """Return the states so that the slope of each follows from those before it; empty if they go in circles.
+
+    Examples
+    --------
+    >>> _order({(0, 1): acb_poly([1]), (1, 2): acb_poly([1])}, 3)
+    [2, 1, 0]
+    """
+    found: list[int] = []
+    while len(found) < n:
+        ready = [
+            i for i in range(n) if i not in found and all(k in found for (row, k) in coefficients if row == i)
+        ]
+        if not ready:
+            return []
+        found += ready
+    return found
+
+
+def _gauge(coefficients: Coefficients, n: int, count: int) -> tuple[Coefficients, Coefficients] | None:
+    """Return U and its inverse, where ``U' = A_0 U``; None where quadratures suffice."""
+    if _order(coefficients, n):
+        return None
+    turned = {(k, i): -a for (i, k), a in coefficients.items()}
+    ahead = _solution(coefficients, n, count)
+    back = {(j, i): x for (i, j), x in _solution(turned, n, count).items()}
+    return ahead, back
+
+
+def _solution(coefficients: Coefficients, n: int, count: int) -> Coefficients:
+    """Return the power series of U, term by term."""
+    size = {place: a.coeffs() for place, a in coefficients.items()}
+    columns: list[list[list[Number]]] = [[[arb(int(i == j))] for i in range(n)] for j in range(n)]
+    for column in columns:
+        for m in range(count - 1):
+            slopes: list[Number] = [arb(0)] * n
+            for (i, k), a in size.items():
+                own = column[k]
+                slopes[i] += sum((a[p] * own[m - p] for p in range(min(m + 1, len(a)))), arb(0))
+            for i in range(n):
+                column[i].append(slopes[i] / (m + 1))
+    return {(i, j): polynomial_of(columns[j][i]) for j in range(n) for i in range(n)}
+
+
+def _conjugated(
+    back: Coefficients, middle: Coefficients, ahead: Coefficients, n: int, count: int
+) -> Coefficients:
+    """Return ``U^-1 A U``."""
+    half: Coefficients = {}
+    for (i, k), a in middle.items():
+        for j in range(n):
+            term = (a * ahead[k, j]).truncate(count)
+            half[i, j] = half[i, j] + term if (i, j) in half else term
+    found: Coefficients = {}
+    for (i, j), x in half.items():
+        for row in range(n):
+            term = (back[row, i] * x).truncate(count)
+            found[row, j] = found[row, j] + term if (row, j) in found else term
+    return found
+
+
+def _applied(
+    ahead: Coefficients, moved: Mapping[int, Polynomial], count: int, n: int
+) -> dict[int, Polynomial]:
+    """Return ``U v``, of which the power series has so many terms."""
+    found = {}
+    for i in range(n):
+        parts = [(ahead[i, k] * v).truncate(count) for k, v in moved.items()]
+        if parts:
+            found[i] = sum(parts[1:], parts[0])
+    return found

@@ -1,0 +1,217 @@
+"""Input shapers: impulses by which a command is convolved, so that modes of a structure do not ring after it.
+
+Input: proved poles, and which kind of shaper. Output: times and amplitudes, enclosed.
+
+With the pole p = -sigma + j omega, tau = pi/omega and K = exp(-sigma tau), half a period later a motion has
+the opposite sign and K times the size, so that two impulses cancel each other:
+
+    zv     1, K            over 1 + K        at 0, tau           no vibration at p
+    zvd    1, 2 K, K^2     over (1 + K)^2    at 0, tau, 2 tau    nor does it grow linearly with an error of p
+    ei     1 + W, 2 (1 - W) K, (1 + W) K^2   at 0, tau, 2 tau    V is left at p, and less on both sides
+
+Several modes take the convolution of their shapers. ZV and ZVD are of Singer and Seering (1990, Preshaping
+command inputs to reduce system vibration), EI of Singhose, Seering and Singer (1990, Shaping inputs to reduce
+vibration: a vector diagram approach); without damping W is V, with it W is such that the residual at p is V.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from flint import acb, arb
+
+from symflex.errors import Diagnostic, ModelError, UsageError
+from symflex.errors.diagnostic import nearest
+from symflex.roots import Everything, Modes
+from symflex.roots.locate import locate
+from symflex.roots.precision import bits_for_digits, precision
+from symflex.roots.root import decimals
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from symflex.roots import Root
+    from symflex.transfer import BoundTransferFunction
+
+SCHEMA = "symflex.shape/1"
+TOLERANCE = 0.05
+"""Residual vibration V that an EI shaper allows: the usual one in its literature."""
+MORE_DIGITS = 12
+"""Of poles, beyond those printed: differences of impulses lose a few."""
+MORE_MODES = 8
+"""Searched beyond those asked for, as some may not oscillate."""
+MOST_IMPULSES = 2187
+"""Of seven modes with three each."""
+TEXT_DIGITS = 10
+
+
+def _zv(k: arb, tolerance: arb) -> tuple[arb, ...]:
+    del tolerance
+    return (1 / (1 + k), k / (1 + k))
+
+
+def _zvd(k: arb, tolerance: arb) -> tuple[arb, ...]:
+    del tolerance
+    whole = (1 + k) ** 2
+    return (1 / whole, 2 * k / whole, k * k / whole)
+
+
+def _ei(k: arb, tolerance: arb) -> tuple[arb, ...]:
+    # The residual at p is W K^2 over the sum of the amplitudes; this makes it V.
+    width = tolerance * (1 + k) ** 2 / (4 * k * k - tolerance * (1 - k) ** 2)
+    parts = (1 + width, 2 * (1 - width) * k, (1 + width) * k * k)
+    whole = parts[0] + parts[1] + parts[2]
+    return (parts[0] / whole, parts[1] / whole, parts[2] / whole)
+
+
+SHAPERS: Mapping[str, Callable[[arb, arb], tuple[arb, ...]]] = {"zv": _zv, "zvd": _zvd, "ei": _ei}
+"""The amplitudes of each kind, from K and V; half a period lies between two."""
+
+
+@dataclass(frozen=True, eq=False)
+class InputShaper:
+    """Impulses that sum to one, for the modes of one transfer function."""
+
+    tf: str  # ``"OUT/IN"``
+    kind: str  # a key of :data:`SHAPERS`
+    poles: tuple[Root, ...]  # of the modes shaped for, with positive imaginary part
+    impulses: tuple[tuple[arb, arb], ...]  # time [s] and amplitude of each
+    digits: int
+    bits: int  # of the precision all this was computed at
+
+    @property
+    def times(self) -> tuple[float, ...]:
+        """The times [s], to double precision."""
+        return tuple(float(t.mid()) for t, _ in self.impulses)
+
+    @property
+    def amplitudes(self) -> tuple[float, ...]:
+        """The amplitudes, to double precision."""
+        return tuple(float(a.mid()) for _, a in self.impulses)
+
+    def residual(self, pole: acb) -> arb:
+        """Return the vibration that is left of a mode after the last impulse, over that of one impulse then.
+
+        It encloses the value for all poles in the ball.
+        """
+        with precision(self.bits):
+            total = sum((a * (-pole * t).exp() for t, a in self.impulses), acb(0))
+            return abs(total) * (pole.real * self.impulses[-1][0]).exp()
+
+    def to_json_dict(self) -> dict[str, object]:
+        """Return the shaper as ``symflex shape --json`` prints it."""
+        zero, digits = arb(0), self.digits
+        modes: list[dict[str, object]] = []
+        for pole in self.poles:
+            told = pole.decimal(digits)
+            left = decimals(self.residual(pole.enclosure()), zero, digits)
+            modes.append(
+                {
+                    "re": told.re,
+                    "im": told.im,
+                    "radius": told.radius,
+                    "frequency_hz": pole.frequency_hz(),
+                    "damping_ratio": pole.damping_ratio(),
+                    "residual": left.re,
+                    "residual_radius": left.radius,
+                }
+            )
+        impulses = []
+        for time, amplitude in self.impulses:
+            when, size = decimals(time, zero, digits), decimals(amplitude, zero, digits)
+            impulses.append(
+                {
+                    "time": when.re,
+                    "time_radius": when.radius,
+                    "amplitude": size.re,
+                    "amplitude_radius": size.radius,
+                }
+            )
+        return {"schema": SCHEMA, "tf": self.tf, "kind": self.kind, "modes": modes, "impulses": impulses}
+
+    def __str__(self) -> str:
+        zero, digits = arb(0), min(self.digits, TEXT_DIGITS)
+        lines = [f"{self.tf}   {self.kind.upper()} shaper, {len(self.impulses)} impulses", ""]
+        for pole in self.poles:
+            left = self.residual(pole.enclosure())
+            said = f"at most {float(left.upper()):.2g}" if left.contains(0) else f"{float(left.mid()):.6g}"
+            damping = f"{pole.damping_ratio() or 0:.6g}"
+            lines.append(f"  mode at {pole.frequency_hz():.6g} Hz, zeta {damping}: residual vibration {said}")
+        rows = [("t [s]", "amplitude")]
+        rows += [(decimals(t, zero, digits).re, decimals(a, zero, digits).re) for t, a in self.impulses]
+        widths = [max(len(row[k]) for row in rows) for k in range(2)]
+        lines += [
+            "",
+            *("  " + "  ".join(c.rjust(w) for c, w in zip(row, widths, strict=True)) for row in rows),
+        ]
+        return "\n".join(lines)
+
+
+def input_shaper(
+    bound: BoundTransferFunction, modes: int = 1, kind: str = "zv", digits: int = 15
+) -> InputShaper:
+    """Return a shaper for the lowest modes that oscillate.
+
+    Parameters
+    ----------
+    bound : BoundTransferFunction
+        Whose poles they are; proved.
+    modes : int
+        How many of them, by natural frequency.
+    kind : str
+        ``zv``, ``zvd`` or ``ei``.
+    digits : int
+        Of poles, times and amplitudes.
+
+    Raises
+    ------
+    UsageError
+        SF902 for an unknown kind, or more modes than there are.
+    ModelError
+        SF814 where a mode cannot be told from another, or is damped too much for the kind.
+
+    Examples
+    --------
+    >>> from symflex import loads
+    >>> arm = loads('symflex = 1' + chr(10) + 'inputs.u = {}' + chr(10) + 'outputs.y = "u/(s^2 + 9)"')
+    >>> shaper = input_shaper(arm.transfer_function("y", "u").bind().bound)
+    >>> [round(t, 6) for t in shaper.times], shaper.amplitudes  # half a period, and halves
+    ([0.0, 1.047198], (0.5, 0.5))
+    """
+    if kind not in SHAPERS:
+        hint = nearest(kind, SHAPERS) or "kinds: " + ", ".join(SHAPERS)
+        raise UsageError(Diagnostic("SF902", f"there is no shaper '{kind[:64]}'", None, hint))
+    region = Modes(modes + MORE_MODES) if bound.is_distributed else Everything()
+    located = locate(bound, region, digits + MORE_DIGITS).complete()
+    ringing = [root for root in located.poles if root.im > 0]
+    if modes < 1 or len(ringing) < modes:
+        message = f"{bound.name} has {len(ringing)} modes that oscillate, not {modes}"
+        raise UsageError(Diagnostic("SF902", message))
+    chosen = tuple(ringing[:modes])
+    if not all(root.certified for root in chosen):
+        message = f"modes of {bound.name} cannot be told apart: none of them has a shaper of its own"
+        raise ModelError(Diagnostic("SF814", message))
+    bits = max(root.working_bits() for root in chosen) + bits_for_digits(digits)
+    with precision(bits):
+        impulses = [(arb(0), arb(1))]
+        for root in chosen:
+            impulses = _convolved(impulses, _of_mode(bound, root, kind))
+        impulses.sort(key=lambda impulse: impulse[0].mid())
+    return InputShaper(bound.name, kind, chosen, tuple(impulses), digits, bits)
+
+
+def _of_mode(bound: BoundTransferFunction, root: Root, kind: str) -> list[tuple[arb, arb]]:
+    half = arb.pi() / root.im
+    amplitudes = SHAPERS[kind]((root.re * half).exp(), arb(TOLERANCE))
+    if not all(a > 0 for a in amplitudes):
+        message = f"the mode of {bound.name} at {root.frequency_hz():g} Hz is damped too much for '{kind}'"
+        raise ModelError(Diagnostic("SF814", message, None, "take zv, or leave it as it is: it hardly rings"))
+    return [(half * i, a) for i, a in enumerate(amplitudes)]
+
+
+def _convolved(one: Sequence[tuple[arb, arb]], other: Sequence[tuple[arb, arb]]) -> list[tuple[arb, arb]]:
+    if len(one) * len(other) > MOST_IMPULSES:
+        message = f"the modes take more than {MOST_IMPULSES} impulses together"
+        raise UsageError(Diagnostic("SF902", message, None, "shape for fewer of them"))
+    return [(t + u, a * b) for t, a in one for u, b in other]

@@ -1,0 +1,251 @@
+"""Functions of s whose only exponentials are delays: as sums of polynomials times exp(-s T), exactly.
+
+Input: a bound transfer function with pure delays, and rods, shafts and strings that lose nothing.
+Output: numerator and denominator as :class:`DelayedSum`.
+
+A wave of such a rod has the wavenumber ``s/c``, so it is a delay too:
+
+    2 cosh(s l/c)    =    exp(s l/c) (1 + exp(-2 s l/c))
+
+Delays are compared exactly. Each is a rational multiple of a square root of a rational number, such as l/c of
+``sqrt(rho/E)``; roots whose ratio is irrational are independent over the rational numbers (Besicovitch 1940).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import partial
+from math import isqrt, lcm
+from typing import TYPE_CHECKING
+
+from flint import acb, arb, arb_poly
+
+from symflex.algebra import Factored, Ring
+from symflex.algebra.exponential_sum import Argument, arguments_of, exponential_sum
+from symflex.roots.problem import PolynomialInS, RealConstant
+from symflex.transfer.balls import at_centre, ball
+
+if TYPE_CHECKING:
+    from flint import fmpz_mpoly
+
+    from symflex.algebra import Dispersion
+    from symflex.transfer import BoundTransferFunction
+
+Delay = tuple[tuple[int, Fraction], ...]
+"""Positions of independent durations, ascending, and what each is multiplied with; not zero."""
+Amplitude = dict[tuple[int, ...], Fraction]
+"""Per exponents of s and of the constants, a number."""
+NO_DELAY: Delay = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Durations:
+    """What all delays of a function are multiples of, and what coefficients of polynomials are made of."""
+
+    enclosed: tuple[Callable[[], arb], ...]  # each independent duration [s], at the current precision
+    names: tuple[str, ...]  # of the constants
+    constants: tuple[Callable[[], arb], ...]  # at the current precision
+
+    def seconds(self, delay: Delay) -> arb:
+        """Return a delay [s] at the current precision."""
+        return sum((self.enclosed[i]() * ball(multiple) for i, multiple in delay), arb(0))
+
+    def polynomial(self, amplitude: Amplitude) -> arb_poly:
+        """Return an amplitude as a polynomial in s, at the current precision."""
+        values = [evaluate() for evaluate in self.constants]
+        found = [arb(0)] * (1 + max((exponents[0] for exponents in amplitude), default=0))
+        for (power, *others), number in amplitude.items():
+            term = ball(number)
+            for value, exponent in zip(values, others, strict=True):
+                term = term * value**exponent if exponent else term
+            found[power] = found[power] + term
+        return arb_poly(found)
+
+    def exact(self, amplitude: Amplitude) -> PolynomialInS:
+        """Return an amplitude without negative exponents as an exact polynomial, but for a factor."""
+        scale = lcm(*(number.denominator for number in amplitude.values()))
+        ring = Ring(self.names)
+        rows: list[dict[tuple[int, ...], int]] = [{} for _ in range(1 + max(e[0] for e in amplitude))]
+        for (power, *others), number in amplitude.items():
+            rows[power][tuple(others)] = int(number * scale)
+        constants = tuple(map(RealConstant, self.names, self.constants))
+        return PolynomialInS(tuple(ring.context.from_dict(row) for row in rows), ring.context, constants)
+
+
+@dataclass(frozen=True, eq=False)
+class DelayedQuotient:
+    """Two sums of polynomials times delays, one over the other."""
+
+    above: Mapping[Delay, Amplitude]
+    below: Mapping[Delay, Amplitude]
+    durations: Durations
+
+
+def delayed_quotient(bound: BoundTransferFunction) -> DelayedQuotient | None:
+    """Return a function as a quotient of sums of delays; None where it holds anything else, or too much."""
+    arguments = arguments_of(bound.kernels)
+    if arguments is None:
+        return None
+    law_of = {kernel.wavenumber: kernel.dispersion for kernel in bound.kernels.kernels if kernel.wavenumber}
+    slowness: dict[str, Factored] = {}
+    for name, law in law_of.items():
+        found = _squared_slowness(law)
+        if found is None:
+            return None
+        slowness[name] = found
+    reader = _Reader.of(bound, arguments, slowness)
+    if reader is None:
+        return None
+    one = {NO_DELAY: {(0,) * (1 + len(reader.durations.names)): bound.ratio.unit}}
+    above: Mapping[Delay, Amplitude] = one
+    below: Mapping[Delay, Amplitude] = {NO_DELAY: {(0,) * (1 + len(reader.durations.names)): Fraction(1)}}
+    for factor, exponent in bound.ratio.factors:
+        terms = reader.read(factor)
+        if terms is None:
+            return None
+        for _ in range(abs(exponent)):
+            above, below = (
+                (_product(above, terms), below) if exponent > 0 else (above, _product(below, terms))
+            )
+    return DelayedQuotient(above, below, reader.durations)
+
+
+@dataclass(frozen=True, eq=False)
+class _Reader:
+    """Reads polynomials in kernels as sums of delays."""
+
+    bound: BoundTransferFunction
+    arguments: tuple[Argument, ...]
+    delays: tuple[tuple[int, Fraction], ...]  # of every argument: which duration, and how often
+    places: Mapping[int, int]  # of generators that are constants, or waves' slownesses, in a monomial
+    waves: frozenset[int]  # positions of wavenumbers in the ring
+    durations: Durations
+
+    @classmethod
+    def of(
+        cls, bound: BoundTransferFunction, arguments: tuple[Argument, ...], slowness: Mapping[str, Factored]
+    ) -> _Reader | None:
+        """Return the reader of a function; None where an argument is no delay."""
+        ring = bound.ratio.ring
+
+        def root_of(value: Factored) -> arb:
+            evaluator = bound.kernel_values()
+            constants = {name: acb(value) for name, value in evaluator.constants.items()}
+            return at_centre(evaluator.value(value, constants)).real.sqrt()
+
+        squares: list[Fraction | None] = []
+        durations: list[Callable[[], arb]] = []
+        delays: list[tuple[int, Fraction]] = []
+        for argument in arguments:
+            if argument.wavenumber:
+                square = slowness[argument.wavenumber] * argument.length**2
+                sign = -1
+            else:
+                rate = _without_s(argument.rate, 1)
+                if rate is None:
+                    return None
+                square = (rate * argument.length) ** 2
+                sign = 1
+            exact = square.unit if square.is_constant else None
+            known = next(((i, r) for i, q in enumerate(squares) if (r := _ratio(exact, q)) is not None), None)
+            if known is None:
+                known = (len(squares), Fraction(1))
+                squares.append(exact)
+                durations.append(partial(root_of, square))
+            delays.append((known[0], sign * known[1]))
+        names = [name for name, _ in bound.constants]
+        constants = [evaluate for _, evaluate in bound.constants]
+        for name, value in slowness.items():
+            names.append(name)
+            constants.append(partial(root_of, value))
+        places = {ring.index[name]: i + 1 for i, name in enumerate(names)}
+        waves = frozenset(ring.index[name] for name in slowness)
+        known_constants = Durations(tuple(durations), tuple(names), tuple(constants))
+        return cls(bound, arguments, tuple(delays), places, waves, known_constants)
+
+    def read(self, factor: fmpz_mpoly) -> dict[Delay, Amplitude] | None:
+        """Return a factor as a sum of delays; None where there are too many."""
+        terms = exponential_sum(self.bound.ratio.ring, self.bound.kernels, self.arguments, factor)
+        if terms is None:
+            return None
+        found: dict[Delay, Amplitude] = {}
+        for exponent, amplitude in terms.terms.items():
+            delay = sum_of(*(((self.delays[x][0], self.delays[x][1] * a),) for x, a, _ in exponent))
+            own = found.setdefault(delay, {})
+            for monomial, (number, _) in amplitude.items():
+                exponents = [0] * (1 + len(self.durations.names))
+                for i, e in monomial:
+                    if i == 0 or i in self.waves:  # a wavenumber is s times its slowness
+                        exponents[0] += e
+                    if i:
+                        exponents[self.places[i]] += e
+                _add(own, tuple(exponents), Fraction(number, 2**terms.halvings))
+        return {delay: own for delay, own in found.items() if own}
+
+
+def _squared_slowness(law: Dispersion) -> Factored | None:
+    """Return 1/c^2 of a law ``gamma^2 = s^2/c^2``, None of any other."""
+    if law.kind != "wave" or not law.shift.is_zero or not all(c.is_zero for c in law.characteristic[1:]):
+        return None
+    return _without_s(-law.characteristic[0], 2)
+
+
+def _without_s(value: Factored, power: int) -> Factored | None:
+    """Return what a power of s is multiplied with, a number or a product of constants."""
+    ring = value.ring
+    s = ring.context.gen(0)
+    rest = tuple((f, e) for f, e in value.factors if f != s)
+    used = ring.used_in(f for f, _ in rest)
+    if value.exponent_of(s) != power or ring.names[0] in used:
+        return None
+    return Factored(ring, value.unit, rest)
+
+
+def _ratio(square: Fraction | None, other: Fraction | None) -> Fraction | None:
+    """Return the square root of a ratio if that is rational."""
+    if square is None or other is None:
+        return None
+    ratio = square / other
+    above, below = isqrt(ratio.numerator), isqrt(ratio.denominator)
+    return Fraction(above, below) if above**2 == ratio.numerator and below**2 == ratio.denominator else None
+
+
+def sum_of(*delays: Delay) -> Delay:
+    """Return delays one after the other."""
+    found: dict[int, Fraction] = {}
+    for delay in delays:
+        for i, multiple in delay:
+            found[i] = found.get(i, Fraction(0)) + multiple
+    return tuple(sorted((i, multiple) for i, multiple in found.items() if multiple))
+
+
+def _add(amplitude: Amplitude, exponents: tuple[int, ...], number: Fraction) -> None:
+    total = amplitude.get(exponents, Fraction(0)) + number
+    if total:
+        amplitude[exponents] = total
+    else:
+        amplitude.pop(exponents, None)
+
+
+def _product(a: Mapping[Delay, Amplitude], b: Mapping[Delay, Amplitude]) -> dict[Delay, Amplitude]:
+    found: dict[Delay, Amplitude] = {}
+    for first, one in a.items():
+        for second, other in b.items():
+            own = found.setdefault(sum_of(first, second), {})
+            for m, x in one.items():
+                for n, y in other.items():
+                    _add(own, tuple(i + k for i, k in zip(m, n, strict=True)), x * y)
+    return {delay: own for delay, own in found.items() if own}
+
+
+def later(delay: Delay, other: Delay) -> Delay:
+    """Return by how much one delay is longer than another.
+
+    Examples
+    --------
+    >>> later(((0, Fraction(2)),), ((0, Fraction(1)), (1, Fraction(3))))
+    ((0, Fraction(1, 1)), (1, Fraction(-3, 1)))
+    """
+    return sum_of(delay, tuple((i, -multiple) for i, multiple in other))

@@ -1,0 +1,179 @@
+"""The response of a transfer function to an input of unit size: which way to find it, and how precisely.
+
+Input: a bound transfer function, the name of an input, times. Output: a :class:`EnclosedResponse`.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from flint import arb
+
+from symflex.analysis.time_response.delayed_terms import DelayedQuotient, delayed_quotient
+from symflex.analysis.time_response.echoes import Sampled, TooManyEchoesError, echoed
+from symflex.analysis.time_response.enclosed_response import INTEGRATIONS, EnclosedResponse, ImpulseAt
+from symflex.analysis.time_response.exponentials import values_of
+from symflex.analysis.time_response.modal import estimated, of_proved_modes
+from symflex.analysis.time_response.partial_fractions import (
+    EnclosedQuotient,
+    at_infinity,
+    partial_fractions,
+    power_series_terms,
+)
+from symflex.budget import spend
+from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
+from symflex.errors.diagnostic import nearest
+from symflex.expressions.format import decimal_exponent
+from symflex.roots.functions.simplified import without_lengths_of_zero
+from symflex.roots.polynomial_roots import find_polynomial_roots
+from symflex.roots.precision import bits_for_digits, precision
+from symflex.roots.problem import problem_of
+from symflex.roots.root import exact_fraction
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.analysis.time_response.sample_times import SampleTimes
+    from symflex.transfer import BoundTransferFunction
+
+GUARD_DIGITS = 6
+ATTEMPTS = 7
+"""Doublings of the digits: poles that lie together to 10^-1000 are as good as a double one."""
+MOST_DIGITS = 20_000
+
+
+def time_response(
+    bound: BoundTransferFunction, kind: str, times: SampleTimes, digits: int = 12
+) -> EnclosedResponse:
+    r"""Return the response from rest to a unit ``impulse``, ``step`` or ``ramp`` that begins at t = 0.
+
+    Every value is enclosed, by default to ``digits`` digits of the largest one.
+
+    Raises
+    ------
+    UsageError
+        SF902 for an unknown input.
+    ModelError
+        SF813 for beams in loops with delays.
+    UncertifiedError
+        SF810 when poles cannot be told apart and the time is too long for a power series.
+
+    Examples
+    --------
+    >>> from fractions import Fraction
+    >>> from symflex import loads
+    >>> from symflex.analysis.time_response.sample_times import SampleTimes
+    >>> lag = loads('symflex = 1\ninputs.u = {}\noutputs.y = "u/(s + 1)"').transfer_function("y", "u")
+    >>> found = time_response(lag.bind().bound, "step", SampleTimes.evenly(Fraction(1), 2))
+    >>> found.values.round(9).tolist(), found.certified
+    ([0.0, 0.632120559], True)
+    """
+    if kind not in INTEGRATIONS:
+        hint = nearest(kind, INTEGRATIONS) or "inputs: " + ", ".join(INTEGRATIONS)
+        raise UsageError(Diagnostic("SF902", f"there is no input '{kind[:64]}'", None, hint))
+    bound = without_lengths_of_zero(bound)
+    found, reason = _found(bound, INTEGRATIONS[kind], times, digits)
+    unit, certified = bound.source.output.unit, reason is None
+    return EnclosedResponse(
+        bound.name,
+        kind,
+        unit,
+        times.seconds,
+        found.values,
+        found.impulses,
+        found.jumps,
+        certified,
+        reason,
+        digits,
+    )
+
+
+def _found(
+    bound: BoundTransferFunction, integrations: int, times: SampleTimes, digits: int
+) -> tuple[Sampled, str | None]:
+    """Return the response, and what is not proved of it."""
+    if bound.is_zero or not len(times):
+        return Sampled((arb(0),) * len(times)), None
+    if not bound.is_distributed:
+        return _of_lumped(bound, integrations, times, digits), None
+    quotient = delayed_quotient(bound)
+    if quotient is not None:
+        try:
+            return _of_delays(bound, quotient, integrations, times, digits), None
+        except TooManyEchoesError:
+            spend()
+    if any(law.kind == "exponential" for law in bound.kernels.dispersions):
+        if quotient is not None:
+            message = f"too many echoes of the delays of {bound.name} arrive by then"
+            raise UncertifiedError(Diagnostic("SF810", message, None, "ask for a shorter time"))
+        message = f"{bound.name} has delays and waves that spread: its response in time is not known"
+        raise ModelError(Diagnostic("SF813", message, None, "take 'symflex rational' of the beam first"))
+    proved = of_proved_modes(bound, integrations, times, digits)
+    return (proved, None) if proved is not None else estimated(bound, integrations, times)
+
+
+def _of_lumped(bound: BoundTransferFunction, integrations: int, times: SampleTimes, digits: int) -> Sampled:
+    problem = problem_of(bound, [(f, -e) for f, e in bound.ratio.factors if e < 0])
+    wanted = digits + GUARD_DIGITS
+    for attempt in range(ATTEMPTS):
+        spend()
+        poles = find_polynomial_roots(problem, wanted)
+        bits = max((root.working_bits() for root in poles), default=0) + bits_for_digits(wanted)
+        with precision(bits):
+            last = arb(float(times.seconds[-1]))
+            turned = max((root.natural_frequency() * last for root in poles), default=arb(0), key=arb.mid)
+            quotient = EnclosedQuotient.of(bound, bits)
+            terms = partial_fractions(quotient, poles, integrations)
+            if terms is None and attempt:
+                terms = power_series_terms(quotient, integrations, last, bits_for_digits(wanted))
+            if terms is not None:
+                weights, _ = at_infinity(quotient, integrations)
+                impulses = tuple(ImpulseAt(arb(0), k, w) for k, w in enumerate(weights) if w != 0)
+                found = Sampled(tuple(values_of(terms, times)), impulses)
+                if is_precise(found.values, digits):
+                    return found
+                if not times.is_exact:
+                    times = times.one_by_one()
+        wanted = max(2 * wanted, digits + GUARD_DIGITS + decimal_exponent(exact_fraction(turned + 1)) + 1)
+        if wanted > MOST_DIGITS:
+            break
+    raise _unknown(bound, digits)
+
+
+def _of_delays(
+    bound: BoundTransferFunction,
+    quotient: DelayedQuotient,
+    integrations: int,
+    times: SampleTimes,
+    digits: int,
+) -> Sampled:
+    wanted = digits + GUARD_DIGITS
+    for _ in range(ATTEMPTS):
+        found = echoed(quotient, integrations, times, wanted)
+        if found is not None:
+            apart = [y for i, y in enumerate(found.values) if i not in found.at_jumps]
+            if is_precise(apart, digits) and (times.is_exact or not found.at_jumps):
+                return found
+            if not times.is_exact:
+                times = times.one_by_one()
+        wanted *= 2
+    message = f"the poles between the delays of {bound.name} lie too close together"
+    raise UncertifiedError(Diagnostic("SF810", message, None, "ask for a shorter time"))
+
+
+def _unknown(bound: BoundTransferFunction, digits: int) -> UncertifiedError:
+    message = f"poles of {bound.name} cannot be told apart: its response is not known to {digits} digits"
+    return UncertifiedError(Diagnostic("SF810", message, None, "ask for a shorter time, or fewer digits"))
+
+
+def is_precise(values: Sequence[arb], digits: int) -> bool:
+    """Tell whether all balls are narrow beside the largest value.
+
+    Examples
+    --------
+    >>> is_precise([arb(0, 1e-13), arb(1)], 12), is_precise([arb(0, 1e-3), arb(1)], 12)
+    (True, False)
+    """
+    largest = max((abs(y.mid()) for y in values), default=arb(0))
+    allowed = largest * arb(10) ** -digits
+    return all(y.is_finite() and y.rad() <= allowed for y in values)

@@ -1,0 +1,269 @@
+"""Beams that lose nothing: their modes one by one, and a bound of all that are left out.
+
+Input: a bound transfer function whose waves are those of bending without loss, over one length.
+Output: the terms of modes, and how much those beyond may add up to.
+
+Example: a cantilever. On the imaginary axis, s = 2 j t^2, its denominator over what grows fastest is
+
+    d(t) = cos(t r) + 2 e^(-t r) + ...
+
+Far out it is a trigonometric polynomial of theta = t r, whose coefficients are polynomials in u = 1/t, and
+exponentials that have died away. All t > T are two small intervals, 0 <= u <= 1/T and 0 <= e^(-t r) <=
+e^(-T r), and one turn of theta: a compact set, which is covered with balls. Where d may vanish, its slope
+does not; so every turn has as many poles as there are such places, and what a residue is at most there, times
+a power of t, bounds the sum over all.
+
+The places are as many as a trigonometric polynomial of that order has zeros, so all poles beyond T lie on the
+axis; and as the function falls off on arcs between them, the modes are all there is (Churchill 1937, The
+inversion of the Laplace transformation by a direct expansion in series).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from flint import acb, arb
+
+from symflex.algebra import Factored, degree_in
+from symflex.analysis.time_response.exponentials import ExponentialTerm
+from symflex.budget import entered_budget, spend
+from symflex.roots.axes.axis_function import IMAGINARY, AxisFunction, bits_of
+from symflex.roots.axes.harmonic_sum import UNITS, lossless_function
+from symflex.roots.distributed.side import Side
+from symflex.roots.engines import LOSSLESS
+from symflex.roots.functions.kernel_function import KernelFunction
+from symflex.roots.precision import precision
+from symflex.roots.region import Modes
+
+if TYPE_CHECKING:
+    from symflex.algebra.exponential_sum import Polynomial
+    from symflex.roots import Root
+    from symflex.transfer import BoundTransferFunction
+
+CELLS = 360
+"""Balls that one turn is covered with."""
+ANYWHERE = 0.7310585786
+"""Turns of theta at which there is no root as a rule: the constant in front is read off there."""
+
+
+@dataclass(frozen=True)
+class AxisFactor:
+    """One factor of a function on the axis, divided by what grows fastest in it."""
+
+    function: AxisFunction
+    exponent: int
+    growth: arb  # per t, of what it was divided by
+
+    @cached_property
+    def degree(self) -> int:
+        """The highest power of t."""
+        return max(n for w in self.function.waves for part in (w.even, w.odd) for n in part)
+
+    @cached_property
+    def turns(self) -> int:
+        """The highest multiple of theta."""
+        return max(abs(k) for wave in self.function.waves for k in (*wave.phase, 0))
+
+    @property
+    def has_corner(self) -> bool:
+        """Whether what grows fastest also turns fastest, with the highest power of t."""
+        return any(
+            not any(w.growth)
+            and max(map(abs, w.phase), default=0) == self.turns
+            and max((*w.even, *w.odd), default=-1) == self.degree
+            for w in self.function.waves
+        )
+
+    def around(self, theta: arb, least: arb) -> tuple[arb, arb]:
+        """Return values and derivatives by t, over ``t^degree``, at all t beyond one with this theta."""
+        total, slope = arb(0), arb(0)
+        enclosures = self.function.enclosures
+        for wave in self.function.waves:
+            sine, cosine = (arb(sum(wave.phase)) * theta).sin_cos()
+            growth, turn = (enclosures.rate(multiples)[0] for multiples in (wave.growth, wave.phase))
+            even, even_slope = self._over_power(wave.even, least)
+            odd, odd_slope = self._over_power(wave.odd, least)
+            decay = (growth * least).exp().union(arb(0)) if any(wave.growth) else arb(1)
+            total += decay * (even * cosine + odd * sine)
+            slope += decay * (even_slope + growth * even + turn * odd) * cosine
+            slope += decay * (odd_slope + growth * odd - turn * even) * sine
+        return total, slope
+
+    def _over_power(self, polynomial: Polynomial, least: arb) -> tuple[arb, arb]:
+        """Return a polynomial in t and its derivative, over ``t^degree``, at all t from ``least`` on."""
+        u = (1 / least).union(arb(0))
+        value, slope = arb(0), arb(0)
+        for n, c in self.function.enclosures.coefficients(polynomial).items():
+            value += c * u ** (self.degree - n)
+            slope += n * c * u ** (self.degree - n + 1)
+        return value, slope
+
+
+@dataclass(frozen=True)
+class LosslessModes:
+    """The modes of one function on the imaginary axis, with ``H = constant * exp(growth t) * factors``."""
+
+    bound: BoundTransferFunction
+    factors: tuple[AxisFactor, ...]
+    rate: arb  # r of theta = t r
+    digits: int  # of poles
+    bits: int  # of everything
+
+    @property
+    def poles(self) -> list[AxisFactor]:
+        """The factors that have poles."""
+        return [f for f in self.factors if f.exponent < 0 and f.turns]
+
+    @property
+    def falls_off(self) -> bool:
+        """Whether the function itself tends to 0 between its poles: then it is a sum over them alone."""
+        return sum(f.degree * f.exponent for f in self.factors) < 0
+
+    @cached_property
+    def growth(self) -> arb:
+        """How fast the function seems to grow with t, of what was divided out of its factors; at most 0."""
+        return sum((f.growth * f.exponent for f in self.factors), arb(0))
+
+    @cached_property
+    def constant(self) -> acb:
+        """What the product of all factors lacks to be the transfer function."""
+        with precision(self.bits):
+            t = 2 * arb.pi() * arb(ANYWHERE) / self.rate
+            value = self.bound.enclosed(self.bits)(acb(0, 2 * t * t))
+            for factor in self.factors:
+                value = value / factor.function.values(self.bits).value(t) ** factor.exponent
+            return value / (self.growth * t).exp()
+
+    def term(self, root: Root, integrations: int) -> ExponentialTerm | None:
+        """Return what a pole on the axis and its conjugate add to the response; None if it is not simple."""
+        with precision(self.bits):
+            t = (root.im / 2).sqrt()
+            found, steep = self.constant * (self.growth * t).exp(), 0
+            for factor in self.factors:
+                values = factor.function.values(self.bits)
+                value = values.value(t)
+                if value.contains(0) and factor.exponent < 0:
+                    value, steep = values.slope(t), steep - factor.exponent
+                found = found * value**factor.exponent
+            s = acb(0, root.im)
+            # ds = 4 j t dt
+            found = 2 * found * acb(0, 4 * t) / s**integrations
+            return ExponentialTerm(s, (found,)) if steep == 1 and found.is_finite() else None
+
+    def lowest(self, count: int) -> tuple[list[Root], float] | None:
+        """Return the poles of the lowest modes with positive frequency, and ln of a radius that holds all.
+
+        None where it is not proved that these are all, and on the axis.
+        """
+        side = Side(self.bound, self.bound.den, self.digits, entered_budget())
+        side.search(Modes(count))
+        if side.engine != LOSSLESS or not side.prove(Modes(count)).is_complete:
+            return None
+        if not all(root.on_imaginary_axis and root.certified for root in side.roots):
+            return None
+        return [root for root in side.roots if root.im > 0], side.reached
+
+    def rest(self, reached: float, integrations: int) -> arb | None:
+        """Return a bound of all modes with ln(abs(s)) beyond a radius together; None if none is found."""
+        with precision(self.bits):
+            least = (arb(reached).exp() / 2).sqrt()
+            power = sum(f.degree * f.exponent for f in self.factors) + 1 - 2 * integrations
+            if power >= -1 or not all(f.has_corner for f in self.poles):
+                return None
+            largest, places, most = arb(0), 0, 0
+            for factor in self.poles:
+                found = self._largest(factor, least)
+                if found is None or factor.exponent != -1:
+                    return None
+                largest, places, most = largest.max(found[0]), places + found[1], most + 2 * factor.turns
+            if places != most:
+                return None
+            scale = abs(self.constant) * (self.growth * least).exp() * 8 / arb(2) ** integrations
+            turn = 2 * arb.pi() / self.rate
+            # One turn may begin and end in the middle of a place.
+            total = least**power + least ** (power + 1) / (turn * (-power - 1))
+            return (scale * largest * (places + 1) * total).upper()
+
+    def _largest(self, factor: AxisFactor, least: arb) -> tuple[arb, int] | None:
+        """Return how large a residue may be over powers of t, and at how many places in a turn it may be one.
+
+        None where the slope may vanish, or another factor that has poles.
+        """
+        cell = 2 * arb.pi() / CELLS
+        largest, signs = arb(0), []
+        for k in range(CELLS):
+            spend()
+            theta = cell * arb(k + 0.5, 0.5)
+            value, slope = factor.around(theta, least)
+            if not value.contains(0):
+                signs.append(0)
+                continue
+            if slope.contains(0):
+                return None
+            signs.append(1 if slope > 0 else -1)
+            size = 1 / abs(slope)
+            for other in self.factors:
+                if other is not factor:
+                    size = size * abs(other.around(theta, least)[0]) ** other.exponent
+            if not size.is_finite():
+                return None
+            largest = largest.max(size.upper())
+        return largest, sum(1 for a, b in zip(signs, signs[1:] + signs[:1], strict=True) if a and a != b)
+
+
+def lossless_modes(bound: BoundTransferFunction, digits: int) -> LosslessModes | None:
+    """Return the modes of a function, with poles of so many digits.
+
+    None where waves lose energy, or are of other kinds than bending, or the function grows faster than its
+    poles allow for.
+    """
+    whole = _multiplied(bound)
+    bits = 2 * bits_of(digits)
+    function = None if whole is None else KernelFunction(bound, whole)
+    if whole is None or function is None or function.power != 1 or not (function.part / whole).is_one:
+        return None
+    found = lossless_function(function, bits)
+    if found is None:
+        return None
+    enclosures = found.enclosures
+    if len(enclosures.rates) != 1 or enclosures.degrees[0] != 1:
+        return None
+    factors = []
+    with precision(bits):
+        for i, (terms, exponent) in enumerate(found.factors):
+            on_axis = found.on_axis(i, IMAGINARY)
+            waves = terms.turned(UNITS[IMAGINARY], enclosures.degrees).waves(1)
+            if on_axis is None or not on_axis.waves or waves is None:
+                return None
+            fastest = max(wave.growth[0] for wave in waves)
+            factors.append(AxisFactor(on_axis, exponent, enclosures.rates[0] * fastest))
+        modes = LosslessModes(bound, tuple(factors), enclosures.rates[0], digits, bits)
+        above = sum(f.turns * f.exponent for f in factors)
+        if modes.growth > 0 or above > 0 or not modes.constant.is_finite():
+            return None
+    return modes
+
+
+def _multiplied(bound: BoundTransferFunction) -> Factored | None:
+    """Return the function with one factor for all kernels above, and one for those below.
+
+    One by one they need not be real on the axis: ``cosh(q) cos(q)`` is, and ``cosh(q)`` is not. None where
+    factors below are powers.
+    """
+    ring = bound.ratio.ring
+    above, below = ring.constant(1), ring.constant(1)
+    rest = []
+    for factor, exponent in bound.ratio.factors:
+        if not any(degree_in(factor, ring.index[k.generator]) for k in bound.kernels.kernels):
+            rest.append((factor, exponent))
+        elif exponent > 0:
+            above = above * factor**exponent
+        elif exponent == -1:
+            below = below * factor
+        else:
+            return None
+    together = ((above, 1), (below, -1))
+    rest += [(f, e) for f, e in together if not f.is_constant()]
+    return Factored(ring, bound.ratio.unit, tuple(rest))

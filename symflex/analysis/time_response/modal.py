@@ -1,0 +1,226 @@
+"""Responses of distributed systems as sums over modes: how many, and what the rest may add.
+
+Input: a bound transfer function with waves. Output: enclosed values, and whether their radius is proved.
+
+    y(t)  =  principal part at s = 0  +  sum over poles  +  the modes left out
+
+The first two are balls. What is left out is bounded for beams that lose nothing, see
+:mod:`~symflex.analysis.time_response.lossless_modes`, and for those that lose energy along their length
+alone, see :mod:`~symflex.analysis.time_response.damped_modes`. For others it is estimated from the last
+residues, and the response is not certified.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import log
+from typing import TYPE_CHECKING
+
+from flint import acb, arb
+
+from symflex.algebra import Factored
+from symflex.analysis.rational.laurent import expand_at_zero, residues_at
+from symflex.analysis.time_response.damped_modes import Damping, damping_of
+from symflex.analysis.time_response.echoes import Sampled
+from symflex.analysis.time_response.exponentials import ExponentialTerm, values_of
+from symflex.analysis.time_response.lossless_modes import LosslessModes, lossless_modes
+from symflex.errors import Diagnostic, UncertifiedError
+from symflex.roots.locate import locate
+from symflex.roots.precision import bits_for_digits, precision
+from symflex.roots.region import Modes
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.analysis.time_response.sample_times import SampleTimes
+    from symflex.roots import Root
+    from symflex.transfer import BoundTransferFunction
+
+MOST_DIGITS = 9
+"""Of the largest value, where modes have no end: 10^-9 takes some 500 of a beam's displacement."""
+DIGITS = 24
+"""Of poles: those of a double, and what the phase loses after some million turns."""
+RIGID = -2
+"""Order of a free body's pole at s = 0."""
+FIRST_MODES = (16, 32)
+"""From whose bounds it is told how many modes it takes."""
+MOST_MODES = 2000
+"""Velocities fall off so slowly that no number of modes is enough; so many are searched at most."""
+ESTIMATED_MODES = 25
+"""Where the rest is estimated: each takes far longer to find where energy is lost."""
+LAST_MODES = 5
+"""From whose residues the rest is estimated."""
+TOO_MUCH = 0.3
+"""Estimated rest over the largest value from which on the modes say nothing."""
+
+
+def of_proved_modes(
+    bound: BoundTransferFunction, integrations: int, times: SampleTimes, digits: int
+) -> Sampled | None:
+    """Return a response with a proved bound of the modes left out; None where there is none.
+
+    A step of a velocity is an impulse of a displacement, and so a function over s is tried as well.
+    """
+    found = _of_proved_modes(bound, integrations, times, digits)
+    if found is not None or not integrations:
+        return found
+    s = Factored.generator(bound.ratio.ring, "s")
+    over_s = replace(bound, ratio=bound.ratio / s, parts=(bound.num, bound.den * s))
+    return _of_proved_modes(over_s, integrations - 1, times, digits)
+
+
+def _of_proved_modes(
+    bound: BoundTransferFunction, integrations: int, times: SampleTimes, digits: int
+) -> Sampled | None:
+    damping = damping_of(bound)
+    if damping is not None and damping.is_none:
+        damping = None
+    plain = bound if damping is None else damping.undamped
+    if damping is not None and integrations > 1 and damping.is_lossy:
+        return None  # what a ramp leaves of a damped mode is not bounded by what it leaves of another
+    modes = lossless_modes(plain, DIGITS)
+    if modes is None:
+        return None
+    few, many = FIRST_MODES
+    first, second = modes.lowest(few), modes.lowest(many)
+    if first is None or second is None:
+        return None
+    bounds = [modes.rest(reached, integrations) for _, reached in (first, second)]
+    found = _summed(bound, modes, damping, many, integrations, times)
+    if bounds[0] is None or bounds[1] is None or found is None:
+        return None
+    largest = max((abs(y.mid()) for y in found.values), default=arb(0))
+    goal = float(largest) * 10.0 ** -min(digits, MOST_DIGITS)
+    count = _needed((few, float(bounds[0])), (many, float(bounds[1])), goal)
+    if count > many:
+        turned = float(second[0][-1].im.mid()) * (count / many) ** 2 * float(times.seconds[-1])
+        lost = max(0, int(log(turned + 1, 10)) - (DIGITS - 16))
+        finer = lossless_modes(plain, DIGITS + lost) if lost else modes
+        found = None if finer is None else _summed(bound, finer, damping, count, integrations, times)
+    return found
+
+
+def _summed(
+    bound: BoundTransferFunction,
+    modes: LosslessModes,
+    damping: Damping | None,
+    count: int,
+    integrations: int,
+    times: SampleTimes,
+) -> Sampled | None:
+    lowest = modes.lowest(count)
+    origin = _at_origin(bound, integrations)
+    if lowest is None or origin is None:
+        return None
+    roots, reached = lowest
+    rest = modes.rest(reached, integrations)
+    with precision(modes.bits):
+        if damping is None:
+            terms = [modes.term(root, integrations) for root in roots]
+        else:
+            terms = _damped(modes, damping, roots, integrations)
+        known = [term for term in terms if term is not None]
+        if rest is None or len(known) < len(terms):
+            return None
+        values = values_of([*origin, *known], times)
+        return Sampled(tuple(y + arb(0, rest) for y in values))
+
+
+def _damped(
+    modes: LosslessModes, damping: Damping, roots: Sequence[Root], integrations: int
+) -> list[ExponentialTerm | None]:
+    """Return the terms of damped modes, and of the rigid body; None among them where one is not found."""
+    series = expand_at_zero(modes.bound, -1, DIGITS)
+    found: list[ExponentialTerm | None] = []
+    pairs: list[tuple[arb, arb]] = []
+    if series.is_estimate or series.order not in (0, RIGID) or not modes.falls_off:
+        return [None]
+    if series.order == RIGID:
+        pairs.append((series.coefficient(RIGID).real, arb(0)))
+    for root in roots:
+        term = modes.term(root, 0)
+        # Of w/(s^2 + kappa) the residue at j omega is w/(2 j omega), and a term holds two.
+        if term is None:
+            return [None]
+        pairs.append(((term.coefficients[0] * root.im * acb(0, 1)).real, root.im**2))
+    for weight, squared in pairs:
+        terms = damping.terms(weight, squared, integrations)
+        if terms is None and squared == 0 and damping.inertial[1] == 0 == damping.inertial[0]:
+            continue  # a rigid body without loss: all of it is at the origin
+        found += [None] if terms is None else terms
+    return found
+
+
+def _needed(few: tuple[int, float], many: tuple[int, float], goal: float) -> int:
+    """Return about how many modes bring a bound below a goal, from two counts and their bounds.
+
+    Examples
+    --------
+    >>> _needed((10, 8.0), (20, 1.0), 1 / 8)  # it falls with the third power
+    48
+    """
+    if many[1] <= goal:
+        return many[0]
+    power = log(few[1] / many[1]) / log(many[0] / few[0])
+    if not (goal > 0 and power > 0):
+        return MOST_MODES
+    # Logarithms, as a power of a small number may overflow.
+    growth = log(many[1] / goal) / power
+    return min(MOST_MODES, round(1.2 * many[0] * 2 ** min(growth / log(2), 20)))
+
+
+def _at_origin(bound: BoundTransferFunction, integrations: int) -> list[ExponentialTerm] | None:
+    """Return what the pole at s = 0 adds, a polynomial in t; None where it is not proved."""
+    series = expand_at_zero(bound, integrations - 1, DIGITS)
+    if series.is_estimate:
+        return None
+    count = integrations - series.order
+    if count <= 0:
+        return []
+    coefficients = tuple(series.coefficient(integrations - 1 - j) for j in range(count))
+    return [ExponentialTerm(acb(0), coefficients)]
+
+
+def estimated(bound: BoundTransferFunction, integrations: int, times: SampleTimes) -> tuple[Sampled, str]:
+    """Return the sum over the lowest modes, and what is not proved of it.
+
+    Raises UncertifiedError: SF810 where modes do not say what the response is.
+    """
+    count = ESTIMATED_MODES
+    located = locate(bound, Modes(count), DIGITS).complete()
+    poles = [root for root in located.all_poles if not root.im < 0 and not root.is_zero]
+    parts = residues_at(bound, poles, DIGITS)
+    with precision(bits_for_digits(2 * DIGITS)):
+        origin = _at_origin(bound, integrations) or []
+        terms = []
+        for part in parts:
+            share = 1 if part.root.is_real else 2
+            found = _over_powers(part.pole, part.coefficients, integrations)
+            terms.append(ExponentialTerm(part.pole, tuple(share * c for c in found)))
+        values = values_of([*origin, *terms], times)
+        sizes = [abs(term.coefficients[0]) for term in terms[-LAST_MODES:]]
+        rest = count * max((size.upper() for size in sizes), default=arb(0))
+        largest = max((abs(y.mid()) for y in values), default=arb(0))
+        if not rest < TOO_MUCH * largest:
+            message = f"the modes of {bound.name} fall off too slowly to say what it does in time"
+            hint = "ask for a displacement, or a step in place of an impulse"
+            raise UncertifiedError(Diagnostic("SF810", message, None, hint))
+        said = f"what the modes beyond the lowest {count} add is estimated"
+        return Sampled(tuple(y + arb(0, rest) for y in values)), said
+
+
+def _over_powers(pole: acb, coefficients: tuple[acb, ...], integrations: int) -> list[acb]:
+    """Return a principal part divided by ``s^integrations``.
+
+    Examples
+    --------
+    >>> [complex(c) for c in _over_powers(acb(2), (acb(1), acb(4)), 1)]  # 1/x + 4/x^2, over 2 + x
+    [(-0.5+0j), (2+0j)]
+    """
+    found = list(coefficients)
+    for _ in range(integrations):
+        # With s = p + x: the part of 1/x^k over p + x begins with c_k/p, and takes from those before it.
+        for k in range(len(found) - 1, -1, -1):
+            above = found[k + 1] if k + 1 < len(found) else acb(0)
+            found[k] = (found[k] - above) / pole
+    return found

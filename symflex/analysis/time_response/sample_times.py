@@ -1,0 +1,137 @@
+"""Times at which a response is asked for.
+
+Input: doubles, or an end and a number of points. Output: :class:`SampleTimes`, exact.
+
+Times that are evenly spaced are sums of two short lists, here of a = 0, 3 and b = 0, 1, 2:
+
+    0 1 2 3 4 5    =    a + b
+
+so exp(p t) at n of them takes some 2 sqrt(n) exponentials and one product of matrices.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from math import isqrt
+from typing import TYPE_CHECKING
+
+import numpy as np
+from flint import arb
+
+from symflex.errors import Diagnostic, UsageError
+from symflex.options import exact
+from symflex.transfer.balls import ball
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+MOST_TIMES = 1_000_000
+"""As many lines as a file of measured data may have."""
+ROUNDING = 4 * 2.0**-53
+"""What numpy.linspace may be off by, of the last time: a product and a sum of doubles, and room."""
+FEWEST = 9
+"""Times from which their even spacing saves anything."""
+
+
+@dataclass(frozen=True, eq=False)
+class SampleTimes:
+    """Increasing times from 0 on [s]."""
+
+    seconds: npt.NDArray[np.float64]  # to double precision
+    step: Fraction | None  # where time number i is ``i*step``, or ``seconds[0] + i*step`` up to ``slack``
+    slack: float = 0.0  # [s]
+
+    @classmethod
+    def evenly(cls, until: Fraction, points: int) -> SampleTimes:
+        """Return so many times from 0 to ``until``, exactly evenly spaced.
+
+        Examples
+        --------
+        >>> SampleTimes.evenly(Fraction(1, 2), 3).seconds.tolist()
+        [0.0, 0.25, 0.5]
+        """
+        return cls(np.array([float(t) for t in evenly(until, points)]), until / (points - 1))
+
+    @classmethod
+    def of(cls, times: npt.ArrayLike) -> SampleTimes:
+        """Return times given as doubles, each taken as the number it is.
+
+        Raises UsageError: SF811 when they are not finite, not negative and increasing, or too many.
+
+        Examples
+        --------
+        >>> SampleTimes.of([0, 0.5, 2.0]).step is None
+        True
+        """
+        given = np.atleast_1d(np.array(times, dtype=np.float64))
+        if given.ndim != 1 or given.size > MOST_TIMES:
+            raise _refused(f"times are a list of at most {MOST_TIMES} numbers")
+        if not np.isfinite(given).all():
+            raise _refused("times are finite numbers")
+        if given.size and given[0] < 0:
+            raise _refused(f"a response begins at t = 0; {given[0]:g} s is before")
+        if (late := np.flatnonzero(np.diff(given) <= 0)).size:
+            a, b = given[late[0]], given[late[0] + 1]
+            raise _refused(f"times increase; {b:g} s stands after {a:g} s")
+        given.setflags(write=False)
+        if given.size < FEWEST:
+            return cls(given, None)
+        step = (given[-1] - given[0]) / (given.size - 1)
+        off = float(np.max(np.abs(given - (given[0] + step * np.arange(given.size)))))
+        slack = off + ROUNDING * float(given[-1])
+        return cls(given, Fraction(float(step)) if slack < 4 * ROUNDING * given[-1] else None, slack)
+
+    def __len__(self) -> int:
+        return int(self.seconds.size)
+
+    def exactly(self) -> list[Fraction]:
+        """Return the times as what they mean: even ones as multiples of their step, others as decimals.
+
+        Examples
+        --------
+        >>> SampleTimes.of([0.1, 0.3]).exactly()
+        [Fraction(1, 10), Fraction(3, 10)]
+        """
+        if self.step is None:
+            return [exact(t) for t in self.seconds.tolist()]
+        return [exact(float(self.seconds[0])) + self.step * i for i in range(len(self))]
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether :meth:`enclosed` adds nothing to the times that were given."""
+        return self.step is None or self.slack == 0
+
+    def one_by_one(self) -> SampleTimes:
+        """Return the same times without what makes them even."""
+        return SampleTimes(self.seconds, None)
+
+    def spread(self, start: int = 0, delay: arb | None = None) -> tuple[list[arb], list[arb]]:
+        """Return two lists of balls at the current precision: the sums a + b, a by a, begin with all times.
+
+        Those before number ``start`` are left out, and ``delay`` [s] is taken from the others. The slack is
+        in the first list.
+        """
+        off = arb(0) if delay is None else delay
+        if self.step is None:
+            return [arb(t) - off for t in self.seconds[start:].tolist()], [arb(0)]
+        count = len(self) - start
+        width = isqrt(max(count - 1, 0)) + 1
+        step = ball(self.step)
+        first = arb(float(self.seconds[0]), self.slack) + step * start - off
+        rows = -(-count // width)
+        return [first + step * (width * i) for i in range(rows)], [step * i for i in range(width)]
+
+    def enclosed(self, start: int = 0, delay: arb | None = None) -> list[arb]:
+        """Return every time from number ``start`` on, less a delay, as a ball at the current precision."""
+        outer, inner = self.spread(start, delay)
+        return [a + b for a in outer for b in inner][: len(self) - start]
+
+
+def evenly(until: Fraction, points: int) -> tuple[Fraction, ...]:
+    """Return so many times from 0 to the last one."""
+    return tuple(until / (points - 1) * i for i in range(points))
+
+
+def _refused(message: str) -> UsageError:
+    return UsageError(Diagnostic("SF811", message))

@@ -1,0 +1,282 @@
+"""What control engineers ask of a step response: where it ends, how far it overshoots, how long it takes.
+
+Input: the exponentials that a step response is made of. Output: :class:`StepInfo`, every number enclosed.
+
+Over a whole interval of times the response lies in a ball, its value in the middle and its slope's ball times
+half the width; from some time on a sum of decaying exponentials bounds it. So an interval whose ball lies
+below the highest value found holds no peak, one whose ball leaves out a level no crossing of it, and what is
+found first, or last, is proved to be the first, or the last.
+"""
+
+from __future__ import annotations
+
+import heapq
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from flint import acb, arb
+
+from symflex.analysis.time_response.exponentials import ExponentialTerm
+from symflex.analysis.time_response.partial_fractions import EnclosedQuotient, partial_fractions
+from symflex.budget import spend
+from symflex.roots.functions.simplified import without_lengths_of_zero
+from symflex.roots.polynomial_roots import find_polynomial_roots
+from symflex.roots.precision import bits_for_digits, precision
+from symflex.roots.problem import problem_of
+from symflex.roots.root import decimals
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.transfer import BoundTransferFunction
+
+RISE = (0.1, 0.9)
+"""Of the final value, between which the rise time is counted."""
+SETTLED = 0.02
+"""Of the final value, within which a response has settled."""
+TEXT_DIGITS = 10
+CLOSE = 1e-6
+"""Of the final value: a peak that is no higher above it is none."""
+MOST_INTERVALS = 20_000
+"""Looked at for one number; a response that rings a thousand times takes some of them each."""
+HALVINGS = 50
+MORE_DIGITS = 10
+"""Of poles: differences of their terms lose some."""
+
+
+@dataclass(frozen=True, slots=True)
+class StepInfo:
+    """Properties of a step response that comes to rest, each a ball; None where it is not found.
+
+    Times are in seconds, values in the output's unit.
+    """
+
+    final: arb  # the value it tends to
+    peak: arb | None  # the largest value in the direction of the final one; None if it exceeds that nowhere
+    peak_time: arb | None
+    overshoot: arb | None  # of the final value, as a fraction; [0, 1e-6] where there is no peak
+    rise_time: arb | None  # from the first 10 % to the first 90 % of the final value
+    settling_time: arb | None  # after which it stays within 2 % of the final value
+
+    def lines(self, unit: str) -> list[str]:
+        """Return what is found as text, with ten digits at most."""
+        shown = [
+            ("final value", self.final, unit),
+            ("peak", self.peak, unit),
+            ("peak time", self.peak_time, "s"),
+            ("overshoot", None if self.overshoot is None else 100 * self.overshoot, "%"),
+            ("rise time, 10 % to 90 %", self.rise_time, "s"),
+            ("settling time, to 2 %", self.settling_time, "s"),
+        ]
+        found = []
+        for name, ball, of in shown:
+            if ball is None:
+                continue
+            if ball.contains(0) and ball != 0:
+                said = f"none above {float(ball.abs_upper()):.1g}"
+            else:
+                said = decimals(ball, arb(0), TEXT_DIGITS).re
+            found.append(f"{name:24} {said} {of}".rstrip())
+        return found
+
+    def to_json_dict(self, digits: int) -> dict[str, object]:
+        """Return every number as ``value`` and ``radius``, null where it is not found."""
+        found: dict[str, object] = {}
+        for name in ("final", "peak", "peak_time", "overshoot", "rise_time", "settling_time"):
+            ball = getattr(self, name)
+            told = None if ball is None else decimals(ball, arb(0), digits)
+            found[name] = None if told is None else {"value": told.re, "radius": told.radius}
+        return found
+
+
+def find_step_info(bound: BoundTransferFunction, digits: int = 12) -> StepInfo | None:
+    """Return the properties of a step response, from poles of about so many digits.
+
+    None where it does not come to rest, or at 0, where poles cannot be told apart, and for waves and delays.
+    """
+    bound = without_lengths_of_zero(bound)
+    if bound.is_distributed or bound.is_zero:
+        return None
+    wanted = 2 * digits + MORE_DIGITS
+    poles = find_polynomial_roots(
+        problem_of(bound, [(f, -e) for f, e in bound.ratio.factors if e < 0]), wanted
+    )
+    bits = max((root.working_bits() for root in poles), default=0) + bits_for_digits(wanted)
+    with precision(bits):
+        terms = partial_fractions(EnclosedQuotient.of(bound, bits), poles, 1)
+        return None if terms is None else step_info(terms)
+
+
+def step_info(terms: Sequence[ExponentialTerm]) -> StepInfo | None:
+    """Return the properties of a step response; None where it does not come to rest, or at 0.
+
+    Examples
+    --------
+    >>> lag = [ExponentialTerm(acb(0), (acb(2),)), ExponentialTerm(acb(-1), (acb(-2),))]  # 2 - 2 e^-t
+    >>> found = step_info(lag)
+    >>> float(found.final), round(float(found.rise_time), 9), round(float(found.settling_time), 9)
+    (2.0, 2.197224577, 3.912023005)
+    """
+    resting = [t for t in terms if t.rate == 0]
+    moving = [t for t in terms if t.rate != 0]
+    final = sum((t.coefficients[0].real for t in resting if t.coefficients), arb(0))
+    if any(c != 0 for t in resting for c in t.coefficients[1:]) or final.contains(0):
+        return None
+    if not all(t.rate.real < 0 for t in moving):
+        return None
+    motion = NormalisedResponse(
+        tuple(ExponentialTerm(t.rate, tuple(c / final for c in t.coefficients)) for t in moving)
+    )
+    until = motion.quiet(arb(SETTLED))
+    peak = motion.peak()
+    rises = [motion.first(arb(level), until) for level in RISE]
+    ends = [motion.crossing(1 + sign * arb(SETTLED), until, is_last=True) for sign in (1, -1)]
+    rise = None if rises[0] is None or rises[1] is None else rises[1] - rises[0]
+    settled = [end for end in ends if end is not None]
+    settling = None if motion.is_lost else max(settled, key=lambda t: t.mid(), default=arb(0))
+    if peak is None:
+        return StepInfo(final, None, None, None, rise, settling)
+    when, height = peak
+    if when is None:
+        return StepInfo(final, None, None, height - 1, rise, settling)
+    return StepInfo(final, height * final, when, height - 1, rise, settling)
+
+
+class NormalisedResponse:
+    """A response over its final value: 1 plus exponentials that decay."""
+
+    def __init__(self, terms: tuple[ExponentialTerm, ...]) -> None:
+        self._orders = [terms]
+        self.is_lost = False  # something could not be told
+
+    def at(self, t: arb, order: int = 0) -> arb:
+        """Return the value, or a derivative, on a ball of times."""
+        while len(self._orders) <= order:
+            self._orders.append(tuple(_derivative(term) for term in self._orders[-1]))
+        total = arb(0 if order else 1)
+        for term in self._orders[order]:
+            power, own = arb(1), acb(0)
+            for j, c in enumerate(term.coefficients):
+                power = power * t / j if j else power
+                own = own + c * power
+            total += ((term.rate * t).exp() * own).real
+        return total
+
+    def over(self, low: arb, high: arb) -> arb:
+        """Return a ball around the values between two times."""
+        middle, half = (low + high) / 2, (high - low) / 2
+        between = middle + arb(0, half.abs_upper())
+        return self.at(middle) + self.at(between, 1) * arb(0, half.abs_upper())
+
+    def beyond(self, t: arb) -> arb:
+        """Return how far the response is from its end at most, from a time on."""
+        total = arb(0)
+        for term in self._orders[0]:
+            for j, c in enumerate(term.coefficients):
+                # t^j exp(-d t) falls from j/d on.
+                latest = t.max(-arb(j) / term.rate.real)
+                size = abs(c) * (term.rate.real * latest).exp()
+                total += size * latest**j / arb(j + 1).gamma() if j else size
+        return total
+
+    def quiet(self, level: arb) -> arb:
+        """Return a time from which on the response is closer to its end than a level."""
+        t = min((-1 / term.rate.real for term in self._orders[0]), key=arb.mid, default=arb(1)).mid()
+        while not self.beyond(t) < level:
+            t = (2 * t).mid()
+        return t
+
+    def peak(self) -> tuple[arb | None, arb] | None:
+        """Return when the response is the highest and how high; no time where it exceeds 1 nowhere.
+
+        None where it cannot be told.
+        """
+        until = self.quiet(arb(CLOSE))
+        best = (1 + arb(CLOSE)).upper()
+        start = self.at(arb(0))
+        found = [(arb(0), start)] if start > best else []
+        best = best.max(start.lower())
+        queue = [(-float(self.over(arb(0), until).upper()), 0, arb(0), until)]
+        for count in range(1, MOST_INTERVALS):
+            spend()
+            if not queue or -queue[0][0] < float(best):
+                break
+            _, _, low, high = heapq.heappop(queue)
+            middle = ((low + high) / 2).mid()
+            box = middle + arb(0, (high - middle).abs_upper())
+            if not self.at(box, 1).contains(0):
+                continue  # the largest value is at an end: at the start, or next to where the slope vanishes
+            if self.at(box, 2) < 0:
+                # The slope falls all the time: there is one maximum at most.
+                ends = self.at(low, 1), self.at(high, 1)
+                if ends[0] > 0 > ends[1]:
+                    when = self._passed(arb(0), low, high, 1)
+                    found.append((when, self.at(when)))
+                    best = best.max(found[-1][1].lower())
+                elif not (ends[0] < 0 or ends[1] > 0):
+                    return None
+                continue
+            if not high - low > until * arb(2) ** -HALVINGS:
+                return None
+            for k, (a, b) in enumerate(((low, middle), (middle, high))):
+                heapq.heappush(queue, (-float(self.over(a, b).upper()), 2 * count + k, a, b))
+        else:
+            return None
+        highest = [(when, height) for when, height in found if not height < best]
+        if not highest:
+            return None, arb(1).union(best)
+        return highest[0] if len(highest) == 1 else None
+
+    def first(self, level: arb, until: arb) -> arb | None:
+        """Return when the response first reaches a level below 1; at once, if it begins above."""
+        return arb(0) if self.at(arb(0)) > level else self.crossing(level, until, is_last=False)
+
+    def crossing(self, level: arb, until: arb, *, is_last: bool) -> arb | None:
+        """Return the first or last time at which the response passes a level; None if it does not.
+
+        None, and ``is_lost``, too, where that cannot be told.
+        """
+        pending = [(arb(0), until)]
+        for _ in range(MOST_INTERVALS):
+            spend()
+            if not pending:
+                return None
+            low, high = pending.pop()
+            if not (self.over(low, high) - level).contains(0):
+                continue
+            ends = self.at(low) - level, self.at(high) - level
+            middle = ((low + high) / 2).mid()
+            slope = self.at(middle + arb(0, (high - middle).abs_upper()), 1)
+            if ends[0] * ends[1] < 0 and not slope.contains(0):
+                return self._passed(level, low, high, 0)
+            if not high - low > until * arb(2) ** -HALVINGS:
+                break
+            halves = [(low, middle), (middle, high)]
+            pending += halves if is_last else halves[::-1]
+        self.is_lost = True
+        return None
+
+    def _passed(self, level: arb, low: arb, high: arb, order: int) -> arb:
+        """Return where the value, or a derivative, passes a level between two times; it is monotonic there.
+
+        Newton's steps in balls, and halves where these do not yet make it shorter.
+        """
+        rises = self.at(high, order) > level
+        for _ in range(HALVINGS):
+            middle = ((low + high) / 2).mid()
+            box = middle + arb(0, (high - middle).abs_upper())
+            off = self.at(middle, order) - level
+            step = middle - off / self.at(box, order + 1)
+            if step.is_finite() and step.rad() < box.rad() / 4:
+                low, high = step.lower().max(low), step.upper().min(high)
+            elif off < 0 or off > 0:
+                low, high = (middle, high) if (off < 0) == rises else (low, middle)
+            else:
+                break
+        return (low + high) / 2 + arb(0, ((high - low) / 2).abs_upper())
+
+
+def _derivative(term: ExponentialTerm) -> ExponentialTerm:
+    following = (*term.coefficients[1:], acb(0))
+    pairs = zip(term.coefficients, following, strict=True)
+    return ExponentialTerm(term.rate, tuple(term.rate * c + d for c, d in pairs))

@@ -1,0 +1,104 @@
+"""What a model does in time: ``respond``, and ``shape``, commands after which it does not ring."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+from symflex.cli.command import Specification, command_of, first_pair
+from symflex.cli.reporting import check_place, emit_json, note, say
+from symflex.errors import Diagnostic, UncertifiedError, UsageError
+from symflex.options import RespondOptions, ShapeOptions, duration
+
+POINTS = 201
+TABLE = ".csv"
+PICTURES = (".pdf", ".pgf", ".png", ".svg")
+
+
+@command_of("respond", RespondOptions)
+def respond(spec: Specification, given: RespondOptions) -> int:
+    """Print what an output of SPEC does in time when its input is a unit step, impulse or ramp, or a file.
+
+    Of --to FILE.csv the input is a straight line between samples, 0 before the first and constant after the
+    last; that is exact, too.
+
+    The system is at rest before t = 0. Every value is proved to lie within its radius; the response comes
+    from proved poles, not from steps in time. An impulse that passes straight through to the output is said,
+    and is not among the values; that at t = 0 is the limit from above. Of Timoshenko's beams, and others of
+    whose modes too little is known, what those beyond the lowest 25 add is estimated, and the first line says
+    that the values are not certified.
+
+    Exit code 4 says that the response could not be found, and with --strict that it is not certified.
+    """
+    from symflex import pipeline
+    from symflex.analysis.time_response import SampleTimes, evenly, find_step_info, response_text
+    from symflex.data.measurement.input_signal import read_signal
+
+    if given.output:
+        check_place(given.output, (TABLE, *PICTURES))
+        if given.as_json:
+            raise UsageError(Diagnostic("SF902", "give only one of --json and -o"))
+    until = None if given.until is None else duration(given.until, "--until")
+    signal = read_signal(given.to) if given.to.lower().endswith(TABLE) else None
+    if signal is None and until is None:
+        raise UsageError(Diagnostic("SF902", "--until is missing: how long?", None, "as in --until 0.5s"))
+    model = spec.load()
+    (bound,) = pipeline.derive_bound(model, [first_pair(model, given.tf, "showing")])
+    if signal is None:
+        times = SampleTimes.evenly(until or Fraction(1), given.points or POINTS)
+        found = pipeline.time_response(bound, given.to, times, given.digits)
+    else:
+        wanted = signal.times
+        if until is not None or given.points is not None:
+            wanted = evenly(until or signal.times[-1], given.points or POINTS)
+        forced = pipeline.forced_response(bound, signal.times, signal.values, wanted, given.digits)
+        found = replace(forced, input=Path(given.to).name)
+    if given.output and Path(given.output).suffix.lower() == TABLE:
+        from symflex.files.write import write_atomically
+
+        write_atomically(Path(given.output), found.to_csv().encode())
+        note(f"wrote {given.output}")
+    elif given.output:
+        from symflex.figures import draw_in_time, save
+
+        save(draw_in_time(found), Path(given.output))
+        note(f"wrote {given.output}")
+    else:
+        info = find_step_info(bound, given.digits) if given.to == "step" else None
+        if given.as_json:
+            told = {"step_info": info.to_json_dict(given.digits)} if info else {}
+            emit_json({**found.to_json_dict(), **told})
+        else:
+            say(response_text(found, info.lines(found.unit) if info else ()))
+    if given.strict and not found.certified:
+        raise UncertifiedError(Diagnostic("SF810", f"not every value is certified: {found.reason}"))
+    return 0
+
+
+@command_of("shape", ShapeOptions)
+def shape(spec: Specification, given: ShapeOptions) -> int:
+    """Print an input shaper for the lowest modes of SPEC that oscillate.
+
+    A command that is convolved by its impulses leaves these modes at rest when it ends: exactly with zv and
+    zvd, and within 5 % of an unshaped impulse with ei, which stands larger errors of a frequency. Times and
+    amplitudes come from proved poles. -o draws what a mode rings if its frequency is another.
+    """
+    from symflex import pipeline
+    from symflex.analysis.input_shaping import input_shaper
+
+    if given.output:
+        check_place(given.output, PICTURES)
+    model = spec.load()
+    (bound,) = pipeline.derive_bound(model, [first_pair(model, given.tf, "shaping")])
+    found = input_shaper(bound, given.modes, given.kind, given.digits)
+    if given.as_json:
+        emit_json(found.to_json_dict())
+    else:
+        say(str(found))
+    if given.output:
+        from symflex.figures import draw_residual, save
+
+        save(draw_residual(found), Path(given.output))
+        note(f"wrote {given.output}")
+    return 0

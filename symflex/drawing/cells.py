@@ -1,0 +1,192 @@
+"""Symbols with their leads and texts, each in a place of its own.
+
+Input: a part and the ends to its left and right. Output: a :class:`Built`, placed parts about the axis y = 0
+from x = 0 on.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Final
+
+from symflex.drawing.geometry import BOLD, LINE, THIN, Lettering, Placed, union
+from symflex.drawing.lettering import SMALL, name_latex, text
+from symflex.drawing.symbols import HATCH, arrow, earth, head, line, wall
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.drawing.scheme import DrawnPart, End
+
+SPACE: Final = 3.0
+"""Between a symbol and a text, and between texts [points]."""
+WIDEST: Final = 80.0
+"""Of a label at a symbol [points]; beyond it the element's name is written."""
+PITCH: Final = {"dc_motor": 19.0}
+"""Distance of two ends on one side of a symbol [points]."""
+USUAL_PITCH, GROUNDED_PITCH = 9.0, 20.0
+INSET: Final = {"dc_motor": (0.233, 0.5)}
+"""How far one end, and how far two, reach into a symbol, as a share of its length."""
+NEAR_END: Final = 4.0
+"""How far from an end of a member an output at that end is marked [points]."""
+WALL: Final = 6.0
+"""Half the height of the ground at one symbol [points]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Spacing:
+    """How much room symbols take [points]."""
+
+    lead: float  # of a wire before and after a symbol
+    body: float  # width and height of a mass, where its label needs no more
+    length: float  # of symbols, as a share of their usual length
+    member: float  # of members, likewise
+    has_room: bool  # gaps are as wide as the marks above them
+
+
+SPACINGS: Final = (
+    Spacing(5.0, 20.0, 1.0, 1.0, has_room=True),
+    Spacing(4.0, 18.0, 0.9, 0.9, has_room=False),
+    Spacing(2.0, 15.0, 0.76, 0.66, has_room=False),
+)
+"""From the one that is taken where it fits to the last."""
+
+
+@dataclass
+class SymbolCell:
+    """A part in a gap, or above or below one."""
+
+    part: DrawnPart
+    gap: int
+    left: list[End] = field(default_factory=list)
+    right: list[End] = field(default_factory=list)
+    is_reversed: bool = False  # its first end is on the right
+    is_label_below: bool = False
+    margins: tuple[float, float] = (0.0, 0.0)  # of what reaches beyond its gap: room without a label
+
+    def offsets(self, side: Sequence[End]) -> list[float]:
+        """Return where the ends of a side are, upwards from the axis."""
+        usual = GROUNDED_PITCH if any(not e.node for e in side) else USUAL_PITCH
+        pitch = PITCH.get(self.part.type_name, usual)
+        return [pitch * ((len(side) - 1) / 2 - i) for i in range(len(side))]
+
+    @property
+    def is_member(self) -> bool:
+        """Whether it reaches from body to body."""
+        return self.part.symbol.role == "member"
+
+
+@dataclass(frozen=True, slots=True)
+class Built:
+    """A symbol with its texts about its own axis, from x = 0 on."""
+
+    width: float
+    placed: tuple[Placed, ...]
+    below: float
+    above: float
+
+
+def label_texts(latex: str, name: str, lines: Sequence[str] = ()) -> tuple[Lettering, ...]:
+    """Return a label with lines of values below it, centred at x = 0, the last line on y = 0."""
+    first = text(latex)
+    if first is None or first.width > WIDEST:
+        first = text(name_latex(name))
+    found = [t for t in (first, *(text(one, SMALL) for one in lines)) if t is not None]
+    placed, y = [], 0.0
+    for one in reversed(found):
+        y += one.depth
+        placed.append(one.moved(-one.width / 2, y))
+        y += one.height + 1.5
+    return tuple(reversed(placed))
+
+
+def build(cell: SymbolCell, spacing: Spacing, width: float = 0.0) -> Built:
+    """Draw a cell at least so wide."""
+    part, is_member = cell.part, cell.is_member
+    length = part.symbol.length * (spacing.member if is_member else spacing.length)
+    texts = label_texts(part.label, part.name, part.lines)
+    tags = [t for *_, label in part.tags if (t := text(label, SMALL))]
+    widest = max([0.0, *(t.width for t in texts), *(t.width + 12 for t in tags)])
+    lead = 0.0 if is_member else spacing.lead
+    walls = [HATCH + 3.0 if any(not e.node for e in side) else 0.0 for side in (cell.left, cell.right)]
+    width = max(max(length + 2 * lead, widest + 4) + sum(walls), width)
+    begin, end = walls[0], width - walls[1]
+    if is_member:
+        length = end - begin
+    start = begin + (end - begin - length) / 2
+    strokes = part.symbol.draw(length)
+    if cell.is_reversed:
+        strokes = tuple(replace(s, points=tuple((length - x, y) for x, y in s.points)) for s in strokes)
+    symbol = Placed(part.kind, part.name, tuple(s.moved(start, 0) for s in strokes))
+    items = [*_wires(cell, (0.0, begin, start), (width, end, start + length)), symbol]
+    if part.type_name == "dc_motor" and (letter := text(r"\mathrm{M}")):
+        half = (letter.width / 2, letter.height / 2)
+        items.append(Placed("label", part.name, (), (letter.moved(start + length / 2 - half[0], -half[1]),)))
+    items += _points(cell, start, length)
+    boxes = [i.box for i in items]
+    above, below = max(b.y1 for b in boxes), min(b.y0 for b in boxes)
+    middle = start + length / 2
+    if texts:
+        block = union(t.box for t in texts)
+        y = below - SPACE - block.y1 if cell.is_label_below else above + SPACE - block.y0
+        shift = _kept(middle, block.width, 1.0 + cell.margins[0], width - 1.0 - cell.margins[1])
+        items.append(Placed("label", part.name, (), tuple(t.moved(shift, y) for t in texts)))
+        above, below = max(above, y + block.y1), min(below, y + block.y0)
+    for (kind, name, _), tag in zip(part.tags, tags, strict=False):
+        y = below - SPACE - tag.height
+        x = _kept(middle, tag.width + 10, 1.0, width - 1.0) - (tag.width + 10) / 2
+        level = y + tag.height / 2 - 0.5
+        items.append(Placed(kind, name, arrow((x, level), (x + 8, level), THIN)))
+        items.append(Placed("label", name, (), (tag.moved(x + 10, y),)))
+        below = y - tag.depth
+    return Built(width, tuple(items), below, above)
+
+
+def _wires(
+    cell: SymbolCell, left: tuple[float, float, float], right: tuple[float, float, float]
+) -> list[Placed]:
+    """Draw what leads to a symbol: from the edge of its place, or from the ground."""
+    part, found = cell.part, []
+    insets = INSET.get(part.type_name, (0.0, 0.2))
+    for side, (edge, ground, inner), sign in ((cell.left, left, 1), (cell.right, right, -1)):
+        inset = insets[len(side) > 1] * abs(right[2] - left[2])
+        for one, y in zip(side, cell.offsets(side), strict=True):
+            at, reach = edge if one.node else ground, inner + sign * inset
+            if at != reach:
+                bold = BOLD if one.domain == "rotation" else LINE
+                route = [(at, y), (reach, y)]
+                if len(side) > 1 and abs(y) > USUAL_PITCH / 2 and part.type_name not in PITCH:
+                    level = USUAL_PITCH / 2 if y > 0 else -USUAL_PITCH / 2
+                    route = [(at, y), (inner, y), (inner, level), (reach, level)]
+                found.append(Placed("wire", part.name, (line(*route, width=bold),)))
+            if not one.node:
+                is_wall = one.domain != "electrical"
+                strokes = wall(y - WALL, y + WALL, -sign, at) if is_wall else earth(at, y)
+                found.append(Placed("ground", "", strokes))
+    return found
+
+
+def _kept(middle: float, width: float, low: float, high: float) -> float:
+    """Return a middle such that what is so wide stays between two limits, where it can."""
+    return max(low + width / 2, min(high - width / 2, middle)) if width <= high - low else (low + high) / 2
+
+
+def _points(cell: SymbolCell, start: float, length: float) -> list[Placed]:
+    """Mark outputs along a member, beside what stands at the nodes at its ends."""
+    part, ends = cell.part, (start + cell.margins[0], start + length - cell.margins[1])
+    found: list[Placed] = []
+    last, level = -1e9, 0
+    for share, name, label in part.points:
+        shown = text(label, SMALL)
+        if shown is None:
+            continue
+        x = min(max(start + length * share, ends[0] + NEAR_END), ends[1] - NEAR_END)
+        low = _kept(x, shown.width, ends[0] + 1.0, ends[1] - 1.0) - shown.width / 2
+        level = level + 1 if low < last + SPACE else 0
+        last = max(last, low + shown.width)
+        y = 8.0 + 10 * level
+        found.append(
+            Placed("output", name, (line((x, 3.0), (x, y), width=THIN), head((x, 2.2), (0, -1), 3.0)))
+        )
+        found.append(Placed("label", name, (), (shown.moved(low, y + 1.5 + shown.depth),)))
+    return found

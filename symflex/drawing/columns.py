@@ -1,0 +1,278 @@
+"""What stands at a node: bodies, supports, what hangs down to the ground, marks of inputs and outputs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final
+
+from symflex.drawing.cells import SPACE, label_texts
+from symflex.drawing.geometry import BOLD, FILLED, LINE, THIN, Lettering, Placed, around, union
+from symflex.drawing.lettering import SMALL, text
+from symflex.drawing.scheme import Mark
+from symflex.drawing.symbols import Strokes, arc, arrow, circle, head, line, rectangle, turning
+from symflex.library.elements import COMPONENTS
+
+if TYPE_CHECKING:
+    from symflex.drawing.scheme import DrawnPart
+
+DISC_WIDTH, DISC_HEIGHT = 9.0, 34.0
+REACH: Final = 7.0
+"""How far a bar or body goes beyond the wires that meet it."""
+FLAT, SHOE = 2.4, 8.0
+"""The same of a node on a member, and of one in a guide."""
+LANE: Final = 7.0
+"""Width of a lane for a lead upwards or downwards."""
+ARROW: Final = 11.0
+"""Width of an arrow that stands upright, with the space before its text."""
+UPRIGHT: Final = ("lift", "turn", "probe", "push", "torque", "raise", "twist")
+"""Marks that stand upright at a node; others run along x."""
+HANGING: Final = 24.0
+"""Length of what hangs from a node, where its symbol says nothing."""
+
+
+@dataclass
+class Column:
+    """A node, what stands at it and how far that reaches."""
+
+    name: str
+    kind: str  # domain of the node
+    bodies: list[DrawnPart] = field(default_factory=list)
+    supports: list[DrawnPart] = field(default_factory=list)  # below the node
+    faces: dict[int, DrawnPart] = field(
+        default_factory=dict
+    )  # supports beside it, -1 to the left and 1 to the right
+    hanging: list[DrawnPart] = field(default_factory=list)
+    stubs: list[DrawnPart] = field(default_factory=list)  # join it to the ground, and stand lower
+    marks: list[Mark] = field(default_factory=list)
+    has_lead_up: bool = False
+    levels: list[float] = field(default_factory=list)  # of wires that meet it
+    # Where the node is, how far its body reaches to both sides, up (with labels) and down.
+    x: float = 0.0
+    half: float = 0.0
+    top: float = 0.0
+    bottom: float = 0.0
+    crown: float = 0.0  # height of labels above the body
+    # How much room it takes in the row to both sides.
+    left: float = 0.0
+    right: float = 0.0
+
+    @property
+    def is_flat(self) -> bool:
+        """Whether it moves across the row."""
+        return self.kind in COMPONENTS
+
+    @property
+    def is_electrical(self) -> bool:
+        """Whether it is a wire."""
+        return self.kind == "electrical"
+
+    @property
+    def upright(self) -> list[Mark]:
+        """The marks that stand side by side on it."""
+        return [m for m in self.marks if m.style in UPRIGHT]
+
+    @property
+    def first_mark(self) -> float:
+        """Where its first upright mark begins."""
+        start = self.x - max(self.half, ARROW / 2)
+        is_crowded = self.has_lead_up or len(self.upright) < len(self.marks)
+        return start + (LANE if is_crowded and self.upright else 0.0)
+
+    @property
+    def lead_x(self) -> float:
+        """Where a lead goes up from it: before what stands there."""
+        return self.first_mark - LANE / 2 if self.upright else self.x
+
+    def resize(self, size: float) -> None:
+        """Find how far it reaches; masses are at least so large."""
+        low, high = min(self.levels, default=0.0), max(self.levels, default=0.0)
+        sizes = [body_size(p, self.kind, size) for p in self.bodies]
+        below = sum(hanging_width(p) for p in self.hanging) + sum(support_width(p) for p in self.supports)
+        below += 2 * LANE if below and self.stubs else 0.0
+        if not sizes and self.is_flat:
+            is_shoe = any(p.type_name == "slider" for p in self.faces.values())
+            reach = SHOE if self.faces else FLAT
+            self.top, self.bottom, self.half, self.crown = high + reach, low - reach, SHOE / 2 * is_shoe, 0.0
+        elif not sizes:
+            reach = REACH if not self.is_electrical and (high > low or self.kind == "translation") else 0.0
+            reach = SHOE if self.faces else reach
+            self.top, self.bottom, self.half, self.crown = high + reach, low - reach, 0.0, 0.0
+        elif self.kind == "rotation":
+            tall = max(DISC_HEIGHT, high - low + 2 * REACH)
+            self.crown = max(h for _, h in sizes) + SPACE
+            self.top, self.bottom = (high + low + tall) / 2 + self.crown, (high + low - tall) / 2
+            self.half = sum(w for w, _ in sizes) / 2
+        else:
+            tall = max(sum(h for _, h in sizes), high - low + 2 * REACH)
+            self.top, self.bottom = (high + low + tall) / 2, (high + low - tall) / 2
+            self.half = max(*(w for w, _ in sizes), below) / 2
+        marks = sum(upright_width(m) for m in self.upright)
+        self.left = max(self.half, below / 2, ARROW / 2 if marks else 1.0)
+        self.x = 0.0
+        self.right = max(self.left, self.first_mark + marks)
+
+
+def body_size(part: DrawnPart, kind: str, size: float) -> tuple[float, float]:
+    """Return width and height of a mass; of a moment of inertia, its width and the height of its label."""
+    block = union(t.box for t in label_texts(part.label, part.name, part.lines))
+    if kind == "rotation":
+        return max(DISC_WIDTH, block.width + 2), block.height
+    is_wide = part.type_name == "rigid_body"
+    wide = max(size + 12 if is_wide else size, block.width + size / 3)
+    tall = max(size, block.height + (17 if is_wide else 8))
+    return (wide, max(wide, tall)) if part.type_name == "inertia" else (wide, tall)
+
+
+def bodies(column: Column, size: float) -> list[Placed]:
+    """Draw masses as boxes one above the other, and moments of inertia as discs on the shaft."""
+    found: list[Placed] = []
+    sizes = [body_size(p, column.kind, size) for p in column.bodies]
+    if column.kind == "rotation":
+        x = column.x - column.half
+        middle = (column.top - column.crown + column.bottom) / 2
+        if len(sizes) > 1 or column.half > DISC_WIDTH / 2:
+            axis = line((x, middle), (x + 2 * column.half, middle), width=BOLD)
+            found.append(Placed("wire", column.name, (axis,)))
+        for part, (width, _) in zip(column.bodies, sizes, strict=True):
+            texts = label_texts(part.label, part.name, part.lines)
+            block = union(t.box for t in texts)
+            at, top = x + width / 2, column.top - column.crown
+            disc = rectangle(at - DISC_WIDTH / 2, column.bottom, at + DISC_WIDTH / 2, top, FILLED)
+            found.append(Placed(part.kind, part.name, (disc,)))
+            label = tuple(t.moved(at, top + SPACE - block.y0) for t in texts)
+            found.append(Placed("label", part.name, (), label))
+            x += width
+        return found
+    y = column.top
+    spare = (column.top - column.bottom - sum(h for _, h in sizes)) / max(1, len(sizes))
+    for part, (_, height) in zip(column.bodies, sizes, strict=True):
+        found += _mass(part, column, y - height - spare, y)
+        y -= height + spare
+    return found
+
+
+def _mass(part: DrawnPart, column: Column, y0: float, y1: float) -> list[Placed]:
+    texts = label_texts(part.label, part.name, part.lines)
+    block = union(t.box for t in texts)
+    x, middle = column.x, (y0 + y1) / 2
+    strokes: Strokes = (rectangle(x - column.half, y0, x + column.half, y1, FILLED),)
+    if part.type_name == "inertia":
+        strokes = (circle(x, middle, min(column.half, (y1 - y0) / 2), FILLED),)
+    if part.type_name == "rigid_body":
+        cx, cy = x + column.half - 7, y0 + 6
+        cross = (line((cx - 3, cy), (cx + 3, cy), width=THIN), line((cx, cy - 3), (cx, cy + 3), width=THIN))
+        strokes = (*strokes, circle(cx, cy, 3.0), *cross)
+        middle = (y0 + 9 + y1) / 2
+    label = tuple(t.moved(x, middle - (block.y0 + block.y1) / 2) for t in texts)
+    return [Placed(part.kind, part.name, strokes), Placed("label", part.name, (), label)]
+
+
+def support_width(part: DrawnPart) -> float:
+    """Return how wide a support below a node is."""
+    tags = [t.width + 12 for *_, label in part.tags if (t := text(label, SMALL))]
+    return max([around(p for s in part.symbol.hold() for p in s.points).width, *tags]) + 3
+
+
+def tags_below(part: DrawnPart, x: float, y: float) -> list[Placed]:
+    """Write what outputs show of a support below it, centred."""
+    found = []
+    for kind, name, label in part.tags:
+        shown = text(label, SMALL)
+        if shown:
+            y -= shown.height + SPACE
+            start = x - (shown.width + 10) / 2
+            pointer = arrow((start, y + shown.height / 2), (start + 8, y + shown.height / 2), THIN)
+            found.append(Placed(kind, name, pointer))
+            found.append(Placed("label", name, (), (shown.moved(start + 10, y),)))
+            y -= shown.depth
+    return found
+
+
+def hanging_length(part: DrawnPart) -> float:
+    """Return how long a part that hangs from a node is."""
+    return HANGING if part.symbol.role in ("source", "coupling") else part.symbol.length
+
+
+def hanging_reach(part: DrawnPart) -> tuple[float, float]:
+    """Return how far its symbol reaches to the left and to the right of its line."""
+    box = around(p for s in part.symbol.draw(hanging_length(part)) for p in s.points)
+    return max(7.0, -box.y0), max(6.0, box.y1)
+
+
+def hanging_texts(part: DrawnPart) -> list[tuple[str, str, tuple[Lettering, ...]]]:
+    """Return the texts to the right of a part that hangs, each with kind and name of what it belongs to."""
+    found = [(part.kind, part.name, label_texts(part.label, part.name, part.lines))]
+    return [*found, *((kind, name, (t,)) for kind, name, label in part.tags if (t := text(label, SMALL)))]
+
+
+def hanging_width(part: DrawnPart) -> float:
+    """Return how wide it is with its texts."""
+    left, right = hanging_reach(part)
+    wide = max(union(t.box for t in block).width for *_, block in hanging_texts(part) if block)
+    return left + right + SPACE + wide + (6 if part.tags else 0) + 5
+
+
+def upright_width(mark: Mark) -> float:
+    """Return how wide an upright mark is with its texts."""
+    return ARROW + sum(t.width + 4 for _, _, label in mark.labels if (t := text(label)))
+
+
+def mark_of_source(part: DrawnPart, column: Column) -> Mark:
+    """Return the arrow of a source at one node."""
+    is_turning = part.ends[0].domain == "rotation"
+    is_flat = column.is_flat and part.ends[0].component != "x"
+    own = (("element", part.name, part.label), *part.tags)
+    return Mark("torque" if is_turning else "push" if is_flat else "force", column.name, own)
+
+
+def upright_mark(mark: Mark, x: float, foot: float) -> list[Placed]:
+    """Draw an arrow upwards or about a node, or a probe, from x on."""
+    middle, y = x + 5, foot + 14
+    kind, name, _ = mark.labels[0]
+    strokes: Strokes
+    match mark.style:
+        case "lift":
+            datum = line((middle - 3, foot + 2), (middle + 3, foot + 2), width=THIN)
+            strokes = (datum, *arrow((middle, foot + 2), (middle, y), LINE))
+        case "push":
+            strokes = arrow((middle, foot), (middle, y + 2), BOLD)
+        case "raise":
+            strokes = arrow((middle, foot + 1), (middle, y), LINE, is_double=True)
+        case "probe":
+            strokes = (line((middle, foot), (middle, y - 4), width=THIN), circle(middle, y - 2.5, 1.5))
+        case "turn":
+            tip = head((middle - 4.2, foot + 5.6), (0.15, -0.98), 3.4)
+            strokes = (arc(middle, foot + 7, 4.2, -50, 190, LINE), tip)
+        case _:
+            strokes = turning(middle, foot + 7, 4.6)
+    return [Placed(kind, name, strokes), *_texts_of_mark(mark, x + ARROW, foot + 5)]
+
+
+def _texts_of_mark(mark: Mark, x: float, y: float) -> list[Placed]:
+    """Write the labels of a mark side by side from x on; those after the first stand for themselves."""
+    found = []
+    for i, (kind, name, label) in enumerate(mark.labels):
+        shown = text(label)
+        if shown is None:
+            continue
+        texts = [shown.moved(x, y)]
+        if i and (comma := text(",")):
+            texts.append(comma.moved(x - 3.5, y))
+        found.append(Placed(kind if i else "label", name, (), tuple(texts)))
+        x += shown.width + 4
+    return found
+
+
+def flat_mark(mark: Mark, x: float, foot: float) -> list[Placed]:
+    """Draw an arrow along x above a node, from a datum."""
+    kind, name, _ = mark.labels[0]
+    y = foot + 4
+    bold = BOLD if mark.style == "force" else LINE
+    strokes = arrow((x, y), (x + 15, y), bold, is_double=mark.style == "motion")
+    datum = line((x, foot), (x, foot + 8), width=THIN)
+    return [Placed(kind, name, (*strokes, datum)), *_texts_of_mark(mark, x + 18, foot + 1.5)]
+
+
+def flat_width(mark: Mark) -> float:
+    """Return how far such a mark reaches beyond its datum."""
+    return 18 + sum(t.width + 4 for _, _, label in mark.labels if (t := text(label)))

@@ -1,0 +1,396 @@
+"""A graph of signals laid out as block diagrams.
+
+Input: a :class:`~symflex.drawing.signals.SignalGraph`. Output: bands of placed parts, one below the other.
+
+A band is the longest path that is not drawn yet, from left to right. What else leads to its sums comes from
+below or above, from right to left; what leaves a named signal to end elsewhere begins a band of its own,
+with the name:
+
+    r --o--[k]--e-->
+        |
+        '--[K]-- x
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final
+
+from symflex.drawing.geometry import LINE, Extent, Lettering, Placed
+from symflex.drawing.lettering import SIZE, SMALL, text
+from symflex.drawing.signals import formula
+from symflex.drawing.symbols import DOT, Strokes, arrow, circle, line, rectangle
+
+if TYPE_CHECKING:
+    from symflex.drawing.signals import SignalGraph, SignalNode
+
+RADIUS: Final = 4.2
+"""Of a sum."""
+WIRE: Final = 11.0
+"""Length of a wire between two symbols, enough for an arrow."""
+EDGE: Final = 3.5
+"""Between a text and the box around it."""
+APART: Final = 6.0
+"""Between rows."""
+WIDEST: Final = 66.0
+"""Of a formula in a box; a longer one is not printed."""
+MOST_PATHS: Final = 2000
+"""Paths that are tried for the longest one."""
+NAMED: Final = ("input", "reading", "signal")
+SOURCES: Final = ("input", "reading")
+
+
+@dataclass(frozen=True, slots=True)
+class _Sized:
+    """A node with its line at y = 0, from x = 0 on."""
+
+    items: tuple[Placed, ...]
+    width: float
+    above: float
+    below: float
+
+
+@dataclass(frozen=True, slots=True)
+class _Branch:
+    """What leads to a sum besides the path: from the sum back to a source, or to a signal that is drawn."""
+
+    target: int
+    nodes: tuple[int, ...]  # the first one is next to the sum
+    origin: int | None  # a signal of the same path, from which a wire leads here
+    is_minus: bool
+    is_tag: bool = False  # the last node is drawn elsewhere, and here its name
+
+
+def diagrams(graph: SignalGraph) -> list[list[Placed]]:
+    """Return the block diagrams of a graph, one band each."""
+    drawn: set[int] = set()
+    joined: set[tuple[int, int]] = set()
+    bands = []
+    while path := _longest(graph, drawn, joined):
+        bands.append(_Band(graph, path, drawn, joined).items)
+    return bands
+
+
+def _longest(graph: SignalGraph, drawn: set[int], joined: set[tuple[int, int]]) -> list[int]:
+    """Return the longest path that is not drawn, from an input or else a named signal where there is one."""
+
+    def ahead(node: int) -> list[int]:
+        return [n for n in graph.nodes[node].after if (node, n) not in joined and n not in drawn]
+
+    starts = [
+        i
+        for i, n in enumerate(graph.nodes)
+        if (i not in drawn or n.kind in NAMED) and (ahead(i) or i not in drawn)
+    ]
+    best: list[int] = []
+    best_rank = (False, 0)
+    for start in starts:
+        pending, tries = [[start]], 0
+        while pending and tries < MOST_PATHS:
+            path = pending.pop()
+            tries += 1
+            onward = [n for n in ahead(path[-1]) if n not in path]
+            while len(path) > 1 and not onward and _leads_back(graph, path):
+                path = path[:-1]
+                onward = []
+            rank = (graph.nodes[start].kind == "input", len(path))
+            if not onward and rank > best_rank:
+                best, best_rank = path, rank
+            pending += [[*path, n] for n in reversed(onward)]
+    return best
+
+
+def _leads_back(graph: SignalGraph, path: list[int]) -> bool:
+    """Tell whether a path ends in a box that feeds what is on it: that is drawn from there."""
+    last = graph.nodes[path[-1]]
+    return last.kind in ("gain", "block", "sum") and any(n in path for n in last.after)
+
+
+@dataclass
+class _Band:
+    graph: SignalGraph
+    path: list[int]
+    drawn: set[int]
+    joined: set[tuple[int, int]]
+    items: list[Placed] = field(default_factory=list)
+    occupied: list[Extent] = field(default_factory=list)  # rows of chains among it
+    solid: list[Extent] = field(default_factory=list)  # symbols and texts
+    x: dict[int, tuple[float, float]] = field(default_factory=dict)  # left and right end of what is drawn
+    y: dict[int, float] = field(default_factory=dict)
+    sides: dict[int, list[str]] = field(default_factory=dict)  # of sums, those that arrows come from
+    shown_at: dict[int, list[int]] = field(default_factory=dict)  # outputs that are named signals
+
+    def __post_init__(self) -> None:
+        self.tags = {i for i in self.path if i in self.drawn}
+        self.drawn.update(self.path)
+        self.joined.update(zip(self.path, self.path[1:], strict=False))
+        branches = self._branches(self.path)
+        self._draw_path(branches)
+        waiting = sorted(branches, key=lambda b: -self.x[b.target][0])
+        while waiting:
+            branch = waiting.pop(0)
+            self._draw_branch(branch)
+            waiting += self._branches(branch.nodes)
+
+    def _branches(self, nodes: list[int] | tuple[int, ...]) -> list[_Branch]:
+        """Return what leads to the sums among nodes and is not joined yet."""
+        found = []
+        for target in nodes:
+            for one, is_minus in self.graph.nodes[target].before:
+                if (one, target) in self.joined:
+                    continue
+                self.joined.add((one, target))
+                chain: list[int] = []
+                node = one
+                while node not in self.drawn:
+                    chain.append(node)
+                    self.drawn.add(node)
+                    before = [b for b, _ in self.graph.nodes[node].before]
+                    if not before:
+                        break
+                    self.joined.add((before[0], node))
+                    node = before[0]
+                is_tag = False
+                is_wired = node in self.path and node not in chain and self.graph.nodes[node].kind == "signal"
+                if node in self.drawn and node not in chain and not is_wired:
+                    chain.append(node)
+                    is_tag = True
+                if is_wired and target not in self.path:
+                    chain.append(node)
+                    is_wired, is_tag = False, True
+                origin = node if is_wired else None
+                found.append(_Branch(target, tuple(chain), origin, is_minus, is_tag))
+        return found
+
+    # ------------------------------------------------------------------------------------------- drawing
+
+    def _draw_path(self, branches: list[_Branch]) -> None:
+        x = 0.0
+        for i, node in enumerate(self.path):
+            if i:
+                x += WIRE if self._kind(node) != "signal" else WIRE / 2
+            for branch in (b for b in branches if b.origin is not None):
+                other = branch.origin if node == branch.target else branch.target
+                if node in (branch.target, branch.origin) and other in self.x:
+                    x = max(x, self.x[other][1] + self._length(branch) + 2 * WIRE)
+            shown = self._shown(node, is_tag=node in self.tags)
+            self._place(node, shown, x, 0.0)
+            if i:
+                self._wire(self.path[i - 1], node, x)
+            x += shown.width
+        last = self.path[-1]
+        if self._kind(last) == "signal" and not self.graph.nodes[last].after:
+            self.items.append(Placed("wire", "", arrow((x, 0.0), (x + WIRE, 0.0))))
+
+    def _length(self, branch: _Branch) -> float:
+        return sum(one.width + WIRE for one in self._all_shown(branch))
+
+    def _all_shown(self, branch: _Branch) -> list[_Sized]:
+        last = len(branch.nodes) - 1
+        return [self._shown(n, is_tag=branch.is_tag and i == last) for i, n in enumerate(branch.nodes)]
+
+    def _wire(self, before: int, node: int, x: float) -> None:
+        start = self.x[before][1]
+        if self._kind(node) == "signal":
+            self.items.append(Placed("wire", "", (line((start, 0.0), (x, 0.0)),)))
+        else:
+            self.items.append(Placed("wire", "", arrow((start, 0.0), (x, 0.0))))
+        if self._kind(node) == "sum":
+            is_minus = next(m for b, m in self.graph.nodes[node].before if b == before)
+            self._sign(node, "left", is_minus=is_minus)
+
+    def _sign(self, node: int, side: str, *, is_minus: bool) -> None:
+        """Note from which side an arrow comes to a sum, and write its sign where it is subtracted."""
+        self.sides.setdefault(node, []).append(side)
+        if not is_minus:
+            return
+        x, y = self.x[node][0] + RADIUS, self.y[node]
+        places = {
+            "left": (x - RADIUS - 6, y + 3.2),
+            "right": (x + RADIUS + 6, y + 3.2),
+            "below": (x + 4.5, y - RADIUS - 4),
+            "above": (x + 4.5, y + RADIUS + 4),
+        }
+        at = places[side]
+        self._add(Placed("sign", "", (line((at[0] - 1.8, at[1]), (at[0] + 1.8, at[1]), width=0.7),)))
+
+    def _add(self, *items: Placed) -> None:
+        self.items.extend(items)
+        solid = [i.box for i in items if i.kind != "wire"]
+        self.occupied.extend(solid)
+        self.solid.extend(solid)
+
+    def _place(self, node: int, shown: _Sized, x: float, y: float) -> None:
+        self._add(*(i.moved(x, y) for i in shown.items))
+        self.x[node], self.y[node] = (x, x + shown.width), y
+
+    def _draw_branch(self, branch: _Branch) -> None:
+        """Draw a branch below or above the sum that it leads to."""
+        target, shown = branch.target, self._all_shown(branch)
+        centre, level = self.x[target][0] + RADIUS, self.y[target]
+        length = sum(s.width + WIRE for s in shown)
+        other = centre + length
+        if branch.origin is not None:
+            left, right = self.x[branch.origin]
+            other = right if left > centre else left
+        low, high, sign = min(centre, other), max(centre, other), 1.0 if other >= centre else -1.0
+        room = Extent(
+            low - 3,
+            -max([RADIUS, *(s.below for s in shown)]) - APART / 2,
+            high + 4,
+            max([RADIUS, *(s.above for s in shown)]) + APART / 2,
+        )
+        y, is_up = self._height(branch, room, [centre] if branch.origin is None else [centre, other])
+        self._sign(target, "above" if is_up else "below", is_minus=branch.is_minus)
+        slack = 0.0 if branch.origin is None else max(0.0, (high - low - length) / 2)
+        x = before = centre + sign * slack
+        if slack:
+            self.items.append(Placed("wire", "", (line((centre, y), (x, y)),)))
+            before = centre
+        for i, (node, one) in enumerate(zip(branch.nodes, shown, strict=True)):
+            x += sign * WIRE
+            self._place(node, one, x if sign > 0 else x - one.width, y)
+            self._wire_back(branch.nodes[i - 1] if i else None, node, (x, before), y, sign)
+            x += sign * one.width
+            before = x
+        edge = level + (RADIUS if is_up else -RADIUS)
+        self.items.append(Placed("wire", "", arrow((centre, y), (centre, edge))))
+        if branch.origin is not None:
+            self._close(branch, other, before, y)
+        self.occupied.append(room.moved(0, y))
+
+    def _height(self, branch: _Branch, room: Extent, risers: list[float]) -> tuple[float, bool]:
+        """Return where a branch runs, and whether that is above its sum."""
+        level, taken = self.y[branch.target], self.sides.setdefault(branch.target, [])
+        down = self._free(room, level - RADIUS - 5, is_up=False)
+        up = self._free(room, level + RADIUS + 5, is_up=True)
+        is_up = "below" in taken
+        if not is_up and "above" not in taken and self._is_blocked(risers, down, level):
+            is_up = not self._is_blocked(risers, up, level)
+        return (up if is_up else down), is_up
+
+    def _wire_back(
+        self, before: int | None, node: int, ends: tuple[float, float], y: float, sign: float
+    ) -> None:
+        """Draw the wire from a node of a branch to the one before it, towards the sum."""
+        is_plain = before is None or self._kind(before) == "signal"
+        strokes: Strokes = (
+            (line((ends[0], y), (ends[1], y)),) if is_plain else arrow((ends[0], y), (ends[1], y))
+        )
+        self.items.append(Placed("wire", "", strokes))
+        if before is not None and self._kind(before) == "sum":
+            is_minus = next(m for b, m in self.graph.nodes[before].before if b == node)
+            self._sign(before, "right" if sign > 0 else "left", is_minus=is_minus)
+
+    def _close(self, branch: _Branch, x: float, end: float, y: float) -> None:
+        """Draw the wire from a signal of the path to the branch that it feeds."""
+        is_plain = not branch.nodes or self._kind(branch.nodes[-1]) == "signal"
+        strokes: Strokes = (line((x, 0.0), (x, y)),)
+        strokes += (line((x, y), (end, y)),) if is_plain else arrow((x, y), (end, y))
+        self.items.append(Placed("wire", "", strokes))
+        self.items.append(Placed("node", "", (circle(x, 0.0, DOT, fill="#000000"),)))
+
+    def _free(self, room: Extent, limit: float, *, is_up: bool) -> float:
+        y = limit - (room.y0 if is_up else room.y1)
+        while hit := [b for b in self.occupied if b.overlaps(room.moved(0, y))]:
+            y = max(b.y1 for b in hit) - room.y0 + 0.1 if is_up else min(b.y0 for b in hit) - room.y1 - 0.1
+        return y
+
+    def _is_blocked(self, risers: list[float], y: float, level: float) -> bool:
+        """Tell whether vertical wires would pass through something."""
+        edge = level + (RADIUS + 1 if y > level else -RADIUS - 1)
+        low, high = min(y, edge), max(y, edge)
+        return any(b.overlaps(Extent(x - 1, low, x + 1, high)) for b in self.solid for x in risers)
+
+    # ------------------------------------------------------------------------------------------- symbols
+
+    def _kind(self, node: int) -> str:
+        return self.graph.nodes[node].kind
+
+    def _shown(self, node: int, *, is_tag: bool) -> _Sized:
+        one = self.graph.nodes[node]
+        match one.kind:
+            case "sum":
+                return _Sized(
+                    (Placed("sum", "", (circle(RADIUS, 0.0, RADIUS),)),), 2 * RADIUS, RADIUS, RADIUS
+                )
+            case "gain" | "block":
+                return self._box(one)
+            case "signal" if not is_tag:
+                return self._signal(one)
+            case _:
+                return self._tag(one, is_tag=is_tag)
+
+    def _box(self, one: SignalNode) -> _Sized:
+        label = _fitting(one.label, SIZE) or _fitting(r"\cdots", SIZE)
+        lines = [label] if label else []
+        if one.kind == "block":
+            block = self.graph.blocks[one.name]
+            found = formula(block)
+            shown = text(self.graph.labels.fraction(found), SIZE) if found is not None else None
+            if shown and shown.width <= WIDEST:
+                return _boxed(one, shown, _fitting(one.label, SMALL))
+        return _boxed(one, lines[0] if lines else None, None)
+
+    def _tag(self, one: SignalNode, *, is_tag: bool) -> _Sized:
+        """Return a name at the beginning or end of a wire."""
+        shown = _fitting(one.label, SIZE)
+        if shown is None:
+            return _Sized((), 1.0, 1.0, 1.0)
+        middle = -(shown.height - shown.depth) / 2
+        kind = "tag" if is_tag or one.kind == "reading" else one.kind
+        placed = Placed(kind, one.name, (), (shown.moved(1.5, middle),))
+        return _Sized((placed,), shown.width + 3, middle + shown.height, shown.depth - middle)
+
+    def _signal(self, one: SignalNode) -> _Sized:
+        """Return a wire with its name, and the outputs that show it."""
+        items: list[Placed] = []
+        shown = _fitting(one.label, SIZE)
+        wide = shown.width + 4 if shown else 4.0
+        above = below = 1.0
+        if shown:
+            items.append(Placed("signal", one.name, (), (shown.moved(2.0, 2.5 + shown.depth),)))
+            above = 2.5 + shown.depth + shown.height
+        index = self.graph.nodes.index(one)
+        for end in one.after:
+            if self._kind(end) == "output" and (index, end) not in self.joined and end not in self.drawn:
+                self.joined.add((index, end))
+                self.drawn.add(end)
+                self.shown_at.setdefault(index, []).append(end)
+        for end in self.shown_at.get(index, []):
+            out = self.graph.nodes[end]
+            label = _fitting(out.label, SIZE)
+            strokes: Strokes = (
+                circle(wide, 0.0, DOT, fill="#000000"),
+                *arrow((wide, 0.0), (wide, -13.0), LINE),
+            )
+            items.append(Placed("output", out.name, strokes))
+            if label:
+                items.append(Placed("label", out.name, (), (label.moved(wide + 3, -10.0),)))
+                wide += label.width + 8
+            below = 14.0
+        return _Sized(
+            (*items, Placed("wire", one.name, (line((0.0, 0.0), (wide, 0.0)),))), wide, above, below
+        )
+
+
+def _fitting(latex: str, size: float) -> Lettering | None:
+    """Return a text that is not too wide for a box."""
+    shown = text(latex, size)
+    return shown if shown is None or shown.width <= WIDEST else text(r"\cdots", size)
+
+
+def _boxed(one: SignalNode, shown: Lettering | None, name: Lettering | None) -> _Sized:
+    wide = max(16.0, shown.width + 2 * EDGE) if shown else 16.0
+    tall = max(7.0, (shown.height + shown.depth) / 2 + EDGE) if shown else 7.0
+    items = [Placed(one.kind, one.name, (rectangle(0.0, -tall, wide, tall),))]
+    if shown:
+        place = shown.moved((wide - shown.width) / 2, -(shown.height - shown.depth) / 2)
+        items.append(Placed("label", one.name, (), (place,)))
+    above = tall
+    if name:
+        items.append(
+            Placed("label", one.name, (), (name.moved((wide - name.width) / 2, tall + 2 + name.depth),))
+        )
+        above += name.height + name.depth + 2
+    return _Sized(tuple(items), wide, above, tall)

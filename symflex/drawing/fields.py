@@ -1,0 +1,326 @@
+"""Fields as members along x, with what their conditions say of the ends, and the conditions themselves below.
+
+Input: a model and the outputs that are still to be shown. Output: one :class:`FieldRow` for fields that
+follow each other along x.
+
+    w'(0) = 0, EI w'''(0) = F, w''(l) = 0, w'''(l) = 0      a guide and an arrow F at the left, a free end at
+    the right
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final
+
+from symflex.drawing.columns import upright_mark, upright_width
+from symflex.drawing.geometry import FILLED, THIN, Extent, Placed, Stroke
+from symflex.drawing.lettering import SMALL, Labels, text
+from symflex.drawing.scheme import Mark, Style, evaluate, without_s
+from symflex.drawing.symbols import Strokes, arrow, circle, floor, line, outline, rectangle, wall
+from symflex.expressions import Attribute, Call, Equation, Name, Number, names
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from symflex.expressions import Expression
+    from symflex.model import FieldProblem, Model
+
+LENGTH: Final = 150.0
+"""Of a row of fields [points]."""
+SHORTEST: Final = 0.22
+"""Share of the row that each takes at least."""
+HALF: Final = 2.4
+LEADING: Final = 3.0
+APART: Final = 14.0
+"""Least distance of two columns of conditions [points]."""
+PUSHING: Final = ("push", "torque", "raise", "twist")
+"""Marks of inputs, which stand before those of outputs."""
+BENDING: Final = 4
+"""Order in x of a beam's equation."""
+
+
+@dataclass(frozen=True, slots=True)
+class FieldRow:
+    """Fields laid out, with the inputs and outputs that are marked on them."""
+
+    items: tuple[Placed, ...]
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    anchors: dict[str, tuple[float, float]]
+
+
+def field_rows(model: Model, labels: Labels, outputs: Sequence[str]) -> list[FieldRow]:
+    """Return the fields of a model in rows."""
+    rows: list[FieldRow] = []
+    left = list(outputs)
+    inputs = [i.name for i in model.inputs if i.kind == "signal"]
+    for group in _groups(model.fields):
+        row = _Row(model, labels, group, left, inputs).laid_out()
+        left = [o for o in left if o not in row.outputs]
+        inputs = [i for i in inputs if i not in row.inputs]
+        rows.append(row)
+    return rows
+
+
+def _groups(fields: Sequence[FieldProblem]) -> list[list[FieldProblem]]:
+    """Return fields of which each begins where the one before it ends."""
+    groups: list[list[FieldProblem]] = []
+    for one in fields:
+        before = next((g for g in groups if g[-1].end == one.start), None)
+        if before:
+            before.append(one)
+        else:
+            groups.append([one])
+    return groups
+
+
+@dataclass
+class _Row:
+    model: Model
+    labels: Labels
+    fields: Sequence[FieldProblem]
+    wanted: Sequence[str]
+    free: Sequence[str]
+    items: list[Placed] = field(default_factory=list)
+    marks: dict[tuple[Style, float], list[tuple[str, str, str]]] = field(default_factory=dict)
+
+    def laid_out(self) -> FieldRow:
+        """Return the row, its axis at y = 0."""
+        self.known = {p.name: float(p.value.nearly) for p in self.model.parameters if p.value}
+        self.starts = self._starts()
+        self.unknowns = {u: f for f in self.fields for u in f.unknowns}
+        inputs = self._collect_inputs()
+        outputs = self._collect_outputs()
+        for one in self.fields:
+            self._draw_member(one)
+        above = self._draw_marks()
+        for one in self.fields:
+            self._draw_loads(one, above)
+        self._draw_coordinate()
+        self._draw_conditions()
+        anchors = {u: (self._x(f, f.end), -HALF) for u, f in self.unknowns.items()}
+        return FieldRow(tuple(self.items), tuple(inputs), tuple(outputs), anchors)
+
+    def _starts(self) -> dict[str, tuple[float, float]]:
+        """Return where each field begins and ends in the row."""
+        spans = [(evaluate(f.start, self.known), evaluate(f.end, self.known)) for f in self.fields]
+        sizes = [abs(b - a) if a is not None and b is not None else 0.0 for a, b in spans]
+        total = sum(sizes)
+        shares = [max(SHORTEST, s / total) if all(sizes) else 1.0 for s in sizes]
+        found, x = {}, 0.0
+        for one, share in zip(self.fields, shares, strict=True):
+            wide = LENGTH * share / sum(shares)
+            found[one.name] = (x, x + wide)
+            x += wide
+        return found
+
+    def _x(self, one: FieldProblem, point: Expression) -> float:
+        """Return where a point of a field is drawn."""
+        low, high = self.starts[one.name]
+        if point in (one.start, one.end):
+            return low if point == one.start else high
+        ends = [evaluate(e, self.known) for e in (one.start, one.end, point)]
+        a, b, at = ends
+        if a is None or b is None or at is None or a == b:
+            return (low + high) / 2
+        return low + (high - low) * min(1.0, max(0.0, (at - a) / (b - a)))
+
+    def _values(self, equation: Equation) -> list[Call]:
+        return [
+            n
+            for side in equation.children
+            for n in names(side)
+            if isinstance(n, Call) and n.name in self.unknowns
+        ]
+
+    def _collect_inputs(self) -> list[str]:
+        found: list[str] = []
+        for one in self.fields:
+            order = len(one.conditions)
+            for condition in one.conditions:
+                calls = self._values(condition)
+                driving = [n.name for s in condition.children for n in names(s) if isinstance(n, Name)]
+                for name in (n for n in driving if n in self.free and n not in found):
+                    if not calls:
+                        continue
+                    at = max(calls, key=lambda c: c.order)
+                    is_moment = order >= BENDING and len(one.unknowns) == 1 and at.order == BENDING // 2
+                    style: Style = "torque" if is_moment else "push" if at.order else "raise"
+                    if at.order == 1 and order >= BENDING and len(one.unknowns) == 1:
+                        style = "twist"
+                    x = self._x(self.unknowns[at.name], at.argument)
+                    self.marks.setdefault((style, x), []).append(("input", name, self._label(name)))
+                    found.append(name)
+            for name in self._loads(one):
+                if name not in found:
+                    found.append(name)
+        return found
+
+    def _label(self, name: str) -> str:
+        latex = next((i.latex for i in self.model.inputs if i.name == name), "")
+        return self.labels.end(name, latex)
+
+    def _loads(self, one: FieldProblem) -> list[str]:
+        """Return the inputs that act all along a field."""
+        held = {n.name for e in one.equations for s in e.children for n in names(s) if isinstance(n, Name)}
+        return [n for n in self.free if n in held]
+
+    def _collect_outputs(self) -> list[str]:
+        found = []
+        for out in self.model.outputs:
+            call = self._single(out.expression) if out.name in self.wanted else None
+            if call:
+                x = self._x(self.unknowns[call.name], call.argument)
+                style: Style = "turn" if call.order == 1 and self._is_beam(call) else "probe"
+                style = style if call.order else "lift"
+                label = self.labels.end(out.name, out.latex)
+                self.marks.setdefault((style, x), []).append(("output", out.name, label))
+                found.append(out.name)
+        return found
+
+    def _is_beam(self, call: Call) -> bool:
+        one = self.unknowns[call.name]
+        return len(one.conditions) >= BENDING and len(one.unknowns) == 1
+
+    def _single(self, expression: Expression) -> Call | None:
+        """Return the one value of a field that an expression is, but for constants."""
+        calls = [n for n in names(expression) if isinstance(n, Call) and n.name in self.unknowns]
+        constants = (
+            {p.name for p in self.model.parameters} | {d.name for d in self.model.definitions} | {"s", "pi"}
+        )
+        inside = {n for c in calls for n in names(c.argument)}
+        others = [n for n in names(expression) if n not in calls and n not in inside]
+        is_alone = all(isinstance(n, Name) and n.name in constants for n in others)
+        return (
+            calls[0]
+            if len(calls) == 1 and is_alone and not isinstance(without_s(expression), Attribute)
+            else None
+        )
+
+    # ------------------------------------------------------------------------------------------- drawing
+
+    def _draw_member(self, one: FieldProblem) -> None:
+        low, high = self.starts[one.name]
+        self.items.append(Placed("field", one.name, (rectangle(low, -HALF, high, HALF, FILLED),)))
+        for x, point, side in ((low, one.start, -1), (high, one.end, 1)):
+            support = tuple(_support(self._held(one, point), x, side))
+            if support:
+                self.items.append(Placed("ground", one.name, support))
+
+    def _held(self, one: FieldProblem, point: Expression) -> tuple[bool, bool]:
+        """Tell whether the displacement and the slope (or a second unknown) are zero at an end."""
+        zero = set()
+        for condition in one.conditions:
+            calls, (left, right) = self._values(condition), condition.children
+            is_zero = isinstance(right, Number) and right.value == 0 and isinstance(left, Call)
+            if is_zero and len(calls) == 1 and calls[0].argument == point and calls[0].name in one.unknowns:
+                zero.add((one.unknowns.index(calls[0].name), calls[0].order))
+        if len(one.unknowns) > 1:
+            return (0, 0) in zero, (1, 0) in zero
+        is_beam = len(one.conditions) >= BENDING
+        return (0, 0) in zero, ((0, 1) in zero if is_beam else (0, 0) in zero)
+
+    def _draw_marks(self) -> float:
+        """Draw arrows above the member, side by side or above each other; return how high they reach."""
+        occupied = [i.box for i in self.items if i.box.y1 > HALF]  # walls and guides
+        places: dict[float, list[Mark]] = {}
+        for (style, x), labels in sorted(
+            self.marks.items(), key=lambda m: (-m[0][1], m[0][0] not in PUSHING)
+        ):
+            places.setdefault(x, []).append(Mark(style, "", tuple(labels)))
+        for x, marks in places.items():
+            start = x - 5.0
+            room = Extent(start, 0.0, start + sum(map(upright_width, marks)), 17.0)
+            y = HALF + 0.5
+            while any(b.overlaps(room.moved(0, y)) for b in occupied):
+                y += 1.0
+            occupied.append(room.moved(0, y))
+            if y > HALF + 1:
+                name = marks[0].labels[0][1]
+                self.items.append(Placed("wire", name, (line((x, HALF), (x, y + 2), width=THIN),)))
+            for mark in marks:
+                self.items += upright_mark(mark, start, y)
+                start += upright_width(mark)
+        return max([HALF, *(b.y1 for b in occupied)])
+
+    def _draw_loads(self, one: FieldProblem, above: float) -> None:
+        low, high = self.starts[one.name]
+        for name in self._loads(one):
+            count = max(3, int((high - low) / 12))
+            foot = above + 2 if above > HALF else HALF
+            xs = [low + (high - low) * i / count for i in range(count + 1)]
+            arrows: Strokes = (line((low, foot + 10), (high, foot + 10), width=THIN),)
+            arrows += tuple(s for x in xs for s in arrow((x, foot), (x, foot + 10), THIN))
+            self.items.append(Placed("input", name, arrows))
+            shown = text(self._label(name))
+            if shown:
+                place = shown.moved((low + high - shown.width) / 2, foot + 13 + shown.depth)
+                self.items.append(Placed("label", name, (), (place,)))
+            above = foot + 24
+
+    def _draw_coordinate(self) -> None:
+        """Draw an arrow from where x is nought, below the member."""
+        start = self._x(self.fields[0], self.fields[0].start)
+        y = min(i.box.y0 for i in self.items if i.kind in ("field", "ground")) - 5
+        shown = text("x", SMALL)
+        self.items.append(
+            Placed(
+                "axis",
+                "x",
+                (*arrow((start, y), (start + 16, y), THIN), line((start, y - 2), (start, y + 2), width=THIN)),
+            )
+        )
+        if shown:
+            self.items.append(Placed("label", "x", (), (shown.moved(start + 18.5, y - shown.height / 2),)))
+
+    def _draw_conditions(self) -> None:
+        """Write conditions below the points that they hold at, and the equations below all."""
+        bottom = min(i.box.y0 for i in self.items) - 3
+        columns: dict[float, list[str]] = {}
+        for one in self.fields:
+            for condition in one.conditions:
+                calls = self._values(condition)
+                xs = [self._x(self.unknowns[c.name], c.argument) for c in calls]
+                columns.setdefault(sum(xs) / len(xs) if xs else 0.0, []).append(self._sides(condition))
+        blocks = [
+            (x, [t for one in lines if (t := text(one, SMALL))]) for x, lines in sorted(columns.items())
+        ]
+        right = -1e9
+        lowest = bottom
+        for i, (x, lines) in enumerate(blocks):
+            wide = max([0.0, *(t.width for t in lines)])
+            at = x if i == 0 else x - wide if i == len(blocks) - 1 else x - wide / 2
+            at = max(at, right + APART)
+            right = at + wide
+            y = bottom
+            for written in lines:
+                y -= written.height
+                self.items.append(Placed("condition", "", (), (written.moved(at, y),)))
+                y -= written.depth + LEADING
+            lowest = min(lowest, y)
+        middle = (min(b.x0 for b in (i.box for i in self.items)) + max(i.box.x1 for i in self.items)) / 2
+        y = lowest - 1
+        for equation in (e for f in self.fields for e in f.equations):
+            shown = text(self._sides(equation), SMALL)
+            if shown:
+                y -= shown.height
+                self.items.append(Placed("condition", "", (), (shown.moved(middle - shown.width / 2, y),)))
+                y -= shown.depth + LEADING
+
+    def _sides(self, equation: Equation) -> str:
+        left, right = equation.children
+        return f"{self.labels.expression(left)} = {self.labels.expression(right)}"
+
+
+def _support(held: tuple[bool, bool], x: float, side: int) -> Iterator[Stroke]:
+    """Yield a clamp, a hinge or a guide, by whether displacement and slope are held, or nothing."""
+    is_still, is_level = held
+    if is_still and is_level:
+        yield from wall(-9, 9, side, x)
+    elif is_still:
+        y = -HALF
+        yield from (outline((x, y), (x - 4.2, y - 7), (x + 4.2, y - 7)), *floor(x - 6.4, x + 6.4, y - 7))
+    elif is_level:
+        yield rectangle(min(x, x + side * 4.0), -8, max(x, x + side * 4.0), 8)
+        yield from (circle(x + side * 6.0, y, 2.0) for y in (-4.0, 4.0))
+        yield from wall(-8, 8, side, x + side * 8.0)

@@ -1,0 +1,504 @@
+"""Plane frames drawn to their geometry: members where lengths and angles put them, all else around nodes.
+
+Input: a network with members of frames, and the lengths and angles of these. Output: placed parts, or None
+where members lie on each other and a row tells them apart better.
+
+What stands at a node (supports, springs to the ground, arrows, labels) is tried in one place after the other,
+until it touches nothing that is drawn.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from itertools import combinations
+from math import cos, hypot, pi, sin
+from typing import TYPE_CHECKING, Final
+
+from symflex.drawing.cells import label_texts
+from symflex.drawing.columns import flat_mark, upright_mark
+from symflex.drawing.geometry import BOLD, FILLED, MEMBER, THIN, Extent, Placed, around, union
+from symflex.drawing.lettering import SMALL, name_latex, text
+from symflex.drawing.scheme import Mark, Style, evaluate
+from symflex.drawing.symbols import (
+    DOT,
+    arrow,
+    circle,
+    head,
+    line,
+    outline,
+    rectangle,
+    wall,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from symflex.drawing.geometry import Point
+    from symflex.drawing.scheme import DrawnNetwork, DrawnPart
+    from symflex.model import Model
+
+EXTENT: Final = 95.0
+"""Of a frame, and the least length of a member [points]."""
+SHORTEST: Final = 40.0
+HALF: Final = 2.2
+"""Of a member's width."""
+JOINT: Final = 2.4
+"""Radius of a joint of members."""
+CLEAR: Final = 1.2
+SAME: Final = 1e-6
+DIRECTIONS: Final = ((0.0, -1.0), (1.0, 0.0), (-1.0, 0.0), (0.0, 1.0))
+AROUND: Final = tuple((cos(pi / 180 * a), sin(pi / 180 * a)) for a in (45, 135, -45, -135, 90, 0, -90, 180))
+DISTANCES: Final = (4.0, 8.0, 13.0, 20.0, 30.0, 42.0, 60.0, 90.0, 130.0, 200.0)
+MEMBERS: Final = ("frame", "rigid_link")
+ALONE: Final = ("spring", "damper", "torsion_spring", "rotary_damper")
+
+
+def is_planar(network: DrawnNetwork) -> bool:
+    """Tell whether a network has members of frames."""
+    return any(p.type_name == "frame" for p in network.parts)
+
+
+def frame_plan(network: DrawnNetwork, model: Model) -> tuple[list[Placed], list[DrawnPart]] | None:
+    """Return the drawing of a frame and the parts that have no place in it."""
+    plan = _Plan(network, model)
+    return (plan.items, plan.others) if plan.is_sound else None
+
+
+@dataclass
+class _Plan:
+    network: DrawnNetwork
+    model: Model
+    items: list[Placed] = field(default_factory=list)
+    others: list[DrawnPart] = field(default_factory=list)
+    solid: list[Extent] = field(default_factory=list)
+    radius: dict[str, tuple[float, float]] = field(
+        default_factory=dict
+    )  # half the width and height of bodies
+
+    def __post_init__(self) -> None:
+        self.members = [p for p in self.network.parts if p.type_name in MEMBERS]
+        self.ends = self._place()
+        self.is_sound = self._is_sound()
+        if not self.is_sound:
+            return
+        at = {
+            e.node: xy
+            for p in self.members
+            for e, xy in zip(p.ends, self.ends[p.name], strict=True)
+            if e.node
+        }
+        self.at = {n: at[self.joint(n)] for n in self.network.nodes if self.joint(n) in at}
+        self.at = at | self.at
+        self.others = [p for p in self.network.parts if not self._belongs(p)]
+        own = [p for p in self.network.parts if p not in self.others]
+        self._draw_bodies([p for p in own if p.symbol.role == "body"])
+        for part in self.members:
+            self._draw_member(part)
+        self._draw_joints()
+        for part in own:
+            if part.symbol.role == "support":
+                self._draw_support(part)
+        for part in own:
+            if part.type_name in ALONE:
+                self._draw_grounded(part)
+        for mark in (*map(_mark_of, (p for p in own if p.symbol.role == "source")), *self.network.marks):
+            if mark.node in self.at:
+                self._draw_mark(mark)
+        for part in self.members:
+            self._label(part)
+        for node in dict.fromkeys(n for p in self.others for n in p.nodes if n in self.at):
+            self._draw_mark(name_of(node))
+
+    # -------------------------------------------------------------------------------------------- places
+
+    def joint(self, node: str) -> str:
+        """Return the node in whose place another is, which a joint holds there."""
+        for part in self.network.parts:
+            if (
+                part.symbol.role == "support"
+                and len(part.nodes) > 1
+                and part.nodes[1] == node
+                and part.nodes[0] != node
+            ):
+                return self.joint(part.nodes[0]) if part.nodes[0] != node else node
+        return node
+
+    def _belongs(self, part: DrawnPart) -> bool:
+        if any(n not in self.at for n in part.nodes):
+            return False
+        if part.type_name in MEMBERS or part.symbol.role == "body":
+            return True
+        places = {tuple(round(v, 3) for v in self.at[n]) for n in part.nodes}
+        if part.symbol.role in ("support", "source"):
+            return len(places) == 1
+        return part.type_name in ALONE and len(part.nodes) == 1 and any(not e.node for e in part.ends)
+
+    def _vectors(self) -> dict[str, tuple[float, float]]:
+        known = {p.name: float(p.value.nearly) for p in self.model.parameters if p.value}
+        values = {use.name: dict(use.values) for use in self.model.elements}
+        found = {}
+        for part in self.members:
+            given = values[part.name]
+            length = evaluate(given["l" if "l" in given else "length"], known) or 1.0
+            angle = evaluate(given["angle"], known) or 0.0
+            found[part.name] = (length * cos(angle), length * sin(angle))
+        return found
+
+    def _place(self) -> dict[str, tuple[Point, Point]]:
+        """Return where both ends of each member are, at the scale of the drawing."""
+        vectors = self._vectors()
+        places: dict[str, Point] = {}
+        ends: dict[str, tuple[Point, Point]] = {}
+        waiting = list(self.members)
+        while waiting:
+            part = next(
+                (p for p in waiting if any(self.joint(e.node) in places for e in p.ends if e.node)),
+                waiting[0],
+            )
+            waiting.remove(part)
+            a, b = (self.joint(e.node) if e.node else "" for e in part.ends)
+            dx, dy = vectors[part.name]
+            right = 1.2 * max((x for x, _ in places.values()), default=0.0)
+            start = places.get(a) or ((places[b][0] - dx, places[b][1] - dy) if b in places else (right, 0.0))
+            end = places.get(b) or (start[0] + dx, start[1] + dy)
+            ends[part.name] = (start, end)
+            for node, place in ((a, start), (b, end)):
+                if node:
+                    places.setdefault(node, place)
+        points = [p for pair in ends.values() for p in pair]
+        box = around(points)
+        sizes = [hypot(b[0] - a[0], b[1] - a[1]) for a, b in ends.values()]
+        least = min(sizes)
+        scale = EXTENT / (max(box.width, box.height) or 1.0)
+        scale = max(scale, SHORTEST / least) if least > SAME else scale
+        return {n: tuple((x * scale, y * scale) for x, y in pair) for n, pair in ends.items()}  # type: ignore[misc]
+
+    def _draw_joints(self) -> None:
+        for node, (x, y) in self.at.items():
+            if all(self.at[other] != (x, y) for other in self.radius):
+                radius = JOINT if self._meeting((x, y)) > 1 else DOT
+                self.items.append(Placed("node", node, (circle(x, y, radius, fill="#000000"),)))
+
+    def _is_sound(self) -> bool:
+        """Tell whether members lie beside each other, and each between its own ends."""
+        vectors = self._vectors()
+        for name, ((ax, ay), (bx, by)) in self.ends.items():
+            dx, dy = vectors[name]
+            size = hypot(bx - ax, by - ay)
+            along = ((bx - ax) * dx + (by - ay) * dy) / (size * hypot(dx, dy)) if size else 0.0
+            if size < SHORTEST - 1 or along < 1 - SAME:
+                return False
+        for one, other in combinations(self.ends.values(), 2):
+            pieces = [list(_pieces(*pair, skip=9.0)) for pair in (one, other)]
+            if any(a.overlaps(b) for a in pieces[0] for b in pieces[1]):
+                return False
+        return True
+
+    # ------------------------------------------------------------------------------------------- drawing
+
+    def _add(self, *items: Placed) -> None:
+        self.items.extend(items)
+        self.solid.extend(e for i in items for e in i.extents)
+
+    def _first_free(self, items: Sequence[Placed], moves: Iterable[Point]) -> Point:
+        """Return the first move after which parts touch nothing that is drawn; the last one if all do."""
+        pieces = [e.grown(0.8) for i in items for e in i.extents]
+        last = (0.0, 0.0)
+        for dx, dy in moves:
+            last = (dx, dy)
+            if not any(p.moved(dx, dy).overlaps(s) for p in pieces for s in self.solid):
+                break
+        return last
+
+    def _draw_bodies(self, bodies: Sequence[DrawnPart]) -> None:
+        for node in dict.fromkeys(p.nodes[0] for p in bodies):
+            own = [p for p in bodies if p.nodes[0] == node]
+            texts = [label_texts(p.label, p.name, p.lines) for p in own]
+            blocks = [union(t.box for t in block) for block in texts]
+            wide = max(14.0, *(b.width + 6 for b in blocks))
+            heights = [
+                wide if p.type_name == "inertia" else max(13.0, b.height + 6)
+                for p, b in zip(own, blocks, strict=True)
+            ]
+            x, y = self.at[node]
+            top = y + sum(heights) / 2
+            self.radius[node] = (wide / 2, sum(heights) / 2)
+            for part, block, box, height in zip(own, texts, blocks, heights, strict=True):
+                shape = rectangle(x - wide / 2, top - height, x + wide / 2, top, FILLED)
+                if part.type_name == "inertia":
+                    shape = circle(x, top - height / 2, min(wide, height) / 2, FILLED)
+                self._add(Placed(part.kind, part.name, (shape,)))
+                middle = top - height / 2 - (box.y0 + box.y1) / 2
+                self._add(Placed("label", part.name, (), tuple(t.moved(x, middle) for t in block)))
+                top -= height
+
+    def _meeting(self, place: Point) -> int:
+        """Return how many members meet at a place."""
+        return sum(_is_near(end, place) for pair in self.ends.values() for end in pair)
+
+    def _shortened(self, part: DrawnPart) -> tuple[Point, Point]:
+        """Return the ends of a member at the surfaces of bodies."""
+        a, b = self.ends[part.name]
+        size = hypot(b[0] - a[0], b[1] - a[1])
+        d = ((b[0] - a[0]) / size, (b[1] - a[1]) / size)
+        cuts = []
+        for end in part.ends:
+            wide, tall = self.radius.get(end.node, (0.0, 0.0)) if end.node else (0.0, 0.0)
+            for other in self.radius if end.node else ():
+                if self.at[other] == self.at[end.node]:
+                    wide, tall = self.radius[other]
+            reach = [h / abs(c) for h, c in ((wide, d[0]), (tall, d[1])) if abs(c) > SAME]
+            meets = end.node and self._meeting(self.at[end.node]) > 1
+            cuts.append(min(reach) if wide else JOINT + 0.6 if meets else 0.0)
+        return (a[0] + cuts[0] * d[0], a[1] + cuts[0] * d[1]), (b[0] - cuts[1] * d[0], b[1] - cuts[1] * d[1])
+
+    def _draw_member(self, part: DrawnPart) -> None:
+        a, b = self._shortened(part)
+        size = hypot(b[0] - a[0], b[1] - a[1]) or 1.0
+        dx, dy = (b[0] - a[0]) / size, (b[1] - a[1]) / size
+        nx, ny = -dy * HALF, dx * HALF
+        shape = outline(
+            (a[0] + nx, a[1] + ny),
+            (b[0] + nx, b[1] + ny),
+            (b[0] - nx, b[1] - ny),
+            (a[0] - nx, a[1] - ny),
+            fill=FILLED,
+        )
+        self._add(
+            Placed(part.kind, part.name, (shape if part.type_name == "frame" else line(a, b, width=MEMBER),))
+        )
+        for end, at, sign in ((part.ends[0], a, -1.0), (part.ends[1], b, 1.0)):
+            if not end.node:
+                clamp = Placed("ground", "", wall(-8, 8, 1)).rotated(sign * dx, sign * dy)
+                self._add(clamp.moved(*at))
+
+    def _free_directions(self, node: str) -> list[Point]:
+        """Return directions from a node, the one farthest from its members first."""
+        x, y = self.at[node]
+        taken = []
+        for a, b in self.ends.values():
+            for (px, py), (qx, qy) in ((a, b), (b, a)):
+                if _is_near((px, py), (x, y)):
+                    size = hypot(qx - px, qy - py) or 1.0
+                    taken.append(((qx - px) / size, (qy - py) / size))
+        return sorted(
+            DIRECTIONS, key=lambda d: round(max((d[0] * t[0] + d[1] * t[1] for t in taken), default=0.0), 3)
+        )
+
+    def _surface(self, node: str, direction: Point) -> float:
+        """Return how far the body at a node reaches in a direction along x or y."""
+        wide, tall = self.radius.get(node, (DOT + 1.0, DOT + 1.0))
+        return wide if direction[0] else tall
+
+    def _at_surface(self, node: str, d: Point) -> Point:
+        x, y = self.at[node]
+        reach = self._surface(node, d)
+        return x + reach * d[0], y + reach * d[1]
+
+    def _draw_support(self, part: DrawnPart) -> None:
+        node = part.nodes[0]
+        x, y = self.at[node]
+        if len(part.nodes) > 1:
+            ring = (
+                circle(x, y, JOINT - 0.3)
+                if part.type_name == "pin"
+                else rectangle(x - 1.8, y - 1.8, x + 1.8, y + 1.8)
+            )
+            self.items.append(Placed(part.kind, part.name, (ring,)))
+            self.solid.append(self.items[-1].box)
+            return
+        symbol = Placed(part.kind, part.name, part.symbol.hold())
+        for d in self._free_directions(node):
+            reach = self._surface(node, d) + CLEAR
+            turned = symbol.rotated(-d[1], d[0])
+            place = (x + d[0] * reach, y + d[1] * reach)
+            if self._first_free([turned], [place, (0.0, 0.0)]) == place:
+                self._add(
+                    turned.moved(*place), Placed("wire", node, (line(self._at_surface(node, d), place),))
+                )
+                break
+        else:
+            self._beside([symbol], node)
+        self._tags(part, node)
+
+    def _beside(self, items: Sequence[Placed], node: str) -> None:
+        """Draw parts near a node, in the first place that is free."""
+        self._add(*self._near(items, self.at[node], self.radius.get(node, (2.0, 2.0))))
+
+    def _near(self, items: Sequence[Placed], at: Point, size: tuple[float, float]) -> list[Placed]:
+        box = union(i.box for i in items)
+        centre = ((box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2)
+
+        def moves() -> Iterator[Point]:
+            for distance in DISTANCES:
+                for dx, dy in AROUND:
+                    x = (
+                        at[0]
+                        + dx * (size[0] + distance)
+                        + (box.width / 2) * (dx > SAME)
+                        - (box.width / 2) * (dx < -SAME)
+                    )
+                    y = (
+                        at[1]
+                        + dy * (size[1] + distance)
+                        + (box.height / 2) * (dy > SAME)
+                        - (box.height / 2) * (dy < -SAME)
+                    )
+                    yield x - centre[0], y - centre[1]
+
+        move = self._first_free(items, moves())
+        return [i.moved(*move) for i in items]
+
+    def _tags(self, part: DrawnPart, node: str) -> None:
+        for kind, name, label in part.tags:
+            shown = text(label, SMALL)
+            if shown:
+                level = shown.height / 2
+                pointer = Placed(kind, name, arrow((-10, level), (-2, level), THIN))
+                self._beside([pointer, Placed("label", name, (), (shown,))], node)
+
+    def _draw_grounded(self, part: DrawnPart) -> None:
+        """Draw a spring or damper from a node to the ground, along the component that it acts on."""
+        node = part.nodes[0]
+        component = next(e.component for e in part.ends if e.node)
+        allowed = [
+            d for d in self._free_directions(node) if component == "theta" or bool(d[0]) is (component == "x")
+        ]
+        x, y = self.at[node]
+        length = part.symbol.length
+        tried: list[tuple[list[Placed], Point]] = []
+        for stub in (2.0, 10.0, 20.0, 34.0, 50.0):
+            for d in allowed:
+                reach = self._surface(node, d) + stub
+                symbol = Placed(part.kind, part.name, part.symbol.draw(length)).moved(reach, 0)
+                base = Placed("ground", "", wall(-6, 6, 1, reach + length))
+                lead = Placed("lead", part.name, (line((self._surface(node, d), 0.0), (reach, 0.0)),))
+                items = [i.rotated(*d).moved(x, y) for i in (symbol, base, lead)]
+                tried.append((items, (0.0, 0.0)))
+                if self._first_free(items, [(0.0, 0.0), (1.0, 1.0)]) == (0.0, 0.0):
+                    self._finish(part, items)
+                    return
+        self._finish(part, self._near(tried[0][0], (x, y), (4.0, 4.0)))
+
+    def _finish(self, part: DrawnPart, items: Sequence[Placed]) -> None:
+        self._add(*(i if i.kind != "lead" else Placed("wire", i.name, i.strokes) for i in items))
+        texts = label_texts(part.label, part.name, part.lines)
+        box = items[0].box
+        middle = ((box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2)
+        self._add(
+            *self._near([Placed("label", part.name, (), texts)], middle, (box.width / 2, box.height / 2))
+        )
+        self._tags(part, part.nodes[0])
+
+    def _draw_mark(self, mark: Mark) -> None:
+        """Draw an arrow at a node, or near it where there is no room at it."""
+        x, y = self.at[mark.node]
+        if mark.style in ("force", "push"):
+            kind, name, label = mark.labels[0]
+            d = (1.0, 0.0) if mark.style == "force" else (0.0, 1.0)
+            shown = text(label)
+            for sign in (1.0, -1.0):
+                reach = sign * (self._surface(mark.node, d) + CLEAR)
+                ends = [
+                    (reach * d[0], reach * d[1]),
+                    ((reach + sign * 17) * d[0], (reach + sign * 17) * d[1]),
+                ]
+                start, tip = ends if sign > 0 else ends[::-1]
+                shaft = Placed(kind, name, arrow(start, tip, BOLD)).moved(x, y)
+                if self._first_free([shaft], [(0.0, 0.0), (1.0, 1.0)]) == (0.0, 0.0):
+                    self._add(shaft)
+                    box = shaft.box
+                    middle = ((box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2)
+                    if shown:
+                        own = [Placed("label", name, (), (shown,))]
+                        self._add(*self._near(own, middle, (box.width / 2, box.height / 2)))
+                    for each, other, words in mark.labels[1:]:
+                        if extra := text(words):
+                            self._beside([Placed(each, other, (), (extra,))], mark.node)
+                    return
+        flat = mark.style in ("shift", "force", "motion")
+        items = flat_mark(mark, 0.0, 0.0) if flat else upright_mark(mark, 0.0, 0.0)
+        self._beside(items, mark.node)
+
+    def _label(self, part: DrawnPart) -> None:
+        """Write the label of a member beside it, and mark outputs at its points."""
+        a, b = self._shortened(part)
+        size = hypot(b[0] - a[0], b[1] - a[1]) or 1.0
+        d = ((b[0] - a[0]) / size, (b[1] - a[1]) / size)
+        n = (-d[1], d[0])
+        for share, name, label in part.points:
+            shown = text(label, SMALL)
+            if shown is None:
+                continue
+            at = min(max(size * share, 6.0), size - 6.0)
+            x, y = a[0] + at * d[0], a[1] + at * d[1]
+            options = []
+            for distance in (9.0, 14.0, 20.0, 30.0):
+                for sign in (1.0, -1.0):
+                    m = (sign * n[0], sign * n[1])
+                    far = (
+                        abs(m[0]) * shown.width / 2
+                        + abs(m[1]) * (shown.height + shown.depth) / 2
+                        + distance
+                        + 2
+                    )
+                    tip = (x + 3.0 * m[0], y + 3.0 * m[1])
+                    stem = line((x + distance * m[0], y + distance * m[1]), tip, width=THIN)
+                    place = shown.moved(
+                        x + far * m[0] - shown.width / 2, y + far * m[1] - (shown.height - shown.depth) / 2
+                    )
+                    marker = Placed("output", name, (stem, head(tip, (-m[0], -m[1]), 3.0)))
+                    options.append([marker, Placed("label", name, (), (place,))])
+            free = (o for o in options if self._first_free(o, [(0.0, 0.0), (1.0, 1.0)]) == (0.0, 0.0))
+            self._add(*next(free, options[-1]))
+        texts = label_texts(part.label, part.name, part.lines)
+        block = union(t.box for t in texts)
+        centre = ((block.x0 + block.x1) / 2, (block.y0 + block.y1) / 2)
+
+        def moves() -> Iterator[Point]:
+            far = abs(n[0]) * block.width / 2 + abs(n[1]) * block.height / 2 + HALF + 2.5
+            for more in (0.0, 6.0, 14.0, 26.0, 40.0):
+                for share in (0.5, 0.38, 0.62, 0.25, 0.75):
+                    for sign in (1.0, -1.0):
+                        x, y = a[0] + share * size * d[0], a[1] + share * size * d[1]
+                        yield (
+                            x + sign * n[0] * (far + more) - centre[0],
+                            y + sign * n[1] * (far + more) - centre[1],
+                        )
+
+        own = Placed("label", part.name, (), texts)
+        self._add(own.moved(*self._first_free([own], moves())))
+        for kind, name, label in part.tags:
+            shown = text(label, SMALL)
+            if shown:
+                level = shown.height / 2
+                pointer = Placed(kind, name, arrow((-10, level), (-2, level), THIN))
+                tag = [pointer, Placed("label", name, (), (shown,))]
+                self._add(*self._near(tag, (a[0] + 0.5 * size * d[0], a[1] + 0.5 * size * d[1]), (4.0, 4.0)))
+
+
+def name_of(node: str) -> Mark:
+    """Return the name of a node that stands in a frame and in a row beside it."""
+    return Mark("probe", node, (("tag", node, name_latex(node)),))
+
+
+def _mark_of(part: DrawnPart) -> Mark:
+    """Return the arrow of a source at a node."""
+    end = part.ends[0]
+    style: Style = "torque" if end.domain == "rotation" else "force" if end.component == "x" else "push"
+    return Mark(style, end.node, (("element", part.name, part.label), *part.tags))
+
+
+def _is_near(a: Point, b: Point) -> bool:
+    return abs(a[0] - b[0]) + abs(a[1] - b[1]) < 1.0
+
+
+def _pieces(a: Point, b: Point, skip: float) -> Iterator[Extent]:
+    """Yield squares along a line between two points, but near its ends."""
+    size = hypot(b[0] - a[0], b[1] - a[1])
+    count = max(2, int(size / 3))
+    for i in range(count + 1):
+        share = i / count
+        if skip < share * size < size - skip:
+            x, y = a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])
+            yield Extent(x - HALF, y - HALF, x + HALF, y + HALF)

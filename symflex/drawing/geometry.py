@@ -1,0 +1,218 @@
+"""What a drawing is made of: boxes, strokes, texts, and what they stand for; lengths in points, y upwards."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+Point = tuple[float, float]
+
+THIN, LINE, BOLD, MEMBER = 0.5, 0.8, 1.6, 2.6
+"""Widths of strokes [points]: of dimensions, of symbols, of shafts and forces, of rigid links."""
+PLAIN, FILLED, PAPER = "", "#E3E3E3", "#FFFFFF"
+"""What an outline is filled with: nothing, the grey of bodies, the page."""
+BLACK = "#000000"
+
+
+@dataclass(frozen=True, slots=True)
+class Extent:
+    """A rectangle with sides along x and y."""
+
+    x0: float
+    y0: float
+    x1: float
+    y1: float
+
+    @property
+    def width(self) -> float:
+        """Its extent along x."""
+        return self.x1 - self.x0
+
+    @property
+    def height(self) -> float:
+        """Its extent along y."""
+        return self.y1 - self.y0
+
+    def moved(self, dx: float, dy: float) -> Extent:
+        """Return the rectangle elsewhere."""
+        return Extent(self.x0 + dx, self.y0 + dy, self.x1 + dx, self.y1 + dy)
+
+    def grown(self, by: float) -> Extent:
+        """Return the rectangle with a border around it."""
+        return Extent(self.x0 - by, self.y0 - by, self.x1 + by, self.y1 + by)
+
+    def overlaps(self, other: Extent) -> bool:
+        """Tell whether two rectangles share more than an edge.
+
+        Examples
+        --------
+        >>> [Extent(0, 0, 2, 2).overlaps(Extent(x, 0, 3, 2)) for x in (1, 2)]
+        [True, False]
+        """
+        return self.x0 < other.x1 and other.x0 < self.x1 and self.y0 < other.y1 and other.y0 < self.y1
+
+
+def around(points: Iterable[Point]) -> Extent:
+    """Return the smallest rectangle around points."""
+    xs, ys = zip(*points, strict=True)
+    return Extent(min(xs), min(ys), max(xs), max(ys))
+
+
+def union(boxes: Iterable[Extent]) -> Extent:
+    """Return the smallest rectangle around rectangles."""
+    return around(p for b in boxes for p in ((b.x0, b.y0), (b.x1, b.y1)))
+
+
+@dataclass(frozen=True, slots=True)
+class Stroke:
+    """A line through points, closed and filled where it is an outline."""
+
+    points: tuple[Point, ...]
+    width: float = LINE
+    fill: str = PLAIN  # a colour; an outline is closed
+    is_dashed: bool = False
+
+    def moved(self, dx: float, dy: float) -> Stroke:
+        """Return the line elsewhere."""
+        return replace(self, points=tuple((x + dx, y + dy) for x, y in self.points))
+
+
+@dataclass(frozen=True, slots=True)
+class Lettering:
+    """A line of mathematics with its baseline's left end at a point; its size was measured."""
+
+    markup: str  # between dollar signs, as matplotlib reads it
+    x: float
+    y: float
+    width: float
+    height: float  # above the baseline
+    depth: float  # below it
+    size: float  # of the type [points]
+
+    @property
+    def box(self) -> Extent:
+        """The rectangle of its letters."""
+        return Extent(self.x, self.y - self.depth, self.x + self.width, self.y + self.height)
+
+    def moved(self, dx: float, dy: float) -> Lettering:
+        """Return the text elsewhere."""
+        return replace(self, x=self.x + dx, y=self.y + dy)
+
+
+@dataclass(frozen=True, slots=True)
+class Placed:
+    """A part of a drawing and what it stands for.
+
+    ``kind`` is ``element``, ``input``, ``output``, ``block``, ``sum``, ``field``, ``ground``, ``node``,
+    ``wire`` or ``label``, the text of another part; ``name`` is the name in the specification.
+    """
+
+    kind: str
+    name: str
+    strokes: tuple[Stroke, ...] = ()
+    texts: tuple[Lettering, ...] = ()
+
+    @property
+    def box(self) -> Extent:
+        """The rectangle around it, line widths left out."""
+        return union((*(around(s.points) for s in self.strokes), *(t.box for t in self.texts)))
+
+    def scaled(self, by: float) -> Placed:
+        """Return the part larger or smaller, with its strokes and type."""
+        return replace(
+            self,
+            strokes=tuple(
+                replace(s, points=tuple((by * x, by * y) for x, y in s.points), width=by * s.width)
+                for s in self.strokes
+            ),
+            texts=tuple(
+                Lettering(t.markup, *(by * v for v in (t.x, t.y, t.width, t.height, t.depth, t.size)))
+                for t in self.texts
+            ),
+        )
+
+    def moved(self, dx: float, dy: float) -> Placed:
+        """Return the part elsewhere."""
+        return replace(
+            self,
+            strokes=tuple(s.moved(dx, dy) for s in self.strokes),
+            texts=tuple(t.moved(dx, dy) for t in self.texts),
+        )
+
+    @property
+    def extents(self) -> tuple[Extent, ...]:
+        """Rectangles that cover it, small ones along what is slanted.
+
+        Examples
+        --------
+        >>> slanted = Placed("element", "a", (Stroke(((0, 0), (30, 40))),))
+        >>> any(e.overlaps(Extent(20, 0, 30, 10)) for e in slanted.extents)
+        False
+        """
+        found = [t.box for t in self.texts]
+        for stroke in self.strokes:
+            if len(stroke.points) > MOST_CORNERS or not any(
+                _is_slanted(*ends) for ends in pairwise(stroke.points)
+            ):
+                found.append(around(stroke.points))
+            else:
+                found += [piece for ends in pairwise(stroke.points) for piece in _pieces(*ends)]
+        return tuple(found)
+
+    def rotated(self, dx: float, dy: float) -> Placed:
+        """Return a part without text turned about the origin, so that x runs in a direction."""
+        turned = (
+            replace(s, points=tuple((dx * x - dy * y, dy * x + dx * y) for x, y in s.points))
+            for s in self.strokes
+        )
+        return replace(self, strokes=tuple(turned))
+
+    def turned(self) -> Placed:
+        """Return a part without text turned so that what ran along x runs down."""
+        turned = (replace(s, points=tuple((y, -x) for x, y in s.points)) for s in self.strokes)
+        return replace(self, strokes=tuple(turned))
+
+
+MOST_CORNERS = 6
+"""Of what may be a slanted member; what has more is a symbol and small."""
+_SHORT, _PIECE = 20.0, 3.0
+
+
+def _is_slanted(a: Point, b: Point) -> bool:
+    return (
+        min(abs(a[0] - b[0]), abs(a[1] - b[1])) > 1.0 and max(abs(a[0] - b[0]), abs(a[1] - b[1])) > _SHORT / 2
+    )
+
+
+def _pieces(a: Point, b: Point) -> Iterator[Extent]:
+    """Yield rectangles along a line."""
+    count = max(1, int(max(abs(a[0] - b[0]), abs(a[1] - b[1])) / _PIECE))
+    points = [(a[0] + (b[0] - a[0]) * i / count, a[1] + (b[1] - a[1]) * i / count) for i in range(count + 1)]
+    yield from (around(pair) for pair in pairwise(points))
+
+
+@dataclass(frozen=True, slots=True)
+class Drawing:
+    """A drawing that is laid out: its parts, in points, from the lower left corner of the page."""
+
+    width: float  # of the page [points]
+    height: float
+    items: tuple[Placed, ...]
+    abbreviated: tuple[str, ...] = ()  # elements that stand in a row of dots
+
+    def scaled(self, by: float) -> Drawing:
+        """Return the drawing larger or smaller."""
+        return replace(
+            self,
+            width=by * self.width,
+            height=by * self.height,
+            items=tuple(i.scaled(by) for i in self.items),
+        )
+
+    def of_kind(self, *kinds: str) -> tuple[Placed, ...]:
+        """Return the parts of some kinds."""
+        return tuple(item for item in self.items if item.kind in kinds)

@@ -1,0 +1,167 @@
+"""Texts of a drawing: labels of names and expressions in mathematics, and how large they are.
+
+Input: names and expressions of a model. Output: :class:`~symflex.drawing.geometry.Lettering`, measured with
+the metrics of the fonts that come with matplotlib.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import TYPE_CHECKING, Final
+
+from matplotlib import rcParams
+from matplotlib.font_manager import FontProperties
+from matplotlib.mathtext import MathTextParser
+
+from symflex.drawing.geometry import Lettering
+from symflex.expressions import Attribute, Call, Name, replace_values, substitute
+from symflex.expressions import nodes as parts_of
+from symflex.figures.style import label_of_name, label_of_unit
+from symflex.print.label import read_label
+from symflex.print.latex.equation import model_labels
+from symflex.print.latex.expression import latex_expression
+from symflex.print.latex.table import decimal_text
+from symflex.print.writer import Style
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from symflex.expressions import Expression
+    from symflex.model import Model, ModelParameter
+
+SIZE: Final = 8.0
+"""Of the type [points], as in other figures."""
+SMALL: Final = 7.0
+_FINE: Final = 20
+"""Matplotlib rounds the size of a text up to whole dots: as many are measured to a point."""
+_PARSER: Final = MathTextParser("path")
+LONGEST_NAME: Final = 14
+"""Letters of a name that has no other label."""
+
+
+@lru_cache(maxsize=4096)
+def _measured(markup: str, size: float, family: str) -> tuple[float, float, float] | None:
+    del family  # rules the metrics and is part of the key
+    try:
+        width, height, depth, *_ = _PARSER.parse(markup, 72 * _FINE, FontProperties(size=size))
+    except ValueError:
+        return None
+    # What is called the height includes the depth.
+    return float(width) / _FINE, float(height - depth) / _FINE, float(depth) / _FINE
+
+
+def text(latex: str, size: float = SIZE) -> Lettering | None:
+    """Return a text at the origin, None where matplotlib cannot typeset it."""
+    found = _measured(f"${latex}$", size, str(rcParams["mathtext.fontset"])) if latex else None
+    return None if found is None else Lettering(f"${latex}$", 0.0, 0.0, *found, size)
+
+
+def name_latex(name: str) -> str:
+    r"""Return a name in mathematics, cut where it is long.
+
+    Examples
+    --------
+    >>> print(name_latex("x_tip"), name_latex("a" * 64))
+    x_{\mathrm{tip}} \mathrm{aaaaaaaaaaaaa\ldots}
+    """
+    if len(name) <= LONGEST_NAME:
+        return label_of_name(name)
+    return rf"\mathrm{{{name[: LONGEST_NAME - 1].replace('_', ' ').strip().replace(' ', '~')}\ldots}}"
+
+
+@dataclass(frozen=True)
+class Labels:
+    """What the names of a model are called in its drawing."""
+
+    model: Model
+    has_values: bool = False  # parameters are followed by their values
+
+    @cached_property
+    def _known(self) -> Mapping[str, str]:
+        declared = {p.name for p in self.model.parameters if p.latex}
+        declared |= {d.name for d in self.model.definitions if d.latex}
+        made = model_labels(self.model)
+        # A made label that is not a mere letter with subscripts is long, and cut here.
+        return {n: made[n] if n in declared or len(n) <= LONGEST_NAME else name_latex(n) for n in made}
+
+    def end(self, name: str, latex: str) -> str:
+        """Return the label of an input or output."""
+        label = read_label(latex.strip()) if latex.strip() else None
+        return f"{{{label.latex}}}" if label and text(label.latex) else name_latex(name)
+
+    def name(self, name: str) -> str:
+        """Return a name in mathematics: a parameter, node, signal, or quantity of an element, ``motor.i``."""
+        if name in self._known:
+            return self._known[name]
+        ends = {e.name: e.latex for e in self.model.outputs} | {e.name: e.latex for e in self.model.inputs}
+        if ends.get(name):
+            return self.end(name, ends[name])
+        owner, dot, component = name.partition(".")
+        if not dot:
+            return name_latex(name)
+        stem, _, index = component.partition("_")
+        stem = rf"\{stem}" if stem in ("tau", "theta") else stem
+        inside = label_of_name(owner) if len(owner) <= LONGEST_NAME else name_latex(owner)
+        return rf"{stem}_{{{inside + ',' + index if index else inside}}}"
+
+    def fraction(self, expression: Expression) -> str:
+        """Return an expression in mathematics, quotients as fractions."""
+        return self.expression(expression, Style.TEXT)
+
+    def expression(self, expression: Expression, style: Style = Style.INLINE) -> str:
+        """Return an expression in mathematics, by default quotients with a slash."""
+        places = [n for n in parts_of(expression) if isinstance(n, Call) and "." in n.name]
+        plain = replace_values(expression, {c: Name(c.name) for c in places})
+        plain = substitute(
+            plain,
+            {
+                f"{n.owner}.{n.name}": Name(f"{n.owner}.{n.name}")
+                for n in parts_of(plain)
+                if isinstance(n, Attribute)
+            },
+        )
+        names = {n.name for n in parts_of(plain) if isinstance(n, Name)} - {"s", "pi"}
+        fields = {n.name for n in parts_of(plain) if isinstance(n, Call)}
+        labels = {n: self.name(n) for n in names | fields if n not in ("sqrt", "exp")}
+        return latex_expression(plain, labels, style)
+
+    def quantity(self, expression: Expression, unit: str) -> str:
+        """Return the value of an element: as it is written, a number with its unit."""
+        written = self.expression(expression)
+        is_named = any(isinstance(n, Name | Attribute | Call) for n in parts_of(expression))
+        return written if is_named else with_unit(written, unit)
+
+    def values(self, expressions: Sequence[Expression]) -> list[str]:
+        """Return what the parameters in expressions are, where values are asked for."""
+        if not self.has_values:
+            return []
+        named = {n.name for e in expressions for n in parts_of(e) if isinstance(n, Name)}
+        shown = [p for p in self.model.parameters if p.name in named and p.value is not None]
+        if len(expressions) == 1 and isinstance(expressions[0], Name):
+            return [value_latex(p) for p in shown]  # below its name, which needs no second one
+        return [f"{self.name(p.name)} = {value_latex(p)}" for p in shown]
+
+
+def number_latex(decimal: str) -> str:
+    r"""Return a decimal in mathematics.
+
+    Examples
+    --------
+    >>> print(number_latex("2.1e-11"), number_latex("95"))
+    2.1\cdot 10^{-11} 95
+    """
+    mantissa, _, exponent = decimal.partition("e")
+    return rf"{mantissa}\cdot 10^{{{exponent}}}" if exponent else mantissa
+
+
+def with_unit(number: str, unit: str) -> str:
+    """Return a number in mathematics with its unit."""
+    measured = label_of_unit(unit).strip("$")
+    return rf"{number}\,{measured}" if measured else number
+
+
+def value_latex(parameter: ModelParameter) -> str:
+    """Return a parameter's value in the unit it was written in; one without a value has none."""
+    value, unit = parameter.as_written()
+    return "" if value is None else with_unit(number_latex(decimal_text(value)), unit)

@@ -1,0 +1,575 @@
+"""A network laid out in a row: its nodes as columns, parts in the gaps between them, marks above and below.
+
+Input: a network and the domains of its nodes. Output: placed parts, with the axis of the row at y = 0.
+
+    wall --k-- [m] ==beam== [m]        columns m, m; gaps: spring with its wall, beam
+               --b-- wall              what joins a node in the middle to the ground hangs below it
+
+Parts between neighbours stack in their gap; others bridge the columns between, above everything there. Every
+symbol has a place of its own by construction: gaps hold symbols, columns hold bodies, supports and vertical
+leads.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+from typing import TYPE_CHECKING, Final
+
+from symflex.drawing.cells import SPACE, SPACINGS, Built, Spacing, SymbolCell, build
+from symflex.drawing.columns import (
+    LANE,
+    Column,
+    bodies,
+    flat_mark,
+    flat_width,
+    hanging_length,
+    hanging_reach,
+    hanging_texts,
+    hanging_width,
+    mark_of_source,
+    support_width,
+    tags_below,
+    upright_mark,
+    upright_width,
+)
+from symflex.drawing.geometry import BOLD, LINE, THIN, Extent, Placed, around, union
+from symflex.drawing.lettering import text
+from symflex.drawing.order import ordered
+from symflex.drawing.scheme import Mark
+from symflex.drawing.symbols import DOT, HATCH, arrow, circle, earth, floor, line, rectangle, wall
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from symflex.drawing.scheme import Distance, DrawnNetwork, DrawnPart, End
+
+EMPTY_GAP: Final = 14.0
+SIDE_ARROW: Final = 20.0
+FACE: Final = 9.0
+"""Room of a wall or a guide beside a node."""
+BLADE: Final = 2.2
+"""Width of a lead to a member."""
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A network laid out."""
+
+    items: tuple[Placed, ...]
+    anchors: Mapping[str, tuple[float, float]]  # of nodes: where something reads them, at their lower ends
+
+
+@dataclass(frozen=True, slots=True)
+class _SideArrow:
+    """A force on the first or last column, drawn beside it."""
+
+    mark: Mark
+    column: int
+
+
+@dataclass(frozen=True, slots=True)
+class _Level:
+    """Something in a gap, and how high above the axis."""
+
+    what: SymbolCell | _SideArrow
+    built: Built | None
+    y: float
+
+
+def lay_out(network: DrawnNetwork, domains: Mapping[str, str], spacing: Spacing = SPACINGS[0]) -> Row:
+    """Return a network as a row, the axis of its columns at y = 0."""
+    layout = _Layout(network, domains, spacing)
+    return Row(tuple(layout.items), {c.name: (c.x, c.bottom) for c in layout.columns})
+
+
+def order_of(network: DrawnNetwork, domains: Mapping[str, str]) -> tuple[str, ...]:
+    """Return the nodes of a network from left to right."""
+    pull = dict.fromkeys(network.nodes, 0.0)
+    for part in network.parts:
+        if len(part.ends) > 1 and any(not e.node for e in part.ends):
+            for node in part.nodes:
+                pull[node] -= 0.7
+        if part.symbol.role == "source":
+            for node in part.nodes[:1]:
+                pull[node] -= 0.6
+        if part.symbol.role == "support":
+            for node in part.nodes[:1]:
+                pull[node] -= 0.1
+    for mark in network.marks:
+        kinds = {kind for kind, *_ in mark.labels}
+        moved = mark.style in ("motion", "raise", "twist")
+        pull[mark.node] += (-2.0 if moved else -0.4) if "input" in kinds else 0.15
+    joints = [pair for p in network.parts for pair in _pairs(p)]
+    directed = {pair for p in network.parts if p.symbol.role == "member" for pair in _pairs(p)}
+    lanes = {n: domains[n] for n in network.nodes}
+    return ordered(network.nodes, joints, pull, lanes, directed)
+
+
+def _pairs(part: DrawnPart) -> list[tuple[str, str]]:
+    nodes = part.nodes
+    return [(nodes[i], nodes[i + 1]) for i in range(len(nodes) - 1)]
+
+
+@dataclass
+class _Layout:
+    """Places the parts of a row, from the widths of its gaps to the marks above them."""
+
+    network: DrawnNetwork
+    domains: Mapping[str, str]
+    spacing: Spacing
+    items: list[Placed] = field(default_factory=list)
+    occupied: list[Extent] = field(default_factory=list)
+    bridges: list[SymbolCell] = field(default_factory=list)
+    leads: list[Extent] = field(default_factory=list)  # upwards to bridges
+
+    def __post_init__(self) -> None:
+        self.columns = [Column(n, self.domains[n]) for n in order_of(self.network, self.domains)]
+        self.at = {c.name: i for i, c in enumerate(self.columns)}
+        self.direct: list[list[SymbolCell | _SideArrow]] = [[] for _ in range(len(self.columns) + 1)]
+        self._sort_parts()
+        self._sort_marks()
+        self._sort_supports()
+        self.gaps = [self._stacked(cells) for cells in self.direct]
+        self._measure()
+        self.edges = self._place()
+        for column in self.columns:
+            self._draw_column(column)
+        for g in range(len(self.gaps)):
+            self._draw_gap(g)
+        self._draw_below()
+        self._draw_bridges()
+        self._draw_above()
+
+    # ------------------------------------------------------------------------------------ where parts go
+
+    def _sort_parts(self) -> None:
+        for part in self.network.parts:
+            role, is_single = part.symbol.role, len(part.ends) == 1
+            columns = sorted({self.at[n] for n in part.nodes})
+            if not columns:
+                self.direct[0].append(SymbolCell(part, 0, [part.ends[0]], list(part.ends[1:])))
+            elif role == "body":
+                self.columns[columns[0]].bodies.append(part)
+            elif is_single and role == "support":
+                self.columns[columns[0]].supports.append(part)
+            elif is_single and self.columns[columns[0]].is_electrical:
+                self.columns[columns[0]].hanging.append(part)
+            elif is_single:
+                self.columns[columns[0]].marks.append(mark_of_source(part, self.columns[columns[0]]))
+            elif len(columns) == 1 and len(part.ends) == 2 and role != "coupling":  # noqa: PLR2004
+                self._sort_grounded(part, columns[0])
+            else:
+                self._sort_branch(part, columns)
+
+    def _sort_grounded(self, part: DrawnPart, index: int) -> None:
+        """Place what lies between a node and the ground, or two components of a node."""
+        column, last = self.columns[index], len(self.columns) - 1
+        hangs = column.is_electrical or (column.is_flat and part.symbol.role != "member")
+        if hangs or all(e.node for e in part.ends):
+            column.hanging.append(part)
+        elif index == 0 and not (last == 0 and len(self.direct[0]) > len(self.direct[1]) + 2):
+            self._add_direct(part, 0)
+        elif index == last:
+            self._add_direct(part, last + 1)
+        else:
+            column.stubs.append(part)
+
+    def _add_direct(self, part: DrawnPart, gap: int) -> None:
+        ground = next(e for e in part.ends if not e.node)
+        node = next(e for e in part.ends if e.node)
+        left, right = (node, ground) if gap else (ground, node)
+        self.direct[gap].append(SymbolCell(part, gap, [left], [right], is_reversed=left is not part.ends[0]))
+
+    def _sort_branch(self, part: DrawnPart, columns: Sequence[int]) -> None:
+        low, high = columns[0], columns[-1]
+        gap = max(low + 1, (low + high + 1) // 2)
+        cell = SymbolCell(part, gap)
+        for end in part.ends:
+            if end.node:
+                (cell.left if self.at[end.node] < gap else cell.right).append(end)
+        for i, end in enumerate(part.ends):
+            if not end.node:
+                (cell.left if self._is_ground_left(part, i, gap) else cell.right).append(end)
+        cell.left.sort(key=lambda e: -self.at.get(e.node, -1))
+        cell.right.sort(key=lambda e: self.at.get(e.node, len(self.columns)))
+        cell.is_reversed = part.ends[0] in cell.right
+        if high - low <= 1:
+            self.direct[gap].append(cell)
+        else:
+            self.bridges.append(cell)
+
+    def _is_ground_left(self, part: DrawnPart, index: int, gap: int) -> bool:
+        """Tell on which side an end at the ground is drawn.
+
+        Of two terminals it stands beside the other; the two ends of a stack face each other.
+        """
+        end = part.ends[index]
+        alike = [e for i, e in enumerate(part.ends) if i != index and e.domain == end.domain and e.node]
+        if not alike:
+            others = [e for e in part.ends if e.node]
+            return not any(self.at[e.node] < gap for e in others)
+        is_beside = end.domain == "electrical" and len(part.ends) > 2  # noqa: PLR2004
+        return (self.at[alike[0].node] < gap) is is_beside
+
+    def _sort_marks(self) -> None:
+        last = len(self.columns) - 1
+        for mark in self.network.marks:
+            self.columns[self.at[mark.node]].marks.append(mark)
+        for index, column in enumerate(self.columns):
+            for mark in [m for m in column.marks if m.style == "force" and index in (0, last)]:
+                column.marks.remove(mark)
+                gap = last + 1 if index == last else 0
+                self.direct[gap].insert(0, _SideArrow(mark, index))
+        ends = [e.node for cell in self.bridges for e in (*cell.left, *cell.right)]
+        for node in (*ends, *(n for span in self.network.spans for n in span.nodes)):
+            if node:
+                self.columns[self.at[node]].has_lead_up = True
+
+    def _sort_supports(self) -> None:
+        """Stand walls and guides beside the first and last node, where there is room."""
+        for column, side in ((self.columns[0], -1), (self.columns[-1], 1)) if self.columns else ():
+            beside = self.direct[0 if side < 0 else -1]
+            for part in column.supports:
+                is_wall = part.type_name in ("fixed", "slider") and part.ends[0].component not in ("x", "y")
+                if is_wall and not beside and side not in column.faces and not column.is_electrical:
+                    column.supports.remove(part)
+                    column.faces[side] = part
+                    break
+
+    # --------------------------------------------------------------------------------------------- sizes
+
+    def _stacked(self, cells: Sequence[SymbolCell | _SideArrow]) -> list[_Level]:
+        """Return what stands in a gap, one below the other and about the axis."""
+        found: list[_Level] = []
+        y = 0.0
+        for i, one in enumerate(cells):
+            if isinstance(one, SymbolCell):
+                one.is_label_below = i == len(cells) - 1 and i > 0
+                built = build(one, self.spacing)
+                above, below = built.above, built.below
+            else:
+                labels = [t for _, _, label in one.mark.labels if (t := text(label))]
+                built, above, below = None, 5.0 + max([0.0, *(t.height + t.depth for t in labels)]), -4.0
+            y -= above + SPACE if i else 0.0
+            found.append(_Level(one, built, y))
+            y += below
+        middle = (found[0].y + found[-1].y) / 2 if found else 0.0
+        return [replace(level, y=level.y - middle) for level in found]
+
+    def _measure(self) -> None:
+        for level in (level for gap in self.gaps for level in gap):
+            if isinstance(level.what, SymbolCell):
+                for side in (level.what.left, level.what.right):
+                    for end, offset in zip(side, level.what.offsets(side), strict=True):
+                        if end.node:
+                            self.columns[self.at[end.node]].levels.append(level.y + offset)
+            else:
+                self.columns[level.what.column].levels.append(level.y)
+        for column in self.columns:
+            column.resize(self.spacing.body)
+
+    def _place(self) -> list[tuple[float, float]]:
+        """Give every column its x, and return where gaps begin and end."""
+        edges, x = [], 0.0
+        for g, levels in enumerate(self.gaps):
+            bridging = (build(b, self.spacing).width for b in self.bridges if b.gap == g)
+            width = max([0.0, *bridging, *(self._width_of(level) for level in levels)])
+            before = self.columns[g - 1] if g else None
+            after = self.columns[g] if g < len(self.columns) else None
+            if before and after:
+                width = max(width, 0.0 if levels else EMPTY_GAP)
+                if self.spacing.has_room:
+                    wide = max([0.0, *(flat_width(m) for m in before.marks if m not in before.upright)])
+                    width = max(width, wide - before.right - after.left)
+            x += FACE if before and 1 in before.faces else 0.0
+            edges.append((x, x + width))
+            x += width + (FACE if after and -1 in after.faces else 0.0)
+            if after:
+                after.x = x + after.left
+                x = after.x + after.right
+        return edges
+
+    @staticmethod
+    def _width_of(level: _Level) -> float:
+        if level.built:
+            return level.built.width
+        assert isinstance(level.what, _SideArrow)
+        texts = [t.width + 4 for _, _, label in level.what.mark.labels if (t := text(label))]
+        return max(SIDE_ARROW, sum(texts))
+
+    # ------------------------------------------------------------------------------------------- drawing
+
+    def _add(self, *items: Placed) -> None:
+        self.items.extend(items)
+        self.occupied.extend(i.box for i in items if i.kind != "wire")
+
+    def _wire(self, name: str, *points: tuple[float, float], width: float = LINE) -> None:
+        if len(set(points)) > 1:
+            self.items.append(Placed("wire", name, (line(*points, width=width),)))
+
+    def _free(self, room: Extent, limit: float, *, is_up: bool, leads: Sequence[Extent] = ()) -> float:
+        """Return how far a rectangle is moved up (or down) from a limit until nothing is in its way."""
+        occupied = [*self.occupied, *(b for b in leads if not room.x0 - 1 <= b.x0 <= room.x0 + 1)]
+        y = limit - (room.y0 if is_up else room.y1)
+        while hit := [b for b in occupied if b.overlaps(room.moved(0, y))]:
+            y = max(b.y1 for b in hit) - room.y0 + 0.1 if is_up else min(b.y0 for b in hit) - room.y1 - 0.1
+        return y
+
+    def _draw_column(self, column: Column) -> None:
+        x, top, bottom = column.x, column.top, column.bottom
+        self._add(*bodies(column, self.spacing.body))
+        if column.bodies:
+            return
+        index = self.at[column.name]
+        bare = [side for side in (-1, 1) if not self.gaps[index + (side > 0)]]
+        if (
+            bare
+            and not column.faces
+            and not column.is_flat
+            and any(m.style == "motion" for m in column.marks)
+        ):
+            self._add(Placed("ground", column.name, wall(bottom, top, bare[0], x)))
+        else:
+            width = LINE if column.is_electrical else BOLD if column.kind == "rotation" else 1.4
+            self._wire(column.name, (x, bottom), (x, top), width=width)
+        joints = len(column.levels) + len(column.hanging) + column.has_lead_up
+        if column.is_flat or (column.is_electrical and joints > 2):  # noqa: PLR2004
+            levels = dict.fromkeys(column.levels or [0.0]) if column.is_electrical else [0.0]
+            self._add(Placed("node", column.name, tuple(circle(x, y, DOT, fill="#000000") for y in levels)))
+
+    def _draw_gap(self, g: int) -> None:
+        low, high = self.edges[g]
+        for level in self.gaps[g]:
+            if isinstance(level.what, _SideArrow):
+                self._draw_side_arrow(level.what, g, level.y)
+                continue
+            cell = level.what
+            first, last = low, high
+            if cell.is_member:
+                left, right = (self._column_of(side) for side in (cell.left, cell.right))
+                first = left.x + left.half if left else low
+                last = right.x - right.half if right else high
+                cell.margins = (low - first, last - high)
+            self._add(*(p.moved(first, level.y) for p in build(cell, self.spacing, last - first).placed))
+            for side, edge, sign in ((cell.left, first, 1), (cell.right, last, -1)):
+                for end, offset in zip(side, cell.offsets(side), strict=True):
+                    if end.node:
+                        column = self.columns[self.at[end.node]]
+                        face, y = column.x + sign * column.half, level.y + offset
+                        self._wire(cell.part.name, (edge, y), (face, y), width=_wire_width(cell, end))
+        self._join_walls(g)
+
+    def _column_of(self, side: Sequence[End]) -> Column | None:
+        return next((self.columns[self.at[e.node]] for e in side if e.node), None)
+
+    def _join_walls(self, g: int) -> None:
+        """Make one wall of those in an outer gap."""
+        low, high = self.edges[g]
+        if 0 < g < len(self.columns):
+            return
+        inside = [
+            i for i in self.items if i.kind == "ground" and not i.name and low - HATCH - 1 <= i.box.x0 <= high
+        ]
+        walls = [i for i in inside if i.box.height > i.box.width]
+        if len(walls) < 2 or len({round(w.box.x0, 3) for w in walls}) > 1:  # noqa: PLR2004
+            return
+        box, side = union(w.box for w in walls), -1 if g == 0 else 1
+        for one in walls:
+            self.items.remove(one)
+        self._add(Placed("ground", "", wall(box.y0, box.y1, side, box.x1 if side < 0 else box.x0)))
+
+    def _draw_side_arrow(self, shown: _SideArrow, gap: int, y: float) -> None:
+        column, (low, high) = self.columns[shown.column], self.edges[gap]
+        if gap > shown.column:
+            start = column.x + max(column.half, 1.0)
+            ends = (start, max(start + SIDE_ARROW, high))
+        else:
+            end = column.x - max(column.half, 0.5)
+            ends = (min(low, end - SIDE_ARROW), end)
+        kind, name, _ = shown.mark.labels[0]
+        self._add(Placed(kind, name, arrow((ends[0], y), (ends[1], y), BOLD)))
+        texts = [(k, n, t) for k, n, label in shown.mark.labels if (t := text(label))]
+        x = sum(ends) / 2 - (sum(t.width + 4 for *_, t in texts) - 4) / 2
+        for i, (each, own, t) in enumerate(texts):
+            self._add(Placed(each if i else "label", own, (), (t.moved(x, y + 3.5 + t.depth),)))
+            x += t.width + 4
+
+    # --------------------------------------------------------------------------------- below and above it
+
+    def _draw_below(self) -> None:
+        for column in reversed(self.columns):
+            for side, part in column.faces.items():
+                self._draw_face(part, column, side)
+            self._draw_drops(column)
+        for column in reversed(self.columns):
+            for part in column.stubs:
+                self._draw_stub(part, column)
+
+    def _draw_face(self, part: DrawnPart, column: Column, side: int) -> None:
+        x = column.x + side * column.half
+        low, high = column.bottom, column.top - column.crown
+        if part.type_name == "slider":
+            rollers = (circle(x + side * 2.0, low + 4, 2.0), circle(x + side * 2.0, high - 4, 2.0))
+            shoe = (
+                ()
+                if column.bodies or side != next(iter(column.faces))
+                else (rectangle(column.x - column.half, low, column.x + column.half, high),)
+            )
+            strokes = (*shoe, *rollers, *wall(low, high, side, x + side * 4.0))
+        else:
+            strokes = wall(low, high, side, x)
+        self._add(Placed(part.kind, part.name, strokes))
+        self._add(*tags_below(part, x + side * 5, low - 5))
+
+    def _draw_drops(self, column: Column) -> None:
+        """Draw supports and what hangs, side by side."""
+        widths = [*map(support_width, column.supports), *map(hanging_width, column.hanging)]
+        x, bottom = column.x - sum(widths) / 2 - (LANE if column.stubs and widths else 0.0), column.bottom
+        feet = [column.x]
+        for part, width in zip((*column.supports, *column.hanging), widths, strict=True):
+            if part in column.supports:
+                foot = x + width / 2
+                self._add(
+                    Placed(part.kind, part.name, tuple(s.moved(foot, bottom) for s in part.symbol.hold()))
+                )
+                self._add(
+                    *tags_below(
+                        part, foot, around(p for s in part.symbol.hold() for p in s.points).y0 + bottom
+                    )
+                )
+            else:
+                foot = x + 2 + hanging_reach(part)[0]
+                self._draw_hanging(part, column, foot)
+            feet.append(foot)
+            x += width
+        if max(feet) - min(feet) > 2 * column.half:
+            width = LINE if column.is_electrical else 1.4
+            self._wire(column.name, (min(feet), bottom), (max(feet), bottom), width=width)
+
+    def _draw_hanging(self, part: DrawnPart, column: Column, x: float) -> None:
+        """Draw a part from a node down to the ground, or to another component of the node."""
+        length, top = hanging_length(part), column.bottom - 3
+        symbol = Placed(part.kind, part.name, part.symbol.draw(length)).turned()
+        is_upside_down = not part.ends[0].node
+        if is_upside_down:
+            flipped = tuple(
+                replace(s, points=tuple((a, -length - b) for a, b in s.points)) for s in symbol.strokes
+            )
+            symbol = replace(symbol, strokes=flipped)
+        self._add(symbol.moved(x, top))
+        self._wire(part.name, (x, column.bottom), (x, top))
+        end = top - length
+        if len(part.ends) > 1 and all(e.node for e in part.ends):
+            self._add(Placed("node", part.name, (circle(x, end - DOT, DOT),)))
+        else:
+            base = earth(x, end) if column.is_electrical else floor(x - 6, x + 6, end)
+            self._add(Placed("ground", "", base))
+        blocks = [(*of, union(t.box for t in of[-1])) for of in hanging_texts(part) if of[-1]]
+        y = (top + end) / 2 + sum(b.height + 3 for *_, b in blocks) / 2
+        for i, (kind, name, block, box) in enumerate(blocks):
+            y -= box.height + 1.5
+            start = x + hanging_reach(part)[1] + SPACE
+            if i:
+                self._add(Placed(kind, name, arrow((start + 1, y + box.height), (start + 1, y - 0.5), THIN)))
+                start += 6
+            self._add(Placed("label", name, (), tuple(t.moved(start - box.x0, y - box.y0) for t in block)))
+            y -= 1.5
+
+    def _draw_stub(self, part: DrawnPart, column: Column) -> None:
+        """Draw what joins a node in the middle to the ground: down, then to the right."""
+        ground = next(e for e in part.ends if not e.node)
+        node = next(e for e in part.ends if e.node)
+        cell = SymbolCell(part, 0, [node], [ground], is_reversed=part.ends[0] is ground, is_label_below=True)
+        built = build(cell, self.spacing)
+        drops = sum(map(support_width, column.supports)) + sum(map(hanging_width, column.hanging))
+        x = column.x + drops / 2 - (LANE / 2 if drops else 0.0)
+        room = Extent(x - 1, built.below - SPACE, x + 2 + built.width, built.above + SPACE)
+        y = self._free(room, column.bottom - 1, is_up=False)
+        self._add(*(p.moved(x + 2, y) for p in built.placed))
+        route = ((column.x, column.bottom), (x, column.bottom), (x, y), (x + 2, y))
+        self._wire(part.name, *route, width=_wire_width(cell, node))
+
+    def _draw_bridges(self) -> None:
+        """Draw what joins nodes that are not neighbours above everything between them, short ones first."""
+
+        def spanned(cell: SymbolCell) -> tuple[int, int]:
+            ends = [self.at[e.node] for e in (*cell.left, *cell.right) if e.node]
+            return min(ends), max(ends)
+
+        for cell in sorted(self.bridges, key=lambda c: spanned(c)[1] - spanned(c)[0]):
+            built = build(cell, self.spacing)
+            start = (sum(self.edges[cell.gap]) - built.width) / 2
+            between = self.columns[spanned(cell)[0] : spanned(cell)[1] + 1]
+            ends = (min(between[0].lead_x, start), max(between[-1].lead_x, start + built.width))
+            room = Extent(ends[0] - 2, built.below - SPACE, ends[1] + 2, built.above + SPACE)
+            y = self._free(
+                room, max(c.top for c in between) + (18 if any(c.upright for c in between) else 3), is_up=True
+            )
+            self._add(*(p.moved(start, y) for p in built.placed))
+            self.occupied.append(room.moved(0, y))
+            for side, edge in ((cell.left, start), (cell.right, start + built.width)):
+                for end, offset in zip(side, cell.offsets(side), strict=True):
+                    if end.node:
+                        column = self.columns[self.at[end.node]]
+                        x, level = column.lead_x, y + offset
+                        self.leads.append(Extent(x - 1, column.top, x + 1, level))
+                        route = ((edge, level), (x, level), (x, column.top), (column.x, column.top))
+                        self._wire(cell.part.name, *route, width=_wire_width(cell, end))
+
+    def _draw_above(self) -> None:
+        for column in reversed(self.columns):
+            x = column.first_mark
+            for mark in column.upright:
+                self._add(*upright_mark(mark, x, column.top))
+                x += upright_width(mark)
+        for span in self.network.spans:
+            self._draw_span(span)
+        flat = [(c, m, c.lead_x) for c in reversed(self.columns) for m in c.marks if m not in c.upright]
+        rooms = [Extent(x - 1, -2.5, x + flat_width(m), 11.0) for _, m, x in flat]
+        # Datums stand at one height where that is possible.
+        level = max(
+            (
+                self._free(r, c.top + 3, is_up=True, leads=self.leads)
+                for (c, *_), r in zip(flat, rooms, strict=True)
+            ),
+            default=0.0,
+        )
+        for (column, mark, x), room in zip(flat, rooms, strict=True):
+            y = self._free(room, level - 1.0, is_up=True, leads=self.leads)
+            self._wire(mark.labels[0][1], (column.x, column.top), (x, column.top), (x, y), width=THIN)
+            self._add(*flat_mark(mark, x, y))
+            self.occupied.append(room.moved(0, y))
+
+    def _draw_span(self, span: Distance) -> None:
+        """Draw a distance between two nodes, with its arrow at the first."""
+        a, b = (self.columns[self.at[n]] for n in span.nodes)
+        shown = text(span.label)
+        left, right = sorted((a.lead_x, b.lead_x))
+        wide = max(right - left, shown.width + 4 if shown else 0.0)
+        height = 5.0 + (shown.height + shown.depth if shown else 0.0)
+        room = Extent((left + right - wide) / 2 - 1, -3.0, (left + right + wide) / 2 + 1, height)
+        y = self._free(room, max(a.top, b.top) + 4, is_up=True)
+        for column in (a, b):
+            self._wire(
+                span.name,
+                (column.x, column.top),
+                (column.lead_x, column.top),
+                (column.lead_x, y + 3),
+                width=THIN,
+            )
+        self._add(Placed("output", span.name, arrow((b.lead_x, y), (a.lead_x, y), LINE)))
+        self.occupied.append(room.moved(0, y))
+        if shown:
+            between = sorted(c.lead_x for c in self.columns if left <= c.lead_x <= right)
+            # Leads go up between them.
+            start, end = max(pairwise(between), key=lambda pair: pair[1] - pair[0])
+            start, end = (start, end) if end - start > shown.width + 2 else (left, right)
+            label = shown.moved((start + end - shown.width) / 2, y + 3 + shown.depth)
+            self._add(Placed("label", span.name, (), (label,)))
+
+
+def _wire_width(cell: SymbolCell, end: End) -> float:
+    if cell.is_member and cell.part.type_name != "string":
+        return BLADE
+    return BOLD if end.domain == "rotation" else LINE

@@ -1,0 +1,440 @@
+"""What is to be drawn of a model: parts at nodes, grouped in networks, and marks of inputs and outputs.
+
+Input: a resolved model. Output: a :class:`Scheme`, which knows nothing of places.
+
+    spring between x and ground, F at x, output s*x    a spring with the ends x and ground, Mark("force", x),
+                                                       Mark("shift", x) with the output's label
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Final, Literal
+
+from symflex.drawing.symbols import (
+    SYMBOLS,
+    TRANSFORMERS,
+    ElementSymbol,
+    box,
+    effort_between,
+    motion_between,
+    symbol_of,
+    torque_between,
+)
+from symflex.expressions import (
+    Attribute,
+    Call,
+    Name,
+    Negative,
+    Number,
+    Power,
+    Product,
+    Quotient,
+    Sum,
+    fold,
+    names,
+)
+from symflex.library.elements import COMPONENT_DOMAIN, COMPONENTS, LineElement
+from symflex.model.model import INPUT_KINDS
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.drawing.lettering import Labels
+    from symflex.expressions import Expression
+    from symflex.model import Input, Model, NodeReference, Output, PlacedElement
+
+GROUND: Final = ""
+Domains = Mapping[str, str]
+Style = Literal["shift", "lift", "turn", "probe", "force", "push", "torque", "motion", "raise", "twist"]
+
+
+@dataclass(frozen=True, slots=True)
+class End:
+    """Where a part is attached."""
+
+    node: str  # empty for the reference
+    domain: str  # in which it acts there: ``translation``, ``rotation`` or ``electrical``
+    component: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class DrawnPart:
+    """An element, or an input between two nodes, as a symbol with ends."""
+
+    kind: str  # ``element`` or ``input``
+    name: str
+    type_name: str
+    symbol: ElementSymbol
+    ends: tuple[End, ...]
+    label: str  # mathematics
+    lines: tuple[str, ...] = ()  # values, where they are asked for
+    tags: tuple[tuple[str, str, str], ...] = ()  # what shows or reads what it carries, as of a mark
+    points: tuple[tuple[float, str, str], ...] = ()  # share of its length, output there and its label
+
+    @property
+    def nodes(self) -> tuple[str, ...]:
+        """The nodes it is attached to, without the reference."""
+        return tuple(dict.fromkeys(e.node for e in self.ends if e.node))
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """An input or the outputs at a node, drawn as an arrow."""
+
+    style: Style
+    node: str
+    # Kind (``input``, ``output``, ``element``, ``reading``), name and mathematics.
+    labels: tuple[tuple[str, str, str], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Distance:
+    """An output that is the difference of two nodes of one network."""
+
+    nodes: tuple[str, str]
+    name: str
+    label: str
+
+
+@dataclass(frozen=True, slots=True)
+class DrawnNetwork:
+    """Parts that hang together, and what is marked at their nodes."""
+
+    nodes: tuple[str, ...]
+    parts: tuple[DrawnPart, ...]
+    marks: tuple[Mark, ...]
+    spans: tuple[Distance, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Scheme:
+    """All that is drawn of nodes and elements; ``others`` are outputs of another kind."""
+
+    networks: tuple[DrawnNetwork, ...]
+    domains: Domains  # of nodes: ``translation``, ``rotation``, ``electrical``, ``planar``, ``plane``
+    others: tuple[str, ...]
+
+
+def scheme_of(model: Model, labels: Labels) -> Scheme:
+    """Return what is drawn of a model's elements, nodes, inputs and outputs."""
+    domains = {n.name: n.domain for n in model.nodes}
+    found = _Collected([_part(use, labels, domains) for use in model.elements])
+    for one in model.inputs:
+        if len(one.nodes) > 1 or (one.nodes and INPUT_KINDS[one.kind].domain == "electrical"):
+            found.parts.append(_input_part(one, labels))
+        elif one.nodes:
+            found.marks.append(_input_mark(one, labels, domains))
+    signals = frozenset(x.name for x in model.signals)
+    for out in model.outputs:
+        found.show(model, out, labels.end(out.name, out.latex), domains, signals)
+    seen = [Mark(style, node, tuple(shown)) for (style, node), shown in found.seen.items()]
+    networks = _networks(tuple(domains), found.parts, [*found.marks, *seen], found.spans)
+    together = {node: i for i, net in enumerate(networks) for node in net.nodes}
+    apart = [s.name for s in found.spans if together[s.nodes[0]] != together[s.nodes[1]]]
+    return Scheme(networks, domains, (*found.others, *apart))
+
+
+def with_readings(scheme: Scheme, readings: Sequence[str], labels: Labels) -> Scheme:
+    """Return a scheme with marks at the nodes and elements that signals read."""
+    networks = list(scheme.networks)
+    for name in readings:
+        owner, _, component = name.partition(".")
+        variable = Attribute(owner, component) if component else Name(owner)
+        for i, net in enumerate(networks):
+            if owner in net.nodes:
+                networks[i] = _with_reading(
+                    net, name, _node(variable, scheme.domains), scheme.domains, labels
+                )
+            elif component and any(p.name == owner for p in net.parts):
+                shown = ("reading", name, labels.name(name))
+                parts = [replace(p, tags=(*p.tags, shown)) if p.name == owner else p for p in net.parts]
+                networks[i] = replace(net, parts=tuple(parts))
+    return replace(scheme, networks=tuple(networks))
+
+
+def _with_reading(
+    net: DrawnNetwork, name: str, end: End | None, domains: Domains, labels: Labels
+) -> DrawnNetwork:
+    if end is None:
+        return net
+    style, shown = _style(end, domains), ("reading", name, labels.name(name))
+    marks = list(net.marks)
+    for i, mark in enumerate(marks):
+        if (mark.style, mark.node) == (style, end.node):
+            if all(label != shown[2] for *_, label in mark.labels):
+                marks[i] = replace(mark, labels=(*mark.labels, shown))
+            return replace(net, marks=tuple(marks))
+    return replace(net, marks=(*marks, Mark(style, end.node, (shown,))))
+
+
+@dataclass
+class _Collected:
+    """What is found of a model, as its outputs are looked at one by one."""
+
+    parts: list[DrawnPart]
+    marks: list[Mark] = field(default_factory=list)
+    spans: list[Distance] = field(default_factory=list)
+    seen: dict[tuple[Style, str], list[tuple[str, str, str]]] = field(default_factory=dict)
+    others: list[str] = field(default_factory=list)
+
+    def show(self, model: Model, out: Output, label: str, domains: Domains, signals: frozenset[str]) -> None:
+        """Mark an output where it is, or note that it is at no one place."""
+        core = without_s(out.expression)
+        of_signals = signals & {n.name for n in names(core) if isinstance(n, Name)}
+        end = None if of_signals else _node(core, domains)
+        pair = None if of_signals else _difference(core, domains)
+        place = _place(out.expression)
+        if end:
+            self.seen.setdefault((_style(end, domains), end.node), []).append(("output", out.name, label))
+        elif pair:
+            self.spans.append(Distance(pair, out.name, label))
+        elif isinstance(core, Attribute) and self._tag(core.owner, out.name, label):
+            return
+        elif place and (index := self._index(place.name.partition(".")[0])) is not None:
+            share = _share(model, place)
+            points = (*self.parts[index].points, (share, out.name, label))
+            self.parts[index] = replace(self.parts[index], points=tuple(sorted(points)))
+        else:
+            self.others.append(out.name)
+
+    def _index(self, name: str) -> int | None:
+        return next((i for i, p in enumerate(self.parts) if p.name == name), None)
+
+    def _tag(self, owner: str, name: str, label: str) -> bool:
+        """Write an output at the element or input whose force, torque or current it is."""
+        for i, mark in enumerate(self.marks):
+            if mark.labels[0][1] == owner:
+                self.marks[i] = replace(mark, labels=(*mark.labels, ("output", name, label)))
+                return True
+        index = self._index(owner)
+        if index is not None:
+            tags = (*self.parts[index].tags, ("output", name, label))
+            self.parts[index] = replace(self.parts[index], tags=tags)
+        return index is not None
+
+
+def _part(use: PlacedElement, labels: Labels, domains: Domains) -> DrawnPart:
+    by_port = dict(use.domains)
+    ends = tuple(_end(r, by_port[port], domains) for port, found in use.nodes for r in found)
+    kind = use.element.type_name
+    symbol = symbol_of(kind)
+    if kind == "transformer":
+        pair = (ends[0].domain, ends[1].domain)
+        symbol = ElementSymbol("coupling", TRANSFORMERS.get(pair, box), 34.0)
+    label, lines = _label(use, labels)
+    return DrawnPart("element", use.name, kind, symbol, ends, label, lines)
+
+
+def _end(reference: NodeReference, domain: str, domains: Domains) -> End:
+    if reference.is_ground:
+        return End(GROUND, "translation" if domain in COMPONENTS else domain)
+    found = domains[reference.node]
+    component = reference.component
+    if domain in COMPONENTS:
+        return End(reference.node, "translation", component)
+    if found in COMPONENTS and not component:
+        component = "theta" if domain == "rotation" else "y"
+    return End(reference.node, COMPONENT_DOMAIN[component] if component else domain, component)
+
+
+STIFF: Final[dict[str, tuple[tuple[str, ...], str]]] = {
+    "beam": (("E", "I"), "A"),
+    "frame": (("E", "I"), "A"),
+    "rod": (("E", "A"), "A"),
+    "shaft": (("G", "J"), "J"),
+    "string": (("N",), "A"),
+}
+"""What makes a member stiff, and the measure of its section by which it is heavy."""
+LABEL_LENGTH: Final = 4
+"""Parameters of an element that are written at it; of more, its name is."""
+
+
+def _label(use: PlacedElement, labels: Labels) -> tuple[str, tuple[str, ...]]:
+    """Return what is written at an element: its parameters that are not nought, and their values."""
+    by_port = dict(use.domains)
+    defaults = {p.name: p.default for p in use.element.parameters}
+    given = [
+        (name, e)
+        for name, e in use.values
+        if not (isinstance(e, Number) and defaults[name] is not None and str(e.value) == defaults[name])
+    ]
+    if use.element.is_source:
+        value = use.values[0][1]
+        whole = value.operand if isinstance(value, Negative) else value
+        return labels.expression(value) if isinstance(whole, Name) else labels.name(use.name), ()
+    if isinstance(use.element, LineElement):
+        by_name = dict(given)
+        first, second = STIFF.get(use.element.type_name, ((), ""))
+        wanted = (first, ("rho", second), ("eta",), ("l",)) if first else ()
+        groups = [
+            [labels.quantity(by_name[n], "") for n in g] for g in wanted if all(n in by_name for n in g)
+        ]
+        is_plain = all(isinstance(by_name[n], Name) for g in wanted for n in g if n in by_name)
+        shown = (
+            ["".join(f"{{{one}}}" for one in g) for g in groups]
+            if groups and is_plain
+            else [labels.name(use.name)]
+        )
+        return r",\,".join(shown), tuple(labels.values([e for _, e in given]))
+    shown = [labels.quantity(e, use.element.unit_of(n, by_port)) for n, e in given if n != "angle"]
+    seen = list(dict.fromkeys(shown))
+    if not 0 < len(seen) <= LABEL_LENGTH:
+        seen = [labels.name(use.name)]
+    return r",\,".join(seen), tuple(labels.values([e for _, e in given]))
+
+
+def _input_part(one: Input, labels: Labels) -> DrawnPart:
+    law = INPUT_KINDS[one.kind]
+    ends = tuple(End("" if r.is_ground else r.node, law.domain, r.component) for r in one.nodes)
+    ends = ends if len(ends) > 1 else (*ends, End(GROUND, law.domain))
+    if one.kind == "voltage":
+        symbol = SYMBOLS["voltage_source"]
+    elif one.kind == "current":
+        symbol = SYMBOLS["current_source"]
+    elif law.is_imposed:
+        symbol = ElementSymbol("branch", motion_between, 26.0)
+    else:
+        draw = torque_between if law.domain == "rotation" else effort_between
+        symbol = ElementSymbol("branch", draw, 30.0)
+    return DrawnPart("input", one.name, one.kind, symbol, ends, labels.end(one.name, one.latex))
+
+
+def _input_mark(one: Input, labels: Labels, domains: Domains) -> Mark:
+    (reference,) = one.nodes
+    law = INPUT_KINDS[one.kind]
+    is_flat = domains[reference.node] in COMPONENTS and reference.component != "x"
+    style: Style
+    if law.is_imposed:
+        style = "twist" if law.domain == "rotation" else "raise" if is_flat else "motion"
+    else:
+        style = "torque" if law.domain == "rotation" else "push" if is_flat else "force"
+    return Mark(style, reference.node, (("input", one.name, labels.end(one.name, one.latex)),))
+
+
+def without_s(expression: Expression) -> Expression:
+    """Return what is differentiated in time: ``x`` of ``s^2*x``."""
+    if not isinstance(expression, Product):
+        return expression
+    rest = [f for f in expression.factors if not _is_power_of_s(f)]
+    return rest[0] if len(rest) == 1 else expression
+
+
+def _is_power_of_s(factor: Expression) -> bool:
+    match factor:
+        case Name(name="s"):
+            return True
+        case Power(base=Name(name="s"), exponent=Number()):
+            return True
+        case _:
+            return False
+
+
+def _node(expression: Expression, domains: Domains) -> End | None:
+    match expression:
+        case Name(name=name) if name in domains:
+            kind = domains[name]
+            return End(name, "translation", "y") if kind in COMPONENTS else End(name, kind)
+        case Attribute(owner=owner, name=component) if owner in domains and component in COMPONENT_DOMAIN:
+            return End(owner, COMPONENT_DOMAIN[component], component)
+        case _:
+            return None
+
+
+def _style(end: End, domains: Domains) -> Style:
+    if end.domain == "electrical":
+        return "probe"
+    if end.domain == "rotation":
+        return "turn"
+    return "lift" if end.component == "y" and domains[end.node] in COMPONENTS else "shift"
+
+
+def _difference(expression: Expression, domains: Domains) -> tuple[str, str] | None:
+    match expression:
+        case Sum(terms=(first, Negative(operand=second))):
+            a, b = _node(first, domains), _node(second, domains)
+            is_plane = a is not None and domains[a.node] == "plane"
+            if (
+                a
+                and b
+                and not is_plane
+                and a.domain == b.domain
+                and a.node != b.node
+                and a.component == b.component
+            ):
+                return a.node, b.node
+    return None
+
+
+def _place(expression: Expression) -> Call | None:
+    """Return the one value along x that an expression is, but for factors."""
+    found = [n for n in names(expression) if isinstance(n, Call) and "." in n.name]
+    varying = [n for n in names(expression) if isinstance(n, Attribute)]
+    inner: Expression = expression
+    while isinstance(inner, Negative | Quotient | Product):
+        inner = next((c for c in inner.children if any(n in found for n in names(c))), Name("s"))
+    return found[0] if len(found) == 1 and not varying and inner == found[0] else None
+
+
+def _share(model: Model, place: Call) -> float:
+    """Return where a point lies along an element, as a share of its length; a half where that is unknown."""
+    use = next(e for e in model.elements if e.name == place.name.partition(".")[0])
+    length = dict(use.values)["l"]
+    known = {p.name: float(p.value.nearly) for p in model.parameters if p.value}
+    at, whole = evaluate(place.argument, known), evaluate(length, known)
+    if at is None or not whole:
+        return 0.5
+    return min(1.0, max(0.0, at / whole))
+
+
+def evaluate(expression: Expression, known: Mapping[str, float]) -> float | None:
+    """Return the value of an expression of parameters, None where one is unknown."""
+
+    def power(base: float, exponent: Expression) -> float:
+        return float(base ** float(evaluate(exponent, known) or 0))
+
+    def call(node: Call, argument: float) -> float:
+        return float(getattr(math, node.name)(argument))
+
+    try:
+        return fold(
+            expression,
+            number=float,
+            name=lambda n: {"pi": math.pi, **known}[n],
+            power=power,
+            call=call,
+        )
+    except (KeyError, ValueError, ZeroDivisionError, OverflowError, AttributeError):
+        return None
+
+
+def _networks(
+    nodes: Sequence[str], parts: Sequence[DrawnPart], marks: Sequence[Mark], spans: Sequence[Distance]
+) -> tuple[DrawnNetwork, ...]:
+    """Return what hangs together; the reference joins nothing."""
+    home = {node: node for node in nodes}
+
+    def root(node: str) -> str:
+        while home[node] != node:
+            node = home[node]
+        return node
+
+    for part in parts:
+        for other in part.nodes[1:]:
+            home[root(other)] = root(part.nodes[0])
+    roots = list(dict.fromkeys(root(n) for n in nodes))
+    found = []
+    for one in roots:
+        own = [n for n in nodes if root(n) == one]
+        found.append(
+            DrawnNetwork(
+                tuple(own),
+                tuple(p for p in parts if p.nodes and root(p.nodes[0]) == one),
+                tuple(m for m in marks if root(m.node) == one),
+                tuple(s for s in spans if all(root(n) == one for n in s.nodes)),
+            )
+        )
+    loose = tuple(p for p in parts if not p.nodes)
+    return (*found, DrawnNetwork((), loose, (), ())) if loose else tuple(found)

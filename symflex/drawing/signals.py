@@ -1,0 +1,226 @@
+"""Signals as a graph: what an expression is made of becomes sources, sums and boxes joined by wires.
+
+Input: a model and the outputs that are at no one place. Output: a :class:`SignalGraph`.
+
+    e = "k*(r - K*x)"     input r, reading x  ->  box K  ->  sum (+, -)  ->  box k  ->  signal e
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final, Literal
+
+from symflex.expressions import (
+    Attribute,
+    Call,
+    Expression,
+    Name,
+    Negative,
+    Product,
+    Quotient,
+    Sum,
+    names,
+    negative,
+    number,
+    product_of,
+    quotient,
+    sum_of,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.drawing.lettering import Labels
+    from symflex.model import Model, PlacedBlock
+
+Kind = Literal["input", "reading", "gain", "block", "sum", "signal", "output", "drive"]
+MOST_AT_SUM: Final = 3
+"""Arrows that meet at a sum: from the left, from below, from above."""
+Values = Mapping[str, Expression]
+_S: Final = Name("s")
+
+
+def _lag(time: Expression) -> Expression:
+    return sum_of([number(1), product_of([time, _S])])
+
+
+FORMULAS: Final[dict[str, Callable[[Values], Expression]]] = {
+    "integrator": lambda v: quotient(v["k"], _S),
+    "lag": lambda v: quotient(v["k"], _lag(v["T"])),
+    "lead_lag": lambda v: quotient(product_of([v["k"], _lag(v["T_1"])]), _lag(v["T_2"])),
+    "pid": lambda v: sum_of(
+        [v["k_p"], quotient(v["k_i"], _S), quotient(product_of([v["k_d"], _S]), _lag(v["T_f"]))]
+    ),
+    "delay": lambda v: Call("exp", negative(product_of([_S, v["T"]]))),
+    "tf": lambda v: quotient(v["num"], v["den"]),
+}
+"""Transfer functions of blocks that are short enough to be printed in them."""
+
+
+@dataclass
+class SignalNode:
+    """A source, box, sum, named signal or end of the graph."""
+
+    kind: Kind
+    name: str
+    label: str = ""  # mathematics
+    before: list[tuple[int, bool]] = field(
+        default_factory=list
+    )  # what leads to it, and whether it is subtracted
+    after: list[int] = field(default_factory=list)
+
+
+@dataclass
+class SignalGraph:
+    """All signals of a model; nodes are named by their places in ``nodes``."""
+
+    model: Model
+    labels: Labels
+    nodes: list[SignalNode] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.signals = {x.name: x.expression for x in self.model.signals}
+        self.blocks = {b.name: b for b in self.model.blocks}
+        self.inputs = {i.name: i.latex for i in self.model.inputs}
+        constants = {p.name for p in self.model.parameters} | {d.name for d in self.model.definitions}
+        self.constants = {*constants, *self.blocks, "s", "pi"}
+        self.known: dict[tuple[str, str], int] = {}
+
+    def add_all(self, outputs: Sequence[str], free: Sequence[str]) -> None:
+        """Add every signal, what signals drive, and some outputs and inputs."""
+        for name in self.signals:
+            self._signal(name)
+        for use in self.model.elements:
+            for parameter in use.element.parameters:
+                value = dict(use.values).get(parameter.name)
+                if parameter.signal and value is not None and self._is_diagram(value):
+                    self._end("drive", use.name, self.labels.name(use.name), value)
+        for name in free:
+            self._once("input", name, self.labels.end(name, self.inputs[name]))
+        for out in self.model.outputs:
+            if out.name in outputs:
+                self._end("output", out.name, self.labels.end(out.name, out.latex), out.expression)
+
+    def _is_diagram(self, value: Expression) -> bool:
+        """Tell whether the value of a source is more than a name, which is written at the source."""
+        whole = value.operand if isinstance(value, Negative) else value
+        return not isinstance(whole, Name) and not self._is_constant(value)
+
+    def readings(self) -> list[str]:
+        """Return the names of nodes and quantities that are read."""
+        return [n.name for n in self.nodes if n.kind == "reading"]
+
+    def _end(self, kind: Kind, name: str, label: str, value: Expression) -> None:
+        origin, is_minus = self._built(value)
+        if is_minus:
+            origin = self._box("gain", "", "-1", origin)
+        self._join(origin, self._new(kind, name, label), is_minus=False)
+
+    def _new(self, kind: Kind, name: str, label: str) -> int:
+        self.nodes.append(SignalNode(kind, name, label))
+        return len(self.nodes) - 1
+
+    def _join(self, one: int, other: int, *, is_minus: bool) -> None:
+        self.nodes[one].after.append(other)
+        self.nodes[other].before.append((one, is_minus))
+
+    def _box(self, kind: Kind, name: str, label: str, origin: int) -> int:
+        box = self._new(kind, name, label)
+        self._join(origin, box, is_minus=False)
+        return box
+
+    def _is_constant(self, expression: Expression) -> bool:
+        return all(isinstance(n, Name) and n.name in self.constants for n in names(expression))
+
+    def _once(self, kind: Kind, name: str, label: str) -> int:
+        key = (kind, name)
+        if key not in self.known:
+            self.known[key] = self._new(kind, name, label)
+        return self.known[key]
+
+    def _signal(self, name: str) -> int:
+        if ("signal", name) in self.known:
+            return self.known["signal", name]
+        index = self._once("signal", name, self.labels.name(name))
+        origin, is_minus = self._built(self.signals[name])
+        if is_minus:
+            origin = self._box("gain", "", "-1", origin)
+        self._join(origin, index, is_minus=False)
+        return index
+
+    def _built(self, expression: Expression) -> tuple[int, bool]:
+        """Return the node whose signal an expression is, and whether it is minus that."""
+        match expression:
+            case Name(name=name) if name in self.signals:
+                return self._signal(name), False
+            case Name(name=name) if name in self.inputs:
+                return self._once("input", name, self.labels.end(name, self.inputs[name])), False
+            case Name(name=name):
+                return self._once("reading", name, self.labels.name(name)), False
+            case Attribute(owner=owner, name=name):
+                full = f"{owner}.{name}"
+                return self._once("reading", full, self.labels.name(full)), False
+            case Call():
+                label = self.labels.expression(expression)
+                return self._once("reading", label, label), False
+            case Negative(operand=inner):
+                origin, is_minus = self._built(inner)
+                return origin, not is_minus
+            case Sum(terms=terms):
+                return self._sum(list(terms)), False
+            case Product(factors=factors):
+                return self._product(list(factors), None)
+            case Quotient():
+                above, below = expression.children
+                return self._product(list(above.children) if isinstance(above, Product) else [above], below)
+            case _:
+                label = self.labels.expression(expression)
+                return self._once("reading", label, label), False
+
+    def _sum(self, terms: list[Expression]) -> int:
+        """Return a sum of what its terms lead to; one of many terms is made of several."""
+        origins = [self._built(t) for t in terms]
+        while True:
+            first, origins = origins[:MOST_AT_SUM], origins[MOST_AT_SUM:]
+            # The arrow from the left is added where there is one.
+            first.sort(key=lambda o: (o[1], self.nodes[o[0]].kind == "reading"))
+            place = self._new("sum", "", "")
+            for origin, is_minus in first:
+                self._join(origin, place, is_minus=is_minus)
+            if not origins:
+                return place
+            origins.insert(0, (place, False))
+
+    def _product(self, factors: list[Expression], below: Expression | None) -> tuple[int, bool]:
+        varying = [f for f in factors if not self._is_constant(f)]
+        if len(varying) != 1 or (below is not None and not self._is_constant(below)):
+            whole = product_of(factors) if below is None else quotient(product_of(factors), below)
+            label = self.labels.expression(whole)
+            return self._once("reading", label, label), False
+        origin, is_minus = self._built(varying[0])
+        constant = [f for f in factors if self._is_constant(f)]
+        own = [f for f in constant if isinstance(f, Name) and f.name in self.blocks]
+        rest = product_of([f for f in constant if f not in own])
+        gain = rest if below is None else quotient(rest, below)
+        if gain != number(1):
+            origin = self._box("gain", "", self.labels.expression(gain), origin)
+        for one in own:
+            assert isinstance(one, Name)
+            origin = self._box("block", one.name, self.labels.name(one.name), origin)
+        return origin, is_minus
+
+
+def formula(block: PlacedBlock) -> Expression | None:
+    """Return the transfer function of a block with its values, None where it has no short one.
+
+    Examples
+    --------
+    >>> from symflex.expressions import format_expression
+    >>> from symflex.library.blocks import BLOCKS
+    >>> from symflex.model import PlacedBlock
+    >>> format_expression(formula(PlacedBlock("G", BLOCKS["lag"], (("k", number(1)), ("T", Name("tau"))))))
+    '1/(1 + tau*s)'
+    """
+    written = FORMULAS.get(block.block.type_name) if block.block else None
+    return written(dict(block.values)) if written else None

@@ -1,0 +1,474 @@
+r"""The symbols of elements: one function each, registered in :data:`SYMBOLS` by the element's type.
+
+A symbol is drawn from its first end at the origin to its second at ``(length, 0)``; what stands at one node
+or holds one is drawn about that node's point. What a type has no entry for is drawn as a box with its name.
+
+    spring    0,0 --/\/\/\-- length,0
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import cos, pi, sin
+from typing import TYPE_CHECKING, Final, Literal
+
+from symflex.drawing.geometry import BOLD, FILLED, LINE, MEMBER, PAPER, PLAIN, THIN, Point, Stroke, around
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+Strokes = tuple[Stroke, ...]
+Role = Literal["branch", "body", "support", "source", "coupling", "member"]
+
+
+def line(*points: Point, width: float = LINE, is_dashed: bool = False) -> Stroke:
+    """Return a line through points."""
+    return Stroke(points, width, PLAIN, is_dashed)
+
+
+def outline(*points: Point, fill: str = PAPER, width: float = LINE) -> Stroke:
+    """Return a closed and filled outline."""
+    return Stroke((*points, points[0]), width, fill)
+
+
+def rectangle(x0: float, y0: float, x1: float, y1: float, fill: str = PAPER, width: float = LINE) -> Stroke:
+    """Return a rectangle."""
+    return outline((x0, y0), (x1, y0), (x1, y1), (x0, y1), fill=fill, width=width)
+
+
+def arc(x: float, y: float, r: float, first: float, last: float, width: float = LINE) -> Stroke:
+    """Return a part of a circle between two angles [degrees]."""
+    count = max(6, int(abs(last - first) / 12))
+    angles = [pi / 180 * (first + (last - first) * i / count) for i in range(count + 1)]
+    return Stroke(tuple((x + r * cos(a), y + r * sin(a)) for a in angles), width)
+
+
+def circle(x: float, y: float, r: float, fill: str = PAPER, width: float = LINE) -> Stroke:
+    """Return a circle."""
+    return Stroke(arc(x, y, r, 0, 360).points, width, fill)
+
+
+HEAD: Final = 4.2
+"""Length of an arrow's head [points]."""
+DOT: Final = 1.4
+"""Radius of the dot of a joint."""
+
+
+def head(tip: Point, direction: Point, size: float = HEAD, colour: str = "#000000") -> Stroke:
+    """Return the head of an arrow with its tip at a point."""
+    (x, y), (dx, dy) = tip, direction
+    back, side = (x - size * dx, y - size * dy), 0.34 * size
+    wings = ((back[0] - side * dy, back[1] + side * dx), (back[0] + side * dy, back[1] - side * dx))
+    return outline(tip, *wings, fill=colour, width=0.3)
+
+
+def arrow(start: Point, end: Point, width: float = LINE, *, is_double: bool = False) -> Strokes:
+    """Return a straight arrow along x or y."""
+    dx, dy = end[0] - start[0], end[1] - start[1]
+    size = (dx * dx + dy * dy) ** 0.5
+    d = (dx / size, dy / size)
+    tip, tail = (end[0] - 3 * d[0], end[1] - 3 * d[1]), (start[0] + 3 * d[0], start[1] + 3 * d[1])
+    strokes = (line(tail if is_double else start, tip, width=width), head(end, d))
+    return (*strokes, head(start, (-d[0], -d[1]))) if is_double else strokes
+
+
+def turning(x: float, y: float, r: float) -> Strokes:
+    """Return an arrow that turns counterclockwise about a point."""
+    return (
+        arc(x, y, r, -40, 190, BOLD * 0.7),
+        head((x + r * cos(pi * 1.12), y + r * sin(pi * 1.12)), (0.25, -0.97)),
+    )
+
+
+HATCH: Final = 3.2
+"""Depth of the hatching behind a surface that does not move."""
+
+
+def wall(y0: float, y1: float, side: int = -1, x: float = 0.0) -> Strokes:
+    """Return a surface along y with hatching behind it, to the left where ``side`` is -1."""
+    count = max(2, round((y1 - y0) / HATCH))
+    step = (y1 - y0) / count
+    lines = [
+        line((x, y0 + (i + 1) * step), (x + side * HATCH, y0 + i * step), width=THIN) for i in range(count)
+    ]
+    return (line((x, y0), (x, y1), width=1.0), *lines)
+
+
+def floor(x0: float, x1: float, y: float = 0.0) -> Strokes:
+    """Return a surface along x with hatching below it."""
+    count = max(2, round((x1 - x0) / HATCH))
+    step = (x1 - x0) / count
+    lines = [line((x0 + (i + 1) * step, y), (x0 + i * step, y - HATCH), width=THIN) for i in range(count)]
+    return (line((x0, y), (x1, y), width=1.0), *lines)
+
+
+def earth(x: float = 0.0, y: float = 0.0) -> Strokes:
+    """Return the sign of an electrical reference, hanging from a point."""
+    bars = tuple(line((x - w, y - 3 - 2 * i), (x + w, y - 3 - 2 * i)) for i, w in enumerate((4.5, 2.8, 1.2)))
+    return (line((x, y), (x, y - 3)), *bars)
+
+
+def spring(length: float) -> Strokes:
+    """Return a zigzag."""
+    lead, turns, size = 0.16 * length, 4, 3.6
+    step = (length - 2 * lead) / (2 * turns)
+    teeth = [(lead + (i + 0.5) * step, size if i % 2 == 0 else -size) for i in range(2 * turns)]
+    return (line((0, 0), (lead, 0), *teeth, (length - lead, 0), (length, 0)),)
+
+
+def damper(length: float) -> Strokes:
+    """Return a dashpot: a cup, a piston in it."""
+    a, b, size = 0.32 * length, 0.72 * length, 3.6
+    piston = 0.52 * length
+    return (
+        line((0, 0), (a, 0)),
+        line((b, size), (a, size), (a, -size), (b, -size)),
+        line((piston, 0), (length, 0)),
+        line((piston, 2.5), (piston, -2.5), width=1.2),
+    )
+
+
+def torsion_spring(length: float) -> Strokes:
+    """Return a coil on a shaft."""
+    lead, turns, size = 0.2 * length, 4, 4.0
+    pitch = (length - 2 * lead) / turns
+    points = []
+    for i in range(16 * turns + 1):
+        angle = 2 * pi * i / 16
+        points.append((lead + pitch * i / 16 + 1.6 * sin(angle) * 0.9, size * sin(angle)))
+    return (
+        line((0, 0), (lead, 0), width=BOLD),
+        line(*points),
+        line((length - lead, 0), (length, 0), width=BOLD),
+    )
+
+
+def rotary_damper(length: float) -> Strokes:
+    """Return a disc in a housing."""
+    a, b, size = 0.3 * length, 0.7 * length, 4.6
+    return (
+        line((0, 0), (a, 0), width=BOLD),
+        line((b, size), (a, size), (a, -size), (b, -size)),
+        line((0.55 * length, 0), (length, 0), width=BOLD),
+        line((0.55 * length, 3), (0.55 * length, -3), width=2.0),
+    )
+
+
+def resistor(length: float) -> Strokes:
+    """Return a resistor."""
+    a = 0.18 * length
+    return (line((0, 0), (a, 0)), rectangle(a, -2.8, length - a, 2.8), line((length - a, 0), (length, 0)))
+
+
+def inductor(length: float) -> Strokes:
+    """Return four half turns."""
+    a = 0.18 * length
+    r = (length - 2 * a) / 8
+    bumps = [arc(a + (2 * i + 1) * r, 0, r, 180, 0).points for i in range(4)]
+    return (
+        line((0, 0), *(p for bump in bumps for p in bump), (length, 0)),
+        line((a, -1.2), (a, 0), width=THIN),
+    )
+
+
+def capacitor(length: float) -> Strokes:
+    """Return two plates."""
+    middle, gap, size = length / 2, 1.5, 4.5
+    return (
+        line((0, 0), (middle - gap, 0)),
+        line((middle - gap, -size), (middle - gap, size), width=1.2),
+        line((middle + gap, -size), (middle + gap, size), width=1.2),
+        line((middle + gap, 0), (length, 0)),
+    )
+
+
+def voltage_source(length: float) -> Strokes:
+    """Return a circle on the line, plus at the first end."""
+    m, r = length / 2, 5.5
+    return (
+        line((0, 0), (length, 0)),
+        Stroke(circle(m, 0, r).points, LINE, PAPER),
+        line((m - r - 4.5, 4.0), (m - r - 1.5, 4.0), width=THIN),
+        line((m - r - 3.0, 2.5), (m - r - 3.0, 5.5), width=THIN),
+    )
+
+
+def current_source(length: float) -> Strokes:
+    """Return a circle with an arrow to the first end."""
+    m, r = length / 2, 5.5
+    return (line((0, 0), (length, 0)), circle(m, 0, r), *arrow((m + 4, 0), (m - 4, 0)))
+
+
+def effort_between(length: float) -> Strokes:
+    """Return two arrows, to the right into the second end and to the left into the first."""
+    return (*arrow((0.42 * length, 0), (0, 0), BOLD), *arrow((0.58 * length, 0), (length, 0), BOLD))
+
+
+def pull_between(length: float) -> Strokes:
+    """Return two arrows that pull the ends together."""
+    return (*arrow((0, 0), (0.44 * length, 0), BOLD), *arrow((length, 0), (0.56 * length, 0), BOLD))
+
+
+def torque_between(length: float) -> Strokes:
+    """Return a motor without a circuit: two arrows that turn the ends against each other."""
+    m = length / 2
+    return (
+        line((0, 0), (m - 5, 0), width=BOLD),
+        line((m + 5, 0), (length, 0), width=BOLD),
+        circle(m, 0, 5.0),
+        arc(m, 0, 2.8, -30, 200, THIN),
+        head((m - 2.8, -0.6), (0.2, -0.97), 2.8),
+    )
+
+
+def motion_between(length: float) -> Strokes:
+    """Return a distance that is given."""
+    return arrow((0, 0), (length, 0), LINE, is_double=True)
+
+
+def rigid_link(length: float) -> Strokes:
+    """Return a bar."""
+    return (line((0, 0), (length, 0), width=MEMBER),)
+
+
+def massless_beam(length: float) -> Strokes:
+    """Return a thin blade."""
+    return (rectangle(0, -1.0, length, 1.0),)
+
+
+def beam(length: float) -> Strokes:
+    """Return a slender member."""
+    return (rectangle(0, -2.2, length, 2.2, FILLED),)
+
+
+def rod(length: float) -> Strokes:
+    """Return a slender member with its axis."""
+    axis = Stroke(((-0.0, 0), (length, 0)), THIN, PLAIN, True)
+    return (rectangle(0, -2.2, length, 2.2, FILLED), axis)
+
+
+def shaft(length: float) -> Strokes:
+    """Return a slender member between collars."""
+    ends = (line((0, -3.4), (0, 3.4)), line((length, -3.4), (length, 3.4)))
+    return (rectangle(0, -2.2, length, 2.2, FILLED), Stroke(((0, 0), (length, 0)), THIN, PLAIN, True), *ends)
+
+
+def string(length: float) -> Strokes:
+    """Return a thin line between two eyes."""
+    return (line((0, 0), (length, 0), width=0.6), circle(1.2, 0, 1.2), circle(length - 1.2, 0, 1.2))
+
+
+def dots(length: float) -> Strokes:
+    """Return three dots on a line, for what is left out."""
+    m = length / 2
+    points = (circle(m + d, 0, 0.9, fill="#000000", width=0.3) for d in (-4, 0, 4))
+    return (line((0, 0), (m - 8, 0)), line((m + 8, 0), (length, 0)), *points)
+
+
+def pin_joint(length: float) -> Strokes:
+    """Return a hinge."""
+    m = length / 2
+    return (line((0, 0), (length, 0)), circle(m, 0, 2.2))
+
+
+def fixed_joint(length: float) -> Strokes:
+    """Return a rigid joint."""
+    m = length / 2
+    return (line((0, 0), (length, 0), width=MEMBER), line((m, -4), (m, 4), width=MEMBER))
+
+
+def slider_joint(length: float) -> Strokes:
+    """Return a sleeve that keeps the angle."""
+    m = length / 2
+    return (
+        line((0, 0), (m - 1.5, 0)),
+        line((m - 1.5, -5), (m - 1.5, 5), width=1.2),
+        line((m + 1.5, -5), (m + 1.5, 5), width=1.2),
+        line((m + 1.5, 0), (length, 0)),
+    )
+
+
+def dc_motor(length: float) -> Strokes:
+    """Return a machine with its brushes; the letter is written by the layout."""
+    m, r = length / 2, 8.0
+    brushes = (rectangle(m - 2.5, r - 0.6, m + 2.5, r + 1.8), rectangle(m - 2.5, -r - 1.8, m + 2.5, -r + 0.6))
+    return (*brushes, circle(m, 0, r))
+
+
+def gears(length: float) -> Strokes:
+    """Return two wheels that mesh, seen from the side."""
+    m = length / 2
+    return (
+        line((0, 0), (m - 4, 0), width=BOLD),
+        line((m + 4, 0), (length, 0), width=BOLD),
+        circle(m - 5, 0, 5.0),
+        circle(m + 4, 0, 4.0),
+        circle(m - 5, 0, 0.8),
+        circle(m + 4, 0, 0.8),
+    )
+
+
+def rack(length: float) -> Strokes:
+    """Return a screw with its nut: teeth on a shaft, and what they move."""
+    a, b = 0.2 * length, 0.8 * length
+    threads = [line((a + i * 3.0, -2.4), (a + i * 3.0 + 2, 2.4), width=THIN) for i in range(int((b - a) / 3))]
+    nut = (
+        rectangle(length / 2 - 4, 2.4, length / 2 + 4, 5.8, FILLED),
+        rectangle(length / 2 - 4, -5.8, length / 2 + 4, -2.4, FILLED),
+    )
+    return (
+        line((0, 0), (a, 0), width=BOLD),
+        rectangle(a, -2.4, b, 2.4),
+        *threads,
+        *nut,
+        line((length / 2 + 4, 4.1), (length, 4.1), (length, 0)),
+    )
+
+
+def lever(length: float) -> Strokes:
+    """Return a lever about a pivot."""
+    m = length / 2
+    return (
+        line((0, 0), (m - 5, 0)),
+        line((m - 5, -6), (m + 5, 6), width=1.4),
+        line((m + 5, 0), (length, 0)),
+        line((m - 5, 0), (m - 5, -6)),
+        line((m + 5, 0), (m + 5, 6)),
+        circle(m, 0, 1.3),
+    )
+
+
+def coils(length: float) -> Strokes:
+    """Return two windings on a core."""
+    m = length / 2
+    left = [p for i in range(3) for p in arc(m - 3, 5.4 - 3.6 * i, 1.8, 90, -90).points]
+    right = [p for i in range(3) for p in arc(m + 3, 5.4 - 3.6 * i, 1.8, 90, 270).points]
+    return (
+        line((0, 0), (0.15 * length, 0), (0.15 * length, 7.2), (m - 3, 7.2), *left),
+        line((length, 0), (0.85 * length, 0), (0.85 * length, 7.2), (m + 3, 7.2), *right),
+        line((m - 0.7, -5), (m - 0.7, 8), width=THIN),
+        line((m + 0.7, -5), (m + 0.7, 8), width=THIN),
+    )
+
+
+def crossing(length: float) -> Strokes:
+    """Return a box in which two arrows cross."""
+    a, b = 0.18 * length, 0.82 * length
+    return (
+        line((0, 0), (a, 0)),
+        line((b, 0), (length, 0)),
+        rectangle(a, -6.5, b, 6.5),
+        line((a + 2.5, -3.5), (b - 2.5, 3.5), width=THIN),
+        line((a + 2.5, 3.5), (b - 2.5, -3.5), width=THIN),
+    )
+
+
+def piezo(length: float) -> Strokes:
+    """Return a stack of plates."""
+    a, b = 0.2 * length, 0.8 * length
+    count = 5
+    plates = [
+        line((a + (b - a) * i / count, -6.5), (a + (b - a) * i / count, 6.5), width=THIN)
+        for i in range(1, count)
+    ]
+    return (rectangle(a, -6.5, b, 6.5, FILLED), *plates)
+
+
+def box(length: float) -> Strokes:
+    """Return a box, for what has no symbol of its own."""
+    a, b = 0.15 * length, 0.85 * length
+    return (line((0, 0), (a, 0)), rectangle(a, -5, b, 5), line((b, 0), (length, 0)))
+
+
+def pin_support() -> Strokes:
+    """Return a hinge on the ground, below a point."""
+    return (outline((0, -1.5), (-4.2, -8), (4.2, -8)), circle(0, -1.5, 1.5), *floor(-6.4, 6.4, -8))
+
+
+def roller_support() -> Strokes:
+    """Return a roller on the ground, below a point."""
+    return (circle(0, -2.6, 2.6), *floor(-5.4, 5.4, -5.2))
+
+
+def fixed_support() -> Strokes:
+    """Return the ground, below a point."""
+    return (line((0, 0), (0, -3)), *floor(-5.4, 5.4, -3))
+
+
+def slider_support() -> Strokes:
+    """Return a shoe between guides that run up and down, below a point."""
+    return (
+        line((0, 0), (0, -3)),
+        rectangle(-2.6, -11, 2.6, -3),
+        *wall(-13, -1, -1, -2.6 - 1.2),
+        *wall(-13, -1, 1, 2.6 + 1.2),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class ElementSymbol:
+    """How a type of element is drawn."""
+
+    role: Role
+    draw: Callable[[float], Strokes] = box  # of a branch, by its length
+    length: float = 24.0  # the least of it [points]
+    hold: Callable[[], Strokes] = fixed_support  # of a support, about its node
+    label: tuple[str, ...] = ()  # the parameters whose values are written; empty for all that are given
+
+    def extent(self) -> tuple[float, float]:
+        """Return how far a branch reaches below and above its line."""
+        box = around(p for s in self.draw(self.length) for p in s.points)
+        return -box.y0, box.y1
+
+
+SYMBOLS: Final[dict[str, ElementSymbol]] = {
+    "mass": ElementSymbol("body"),
+    "inertia": ElementSymbol("body"),
+    "rigid_body": ElementSymbol("body"),
+    "spring": ElementSymbol("branch", spring, 26.0),
+    "damper": ElementSymbol("branch", damper, 24.0),
+    "torsion_spring": ElementSymbol("branch", torsion_spring, 28.0),
+    "rotary_damper": ElementSymbol("branch", rotary_damper, 24.0),
+    "resistor": ElementSymbol("branch", resistor, 24.0),
+    "inductor": ElementSymbol("branch", inductor, 26.0),
+    "capacitor": ElementSymbol("branch", capacitor, 20.0),
+    "force_source": ElementSymbol("source"),
+    "torque_source": ElementSymbol("source"),
+    "voltage_source": ElementSymbol("source", voltage_source),
+    "current_source": ElementSymbol("source", current_source),
+    "rigid_link": ElementSymbol("member", rigid_link, 34.0),
+    "massless_beam": ElementSymbol("member", massless_beam, 60.0),
+    "beam": ElementSymbol("member", beam, 70.0),
+    "frame": ElementSymbol("member", beam, 70.0),
+    "rod": ElementSymbol("member", rod, 60.0),
+    "shaft": ElementSymbol("member", shaft, 60.0),
+    "string": ElementSymbol("member", string, 60.0),
+    "fixed": ElementSymbol("support", fixed_joint, 14.0, fixed_support),
+    "slider": ElementSymbol("support", slider_joint, 18.0, slider_support),
+    "pin": ElementSymbol("support", pin_joint, 16.0, pin_support),
+    "dc_motor": ElementSymbol("coupling", dc_motor, 30.0),
+    "piezo": ElementSymbol("coupling", piezo, 36.0),
+    "transformer": ElementSymbol("coupling", gears, 34.0),
+    "gyrator": ElementSymbol("coupling", crossing, 32.0),
+}
+"""By the type of an element; a new element is a line."""
+
+TRANSFORMERS: Final[dict[tuple[str, str], Callable[[float], Strokes]]] = {
+    ("rotation", "rotation"): gears,
+    ("rotation", "translation"): rack,
+    ("translation", "rotation"): rack,
+    ("translation", "translation"): lever,
+    ("electrical", "electrical"): coils,
+}
+"""A transformer by the domains of its two sides; of other domains it is a box."""
+
+
+def symbol_of(type_name: str) -> ElementSymbol:
+    """Return the symbol of a type of element, a plain box for one that has none."""
+    return SYMBOLS.get(type_name, ElementSymbol("coupling"))
+
+
+def extremes(strokes: Sequence[Stroke]) -> tuple[float, float]:
+    """Return the lowest and highest y of strokes."""
+    box = around(p for s in strokes for p in s.points)
+    return box.y0, box.y1

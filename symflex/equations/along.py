@@ -1,0 +1,95 @@
+"""Coefficients that vary along x, exactly: their derivatives, and their values at points.
+
+Input: an evaluator of what varies along x, and the functions of x among the ring's generators.
+Output: :class:`AlongX`. The derivative of ``exp(-2*a*x)`` is ``-2*a`` times the same generator, its value at
+l is another one, ``exp(-2*a*l)``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from symflex.algebra import Factored, degree_in
+from symflex.algebra.ring import by_powers
+from symflex.expressions import substitute
+from symflex.model.along import COORDINATE
+from symflex.model.brackets import slope_along_x
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from flint import fmpz_mpoly
+
+    from symflex.equations.evaluate import ExactEvaluator
+    from symflex.expressions import Call, Expression
+
+
+@dataclass(frozen=True, eq=False)
+class AlongX:
+    """The generators that vary along x."""
+
+    evaluator: ExactEvaluator  # of what varies along x
+    functions: tuple[tuple[str, Call], ...]  # of x, by the names of their generators
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The generators that vary."""
+        return (COORDINATE, *(name for name, _ in self.functions))
+
+    @cached_property
+    def _slopes(self) -> Mapping[str, Factored]:
+        one = self.evaluator.s**0
+        found = {COORDINATE: one}
+        for name, call in self.functions:
+            slope = slope_along_x(call)
+            found[name] = one * 0 if slope is None else self.evaluator.constant(slope)
+        return found
+
+    def varies(self, value: Factored) -> bool:
+        """Tell whether a value varies along x."""
+        return any(value.depends_on(name) for name in self.names)
+
+    def slope(self, value: Factored) -> Factored:
+        """Return the derivative of a value along x."""
+        total = value * 0
+        for factor, exponent in value.factors:
+            own = Factored.polynomial(value.ring, factor)
+            rate = self._slope_of(value, factor)
+            if not rate.is_zero:
+                total = total + value / own * rate * exponent
+        return total
+
+    def _slope_of(self, value: Factored, factor: fmpz_mpoly) -> Factored:
+        ring, total = value.ring, value * 0
+        for name, slope in self._slopes.items():
+            i = ring.index[name]
+            if degree_in(factor, i):
+                total = total + Factored.polynomial(ring, factor.derivative(i)) * slope
+        return total
+
+    def at(self, value: Factored, point: Expression) -> Factored:
+        """Return a value at a point, an expression without the coordinate."""
+        if not self.varies(value):
+            return value
+        place = {COORDINATE: point}
+        images = {COORDINATE: self.evaluator.constant(point)}
+        images |= {n: self.evaluator.constant(substitute(call, place)) for n, call in self.functions}
+        return value.map_factors(value.ring, lambda factor: _composed(value, factor, images))
+
+
+def _composed(value: Factored, factor: fmpz_mpoly, images: Mapping[str, Factored]) -> Factored:
+    """Return a polynomial with rational functions in place of some generators."""
+    ring = value.ring
+    found = Factored.polynomial(ring, factor)
+    for name, image in images.items():
+        if not found.depends_on(name):
+            continue
+        total = value * 0
+        i = ring.index[name]
+        above = found.numerator().expand()
+        for power, part in by_powers(ring, above, i).items():
+            total = total + Factored.polynomial(ring, part) * image**power
+        found = total / found.denominator()
+    return found

@@ -1,0 +1,137 @@
+"""Responses over time, with the band their enclosures leave where that is wide enough to be seen."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import cycle
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from symflex.analysis.time_response import INTEGRATIONS, SampleTimes, default_until, time_response
+from symflex.errors import BudgetError, Diagnostic
+from symflex.figures.axes import Canvas, add_legend_above, write_title
+from symflex.figures.style import (
+    COLOURS,
+    COLUMN_INCHES,
+    DASHES,
+    LINE_INCHES,
+    QUIET,
+    label_of_tf,
+    label_of_unit,
+    paper_style,
+    title_lines,
+)
+from symflex.transfer import BoundNested
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from symflex.analysis.time_response import EnclosedResponse
+    from symflex.transfer import AnyBoundFunction, AnyTransferFunction
+
+HEIGHT_INCHES: Final = 2.2
+VISIBLE: Final = 1e-3
+"""Radius over the largest value from which its band is drawn: about the width of a line."""
+PREFIXES: Final = ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns"))
+POINTS: Final = 801
+DIGITS: Final = 6
+"""Of values, far more than a line shows."""
+
+
+def draw_step(
+    tfs: Sequence[AnyTransferFunction], bounds: Sequence[AnyBoundFunction], canvas: Canvas
+) -> Figure:
+    """Draw step responses in one figure; see :func:`symflex.figures.draw`."""
+    return _drawn("step", tfs, bounds, canvas)
+
+
+def draw_impulse(
+    tfs: Sequence[AnyTransferFunction], bounds: Sequence[AnyBoundFunction], canvas: Canvas
+) -> Figure:
+    """Draw impulse responses in one figure, without the impulses they hold themselves."""
+    return _drawn("impulse", tfs, bounds, canvas)
+
+
+def _drawn(
+    kind: str, tfs: Sequence[AnyTransferFunction], bounds: Sequence[AnyBoundFunction], canvas: Canvas
+) -> Figure:
+    closed = []
+    for bound in bounds:
+        if isinstance(bound, BoundNested):
+            message = f"the closed form of {bound.name} is too large for a response in time"
+            raise BudgetError(Diagnostic("SF502", message, None, "split the model"))
+        closed.append(bound)
+    until = canvas.frame.x[1] if canvas.frame.x else max(map(default_until, closed))
+    times = SampleTimes.evenly(Fraction(until), POINTS)
+    responses = [time_response(bound, kind, times, DIGITS) for bound in closed]
+    width = canvas.width or COLUMN_INCHES
+    lines = [*title_lines(canvas.title, width), *_said(responses, width)]
+    units = {response.unit for response in responses}
+    axes = canvas.one_panel(HEIGHT_INCHES + LINE_INCHES * (len(lines) + 1))
+    looks = zip(cycle(COLOURS), cycle(DASHES), strict=False)
+    for tf, response, look in zip(tfs, responses, looks, strict=False):
+        label = label_of_tf(tf)
+        if len(units) > 1 and (unit := label_of_unit(response.unit)):
+            label = f"{label} [{unit}]"
+        _draw_curve(axes, response, look, label)
+    _label(axes, responses[0], units.pop() if len(units) == 1 else "")
+    if canvas.frame.x:
+        scale, _ = _prefix(responses[0])
+        axes.set_xlim(canvas.frame.x[0] / scale, canvas.frame.x[1] / scale)
+    if canvas.frame.y:
+        axes.set_ylim(*canvas.frame.y)
+    add_legend_above(axes, len(tfs) if len(tfs) < len(DASHES) else len(DASHES) - 1)
+    figure = axes.figure.get_figure(root=True)
+    write_title(figure, lines)
+    return figure
+
+
+def draw_in_time(response: EnclosedResponse, ax: Axes | None = None) -> Figure:
+    """Draw one response at its own times, on axes of the user's own if they are given."""
+    canvas = Canvas(axes=() if ax is None else (ax,))
+    first = title_lines(f"{response.tf}, {response.title}", COLUMN_INCHES)
+    lines = [*first, *_said([response], COLUMN_INCHES)]
+    with paper_style():
+        axes = canvas.one_panel(HEIGHT_INCHES + LINE_INCHES * len(lines))
+        _draw_curve(axes, response, (COLOURS[0], "-"), None)
+        _label(axes, response, response.unit)
+        figure = axes.figure.get_figure(root=True)
+        write_title(figure, lines)
+    return figure
+
+
+def _said(responses: Sequence[EnclosedResponse], width: float) -> list[str]:
+    """Return what stands below a title: what is not drawn, and what is not certified."""
+    said = [f"{r.tf}: besides, impulses that are not drawn" for r in responses if r.impulses]
+    said += [f"{r.tf}, not certified: {r.reason}" for r in responses if not r.certified]
+    return [line for text in said for line in title_lines(text, width)]
+
+
+def _prefix(response: EnclosedResponse) -> tuple[float, str]:
+    last = float(response.times[-1])
+    return next((prefix for prefix in PREFIXES if last >= prefix[0]), PREFIXES[-1])
+
+
+def _draw_curve(axes: Axes, response: EnclosedResponse, look: tuple[str, object], label: str | None) -> None:
+    values, radius = response.values, response.radius
+    scale, _ = _prefix(response)
+    across = response.times / scale
+    colour, dash = look
+    if np.max(radius, initial=0) > VISIBLE * np.max(np.abs(values), initial=0):
+        axes.fill_between(across, values - radius, values + radius, color=colour, alpha=0.2, linewidth=0)
+    axes.plot(across, values, color=colour, linestyle=dash, label=label)
+
+
+def _label(axes: Axes, response: EnclosedResponse, unit: str) -> None:
+    scale, second = _prefix(response)
+    axes.grid(visible=True)
+    axes.axhline(0, color=QUIET, linewidth=0.5, zorder=1)
+    axes.set_xlim(0, float(response.times[-1]) / scale)
+    axes.set_xlabel(f"Time [{second}]")
+    label = label_of_unit(unit)
+    name = response.title.capitalize() if response.input in INTEGRATIONS else "Response"
+    axes.set_ylabel(f"{name} [{label}]" if label else name)

@@ -1,0 +1,82 @@
+"""A function in nested form, with what winding numbers and phases ask of one: values, slopes, scale.
+
+It is evaluated at points, where it is right to the last bit; balls about them lead to no enclosure.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from flint import acb, acb_poly, ctx
+
+from symflex.roots.functions.kernel_function import Sample
+from symflex.transfer.balls import FIRST_BITS, LAST_BITS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from symflex.transfer import BoundNested
+
+SETTLED_BITS = 30
+"""Of a value and its slope: more than a step along a path needs."""
+LOW = -200.0
+"""ln of a frequency [rad/s] below all roots but those at rest."""
+
+
+@dataclass(eq=False)
+class NestedFunction:
+    """A transfer function in nested form along paths in ``z = ln(s)``.
+
+    It has the attributes of :class:`~symflex.roots.functions.kernel_function.KernelFunction` that paths ask
+    for; ``work`` counts operations.
+    """
+
+    bound: BoundNested
+    work: int = field(default=0, init=False)
+    is_negated: bool = field(default=False, init=False)
+    _bits: int = field(default=FIRST_BITS, init=False)
+
+    @property
+    def is_even(self) -> bool:
+        """False, as nothing is known of it."""
+        return False
+
+    def at_logarithm(self, z: complex) -> Sample | None:
+        """Return the sample at ``s = exp(z)``, with the slope in z; None on a root."""
+        return self._settled(lambda: acb(z.real, z.imag).exp())
+
+    def at_point(self, s: acb) -> Sample | None:
+        """Return the sample at an exact ``s``, with the slope in ln(s)."""
+        return self._settled(lambda: s)
+
+    def order_at_zero(self) -> float:
+        """Return the order of the root at s = 0, close to an integer; NaN when it is not found."""
+        sample = self.at_logarithm(complex(LOW, 0.0))
+        return float("nan") if sample is None else sample.slope.real
+
+    def reach(self, s: float) -> float:
+        """Return how many radians all members together hold of their waves at a positive ``s``."""
+        self.work += self.bound.source.size
+        with ctx.workprec(FIRST_BITS):
+            total = 0.0
+            for coefficients, shift, length in self.bound.enclosed(FIRST_BITS).wave_arguments(acb(s)):
+                sizes = [float(abs(x).mid()) for x in acb_poly([*coefficients, acb(1)]).roots()]
+                total += max([*sizes, float(abs(shift).mid())]) * abs(float(length.real.mid()))
+            return total
+
+    def _settled(self, point: Callable[[], acb]) -> Sample | None:
+        bits = self._bits
+        while bits <= LAST_BITS:
+            self.work += self.bound.source.size
+            with ctx.workprec(bits):
+                s = point()
+                value, slope = self.bound.enclosed(bits).value_and_slope(s)
+                if value.is_finite() and value == 0:
+                    return None
+                if all(x.is_finite() and x.rel_accuracy_bits() >= SETTLED_BITS for x in (value, slope)):
+                    self._bits = bits
+                    middle = value.mid()
+                    return Sample(complex(float(abs(middle).log()), float(middle.arg())), complex(s * slope))
+            bits *= 2
+        return None

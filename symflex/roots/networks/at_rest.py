@@ -1,0 +1,258 @@
+"""How often s = 0 is a root, such as of motions as a rigid body: ranks and power series modulo a prime.
+
+Every stiffness is a number modulo a prime, pi and functions of constants stand for random ones: cosine and
+sine of an angle for a point of the circle, roots of numbers for roots modulo the prime. A matrix that has
+full rank there has it; one that has not lost it by chance with odds of about 1 in 2^61.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from flint import nmod, nmod_mat
+
+from symflex.algebra import LAPLACE, PRIME, random_point, residue
+from symflex.algebra.propagators import EXPONENTIAL
+from symflex.algebra.vanishing import TaylorField
+from symflex.roots.networks.counting import add_member
+from symflex.roots.networks.inertia import pivots
+from symflex.roots.networks.members import UndecidedError
+from symflex.transfer.balls import rational_value
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from flint import nmod_poly
+
+    from symflex.equations import Equations
+    from symflex.expressions import Expression
+    from symflex.roots.networks.counting import Counter
+    from symflex.roots.networks.cramer import CramerEquations
+    from symflex.roots.networks.network import NetworkMember
+
+
+SPARE_TERMS = 8
+"""Of a series, beyond those that vanish; each pivot of an order takes as many terms."""
+FEWEST = 4
+"""Columns with fewest entries that are looked at for a pivot."""
+
+
+class Residues:
+    """Numbers modulo a prime, which have no signs."""
+
+    def is_usable(self, value: nmod) -> bool:
+        """Tell whether it may be divided by."""
+        return int(value) != 0
+
+    def negative(self, value: nmod) -> int:
+        """Return 0: nothing is below zero."""
+        del value
+        return 0
+
+    def negative_of_pair(self, determinant: nmod, corner: nmod | None) -> int:
+        """Return 0."""
+        del determinant, corner
+        return 0
+
+
+def nullity_at_rest(counter: Counter, border: int | None) -> int | None:
+    """Return how often 0 is an eigenvalue, with one of the motions held; ``None`` where it cannot be told.
+
+    That is where waves that run along a member at rest have a wavenumber, as on an elastic foundation, and
+    where a root of a number is none modulo the prime.
+    """
+    network = counter.network
+    equations = network.numbers.equations
+    point = random_point(equations.ring.names) | {LAPLACE: 0}
+    if not _place_constants(equations, point):
+        return None
+    for name, value in equations.definitions:
+        point[name] = residue(value, point)
+    size = network.size
+    rows: list[dict[int, nmod]] = [{} for _ in range(size + 1)]
+    for (i, j), value in network.entries.items():
+        number = nmod(residue(value, point), PRIME)
+        if int(number):
+            rows[i][j] = rows[j][i] = number
+    for member in network.members:
+        blocks = _stiffness(member, point)
+        if blocks is None:
+            return None
+        if member.direction:
+            cos, sin = (residue(x, point) for x in member.direction)
+            turn = nmod_mat([[cos, sin, 0], [-sin % PRIME, cos, 0], [0, 0, 1]], PRIME)
+            blocks = tuple(turn.transpose() * block * turn for block in blocks)
+        add_member(rows, member.ends, [block.tolist() for block in blocks])
+    order = list(counter.order)
+    if border is not None:
+        order.append(size)
+        for i, value in counter.borders[border].items():
+            rows[i][size] = rows[size][i] = nmod(residue(value, point), PRIME)
+    for row in rows:
+        for j in [j for j, x in row.items() if not int(x)]:
+            del row[j]
+    try:
+        pivots(rows, order, Residues())
+    except UndecidedError as error:
+        return error.left
+    return 0
+
+
+def _place_constants(equations: Equations, point: dict[str, int]) -> bool:
+    """Put functions of constants where what relates them holds; False where that cannot be done."""
+    tangents: dict[Expression, int] = {}
+    for constant in equations.constants:
+        function, argument = constant.expression.name, constant.expression.argument
+        if function in ("cos", "sin"):
+            t = tangents.setdefault(argument, point[constant.generator])  # of half the angle, at random
+            above = 1 - t * t if function == "cos" else 2 * t
+            point[constant.generator] = above * pow(1 + t * t, -1, PRIME) % PRIME
+        square = rational_value(argument, {}) if function == "sqrt" else None
+        if square is not None:
+            value = square.numerator * pow(square.denominator, -1, PRIME) % PRIME
+            point[constant.generator] = root = pow(value, (PRIME + 1) // 4, PRIME)  # as PRIME is 3 modulo 4
+            if root * root % PRIME != value:
+                return False
+    return True
+
+
+def _stiffness(member: NetworkMember, point: Mapping[str, int]) -> tuple[nmod_mat, ...] | None:
+    n = len(member.system)
+    k = n // 2
+    length = residue(member.length, point)
+    entries = [[residue(x, point) * length % PRIME for x in row] for row in member.system]
+    matrix = nmod_mat(entries, PRIME)
+    transfer = term = nmod_mat([[int(i == j) for j in range(n)] for i in range(n)], PRIME)
+    for i in range(1, n + 1):
+        term = term * matrix * nmod(pow(i, -1, PRIME), PRIME)
+        transfer = transfer + term
+    if term != nmod_mat(n, n, PRIME):
+        return None
+    table = transfer.tolist()
+    block = [[nmod_mat([row[b : b + k] for row in table[a : a + k]], PRIME) for b in (0, k)] for a in (0, k)]
+    try:
+        flexible = block[0][1].inv()
+    except ZeroDivisionError:
+        return None
+    return flexible * block[0][0], -flexible, block[1][1] * flexible
+
+
+def order_at_zero(cramer: CramerEquations, size: int, least: int) -> int | None:
+    """Return to which order the determinant of the first rows and columns vanishes at s = 0.
+
+    ``least`` is about what it is. ``None`` where that cannot be told: members on a foundation have waves
+    at rest.
+    """
+    field = TaylorField(SPARE_TERMS + 2 * least, PRIME)
+    values = _series(cramer, field)
+    if values is None:
+        return None
+    rows: list[dict[int, nmod_poly]] = []
+    for row in cramer.entries[:size]:
+        found = {j: field.rational(c, c.ring.names, values) for j, c in row.items() if j < size}
+        rows.append({j: x for j, x in found.items() if x is not None and not x.is_zero()})
+        if any(x is None for x in found.values()):
+            return None
+    order = _order(rows, field)
+    if order is None or size != len(cramer.entries) - 1:
+        return order
+    divisor = field.rational(cramer.divisor, cramer.divisor.ring.names, values)
+    more = None if divisor is None else field.order(divisor)
+    return None if more is None else order + more
+
+
+def _series(cramer: CramerEquations, field: TaylorField) -> dict[str, nmod_poly] | None:
+    """Return every generator as a power series in s, constants at random."""
+    equations = cramer.equations
+    point = random_point(equations.ring.names)
+    if not _place_constants(equations, point):
+        return None
+    values = {name: field.constant(x) for name, x in point.items()} | {LAPLACE: field.power(1)}
+    for name, value in equations.definitions:
+        found = field.rational(value, value.ring.names, values)
+        if found is None:
+            return None
+        values[name] = found
+    propagation = equations.propagation
+    for (number, place), group in cramer.waves.items() if propagation is not None else ():
+        law = propagation.table.dispersions[number]  # type: ignore[union-attr]
+        parts = [*law.characteristic, law.shift, propagation.lengths[number][place]]  # type: ignore[union-attr]
+        series = [field.rational(c, c.ring.names, values) for c in parts]
+        *coefficients, shift, length = [x for x in series if x is not None]
+        if len(coefficients) != len(law.characteristic) or int(shift[0]):
+            return None
+        functions = _fundamental(coefficients, length, field)
+        if functions is None:
+            return None
+        decay = field.even_odd(field.times(shift, length) * (field.prime - 1), 1, circular=False)
+        for name, order in group:
+            values[name] = sum(decay, field.constant(0)) if order == EXPONENTIAL else functions[order]
+    return values
+
+
+def _fundamental(
+    coefficients: Sequence[nmod_poly], length: nmod_poly, field: TaylorField
+) -> list[nmod_poly] | None:
+    """Return fundamental functions as series; ``None`` unless all exponents vanish at rest."""
+    n = len(coefficients)
+    if not n:
+        return []
+    if any(int(c[0]) for c in coefficients):
+        return None
+    term = [field.constant(int(i == n - 1)) for i in range(n)]
+    total = list(term)
+    for k in range(1, n * (field.terms + 1) + 1):
+        last = field.constant(0)
+        for c, x in zip(coefficients, term, strict=True):
+            last = last - field.times(c, x)
+        scale = pow(k, -1, field.prime)
+        term = [field.times(x, length) * scale for x in (*term[1:], last)]
+        total = [a + b for a, b in zip(total, term, strict=True)]
+    return total
+
+
+def _order(rows: list[dict[int, nmod_poly]], field: TaylorField) -> int | None:
+    """Return the order of the determinant, by pivots of least order in their columns."""
+    columns: list[set[int]] = [set() for _ in rows]
+    for i, row in enumerate(rows):
+        for j in row:
+            columns[j].add(i)
+    left, total, terms = set(range(len(rows))), 0, field.terms
+    while left:
+        ranked = [
+            (field.order(rows[i][j]) or 0, (len(rows[i]) - 1) * (len(columns[j]) - 1), i, j)
+            for j in sorted(left, key=lambda j: len(columns[j]))[:FEWEST]
+            for i in columns[j]
+        ]
+        if not ranked or min(ranked)[0]:
+            ranked = [
+                (field.order(rows[i][j]) or 0, (len(rows[i]) - 1) * (len(columns[j]) - 1), i, j)
+                for j in left
+                for i in columns[j]
+            ]
+        if not ranked:
+            return None
+        order, _, i, j = min(ranked)
+        total, terms = total + order, terms - order
+        if terms <= 0:
+            return None
+        row = rows[i]
+        pivot = row.pop(j).right_shift(order)
+        inverse = pivot.inverse_series_trunc(terms)
+        for k in row:
+            columns[k].discard(i)
+        for m in columns[j] - {i}:
+            target = rows[m]
+            factor = target.pop(j).right_shift(order).mul_low(inverse, terms)
+            for k, x in row.items():
+                known = target.get(k, field.constant(0))
+                value = (known - factor.mul_low(x, terms)).truncate(terms)
+                if value.is_zero():
+                    target.pop(k, None)
+                    columns[k].discard(m)
+                else:
+                    target[k] = value
+                    columns[k].add(m)
+        columns[j] = set()
+        left.discard(j)
+    return total

@@ -1,0 +1,106 @@
+"""How many zeros there are at most, from the blocks that the numerator's equations fall into.
+
+    a shaft from a to b, a torque at a, the angle at b read: what is left without that angle and the balance
+    of a are the two laws of the shaft, whose determinant is that of exp(A l), which vanishes nowhere
+
+Rows and columns are matched; what depends on each other in a circle is a block, and the determinant is the
+product of those of the blocks (Dulmage and Mendelsohn 1958). Blocks without waves are polynomials in s, whose
+degree is at most the largest sum of degrees along a matching; a delay vanishes nowhere, nor does what takes
+the state from one end of a member to the other.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import connected_components, maximum_bipartite_matching
+
+from symflex.algebra import LAPLACE, terms_of
+from symflex.algebra.propagators import EXPONENTIAL
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.algebra import Factored
+    from symflex.roots.networks.cramer import CramerEquations
+
+NONE = -1e6
+"""The degree of an entry that is zero: less than any sum of degrees."""
+
+
+def most_zeros(cramer: CramerEquations) -> int | None:
+    """Return how many zeros the numerator has at most; ``None`` where there may be infinitely many."""
+    entries = cramer.entries
+    rows = [i for i, row in enumerate(entries) for _ in row]
+    columns = [j for row in entries for j in row]
+    pattern = csr_array((np.ones(len(rows)), (rows, columns)), shape=(len(entries), len(entries)))
+    matched = maximum_bipartite_matching(pattern, perm_type="column")
+    if (matched < 0).any():
+        return None
+    # Row i needs the unknowns of its columns, which the rows matched to them give.
+    _, block_of = connected_components(pattern[:, matched], directed=True, connection="strong")
+    total = 0
+    for block in range(max(block_of) + 1):
+        own = np.flatnonzero(block_of == block).tolist()
+        degree = _degree_of_block(cramer, own, [int(matched[i]) for i in own])
+        if degree is None:
+            return None
+        total += degree
+    return total
+
+
+def _degree_of_block(cramer: CramerEquations, rows: Sequence[int], columns: Sequence[int]) -> int | None:
+    """Return how many roots the determinant of a block has at most."""
+    if _is_of_member(cramer, rows, columns):
+        return 0
+    degrees = np.full((len(rows), len(columns)), NONE)
+    for k, i in enumerate(rows):
+        for m, j in enumerate(columns):
+            if j in cramer.entries[i]:
+                degree = _degree(cramer, cramer.entries[i][j], is_alone=len(rows) == 1)
+                if degree is None:
+                    return None
+                degrees[k, m] = degree
+    best = linear_sum_assignment(degrees, maximize=True)
+    return int(degrees[best].sum())
+
+
+def _is_of_member(cramer: CramerEquations, rows: Sequence[int], columns: Sequence[int]) -> bool:
+    """Tell whether a block are the laws of one member and the state at its start."""
+    equations = cramer.equations
+    places = {v: j for j, v in enumerate(equations.unknowns)}
+    for continuum in equations.continua:
+        if {places.get(v) for v in continuum.initial if v is not None} == set(columns):
+            laws = [i for i, row in enumerate(equations.rows) if row.about.owner == continuum.name]
+            return len(columns) == len(continuum.initial) and set(laws) == set(rows)
+    return False
+
+
+def _degree(cramer: CramerEquations, value: Factored, *, is_alone: bool) -> int | None:
+    """Return the degree of an entry in s, or ``None`` of one that is no polynomial.
+
+    Delays alone in a block are left out, as they vanish nowhere.
+    """
+    names = value.ring.names
+    delays = {name for group in cramer.waves.values() for name, order in group if order == EXPONENTIAL}
+    total = 0
+    for factor, exponent in value.factors:
+        terms = list(terms_of(factor))
+        powers = []
+        for monomial, _ in terms:
+            degree = 0
+            for i, power in monomial:
+                if names[i] == LAPLACE:
+                    degree += power
+                elif names[i] in cramer.moving_names and not (
+                    is_alone and len(terms) == 1 and names[i] in delays
+                ):
+                    return None
+            powers.append(degree)
+        if exponent < 0 and max(powers):
+            return None
+        total += exponent * max(powers)
+    return total

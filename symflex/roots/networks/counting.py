@@ -1,0 +1,180 @@
+"""How many frequencies a network without losses has below a given one, proved (Wittrick & Williams 1971).
+
+The number is that of the members' own frequencies, held at their ends, and of negative pivots of the
+network's dynamic stiffness, less a constant. Bordered by a row that holds what the input drives, the same
+counts the zeros of that input's own motion.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from flint import arb, arb_mat, ctx
+
+from symflex.budget import spend
+from symflex.roots.networks.inertia import Balls, Number, Rows, elimination_order, pivots
+from symflex.roots.networks.members import MemberBalls, Stiffness, UndecidedError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from symflex.algebra import Factored
+    from symflex.roots.networks.network import Network, NetworkMember
+
+MOST_BITS = 20_000
+"""No sign asked for so far needed a tenth of it."""
+
+
+@dataclass(frozen=True, slots=True)
+class NetworkSample:
+    """A network at one lambda, which is none of its eigenvalues."""
+
+    value: arb  # lambda [rad^2/s^2], exact
+    below: int  # eigenvalues below, but for a constant of the network
+    determinant: arb  # of the dynamic stiffness, with the poles of the members' own frequencies
+    receptances: tuple[arb, ...]  # per border, of the motion it holds, by the force on it
+
+
+@dataclass(frozen=True, eq=False)
+class Counter:
+    """Samples a network."""
+
+    network: Network
+    borders: tuple[Mapping[int, Factored], ...]  # rows that hold a motion
+    _levels: dict[int, Level] = field(default_factory=dict, repr=False)
+
+    @cached_property
+    def order(self) -> tuple[int, ...]:
+        """The order in which unknowns are eliminated."""
+        network = self.network
+        pairs = list(network.entries)
+        for member in network.members:
+            places = [i for i in member.ends if i is not None]
+            pairs += [(i, j) for i in places for j in places if i <= j]
+        return elimination_order(network.size, pairs)
+
+    def sample(self, value: arb, bits: int) -> NetworkSample:
+        """Return the network at an exact real lambda, computed with at least so many bits.
+
+        UndecidedError at an eigenvalue, or too close to one.
+        """
+        while True:
+            try:
+                return self.level(bits).sample(value)
+            except UndecidedError:
+                bits *= 2
+                if bits > MOST_BITS:
+                    raise
+
+    def level(self, bits: int) -> Level:
+        """Return the network's numbers at a precision."""
+        if bits not in self._levels:
+            self._levels[bits] = Level.of(self, bits)
+        return self._levels[bits]
+
+
+@dataclass(frozen=True, eq=False)
+class Level:
+    """A network's numbers at one precision."""
+
+    bits: int
+    counter: Counter
+    entries: Sequence[tuple[int, int, arb, arb]]
+    borders: Sequence[Sequence[tuple[int, arb]]]
+    # Each with its direction, of one at an angle.
+    members: Sequence[tuple[NetworkMember, MemberBalls, arb_mat | None]]
+
+    @staticmethod
+    def of(counter: Counter, bits: int) -> Level:
+        """Return the numbers of what is counted."""
+        network = counter.network
+        with ctx.workprec(bits):
+            numbers = network.numbers
+            known = numbers.known()
+            entries = [(i, j, *numbers.even(v, known)) for (i, j), v in network.entries.items()]
+            borders = [
+                [(i, numbers.polynomial(v, known)[0]) for i, v in border.items()]
+                for border in counter.borders
+            ]
+            balls: dict[str, MemberBalls] = {}
+            for member in network.members:
+                if member.key not in balls:
+                    pairs = [[numbers.even(x, known) for x in row] for row in member.system]
+                    balls[member.key] = MemberBalls(
+                        [[a for a, _ in row] for row in pairs],
+                        [[b for _, b in row] for row in pairs],
+                        numbers.polynomial(member.length, known)[0],
+                    )
+            members = [
+                (m, balls[m.key], _turn([numbers.polynomial(x, known)[0] for x in m.direction]))
+                for m in network.members
+            ]
+        return Level(bits, counter, entries, borders, members)
+
+    def sample(self, value: arb) -> NetworkSample:
+        """Return the network at an exact real lambda; UndecidedError where a sign is not decided."""
+        spend()
+        with ctx.workprec(self.bits):
+            size = self.counter.network.size
+            rows: list[dict[int, arb]] = [{} for _ in range(size + len(self.borders))]
+            for i, j, constant, slope in self.entries:
+                rows[i][j] = rows[j][i] = constant + value * slope
+            for place, border in enumerate(self.borders):
+                for i, x in border:
+                    rows[i][size + place] = rows[size + place][i] = x
+            held = 0
+            known: dict[int, Stiffness] = {}
+            for member, balls, turn in self.members:
+                stiffness = known.get(id(balls))
+                if stiffness is None:
+                    stiffness = known[id(balls)] = balls.stiffness(value)
+                held += stiffness.held
+                seen = stiffness if turn is None else stiffness.turned(turn)
+                add_member(rows, member.ends, seen.blocks)
+            found = pivots(
+                rows,
+                self.counter.order,
+                Balls(),
+                range(size, size + len(self.borders)),
+            )
+            receptances = tuple(arb(0) if x is None else -x for x in found.borders)
+            return NetworkSample(
+                value,
+                held + found.negative,
+                arb(1) if found.determinant is None else found.determinant,
+                receptances,
+            )
+
+
+def _turn(direction: Sequence[arb]) -> arb_mat | None:
+    """Return what takes a motion (x, y, theta) to the axes of a member, None for one without."""
+    if not direction:
+        return None
+    cos, sin = direction
+    return arb_mat([[cos, sin, 0], [-sin, cos, 0], [0, 0, 1]])
+
+
+def add_member(
+    rows: Rows[Number], ends: Sequence[int | None], blocks: Sequence[Sequence[Sequence[Number]]]
+) -> None:
+    """Add the stiffness of a member to the rows of what moves its ends.
+
+    ``blocks`` are those at the start, across and at the end.
+    """
+    half = len(ends) // 2
+    for first, second, block in zip((0, 0, half), (0, half, half), blocks, strict=True):
+        for a in range(half):
+            i = ends[first + a]
+            if i is None:
+                continue
+            for b in range(a if first == second else 0, half):
+                j = ends[second + b]
+                if j is None:
+                    continue
+                x = block[a][b]
+                if i == j and first != second:
+                    x = 2 * x  # both ends at one node
+                known = rows[i].get(j)
+                rows[i][j] = rows[j][i] = x if known is None else known + x

@@ -1,0 +1,541 @@
+"""Determinants of a network's equations at single frequencies, and a bound on them in a disc.
+
+Numerator and denominator of a transfer function by Cramer's rule, ``y = det [A b; c d] / det A``. Members
+stand in A by what takes the state from their start to their end, which is entire in s: so are both
+determinants, and a member's own frequencies are no poles of anything. Values come from elimination in balls;
+where a ball is wide that leads to none, so what is said of a whole disc comes from Hadamard's inequality,
+``|det A| <= product of the lengths of its rows``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from heapq import nsmallest
+from math import inf
+from typing import TYPE_CHECKING
+
+import numpy as np
+from flint import acb, arb, ctx, fmpq
+
+from symflex.algebra import LAPLACE, terms_of
+from symflex.algebra.factored import least_common_multiple
+from symflex.algebra.propagators import EXPONENTIAL
+from symflex.budget import spend
+from symflex.library.elements import LinearForm
+from symflex.roots.networks.members import UndecidedError
+from symflex.transfer.balls import Value, at_centre, later
+from symflex.transfer.enclose_kernels import fundamental_functions
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Mapping, Sequence
+
+    from flint import fmpz_mpoly
+
+    from symflex.algebra import Factored
+    from symflex.equations import Equations
+    from symflex.library.elements import Variable
+
+MOST_BITS = 20_000
+MOST_LOST = 16
+"""Bits that elimination may lose per equation; chains of beams lose about one."""
+ZERO = acb(0)
+BALANCING = 40
+"""Rounds that make rows and columns alike; each about halves what is left to gain."""
+ROUNDING = 1e-9
+"""Of logarithms in doubles, per row: far above what is lost, far below what matters."""
+
+
+class EssentialSingularityError(Exception):
+    """A denominator vanishes in the disc: roots accumulate there."""
+
+
+@dataclass(frozen=True, slots=True)
+class CramerValue:
+    """Values at one s."""
+
+    den: acb
+    num: acb
+
+
+@dataclass(eq=False)
+class CramerEquations:
+    """The equations between an input and an output, with numbers, ready to be evaluated."""
+
+    equations: Equations
+    entries: list[dict[int, Factored]]  # rows of A, and of c last; columns of A, and b last
+    divisor: Factored  # of the output
+    _constants: dict[int, dict[str, acb]] = field(default_factory=dict)  # by bits
+    _resting: dict[int, list[dict[int, acb]]] = field(default_factory=dict)  # by bits: entries free of s
+    # By size: pivots, and the bits they were chosen at.
+    _orders: dict[int, tuple[list[tuple[int, int]], int]] = field(default_factory=dict)
+    _least_bits: int = 0  # with fewer, elimination came to nothing
+
+    @staticmethod
+    def of(equations: Equations, output: str, source: str) -> CramerEquations:
+        """Return the equations between an input and an output."""
+        columns = {v: i for i, v in enumerate(equations.unknowns)}
+        size = len(columns)
+        given = next(v for v in equations.inputs if v.owner == source)
+        places: dict[Variable, int] = {**columns, given: size}
+        lines = {c.name for c in equations.continua}
+        rows = []
+        for row in equations.rows:
+            form = LinearForm.total([row.form])
+            if row.role != "condition" and not (row.about.kind == "through" and row.about.owner in lines):
+                form = form * _denominator(form)
+            rows.append({places[v]: c for v, c in form.terms if v in places})
+        read = next(o for o in equations.outputs if o.name == output)
+        form = LinearForm.total([read.form])
+        below = _denominator(form)
+        rows.append({places[v]: c for v, c in (form * below).terms if v in places})
+        return CramerEquations(equations, rows, read.divisor * below)
+
+    # -------------------------------------------------------------------------------- values at points
+
+    def at(self, s: acb, bits: int) -> CramerValue:
+        """Return numerator and denominator at an exact s, computed with at least so many bits.
+
+        UndecidedError where the equations are singular.
+        """
+        bits = max(bits, self._least_bits)
+        while True:
+            try:
+                with ctx.workprec(bits):
+                    found = self._at(s)
+            except UndecidedError:
+                bits *= 2
+                if bits > MOST_BITS:
+                    raise
+            else:
+                if bits <= MOST_LOST * len(self.entries):
+                    self._least_bits = max(self._least_bits, bits // 2)
+                return found
+
+    def _at(self, s: acb) -> CramerValue:
+        spend()
+        values = self._values(s)
+        factors: dict[int, acb] = {}
+        rows = self._rows(values, factors)
+        den, last = self._eliminated(rows)
+        return CramerValue(den * self._value(self.divisor, values, factors), den * last)
+
+    def _rows(self, values: Mapping[str, acb], factors: dict[int, acb]) -> list[dict[int, acb]]:
+        """Return all entries; of those free of s, which are many, as they were."""
+        bits = ctx.prec
+        if bits not in self._resting:
+            self._resting[bits] = [
+                {j: self._value(c, values, factors) for j, c in row.items() if j not in moving}
+                for row, moving in zip(self.entries, self._moving, strict=True)
+            ]
+        return [
+            resting | {j: self._value(row[j], values, factors) for j in moving}
+            for row, moving, resting in zip(self.entries, self._moving, self._resting[bits], strict=True)
+        ]
+
+    @cached_property
+    def moving_names(self) -> frozenset[str]:
+        """The generators that are no constants."""
+        found = {LAPLACE, *(name for group in self.waves.values() for name, _ in group)}
+        for name, value in self.equations.definitions:
+            if _uses(value, found):
+                found.add(name)
+        return frozenset(found)
+
+    @cached_property
+    def _moving(self) -> list[tuple[int, ...]]:
+        """The columns of entries that are no constants, row by row."""
+        names = self.moving_names
+        return [tuple(j for j, c in row.items() if _uses(c, names)) for row in self.entries]
+
+    def _values(self, s: acb) -> dict[str, acb]:
+        equations = self.equations
+        bits = ctx.prec
+        factors: dict[int, acb] = {}
+        if bits not in self._constants:
+            known = {c.generator: acb(later(c.expression, {"pi": arb.pi})()) for c in equations.constants}
+            known |= {"pi": acb(arb.pi())}
+            for name, value in equations.definitions:
+                if name not in self.moving_names:
+                    known[name] = self._value(value, known, factors)
+            self._constants[bits] = known
+        values = {LAPLACE: s, **self._constants[bits]}
+        for name, value in equations.definitions:
+            if name in self.moving_names:
+                values[name] = self._value(value, values, factors)
+        propagation = equations.propagation
+        if propagation is None:
+            return values
+        for (number, place), group in self.waves.items():
+            law = propagation.table.dispersions[number]
+            length = self._value(propagation.lengths[number][place], values, factors)
+            plain: tuple[Value, ...] = ()
+            if any(order >= 0 for _, order in group):
+                plain = fundamental_functions(
+                    [self._value(c, values, factors) for c in law.characteristic], length
+                )
+            for name, order in group:
+                if order == EXPONENTIAL:
+                    values[name] = (-self._value(law.shift, values, factors) * length).exp()
+                else:
+                    values[name] = at_centre(plain[order])
+        return values
+
+    @cached_property
+    def waves(self) -> dict[tuple[int, int], list[tuple[str, int]]]:
+        """The generators that are fundamental functions, with their orders, by dispersion and length."""
+        groups: dict[tuple[int, int], list[tuple[str, int]]] = {}
+        propagation = self.equations.propagation
+        for p in () if propagation is None else propagation.propagators:
+            groups.setdefault((p.dispersion, p.length), []).append((p.generator, p.order))
+        return groups
+
+    @staticmethod
+    def _value(value: Factored, values: Mapping[str, acb], factors: dict[int, acb]) -> acb:
+        result = acb(fmpq(value.unit.numerator, value.unit.denominator))
+        for factor, exponent in value.factors:
+            known = factors.get(id(factor))
+            if known is None:
+                known = factors[id(factor)] = _polynomial(factor, value.ring.names, values)
+            result = result * known**exponent if exponent > 0 else result / known**-exponent
+        return result
+
+    def _eliminated(self, rows: list[dict[int, acb]]) -> tuple[acb, acb]:
+        """Return the determinant of A, and what is left of d."""
+        size = len(rows) - 1
+        return self._by_order(rows, size, lambda work, order: _eliminate(work, order, size))
+
+    def _by_order(
+        self,
+        rows: list[dict[int, acb]],
+        size: int,
+        eliminate: Callable[[list[dict[int, acb]], list[tuple[int, int]]], tuple[acb, acb]],
+    ) -> tuple[acb, acb]:
+        """Eliminate by the pivots that served last, else by others."""
+        if size in self._orders:
+            order, bits = self._orders[size]
+            try:
+                return eliminate([dict(row) for row in rows], order)
+            except UndecidedError:
+                # Mostly nothing is wanting but bits.
+                if ctx.prec < 2 * bits:
+                    raise
+        order = pivot_order(rows, size)
+        found = eliminate(rows, order)
+        self._orders[size] = order, ctx.prec
+        return found
+
+    def alone(self, s: acb, bits: int, *, is_num: bool) -> acb:
+        """Return numerator or denominator at an exact s, also where it vanishes."""
+        while True:
+            try:
+                with ctx.workprec(bits):
+                    return self._alone(s, is_num=is_num)
+            except UndecidedError:
+                bits *= 2
+                if bits > MOST_BITS:
+                    raise
+
+    def _alone(self, s: acb, *, is_num: bool) -> acb:
+        spend()
+        values = self._values(s)
+        factors: dict[int, acb] = {}
+        size = len(self.entries) - (not is_num)
+        rows = [{j: x for j, x in row.items() if j < size} for row in self._rows(values, factors)[:size]]
+        # The last pivot alone may vanish.
+        value, _ = self._by_order(rows, size, lambda work, order: (_determinant(work, order), ZERO))
+        return value if is_num else value * self._value(self.divisor, values, factors)
+
+    # -------------------------------------------------------------------------------- bounds in discs
+
+    def bounds(self, radius: float) -> tuple[float, float]:
+        """Return ln of bounds on abs(den) and abs(num) for abs(s) up to a radius [rad/s].
+
+        EssentialSingularityError where a denominator may vanish there.
+        """
+        with ctx.workprec(64):
+            values = self._majorants(radius)
+            sizes = [{j: _bound(c, values) for j, c in row.items()} for row in self.entries]
+            divisor = _bound(self.divisor, values)
+        if not all(x.is_finite() for row in sizes for x in row.values()):
+            return inf, inf  # beyond what a ball's exponent holds
+        den = _hadamard(sizes[:-1], len(sizes) - 1) + _log(divisor)
+        return den, _hadamard(sizes, len(sizes))
+
+    def _majorants(self, radius: float) -> dict[str, tuple[arb, bool]]:
+        """Return a bound on every generator in the disc, and whether it is a constant."""
+        equations = self.equations
+        constants = {
+            name: (abs(value.real), True) for name, value in self._values(acb(0)).items() if name != LAPLACE
+        }
+        values: dict[str, tuple[arb, bool]] = {LAPLACE: (arb(radius), False)}
+        for name in ("pi", *(c.generator for c in equations.constants)):
+            values[name] = constants[name]
+        for name, value in equations.definitions:
+            if value.depends_on(LAPLACE):
+                values[name] = (_bound(value, values), False)
+            else:
+                values[name] = constants[name]
+        propagation = equations.propagation
+        if propagation is None:
+            return values
+        for (number, place), group in self.waves.items():
+            law = propagation.table.dispersions[number]
+            length = _bound(propagation.lengths[number][place], values)
+            plain: tuple[Value, ...] = ()
+            if any(order >= 0 for _, order in group):
+                # What solves the equation with all coefficients turned to grow is larger, term by term.
+                plain = fundamental_functions(
+                    [acb(-_bound(c, values)) for c in law.characteristic], acb(length)
+                )
+            for name, order in group:
+                if order == EXPONENTIAL:
+                    values[name] = ((_bound(law.shift, values) * length).exp(), False)
+                else:
+                    values[name] = (at_centre(plain[order]).real.abs_upper(), False)
+        return values
+
+
+def _uses(value: Factored, names: Collection[str]) -> bool:
+    """Tell whether a value has one of these generators."""
+    known = value.ring.names
+    return any(known[i] in names for f, _ in value.factors for m, _ in terms_of(f) for i, _ in m)
+
+
+def is_zero(equations: Equations, output: str, source: str) -> bool:
+    """Tell whether nothing leads from an input to an output, through rows and unknowns that meet."""
+    given = next(v for v in equations.inputs if v.owner == source)
+    read = next(o for o in equations.outputs if o.name == output)
+    wanted = {v for v, _ in read.form.terms}
+    beside: dict[Variable, list[int]] = {}
+    rows = [
+        [v for v, _ in row.form.terms if v not in equations.inputs or v == given] for row in equations.rows
+    ]
+    for i, row in enumerate(rows):
+        for v in row:
+            beside.setdefault(v, []).append(i)
+    reached, pending = {given}, [given]
+    while pending:
+        for i in beside.pop(pending.pop(), ()):
+            pending += [v for v in rows[i] if v not in reached]
+            reached.update(rows[i])
+    return not wanted & reached
+
+
+def _denominator(form: LinearForm) -> Factored:
+    """Return the least common denominator in s of a form's coefficients."""
+    one = form.coefficients[0] ** 0 if form.terms else None
+    if one is None:
+        message = "an empty form"
+        raise ValueError(message)
+    s = one.ring.index[LAPLACE]
+    parts = (
+        c.denominator().filter(lambda f: any(i == s for m, _ in terms_of(f) for i, _ in m))
+        for c in form.coefficients
+    )
+    return least_common_multiple(one, parts)
+
+
+def _polynomial(polynomial: fmpz_mpoly, names: Sequence[str], values: Mapping[str, acb]) -> acb:
+    total = acb(0)
+    for monomial, coefficient in terms_of(polynomial):
+        term = acb(coefficient)
+        for i, exponent in monomial:
+            value = values[names[i]]
+            term = term * (value if exponent == 1 else value**exponent)
+        total = total + term
+    return total
+
+
+def _bound(value: Factored, values: Mapping[str, tuple[arb, bool]]) -> arb:
+    """Return a bound on abs(value) where abs(s) is at most what ``values`` were made for."""
+    result = arb(abs(fmpq(value.unit.numerator, value.unit.denominator)))
+    names = value.ring.names
+    for factor, exponent in value.factors:
+        fixed, moving = arb(0), arb(0)
+        for monomial, coefficient in terms_of(factor):
+            term, is_fixed = arb(coefficient), True
+            for i, power in monomial:
+                size, constant = values[names[i]]
+                term, is_fixed = term * size**power, is_fixed and constant
+            if is_fixed:
+                fixed += term
+            else:
+                moving += abs(term)
+        if exponent > 0:
+            result *= (abs(fixed) + moving) ** exponent
+        else:
+            least = abs(fixed) - moving
+            if not least > 0:
+                raise EssentialSingularityError
+            result /= least**-exponent
+    return arb(result.abs_upper())
+
+
+def _log(value: arb) -> float:
+    """Return ln of an upper bound."""
+    return -inf if value == 0 else float(value.abs_upper().log().upper()) + ROUNDING
+
+
+def _hadamard(rows: Sequence[Mapping[int, arb]], size: int) -> float:
+    """Return ln of a bound on a determinant from bounds on its entries.
+
+    Columns are scaled so that the product of the rows' lengths is about as small as it gets: any scaling
+    gives a bound.
+    """
+    places = [
+        (i, j, _log(x)) for i, row in enumerate(rows) for j, x in row.items() if j < size and not x == 0
+    ]
+    i = np.array([p[0] for p in places])
+    j = np.array([p[1] for p in places])
+    logs = np.array([p[2] for p in places])
+    scale = np.zeros(size)
+    for _ in range(BALANCING):
+        lengths = _lengths(i, logs + scale[j], size)
+        share = np.exp(2 * (logs + scale[j] - lengths[i]))
+        taken = np.bincount(j, share, size)
+        scale -= 0.5 * np.log(np.maximum(taken, np.finfo(float).tiny))
+    lengths = _lengths(i, logs + scale[j], size)
+    return float(lengths.sum() - scale.sum() + ROUNDING * size)
+
+
+def _lengths(
+    i: np.typing.NDArray[np.intp], logs: np.typing.NDArray[np.float64], size: int
+) -> np.typing.NDArray[np.float64]:
+    """Return ln of the rows' lengths from ln of their entries."""
+    largest = np.full(size, -np.inf)
+    np.maximum.at(largest, i, logs)
+    return np.asarray(largest + 0.5 * np.log(np.bincount(i, np.exp(2 * (logs - largest[i])), size)))
+
+
+THRESHOLD = -3.0
+"""ln of what a pivot must have of its column's largest entry: as large as the fewest neighbours allow."""
+CANDIDATES = 4
+"""Columns with fewest entries that are looked at for a pivot."""
+
+
+def pivot_order(rows: Sequence[Mapping[int, acb]], size: int) -> list[tuple[int, int]]:
+    """Return pivots, row and column, that are large in their columns and meet few others (Markowitz 1957).
+
+    Rows and columns from ``size`` on are no pivots. UndecidedError where none but the last is told from 0.
+    """
+    work = [{j: x for j, x in row.items() if j < size} for row in rows[:size]]
+    scale = _scales(work, size)
+    columns: list[set[int]] = [set() for _ in range(size)]
+    for i, row in enumerate(work):
+        for j in row:
+            columns[j].add(i)
+    left = set(range(size))
+    order: list[tuple[int, int]] = []
+    while left:
+        best: tuple[int, float, int, int] | None = None
+        for j in nsmallest(CANDIDATES, left, key=lambda j: len(columns[j])):
+            sizes = {i: _size(work[i][j]) + scale[i] for i in columns[j] if not work[i][j].contains(0)}
+            largest = max(sizes.values(), default=0.0)
+            for i, x in sizes.items():
+                if x >= largest + THRESHOLD:
+                    cost = (len(work[i]) - 1) * (len(columns[j]) - 1)
+                    if best is None or (cost, -x) < best[:2]:
+                        best = (cost, -x, i, j)
+        if best is None:
+            if len(left) > 1:
+                raise UndecidedError(len(left))
+            (j,) = left
+            (i,) = set(range(size)) - {i for i, _ in order}
+            order.append((i, j))
+            break
+        _, _, i, j = best
+        order.append((i, j))
+        left.discard(j)
+        _take_out(work, columns, i, j)
+    return order
+
+
+def _scales(rows: Sequence[Mapping[int, acb]], size: int) -> list[float]:
+    """Return ln of what rows are multiplied by to be of like size: units differ by powers of ten."""
+    sizes = [{j: _size(x) for j, x in row.items()} for row in rows]
+    by_row, by_column = [0.0] * size, [0.0] * size
+    for _ in range(4):  # one after the other, until neither changes much
+        for i, row in enumerate(sizes):
+            by_row[i] = -max((x + by_column[j] for j, x in row.items()), default=0.0)
+        tops = [-inf] * size
+        for i, row in enumerate(sizes):
+            for j, x in row.items():
+                tops[j] = max(tops[j], x + by_row[i])
+        by_column = [0.0 if t == -inf else -t for t in tops]
+    return by_row
+
+
+def _take_out(rows: list[dict[int, acb]], columns: list[set[int]], i: int, j: int) -> acb:
+    """Eliminate column j by row i, and return the pivot."""
+    row = rows[i]
+    pivot = row.pop(j)
+    columns[j].discard(i)
+    for k in row:
+        columns[k].discard(i)
+    items = list(row.items())
+    for m in columns[j]:
+        target = rows[m]
+        factor = target.pop(j) / pivot
+        for k, x in items:
+            known = target.get(k)
+            if known is None:
+                target[k] = -(factor * x)
+                columns[k].add(m)
+            else:
+                target[k] = known - factor * x
+    columns[j] = set()
+    rows[i] = {}
+    return pivot
+
+
+def _size(value: acb) -> float:
+    middle = abs(value).mid()
+    return float(middle.log().mid()) if middle > 0 else -700.0
+
+
+def _eliminate(rows: list[dict[int, acb]], order: Sequence[tuple[int, int]], size: int) -> tuple[acb, acb]:
+    """Return the determinant by pivots in this order, and what is left of the last entry."""
+    columns = _columns(rows)
+    determinant = acb(sign_of(order))
+    for i, j in order:
+        if rows[i].get(j, ZERO).contains(0):
+            raise UndecidedError
+        determinant = determinant * _take_out(rows, columns, i, j)
+    return determinant, rows[size].get(size, ZERO)
+
+
+def _determinant(rows: list[dict[int, acb]], order: Sequence[tuple[int, int]]) -> acb:
+    """Return the determinant of a square matrix, whose last pivot may vanish."""
+    columns = _columns(rows)
+    determinant = acb(sign_of(order))
+    for i, j in order[:-1]:
+        if rows[i].get(j, ZERO).contains(0):
+            raise UndecidedError
+        determinant = determinant * _take_out(rows, columns, i, j)
+    i, j = order[-1]
+    return determinant * rows[i].get(j, ZERO)
+
+
+def _columns(rows: Sequence[Mapping[int, acb]]) -> list[set[int]]:
+    """Return which rows have an entry in each column."""
+    columns: list[set[int]] = [set() for _ in rows]
+    for i, row in enumerate(rows):
+        for j in row:
+            columns[j].add(i)
+    return columns
+
+
+def sign_of(order: Sequence[tuple[int, int]]) -> int:
+    """Return the sign of the permutation from rows to columns."""
+    to = dict(order)
+    sign, seen = 1, set()
+    for start in to:
+        i, length = start, 0
+        while i not in seen:
+            seen.add(i)
+            i = to[i]
+            length += 1
+        if length and length % 2 == 0:
+            sign = -sign
+    return sign

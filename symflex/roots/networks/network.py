@@ -1,0 +1,447 @@
+"""A network without losses as symmetric equations, real in ``lambda = -s^2``, beside its distributed members.
+
+    balance at tip:  k y - f_1 = 0         k + K_11   ...   y      delivered forces follow from
+    balance at hub:  m s^2 z - f_2 = 0     ...   -lambda m + ...   the members' dynamic stiffness K
+
+Rows of constraints and laws are scaled until the matrix is symmetric, ``d_i M_ij = d_j M_ji``. Its part in
+lambda, inertia, is not negative: then all lambdas where the equations have a solution are real, and the
+number of negative pivots of the whole never falls as lambda rises.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, NoReturn
+
+from flint import arb, arb_poly, ctx, fmpq
+
+from symflex.algebra import LAPLACE, Factored, terms_of
+from symflex.library.elements import LinearForm
+from symflex.model.signs import is_passive
+from symflex.transfer.balls import ball, later
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping, Sequence
+
+    from symflex.equations import Equations
+    from symflex.library.elements import Variable
+
+Terms = dict["Variable", "Factored"]
+ONE_WAY = "forces and motions are coupled in one direction only, as in a loop"
+LOSES = "something in it loses or supplies energy"
+MASS_BITS = 256
+"""For the proof that inertia is not negative, where numbers are not rational."""
+
+
+class OtherNetworkError(Exception):
+    """The equations are not those of a network without losses; the message says why."""
+
+
+@dataclass(frozen=True, eq=False)
+class NetworkMember:
+    """A distributed member: ``dz/dx = system z``, its ends joined to unknowns of the network."""
+
+    name: str
+    system: tuple[tuple[Factored, ...], ...]  # rows of the matrix, even in s
+    length: Factored
+    # Positions of the unknowns that move the start, and the end; None where it is held.
+    ends: tuple[int | None, ...]
+    # Of a member at an angle, whose system is in its own axes, the cosine and sine; else nothing.
+    direction: tuple[Factored, ...] = ()
+
+    @property
+    def key(self) -> str:
+        """Equal for members of equal law and length."""
+        return " ".join(map(str, (*(x for row in self.system for x in row), self.length)))
+
+
+@dataclass(frozen=True, eq=False)
+class Network:
+    """``(M(lambda) + members) x + b u = 0``, ``y = c x``, with numbers in place."""
+
+    numbers: PlacedNumbers
+    size: int  # unknowns
+    entries: Mapping[tuple[int, int], Factored]  # of M, symmetric, i <= j; even in s
+    members: tuple[NetworkMember, ...]
+    # What the input drives, and what the output reads, by unknown; without powers of s. Empty where these are
+    # not motions and forces of nodes, or rates of them.
+    driven: Mapping[int, Factored]
+    read: Mapping[int, Factored]
+    # Powers of s in front of determinant, and of the determinant bordered by input and output.
+    below: int
+    above: int
+    passive: bool  # nothing supplies energy: it is proved that no lambda is negative
+    # Whether the roots of denominator and of numerator mirror each other in the imaginary axis: it is proved.
+    symmetric: tuple[bool, bool]
+
+    @property
+    def is_colocated(self) -> bool:
+        """Whether the output reads what the input drives, but for a factor."""
+        if not self.driven or set(self.driven) != set(self.read):
+            return False
+        ratios = {str(self.read[i] / self.driven[i]) for i in self.driven}
+        return len(ratios) == 1
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedNumbers:
+    """Values of what equations with numbers are made of."""
+
+    equations: Equations
+
+    def polynomial(self, value: Factored, known: Mapping[str, arb_poly]) -> arb_poly:
+        """Return a value as a polynomial in s at the current precision; OtherNetworkError if it is none."""
+        result = arb_poly([ball(value.unit)])
+        names = value.ring.names
+        for factor, exponent in value.factors:
+            total = arb_poly([0])
+            for monomial, coefficient in terms_of(factor):
+                term = arb_poly([coefficient])
+                for i, power in monomial:
+                    if names[i] not in known:
+                        message = f"{names[i]} is not a polynomial in s"
+                        raise OtherNetworkError(message)
+                    term = term * known[names[i]] ** power
+                total = total + term
+            if exponent > 0:
+                result = result * total**exponent
+            elif total.degree() > 0:
+                message = "a law is not a polynomial in s"
+                raise OtherNetworkError(message)
+            else:
+                result = result * arb_poly([total[0] ** exponent])
+        return result
+
+    def known(self) -> dict[str, arb_poly]:
+        """Return the values of the ring's generators at the current precision."""
+        equations = self.equations
+        found = {LAPLACE: arb_poly([0, 1]), "pi": arb_poly([arb.pi()])}
+        values: dict[str, Callable[[], arb]] = {"pi": arb.pi}
+        for constant in equations.constants:
+            found[constant.generator] = arb_poly([later(constant.expression, values)()])
+        for name, value in equations.definitions:
+            found[name] = self.polynomial(value, found)
+        return found
+
+    def even(self, value: Factored, known: Mapping[str, arb_poly]) -> tuple[arb, arb]:
+        """Return a and b of a value ``a + b*lambda``; OtherNetworkError if it is none."""
+        found = self.polynomial(value, known)
+        if found.degree() > 2 or not found[1].is_zero():  # noqa: PLR2004
+            raise OtherNetworkError(LOSES)
+        return found[0], -found[2]
+
+
+def network_of(equations: Equations, output: str, source: str) -> Network:
+    """Return the network between an input and an output; equations have numbers in place of parameters.
+
+    OtherNetworkError where losses, motors, loops, delays or fields make it none, with what did.
+    """
+    return _NetworkReading(equations).network(output, source)
+
+
+class _NetworkReading:
+    """Takes equations apart into a symmetric matrix and members."""
+
+    def __init__(self, equations: Equations) -> None:
+        self.equations = equations
+        self.numbers = PlacedNumbers(equations)
+        self.delivered: set[Variable] = set()  # forces and torques of members
+        for continuum in equations.continua:
+            if not continuum.final:
+                _refuse(f"'{continuum.name}' is no element between two nodes")
+            half = len(continuum.initial) // 2
+            for i in range(half):
+                for flow in (continuum.initial[half + i], continuum.final[half + i][0]):
+                    if flow is None:
+                        _refuse(f"an end of '{continuum.name}' is not joined")
+                    self.delivered.add(flow)
+
+    def network(self, output: str, source: str) -> Network:
+        equations = self.equations
+        rows: dict[Variable, Terms] = {}
+        for each in equations.rows:
+            if each.about not in self.delivered:
+                rows[each.about] = dict(LinearForm.total([each.form]).terms)
+        signals = {v: row for v, row in rows.items() if v.kind in ("signal", "value")}
+        replaced = self._signals(signals)
+        for variable in replaced:
+            del rows[variable]
+        rows = {v: _put_in(row, replaced) for v, row in rows.items()}
+        read = next(o for o in equations.outputs if o.name == output)
+        form = _put_in(dict(LinearForm.total([read.form]).terms), replaced)
+        self._take_members(rows)
+        inputs = set(equations.inputs)
+        below, given = 0, next(v for v in equations.inputs if v.owner == source)
+        driven: Terms = {}
+        for variable, row in rows.items():
+            power = min((self._power(c) for v, c in row.items() if v not in inputs), default=0)
+            scaled = row
+            if power and variable.kind == "through":
+                below += power
+                s = Factored.generator(equations.ring, LAPLACE)
+                scaled = {v: c * s**-power for v, c in row.items()}
+            if given in scaled:
+                driven[variable] = scaled[given]
+            rows[variable] = {v: c for v, c in scaled.items() if v not in inputs}
+        order = list(rows)
+        position = {v: i for i, v in enumerate(order)}
+        members = self._members(position)
+        scale = self._scale(rows, members, position)
+        entries: dict[tuple[int, int], Factored] = {}
+        for variable, row in rows.items():
+            i = position[variable]
+            for v, c in row.items():
+                if i <= position[v]:
+                    entries[i, position[v]] = c * scale[i]
+        self._check(entries, members)
+        values = [(p.name, p.value) for p in equations.model.parameters if p.value is not None]
+        symmetric = (
+            self._is_symmetric([read.divisor]),
+            self._is_symmetric(driven.values()) and self._is_symmetric(form.values()),
+        )
+        passive = is_passive(equations.model, values)
+        network = Network(
+            self.numbers, len(order), entries, members, {}, {}, below, below, passive, symmetric
+        )
+        try:
+            if any(v in inputs or v in self.delivered for v in form):
+                _refuse("the output reads what is no motion of a node")
+            driven_power, driven_row = self._without_s(driven)
+            read_power, read_row = self._without_s(form)
+            divisor = self._power(read.divisor)
+            if self.numbers.polynomial(read.divisor, self._known).degree() > divisor:
+                _refuse("the output is filtered")
+        except OtherNetworkError:
+            return network
+        return replace(
+            network,
+            driven={position[v]: c * scale[position[v]] for v, c in driven_row.items()},
+            read={position[v]: c for v, c in read_row.items()},
+            below=below + divisor,
+            above=below + driven_power + read_power,
+        )
+
+    def _signals(self, rows: Mapping[Variable, Terms]) -> dict[Variable, Terms]:
+        """Return signals as forms of the other variables; those that feed back are not told apart."""
+        found: dict[Variable, Terms] = {}
+        pending = deque(rows)
+        waited = 0
+        while pending:
+            variable = pending.popleft()
+            row = rows[variable]
+            others = {v: c for v, c in row.items() if v != variable}
+            if any(v in rows and v not in found for v in others):
+                pending.append(variable)
+                waited += 1
+                if waited > len(pending):
+                    _refuse(f"signal '{variable}' depends on itself")
+                continue
+            waited = 0
+            own = row[variable]
+            found[variable] = _put_in({v: c / -own for v, c in others.items()}, found)
+        return found
+
+    def _take_members(self, rows: Mapping[Variable, Terms]) -> None:
+        """Check that members deliver into the balances of their ends and nowhere else, and take them out."""
+        expected: dict[Variable, Variable | None] = {}
+        for continuum in self.equations.continua:
+            half = len(continuum.initial) // 2
+            for i in range(half):
+                expected[continuum.initial[half + i]] = continuum.initial[i]  # type: ignore[index]
+                expected[continuum.final[half + i][0]] = continuum.final[i][0]  # type: ignore[index]
+        for about, row in rows.items():
+            for variable in [v for v in row if v in self.delivered]:
+                flow = row.pop(variable)
+                if expected[variable] != about or not (flow + 1).is_zero:
+                    _refuse(f"the force '{variable}' of a member is fed back")
+
+    def _members(self, position: Mapping[Variable, int]) -> tuple[NetworkMember, ...]:
+        found = []
+        for continuum in self.equations.continua:
+            half = len(continuum.initial) // 2
+            ends = (*continuum.initial[:half], *(v for v, _ in continuum.final[:half]))
+            places = tuple(None if v is None else position[v] for v in ends)
+            signs = [sign for _, sign in continuum.final]
+            if signs != [1] * half + [-1] * half:
+                _refuse(f"the ends of '{continuum.name}' are turned")
+            axes = continuum.system.axes
+            system = continuum.system.matrix if axes is None else axes.own.matrix
+            direction = () if axes is None else (axes.cos, axes.sin)
+            found.append(NetworkMember(continuum.name, system, continuum.length, places, direction))
+        return tuple(found)
+
+    def _power(self, value: Factored) -> int:
+        return value.exponent_of(value.ring.generator(LAPLACE))
+
+    def _without_s(self, terms: Terms) -> tuple[int, Terms]:
+        """Return a form as a power of s times one without s; OtherNetworkError if it is none."""
+        powers = {self._power(c) for c in terms.values()}
+        if len(powers) > 1:
+            _refuse("the output mixes motions and their rates")
+        power = powers.pop() if powers else 0
+        shift = None if not power else Factored.generator(self.equations.ring, LAPLACE) ** -power
+        rest = {v: c if shift is None else c * shift for v, c in terms.items()}
+        known = self._known
+        if any(self.numbers.polynomial(c, known).degree() > 0 for c in rest.values()):
+            _refuse("the output mixes motions and their rates")
+        return power, rest
+
+    def _is_symmetric(self, values: Iterable[Factored]) -> bool:
+        """Tell whether all values are even in s, or all odd; what members do is even."""
+        propagation = self.equations.propagation
+        waves = () if propagation is None else propagation.propagators
+        known = {**self._known, **{p.generator: arb_poly([1]) for p in waves}}
+        parities = set()
+        try:
+            for value in values:
+                coefficients = self.numbers.polynomial(value, known).coeffs()
+                parities |= {k % 2 for k, c in enumerate(coefficients) if not c.is_zero()}
+        except OtherNetworkError:
+            return False
+        return len(parities) <= 1
+
+    @property
+    def _known(self) -> dict[str, arb_poly]:
+        return self.numbers.known()
+
+    def _scale(
+        self,
+        rows: Mapping[Variable, Terms],
+        members: Sequence[NetworkMember],
+        position: Mapping[Variable, int],
+    ) -> list[Factored]:
+        """Return what each row is multiplied by so that the matrix is symmetric."""
+        one = Factored.number(self.equations.ring, 1)
+        order = list(rows)
+        beside: list[list[int]] = [[] for _ in order]
+        for member in members:
+            places = [i for i in member.ends if i is not None]
+            for i in places[1:]:
+                beside[places[0]].append(i)
+                beside[i].append(places[0])
+        scale: list[Factored | None] = [None] * len(order)
+        seeds = sorted(range(len(order)), key=lambda i: order[i].kind != "node")
+        for seed in seeds:
+            if scale[seed] is not None:
+                continue
+            scale[seed] = one
+            pending = [seed]
+            while pending:
+                i = pending.pop()
+                mine = scale[i]
+                if mine is None:
+                    continue
+                steps = [(j, mine) for j in beside[i]]
+                for v, c in rows[order[i]].items():
+                    back = rows[v].get(order[i])
+                    if back is None:
+                        _refuse(ONE_WAY)
+                    steps.append((position[v], mine * c / back))
+                for j, factor in steps:
+                    known = scale[j]
+                    if known is not None:
+                        if not (known - factor).is_zero:
+                            _refuse(ONE_WAY)
+                        continue
+                    if factor.depends_on(LAPLACE):
+                        _refuse(LOSES)
+                    scale[j] = factor
+                    pending.append(j)
+        return [one if d is None else d for d in scale]
+
+    def _check(self, entries: Mapping[tuple[int, int], Factored], members: Sequence[NetworkMember]) -> None:
+        """Prove that the equations are real in lambda, and their inertia not negative."""
+        with ctx.workprec(MASS_BITS):
+            known = self._known
+            mass: dict[int, dict[int, arb]] = {}
+            for (i, j), value in entries.items():
+                _, slope = self.numbers.even(value, known)
+                if not slope.is_zero():
+                    mass.setdefault(i, {})[j] = -slope
+                    mass.setdefault(j, {})[i] = -slope
+            exact = {place: x for place, v in entries.items() if (x := _rational_slope(v)) is not None}
+            if not _is_nonnegative(mass, exact):
+                _refuse("an inertia is negative")
+            for member in {m.key: m for m in members}.values():
+                self._check_member(member, known)
+
+    def _check_member(self, member: NetworkMember, known: Mapping[str, arb_poly]) -> None:
+        system = member.system
+        n = len(system)
+        half = n // 2
+        mixed = f"member '{member.name}' is not written in forces and motions"
+        for i in range(half):
+            for j in range(half):
+                if not (system[i][j] + system[half + j][half + i]).is_zero:
+                    _refuse(mixed)
+                if i != j and not (system[i][half + j].is_zero and system[half + i][j].is_zero):
+                    _refuse(mixed)
+        for row in system:
+            for x in row:
+                self.numbers.even(x, known)
+        for i in range(half):
+            for j in range(half):
+                if not self.numbers.even(system[i][j], known)[1].is_zero():
+                    _refuse(mixed)
+            compliance, slope = self.numbers.even(system[i][half + i], known)
+            if not (compliance >= 0 and slope.is_zero()):
+                _refuse(f"a compliance of member '{member.name}' is negative")
+            _, slope = self.numbers.even(system[half + i][i], known)
+            if not slope <= 0:
+                _refuse(f"an inertia of member '{member.name}' is negative")
+        if not self.numbers.polynomial(member.length, known)[0] > 0:
+            _refuse(f"the length of member '{member.name}' is not positive")
+
+
+def _refuse(message: str) -> NoReturn:
+    raise OtherNetworkError(message)
+
+
+def _put_in(terms: Terms, known: Mapping[Variable, Terms]) -> Terms:
+    """Return a form with other forms in place of some variables."""
+    if not any(v in known for v in terms):
+        return terms
+    forms = [LinearForm(tuple(known.get(v, {v: c**0}).items())) * c for v, c in terms.items()]
+    return dict(LinearForm.total(forms).terms)
+
+
+def _rational_slope(value: Factored) -> fmpq | None:
+    """Return the coefficient of s^2 where all of a value's numbers are rational."""
+    s = value.ring.index[LAPLACE]
+    if any(i != s for f, _ in value.factors for m, _ in terms_of(f) for i, _ in m):
+        return None
+    total = {0: fmpq(value.unit.numerator, value.unit.denominator)}
+    for factor, exponent in value.factors:
+        if exponent < 0:
+            return None
+        for _ in range(exponent):
+            product: dict[int, fmpq] = {}
+            for power, number in total.items():
+                for monomial, coefficient in terms_of(factor):
+                    key = power + sum(e for _, e in monomial)
+                    product[key] = product.get(key, fmpq(0)) + number * coefficient
+            total = product
+    return total.get(2, fmpq(0))
+
+
+def _is_nonnegative(mass: Mapping[int, Mapping[int, arb]], exact: Mapping[tuple[int, int], fmpq]) -> bool:
+    """Tell whether it is proved that a symmetric matrix has no negative eigenvalue, by its pivots."""
+    rational = all((min(i, j), max(i, j)) in exact for i, row in mass.items() for j in row)
+    rows: dict[int, dict[int, Any]] = {
+        i: {j: exact[min(i, j), max(i, j)] if rational else x for j, x in row.items()}
+        for i, row in mass.items()
+    }
+    for i in sorted(rows, key=lambda i: len(rows[i])):
+        row = rows.pop(i)
+        pivot = row.pop(i, fmpq(0))
+        for j in row:
+            rows[j].pop(i)
+        if pivot == 0 and all(x == 0 for x in row.values()):
+            continue
+        if not pivot > 0:
+            return False
+        for j, x in row.items():
+            for k, y in row.items():
+                rows[j][k] = rows[j].get(k, fmpq(0)) - x * y / pivot
+    return True

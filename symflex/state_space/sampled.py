@@ -1,0 +1,243 @@
+"""State equations between samples: what a computer that holds its output from one to the next steps through.
+
+Input: the matrices of ``w' = A w + B u(t - T)`` in balls, a sampling time h, a dead time T.
+Output: a :class:`SampledStateSpace`, ``w[k+1] = F w[k] + G u[k]`` with every entry rounded once.
+
+Between samples u is constant, so the step is a matrix exponential and nothing is approximated:
+
+    exp [A B; 0 0] h  =  [F G; 0 1]
+
+A dead time ``T = (n - m) h``, 0 <= m < 1, makes the input change m samples before the end of a step: what
+comes after that instant acts with the newer of two past inputs, what comes before with the older, and past
+inputs are states (Astrom and Wittenmark 1997, Computer-Controlled Systems, section 2.3).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import ceil
+from typing import TYPE_CHECKING
+
+import numpy as np
+from flint import arb, arb_mat, ctx
+
+from symflex.errors import Diagnostic, ModelError, UsageError
+from symflex.errors.optional import installed
+from symflex.state_space.numeric import Arrays, rounding_of
+from symflex.transfer.balls import ball
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from symflex.model import ExactValue
+    from symflex.state_space.realise import StateSpace
+
+Balls = Callable[[int], tuple[arb_mat, ...]]
+"""A, B, C and D in balls of so many bits."""
+FIRST_BITS, LAST_BITS = 192, 6144
+NOTHING_BITS = 150
+"""By which an entry is smaller than the largest that counts as zero where no sign is told."""
+MOST_SAMPLES = 1000
+"""Of a dead time: as many states."""
+
+
+@dataclass(frozen=True, eq=False)
+class SampledStateSpace:
+    """``w[k+1] = A w[k] + B u[k]``, ``y[k] = C w[k] + D u[k]`` in doubles, one step per sampling time.
+
+    The input is held from one sample to the next; the states are those of the continuous system and then,
+    with a dead time, past inputs, the oldest first.
+    """
+
+    arrays: Arrays
+    sample: Fraction  # the sampling time [s]
+    delay: Fraction  # the dead time of all inputs [s]
+    # names: of the states, inputs and outputs
+    states: tuple[str, ...]
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+
+    @property
+    def A(self) -> npt.NDArray[np.float64]:  # noqa: N802
+        """Array of shape (n, n), read-only."""
+        return self.arrays.a
+
+    @property
+    def B(self) -> npt.NDArray[np.float64]:  # noqa: N802
+        """Array of shape (n, inputs), read-only."""
+        return self.arrays.b
+
+    @property
+    def C(self) -> npt.NDArray[np.float64]:  # noqa: N802
+        """Array of shape (outputs, n), read-only."""
+        return self.arrays.c
+
+    @property
+    def D(self) -> npt.NDArray[np.float64]:  # noqa: N802
+        """Array of shape (outputs, inputs), read-only."""
+        return self.arrays.d
+
+    @property
+    def dt(self) -> float:
+        """The sampling time [s]."""
+        return float(self.sample)
+
+    def __repr__(self) -> str:
+        shape = f"{len(self.states)} states, {len(self.inputs)} inputs, {len(self.outputs)} outputs"
+        return f"<SampledStateSpace every {self.dt:g} s: {shape}>"
+
+    def to_control(self) -> object:
+        """Return a discrete ``control.StateSpace`` with names; SF902 when python-control is not installed."""
+        return installed("control").StateSpace(
+            *(m.copy() for m in (self.A, self.B, self.C, self.D)),
+            self.dt,
+            inputs=list(self.inputs),
+            outputs=list(self.outputs),
+            states=list(self.states),
+            remove_useless_states=False,
+        )
+
+    def to_scipy(self) -> object:
+        """Return a discrete ``scipy.signal.StateSpace``; SF902 when scipy is not installed."""
+        matrices = (m.copy() for m in (self.A, self.B, self.C, self.D))
+        return installed("scipy.signal").StateSpace(*matrices, dt=self.dt)
+
+
+def sampled_state_space(
+    system: StateSpace, values: Mapping[str, ExactValue], sample: Fraction, delay: Fraction = Fraction(0)
+) -> SampledStateSpace:
+    """Return an exact realisation with numbers, as it is seen at samples; errors as of :func:`sampled`."""
+    rounding = rounding_of(system, values)
+
+    def balls(bits: int) -> tuple[arb_mat, ...]:
+        found = []
+        for _, rows, (height, width) in system.matrices:
+            entries = [[arb(0)] * width for _ in range(height)]
+            for i, row in enumerate(rows):
+                for j, value in row.items():
+                    entries[i][j] = rounding.enclosed(value, bits)
+            found.append(_matrix(entries, width))
+        return tuple(found)
+
+    groups = (system.states, system.inputs, system.outputs)
+    states, inputs, outputs = (tuple(x.name for x in group) for group in groups)
+    return sampled(balls, sample, delay, (states, inputs, outputs))
+
+
+def sampled(
+    balls: Balls,
+    sample: Fraction,
+    delay: Fraction,
+    names: tuple[Sequence[str], Sequence[str], Sequence[str]],
+) -> SampledStateSpace:
+    """Return the system as it is seen at samples, the input held between them.
+
+    ``names`` are those of states, inputs and outputs.
+
+    Raises
+    ------
+    UsageError
+        SF902 for a sampling time that is not positive, a negative dead time, or one of too many samples.
+    ModelError
+        SF233 where an entry does not fit in double precision: the system is too fast for the sampling time.
+
+    Examples
+    --------
+    >>> lag = lambda bits: (arb_mat([[-1]]), arb_mat([[1]]), arb_mat([[1]]), arb_mat([[0]]))
+    >>> found = sampled(lag, Fraction(1, 10), Fraction(0), (["y"], ["u"], ["y"]))
+    >>> found.A.round(9).tolist(), found.B.round(9).tolist()
+    ([[0.904837418]], [[0.095162582]])
+    """
+    if not sample > 0 or not 0 <= delay <= MOST_SAMPLES * sample:
+        message = f"a sampling time is positive, and a dead time from 0 to {MOST_SAMPLES} samples"
+        raise UsageError(Diagnostic("SF902", message))
+    states, inputs, outputs = names
+    whole = ceil(delay / sample)
+    bits = FIRST_BITS
+    while True:
+        with ctx.workprec(bits):
+            found = [_doubles(m) for m in _stepped(balls(bits), sample, whole, whole * sample - delay)]
+        known = [array for array in found if array is not None]
+        if len(known) == len(found):
+            past = [f"{name}_{i}_before" for i in range(whole, 0, -1) for name in inputs]
+            arrays = Arrays(known[0], known[1], known[2], known[3])
+            every = (*states, *past)
+            return SampledStateSpace(arrays, sample, delay, every, tuple(inputs), tuple(outputs))
+        if bits >= LAST_BITS:
+            message = "an entry of the sampled state equations does not fit in double precision"
+            raise ModelError(Diagnostic("SF233", message, None, "take a shorter sampling time"))
+        bits *= 2
+
+
+def _stepped(
+    matrices: tuple[arb_mat, ...], sample: Fraction, whole: int, ahead: Fraction
+) -> tuple[arb_mat, arb_mat, arb_mat, arb_mat]:
+    """Return the matrices of one step; the input changes so long ``ahead`` of its end."""
+    a, b, c, d = matrices
+    n, m, p = a.nrows(), b.ncols(), c.nrows()
+    grown, newer = _held(a, b, ball(ahead))
+    before, older = _held(a, b, ball(sample - ahead))
+    step = grown * before
+    if not whole:
+        return step, grown * older + newer if n else newer, c, d
+    size = n + whole * m
+    total = [[arb(0)] * size for _ in range(size)]
+    given = [[arb(0)] * m for _ in range(size)]
+    shown = [[arb(0)] * size for _ in range(p)]
+    _put(total, 0, 0, step)
+    # The states after those of the system are u[k - whole], ..., u[k - 1].
+    _put(total, 0, n, grown * older)
+    _put(given if whole == 1 else total, 0, 0 if whole == 1 else n + m, newer)
+    one = arb_mat(m, m, [arb(int(i == j)) for i in range(m) for j in range(m)])
+    for i in range(whole - 1):
+        _put(total, n + i * m, n + (i + 1) * m, one)
+    _put(given, n + (whole - 1) * m, 0, one)
+    _put(shown, 0, 0, c)
+    _put(shown, 0, n, d)
+    zero = arb_mat(p, m)
+    return _matrix(total, size), _matrix(given, m), _matrix(shown, size), zero
+
+
+def _held(a: arb_mat, b: arb_mat, time: arb) -> tuple[arb_mat, arb_mat]:
+    """Return ``exp(A t)``, and the integral of that times B from 0 to t."""
+    n, m = a.nrows(), b.ncols()
+    size = n + m
+    whole = [[arb(0)] * size for _ in range(size)]
+    _put(whole, 0, 0, a)
+    _put(whole, 0, n, b)
+    grown = (_matrix(whole, size) * time).exp()
+    return (
+        arb_mat(n, n, [grown[i, j] for i in range(n) for j in range(n)]),
+        arb_mat(n, m, [grown[i, n + j] for i in range(n) for j in range(m)]),
+    )
+
+
+def _put(rows: list[list[arb]], top: int, left: int, block: arb_mat) -> None:
+    for i in range(block.nrows()):
+        for j in range(block.ncols()):
+            rows[top + i][left + j] = block[i, j]
+
+
+def _matrix(rows: Sequence[Sequence[arb]], columns: int) -> arb_mat:
+    return arb_mat(len(rows), columns, [x for row in rows for x in row])
+
+
+def _doubles(matrix: arb_mat) -> npt.NDArray[np.float64] | None:
+    """Return the nearest double of every entry; None where more precision is needed, or nothing fits."""
+    rows, columns = matrix.nrows(), matrix.ncols()
+    found = np.zeros((rows, columns))
+    entries = [(i, j, matrix[i, j]) for i in range(rows) for j in range(columns)]
+    largest = max((x.abs_upper() for _, _, x in entries), default=arb(0))
+    nothing = largest * arb(2) ** -NOTHING_BITS
+    for i, j, x in entries:
+        low, high = float(x.lower()), float(x.upper())
+        if low != high:
+            if not x.abs_upper() < nothing:
+                return None
+            low = 0.0
+        if not np.isfinite(low):
+            return None
+        found[i, j] = low
+    return found

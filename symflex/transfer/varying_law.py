@@ -1,0 +1,321 @@
+"""Laws of waves whose coefficients vary along x, with numbers.
+
+Input: a law over the ring of a bound transfer function, and what the ring's generators are.
+Output: a :class:`BoundLaw`: the coefficients of ``z' = A(x, s) z`` as power series in x, in powers of u,
+where u is s, its square, or s less the middle of a ball; and bounds on them.
+
+    a clamped beam that tapers, E I (1 - x)^3 and rho A (1 - x):
+    order 0 in u = s^2:   y' = theta, theta' = tau/(E I (1 - x)^3), tau' = -f
+    order 1:              f' = rho A (1 - x) y
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import cached_property
+from math import gcd
+from typing import TYPE_CHECKING, Any
+
+from flint import acb, acb_poly, acb_series, arb, arb_poly, arb_series, ctx
+
+from symflex.algebra import FUNCTIONS, LAPLACE, Factored, by_powers, degree_in
+from symflex.algebra.fundamental_matrix import SingularCoefficientError, expand, growth_along
+from symflex.algebra.ring import terms_of
+from symflex.errors import Diagnostic, ModelError
+from symflex.expressions import fold
+from symflex.model.along import COORDINATE
+from symflex.model.linearity import integer_exponent
+from symflex.transfer.balls import ball, series_terms
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+    from symflex.algebra import Dispersion
+    from symflex.algebra.fundamental_matrix import Coefficients, Place, PowerExpansion
+    from symflex.expressions import Call, Expression
+
+ELSEWHERE = acb(0.7, 1.3)
+"""A frequency like any other, at which coefficients have no pole in s."""
+TINY = 2.0**-30
+FEW_BITS = 30
+Along = Any
+"""A value along x: a real power series about a point, or a complex ball. Their arithmetic is one."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Summand:
+    """A part of an entry of A: ``s^power * along / divisor``."""
+
+    power: int
+    divisor: Factored  # of s
+    along: Factored  # of x
+
+
+@dataclass(frozen=True, eq=False)
+class BoundLaw:
+    """A law at one length of a member. Values are enclosed at the current precision."""
+
+    law: Dispersion
+    length: Factored
+    constants: Mapping[str, Callable[[], arb]]  # generators free of s and x
+    functions: Mapping[str, Call]  # generators that are functions of x
+    parameters: Mapping[str, Callable[[], arb]]  # what functions of x are made of
+    # Growth at rest and about frequencies, once it is known.
+    _growths: dict[int, float] = field(default_factory=dict, repr=False)
+
+    @cached_property
+    def summands(self) -> Mapping[Place, tuple[_Summand, ...]]:
+        """The entries of A that are not zero, in parts."""
+        rows = enumerate(self.law.matrix)
+        return {(i, j): tuple(self._parted(x)) for i, row in rows for j, x in enumerate(row) if not x.is_zero}
+
+    @cached_property
+    def _every(self) -> tuple[_Summand, ...]:
+        return tuple(t for parts in self.summands.values() for t in parts)
+
+    @cached_property
+    def is_polynomial(self) -> bool:
+        """Whether coefficients are polynomials in s."""
+        return all(t.divisor.is_one for t in self._every)
+
+    @cached_property
+    def step(self) -> int:
+        """How often s is a factor of u: what depends on its square alone has half the powers."""
+        return gcd(*(t.power for t in self._every)) or 1
+
+    def _parted(self, value: Factored) -> Iterator[_Summand]:
+        ring = value.ring
+        moving = [ring.index[n] for n in (COORDINATE, *self.functions)]
+        one = Factored.number(ring, 1)
+        along, divisor, mixed = one * value.unit, one, one
+        for factor, exponent in value.factors:
+            piece = Factored(ring, Fraction(1), ((factor, exponent),))
+            if not degree_in(factor, 0):
+                along = along * piece
+            elif exponent > 0:
+                mixed = mixed * piece
+            elif not any(degree_in(factor, i) for i in moving):
+                divisor = divisor / piece
+            else:
+                message = "a coefficient over what holds s and x together is not available yet"
+                hint = "let losses be the same all along x"
+                raise ModelError(Diagnostic("SF910", message, None, hint))
+        for power, coefficient in by_powers(ring, mixed.expand()).items():
+            yield _Summand(power, divisor, along * Factored.polynomial(ring, coefficient))
+
+    def growth(self, largest: arb) -> float:
+        """Return about by which power of e solutions grow along the member at most, for an abs(u)."""
+        return growth_along(_InPowers(self), largest)
+
+    def growth_at(self, octave: int, parts: int) -> float:
+        """Return the same for ``abs(s) = 2^(octave/parts)``."""
+        if octave not in self._growths:
+            size = arb(2.0 ** (octave / parts))
+            near = _AboutMiddle(self, acb(0, size), 1)
+            self._growths[octave] = (
+                self.growth(size**self.step) if self.is_polynomial else growth_along(near, arb(0))
+            )
+        return self._growths[octave]
+
+    def expanded(self, largest: arb, bits: int) -> PowerExpansion:
+        """Return the fundamental matrix in powers of u, for abs(u) up to the largest.
+
+        Raises ModelError: SF250 where a coefficient is not analytic.
+        """
+        try:
+            with ctx.workprec(bits):
+                return expand(_InPowers(self), largest, bits)
+        except SingularCoefficientError as error:
+            raise self._singular(error) from None
+
+    def expanded_about(self, middle: acb, reach: arb, orders: int) -> PowerExpansion | None:
+        """Return the same in so many powers of s less a middle, for abs(s - middle) up to a reach.
+
+        None where coefficients may have a pole in s so close by.
+        """
+        try:
+            return expand(_AboutMiddle(self, middle, orders), reach, ctx.prec, orders)
+        except SingularCoefficientError as error:
+            try:
+                expand(_AboutMiddle(self, ELSEWHERE, 1), arb(TINY), FEW_BITS, 1)
+            except SingularCoefficientError:
+                raise self._singular(error) from None
+            return None
+
+    def _singular(self, error: SingularCoefficientError) -> ModelError:
+        message = f"a coefficient of '{self.law.name}' is not analytic near x = {error.place:.6g} m"
+        hint = "a stiffness vanishes, or a coefficient has a pole or a branch point; end the member before it"
+        return ModelError(Diagnostic("SF250", message, None, hint))
+
+    def ends(self) -> tuple[arb, arb]:
+        """Return where x begins and ends."""
+        (first,) = self.law.start
+        start, length = (acb(self.value(x, {})).real for x in (first, self.length))
+        return start, start + length
+
+    def along(self, x: Along) -> dict[str, Along]:
+        """Return the coordinate and the functions of it."""
+        return {COORDINATE: x} | {name: self._function(call, x) for name, call in self.functions.items()}
+
+    def _function(self, call: Call, x: Along) -> Along:
+        def number(value: arb) -> Along:
+            return arb_series([value]) if isinstance(x, arb_series) else acb(value)
+
+        def named(name: str) -> Along:
+            if name == COORDINATE:
+                return x
+            return number(arb.pi() if name == "pi" else self.parameters[name]())
+
+        def power(base: Along, exponent: Expression) -> Along:
+            return raised(base, integer_exponent(exponent) or 0)
+
+        return fold(
+            call,
+            number=lambda value: number(ball(value)),
+            name=named,
+            power=power,
+            call=lambda inner, argument: _called(inner.name, argument),
+        )
+
+    def value(self, value: Factored, along: Mapping[str, Along], s: acb | None = None) -> Along:
+        """Return a coefficient, given the coordinate and functions of it, and s where that occurs."""
+        names = value.ring.names
+        is_series = isinstance(along.get(COORDINATE), arb_series)
+        one: Along = arb_series([1]) if is_series else acb(1)
+        total: Along = one * ball(value.unit)
+        for factor, exponent in value.factors:
+            own: Along = one * 0
+            for monomial, c in terms_of(factor):
+                term: Along = one * c
+                for i, e in monomial:
+                    name = names[i]
+                    known: Along = along.get(name, s if name == LAPLACE else None)
+                    term = term * raised(self.constants[name]() if known is None else known, e)
+                own = own + term
+            total = total * raised(own, exponent)
+        return total
+
+    def size(self, value: Factored, along: Mapping[str, Along], s: acb | None = None) -> arb:
+        """Return a bound on a coefficient on balls: factor by factor, as powers of wide balls are wider."""
+        total = abs(ball(value.unit))
+        for factor, exponent in value.factors:
+            own: acb = self.value(Factored.polynomial(value.ring, factor), along, s)
+            total *= (own.abs_upper() if exponent > 0 else own.abs_lower()) ** exponent
+        return total
+
+
+@dataclass(frozen=True, eq=False)
+class _InPowers:
+    """A law in powers of u, that is s or its square."""
+
+    law: BoundLaw
+
+    @property
+    def size(self) -> int:
+        return self.law.law.order
+
+    def ends(self) -> tuple[arb, arb]:
+        return self.law.ends()
+
+    def series(self, x: arb, terms: int) -> list[Coefficients]:
+        found: list[Coefficients] = [{}]
+        with series_terms(terms):
+            along = self.law.along(arb_series([x, 1], terms))
+            for place, parts in self.law.summands.items():
+                for t in parts:
+                    order = t.power // self.law.step
+                    found += [{} for _ in range(order + 1 - len(found))]
+                    own = arb_poly(self.law.value(t.along, along).coeffs())
+                    found[order][place] = found[order].get(place, arb_poly([])) + own
+        return found
+
+    def bounds(self, x: acb, largest: arb) -> dict[Place, arb]:
+        along = self.law.along(x)
+        return {
+            place: sum(
+                (self.law.size(t.along, along) * largest ** (t.power // self.law.step) for t in parts), arb(0)
+            )
+            for place, parts in self.law.summands.items()
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class _AboutMiddle:
+    """A law in powers of u, that is s less a middle, of which so many are kept."""
+
+    law: BoundLaw
+    middle: acb
+    orders: int
+
+    @property
+    def size(self) -> int:
+        return self.law.law.order
+
+    def ends(self) -> tuple[arb, arb]:
+        return self.law.ends()
+
+    def series(self, x: arb, terms: int) -> list[Coefficients]:
+        found: list[Coefficients] = [{} for _ in range(self.orders)]
+        with series_terms(terms):
+            along = self.law.along(arb_series([x, 1], terms))
+            parts = [
+                (place, t, acb_poly(self.law.value(t.along, along).coeffs()))
+                for place, own in self.law.summands.items()
+                for t in own
+            ]
+        with series_terms(self.orders):
+            s = acb_series([self.middle, 1], self.orders)
+            for place, t, coefficient in parts:
+                rate: acb_series = raised(s, t.power) / self._divisor(t.divisor, s)
+                for order, c in enumerate(rate.coeffs()):
+                    found[order][place] = found[order].get(place, acb_poly([])) + coefficient * c
+        return found
+
+    def bounds(self, x: acb, largest: arb) -> dict[Place, arb]:
+        along, radius = self.law.along(x), arb(0, largest.abs_upper())
+        s = self.middle + acb(radius, radius)
+        return {
+            place: sum(
+                (
+                    self.law.size(t.along, along)
+                    * s.abs_upper() ** t.power
+                    / self.law.size(t.divisor, along, s)
+                    for t in parts
+                ),
+                arb(0),
+            )
+            for place, parts in self.law.summands.items()
+        }
+
+    def _divisor(self, value: Factored, s: acb_series) -> acb_series:
+        total = acb_series([ball(value.unit)], self.orders)
+        for factor, exponent in value.factors:
+            own = acb_series([0], self.orders)
+            for power, part in by_powers(value.ring, factor).items():
+                own = own + raised(s, power) * self.law.value(Factored.polynomial(value.ring, part), {})
+            total = total * raised(own, exponent)
+        return total
+
+
+def raised(base: Along, exponent: int) -> Along:
+    """Return an integer power of a number or a series."""
+    if isinstance(base, acb | arb):
+        return base**exponent
+    found: Along = base**0 if exponent == 0 else base
+    for _ in range(abs(exponent) - 1):
+        found = found * base
+    return 1 / found if exponent < 0 else found
+
+
+def _called(name: str, x: Along) -> Along:
+    """Return a function of a ball or series; not a number where it is not analytic on the ball."""
+    if isinstance(x, acb):
+        if name in ("sqrt", "log"):
+            return x.sqrt(analytic=True) if name == "sqrt" else x.log(analytic=True)
+    elif name in ("sinh", "cosh", "tanh"):
+        grown, decayed = x.exp(), (-x).exp()
+        odd, even = (grown - decayed) / 2, (grown + decayed) / 2
+        return {"sinh": odd, "cosh": even}[name] if name != "tanh" else odd / even
+    evaluate: Callable[[Along], Along] = FUNCTIONS[name].evaluate
+    return evaluate(x)

@@ -1,0 +1,102 @@
+"""Fundamental matrices of equations whose solutions have names of their own."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import pytest
+from flint import acb, arb, arb_poly, ctx
+
+from symflex.algebra.fundamental_matrix import SingularCoefficientError, expand
+
+
+@dataclass
+class Equation:
+    """``y'' = (constant + u*moving) y``, both polynomials in x, from ``start`` to ``end``."""
+
+    constant: tuple[float, ...]
+    moving: tuple[float, ...]
+    start: float = 0.0
+    end: float = 1.0
+    size: int = field(default=2, init=False)
+
+    def ends(self):
+        return arb(self.start), arb(self.end)
+
+    def series(self, x, terms):
+        shift = arb_poly([x, 1])
+        first = {(0, 1): arb_poly([1])}
+        if self.constant:
+            first[1, 0] = arb_poly(list(self.constant))(shift)
+        return [first, {(1, 0): arb_poly(list(self.moving))(shift)}]
+
+    def bounds(self, x, largest):
+        def size(coefficients):
+            return sum((abs(acb(c)) * abs(x) ** k for k, c in enumerate(coefficients)), arb(0)).abs_upper()
+
+        return {(0, 1): arb(1), (1, 0): size(self.constant) + size(self.moving) * largest}
+
+
+def at(equation, row, column, u, bits=150):
+    made = expand(equation, arb(abs(u) + 1).upper(), bits)
+    with ctx.workprec(bits):
+        return made.series((row,), (column,), acb(u), 2)
+
+
+@pytest.mark.parametrize("u", [3.0, -200.0, 40 - 30j])
+def test_constant_coefficients_make_cosh(u):
+    with ctx.workprec(150):
+        root = acb(u).sqrt()
+        cosh, slope = at(Equation((), (1.0,)), 0, 0, u)
+        assert cosh.overlaps(root.cosh())
+        assert cosh.rel_accuracy_bits() > 100
+        assert slope.overlaps(root.sinh() / (2 * root))
+
+
+@pytest.mark.parametrize("u", [5.0, -300.0, 2 + 50j])
+def test_a_coefficient_that_grows_with_x_makes_airy_functions(u):
+    # y'' = u x y is solved by Ai(k x) and Bi(k x), k^3 = u; Ai'Bi - Ai Bi' is -1/pi.
+    with ctx.workprec(150):
+        k = acb(u) ** (acb(1) / 3)
+        ai, _, bi, _ = k.airy()
+        _, aip0, _, bip0 = acb(0).airy()
+        expected = (bip0 * ai - aip0 * bi) * acb.pi()
+        value, _ = at(Equation((), (0.0, 1.0)), 0, 0, u)
+        assert value.overlaps(expected)
+        assert value.rel_accuracy_bits() > 100
+
+
+def test_equations_that_go_in_circles_at_u_zero_are_solved_too():
+    # y'' = (1 + x^2) y has the solution exp(x^2/2), from (1, 0) on.
+    value, _ = at(Equation((1.0, 0.0, 1.0), (1.0,)), 0, 0, 0.0)
+    with ctx.workprec(150):
+        assert value.overlaps(acb(arb(1) / 2).exp())
+        assert value.rel_accuracy_bits() > 100
+
+
+@pytest.mark.parametrize("u", [-60.0, 9j])
+def test_the_wronskian_is_one(u):
+    made = expand(Equation((), (1.0, -0.5)), arb(60), 120)
+    with ctx.workprec(120):
+        (value,) = made.series((0, 1), (0, 1), acb(u))
+        assert value.overlaps(acb(1))
+        assert value.rel_accuracy_bits() > 80
+
+
+def test_a_ball_of_u_holds_the_values_at_its_points():
+    made = expand(Equation((), (1.0, 1.0)), arb(100), 120)
+    with ctx.workprec(120):
+        (wide,) = made.series((0,), (0,), acb(arb(-50, 5), arb(0, 5)))
+        for point in (-50, -46, -54 + 3j, -48 - 4j):
+            (value,) = made.series((0,), (0,), acb(point))
+            assert wide.contains(value)
+
+
+def test_a_pole_is_met():
+    class Pole(Equation):
+        def bounds(self, x, largest):
+            return {(0, 1): arb(1), (1, 0): abs(1 / (x - acb(0.5))) * largest}
+
+    with pytest.raises(SingularCoefficientError) as caught:
+        expand(Pole((), (1.0,)), arb(1), 60)
+    assert 0.3 < caught.value.place <= 0.5

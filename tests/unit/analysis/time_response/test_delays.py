@@ -1,0 +1,168 @@
+"""Responses with delays and with waves that keep their form are exact, piecewise."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import product
+from math import comb, cos, factorial, pi, sin, sqrt
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from symflex import loads
+from symflex.analysis.time_response import SampleTimes, time_response
+from symflex.errors import UncertifiedError
+from tests.unit.analysis.time_response.references import of_quotient
+
+DELAY = (
+    'parameters = { a = "1 1/s", w = "2 1/s" }\nblocks.D = { type = "delay", T = "1 s" }\n'
+    "inputs.u = {}\noutputs.y = "
+)
+
+
+def bound(text, output="y", input="u"):
+    return loads(f"symflex = 1\n{text}").transfer_function(output, input).bind().bound
+
+
+def rod(rest="", ends='["ground", "x"]', kind="rod"):
+    """A rod of impedance 2 N s/m in which waves take 1/2 s from end to end."""
+    material = 'E = "4 Pa", A = "1 m^2"' if kind == "rod" else 'N = "4 N", A = "1 m^2"'
+    return bound(
+        f'elements.bar = {{ type = "{kind}", between = {ends}, {material}, rho = "1 kg/m^3", l = "1 m" }}\n'
+        f'inputs.F = {{ force = "x" }}\noutputs.X = "x"\n{rest}',
+        "X",
+        "F",
+    )
+
+
+def after(t, delay):
+    return np.maximum(t - delay, 0)
+
+
+TIMES = np.linspace(0, 7.3, 75)
+STEPS = {
+    "a delay": (lambda: bound(f'{DELAY}"D*u"'), (TIMES >= 1.0).astype(float)),
+    "a lag after a delay": (lambda: bound(f'{DELAY}"D*u/(s + a)"'), 1 - np.exp(-after(TIMES, 1))),
+    # 1/(s + e^-s) = sum (-1)^k e^(-sk)/s^(k+1)
+    "a loop around a delay": (
+        lambda: bound(f'{DELAY}"u/(s + a*D)"'),
+        sum((-1) ** k * after(TIMES, k) ** (k + 1) / factorial(k + 1) for k in range(8)),
+    ),
+    "an unstable loop around a delay": (
+        lambda: bound(f'{DELAY}"u/(s + 3*a*D)"'),
+        sum((-3) ** k * after(TIMES, k) ** (k + 1) / factorial(k + 1) for k in range(8)),
+    ),
+    "a neutral loop": (  # 1/(1 + e^-s/2) = sum (-1/2)^k e^(-sk)
+        lambda: bound(f'{DELAY}"u/(1 + D/2)"'),
+        sum((-0.5) ** k * (TIMES >= k) for k in range(8)),
+    ),
+    "two delays that have no common measure": (
+        lambda: bound(
+            'blocks.D = { type = "delay", T = "1 s" }\nblocks.G = { type = "delay", T = "1.37 s" }\n'
+            'inputs.u = {}\noutputs.y = "u/(1 - D/2 - G/3)"'
+        ),
+        sum(
+            comb(i + k, i) * 0.5**i * 3.0**-k * (TIMES >= i + 1.37 * k)
+            for i, k in product(range(8), range(8))
+        ),
+    ),
+    # X/F = tanh(s/2)/(2 s): images change sign at the clamp
+    "a rod that is clamped": (
+        rod,
+        TIMES / 2 + sum((-1) ** k * after(TIMES, k) for k in range(1, 8)),
+    ),
+    "a string that is clamped": (
+        lambda: rod(kind="string"),
+        TIMES / 2 + sum((-1) ** k * after(TIMES, k) for k in range(1, 8)),
+    ),
+    "a rod that is free": (
+        lambda: rod(ends='["x", "end"]'),
+        TIMES / 2 + sum(after(TIMES, k) for k in range(1, 8)),
+    ),
+    # a damper of the rod's impedance: X/F = (1 - e^-s)/(4 s), nothing comes back a second time
+    "a rod with a matched damper": (
+        lambda: rod('elements.d = { type = "damper", between = ["ground", "x"], b = "2 N*s/m" }'),
+        (TIMES - after(TIMES, 1)) / 4,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", STEPS)
+def test_a_step_response_is_that_of_the_images(name):
+    function, expected = STEPS[name]
+    found = time_response(function(), "step", SampleTimes.of(TIMES))
+    largest = np.max(np.abs(expected))
+    assert found.certified
+    assert np.max(np.abs(found.values - expected)) < 1e-13 * largest
+    assert np.max(found.radius) <= 1e-11 * largest
+
+
+@pytest.mark.parametrize("kind", ["impulse", "step"])
+def test_a_rod_with_a_mass_is_what_its_first_echoes_give(kind):
+    # 1/(m s^2 + Z s coth(s/2)) with m = 1, Z = 2 is (1 - w)/((s^2 + 2 s) + w (2 s - s^2)), w = e^-s
+    function = rod('elements.m = { type = "mass", at = "x", m = "1 kg" }')
+    u = {"impulse": 0, "step": 1}[kind]
+    times = [0.2, 0.7, 1.4, 1.9]
+    found = time_response(function, kind, SampleTimes.of(times))
+    first = of_quotient([1], [1, 2, 0], u, times)
+    # coefficient of w: (-1 (s^2 + 2s) - (2s - s^2))/(s^2 + 2s)^2 = -4s/(s^2 + 2s)^2
+    echo = of_quotient([-4, 0], [1, 4, 4, 0, 0], u, [t - 1 if t > 1 else 0.0 for t in times])
+    expected = np.array([float(a + (b if t > 1 else 0)) for a, b, t in zip(first, echo, times, strict=True)])
+    assert np.max(np.abs(found.values - expected)) <= 1e-15
+
+
+def test_the_impulse_response_of_a_rod_has_fronts_and_two_values_there():
+    found = time_response(rod(), "impulse", SampleTimes.evenly(Fraction(3), 4))
+    assert [(float(j.time), float(j.height)) for j in found.jumps] == [(1.0, -1.0), (2.0, 1.0), (3.0, -1.0)]
+    assert found.values.tolist() == pytest.approx([0.5, 0.0, 0.0, 0.0])
+    assert found.radius.tolist() == pytest.approx([0.0, 0.5, 0.5, 0.5])  # between 1/2 and -1/2
+
+
+def test_an_impulse_through_a_delay_is_an_impulse_later():
+    found = time_response(bound(f'{DELAY}"D*u*(s + w)/(s + a)"'), "impulse", SampleTimes.of([0.5, 2.0]))
+    assert [(float(i.time), i.order, float(i.weight)) for i in found.impulses] == [(1.0, 0, 1.0)]
+    assert found.values.tolist() == pytest.approx([0.0, np.exp(-1)])
+
+
+def test_a_front_whose_time_is_irrational_is_between_samples():
+    stiff = bound(
+        'elements.bar = { type = "rod", between = ["ground", "x"], E = "2 Pa", A = "1 m^2", '
+        'rho = "1 kg/m^3", l = "1 m" }\ninputs.F = { force = "x" }\noutputs.V = "s*x"',
+        "V",
+        "F",
+    )
+    found = time_response(stiff, "step", SampleTimes.of([1.414213562373095, 1.4142135623730951]))
+    assert float(found.jumps[0].time) == pytest.approx(sqrt(2), rel=1e-15)
+    assert found.values.tolist() == pytest.approx([1 / sqrt(2), -1 / sqrt(2)])  # sqrt(2) lies between
+
+
+def test_what_comes_before_its_input_is_refused():
+    with pytest.raises(UncertifiedError, match="SF810"):
+        time_response(bound(f'{DELAY}"u/D"'), "step", SampleTimes.of([1.0]))
+
+
+def test_too_many_echoes_are_said():
+    with pytest.raises(UncertifiedError, match="too many echoes"):
+        time_response(bound(f'{DELAY}"u/(1 + D/2)"'), "step", SampleTimes.of([5000.0]))
+
+
+def test_a_rod_with_more_echoes_than_can_be_followed_is_estimated():
+    mass = 'elements.m = { type = "mass", at = "x", m = "1 kg" }'
+    found = time_response(rod(mass), "step", SampleTimes.of([400.0, 500.5]))
+    assert not found.certified
+    # Modes of a rod of 1 kg and 4 N with 1 kg at its end: q tan q = 1, omega = 2 q.
+    expected = np.zeros(2)
+    for k in range(4000):
+        low, high = k * pi, k * pi + pi / 2
+        q = brentq(lambda q: q * sin(q) - cos(q), low, high)
+        omega, share = 2 * q, (1 - sin(2 * q) / (2 * q)) / 2 + sin(q) ** 2
+        expected += sin(q) ** 2 / (share * omega**2) * (1 - np.cos(omega * np.array([400.0, 500.5])))
+    assert found.values.tolist() == pytest.approx(expected, abs=1e-4 * max(expected))
+
+
+def test_even_and_single_times_agree():
+    function = bound(f'{DELAY}"u/(s^2 + a*s/5 + w^2 + w*a*D)"')
+    even = time_response(function, "step", SampleTimes.of(TIMES))
+    single = time_response(function, "step", SampleTimes.of(TIMES).one_by_one())
+    assert np.all(np.abs(even.values - single.values) <= even.radius + single.radius)

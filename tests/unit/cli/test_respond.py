@@ -1,0 +1,165 @@
+"""``symflex respond``."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+import runpy
+
+import numpy as np
+import pytest
+
+OSCILLATOR = """
+symflex = 1
+parameters = { m = "2 kg", b = "4 N*s/m", k = "800 N/m" }
+inputs  = { F = { force = "x" } }
+outputs = { X = "x", A = "s^2*x" }
+[elements]
+load   = { type = "mass", at = "x", m = "m" }
+rail   = { type = "damper", between = ["ground", "x"], b = "b" }
+spring = { type = "spring", between = ["ground", "x"], k = "k" }
+"""
+
+
+def step_of_oscillator(t, m=2.0, b=4.0, k=800.0):
+    """Return the closed form of a damped oscillator's step response."""
+    decay, omega = b / (2 * m), math.sqrt(k / m - (b / (2 * m)) ** 2)
+    return (1 - math.exp(-decay * t) * (math.cos(omega * t) + decay / omega * math.sin(omega * t))) / k
+
+
+@pytest.fixture
+def oscillator(shell, tmp_path):
+    (tmp_path / "osc.toml").write_text(OSCILLATOR, encoding="utf-8")
+    return shell
+
+
+def test_json_has_the_schema_and_holds_the_closed_form(oscillator):
+    done = oscillator("respond", "osc.toml", "--tf", "X/F", "--until", "0.5s", "--points", "11", "--json")
+    document = done.json
+    assert done.code == 0
+    assert document["schema"] == "symflex.respond/1"
+    assert (document["tf"], document["input"], document["unit"]) == ("X/F", "step", "m")
+    assert document["certified"] is True
+    assert document["time"] == pytest.approx([0.05 * i for i in range(11)])
+    for t, value, radius in zip(document["time"], document["value"], document["radius"], strict=True):
+        assert abs(float(value) - step_of_oscillator(t)) <= float(radius) + 1e-17
+
+
+def test_a_value_that_is_set_is_used(oscillator):
+    arguments = ["--tf", "X/F", "--until", "0.5", "--points", "2", "--json", "--set", "k=400 N/m"]
+    document = oscillator("respond", "osc.toml", *arguments).json
+    assert float(document["value"][1]) == pytest.approx(step_of_oscillator(0.5, k=400.0), rel=1e-11)
+
+
+def test_text_says_what_is_an_impulse(oscillator):
+    out = oscillator("respond", "osc.toml", "--tf", "A/F", "--to", "impulse", "--until", "1 s").out
+    assert "besides, at 0 s, an impulse of weight 0.5" in out
+    assert max(map(len, out.splitlines())) <= 80
+
+
+def test_a_table_has_a_line_a_point(oscillator, tmp_path):
+    oscillator("respond", "osc.toml", "--tf", "X/F", "--until", "0.5", "--points", "3", "-o", "x.csv")
+    text = (tmp_path / "x.csv").read_text(encoding="utf-8")
+    rows = list(csv.DictReader(io.StringIO("".join(x for x in text.splitlines(True) if x[0] != "#"))))
+    assert [float(row["time_s"]) for row in rows] == [0.0, 0.25, 0.5]
+    assert float(rows[2]["value"]) == pytest.approx(step_of_oscillator(0.5), rel=1e-11)
+
+
+def test_a_figure_is_written(oscillator, tmp_path):
+    oscillator("respond", "osc.toml", "--tf", "X/F", "--until", "0.5", "-o", "x.svg")
+    assert (tmp_path / "x.svg").read_bytes().startswith(b"<?xml")
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["--until", "-1"],
+        ["--until", "0"],
+        ["--until", "3 kg"],
+        ["--until", "soon"],
+        ["--until", "1", "--points", "1"],
+        ["--until", "1", "--to", "push"],
+        ["--until", "1", "--tf", "Y/F"],
+        ["--until", "1", "-o", "x.docx"],
+        ["--until", "1", "-o", "x.csv", "--json"],
+        [],
+    ],
+    ids=" ".join,
+)
+def test_what_makes_no_sense_is_refused_with_a_sentence(oscillator, arguments):
+    done = oscillator("respond", "osc.toml", *arguments)
+    assert done.code == 2
+    assert done.err.strip()
+    assert "Traceback" not in done.err
+
+
+def test_a_file_is_an_input_of_straight_lines(oscillator, tmp_path):
+    (tmp_path / "u.csv").write_text("time_ms,F\n0,1\n500,1\n", encoding="utf-8")
+    arguments = ["--tf", "X/F", "--to", "u.csv", "--until", "0.5", "--points", "3", "--json"]
+    document = oscillator("respond", "osc.toml", *arguments).json
+    assert document["input"] == "u.csv"
+    assert document["time"] == [0.0, 0.25, 0.5]
+    assert [float(v) for v in document["value"]] == pytest.approx(
+        [step_of_oscillator(t) for t in (0, 0.25, 0.5)]
+    )
+
+
+def test_without_an_end_a_file_is_followed_at_its_own_times(oscillator, tmp_path):
+    (tmp_path / "u.csv").write_text("0 0\n0.1 1\n0.3 1\n", encoding="utf-8")
+    assert oscillator("respond", "osc.toml", "--to", "u.csv", "--json").json["time"] == [0.0, 0.1, 0.3]
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("", "SF605"),
+        ("time_s,u\n0,1\n", "SF605"),
+        ("time_s,u\n0,1\n1,\n2,3\n", "SF603"),
+        ("time_s,u\n0,1\n1,nan\n2,3\n", "SF603"),
+        ("time_s,u\n0,1\n1\n2,3\n", "SF602"),
+        ("time_s,u\n0,1\n2,1\n1,3\n", "SF604"),
+        ("frequency,u\n0,1\n1,1\n", "SF602"),
+        ("time_h,u\n0,1\n1,1\n", "SF602"),
+        ("0,1\n1,1e999\n", "SF603"),
+    ],
+)
+def test_a_file_that_is_no_input_is_refused_at_its_place(oscillator, tmp_path, text, code):
+    (tmp_path / "u.csv").write_text(text, encoding="utf-8")
+    done = oscillator("respond", "osc.toml", "--to", "u.csv")
+    assert done.code == 3
+    assert f"error[{code}]" in done.err
+
+
+def test_a_shaper_is_printed_with_its_residual_and_drawn(oscillator, tmp_path):
+    document = oscillator("shape", "osc.toml", "--kind", "zvd", "--json").json
+    assert document["schema"] == "symflex.shape/1"
+    assert len(document["impulses"]) == 3
+    assert sum(float(i["amplitude"]) for i in document["impulses"]) == pytest.approx(1, abs=1e-14)
+    assert float(document["modes"][0]["residual"]) <= 1e-14
+    done = oscillator("shape", "osc.toml", "-o", "left.svg")
+    assert "ZV shaper, 2 impulses" in done.out
+    assert (tmp_path / "left.svg").exists()
+
+
+def test_a_file_that_is_missing_is_said(oscillator):
+    assert "error[SF901]" in oscillator("respond", "osc.toml", "--to", "none.csv").err
+
+
+def test_a_sampled_module_steps_as_the_closed_form_does(oscillator, tmp_path):
+    done = oscillator(
+        "export", "osc.toml", "--tf", "X/F", "--to", "state-space", "--sample", "10ms", "-o", "step.py"
+    )
+    assert done.code == 0
+    names = runpy.run_path(str(tmp_path / "step.py"))
+    w = np.zeros(2)
+    for _ in range(50):
+        w = names["A"] @ w + names["B"] @ [1.0]
+    assert names["SAMPLE_TIME"] == 0.01
+    assert float((names["C"] @ w)[0]) == pytest.approx(step_of_oscillator(0.5), rel=1e-12)
+
+
+def test_only_state_equations_are_sampled(oscillator):
+    done = oscillator("export", "osc.toml", "--to", "numpy", "--sample", "1ms")
+    assert done.code == 2
+    assert "--sample" in done.err

@@ -1,0 +1,144 @@
+"""Drawings of signals, blocks and fields, and of every worked model."""
+
+from __future__ import annotations
+
+import pytest
+
+from symflex import Model, pipeline
+from symflex.drawing import drawing_of, render_drawing
+from symflex.drawing.symbols import SYMBOLS
+from symflex.errors import SymflexError
+from symflex.library.elements import ELEMENTS
+from tests.house.repository import ROOT, all_blocks, specifications
+from tests.unit.drawing.geometry_checks import count, outside, overlaps, struck_texts, wrongly_counted
+
+SHOWN = [block for block in all_blocks("toml") if block.text.startswith("symflex = 1")]
+MODELS = specifications(ROOT / "derivations", "**/*.toml")
+LOOP = """
+symflex = 1
+parameters = { m = "2 kg", K = "300 N/m", T = "1 ms", T_d = "2 ms" }
+[blocks]
+G = { type = "lag", T = "T" }
+D = { type = "delay", T = "T_d" }
+[signals]
+e = "r - D*x - n"
+f = "K*G*e"
+[elements]
+car   = { type = "mass", at = "x", m = "m" }
+drive = { type = "force_source", at = "x", f = "f" }
+[inputs]
+r = {}
+n = {}
+[outputs]
+X = "x"
+Error = "e"
+Both = "r + 2*x"
+"""
+TWO_SPANS = """
+symflex = 1
+parameters = { EI = { unit = "N*m^2" }, rhoA = { unit = "kg/m" }, l = "1 m", x_F = "0.4 m" }
+[fields.w_1]
+domain     = ["0", "x_F"]
+equation   = "EI*w_1'''' + rhoA*s^2*w_1 = 0"
+conditions = ["w_1(0) = 0", "w_1'(0) = 0"]
+[fields.w_2]
+domain     = ["x_F", "l"]
+equation   = "EI*w_2'''' + rhoA*s^2*w_2 = 0"
+conditions = ["w_2(x_F) = w_1(x_F)", "w_2'(x_F) = w_1'(x_F)", "w_2''(x_F) = w_1''(x_F)",
+              "EI*(w_2'''(x_F) - w_1'''(x_F)) = F", "w_2(l) = 0", "w_2''(l) = 0"]
+[inputs]
+F = { unit = "N" }
+[outputs]
+Y = "w_2(l/2)"
+Slope = "w_2'(l)"
+"""
+
+
+def sound(model, drawing):
+    return not (
+        overlaps(drawing) or struck_texts(drawing) or outside(drawing) or wrongly_counted(model, drawing)
+    )
+
+
+def place(drawing, kind, name):
+    return next(i for i in drawing.items if (i.kind, i.name) == (kind, name)).box
+
+
+@pytest.mark.parametrize("path", MODELS, ids=lambda p: p.stem)
+def test_every_worked_model_is_drawn_with_everything_in_its_place(path):
+    model = pipeline.load(path)
+    drawing = drawing_of(model)
+    assert (overlaps(drawing), struck_texts(drawing), outside(drawing)) == ([], [], [])
+    assert wrongly_counted(model, drawing) == []
+    assert drawing.width == pytest.approx(88.5 / 25.4 * 72)
+
+
+@pytest.mark.parametrize("block", SHOWN, ids=str)
+def test_every_model_of_the_pages_is_drawn_with_everything_in_its_place(block):
+    try:
+        model = pipeline.loads(block.text, str(ROOT / "derivations/eppinger1988/page.toml"))
+    except SymflexError:
+        pytest.skip("the page shows what is wrong with it")
+    assert sound(model, drawing_of(model))
+
+
+def test_every_element_has_a_symbol():
+    assert set(ELEMENTS) == set(SYMBOLS)
+
+
+def test_a_loop_runs_from_its_input_and_closes_below():
+    model = pipeline.loads(LOOP)
+    drawing = drawing_of(model)
+    assert sound(model, drawing)
+    command, box, fed_back = (place(drawing, *n) for n in (("input", "r"), ("block", "G"), ("block", "D")))
+    assert command.x1 < box.x0
+    assert fed_back.y1 < box.y0
+
+
+def test_short_transfer_functions_are_printed_in_their_blocks():
+    drawing = drawing_of(pipeline.loads(LOOP))
+    texts = {t.markup for i in drawing.items if i.name in ("G", "D") for t in i.texts}
+    assert texts >= {r"$\frac{1}{1 + T s}$", r"$\mathrm{e}^{-s T_{d}}$"}
+
+
+def test_what_a_signal_reads_is_marked_where_it_is():
+    drawing = drawing_of(pipeline.loads(LOOP))
+    assert count(drawing, "reading", "x") == 1
+    assert count(drawing, "tag", "x") == 2
+
+
+def test_fields_that_follow_each_other_are_drawn_end_to_end():
+    model = pipeline.loads(TWO_SPANS)
+    drawing = drawing_of(model)
+    assert sound(model, drawing)
+    first, second, force = (place(drawing, *n) for n in (("field", "w_1"), ("field", "w_2"), ("input", "F")))
+    assert first.x1 == pytest.approx(second.x0)
+    assert (force.x0 + force.x1) / 2 == pytest.approx(first.x1)
+    assert first.width / second.width == pytest.approx(0.4 / 0.6)
+
+
+def test_conditions_at_an_end_are_drawn_as_supports():
+    """Zero deflection and slope are a clamp; zero deflection and moment a hinge; at a joint there is none."""
+    drawing = drawing_of(pipeline.loads(TWO_SPANS))
+    clamp, hinge = (place(drawing, "ground", n) for n in ("w_1", "w_2"))
+    assert clamp.height > clamp.width
+    assert hinge.y1 < place(drawing, "field", "w_2").y1
+
+
+def test_the_worked_models_are_found():
+    assert (ROOT / "derivations/eppinger1988/two_mass.toml") in MODELS
+
+
+def test_texts_of_an_svg_are_texts_and_parts_bear_their_names():
+    drawing = drawing_of(pipeline.loads(LOOP))
+    svg = render_drawing(drawing, "svg").decode()
+    assert "<title>element car</title>" in svg
+    assert "<title>block G</title>" in svg
+    assert ">K</tspan>" in svg
+    assert svg == render_drawing(drawing, "svg").decode()
+
+
+def test_a_notebook_shows_the_drawing_of_a_model():
+    shown = Model.of(pipeline.loads(LOOP))._repr_html_()
+    assert "<title>element car</title>" in shown
+    assert "<style" not in shown

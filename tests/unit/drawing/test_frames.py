@@ -1,0 +1,87 @@
+"""Frames in their plane, and random models of all kinds."""
+
+from __future__ import annotations
+
+import pytest
+
+from symflex import pipeline
+from symflex.drawing import draw_model, drawing_of
+from symflex.figures import render
+from tests.house.repository import ROOT
+from tests.unit.drawing.geometry_checks import outside, overlaps, struck_texts, wrongly_counted
+from tests.unit.drawing.random_models import models
+
+
+def place(drawing, kind, name):
+    return next(i for i in drawing.items if (i.kind, i.name) == (kind, name)).box
+
+
+def test_members_stand_where_their_lengths_and_angles_put_them():
+    drawing = drawing_of(pipeline.load(ROOT / "derivations/frames/portal_frame.toml"))
+    left, right, beam = (place(drawing, "element", n) for n in ("left", "right", "beam"))
+    assert left.height > left.width
+    assert beam.width > beam.height
+    assert left.x1 <= beam.x0 < beam.x1 <= right.x0
+    assert beam.y1 > left.y1 == pytest.approx(right.y1)
+    assert beam.width == pytest.approx(left.height, rel=0.1)
+
+
+def test_a_slanted_member_is_as_long_as_a_level_one():
+    member = 'E = "E", I = 1e-9, A = 1e-4, rho = 7800, l = 0.5'
+    text = f"""
+symflex = 1
+parameters = {{ E = "210 GPa" }}
+[elements]
+level   = {{ type = "frame", between = ["ground", "p"], {member} }}
+slanted = {{ type = "frame", between = ["p", "q"], angle = "30 deg", {member} }}
+[inputs]
+F = {{ force = "q.y" }}
+[outputs]
+Y = "q.y"
+"""
+    drawing = drawing_of(pipeline.loads(text))
+    level, slanted = (place(drawing, "element", n) for n in ("level", "slanted"))
+    thick = level.height  # of both, across their axes
+    assert slanted.width == pytest.approx((level.width * 3**0.5 + thick) / 2)
+    assert slanted.height == pytest.approx((level.width + thick * 3**0.5) / 2)
+
+
+def test_what_a_frame_shares_with_a_row_beside_it_is_named_in_both():
+    text = """
+symflex = 1
+[elements]
+post  = { type = "frame", between = ["ground", "q"], E = "70 GPa", I = 1e-9, A = 1e-4, rho = 2700, l = 0.5 }
+motor = { type = "dc_motor", terminals = ["v", "ground"], shaft = "q.theta", k_t = 1 }
+[inputs]
+V = { voltage = "v" }
+[outputs]
+Y = "q.y"
+"""
+    model = pipeline.loads(text)
+    drawing = drawing_of(model)
+    assert sum((i.kind, i.name) == ("tag", "q") for i in drawing.items) == 2
+    assert wrongly_counted(model, drawing) == []
+
+
+def check(first, count):
+    for seed, model in models(first, count):
+        drawing = drawing_of(model)
+        wrong = (overlaps(drawing), struck_texts(drawing), outside(drawing), wrongly_counted(model, drawing))
+        assert wrong == ([], [], [], []), seed
+        assert drawing == drawing_of(model), seed
+
+
+def test_random_models_are_drawn_with_everything_in_its_place():
+    check(1, 12)
+
+
+@pytest.mark.slow
+def test_three_hundred_random_models_are_drawn_with_everything_in_its_place():
+    check(1000, 300)
+
+
+@pytest.mark.slow
+def test_random_models_give_the_same_bytes_twice():
+    for seed, model in models(5000, 10):
+        one, other = (render(draw_model(model), "svg") for _ in range(2))
+        assert one == other, seed

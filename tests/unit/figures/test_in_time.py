@@ -1,0 +1,60 @@
+"""Figures of responses in time."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from symflex import loads, pipeline
+from symflex.errors import SpecError
+from symflex.figures import AxisLimits, draw
+
+LOOP = """
+symflex = 1
+parameters = { K = "3 1/s", T = "0.5 s" }
+blocks  = { D = { type = "delay", T = "T" } }
+inputs  = { r = {} }
+signals = { y = "K/s*D*(r - y)" }
+outputs = { Y = "y", E = "r - y" }
+"""
+
+
+def drawn(kind, frame=None):
+    loop = loads(LOOP)
+    bounds = [loop.transfer_function(name, "r").bind().bound for name in ("Y", "E")]
+    return draw(kind, [b.source for b in bounds], bounds, frame=frame or AxisLimits())
+
+
+def test_a_step_figure_has_a_curve_a_function_up_to_the_time_asked_for():
+    (axes,) = drawn("step", AxisLimits(x=(0.0, 2.0))).axes
+    curves = [line for line in axes.lines if len(line.get_xdata()) > 2]
+    assert [curve.get_xdata()[-1] for curve in curves] == [2.0, 2.0]
+    t, y = curves[0].get_data()
+    # Before the second echo, at t = 1, the response is 3 (t - 1/2).
+    assert np.allclose(y[t <= 1], np.maximum(3 * (t[t <= 1] - 0.5), 0), atol=1e-6)
+
+
+def test_an_impulse_that_is_not_drawn_is_said():
+    figure = drawn("impulse", AxisLimits(x=(0.0, 2.0)))
+    assert "E/r: besides, impulses that are not drawn" in figure.get_suptitle()
+
+
+def test_the_time_shown_is_read_from_the_specification():
+    text = LOOP + 'figures.a = { kind = "step", until = "20 ms", of = ["Y/r"] }'
+    assert pipeline.loads(text).figures[0].until == Fraction(1, 50)
+
+
+@pytest.mark.parametrize(
+    ("figure", "code"),
+    [
+        ('{ kind = "bode", until = "1 s" }', "SF207"),
+        ('{ kind = "step", until = "1 kg" }', "SF203"),
+        ('{ kind = "step", until = "-1 s" }', "SF227"),
+        ('{ kind = "step", until = 0 }', "SF227"),
+    ],
+)
+def test_a_time_that_is_none_is_refused(figure, code):
+    with pytest.raises(SpecError, match=code):
+        loads(f"{LOOP}figures.a = {figure}")

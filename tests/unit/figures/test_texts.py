@@ -1,0 +1,102 @@
+"""Figures can be read: no text lies over another or leaves the page."""
+
+from __future__ import annotations
+
+import pytest
+
+import symflex
+from symflex import pipeline
+from symflex.figures import draw, draw_loop
+from tests.house.repository import ROOT
+from tests.unit.figures.texts import faults
+
+QUICK = ("two_mass", "quarter_car", "lumped_bending_beam_position")
+MODELS = sorted(path for path in (ROOT / "derivations").rglob("*.toml") if path.name != "claims.toml")
+ALL = [
+    pytest.param(path, id=path.stem, marks=[] if path.stem in QUICK else pytest.mark.slow) for path in MODELS
+]
+LOOPS = [
+    pytest.param(path, id=path.stem, marks=[] if path.stem in QUICK else pytest.mark.slow)
+    for path in MODELS
+    if path.parent.name == "loops"
+]
+
+
+@pytest.fixture(scope="module")
+def bound():
+    """Functions of a model by its file, derived once."""
+    known = {}
+
+    def of(path):
+        if path not in known:
+            model = pipeline.load(path)
+            functions = pipeline.derive_for_roots(model, model.transfer_functions)
+            known[path] = [one for one in functions if not one.is_zero]
+        return known[path]
+
+    return of
+
+
+@pytest.mark.parametrize("kind", ["bode", "modes", "nyquist", "poles_zeros"])
+@pytest.mark.parametrize("path", ALL)
+def test_texts_of_a_figure_keep_apart(path, kind, bound):
+    bounds = bound(path)
+    try:
+        figure = draw(kind, [one.source for one in bounds], bounds)
+    except symflex.SymflexError as error:
+        assert kind == "modes"
+        assert "SF402" in str(error)  # nothing moves in a model of blocks
+        return
+    assert not faults(figure)
+
+
+@pytest.mark.parametrize("kind", ["locus", "nyquist"])
+@pytest.mark.parametrize("path", LOOPS)
+def test_texts_of_a_figure_of_a_loop_keep_apart(path, kind):
+    assert not faults(draw_loop(kind, pipeline.characteristic_loop(pipeline.load(path), "K")))
+
+
+def loop(expression, **parameters):
+    values = {"K": 1, **parameters}
+    return symflex.Model(
+        parameters=values,
+        signals={"y": f"K*({expression})*(r - y)"},
+        inputs={"r": {}},
+        outputs={"Y": "y"},
+    )
+
+
+def test_one_far_pole_does_not_rule_a_locus():
+    figure = loop("1/((s + 1)*(s + 2)*(s + 5000))").locus("K", (0, 10))
+    (axes,) = figure.axes
+    assert axes.get_xlim()[0] > -100
+    named = {t.get_text() for t in axes.texts if "5000" in t.get_text()}
+    assert named == {r"$\times$ $-5000$", r"$\star$ $-5000$"}
+
+
+def test_a_locus_marks_the_gain_s_own_value():
+    # s^2 + 2 s + K at K = 5: -1 +- 2j
+    (axes,) = loop("1/(s*(s + 2))", K=5).locus("K", (0, 10)).axes
+    (stars,) = (line for line in axes.get_lines() if line.get_marker() == "*")
+    assert sorted(map(complex, *stars.get_data()), key=lambda s: s.imag) == [-1 - 2j, -1 + 2j]
+
+
+def test_a_locus_beyond_the_gain_s_own_value_marks_none():
+    (axes,) = loop("1/(s*(s + 2))", K=5).locus("K", (6, 10)).axes
+    assert "*" not in {line.get_marker() for line in axes.get_lines()}
+
+
+@pytest.mark.parametrize(("expression", "said"), [("1/(s - 1)", "1 pole"), ("1/(s + 1)", "no pole")])
+def test_a_nyquist_plot_says_how_many_poles_are_in_the_right_half_plane(expression, said):
+    title = loop(expression).nyquist("K").legends[0].get_title().get_text()
+    assert title.startswith(f"open loop: {said} in the right half plane")
+
+
+def test_a_nyquist_plot_reaches_the_origin_beyond_the_model_s_band():
+    model = symflex.Model(
+        inputs={"u": {}}, outputs={"y": "u/(s + 1)^2"}, analysis={"band": ["0.001 Hz", "0.5 Hz"]}
+    )
+    (axes,) = model.transfer_function("y", "u").bind().nyquist().axes
+    (curve,) = (line for line in axes.get_lines() if line.get_label() == "$y/u$")
+    last = complex(curve.get_xdata()[-1], curve.get_ydata()[-1])
+    assert abs(last) < 0.002  # of a largest value of 1

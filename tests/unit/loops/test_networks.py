@@ -1,0 +1,131 @@
+"""Stable gains of loops about many beams, against the written-out form and finite elements."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+import pytest
+
+from symflex import pipeline
+from symflex.errors import ModelError
+from symflex.loops import Loop, of_model
+from symflex.loops.networks import NetworkLoop
+from symflex.options import StabilityOptions
+
+BENDING, MASS, SPRING, LOSS = 70e9 * 2e-9, 2700.0 * 150e-6, 1e3, 0.5
+"""Of aluminium strips [N*m^2, kg/m], on springs and dampers [N/m, N*s/m]."""
+
+
+LAW = 'E = "E", I = "I", A = "A", rho = "rho"'
+
+
+def lengths(count):
+    return [0.2 + 0.03 * i for i in range(count)]
+
+
+def chain(count, *, loss='"0.5 N*s/m"', law="K*(r - v)"):
+    """Return a clamped chain; its tip's velocity drives its first joint."""
+    rows = []
+    for i, length in enumerate(lengths(count)):
+        ends = f'between = ["n_{i}", "n_{i + 1}"]'
+        rows.append(f'b_{i} = {{ type = "beam", {ends}, {LAW}, l = "{length:.2f} m" }}')
+        rows.append(f's_{i} = {{ type = "spring", between = ["n_{i + 1}.y", "ground"], k = "k" }}')
+        rows.append(f'd_{i} = {{ type = "damper", between = ["n_{i + 1}.y", "ground"], b = "b" }}')
+    elements = "\n".join(rows)
+    return f"""
+        symflex = 1
+        [parameters]
+        E = "70 GPa"
+        I = "2000 mm^4"
+        A = "150 mm^2"
+        rho = "2700 kg/m^3"
+        k = "1 kN/m"
+        b = {loss}
+        K = "1 N*s/m"
+        t = "1 s"
+        [elements]
+        clamp = {{ type = "fixed", at = "n_0" }}
+        {elements}
+        drive = {{ type = "force_source", at = "n_1.y", f = "u" }}
+        [signals]
+        v = "s*n_{count}.y"
+        u = "{law}"
+        [inputs]
+        r = {{ unit = "m/s" }}
+        [outputs]
+        Y = "n_{count}.y"
+        """.replace("\n        ", "\n")
+
+
+def found(text, up_to="300 Hz", limits=("0", "100")):
+    given = StabilityOptions(gain="K", limits=limits, up_to=up_to)
+    return pipeline.stability(pipeline.loads(text), given)
+
+
+def unstable(count, gain, up_to):
+    """Return how many poles finite elements have in the right half plane, up to a frequency [rad/s]."""
+    pieces = 6
+    size = 2 * (pieces * count + 1)
+    mass, stiff, loss = (np.zeros((size, size)) for _ in range(3))
+    joints = [2 * pieces * (i + 1) for i in range(count)]
+    for i, length in enumerate(lengths(count)):
+        h = length / pieces
+        # Hermite's element (Przemieniecki 1968): stiffness and mass.
+        bent = [[12, 6 * h, -12, 6 * h], [6 * h, 4 * h * h, -6 * h, 2 * h * h]]
+        bent += [[-x for x in bent[0]], [6 * h, 2 * h * h, -6 * h, 4 * h * h]]
+        moved = [[156, 22 * h, 54, -13 * h], [22 * h, 4 * h * h, 13 * h, -3 * h * h]]
+        moved += [[54, 13 * h, 156, -22 * h], [-13 * h, -3 * h * h, -22 * h, 4 * h * h]]
+        k, m = BENDING / h**3 * np.array(bent), MASS * h / 420 * np.array(moved)
+        for j in range(pieces):
+            at = np.ix_(*2 * [range(2 * (i * pieces + j), 2 * (i * pieces + j) + 4)])
+            stiff[at] += k
+            mass[at] += m
+    for joint in joints:
+        stiff[joint, joint] += SPRING
+        loss[joint, joint] += LOSS
+    loss[joints[0], joints[-1]] += gain
+    free = slice(2, None)
+    inverse = np.linalg.inv(mass[free, free])
+    n = size - 2
+    state = np.block(
+        [[np.zeros((n, n)), np.eye(n)], [-inverse @ stiff[free, free], -inverse @ loss[free, free]]]
+    )
+    poles = np.linalg.eigvals(state)
+    return int(np.sum((poles.real > 0) & (abs(poles) < up_to)))
+
+
+@pytest.mark.parametrize("up_to", ["150 Hz", "400 Hz"])
+def test_a_chain_has_the_stable_gains_of_its_formula(monkeypatch, up_to):
+    expected = found(chain(2), up_to)
+    assert isinstance(of_model.any_loop(pipeline.loads(chain(2)), "K"), Loop)
+    monkeypatch.setattr(of_model, "is_large_network", lambda model: True)
+    assert isinstance(of_model.any_loop(pipeline.loads(chain(2)), "K"), NetworkLoop)
+    network = found(chain(2), up_to)
+    assert [float(b.gain.mid()) for b in network.boundaries] == pytest.approx(
+        [float(b.gain.mid()) for b in expected.boundaries], rel=1e-13
+    )
+    assert [i.poles for i in network.intervals] == [i.poles for i in expected.intervals]
+    assert not network.certified and network.radius >= 2 * pi * float(up_to.split()[0])
+
+
+def test_six_beams_lose_their_poles_where_finite_elements_do():
+    network = found(chain(6))
+    gains = [float(b.gain.mid()) for b in network.boundaries]
+    samples = [(a * b) ** 0.5 for a, b in zip([0.1, *gains], [*gains, 100.0], strict=True)]
+    expected = [unstable(6, gain, network.radius) for gain in samples]
+    assert [i.poles.right for i in network.intervals] == expected
+    assert len(gains) == 3
+
+
+def test_without_losses_nothing_is_claimed_of_the_axis():
+    network = found(
+        chain(6, loss='{ value = "0 N*s/m", assume = "nonnegative" }', law="K*(r*t - n_6.y)/t"), "40 Hz"
+    )
+    assert any("mirror each other" in reason for reason in network.reasons)
+    assert not network.stable
+
+
+def test_a_gain_that_closes_no_loop_is_refused():
+    with pytest.raises(ModelError, match="no pole of the model depends on 'K'"):
+        found(chain(6, law="K*r"))

@@ -1,0 +1,154 @@
+"""Coefficients that vary along x, as specifications write them: what is read, and what is refused."""
+
+from __future__ import annotations
+
+import pytest
+import sympy
+
+from symflex.errors import Source, SpecError, Text
+from symflex.errors.diagnostic import Span
+from symflex.expressions import format_expression, parse_equation
+from symflex.model import load_model
+from symflex.model.brackets import named_brackets, open_brackets
+
+PARAMETERS = """symflex = 1
+[parameters]
+E = "70 GPa"
+I_0 = "1e-8 m^4"
+rho = "2700 kg/m^3"
+A_0 = "1e-3 m^2"
+l = "1.2 m"
+c = 0.5
+k = "3 1/m"
+"""
+REST = '[inputs]\nF = { unit = "N" }\n[outputs]\nX = "w(l)"\n'
+ENDS = ["w(0) = 0", "w'(0) = 0", "w''(l) = 0", "(E*I_0*(1 - c*x/l)*w'')'(l) = -F"]
+TAPER = "(E*I_0*(1 - c*x/l)*w'')'' + rho*A_0*s^2*w = 0"
+
+
+def equation(text):
+    source = Source("field.toml", text)
+    return parse_equation(Text(text, Span(source, 0, len(text))))
+
+
+def spec(equation=TAPER, conditions=ENDS, more=""):
+    quoted = ", ".join(f'"{c}"' for c in conditions)
+    return (
+        f'{PARAMETERS}{more}[fields.w]\ndomain = ["0", "l"]\nequation = "{equation}"\n'
+        f"conditions = [{quoted}]\n{REST}"
+    )
+
+
+def problems(text):
+    with pytest.raises(SpecError) as caught:
+        load_model(Source("taper.toml", text))
+    return [(d.code, str(d.span).split(":", 1)[1], d.message) for d in caught.value.diagnostics]
+
+
+X, A, B = sympy.symbols("x a b")
+W = sympy.Function("w")(X)
+D = sympy.Derivative
+
+
+@pytest.mark.parametrize(
+    ("text", "meant"),
+    [
+        ("(a*(1 - x/b)^3*w'')''", D(A * (1 - X / B) ** 3 * D(W, X, 2), X, 2)),
+        ("((1 + x^2)*(w' + x*w))'", D((1 + X**2) * (D(W, X) + X * W), X)),
+        ("(w/(1 + x))''", D(W / (1 + X), X, 2)),
+        ("(exp(-2*a*x)*w')'", D(sympy.exp(-2 * A * X) * D(W, X), X)),
+        ("(sqrt(1 + x)*sin(a*x)*w)'", D(sympy.sqrt(1 + X) * sympy.sin(A * X) * W, X)),
+        ("(cos(x)*w' - tan(x)*w)'", D(sympy.cos(X) * D(W, X) - sympy.tan(X) * W, X)),
+        ("(log(1 + x)*w + cosh(x)*w)'", D((sympy.log(1 + X) + sympy.cosh(X)) * W, X)),
+        ("(sinh(a*x)*tanh(x)*w)'", D(sympy.sinh(A * X) * sympy.tanh(X) * W, X)),
+        ("((1 + x)^-2*w)'''", D((1 + X) ** -2 * W, X, 3)),
+        ("((a*x*w')'*(1 - x))'", D(D(A * X * D(W, X), X) * (1 - X), X)),
+    ],
+)
+def test_brackets_open_as_sympy_differentiates(text, meant):
+    opened, noted = open_brackets(equation(f"{text} = 0"), ["w"], has_coordinate=True, is_condition=False)
+    assert noted == []
+    found = format_expression(opened.left)
+    for order in range(6, 0, -1):
+        found = found.replace("w" + "'" * order, f"D(w, x, {order})")
+    read = sympy.sympify(found.replace("^", "**"), locals={"w": W, "x": X, "a": A, "b": B, "D": D})
+    assert sympy.simplify((read - meant).doit()) == 0
+
+
+def test_a_bracket_with_the_highest_derivative_becomes_an_unknown():
+    found, unknowns = named_brackets([equation("(a*x*w'')'' - (b*x*w')' = s^2*w")], ["w"])
+    assert unknowns == ("w", "(a*x*w'')")
+    assert [format_expression(e) for e in found] == [
+        "(a*x*w'')'' - (b*w' + b*x*w'') = s^2*w",
+        "a*x*w'' = (a*x*w'')",
+    ]
+
+
+def test_a_parameter_called_x_is_no_coordinate():
+    text = spec("E*I_0*w'''' + rho*A_0*s^2*x^2*w = 0", [*ENDS[:3], "w'''(l) = 0"], "x = 1\n")
+    (field,) = load_model(Source("taper.toml", text)).fields
+    assert field.written == ()
+
+
+@pytest.mark.parametrize(
+    ("equation", "code", "place"),
+    [
+        ("E*I_0*w'''' + rho*A_0*s^2*w*x/l = 0", None, ""),
+        ("(E*I_0*(1 - k*x)*w'')'' + rho*A_0*s^2*w = 0", None, ""),
+        # x is a length.
+        ("E*I_0*(l^2 - x)/l^2*w'''' + rho*A_0*s^2*w = 0", "SF205", "12:24"),
+        ("E*I_0*exp(x)*w'''' + rho*A_0*s^2*w = 0", "SF203", "12:23"),
+        # An unknown multiplied by itself.
+        ("(E*I_0*w*w'')'' + rho*A_0*s^2*w = 0", "SF222", "12:14"),
+        ("(E*I_0*w''(l))'' + rho*A_0*s^2*w'''' = 0", "SF241", "12:20"),
+        ("(E*I_0*w'')''(l) + rho*A_0*s^2*w'''' = 0", "SF241", "12:13"),
+        ("sin((E*I_0*w'')'')*w'''' = w", "SF223", "12:13"),
+        ("(E*I_0*y'')'' + rho*A_0*s^2*w'''' = 0", "SF210", "12:20"),
+        ("(E*I_0*(1 - c*x/l)^k*w'')'' + rho*A_0*s^2*w = 0", "SF225", "12:32"),
+    ],
+)
+def test_coefficients_are_read_or_refused_with_their_place(equation, code, place):
+    conditions = [*ENDS[:3], "w'''(l) = 0"]
+    if code is None:
+        assert load_model(Source("taper.toml", spec(equation, conditions))).fields
+        return
+    found = problems(spec(equation, conditions))
+    assert (code, place) in [(c, p) for c, p, _ in found], found
+
+
+@pytest.mark.parametrize(
+    ("condition", "code"),
+    [
+        ("(E*I_0*w'')' = -F", "SF241"),
+        ("E*I_0*(1 - c*x/l)*w'''(l) = -F", "SF210"),
+        ("w'''(x) = 0", "SF210"),
+        ("(E*I_0*(1 - c*x/l)*w'')'(2*l) = -F", "SF240"),
+    ],
+)
+def test_conditions_hold_at_points(condition, code):
+    assert code in [c for c, _, _ in problems(spec(TAPER, [*ENDS[:3], condition]))]
+
+
+ROD = 'elements.b = {{ type = "rod", between = ["ground", "tip"], rho = "rho", {} }}'
+
+
+@pytest.mark.parametrize(
+    ("more", "code"),
+    [
+        ('definitions.A_1 = "A_0*(1 - x/l)"', "SF210"),
+        ('elements.m = { type = "mass", at = "tip", m = "rho*A_0*x" }', "SF210"),
+        (ROD.format('E = "E*x/l", A = "A_0", l = "l"'), "SF210"),
+        (ROD.format('E = "E", A = "A_0*(x + l)", l = "l"'), "SF203"),
+        (ROD.format('E = "E", A = "A_0", l = "x"'), "SF210"),
+    ],
+)
+def test_x_where_it_means_nothing_is_refused(more, code):
+    head, _, rest = PARAMETERS.partition("[parameters]")
+    text = f'{head}{more}\n[parameters]{rest}[inputs]\nF = {{ force = "tip" }}\n[outputs]\ny = "tip"\n'
+    assert code in [c for c, _, _ in problems(text)]
+
+
+def test_a_bracket_with_primes_belongs_into_fields():
+    with pytest.raises(SpecError) as caught:
+        load_model(Source("a.toml", 'symflex = 1\ninputs.F = {}\noutputs.y = "(F)\'"\n'))
+    assert [d.code for d in caught.value.diagnostics] == ["SF223"]

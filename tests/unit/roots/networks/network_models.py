@@ -1,0 +1,49 @@
+"""Networks the tests of this folder share, and their counters and maps."""
+
+from __future__ import annotations
+
+from symflex import pipeline
+from symflex.budget import Budget
+from symflex.model import with_numbers
+from symflex.roots.networks.counting import Counter
+from symflex.roots.networks.network import network_of
+from symflex.roots.networks.poles_zeros import locate_in_network
+from symflex.roots.region import Modes
+
+BEAM = 'type = "beam", E = "70 GPa", I = "1e-8 m^4", rho = "2700 kg/m^3", A = "1e-4 m^2"'
+"""E I = 700 N m^2, rho A = 0.27 kg/m."""
+
+
+def specification(elements, inputs='F = { force = "a" }', outputs='X = "a"'):
+    """Return a model of elements, one a line, with an input and an output."""
+    return f"symflex = 1\n[elements]\n{elements}\n[inputs]\n{inputs}\n[outputs]\n{outputs}\n"
+
+
+def equations_of(text):
+    """Return the equations with numbers in place."""
+    return pipeline.assemble_sparse(with_numbers(pipeline.loads(text), in_kernels=True))
+
+
+def network(text, output="X", source="F"):
+    """Return the network between an input and an output."""
+    return network_of(equations_of(text), output, source)
+
+
+def counter(text, output="X", source="F"):
+    """Return what counts its frequencies, and those with the input's motion held."""
+    found = network(text, output, source)
+    return Counter(found, (found.driven,))
+
+
+def located(text, region=None, digits=12, output="X", source="F"):
+    """Return poles and zeros."""
+    pair = (output, source)
+    where = region or Modes(4)
+    return locate_in_network(
+        equations_of(text), "/".join(pair), pair, where, digits, Budget(), is_default=False
+    )
+
+
+def omegas(roots):
+    """Return the imaginary parts above 0, as doubles."""
+    return [float(root.im) for root in roots if root.im > 0]

@@ -1,0 +1,120 @@
+"""Entire functions in a disc whose roots are known, from their values on the circle."""
+
+from __future__ import annotations
+
+from math import log, pi
+
+import pytest
+from flint import acb, arb, ctx
+
+from symflex.roots.networks.disc_series import DiscSeries, RootNearCircleError, points_needed
+
+BITS = 160
+
+
+@pytest.fixture(autouse=True)
+def working_precision():
+    with ctx.workprec(BITS):
+        yield
+
+
+def series(function, log_bound, radius=10.0, ratio=4.0, count=None):
+    """Return a function's series; ``log_bound`` is that within ratio times the radius."""
+    count = count or points_needed(log_bound, 0.0, ratio, 80)
+    values = [function(radius * acb(0, 2 * arb.pi() * k / count).exp()) for k in range(count)]
+    return DiscSeries.of(values, arb(radius), log_bound, ratio, BITS)
+
+
+def hyperbolic_cosine():
+    return series(lambda s: s.cosh(), 40.0)
+
+
+def test_the_values_come_back():
+    found = hyperbolic_cosine()
+    for x in (acb(0.3, 0.4), acb(-0.9, 0.1), acb(0, 0.99)):
+        value = found.polynomial(x) + acb(arb(0, found.off), arb(0, found.off))
+        assert value.overlaps((10 * x).cosh())
+        assert abs(value).rad() < 1e-15
+
+
+def test_the_derivative_on_a_box_holds_those_of_its_points():
+    found = hyperbolic_cosine()
+    box = acb(arb(0.5, 1e-3), arb(0.2, 1e-3))
+    slope = found.slope_on(box)
+    for x in (acb(0.4995, 0.2005), acb(0.5, 0.2)):
+        assert slope.overlaps(10 * (10 * x).sinh())
+
+
+def test_roots_are_counted():
+    # cosh vanishes at j pi (k + 1/2): six times within 10.
+    assert hyperbolic_cosine().count() == 6
+
+
+def test_multiple_roots_are_counted_with_their_multiplicities():
+    assert series(lambda s: s**3 * (s - 2) ** 2 * (s + 20), 20.0).count() == 5
+
+
+def test_a_root_on_the_circle_is_told():
+    with pytest.raises(RootNearCircleError):
+        series(lambda s: s - 10, 5.0).count()
+
+
+def test_all_roots_are_approximated_and_proved():
+    found = hyperbolic_cosine()
+    guesses = found.approximate(0)
+    boxes = [found.proved(x) for x in guesses]
+    assert all(box is not None for box in boxes)
+    assert sorted(round(float(box.imag.mid()) * 10 / pi, 9) for box in boxes) == [
+        -2.5,
+        -1.5,
+        -0.5,
+        0.5,
+        1.5,
+        2.5,
+    ]
+
+
+@pytest.mark.parametrize("real", [5.0, 8.2, 9.1])
+@pytest.mark.parametrize("rate", [0.5, 1.0, 2.0])
+def test_real_roots_are_approximated_where_many_lie_beyond_the_disc(rate, real):
+    found = series(
+        lambda s: (s * s - real**2) * (rate * s).cosh() * (s * s + 1600), 40 * rate + 16, count=128
+    )
+    # cosh vanishes at j pi (k + 1/2) / rate.
+    expected = [real / 10, -real / 10, *(1j * pi * (k + 0.5) / rate / 10 for k in range(-7, 7))]
+    guesses = [complex(x.mid()) for x in found.approximate(0)]
+    for root in expected:
+        assert abs(root) > 1 or min(abs(root - x) for x in guesses) < 1e-8
+    assert len(guesses) == sum(abs(root) < 1 for root in expected)
+
+
+def test_a_double_root_is_not_proved_to_be_one():
+    found = series(lambda s: (s * s + 9) ** 2, 15.0)
+    assert all(found.proved(x) is None for x in found.approximate(0))
+    assert found.count_about(acb(0, 0.3), 0.01) == 2
+
+
+def test_leading_terms_that_vanish_are_the_order_at_zero():
+    assert series(lambda s: s * s * s.cosh(), 48.0).order_at_zero() == 2
+
+
+def test_a_bound_that_is_too_small_for_few_points_shows_in_how_far_it_is_off():
+    few, many = (series(lambda s: s.cosh(), 40.0, count=n) for n in (32, 64))
+    assert few.off > 1e-4
+    assert many.off < 1e-20
+
+
+def test_roots_close_to_the_edge_are_among_those_approximated():
+    found = series(lambda s: (s * s + 99.5) * (s * s - 99) * s.cosh(), 50.0)
+    guesses = sorted(abs(complex(x)) * 10 for x in found.approximate(0, is_even=True))
+    assert guesses[-4:] == pytest.approx([99**0.5] * 2 + [99.5**0.5] * 2)
+    assert len(guesses) == found.count() == 10
+
+
+def test_roots_are_proved_where_a_singularity_close_by_takes_many_terms():
+    # Analytic up to 1.07 times the radius; the roots -6 +- 6j lie where rounding of boxes grows most.
+    found = series(lambda s: (s * s + 12 * s + 72) / (10.7 - s), log(309 / 0.2), ratio=1.05)
+    guesses = [x for x in found.approximate(0) if abs(x) < 0.9]
+    assert found.polynomial.degree() > 600
+    assert len(guesses) == 2
+    assert all(found.proved(x) is not None for x in guesses)

@@ -1,0 +1,85 @@
+"""Signs of pivots against eigenvalues in numpy, with and without constraints."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from flint import arb, nmod
+
+from symflex.algebra import PRIME
+from symflex.roots.networks.at_rest import Residues
+from symflex.roots.networks.inertia import Balls, elimination_order, pivots
+from symflex.roots.networks.members import UndecidedError
+
+
+def sparse(matrix, number=arb):
+    """Return a matrix as rows of what is not zero."""
+    return [{j: number(x) for j, x in enumerate(row) if x} for row in matrix.tolist()]
+
+
+def order(matrix):
+    return elimination_order(
+        len(matrix), [(i, j) for i, j in zip(*np.nonzero(matrix), strict=True) if i <= j]
+    )
+
+
+def random_matrix(seed, size=9, constraints=0):
+    """Return a symmetric matrix whose last rows are constraints, zero on their diagonals."""
+    rng = np.random.default_rng(seed)
+    matrix = rng.integers(-5, 6, (size, size)).astype(float)
+    matrix *= rng.random((size, size)) < 0.4
+    matrix = matrix + matrix.T + np.diag(rng.integers(-9, 10, size))
+    if constraints:
+        matrix[-constraints:, -constraints:] = 0
+    return matrix
+
+
+@pytest.mark.parametrize("constraints", [0, 2, 4])
+@pytest.mark.parametrize("seed", range(12))
+def test_as_many_pivots_are_negative_as_eigenvalues(seed, constraints):
+    matrix = random_matrix(seed, constraints=constraints)
+    values = np.linalg.eigvalsh(matrix)
+    if np.min(np.abs(values)) < 1e-9:
+        pytest.skip("singular")
+    found = pivots(sparse(matrix), order(matrix), Balls())
+    assert found.negative == np.sum(values < 0)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_pivots_product_is_the_determinant(seed):
+    matrix = random_matrix(seed, constraints=3)
+    determinant = np.linalg.det(matrix)
+    if abs(determinant) < 1e-6:
+        pytest.skip("singular")
+    found = pivots(sparse(matrix), order(matrix), Balls())
+    assert float(found.determinant) == pytest.approx(determinant, rel=1e-9)
+
+
+def test_a_border_is_left_with_minus_the_receptance():
+    # 1/k of one spring, k = 4, read and driven by a factor of 3.
+    rows = [{0: arb(4), 1: arb(3)}, {0: arb(3)}]
+    assert pivots(rows, (0,), Balls(), [1]).borders == (arb(-9) / 4,)
+
+
+def test_a_singular_matrix_is_not_decided():
+    matrix = np.array([[1.0, -1.0], [-1.0, 1.0]])
+    with pytest.raises(UndecidedError):
+        pivots(sparse(matrix), (0, 1), Balls())
+
+
+def test_modulo_a_prime_what_is_left_is_the_nullity():
+    # A chain of three springs with free ends, and an unknown nothing is tied to.
+    matrix = np.array([[2, -2, 0, 0], [-2, 5, -3, 0], [0, -3, 3, 0], [0, 0, 0, 0]])
+    with pytest.raises(UndecidedError) as raised:
+        pivots(sparse(matrix, lambda x: nmod(x, PRIME)), (0, 1, 2, 3), Residues())
+    assert raised.value.left == 2
+
+
+def test_the_ends_of_a_chain_go_before_its_middle():
+    pairs = [(i, i) for i in range(5)] + [(i, i + 1) for i in range(4)]
+    assert elimination_order(5, pairs)[:2] in ((0, 1), (0, 4))
+
+
+def test_a_constraint_waits_for_what_it_ties():
+    pairs = [(0, 0), (1, 1), (0, 2), (1, 2)]
+    assert elimination_order(3, pairs)[0] != 2

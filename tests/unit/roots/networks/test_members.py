@@ -1,0 +1,117 @@
+"""Dynamic stiffness and own frequencies of a member against textbook formulas."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from math import cos, cosh, floor, pi, sin, sinh, sqrt, tan
+
+import pytest
+from flint import arb, ctx
+
+from symflex.roots.networks.members import MemberBalls, UndecidedError
+
+
+def member(entries, slopes, states, length=1.0):
+    """Return a member from the entries of its matrix and their parts in lambda."""
+
+    def table(values):
+        return [[arb(values.get((i, j), 0)) for j in range(states)] for i in range(states)]
+
+    return MemberBalls(table(entries), table(slopes), arb(length))
+
+
+def beam(axial_force=0.0, foundation=0.0, rotary=0.0, shear=0.0, length=1.0):
+    """Return a beam of unit bending stiffness and unit mass per length; states y, theta, f, tau."""
+    entries = {(0, 1): 1, (1, 3): 1, (3, 2): -1, (2, 0): foundation, (3, 1): axial_force, (0, 2): shear}
+    return member(entries, {(2, 0): -1, (3, 1): -rotary}, 4, length)
+
+
+def rod(length=1.0):
+    """Return a rod of unit stiffness and unit mass per length."""
+    return member({(0, 1): 1}, {(1, 0): -1}, 2, length)
+
+
+@pytest.fixture(autouse=True)
+def working_precision():
+    with ctx.workprec(128):
+        yield
+
+
+@pytest.mark.parametrize("beta", [0.5, 3.0, 4.7, 6.0, 20.0, 40.0])
+def test_a_beams_stiffness_is_that_of_the_textbooks(beta):
+    # Clough & Penzien 1975, Dynamics of Structures: the dynamic stiffness of a uniform beam.
+    c, s, ch, sh = cos(beta), sin(beta), cosh(beta), sinh(beta)
+    d = 1 - c * ch
+    found = beam().stiffness(arb(beta) ** 4)
+    expected = {
+        "start": [
+            [beta**3 * (c * sh + s * ch), beta**2 * s * sh],
+            [beta**2 * s * sh, beta * (s * ch - c * sh)],
+        ],
+        "across": [[-(beta**3) * (s + sh), beta**2 * (ch - c)], [-(beta**2) * (ch - c), beta * (sh - s)]],
+    }
+    for name, block in expected.items():
+        for i, row in enumerate(block):
+            for j, value in enumerate(row):
+                assert float(getattr(found, name)[i, j]) == pytest.approx(value / d, rel=1e-9)
+
+
+@pytest.mark.parametrize("omega", [0.3, 3.0, 3.2, 100.0])
+def test_a_rods_stiffness_is_that_of_the_textbooks(omega):
+    found = rod().stiffness(arb(omega) ** 2)
+    assert float(found.start[0, 0]) == pytest.approx(omega / tan(omega))
+    assert float(found.across[0, 0]) == pytest.approx(-omega / sin(omega))
+
+
+@pytest.mark.parametrize("omega", [0.1, 3.14, 3.15, 31.4, 31.5, 1000.3])
+def test_a_rod_held_at_both_ends_has_a_frequency_at_every_multiple_of_pi(omega):
+    assert rod().stiffness(arb(omega) ** 2).held == floor(omega / pi)
+
+
+CLAMPED = (4.730040744862704, 7.853204624095838, 10.995607838001671, 14.137165491257464)
+"""beta*l of a beam clamped at both ends: cos cosh = 1 (Timoshenko, Young & Weaver 1974)."""
+
+
+def test_a_clamped_beams_frequencies_are_counted_between_each_other():
+    for number, (low, high) in enumerate(pairwise((0.1, *CLAMPED))):
+        for beta in (low * 1.0001, high * 0.9999):
+            assert beam().stiffness(arb(beta) ** 4).held == number
+
+
+def test_a_compressed_beams_buckling_counts_as_a_frequency_at_rest():
+    # Held at both ends it buckles at 4 pi^2 EI/l^2.
+    assert beam(axial_force=-0.99 * 4 * pi**2).stiffness(arb(0)).held == 0
+    assert beam(axial_force=-1.01 * 4 * pi**2).stiffness(arb(0)).held == 1
+
+
+def test_an_elastic_foundation_moves_every_frequency_by_its_own():
+    # omega^2 = beta^4 + k for unit mass per length.
+    for k in (10.0, 1e5):
+        for number, (low, high) in enumerate(pairwise((0.1, *CLAMPED))):
+            for beta in (low * 1.0001, high * 0.9999):
+                assert beam(foundation=k).stiffness(arb(beta) ** 4 + k).held == number
+
+
+def test_a_tensioned_beam_without_bending_waves_comes_close_to_a_string():
+    # A long beam under large tension: omega = n pi sqrt(N), somewhat stiffer for its bending.
+    tension = 1e6
+    for n in (1, 5):
+        omega = n * pi * sqrt(tension)
+        assert beam(axial_force=tension).stiffness(arb(omega) ** 2).held == n - 1
+        assert beam(axial_force=tension).stiffness(arb(1.01 * omega) ** 2).held == n
+
+
+def test_a_short_timoshenko_beam_has_its_first_frequency_far_below_the_slender_one():
+    # The shear beam between clamps: omega = n pi/(l sqrt(shear)); with rotary inertia theta gives way, too.
+    slender = CLAMPED[0] ** 2
+    assert beam(shear=1.0, rotary=0.1).stiffness(arb(0.5 * slender) ** 2).held >= 1
+    assert beam().stiffness(arb(0.99 * slender) ** 2).held == 0
+
+
+def test_at_a_frequency_of_its_own_a_member_has_no_stiffness():
+    with pytest.raises(UndecidedError):
+        rod().stiffness(arb.pi() ** 2)
+
+
+def test_a_negative_lambda_has_no_frequency_below():
+    assert beam().stiffness(arb(-1e6)).held == 0

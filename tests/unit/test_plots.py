@@ -1,0 +1,258 @@
+"""Figures and short prints of what a Python user holds."""
+
+from __future__ import annotations
+
+import re
+from io import BytesIO
+
+import matplotlib
+import pytest
+from matplotlib.figure import Figure
+
+import symflex
+from symflex import pipeline
+from symflex.errors import ModelError, UsageError
+from tests.house.repository import ROOT
+from tests.unit.test_api import TEXT
+
+LOOP = """
+symflex = 1
+parameters = { K = 1 }
+signals = { y = "K/(s*(s + 1)*(s + 2))*(r - y)" }
+inputs = { r = {} }
+outputs = { Y = "y" }
+"""
+PNG = b"\x89PNG"
+LONGEST = 300
+"""Characters of a short print: four lines of a terminal."""
+LONGEST_PAGE = 30_000
+"""The same of HTML, with a drawing."""
+
+
+@pytest.fixture(scope="module")
+def drive():
+    return symflex.loads(TEXT)
+
+
+@pytest.fixture(scope="module")
+def tip(drive):
+    return drive.transfer_function("V_tip", "F").bind()
+
+
+@pytest.fixture(scope="module")
+def actuator(drive):
+    return drive.transfer_function("X_act", "F").bind()
+
+
+@pytest.fixture(scope="module")
+def loop():
+    return symflex.loads(LOOP)
+
+
+def own(count):
+    return Figure().subplots(count, squeeze=False)[:, 0]
+
+
+DRAWINGS = {
+    "bode": (2, lambda m, h, ax: h.bode(ax=ax)),
+    "poles and zeros": (1, lambda m, h, ax: h.pole_zero_plot(ax=ax)),
+    "nyquist": (1, lambda m, h, ax: h.nyquist(ax=ax)),
+    "locus": (1, lambda m, h, ax: m.locus("K", ax=ax)),
+    "nyquist of a loop": (1, lambda m, h, ax: m.nyquist("K", ax=ax)),
+    "mode shape": (1, lambda m, h, ax: h.mode_shape(1).plot(ax=ax)),
+    "response": (2, lambda m, h, ax: h.frequency_response([1.0, 2.0, 90.0]).plot(ax)),
+}
+
+
+@pytest.mark.parametrize("kind", DRAWINGS)
+def test_a_figure_is_drawn_on_the_axes_given(kind, loop, actuator):
+    count, drawing = DRAWINGS[kind]
+    axes = own(count)
+    assert drawing(loop, actuator, axes) is axes[0].figure
+    assert all(panel.has_data() for panel in axes)
+
+
+@pytest.mark.parametrize("kind", DRAWINGS)
+def test_a_figure_without_axes_shows_in_a_notebook(kind, loop, actuator):
+    data, size = DRAWINGS[kind][1](loop, actuator, None)._repr_png_()
+    assert data.startswith(PNG)
+    assert 400 <= size["width"] <= 900  # the column of a notebook
+
+
+@pytest.mark.parametrize("kind", DRAWINGS)
+def test_axes_in_the_wrong_number_are_refused(kind, loop, actuator):
+    with pytest.raises(UsageError, match="panel"):
+        DRAWINGS[kind][1](loop, actuator, own(4))
+
+
+@pytest.mark.parametrize("kind", DRAWINGS)
+def test_on_axes_given_the_user_s_style_holds(kind, loop, actuator):
+    count, drawing = DRAWINGS[kind]
+    with matplotlib.rc_context({"lines.linewidth": 7.0, "font.size": 13.0}):
+        axes = own(count)
+        drawing(loop, actuator, axes)
+        assert matplotlib.rcParams["font.size"] == 13.0
+    assert axes[-1].xaxis.label.get_size() == 13.0
+
+
+def test_magnitudes_alone_are_drawn_on_one_axes(actuator):
+    (axes,) = own(1)
+    actuator.bode(ax=axes)
+    assert axes.get_xlabel() == "Frequency [Hz]"
+
+
+def test_a_second_curve_on_the_same_axes_has_another_colour_and_both_are_seen(actuator, tip):
+    top, bottom = own(2)
+    actuator.bode(ax=(top, bottom))
+    first = top.get_ylim()
+    tip.bode(ax=(top, bottom))
+    assert len({line.get_color() for line in top.get_lines()}) == 2
+    low, high = top.get_ylim()
+    assert low <= first[0]
+    assert first[1] <= high
+
+
+def test_functions_are_compared_in_one_figure(actuator, tip):
+    assert len(actuator.bode(tip).axes[0].get_lines()) == 2
+    assert len(actuator.pole_zero_plot(tip).axes) == 2
+
+
+def test_bands_and_limits_may_have_units(actuator):
+    figure = actuator.bode(band=("1 Hz", "0.1 kHz"), phase=("-360 deg", 0))
+    assert figure.axes[0].get_xlim() == (1, 100)
+    assert figure.axes[1].get_ylim() == (-360, 0)
+
+
+def test_a_figure_is_as_wide_as_asked_for(actuator):
+    assert actuator.bode(width="ieee").get_figwidth() == pytest.approx(88.5 / 25.4)
+    assert actuator.bode(width=150).get_figwidth() == pytest.approx(150 / 25.4)
+
+
+def test_a_number_of_modes_is_shown_of_a_beam():
+    beam = symflex.load(ROOT / "derivations/eppinger1988/sliding_free_beam.toml")
+    bound = beam.transfer_function("V_act", "F").bind()
+    poles = {root.im for root in bound.poles(2)}
+    (panel,) = bound.pole_zero_plot(modes=2).axes
+    crosses = next(line for line in panel.get_lines() if line.get_marker() == "x")
+    assert len(crosses.get_ydata()) == len(poles)
+
+
+def test_values_in_place_of_declared_ones_move_the_locus(loop):
+    heights = [m.axes[0].get_xlim() for m in (loop.locus("K", (0, 1)), loop.locus("K", (0, 50)))]
+    assert heights[0] != heights[1]
+
+
+def test_less_than_two_frequencies_are_no_figure(actuator):
+    with pytest.raises(UsageError, match="SF902"):
+        actuator.frequency_response([1.0]).plot()
+
+
+def test_a_mode_in_which_nothing_is_drawn_says_so():
+    still = symflex.loads('symflex = 1\ninputs.u = {}\nfields = {}\noutputs.y = "u/(s + 1)"')
+    shape = still.transfer_function("y", "u").bind()
+    with pytest.raises((ModelError, UsageError)):
+        shape.mode_shape(1).plot()
+
+
+def test_a_sweep_draws_itself(drive):
+    sweep = drive.sweep({"k": [80e3, 90e3, 100e3]})
+    panels = own(3)
+    assert sweep.plot(ax=panels) is panels[0].figure
+    assert sweep.plot()._repr_png_()[0].startswith(PNG)
+
+
+def test_a_figure_can_be_gone_on_with(actuator):
+    figure = actuator.bode()
+    figure.axes[0].axhline(-100)
+    buffer = BytesIO()
+    figure.savefig(buffer, format="svg")
+    assert buffer.getvalue().startswith(b"<?xml")
+
+
+@pytest.fixture(scope="module")
+def everything():
+    model = symflex.loads(TEXT)
+    function = model.transfer_function("X_act", "F")
+    bound = function.bind()
+    nested = model.nested("X_act", "F")
+    looped = symflex.loads(LOOP)
+    stability = looped.stability("K")
+    loop = pipeline.characteristic_loop(looped.resolved, "K")
+    rational = bound.rational()
+    sweep = model.sweep({"k": [80e3, 90e3]})
+    shape = bound.mode_shape(1)
+    found = bound.pole_zero_map()
+    return {
+        "model": model,
+        "resolved model": model.resolved,
+        "parameters": model.parameters,
+        "specification": pipeline.parse(TEXT),
+        "equations": pipeline.assemble(model.resolved),
+        "function": function,
+        "function inside": function.exact,
+        "form": function.form(),
+        "nested": nested,
+        "nested inside": nested.exact,
+        "nested with numbers": nested.bind(),
+        "with numbers": bound,
+        "with numbers inside": bound.bound,
+        "map": found,
+        "certificate": found.certificate,
+        "verdict": found.verdict,
+        "poles": bound.poles(),
+        "residues": bound.residues(),
+        "rational": rational,
+        "error": rational.error,
+        "explanation": bound.explain_zeros(),
+        "shape": shape,
+        "shape inside": shape.enclosed,
+        "response": bound.frequency_response([1.0, 2.0]),
+        "state space": function.state_space(),
+        "state space inside": pipeline.state_space(model.resolved),
+        "state space with numbers": bound.state_space(),
+        "stability": stability,
+        "boundaries": stability.boundaries,
+        "stability inside": stability.proved,
+        "loop": loop,
+        "sweep": sweep,
+        "array": sweep.parameters[0],
+        "colocation": model.colocation("X_act", "X_act", "F", band=(1.0, 2.0)),
+        "measurement": model.measure("V_tip", "F", (2, 40), 0.5),
+    }
+
+
+def test_everything_prints_short(everything):
+    said = {name: repr(thing) for name, thing in everything.items()}
+    assert not {name: text for name, text in said.items() if len(text) > LONGEST or "\n" in text}
+
+
+def test_html_of_a_notebook_is_closed(everything):
+    pages = {n: thing._repr_html_() for n, thing in everything.items() if hasattr(thing, "_repr_html_")}
+    assert {"rational", "sweep", "poles", "stability", "explanation"} < pages.keys()
+    for page in pages.values():
+        tags = re.findall(r"<(/?)(\w[\w:]*)[^>]*?(/?)>", page)
+        assert sum(-1 if end else 1 for end, tag, alone in tags if not alone and tag != "br") == 0
+        assert len(page) < LONGEST_PAGE
+
+
+def test_a_root_is_typeset(actuator):
+    pole = actuator.poles()[-1]
+    assert re.fullmatch(
+        r"\$s = -1\.3333\d* - 79\.5710\d*\\,\\mathrm\{j\}\\ \\mathrm\{rad/s\}\$", pole._repr_latex_()
+    )
+
+
+def test_poles_are_a_table_in_a_notebook_and_a_tuple_elsewhere(actuator):
+    poles = actuator.poles()
+    assert isinstance(poles, tuple)
+    assert poles._repr_html_().count("<tr>") == len(poles) + 1
+    assert ">12.66" in poles._repr_html_()  # sqrt(k (1/m_1 + 1/m_2))/(2 pi) = 12.666 Hz
+
+
+def test_state_equations_are_matrices_in_a_notebook(drive):
+    shown = drive.transfer_function("X_act", "F").state_space()._repr_latex_()
+    assert shown.count(r"\begin{matrix}") == 4
+
+
+def test_a_mode_shape_is_a_picture_in_a_notebook(actuator):
+    assert actuator.mode_shape(1)._repr_png_()[0].startswith(PNG)
