@@ -19,6 +19,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 from itertools import pairwise
 from math import ceil, exp, inf, log, nan, pi
 from typing import TYPE_CHECKING, NoReturn, cast
@@ -527,13 +528,24 @@ def adaptive_grid(
 
     SF227 when the band is empty or not positive, ValueError for fewer than 2 points.
     """
+    if roots is None:
+        check_band(low_hz, high_hz)
+        roots = locate(bound, Band(Fraction(low_hz), Fraction(high_hz)) if bound.is_distributed else None)
+    return grid_about(roots, partial(evaluate, bound), low_hz, high_hz, points)
+
+
+def grid_about(
+    found: PoleZeroMap,
+    values: Callable[[npt.NDArray[np.float64]], npt.NDArray[np.complex128]],
+    low_hz: float,
+    high_hz: float,
+    points: int = 600,
+) -> npt.NDArray[np.float64]:
+    """Return the grid of :func:`adaptive_grid` from roots that are known, and a function of frequencies."""
     check_band(low_hz, high_hz)
     if points < 2:  # noqa: PLR2004 (the two ends)
         message = f"a grid has at least 2 points, not {points}"
         raise ValueError(message)
-    if roots is None:
-        roots = locate(bound, Band(Fraction(low_hz), Fraction(high_hz)) if bound.is_distributed else None)
-    found = roots
     low, high = 2 * pi * low_hz, 2 * pi * high_hz
     step = log(high / low) / (points - 1)
     parts = [np.geomspace(low, high, points)]
@@ -552,7 +564,7 @@ def adaptive_grid(
     for centre in on_axis:
         # A hair less than the gap, so that the points placed at the gap itself survive rounding.
         grid = grid[np.abs(grid - centre) > 0.99 * AXIS_GAP * centre]
-    return _followed(bound, grid) if found.certificate.is_exceeded else grid
+    return _followed(values, grid) if found.certificate.is_exceeded else grid
 
 
 def check_band(low_hz: float, high_hz: float) -> None:
@@ -562,16 +574,18 @@ def check_band(low_hz: float, high_hz: float) -> None:
         raise UsageError(Diagnostic("SF227", message))
 
 
-def _followed(bound: AnyBoundFunction, grid: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def _followed(
+    values: Callable[[npt.NDArray[np.float64]], npt.NDArray[np.complex128]], grid: npt.NDArray[np.float64]
+) -> npt.NDArray[np.float64]:
     """Return a grid with points added where a straight line misses the logarithm of the values between."""
-    known = dict(zip(grid.tolist(), evaluate(bound, grid).tolist(), strict=True))
+    known = dict(zip(grid.tolist(), values(grid).tolist(), strict=True))
     pending = list(pairwise(grid.tolist()))
     for _ in range(FOLLOWING_ROUNDS):
         middles = np.array([(a * b) ** 0.5 for a, b in pending])
-        values = evaluate(bound, middles).tolist()
-        known.update(zip(middles.tolist(), values, strict=True))
+        between = values(middles).tolist()
+        known.update(zip(middles.tolist(), between, strict=True))
         split = []
-        for (a, b), middle, value in zip(pending, middles.tolist(), values, strict=True):
+        for (a, b), middle, value in zip(pending, middles.tolist(), between, strict=True):
             product = known[a] * known[b]
             if not abs(value * value - product) < FOLLOWING_ERROR * abs(product):
                 split += [(a, middle), (middle, b)]

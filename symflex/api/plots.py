@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from symflex.figures import AxesGiven
-    from symflex.loops import Loop
+    from symflex.loops import AnyLoop
     from symflex.transfer import BoundTransferFunction
 
 
@@ -57,7 +57,7 @@ def _with_modes(bound: BoundTransferFunction, modes: int) -> BoundTransferFuncti
     return replace(bound, source=replace(bound.source, model=model))
 
 
-def plot_loop(given: PlotOptions, loop: Loop, ax: AxesGiven | None = None) -> Figure:
+def plot_loop(given: PlotOptions, loop: AnyLoop, ax: AxesGiven | None = None) -> Figure:
     """Draw a root locus or the Nyquist plot of a loop gain; see :func:`symflex.figures.draw_loop`."""
     from symflex.figures import DEFAULT_FONT, draw_loop, part_shown  # imports matplotlib
 

@@ -10,14 +10,13 @@ from typing import TYPE_CHECKING
 
 from matplotlib.text import Text
 
-from symflex.analysis.response import roots_if_found
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.figures.axes import FREE, AxesGiven, AxisLimits, Canvas, Drawing, axes_of
 from symflex.figures.bode import draw_bode, draw_fit, draw_measured, draw_response
 from symflex.figures.in_time import draw_impulse, draw_in_time, draw_step
 from symflex.figures.input_shaping import draw_residual
-from symflex.figures.loops import draw_locus, draw_nyquist
+from symflex.figures.loops import draw_locus, draw_loop_gain, draw_nyquist
 from symflex.figures.modes import draw_modes, draw_shapes
 from symflex.figures.poles_zeros import draw_poles_zeros
 from symflex.figures.runs import panels_of
@@ -27,13 +26,11 @@ from symflex.figures.style import (
     FONTS,
     Raster,
     family_of,
-    label_of_name,
-    number_label,
     paper_style,
     raster_of,
 )
 from symflex.figures.sweep import draw_sweep
-from symflex.loops import closed_loop, loop_gain, require_arrival, trace_locus
+from symflex.loops import require_arrival, trace_locus
 from symflex.options import PlotOptions, axis_ends, band_ends
 from symflex.print.latex.page import checked_width
 
@@ -45,7 +42,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from symflex.analysis.modes import EnclosedModeShape
-    from symflex.loops import Loop
+    from symflex.loops import AnyLoop
     from symflex.model import Model
     from symflex.transfer import AnyBoundFunction, AnyTransferFunction
 
@@ -230,7 +227,7 @@ def _with_every_letter(figure: Figure, font: str) -> Figure:
 
 def draw_loop(
     kind: str,
-    loop: Loop,
+    loop: AnyLoop,
     *,
     limits: tuple[Fraction | None, Fraction | None] | None = None,
     modes: int | None = None,
@@ -263,7 +260,7 @@ def draw_loop(
 
 def _drawn_loop(
     kind: str,
-    loop: Loop,
+    loop: AnyLoop,
     limits: tuple[Fraction | None, Fraction | None] | None,
     modes: int | None,
     canvas: Canvas,
@@ -272,7 +269,4 @@ def _drawn_loop(
         locus = trace_locus(loop, limits, modes, band_hz=canvas.band_hz)
         require_arrival(locus)
         return draw_locus(locus, canvas)
-    bound = loop_gain(loop)
-    label = f"loop gain, ${label_of_name(loop.gain.name)} = {number_label(float(loop.nominal or 0))}$"
-    verdict = f"closed loop {roots_if_found(closed_loop(loop)).verdict.headline}"
-    return draw_nyquist([bound.source], [bound], canvas, [label], verdict)
+    return draw_loop_gain(loop, canvas)

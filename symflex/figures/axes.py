@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.legend import Legend
 
+    from symflex.model import Model
     from symflex.roots import Root
     from symflex.transfer import AnyBoundFunction, AnyTransferFunction
 
@@ -261,9 +262,9 @@ class Canvas:
             return axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), **look)
         return root_figure(axes).legend(loc="outside upper center", **look)
 
-    def band_of(self, tf: AnyTransferFunction) -> Limits | None:
+    def band_of(self, model: Model) -> Limits | None:
         """Return the band asked for, else that of a model [Hz]."""
-        band = tf.model.analysis.band
+        band = model.analysis.band
         return self.band_hz or (None if band is None else (float(band[0]), float(band[1])))
 
 

@@ -77,7 +77,7 @@ def draw_bode(
     plane, or may lie there, the legend says so.
     """
     # The default roots of distributed systems serve for nothing but a band.
-    given = canvas.band_of(tfs[0])
+    given = canvas.band_of(tfs[0].model)
     low, high = given or default_band(*(roots_if_found(bound) for bound in bounds))
     band = Band(Fraction(low), Fraction(high))
     maps = [roots_if_found(bound, band) for bound in bounds]

@@ -12,7 +12,7 @@ import numpy as np
 from matplotlib.font_manager import FontProperties
 from matplotlib.patches import Circle
 
-from symflex.analysis.response import adaptive_grid, default_band, respond, roots_if_found
+from symflex.analysis.response import adaptive_grid, default_band, grid_about, respond, roots_if_found
 from symflex.figures.axes import (
     FREE,
     RIGHT_HALF_PLANE,
@@ -49,6 +49,7 @@ from symflex.figures.style import (
     size_of_text,
     title_lines,
 )
+from symflex.loops import NetworkLoop, closed_loop, closed_loop_roots, loop_gain, nominal_gain
 from symflex.roots import Band
 
 if TYPE_CHECKING:
@@ -59,7 +60,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from symflex.figures.axes import Canvas
-    from symflex.loops import RootLocus
+    from symflex.loops import AnyLoop, RootLocus
     from symflex.roots import PoleZeroMap
     from symflex.roots.pole_zero_map import StabilityVerdict
     from symflex.transfer import AnyBoundFunction, AnyTransferFunction
@@ -225,6 +226,8 @@ def _draw_holes(axes: Axes, locus: RootLocus) -> None:
             label = ""
 
 
+Curve = tuple["npt.NDArray[np.complex128]", "StabilityVerdict"]
+"""Values along the imaginary axis, and what is known of the poles."""
 WIDENED: Final = 10.0
 """How far beyond the band of poles and zeros the curve is drawn, to both sides."""
 REACHES: Final = (1.5, 2.5)
@@ -255,24 +258,41 @@ def draw_nyquist(
     tfs: Sequence[AnyTransferFunction],
     bounds: Sequence[AnyBoundFunction],
     canvas: Canvas,
-    labels: Sequence[str] = (),
-    verdict: str | None = None,
 ) -> Figure:
     """Draw the values of transfer functions for positive frequencies and, dashed, for negative ones.
 
-    Of a loop gain, which ``labels`` tell apart, the part of the plane about -1 is shown; where a curve leaves
-    it, it goes on outside. Where no band is asked for, the curve of a rational function goes on until it is
-    next to where it ends, mostly the origin. Arrows point to growing frequency. The title says how many poles
-    of what is drawn lie in the right half plane, P of them: a closed loop is stable if the curve winds P
-    times counterclockwise about -1. ``verdict`` says whether it is.
+    Where no band is asked for, the curve of a rational function goes on until it is next to where it ends,
+    mostly the origin. Arrows point to growing frequency. The title says how many poles of what is drawn lie
+    in the right half plane, P of them: a closed loop is stable if the curve winds P times counterclockwise
+    about -1.
     """
+    return _draw_curves([_curve(bound, canvas) for bound in bounds], [label_of_tf(tf) for tf in tfs], canvas)
+
+
+def draw_loop_gain(loop: AnyLoop, canvas: Canvas) -> Figure:
+    """Draw a loop gain as :func:`draw_nyquist` draws others, and say whether the closed loop is stable.
+
+    The part of the plane about -1 is shown; where the curve leaves it, it goes on outside.
+    """
+    gain = nominal_gain(loop)
+    label = f"loop gain, ${label_of_name(loop.gain.name)} = {number_label(float(gain))}$"
+    if isinstance(loop, NetworkLoop):
+        curve, closed = _network_curve(loop, gain, canvas), closed_loop_roots(loop, gain)
+    else:
+        curve, closed = _curve(loop_gain(loop), canvas), roots_if_found(closed_loop(loop))
+    return _draw_curves([curve], [label], canvas, f"closed loop {closed.verdict.headline}")
+
+
+def _draw_curves(
+    found: Sequence[Curve], told: Sequence[str], canvas: Canvas, verdict: str | None = None
+) -> Figure:
+    """Draw curves with what they are told by; with a verdict, of a closed loop, these are loop gains."""
     width = canvas.width or COLUMN_INCHES
-    found = [_curve(bound, canvas) for bound in bounds]
-    told = [labels[i] if labels else label_of_tf(tf) for i, tf in enumerate(tfs)]
+    is_loop = verdict is not None
     if len(found) > 1:
         told = [f"{label}, {_open_poles(poles)}" for label, (_, poles) in zip(told, found, strict=True)]
     columns = _columns(told, width)
-    counted = _sentence_of_poles([poles for _, poles in found], is_loop=bool(labels))
+    counted = _sentence_of_poles([poles for _, poles in found], is_loop=is_loop)
     lines = [line for said in (canvas.title, counted, verdict) for line in title_lines(said, width)]
     rows = -(-len(told) // columns)
     axes = canvas.one_panel(HEIGHT_INCHES + LINE_INCHES * (len(lines) + rows))
@@ -280,7 +300,7 @@ def draw_nyquist(
     circle = np.exp(1j * np.linspace(0, 2 * np.pi, 361))
     axes.plot(circle.real, circle.imag, ":", color=QUIET, linewidth=0.7, zorder=1)
     curves = [curve for curve, _ in found]
-    reach = _reach(np.concatenate(curves), is_loop=bool(labels))
+    reach = _reach(np.concatenate(curves), is_loop=is_loop)
     across, upwards = canvas.frame.x or (-reach, reach), canvas.frame.y or (-reach, reach)
     axes.set_xlim(*across)
     axes.set_ylim(*upwards)
@@ -362,9 +382,9 @@ def _onwards(bound: AnyBoundFunction, high: float) -> npt.NDArray[np.complex128]
     return np.array([bound(2j * pi * f) for f in steps.tolist()], dtype=np.complex128)
 
 
-def _curve(bound: AnyBoundFunction, canvas: Canvas) -> tuple[npt.NDArray[np.complex128], StabilityVerdict]:
+def _curve(bound: AnyBoundFunction, canvas: Canvas) -> Curve:
     """Return values along the axis, dense where a resonance turns them, and what is known of its poles."""
-    band = canvas.band_of(bound.source)
+    band = canvas.band_of(bound.source.model)
     if band is None:
         low, high = default_band(roots_if_found(bound))
         low, high = low / WIDENED, high * WIDENED
@@ -377,6 +397,19 @@ def _curve(bound: AnyBoundFunction, canvas: Canvas) -> tuple[npt.NDArray[np.comp
         values = np.concatenate((values, _onwards(bound, high)))
     finite: npt.NDArray[np.complex128] = values[np.isfinite(values)]
     return finite, found.verdict
+
+
+def _network_curve(loop: NetworkLoop, gain: Fraction, canvas: Canvas) -> Curve:
+    """Return the loop gain of a network along the axis, and what is known of the open loop's poles."""
+    still = Fraction(0)
+    low, high = canvas.band_of(loop.model) or default_band(closed_loop_roots(loop, still))
+    found = closed_loop_roots(loop, still, Band(Fraction(low), Fraction(high)))
+
+    def values(omega: npt.NDArray[np.float64]) -> npt.NDArray[np.complex128]:
+        return np.array(loop.gains(gain, omega.tolist()), dtype=np.complex128)
+
+    curve = values(grid_about(found, values, low, high))
+    return curve[np.isfinite(curve)], found.verdict
 
 
 def _reach(values: npt.NDArray[np.complex128], *, is_loop: bool) -> float:

@@ -2,8 +2,17 @@
 
 from symflex.loops.colocation import DynamicColocation, dynamic_colocation
 from symflex.loops.find import find_stable_gains
-from symflex.loops.locus import RootLocus, closed_loop, loop_gain, require_arrival, trace_locus
+from symflex.loops.locus import (
+    RootLocus,
+    closed_loop,
+    closed_loop_roots,
+    loop_gain,
+    nominal_gain,
+    require_arrival,
+    trace_locus,
+)
 from symflex.loops.loop import GainPolynomial, Loop, characteristic_loop, pick_gain
+from symflex.loops.networks import AnyLoop, NetworkLoop
 from symflex.loops.stability_map import (
     AllowedBandwidth,
     Boundary,
@@ -20,6 +29,7 @@ from symflex.loops.stability_map import (
 
 __all__ = [
     "AllowedBandwidth",
+    "AnyLoop",
     "Boundary",
     "Crossing",
     "DynamicColocation",
@@ -27,18 +37,21 @@ __all__ = [
     "GainMargin",
     "GainPolynomial",
     "Loop",
+    "NetworkLoop",
     "PhaseMargin",
     "PoleCount",
     "RootLocus",
     "StabilityMap",
     "characteristic_loop",
     "closed_loop",
+    "closed_loop_roots",
     "decibels",
     "degrees",
     "dynamic_colocation",
     "find_stable_gains",
     "hertz",
     "loop_gain",
+    "nominal_gain",
     "pick_gain",
     "require_arrival",
     "trace_locus",

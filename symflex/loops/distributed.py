@@ -36,16 +36,12 @@ if TYPE_CHECKING:
 
     from symflex.transfer import BoundTransferFunction
 
-BITS = 128
-"""Of gains and their limits."""
 WAVES = 30.0
 """Largest argument of a kernel up to which poles are counted where no end is known."""
 DEPTHS = (0.0, 2.0, 5.0, 9.0, 14.0, 20.0)
 """How far below the lowest root, in ln, circles about 0 are counted."""
 NUDGES = (0.0, 0.0137, 0.0291, 0.0531)
 """By which the outer circle is moved when it meets a pole [in ln]."""
-SHRINKINGS = 30
-"""Halvings of a disc about 0."""
 
 
 @dataclass

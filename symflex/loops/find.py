@@ -18,11 +18,11 @@ from flint import acb, arb
 from symflex.algebra import Factored, degree_in
 from symflex.budget import Budget, entered_budget
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
-from symflex.loops.axis_factors import AxisFactors
+from symflex.loops.axis_factors import SHRINKINGS, AxisFactors
 from symflex.loops.distributed import DistributedFactors
 from symflex.loops.loop import Loop
 from symflex.loops.lumped import LumpedFactor
-from symflex.loops.networks import NetworkFactors, NetworkLoop
+from symflex.loops.networks import AnyLoop, NetworkFactors, NetworkLoop
 from symflex.loops.stability_map import (
     AllowedBandwidth,
     Boundary,
@@ -57,7 +57,7 @@ Limits = tuple[Fraction | None, Fraction | None]
 
 
 def find_stable_gains(
-    loop: Loop | NetworkLoop,
+    loop: AnyLoop,
     limits: Limits | None = None,
     digits: int = 15,
     budget: Budget | None = None,
@@ -116,7 +116,7 @@ def find_stable_gains(
 
 
 def _factors(
-    loop: Loop | NetworkLoop, limits: Limits | None, digits: int, up_to: float | None, budget: Budget
+    loop: AnyLoop, limits: Limits | None, digits: int, up_to: float | None, budget: Budget
 ) -> tuple[list[LumpedFactor], AxisFactors[Any] | None, Limits]:
     """Return the factors of polynomials, those of all else, and the range of the gain."""
     plain, mixed = _split(loop) if isinstance(loop, Loop) else ((), ())
@@ -151,7 +151,7 @@ def _split(loop: Loop) -> tuple[tuple[GainPolynomial, ...], tuple[GainPolynomial
     return tuple(plain), tuple(mixed)
 
 
-def _limits(loop: Loop | NetworkLoop, given: Limits | None, *, is_distributed: bool) -> Limits:
+def _limits(loop: AnyLoop, given: Limits | None, *, is_distributed: bool) -> Limits:
     if given is not None:
         low, high = given
         if low is not None and high is not None and not low < high:
@@ -167,7 +167,7 @@ def _limits(loop: Loop | NetworkLoop, given: Limits | None, *, is_distributed: b
     return (-reach if low is None else low), reach
 
 
-def _range_needed(loop: Loop | NetworkLoop) -> UsageError:
+def _range_needed(loop: AnyLoop) -> UsageError:
     message = f"a loop with kernels needs a bounded range of '{loop.gain.name}'"
     return UsageError(Diagnostic("SF804", message, None, "give the parameter a value, or say --range LO HI"))
 
@@ -310,9 +310,7 @@ def _gain_margins(found: StabilityMap) -> tuple[GainMargin, ...]:
     return tuple(margins)
 
 
-def _loop_gain(
-    loop: Loop | NetworkLoop, along: AxisFactors[Any] | None, digits: int, budget: Budget
-) -> LoopGain | None:
+def _loop_gain(loop: AnyLoop, along: AxisFactors[Any] | None, digits: int, budget: Budget) -> LoopGain | None:
     """Return the loop gain of a loop that is a straight line in its gain, and closed once."""
     if isinstance(loop, NetworkLoop):
         return None if along is None else LoopGain(along, digits, budget)
@@ -320,8 +318,8 @@ def _loop_gain(
     if len(with_gain) != 1 or with_gain[0].degree != 1 or with_gain[0].multiplicity != 1:
         return None
     (factor,) = with_gain
-    is_plain = along is None or factor in _split(loop)[0]
-    return LoopGain((loop.bound, factor) if is_plain or along is None else along, digits, budget)
+    is_along = isinstance(along, DistributedFactors) and factor in along.factors
+    return LoopGain(along if along is not None and is_along else (loop.bound, factor), digits, budget)
 
 
 def _phase_margins(loop_gain: LoopGain, nominal: Fraction) -> tuple[PhaseMargin, ...]:
@@ -333,9 +331,6 @@ def _phase_margins(loop_gain: LoopGain, nominal: Fraction) -> tuple[PhaseMargin,
             angle = (-ratio * acb(_ball(nominal))).arg()
         found.append(PhaseMargin(angle, omega))
     return tuple(found)
-
-
-SHRINKINGS = 30
 
 
 @dataclass(frozen=True)

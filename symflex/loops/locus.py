@@ -16,8 +16,11 @@ from symflex.algebra import Factored
 from symflex.budget import Budget, entered_budget, spend
 from symflex.errors import Diagnostic, UncertifiedError, UsageError
 from symflex.loops.loop import Loop, LoopFunction
+from symflex.loops.networks import AnyLoop, LoopInDisc, NetworkLoop
 from symflex.roots import Band, Modes, PoleZeroMap, Position, Region, Root
 from symflex.roots.locate import locate
+from symflex.roots.networks.cramer import EssentialSingularityError
+from symflex.roots.networks.members import UndecidedError
 from symflex.roots.pole_zero_map import is_right
 
 if TYPE_CHECKING:
@@ -26,6 +29,8 @@ if TYPE_CHECKING:
     from symflex.roots.pole_zero_map import Exclusion
     from symflex.transfer import BoundTransferFunction
 
+Traceable = LoopFunction | LoopInDisc
+"""What poles are followed in."""
 DEFAULT_MODES = 5
 STEPS = 120
 """Gains in all, close at the beginning: a step is then 10 % longer than the last."""
@@ -40,6 +45,8 @@ BEND = 0.2
 SHORTEST = 0.004
 """Steps shorter than this, relative to the same, may turn as they will."""
 HALVINGS = 9
+WIDER = (1.4, 1.15, 1.02)
+"""Than all poles that are marked, a disc in which those of a network are followed."""
 TURNS = (0.3, 1.9, 3.4, 5.0)
 TOUCHING = 1e-7
 ENDS_AGREE = 1e-6
@@ -83,21 +90,21 @@ def loop_gain(loop: Loop, gain: Fraction | None = None) -> BoundTransferFunction
     SF806 when the loop is not a straight line in its gain, or K, nominal by default, has no value.
     """
     above, below = _parts(loop)
-    return _with(loop.bound, above * _value(loop, gain), below)
+    return _with(loop.bound, above * (nominal_gain(loop) if gain is None else gain), below)
 
 
 def closed_loop(loop: Loop, gain: Fraction | None = None) -> BoundTransferFunction:
     """Return ``B/(A + K B)``, whose poles are those of the closed loop; as :func:`loop_gain` otherwise."""
     above, below = _parts(loop)
-    return _with(loop.bound, above, below + above * _value(loop, gain))
+    return _with(loop.bound, above, below + above * (nominal_gain(loop) if gain is None else gain))
 
 
-def _value(loop: Loop, gain: Fraction | None) -> Fraction:
-    value = loop.nominal if gain is None else gain
-    if value is None:
+def nominal_gain(loop: AnyLoop) -> Fraction:
+    """Return the gain's own value; SF806 when it has none."""
+    if loop.nominal is None:
         message = f"'{loop.gain.name}' has no value"
         raise UsageError(Diagnostic("SF806", message, loop.gain.span, "give it one in [parameters]"))
-    return value
+    return loop.nominal
 
 
 def _parts(loop: Loop) -> tuple[Factored, Factored]:
@@ -121,8 +128,32 @@ def _with(bound: BoundTransferFunction, num: Factored, den: Factored) -> BoundTr
     return replace(bound, ratio=num / den, hidden=(), parts=parts, is_of_model=False)
 
 
+def closed_loop_roots(
+    loop: AnyLoop, gain: Fraction, region: Region | None = None, budget: Budget | None = None
+) -> PoleZeroMap:
+    """Return the poles at a gain, and the zeros they go to: those of ``B/(A + K B)``."""
+    if isinstance(loop, NetworkLoop):
+        return loop.located(gain, region or Modes(loop.modes), budget or entered_budget())
+    return locate(closed_loop(loop, gain), region, 15, budget)
+
+
+def _traceable(loop: AnyLoop, roots: Sequence[Root], budget: Budget) -> Traceable:
+    """Return A and B where poles are followed between gains at which their roots are known."""
+    if isinstance(loop, Loop):
+        above, below = _parts(loop)
+        return LoopFunction.of(loop.bound, below, above)
+    largest = max(abs(s) for s in _points(roots))
+    for wider in WIDER:
+        try:
+            return loop.in_disc(wider * largest, budget)
+        except (EssentialSingularityError, UndecidedError):
+            continue
+    message = "poles of the network cannot be followed as far as they are marked"
+    raise UncertifiedError(Diagnostic("SF807", message, None, "trace fewer modes: --modes N"))
+
+
 def trace_locus(
-    loop: Loop,
+    loop: AnyLoop,
     limits: tuple[Fraction | None, Fraction | None] | None = None,
     modes: int | None = None,
     budget: Budget | None = None,
@@ -136,19 +167,18 @@ def trace_locus(
     no straight line in the gain.
     """
     budget = budget or entered_budget()
-    above, below = _parts(loop)
     low, high = _range(loop, limits)
-    at_first, at_last = closed_loop(loop, low), closed_loop(loop, high)
-    if modes is None and band_hz is not None and loop.bound.kernels:
+    is_endless = isinstance(loop, NetworkLoop) or bool(loop.bound.kernels)
+    if modes is None and band_hz is not None and is_endless:
         band = Band(Fraction(0), Fraction(band_hz[1]))
-        shown = [locate(bound, band, 15, budget).poles for bound in (at_first, at_last)]
+        shown = [closed_loop_roots(loop, gain, band, budget).poles for gain in (low, high)]
         modes = max(sum(root.multiplicity for root in poles if not root.im < 0) for poles in shown)
-    wanted = modes or loop.bound.source.model.analysis.modes or DEFAULT_MODES
-    region: Region | None = Modes(wanted) if loop.bound.kernels else None
-    wider: Region | None = Modes(wanted + 2) if loop.bound.kernels else None
-    start = locate(at_first, region, 15, budget)
-    end = locate(at_last, wider, 15, budget)
-    function = LoopFunction.of(loop.bound, below, above)
+    wanted = modes or loop.model.analysis.modes or DEFAULT_MODES
+    region: Region | None = Modes(wanted) if is_endless else None
+    wider: Region | None = Modes(wanted + 2) if is_endless else None
+    start = closed_loop_roots(loop, low, region, budget)
+    end = closed_loop_roots(loop, high, wider, budget)
+    function = _traceable(loop, (*start.all_poles, *end.all_poles), budget)
     poles, final = _points(start.all_poles), _points(end.all_poles)
     bottom, top = float(low), float(high)
     goals = _goals(bottom, top)
@@ -158,7 +188,7 @@ def trace_locus(
     forward = [one + other[1:] for one, other in zip(early, later, strict=True)]
     # Of a loop with kernels, poles beyond those proved at the last gain are not compared, nor those where
     # poles accumulate, which no search exhausts.
-    reach = max((abs(s) for s in _points(end.poles)), default=0.0) if loop.bound.kernels else inf
+    reach = max((abs(s) for s in _points(end.poles)), default=0.0) if is_endless else inf
     known = [_nearest(final, b[-1]) is not None for b in forward]
     lost = [not k and _is_among(end.excluded, b[-1]) for b, k in zip(forward, known, strict=True)]
     ends = [
@@ -209,11 +239,11 @@ def trace_locus(
 
 
 def _at_nominal(
-    loop: Loop, limits: tuple[Fraction, Fraction], region: Region | None, budget: Budget
+    loop: AnyLoop, limits: tuple[Fraction, Fraction], region: Region | None, budget: Budget
 ) -> tuple[Fraction, PoleZeroMap] | None:
     if loop.nominal is None or not limits[0] < loop.nominal < limits[1]:
         return None
-    return loop.nominal, locate(closed_loop(loop, loop.nominal), region, 15, budget)
+    return loop.nominal, closed_loop_roots(loop, loop.nominal, region, budget)
 
 
 def _until_parting(
@@ -235,7 +265,9 @@ def _until_parting(
     return kept, parted
 
 
-def _range(loop: Loop, limits: tuple[Fraction | None, Fraction | None] | None) -> tuple[Fraction, Fraction]:
+def _range(
+    loop: AnyLoop, limits: tuple[Fraction | None, Fraction | None] | None
+) -> tuple[Fraction, Fraction]:
     """Return the first and the last gain."""
     name = loop.gain.name
     if limits is None:
@@ -296,14 +328,14 @@ def _before(holes: Sequence[Exclusion], branch: list[complex]) -> list[complex]:
     return branch[: next(inside, len(branch))]
 
 
-def _landed(function: LoopFunction, s: complex, gain: float, size: float) -> complex | None:
+def _landed(function: Traceable, s: complex, gain: float, size: float) -> complex | None:
     """Return the pole at the first gain next to one a little later, ``None`` where none is near."""
     found = _newton(function, s, gain, ())
     is_near = found is not None and abs(found - s) <= 2 * FAREST * max(size, abs(s))
     return found if is_near else None
 
 
-def _outwards(function: LoopFunction, s: complex, low: float, gain: float, reach: float) -> list[complex]:
+def _outwards(function: Traceable, s: complex, low: float, gain: float, reach: float) -> list[complex]:
     """Follow a pole out of sight as the gain falls to the first one."""
     tail: list[complex] = []
     shift = gain - low
@@ -323,7 +355,7 @@ def _nearest(points: Sequence[complex], s: complex) -> int | None:
 
 
 def _trace(
-    function: LoopFunction, poles: Sequence[complex], gain: float, goals: Sequence[float]
+    function: Traceable, poles: Sequence[complex], gain: float, goals: Sequence[float]
 ) -> list[list[complex]]:
     """Return the curves of poles from one gain through others."""
     size = max((abs(s) for s in poles), default=1.0) or 1.0
@@ -359,7 +391,7 @@ def _bends(branches: Sequence[Sequence[complex]], found: Sequence[complex], size
     return False
 
 
-def _moved(function: LoopFunction, poles: Sequence[complex], gain: float, size: float) -> list[complex]:
+def _moved(function: Traceable, poles: Sequence[complex], gain: float, size: float) -> list[complex]:
     """Return the poles at the next gain; those that meet are sent apart."""
     found: list[complex] = []
     for i, s in enumerate(poles):
@@ -378,7 +410,7 @@ def _moved(function: LoopFunction, poles: Sequence[complex], gain: float, size: 
     return found
 
 
-def _newton(function: LoopFunction, start: complex, gain: float, known: Sequence[complex]) -> complex | None:
+def _newton(function: Traceable, start: complex, gain: float, known: Sequence[complex]) -> complex | None:
     """Return a root of A + K B with known ones divided out, ``None`` where it is not found."""
     s = start
     for _ in range(NEWTON_STEPS):

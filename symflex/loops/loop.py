@@ -28,7 +28,7 @@ from symflex.transfer.balls import Value, expansion
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from symflex.model import ModelParameter
+    from symflex.model import Model, ModelParameter
     from symflex.transfer.enclose_kernels import KernelValues
 
 
@@ -70,6 +70,11 @@ class Loop:
 
     def __repr__(self) -> str:
         return f"<Loop of {self.bound.name} with gain {self.gain.name}>"
+
+    @property
+    def model(self) -> Model:
+        """Whose characteristic function it is."""
+        return self.bound.source.model
 
     @property
     def with_gain(self) -> tuple[GainPolynomial, ...]:

@@ -15,7 +15,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
-from math import pi
+from math import nan, pi
 from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, arb, ctx
@@ -25,23 +25,31 @@ from symflex.errors import Diagnostic, ModelError, UncertifiedError
 from symflex.expressions import names_among
 from symflex.loops.axis import LoopAtOrigin
 from symflex.loops.axis_factors import AxisFactors
-from symflex.loops.loop import NOTHING, LoopValue
+from symflex.loops.loop import NOTHING, Loop, LoopValue
 from symflex.loops.stability_map import PoleCount
 from symflex.roots.counting.local_series import LocalSeries
 from symflex.roots.networks.cramer import CramerEquations, EssentialSingularityError
 from symflex.roots.networks.disc_search import DiscSearch, enclosed_roots, images
-from symflex.roots.networks.disc_series import DiscSeries, RootNearCircleError
+from symflex.roots.networks.disc_series import DiscSeries, RootNearCircleError, ball_about_zero
 from symflex.roots.networks.members import UndecidedError
+from symflex.roots.networks.poles_zeros import locate_quotient
 from symflex.roots.precision import bits_for_digits
 from symflex.transfer.balls import ball
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from symflex.budget import Budget
     from symflex.equations import Equations
-    from symflex.model import ModelParameter
+    from symflex.model import Model, ModelParameter
+    from symflex.roots import PoleZeroMap, Region
 
 DEFAULT_MODES = 5
 """Which the disc holds where no frequency is given."""
+DIGITS = 15
+"""Of poles that are marked in figures."""
+LOOP_GAIN_BITS = 64
+"""Of values that are drawn."""
 SPARE_BITS = 64
 """Of a series, beyond the digits of gains."""
 SHRUNK = (0.99, 0.975, 0.957, 0.94, 0.92)
@@ -64,10 +72,47 @@ class NetworkLoop:
     nominal: Fraction | None  # its value, where that is a rational number
     cramer: CramerEquations  # whose denominator is A, and whose numerator is -B
 
+    # The row of the model that the gain stands in. r is the last of the rows, e the last of the columns.
+    acts: int
+
+    @property
+    def model(self) -> Model:
+        """Whose characteristic function it is."""
+        return self.cramer.equations.model
+
     @property
     def modes(self) -> int:
         """How many the model asks for."""
-        return self.cramer.equations.model.analysis.modes or DEFAULT_MODES
+        return self.model.analysis.modes or DEFAULT_MODES
+
+    def located(self, gain: Fraction, region: Region, budget: Budget) -> PoleZeroMap:
+        """Return poles and zeros of ``B/(A + K B)``, whose poles are those of the closed loop."""
+        rows = list(self.cramer.entries)
+        closed = dict(rows[self.acts])
+        for j, slope in rows[-1].items():
+            closed[j] = closed[j] + slope * gain if j in closed else slope * gain
+        rows[self.acts] = {j: value for j, value in closed.items() if not value.is_zero}
+        quotient = CramerEquations(self.cramer.equations, rows, self.cramer.divisor)
+        return locate_quotient(quotient, "closed loop", region, DIGITS, budget)
+
+    def gains(self, gain: Fraction, omega: Sequence[float]) -> list[complex]:
+        """Return the loop gain ``K B/A`` at frequencies [rad/s], not proved."""
+        found = []
+        for each in omega:
+            value = self.cramer.at(acb(0, each), LOOP_GAIN_BITS)
+            with ctx.workprec(LOOP_GAIN_BITS):
+                found.append(complex((-ball(gain) * value.num / value.den).mid()))
+        return found
+
+    def in_disc(self, radius: float, budget: Budget) -> LoopInDisc:
+        """Return A and B in a disc about 0 [rad/s].
+
+        UndecidedError, EssentialSingularityError where they are not enclosed there.
+        """
+        return _in_disc(DiscSearch(self.cramer, DIGITS, budget, (False, False)), radius)
+
+
+AnyLoop = Loop | NetworkLoop
 
 
 def network_loop(equations: Equations, gain: ModelParameter, nominal: Fraction | None) -> NetworkLoop | None:
@@ -108,7 +153,7 @@ def network_loop(equations: Equations, gain: ModelParameter, nominal: Fraction |
         raise ModelError(Diagnostic("SF801", message, gain.span, hint))
     one = Factored.number(ring, 1)
     rows[acts][size] = one
-    return NetworkLoop(gain, nominal, CramerEquations(equations, [*rows, border], one))
+    return NetworkLoop(gain, nominal, CramerEquations(equations, [*rows, border], one), acts)
 
 
 def _shapes_waves(equations: Equations, gain: str) -> bool:
@@ -155,6 +200,20 @@ class LoopInDisc:
         """Of the disc [rad/s]."""
         return self.a.radius
 
+    def near(self, s: complex) -> tuple[complex, complex, complex, complex]:
+        """Return A, A', B and B' at a point, divided alike, without proof; beyond the disc nothing."""
+        if not abs(s) < self.radius:
+            return (complex(nan),) * 4
+        with ctx.workprec(self.a.bits):
+            x = acb(s.real, s.imag) / self.radius
+            (a, b), (a_slope, b_slope) = (
+                [one.polynomial(x) for one in (self.a, self.b)],
+                [one.polynomial.derivative()(x) / self.radius for one in (self.a, self.b)],
+            )
+            size = (abs(a) + abs(b)).mid()
+            scaled = [complex((value / size).mid()) for value in (a, a_slope, b, b_slope)]
+        return scaled[0], scaled[1], scaled[2], scaled[3]
+
     def on(self, omega: arb, bits: int, order: int = 1) -> tuple[LoopValue, LoopValue]:
         """Return the values on a ball of frequencies, and those in its middle; derivatives are first ones."""
         del bits, order  # those of the series
@@ -165,9 +224,9 @@ class LoopInDisc:
             for series in (self.a, self.b):
                 # Terms about the middle: on a ball those about 0 would take each other out.
                 local = series.about(middle)
-                slope_off = _disc(series.slope_off)
+                slope_off = ball_about_zero(series.slope_off)
                 spread = acb_poly(local).derivative()(x - middle) + slope_off
-                centre = local[0] + _disc(series.off)
+                centre = local[0] + ball_about_zero(series.off)
                 wide += [centre + spread * (x - middle), spread / self.radius]
                 narrow += [centre, (local[1] + slope_off) / self.radius]
         (a, a_slope, b, b_slope), (a_mid, a_mid_slope, b_mid, b_mid_slope) = wide, narrow
@@ -216,9 +275,10 @@ class LoopInDisc:
         return found[0], found[1]
 
 
-def _disc(size: arb) -> acb:
-    reach = arb(0, size.abs_upper())
-    return acb(reach, reach)
+def _in_disc(search: DiscSearch, radius: float) -> LoopInDisc:
+    a, b = search.sides(radius)
+    orders = (a.at_zero, b.at_zero) if not a.zero_reach and not b.zero_reach else None
+    return LoopInDisc(a.series, replace(b.series, polynomial=-b.series.polynomial), orders)
 
 
 @dataclass
@@ -231,6 +291,7 @@ class NetworkFactors(AxisFactors[LoopInDisc]):
     digits: int  # of gains
     budget: Budget
     reasons: list[str] = field(default_factory=list)
+    _wanted: float | None = None  # radius [rad/s] in which poles are counted
 
     @cached_property
     def function(self) -> LoopInDisc:
@@ -250,13 +311,11 @@ class NetworkFactors(AxisFactors[LoopInDisc]):
     def _to_bits(self, extra: int) -> LoopInDisc:
         search = DiscSearch(self.loop.cramer, self.digits, self.budget, (False, False), extra)
         try:
-            radius = self.up_to or search.radius_of(2 * self.loop.modes + 1)
-            a, b = search.sides(radius / SHRUNK[-1])
+            if self._wanted is None:
+                self._wanted = self.up_to or search.radius_of(2 * self.loop.modes + 1)
+            return _in_disc(search, self._wanted / SHRUNK[-1])
         except (EssentialSingularityError, UndecidedError) as error:
             raise UncertifiedError(Diagnostic("SF802", NOT_COUNTED, None, LOWER)) from error
-        orders = (a.at_zero, b.at_zero) if not a.zero_reach and not b.zero_reach else None
-        negative = replace(b.series, polynomial=-b.series.polynomial)
-        return LoopInDisc(a.series, negative, orders)
 
     @property
     def with_gain(self) -> tuple[LoopInDisc, ...]:

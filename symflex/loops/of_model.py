@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from symflex.loops import loop as loop_room
 from symflex.loops.colocation import DynamicColocation, dynamic_colocation
 from symflex.loops.find import find_stable_gains
-from symflex.loops.loop import Loop, pick_gain
-from symflex.loops.networks import NetworkLoop, network_loop
+from symflex.loops.loop import pick_gain
+from symflex.loops.networks import network_loop
 from symflex.model import Model, with_numbers
 from symflex.options import (
     ColocationOptions,
@@ -33,19 +33,31 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from symflex.budget import Budget
+    from symflex.loops.networks import AnyLoop
     from symflex.loops.stability_map import StabilityMap
     from symflex.transfer import Given
 
 
-def characteristic_loop(model: Model, gain: str, values: Mapping[str, Given] | None = None) -> Loop:
-    """Return the characteristic function in a gain; see :func:`.loop.characteristic_loop`.
+def characteristic_loop(model: Model, gain: str, values: Mapping[str, Given] | None = None) -> AnyLoop:
+    """Return the characteristic function in a gain, of a large network without writing it out.
 
-    SF902 when there is no such parameter; SF501, SF502 when it is too large written out.
+    SF902 when there is no such parameter, SF801 when no pole depends on it; SF501, SF502 when it is too large
+    written out, and the gain stands in more than one row of a network.
     """
     parameter = pick_gain(model.parameters, gain)
     given = dict(values or {})
     for name in given:
         pick_gain(model.parameters, name)
+    if is_large_network(model):
+        has_value = parameter.value is not None or gain in given
+        valued = tuple(p for p in model.parameters if p.name != gain or has_value)
+        known = dict(read_values(valued, given))
+        value = known.pop(gain, None)
+        nominal = None if value is None or value.pi_power else value.rational
+        sparse = assemble_sparse(with_numbers(model, (gain,), known, in_kernels=True))
+        network = network_loop(sparse, parameter, nominal)
+        if network is not None:
+            return network
     # Parameters that are given another value stay symbols until that is put in.
     prepared = with_numbers(model, (gain, *given))
     equations = assemble(prepared)
@@ -53,23 +65,6 @@ def characteristic_loop(model: Model, gain: str, values: Mapping[str, Given] | N
     pair = next((p for p in model.transfer_functions if p[0] in plain), model.transfer_functions[0])
     (tf,) = derive_all(prepared, [pair])
     return loop_room.characteristic_loop(tf, parameter, given)
-
-
-def any_loop(model: Model, gain: str, values: Mapping[str, Given] | None = None) -> Loop | NetworkLoop:
-    """Return the characteristic function in a gain, of a large network without writing it out.
-
-    SF902 when there is no such parameter, SF801 when no pole depends on it.
-    """
-    parameter = pick_gain(model.parameters, gain)
-    if not is_large_network(model):
-        return characteristic_loop(model, gain, values)
-    has_value = parameter.value is not None or gain in (values or {})
-    valued = tuple(p for p in model.parameters if p.name != gain or has_value)
-    known = dict(read_values(valued, values or {}))
-    value = known.pop(gain, None)
-    nominal = None if value is None or value.pi_power else value.rational
-    equations = assemble_sparse(with_numbers(model, (gain,), known, in_kernels=True))
-    return network_loop(equations, parameter, nominal) or characteristic_loop(model, gain, values)
 
 
 def stability(
@@ -84,7 +79,7 @@ def stability(
     """
     limits = gain_ends(given.limits, pick_gain(model.parameters, given.gain))
     radians = None if given.up_to is None else 2 * pi * highest_frequency(given.up_to)
-    loop = any_loop(model, given.gain, values)
+    loop = characteristic_loop(model, given.gain, values)
     return find_stable_gains(loop, limits, given.digits or model.analysis.digits or 15, budget, radians)
 
 

@@ -315,8 +315,10 @@ def _sign_along(value: Expression, length: Fraction, line: Line) -> int | None:
     return 1 if is_positive else None
 
 
-def is_passive(model: Model, values: Iterable[tuple[str, ExactValue]]) -> bool:
+def is_passive(model: Model, values: Iterable[tuple[str, ExactValue]] | None = None) -> bool:
     """Tell whether it is proved that nothing in a model supplies energy but its inputs.
+
+    ``values`` are the model's own by default.
 
     Then no pole lies in the right half plane: of ``x^H A(s) x/s`` mass, loss and stiffness are each
     nonnegative, and at Re(s) > 0 their sum vanishes only where nothing moves (Anderson & Vongpanitlerd 1973,
@@ -335,14 +337,14 @@ def is_passive(model: Model, values: Iterable[tuple[str, ExactValue]]) -> bool:
     ... outputs.X = "x"
     ... '''
     >>> for sign in ("", "-"):
-    ...     model = pipeline.loads(text.replace("SIGN", sign))
-    ...     print(is_passive(model, [(p.name, p.value) for p in model.parameters]))
+    ...     print(is_passive(pipeline.loads(text.replace("SIGN", sign))))
     True
     False
     """
     if model.signals or model.blocks or model.fields:
         return False
-    line = Line.of_numbers(model.definitions, values)
+    declared = ((p.name, p.value) for p in model.parameters)
+    line = Line.of_numbers(model.definitions, declared if values is None else values)
     inputs = {each.name for each in model.inputs}
     return all(_is_passive(use, line, inputs) for use in model.elements)
 

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from symflex.analysis.response import SampledResponse
     from symflex.audit import Audit
     from symflex.data.measurement import MeasuredResponse
-    from symflex.loops import DynamicColocation, Loop, StabilityMap
+    from symflex.loops import AnyLoop, DynamicColocation, StabilityMap
     from symflex.model import Model
     from symflex.print.forms import PrintedForm
     from symflex.report.facts import ModelFacts
@@ -217,17 +217,20 @@ class Study:
     def _stable_gains(self, gain: str) -> StabilityMap:
         return find_stable_gains(self.loop(gain), budget=entered_budget())
 
-    def loop(self, gain: str) -> Loop:
+    def loop(self, gain: str) -> AnyLoop:
         """Return the characteristic function as a polynomial in a gain.
 
         Raises ModelError: SF801 when it does not depend on the gain.
         """
         if gain not in self._characteristic:
             self._characteristic[gain] = attempt(lambda: pipeline.characteristic_loop(self.model, gain))
-        return _result(self._characteristic[gain])
+        found: AnyLoop | SymflexError = self._characteristic[gain]
+        if isinstance(found, SymflexError):
+            raise found
+        return found
 
     @cached_property
-    def _characteristic(self) -> dict[str, Loop | SymflexError]:
+    def _characteristic(self) -> dict[str, AnyLoop | SymflexError]:
         return {}
 
     @cached_property

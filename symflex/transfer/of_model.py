@@ -108,7 +108,7 @@ def derive_all(model: Model, pairs: Sequence[tuple[str, str]] | None = None) -> 
         terms = _expanded_terms(model, assemble_sparse(model), wanted[0])
         if terms > MOST_PRODUCTS:
             message = f"the closed form is too large: its determinant would have {_some(terms)} terms"
-            hint = "roots, Bode plots, sweeps, stability and exports do without it; or split the model"
+            hint = "roots, plots, sweeps, stability and exports do without it; or split the model"
             raise BudgetError(Diagnostic("SF502", message, None, hint))
     return _derive_expanded(model, wanted)
 
@@ -282,11 +282,6 @@ def may_be_expanded(model: Model, pair: tuple[str, str]) -> bool:
     return _expanded_terms(model, assemble_sparse(model), pair) <= EXPANDED_PRODUCTS
 
 
-def _supplies_nothing(model: Model) -> bool:
-    """Tell whether energy is nowhere supplied, so that a network's roots are counted without a formula."""
-    return is_passive(model, [(p.name, p.value) for p in model.parameters if p.value])
-
-
 def derive_for_roots(
     model: Model, pairs: Sequence[tuple[str, str]], *, is_explained: bool = False
 ) -> tuple[AnyBoundFunction, ...]:
@@ -301,7 +296,7 @@ def derive_for_roots(
     numbered = with_numbers(model, in_kernels=True)
     equations = assemble_sparse(numbered)
     is_quick = not is_explained and not _accumulates(equations)
-    is_counted = is_quick and _may_be_large(model) and _supplies_nothing(model)
+    is_counted = is_quick and _may_be_large(model) and is_passive(model)
     most = QUICK_PRODUCTS if is_quick else EXPANDED_PRODUCTS
     if not is_counted and _expanded_terms(numbered, equations, pairs[0]) <= most:
         try:

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 from flint import arb
 
 from symflex.roots.networks.blocks import most_zeros
-from symflex.roots.networks.cramer import CramerEquations
 from symflex.roots.networks.disc_search import DiscSearch, DiscSide
 from symflex.roots.polynomial_roots import in_order
 from symflex.roots.region import Band, Mode, Modes, Rectangle, Region
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symflex.budget import Budget
-    from symflex.equations import Equations
+    from symflex.roots.networks.cramer import CramerEquations
 
 CRAMER = "cramer"
 """What stands in a certificate: the determinants of Cramer's rule, in discs."""
@@ -51,8 +50,7 @@ class DiscRoots:
 
 
 def roots_in_disc(
-    equations: Equations,
-    pair: tuple[str, str],
+    cramer: CramerEquations,
     region: Region,
     digits: int,
     budget: Budget,
@@ -63,7 +61,6 @@ def roots_in_disc(
 
     UndecidedError where they are not all proved; EssentialSingularityError where roots accumulate.
     """
-    cramer = CramerEquations.of(equations, *pair)
     search = DiscSearch(cramer, digits, budget, symmetric, most_zeros=most_zeros(cramer))
     match region:
         case Band(_, high):

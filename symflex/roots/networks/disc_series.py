@@ -87,7 +87,7 @@ class DiscSeries:
             for k, c in enumerate(local[2:], 2):
                 power = power * reach
                 off = off + k * abs(c) * power
-            return local[1] + _ball(off)
+            return local[1] + ball_about_zero(off)
 
     def about(self, x: acb) -> list[acb]:
         """Return the Taylor coefficients of the polynomial about a point."""
@@ -114,7 +114,7 @@ class DiscSeries:
                 spend()
                 point = centre + size * (acb(0, angle).exp() if angle < stop else _end(unit()))
                 local = self.about(point)
-                value = local[0] + _ball(self.off)
+                value = local[0] + ball_about_zero(self.off)
                 if before is not None:
                     last, start, rate = before
                     turn = rate * (point - start)
@@ -188,7 +188,7 @@ class DiscSeries:
         with ctx.workprec(self.bits):
             x = guess.mid()
             # Horner's rule would turn a box at every step, and widen it.
-            value = self.about(x)[0] + _ball(self.off)
+            value = self.about(x)[0] + ball_about_zero(self.off)
             slope = self.slope_on(x)
             if slope.contains(0):
                 return None
@@ -225,7 +225,8 @@ def _polynomial_at(sizes: Sequence[float], x: float) -> float:
     return total
 
 
-def _ball(size: arb) -> acb:
+def ball_about_zero(size: arb) -> acb:
+    """Return a box about 0 that holds all numbers of a size."""
     reach = arb(0, size.abs_upper())
     return acb(reach, reach)
 

@@ -195,12 +195,11 @@ class _NetworkReading:
                 if i <= position[v]:
                     entries[i, position[v]] = c * scale[i]
         self._check(entries, members)
-        values = [(p.name, p.value) for p in equations.model.parameters if p.value is not None]
         symmetric = (
             self._is_symmetric([read.divisor]),
             self._is_symmetric(driven.values()) and self._is_symmetric(form.values()),
         )
-        passive = is_passive(equations.model, values)
+        passive = is_passive(equations.model)
         network = Network(
             self.numbers, len(order), entries, members, {}, {}, below, below, passive, symmetric
         )

@@ -18,7 +18,7 @@ from symflex.model.signs import is_passive
 from symflex.roots.networks.anywhere import CRAMER, mirrored, roots_in_disc
 from symflex.roots.networks.at_rest import nullity_at_rest
 from symflex.roots.networks.counting import Counter
-from symflex.roots.networks.cramer import EssentialSingularityError, is_zero
+from symflex.roots.networks.cramer import CramerEquations, EssentialSingularityError, is_zero
 from symflex.roots.networks.estimates import estimates
 from symflex.roots.networks.members import UndecidedError
 from symflex.roots.networks.network import OtherNetworkError, network_of
@@ -134,6 +134,20 @@ def locate_in_network(
         )
     else:
         found = _without_losses(network, equations, pair, region, digits, budget)
+    return _with_certificate(found, name, region, digits, is_default=is_default)
+
+
+def locate_quotient(
+    cramer: CramerEquations, name: str, region: Region, digits: int, budget: Budget
+) -> PoleZeroMap:
+    """Find poles and zeros of a quotient of determinants, in a disc that holds the region."""
+    found = _in_disc(cramer, region, digits, budget, symmetric=(False, False))
+    return _with_certificate(found, name, region, digits)
+
+
+def _with_certificate(
+    found: LocatedRoots, name: str, region: Region, digits: int, *, is_default: bool = False
+) -> PoleZeroMap:
     every = (*found.poles, *found.zeros, *(h.root for h in found.hidden))
     reasons = list(found.reasons)
     if not all(root.certified for root in every):
@@ -229,11 +243,23 @@ def _anywhere(
     *,
     symmetric: tuple[bool, bool],
 ) -> LocatedRoots:
-    """Find all roots in a disc that holds the region."""
-    model = equations.model
-    proof = PASSIVE if is_passive(model, [(p.name, p.value) for p in model.parameters if p.value]) else ""
+    proof = PASSIVE if is_passive(equations.model) else ""
+    cramer = CramerEquations.of(equations, *pair)
+    return _in_disc(cramer, region, digits, budget, symmetric=symmetric, proof=proof)
+
+
+def _in_disc(
+    cramer: CramerEquations,
+    region: Region,
+    digits: int,
+    budget: Budget,
+    *,
+    symmetric: tuple[bool, bool],
+    proof: str = "",
+) -> LocatedRoots:
+    """Find all roots in a disc that holds the region; ``proof`` says why no pole lies right of the axis."""
     try:
-        found = roots_in_disc(equations, pair, region, digits, budget, symmetric=symmetric)
+        found = roots_in_disc(cramer, region, digits, budget, symmetric=symmetric)
     except BudgetError as error:
         code, message = error.diagnostics[0].code, "; ".join(d.message for d in error.diagnostics)
         return _nothing(message, proof, code)

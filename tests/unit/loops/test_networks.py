@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from math import pi
 
 import numpy as np
@@ -9,8 +10,8 @@ import pytest
 
 from symflex import pipeline
 from symflex.errors import ModelError
-from symflex.loops import Loop, of_model
-from symflex.loops.networks import NetworkLoop
+from symflex.figures import draw_loop
+from symflex.loops import Loop, NetworkLoop, of_model, trace_locus
 from symflex.options import StabilityOptions
 
 BENDING, MASS, SPRING, LOSS = 70e9 * 2e-9, 2700.0 * 150e-6, 1e3, 0.5
@@ -98,15 +99,44 @@ def unstable(count, gain, up_to):
 @pytest.mark.parametrize("up_to", ["150 Hz", "400 Hz"])
 def test_a_chain_has_the_stable_gains_of_its_formula(monkeypatch, up_to):
     expected = found(chain(2), up_to)
-    assert isinstance(of_model.any_loop(pipeline.loads(chain(2)), "K"), Loop)
+    assert isinstance(of_model.characteristic_loop(pipeline.loads(chain(2)), "K"), Loop)
     monkeypatch.setattr(of_model, "is_large_network", lambda model: True)
-    assert isinstance(of_model.any_loop(pipeline.loads(chain(2)), "K"), NetworkLoop)
+    assert isinstance(of_model.characteristic_loop(pipeline.loads(chain(2)), "K"), NetworkLoop)
     network = found(chain(2), up_to)
     assert [float(b.gain.mid()) for b in network.boundaries] == pytest.approx(
         [float(b.gain.mid()) for b in expected.boundaries], rel=1e-13
     )
     assert [i.poles for i in network.intervals] == [i.poles for i in expected.intervals]
     assert not network.certified and network.radius >= 2 * pi * float(up_to.split()[0])
+
+
+def test_a_locus_is_that_of_the_formula(monkeypatch):
+    model, limits = pipeline.loads(chain(1)), (Fraction(0), Fraction(20))
+    written = trace_locus(of_model.characteristic_loop(model, "K"), limits, modes=2)
+    monkeypatch.setattr(of_model, "is_large_network", lambda model: True)
+    network = trace_locus(of_model.characteristic_loop(model, "K"), limits, modes=2)
+    for a, b in ((network.start, written.start), (network.end, written.end)):
+        assert [complex(r.re, r.im) for r in a.all_poles] == pytest.approx(
+            [complex(r.re, r.im) for r in b.all_poles], rel=1e-13
+        )
+    assert network.arrived and len(network.branches) == len(written.branches) == 4
+    for one, other in zip(network.branches, written.branches, strict=True):
+        assert [one[0], one[-1]] == pytest.approx([other[0], other[-1]], rel=1e-9)
+
+
+def test_a_loop_gain_is_minus_one_at_a_closed_loops_pole(monkeypatch):
+    (boundary, *_) = found(chain(6)).boundaries
+    (crossing,) = boundary.crossings
+    loop = of_model.characteristic_loop(pipeline.loads(chain(6)), "K")
+    (value,) = loop.gains(Fraction(float(boundary.gain.mid())), [float(crossing.frequencies[0].mid())])
+    assert abs(value + 1) < 1e-9
+
+
+@pytest.mark.slow
+def test_a_nyquist_plot_says_that_poles_of_a_network_are_known_in_a_disc():
+    loop = of_model.characteristic_loop(pipeline.loads(chain(6)), "K")
+    figure = draw_loop("nyquist", loop, band_hz=(1, 40))
+    assert figure.legends[0].get_title().get_text().startswith("open loop: an unknown number of poles")
 
 
 def test_six_beams_lose_their_poles_where_finite_elements_do():
