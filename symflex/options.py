@@ -60,6 +60,16 @@ OUTSIDE: Final = {
 }
 TWO: Final = {"nargs": 2, "metavar": "LO HI"}
 SHOWN: Final = {"show_default": True}
+SHAPERS: Final = ("zv", "zvd", "ei")
+SHAPED_MODES: Final = {
+    "least": 1,
+    "most": 20,
+    **SHOWN,
+    "help": "For how many modes a shaper is made, the lowest ones.",
+}
+JOINT: Final = {
+    "help": "One shaper for all modes together, shorter than those of each one after another; zv and zvd."
+}
 REPRESENTATIONS: Final = ("auto", "expanded", "nested")
 WIDTHS: Final = "ieee|a4|MM"
 
@@ -216,6 +226,11 @@ class RespondOptions:
     output: str | None = option(
         None, "-o", "--output", is_path=True, help="File to write: .csv, .pdf, .pgf, .png or .svg."
     )
+    shaped: str | None = option(
+        None, "--shaped", choices=SHAPERS, help="Let the input go through a shaper first, as of shape."
+    )
+    modes: int = option(1, "--modes", **SHAPED_MODES)
+    joint: bool = option(False, "--joint", **JOINT)
     strict: bool = option(False, "--strict", help="Exit with code 4 where a value is not certified.")
     as_json: bool = option(False, "--json", **JSON)
 
@@ -225,14 +240,15 @@ class ShapeOptions:
     """Of ``symflex shape``."""
 
     tf: str | None = option(None, "--tf", **ONE_TF)
-    modes: int = option(1, "--modes", least=1, most=20, **SHOWN, help="For how many modes, the lowest ones.")
+    modes: int = option(1, "--modes", **SHAPED_MODES)
     kind: str = option(
         "zv",
         "--kind",
-        choices=("zv", "zvd", "ei"),
+        choices=SHAPERS,
         **SHOWN,
         help="Zero vibration, zero derivative besides, or insensitive with 5 % left.",
     )
+    joint: bool = option(False, "--joint", **JOINT)
     digits: int = option(15, "--digits", least=1, most=1000, **SHOWN, help="Correct significant digits.")
     output: str | None = option(
         None, "-o", "--output", is_path=True, help="Figure of residual vibration: .pdf, .pgf, .png or .svg."

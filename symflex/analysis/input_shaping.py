@@ -9,9 +9,10 @@ the opposite sign and K times the size, so that two impulses cancel each other:
     zvd    1, 2 K, K^2     over (1 + K)^2    at 0, tau, 2 tau    nor does it grow linearly with an error of p
     ei     1 + W, 2 (1 - W) K, (1 + W) K^2   at 0, tau, 2 tau    V is left at p, and less on both sides
 
-Several modes take the convolution of their shapers. ZV and ZVD are of Singer and Seering (1990, Preshaping
-command inputs to reduce system vibration), EI of Singhose, Seering and Singer (1990, Shaping inputs to reduce
-vibration: a vector diagram approach); without damping W is V, with it W is such that the residual at p is V.
+Several modes take the convolution of their shapers, or one that is made for all of them jointly. ZV and ZVD
+are of Singer and Seering (1990, Preshaping command inputs to reduce system vibration), EI of Singhose,
+Seering and Singer (1990, Shaping inputs to reduce vibration: a vector diagram approach); without damping W is
+V, with it W is such that the residual at p is V.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
+from symflex.analysis.joint_shaping import joint_impulses
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.roots import Everything, Modes
@@ -37,8 +39,8 @@ if TYPE_CHECKING:
 SCHEMA = "symflex.shape/1"
 TOLERANCE = 0.05
 """Residual vibration V that an EI shaper allows: the usual one in its literature."""
-MORE_DIGITS = 12
-"""Of poles, beyond those printed: differences of impulses lose a few."""
+MORE_DIGITS = 24
+"""Of poles, beyond those printed: responses to long inputs lose a few to each other."""
 MORE_MODES = 8
 """Searched beyond those asked for, as some may not oscillate."""
 MOST_IMPULSES = 2187
@@ -68,6 +70,9 @@ def _ei(k: arb, tolerance: arb) -> tuple[arb, ...]:
 SHAPERS: Mapping[str, Callable[[arb, arb], tuple[arb, ...]]] = {"zv": _zv, "zvd": _zvd, "ei": _ei}
 """The amplitudes of each kind, from K and V; half a period lies between two."""
 
+ORDERS: Mapping[str, int] = {"zv": 1, "zvd": 2}
+"""Conditions at every pole, of the kinds that can be joint."""
+
 
 @dataclass(frozen=True, eq=False)
 class InputShaper:
@@ -79,6 +84,7 @@ class InputShaper:
     impulses: tuple[tuple[arb, arb], ...]  # time [s] and amplitude of each
     digits: int
     bits: int  # of the precision all this was computed at
+    joint: bool = False  # one for all modes together, not the convolution of one for each
 
     @property
     def times(self) -> tuple[float, ...]:
@@ -128,11 +134,13 @@ class InputShaper:
                     "amplitude_radius": size.radius,
                 }
             )
-        return {"schema": SCHEMA, "tf": self.tf, "kind": self.kind, "modes": modes, "impulses": impulses}
+        of = {"tf": self.tf, "kind": self.kind, "joint": self.joint}
+        return {"schema": SCHEMA, **of, "modes": modes, "impulses": impulses}
 
     def __str__(self) -> str:
         zero, digits = arb(0), min(self.digits, TEXT_DIGITS)
-        lines = [f"{self.tf}   {self.kind.upper()} shaper, {len(self.impulses)} impulses", ""]
+        how = "joint " if self.joint else ""
+        lines = [f"{self.tf}   {how}{self.kind.upper()} shaper, {len(self.impulses)} impulses", ""]
         for pole in self.poles:
             left = self.residual(pole.enclosure())
             said = f"at most {float(left.upper()):.2g}" if left.contains(0) else f"{float(left.mid()):.6g}"
@@ -149,7 +157,7 @@ class InputShaper:
 
 
 def input_shaper(
-    bound: BoundTransferFunction, modes: int = 1, kind: str = "zv", digits: int = 15
+    bound: BoundTransferFunction, modes: int = 1, kind: str = "zv", digits: int = 15, *, joint: bool = False
 ) -> InputShaper:
     """Return a shaper for the lowest modes that oscillate.
 
@@ -163,13 +171,16 @@ def input_shaper(
         ``zv``, ``zvd`` or ``ei``.
     digits : int
         Of poles, times and amplitudes.
+    joint : bool
+        One for all modes together: with several modes it is shorter than the convolution of one for each.
 
     Raises
     ------
     UsageError
-        SF902 for an unknown kind, or more modes than there are.
+        SF902 for an unknown kind, more modes than there are, or a joint ``ei``.
     ModelError
-        SF814 where a mode cannot be told from another, or is damped too much for the kind.
+        SF814 where a mode cannot be told from another, or is damped too much for the kind, and where no joint
+        shaper that is worth it was found.
 
     Examples
     --------
@@ -182,6 +193,9 @@ def input_shaper(
     if kind not in SHAPERS:
         hint = nearest(kind, SHAPERS) or "kinds: " + ", ".join(SHAPERS)
         raise UsageError(Diagnostic("SF902", f"there is no shaper '{kind[:64]}'", None, hint))
+    if joint and kind not in ORDERS:
+        message = f"there is no joint '{kind}' shaper; kinds: {', '.join(ORDERS)}"
+        raise UsageError(Diagnostic("SF902", message))
     region = Modes(modes + MORE_MODES) if bound.is_distributed else Everything()
     located = locate(bound, region, digits + MORE_DIGITS).complete()
     ringing = [root for root in located.poles if root.im > 0]
@@ -198,7 +212,9 @@ def input_shaper(
         for root in chosen:
             impulses = _convolved(impulses, _of_mode(bound, root, kind))
         impulses.sort(key=lambda impulse: impulse[0].mid())
-    return InputShaper(bound.name, kind, chosen, tuple(impulses), digits, bits)
+        if joint and modes > 1:
+            impulses = _jointly(bound, chosen, kind, float(impulses[-1][0].mid()), bits)
+    return InputShaper(bound.name, kind, chosen, tuple(impulses), digits, bits, joint)
 
 
 def _of_mode(bound: BoundTransferFunction, root: Root, kind: str) -> list[tuple[arb, arb]]:
@@ -208,6 +224,20 @@ def _of_mode(bound: BoundTransferFunction, root: Root, kind: str) -> list[tuple[
         message = f"the mode of {bound.name} at {root.frequency_hz():g} Hz is damped too much for '{kind}'"
         raise ModelError(Diagnostic("SF814", message, None, "take zv, or leave it as it is: it hardly rings"))
     return [(half * i, a) for i, a in enumerate(amplitudes)]
+
+
+def _jointly(
+    bound: BoundTransferFunction, chosen: Sequence[Root], kind: str, longest: float, bits: int
+) -> list[tuple[arb, arb]]:
+    poles = [root.enclosure() for root in chosen]
+    found = joint_impulses(poles, ORDERS[kind], longest, bits)
+    if found is None or not found[-1][0] < longest:
+        message = (
+            f"no joint {kind} shaper for {len(chosen)} modes of {bound.name} is shorter than theirs in a row"
+        )
+        hint = "leave out --joint"
+        raise ModelError(Diagnostic("SF814", message, None, hint))
+    return found
 
 
 def _convolved(one: Sequence[tuple[arb, arb]], other: Sequence[tuple[arb, arb]]) -> list[tuple[arb, arb]]:

@@ -86,11 +86,14 @@ class BoundTransferFunction:
         """Return the response at real angular frequencies [rad/s]."""
         return FrequencyResponse.of(response_room.respond(self.bound, omega))
 
-    def step_response(self, times: ArrayLike, digits: int = 12) -> TimeResponse:
+    def step_response(
+        self, times: ArrayLike, digits: int = 12, shaper: InputShaper | None = None
+    ) -> TimeResponse:
         r"""Return the response to a unit step at t = 0, from rest, at increasing times [s] from 0 on.
 
         Every value has a radius, within which the true one is proved to lie where the result says
-        ``certified``: ``digits`` digits of the largest value are correct.
+        ``certified``: ``digits`` digits of the largest value are correct. With a ``shaper``, as of
+        :meth:`input_shaper`, the input is convolved by its impulses.
 
         Raises
         ------
@@ -108,7 +111,7 @@ class BoundTransferFunction:
         >>> found.values.round(9).tolist(), bool(found.radius.max() < 1e-12)
         ([0.0, 0.632120559, 0.864664717], True)
         """
-        return self._in_time("step", times, digits)
+        return self._in_time("step", times, digits, shaper)
 
     def step_info(self, digits: int = 12) -> StepInfo | None:
         r"""Return final value, peak, overshoot, rise and settling time of the step response, each a ball.
@@ -128,7 +131,9 @@ class BoundTransferFunction:
 
         return find_step_info(self.bound, digits)
 
-    def impulse_response(self, times: ArrayLike, digits: int = 12) -> TimeResponse:
+    def impulse_response(
+        self, times: ArrayLike, digits: int = 12, shaper: InputShaper | None = None
+    ) -> TimeResponse:
         r"""Return the response to a unit impulse at t = 0; see :meth:`step_response`.
 
         What passes straight through to the output is an impulse itself. It is no value: ``impulses`` holds
@@ -142,13 +147,17 @@ class BoundTransferFunction:
         >>> found.values.tolist(), [float(i.weight) for i in found.impulses]
         ([1.0], [1.0])
         """
-        return self._in_time("impulse", times, digits)
+        return self._in_time("impulse", times, digits, shaper)
 
-    def ramp_response(self, times: ArrayLike, digits: int = 12) -> TimeResponse:
+    def ramp_response(
+        self, times: ArrayLike, digits: int = 12, shaper: InputShaper | None = None
+    ) -> TimeResponse:
         """Return the response to the input t from t = 0 on; see :meth:`step_response`."""
-        return self._in_time("ramp", times, digits)
+        return self._in_time("ramp", times, digits, shaper)
 
-    def forced_response(self, times: ArrayLike, u: ArrayLike, digits: int = 12) -> TimeResponse:
+    def forced_response(
+        self, times: ArrayLike, u: ArrayLike, digits: int = 12, shaper: InputShaper | None = None
+    ) -> TimeResponse:
         r"""Return the response, from rest, to an input that is a straight line between samples.
 
         Parameters
@@ -160,6 +169,8 @@ class BoundTransferFunction:
             The input at these times. It is 0 before the first; where it does not begin with 0, it jumps.
         digits : int
             As for :meth:`step_response`.
+        shaper : InputShaper, optional
+            Convolves the input by its impulses.
 
         Raises
         ------
@@ -180,22 +191,32 @@ class BoundTransferFunction:
         instants = SampleTimes.of(times)
         exactly = instants.exactly()
         given = exact_values(u, len(exactly))
-        found = pipeline.forced_response(self.bound, exactly, given, exactly, digits)
+        found = pipeline.forced_response(self.bound, exactly, given, exactly, digits, shaper)
         return TimeResponse(**{f.name: getattr(found, f.name) for f in fields(found)})
 
-    def input_shaper(self, modes: int = 1, kind: str = "zv", digits: int = 15) -> InputShaper:
-        """Return impulses by which a command is convolved so that the lowest modes do not ring after it.
+    def input_shaper(
+        self, modes: int = 1, kind: str = "zv", digits: int = 15, *, joint: bool = False
+    ) -> InputShaper:
+        r"""Return impulses by which a command is convolved so that the lowest modes do not ring after it.
 
         See :func:`symflex.analysis.input_shaping.input_shaper`.
+
+        Examples
+        --------
+        >>> from symflex import loads
+        >>> arm = loads('symflex = 1\ninputs.u = {}\noutputs.y = "9*u/(s^2 + 9)"').transfer_function("y", "u")
+        >>> shaper = arm.bind().input_shaper()
+        >>> arm.bind().step_response([shaper.times[-1] / 2, 2.0, 3.0], shaper=shaper).values.round(9).tolist()
+        [0.5, 1.0, 1.0]
         """
         from symflex.analysis.input_shaping import input_shaper
 
-        return input_shaper(self.bound, modes, kind, digits)
+        return input_shaper(self.bound, modes, kind, digits, joint=joint)
 
-    def _in_time(self, kind: str, times: ArrayLike, digits: int) -> TimeResponse:
+    def _in_time(self, kind: str, times: ArrayLike, digits: int, shaper: InputShaper | None) -> TimeResponse:
         from symflex.analysis.time_response import SampleTimes
 
-        found = pipeline.time_response(self.bound, kind, SampleTimes.of(times), digits)
+        found = pipeline.time_response(self.bound, kind, SampleTimes.of(times), digits, shaper)
         return TimeResponse(**{f.name: getattr(found, f.name) for f in fields(found)})
 
     def poles(

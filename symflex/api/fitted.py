@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     from matplotlib.figure import Figure
 
+    from symflex.analysis.input_shaping import InputShaper
     from symflex.data import fitting
     from symflex.data.fitting.resonances import Resonances
     from symflex.figures import AxesGiven
@@ -86,6 +87,11 @@ class Fit:
         # Specifications given as text refer to files from the current folder.
         allowed = {folder for base in self.found.bases for folder in base.folders}
         return loads(self.specification(Path()), "<fit>", allow_outside=allowed)
+
+    def input_shaper(self, modes: int = 1, kind: str = "zv", *, joint: bool = False) -> InputShaper:
+        """Return a shaper for the lowest resonances, as of a specification with them."""
+        first, *_ = self.model().transfer_functions()
+        return first.bind().input_shaper(modes, kind, joint=joint)
 
     def plot(self, response: int = 0, *, ax: AxesGiven | None = None) -> Figure:
         """Return data and fit of one response, magnitude over phase, as ``symflex fit --plot`` draws them.

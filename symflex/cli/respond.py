@@ -29,6 +29,9 @@ def respond(spec: Specification, given: RespondOptions) -> int:
     whose modes too little is known, what those beyond the lowest 25 add is estimated, and the first line says
     that the values are not certified.
 
+    With --shaped the input goes through the input shaper that 'symflex shape' prints for the same transfer
+    function: it is convolved by its impulses, at their proved times.
+
     Exit code 4 says that the response could not be found, and with --strict that it is not certified.
     """
     from symflex import pipeline
@@ -39,20 +42,27 @@ def respond(spec: Specification, given: RespondOptions) -> int:
         check_place(given.output, (TABLE, *PICTURES))
         if given.as_json:
             raise UsageError(Diagnostic("SF902", "give only one of --json and -o"))
+    if given.shaped is None and (given.joint or given.modes != 1):
+        raise UsageError(Diagnostic("SF902", "--modes and --joint are of --shaped zv, zvd or ei"))
     until = None if given.until is None else duration(given.until, "--until")
     signal = read_signal(given.to) if given.to.lower().endswith(TABLE) else None
     if signal is None and until is None:
         raise UsageError(Diagnostic("SF902", "--until is missing: how long?", None, "as in --until 0.5s"))
     model = spec.load()
     (bound,) = pipeline.derive_bound(model, [first_pair(model, given.tf, "showing")])
+    shaper = None
+    if given.shaped is not None:
+        from symflex.analysis.input_shaping import input_shaper
+
+        shaper = input_shaper(bound, given.modes, given.shaped, given.digits, joint=given.joint)
     if signal is None:
         times = SampleTimes.evenly(until or Fraction(1), given.points or POINTS)
-        found = pipeline.time_response(bound, given.to, times, given.digits)
+        found = pipeline.time_response(bound, given.to, times, given.digits, shaper)
     else:
         wanted = signal.times
         if until is not None or given.points is not None:
             wanted = evenly(until or signal.times[-1], given.points or POINTS)
-        forced = pipeline.forced_response(bound, signal.times, signal.values, wanted, given.digits)
+        forced = pipeline.forced_response(bound, signal.times, signal.values, wanted, given.digits, shaper)
         found = replace(forced, input=Path(given.to).name)
     if given.output and Path(given.output).suffix.lower() == TABLE:
         from symflex.files.write import write_atomically
@@ -65,7 +75,7 @@ def respond(spec: Specification, given: RespondOptions) -> int:
         save(draw_in_time(found), Path(given.output))
         note(f"wrote {given.output}")
     else:
-        info = find_step_info(bound, given.digits) if given.to == "step" else None
+        info = find_step_info(bound, given.digits) if given.to == "step" and shaper is None else None
         if given.as_json:
             told = {"step_info": info.to_json_dict(given.digits)} if info else {}
             emit_json({**found.to_json_dict(), **told})
@@ -82,7 +92,8 @@ def shape(spec: Specification, given: ShapeOptions) -> int:
 
     A command that is convolved by its impulses leaves these modes at rest when it ends: exactly with zv and
     zvd, and within 5 % of an unshaped impulse with ei, which stands larger errors of a frequency. Times and
-    amplitudes come from proved poles. -o draws what a mode rings if its frequency is another.
+    amplitudes come from proved poles. The shapers of several modes are convolved; with --joint one is made
+    for all of them, which is shorter. -o draws what a mode rings if its frequency is another.
     """
     from symflex import pipeline
     from symflex.analysis.input_shaping import input_shaper
@@ -91,7 +102,7 @@ def shape(spec: Specification, given: ShapeOptions) -> int:
         check_place(given.output, PICTURES)
     model = spec.load()
     (bound,) = pipeline.derive_bound(model, [first_pair(model, given.tf, "shaping")])
-    found = input_shaper(bound, given.modes, given.kind, given.digits)
+    found = input_shaper(bound, given.modes, given.kind, given.digits, joint=given.joint)
     if given.as_json:
         emit_json(found.to_json_dict())
     else:

@@ -69,6 +69,8 @@ class EnclosedResponse:
         What is not proved.
     digits : int
         Digits asked for, of the largest value.
+    shaper : str or None
+        The kind of shaper that the input went through.
     """
 
     tf: str
@@ -81,6 +83,7 @@ class EnclosedResponse:
     certified: bool = True
     reason: str | None = None
     digits: int = 12
+    shaper: str | None = None
 
     @cached_property
     def _doubles(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
@@ -99,7 +102,9 @@ class EnclosedResponse:
     @property
     def title(self) -> str:
         """What it is, such as ``step response``."""
-        return f"{self.input} response" if self.input in INTEGRATIONS else f"response to {self.input}"
+        shaped = f", shaped by {self.shaper.upper()}" if self.shaper else ""
+        plain = f"{self.input} response" if self.input in INTEGRATIONS else f"response to {self.input}"
+        return plain + shaped
 
     @property
     def values(self) -> npt.NDArray[np.float64]:
@@ -133,11 +138,13 @@ class EnclosedResponse:
             ],
             "jumps": [{"time": self.told(j.time).re, "height": self.told(j.height).re} for j in self.jumps],
         }
+        document |= {"shaper": self.shaper} if self.shaper else {}
         return document if self.reason is None else {**document, "reason": self.reason}
 
     def to_csv(self) -> str:
         """Return a table of times, values and radii, with a header."""
         heads = [f"# tf: {self.tf}", f"# input: {self.input}", f"# unit: {self.unit or 'unknown'}"]
+        heads += [f"# shaper: {self.shaper}"] if self.shaper else []
         if not self.certified:
             heads.append(f"# not certified: {self.reason}")
         told = [self.told(y) for y in self.enclosures]

@@ -5,13 +5,19 @@ Input: a bound transfer function, the name of an input, times. Output: a :class:
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from flint import arb
 
 from symflex.analysis.time_response.delayed_terms import DelayedQuotient, delayed_quotient
 from symflex.analysis.time_response.echoes import Sampled, TooManyEchoesError, echoed
-from symflex.analysis.time_response.enclosed_response import INTEGRATIONS, EnclosedResponse, ImpulseAt
+from symflex.analysis.time_response.enclosed_response import (
+    INTEGRATIONS,
+    EnclosedResponse,
+    ImpulseAt,
+    JumpAt,
+)
 from symflex.analysis.time_response.exponentials import values_of
 from symflex.analysis.time_response.modal import estimated, of_proved_modes
 from symflex.analysis.time_response.partial_fractions import (
@@ -20,6 +26,7 @@ from symflex.analysis.time_response.partial_fractions import (
     partial_fractions,
     power_series_terms,
 )
+from symflex.analysis.time_response.sample_times import SampleTimes
 from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
 from symflex.errors.diagnostic import nearest
@@ -33,26 +40,33 @@ from symflex.roots.root import exact_fraction
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.analysis.time_response.sample_times import SampleTimes
+    from symflex.analysis.input_shaping import InputShaper
     from symflex.transfer import BoundTransferFunction
 
 GUARD_DIGITS = 6
+SHAPED_DIGITS = 2
+"""Of responses that a shaper sums, beyond those of the sum, which may be smaller."""
 ATTEMPTS = 7
 """Doublings of the digits: poles that lie together to 10^-1000 are as good as a double one."""
 MOST_DIGITS = 20_000
 
 
 def time_response(
-    bound: BoundTransferFunction, kind: str, times: SampleTimes, digits: int = 12
+    bound: BoundTransferFunction,
+    kind: str,
+    times: SampleTimes,
+    digits: int = 12,
+    shaper: InputShaper | None = None,
 ) -> EnclosedResponse:
     r"""Return the response from rest to a unit ``impulse``, ``step`` or ``ramp`` that begins at t = 0.
 
-    Every value is enclosed, by default to ``digits`` digits of the largest one.
+    Every value is enclosed, by default to ``digits`` digits of the largest one. With a ``shaper`` the input
+    is convolved by its impulses first: the response is a sum of late ones.
 
     Raises
     ------
     UsageError
-        SF902 for an unknown input.
+        SF902 for an unknown input, or a shaper with fewer digits.
     ModelError
         SF813 for beams in loops with delays.
     UncertifiedError
@@ -71,6 +85,8 @@ def time_response(
     if kind not in INTEGRATIONS:
         hint = nearest(kind, INTEGRATIONS) or "inputs: " + ", ".join(INTEGRATIONS)
         raise UsageError(Diagnostic("SF902", f"there is no input '{kind[:64]}'", None, hint))
+    if shaper is not None:
+        return _shaped(bound, kind, times, digits, shaper)
     bound = without_lengths_of_zero(bound)
     found, reason = _found(bound, INTEGRATIONS[kind], times, digits)
     unit, certified = bound.source.output.unit, reason is None
@@ -85,6 +101,48 @@ def time_response(
         certified,
         reason,
         digits,
+    )
+
+
+def _shaped(
+    bound: BoundTransferFunction, kind: str, times: SampleTimes, digits: int, shaper: InputShaper
+) -> EnclosedResponse:
+    """Return the sum of the responses to the impulses of a shaper, each from its own moment on."""
+    inner = digits + SHAPED_DIGITS
+    accuracy = min(int(t.rel_accuracy_bits()) for t, _ in shaper.impulses[1:])
+    if accuracy < bits_for_digits(inner):
+        message = f"the shaper has {shaper.digits} digits, too few for a response with {digits}"
+        raise UsageError(Diagnostic("SF902", message, None, "make a shaper with more digits"))
+    whole = time_response(bound, kind, times, inner)
+    (_, first), *others = shaper.impulses  # the first stands at 0
+    with precision(shaper.bits):
+        total = [y * first for y in whole.enclosures]
+        impulses = [ImpulseAt(i.time, i.order, first * i.weight) for i in whole.impulses]
+        jumps = [JumpAt(j.time, first * j.height) for j in whole.jumps]
+        seconds = times.enclosed()
+        last = seconds[-1] if seconds else arb(0)
+    ends = SampleTimes.of([0.0, float(last.mid()) or 1.0])
+    begun = time_response(bound, kind, ends, inner).enclosures[0]
+    for moment, amplitude in others:
+        with precision(shaper.bits):
+            start, later = times.since(moment)
+        part = time_response(bound, kind, later, inner)
+        with precision(shaper.bits):
+            for i, value in zip(range(start, len(seconds)), part.enclosures, strict=False):
+                # At its own moment nobody knows on which side of it the time lies.
+                known = value if seconds[i] > moment else value.union(arb(0))
+                total[i] = total[i] + amplitude * known
+            if not begun.contains(0):
+                jumps.append(JumpAt(moment, amplitude * begun))
+            impulses += [ImpulseAt(moment + i.time, i.order, amplitude * i.weight) for i in whole.impulses]
+            jumps += [JumpAt(moment + j.time, amplitude * j.height) for j in whole.jumps]
+    return replace(
+        whole,
+        enclosures=tuple(total),
+        impulses=tuple(sorted((i for i in impulses if not i.time > last), key=lambda i: i.time.mid())),
+        jumps=tuple(sorted((j for j in jumps if not j.time > last), key=lambda j: j.time.mid())),
+        digits=digits,
+        shaper=shaper.kind,
     )
 
 

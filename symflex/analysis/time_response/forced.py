@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 
     import numpy.typing as npt
 
+    from symflex.analysis.input_shaping import InputShaper
     from symflex.transfer import BoundTransferFunction
 
 MORE_DIGITS = 10
@@ -49,11 +50,12 @@ def forced_response(
     values: Sequence[Fraction],
     times: Sequence[Fraction],
     digits: int = 12,
+    shaper: InputShaper | None = None,
 ) -> EnclosedResponse:
     """Return the response, from rest, at ``times`` to an input with ``values`` at the times ``sampled`` [s].
 
     Before the first sample the input is 0, between two a straight line, after the last one it keeps its
-    value.
+    value; a ``shaper`` convolves it with its impulses.
 
     Raises
     ------
@@ -77,7 +79,7 @@ def forced_response(
     bends, moments = places[: len(sampled)], places[len(sampled) :]
     count = max(moments, default=0) + 1
     lags = SampleTimes.evenly(step * max(count - 1, 1), max(count, 2))
-    ramp = time_response(bound, "ramp", lags, digits + MORE_DIGITS)
+    ramp = time_response(bound, "ramp", lags, digits + MORE_DIGITS, shaper)
     if ramp.impulses or ramp.jumps:
         message = f"{bound.name} differentiates its input: the response to one with bends jumps"
         raise UncertifiedError(Diagnostic("SF810", message, None, "filter the output, or the input"))
@@ -94,7 +96,7 @@ def forced_response(
         total += [arb(0)] * (count - len(total))
         if values[0]:
             begun, origin = ball(values[0]), ball(first)
-            sudden = time_response(bound, "step", lags, digits + MORE_DIGITS)
+            sudden = time_response(bound, "step", lags, digits + MORE_DIGITS, shaper)
             reasons.append(sudden.reason)
             total = [y + begun * s for y, s in zip(total, sudden.enclosures, strict=False)]
             impulses = tuple(ImpulseAt(i.time + origin, i.order, i.weight * begun) for i in sudden.impulses)
@@ -112,6 +114,7 @@ def forced_response(
         reason is None,
         reason,
         digits,
+        ramp.shaper,
     )
 
 

@@ -41,6 +41,7 @@ class SampleTimes:
     seconds: npt.NDArray[np.float64]  # to double precision
     step: Fraction | None  # where time number i is ``i*step``, or ``seconds[0] + i*step`` up to ``slack``
     slack: float = 0.0  # [s]
+    origin: arb | None = None  # what is taken from every time [s], a ball
 
     @classmethod
     def evenly(cls, until: Fraction, points: int) -> SampleTimes:
@@ -104,7 +105,31 @@ class SampleTimes:
 
     def one_by_one(self) -> SampleTimes:
         """Return the same times without what makes them even."""
-        return SampleTimes(self.seconds, None)
+        return SampleTimes(self.seconds, None, origin=self.origin)
+
+    def since(self, moment: arb) -> tuple[int, SampleTimes]:
+        """Return the number of the first time that may not lie before a moment, and times counted from there.
+
+        Where only one is left another follows, as the digits of a response are those of its largest value.
+
+        Examples
+        --------
+        >>> start, later = SampleTimes.evenly(Fraction(1), 5).since(arb(0.6))
+        >>> start, [round(float(t), 3) for t in later.enclosed()]
+        (3, [0.15, 0.4])
+        """
+        every = self.enclosed()
+        start = next((i for i, t in enumerate(every) if not t < moment), len(every))
+        left = self.seconds[start:]
+        if left.size == 1:
+            off = arb(float(left[0])) - every[start]
+            return start, SampleTimes(np.array([1.0, 2.0]) * left[0], None, origin=moment + off)
+        if self.step is None or not left.size:
+            return start, SampleTimes(left, None, origin=moment)
+        if self.slack:
+            return start, SampleTimes(left, self.step, 2 * self.slack, moment)
+        off = arb(float(left[0])) - arb(float(self.seconds[0])) - ball(self.step) * start
+        return start, SampleTimes(left, self.step, 0.0, moment + off)
 
     def spread(self, start: int = 0, delay: arb | None = None) -> tuple[list[arb], list[arb]]:
         """Return two lists of balls at the current precision: the sums a + b, a by a, begin with all times.
@@ -112,7 +137,7 @@ class SampleTimes:
         Those before number ``start`` are left out, and ``delay`` [s] is taken from the others. The slack is
         in the first list.
         """
-        off = arb(0) if delay is None else delay
+        off = (arb(0) if delay is None else delay) + (self.origin or 0)
         if self.step is None:
             return [arb(t) - off for t in self.seconds[start:].tolist()], [arb(0)]
         count = len(self) - start

@@ -7,6 +7,7 @@ from math import acos, exp, pi, sqrt
 import numpy as np
 import pytest
 from flint import acb
+from scipy.integrate import solve_ivp
 
 from symflex import loads
 from symflex.analysis.input_shaping import SHAPERS, input_shaper
@@ -104,3 +105,76 @@ def test_what_there_is_not_is_refused(modes, kind, error, said):
 def test_a_mode_that_hardly_rings_has_no_ei_shaper():
     with pytest.raises(ModelError, match="SF814"):
         input_shaper(rational("1/(s^2 + 3*s + 4)"), kind="ei")
+
+
+def rung(stiffness, shaper, *, damping):
+    """Return the largest motion of a load on a spring after the last impulse, over that after a step.
+
+    It is integrated with steps from the moments on at which the force changes.
+    """
+
+    def moved(moments, sizes):
+        state, force = np.zeros(2), 0.0
+        ends = [*moments[1:], moments[-1] + 4 * 2 * pi / sqrt(stiffness)]
+        for begin, end, size in zip(moments, ends, sizes, strict=True):
+            force += size
+            found = solve_ivp(
+                lambda _, w, f=force: [w[1], f - stiffness * w[0] - damping * w[1]],
+                (begin, end),
+                state,
+                method="DOP853",
+                rtol=1e-13,
+                atol=1e-16,
+                dense_output=True,
+            )
+            state = found.y[:, -1]
+        return np.max(np.abs(found.sol(np.linspace(begin, end, 400))[0] - force / stiffness))
+
+    return moved(shaper.times, shaper.amplitudes) / moved([0.0], [1.0])
+
+
+@pytest.mark.parametrize(("kind", "damping"), [("zv", 0.0), ("zv", 0.4), ("zvd", 0.4)])
+def test_an_integrator_finds_nothing_left_at_the_poles_of_the_model(kind, damping):
+    shaper = input_shaper(rational(f"1/(s^2 + {damping}*s + 9)"), kind=kind)
+    assert rung(9.0, shaper, damping=damping) < 1e-9
+
+
+@pytest.mark.parametrize("ratio", [0.81, 0.9, 1.0, 1.1, 1.19])
+def test_an_integrator_finds_the_bound_of_ei_kept_over_its_range(ratio):
+    shaper = input_shaper(rational("1/(s^2 + 9)"), kind="ei")
+    assert rung(9.0 * ratio**2, shaper, damping=0.0) < 0.05 + 1e-9
+
+
+def test_a_joint_zv_shaper_of_two_undamped_modes_has_its_closed_form():
+    # a, b, a at 0, T/2, T: 2 a cos(w T/2) + b = 0 for both w, so that T/2 is 2 pi over their sum.
+    first, second = 1.0, sqrt(5.3)
+    shaper = input_shaper(rational("1/((s^2 + 1)*(s^2 + 53/10))"), 2, joint=True)
+    half = 2 * pi / (first + second)
+    side = 1 / (2 - 2 * np.cos(half))
+    assert shaper.times == pytest.approx((0, half, 2 * half), rel=1e-14)
+    assert shaper.amplitudes == pytest.approx((side, 1 - 2 * side, side), rel=1e-14)
+
+
+@pytest.mark.parametrize(("kind", "count"), [("zv", 4), ("zvd", 7)])
+def test_a_joint_shaper_of_three_damped_modes_stills_all_and_is_shorter(kind, count):
+    bound = rational("1/((s^2 + s/20 + 1)*(s^2 + s/20 + 53/10)*(s^2 + s/7 + 17))")
+    shaper = input_shaper(bound, 3, kind, joint=True)
+    assert len(shaper.times) == count
+    assert shaper.times[-1] < input_shaper(bound, 3, kind).times[-1]
+    for p in np.roots(np.polymul(np.polymul([1, 0.05, 1], [1, 0.05, 5.3]), [1, 1 / 7, 17])):
+        parts = np.array(shaper.amplitudes) * np.exp(-p * np.array(shaper.times))
+        assert abs(np.sum(parts)) < 1e-12
+        slope = np.sum(parts * np.array(shaper.times))
+        assert kind == "zv" or abs(slope) < 1e-11
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "error", "said"),
+    [
+        ("1/((s^2 + 1)*(s^2 + 9))", "zv", ModelError, "leave out --joint"),  # the first one's stills both
+        ("1/((s^2 + 1)*(s^2 + 5))", "ei", UsageError, "no joint 'ei' shaper"),
+    ],
+)
+def test_a_joint_shaper_that_is_none_is_refused(text, kind, error, said):
+    with pytest.raises(error, match=said):
+        input_shaper(rational(text), 2, kind, joint=True)
