@@ -42,7 +42,7 @@ class Model:
     Parameters
     ----------
     parameters, definitions, elements, signals, blocks, fields, inputs, outputs : mapping
-    analysis, figures, published : mapping
+    analysis, figures, drawing, published : mapping
         The tables of the specification language, as Python mappings of the same shape.
     title, source : str
         What the model is and where it comes from.
@@ -79,6 +79,7 @@ class Model:
         outputs: Table | None = None,
         analysis: Table | None = None,
         figures: Table | None = None,
+        drawing: Table | None = None,
         published: Table | None = None,
         title: str = "",
         source: str = "",
@@ -94,6 +95,7 @@ class Model:
             "outputs": outputs,
             "analysis": analysis,
             "figures": figures,
+            "drawing": drawing,
             "published": published,
         }
         header = {"symflex": 1, **{k: v for k, v in (("title", title), ("source", source)) if v}}

@@ -13,7 +13,7 @@ from symflex.drawing.diagram import diagrams
 from symflex.drawing.fields import field_rows
 from symflex.drawing.frames import frame_plan, is_planar, name_of
 from symflex.drawing.geometry import Drawing, Extent, Placed
-from symflex.drawing.lettering import Labels
+from symflex.drawing.lettering import Labels, column_of, filled
 from symflex.drawing.page import POINTS, figure_of, render_drawing, stacked
 from symflex.drawing.rows import lay_out, order_of
 from symflex.drawing.scheme import DrawnNetwork, scheme_of, with_readings
@@ -22,6 +22,7 @@ from symflex.drawing.statements import statements
 from symflex.errors import Diagnostic, UsageError
 from symflex.figures.save import MM_PER_INCH
 from symflex.figures.style import DEFAULT_FONT, paper_style
+from symflex.library.elements import LineElement
 from symflex.print.latex.page import COLUMNS_MM, WIDEST_MM, checked_width
 
 if TYPE_CHECKING:
@@ -35,6 +36,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Drawing", "Extent", "Placed", "draw_model", "drawing_of", "render_drawing"]
 
+LEGEND: Final = 230.0
+"""Width of the lines of values below a drawing [points]."""
 SMALLEST: Final = 0.8
 """Share of their size to which symbols and type are made smaller before the page is made wider."""
 SMALLEST_ASKED: Final = 0.6
@@ -99,7 +102,7 @@ def _network(
         names = tuple(n for n in network.nodes if n in nodes)
         network = DrawnNetwork(names, tuple(others), marks, ())
     shortened, gone = abbreviated(network, order_of(network, scheme.domains), scheme.domains)
-    yield lay_out(shortened, scheme.domains, spacing).items, gone
+    yield lay_out(shortened, scheme.domains, spacing), gone
 
 
 def _prepared(model: Model, labels: Labels) -> tuple[Scheme, list[Sequence[Placed]]]:
@@ -112,8 +115,17 @@ def _prepared(model: Model, labels: Labels) -> tuple[Scheme, list[Sequence[Place
     free = [i.name for i in model.inputs if i.kind == "signal" and i.name not in used]
     graph.add_all([o for o in scheme.others if o not in shown], free)
     rows: list[Sequence[Placed]] = [f.items for f in fields]
-    rows += [*diagrams(graph), statements(graph)]
+    rows += [*diagrams(graph), statements(graph), _legend(model, labels)]
     return with_readings(scheme, graph.readings(), labels), rows
+
+
+def _legend(model: Model, labels: Labels) -> list[Placed]:
+    """Return the values of members and fields, of which there are too many to stand beside them."""
+    used = [e for use in model.elements if isinstance(use.element, LineElement) for _, e in use.values]
+    for one in model.fields:
+        used += [one.start, one.end, *one.equations, *one.conditions]
+    lines = column_of(filled(labels.values(used), LEGEND)) if used else ()
+    return [Placed("values", "", (), lines)] if lines else []
 
 
 def _laid_out(

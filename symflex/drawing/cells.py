@@ -10,8 +10,8 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Final
 
 from symflex.drawing.geometry import BOLD, LINE, THIN, Lettering, Placed, union
-from symflex.drawing.lettering import SMALL, name_latex, text
-from symflex.drawing.symbols import HATCH, arrow, earth, head, line, wall
+from symflex.drawing.lettering import SMALL, column_of, name_latex, text
+from symflex.drawing.symbols import HATCH, arrow, earth, half_depth, head, line, wall
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,6 +27,8 @@ PITCH: Final = {"dc_motor": 19.0}
 USUAL_PITCH, GROUNDED_PITCH = 9.0, 20.0
 INSET: Final = {"dc_motor": (0.233, 0.5)}
 """How far one end, and how far two, reach into a symbol, as a share of its length."""
+COORDINATES: Final = ("beam", "rod", "shaft", "string")
+"""Members with a coordinate along them."""
 NEAR_END: Final = 4.0
 """How far from an end of a member an output at that end is marked [points]."""
 WALL: Final = 6.0
@@ -88,16 +90,12 @@ class Built:
 
 def label_texts(latex: str, name: str, lines: Sequence[str] = ()) -> tuple[Lettering, ...]:
     """Return a label with lines of values below it, centred at x = 0, the last line on y = 0."""
+    if not latex:
+        return ()
     first = text(latex)
     if first is None or first.width > WIDEST:
         first = text(name_latex(name))
-    found = [t for t in (first, *(text(one, SMALL) for one in lines)) if t is not None]
-    placed, y = [], 0.0
-    for one in reversed(found):
-        y += one.depth
-        placed.append(one.moved(-one.width / 2, y))
-        y += one.height + 1.5
-    return tuple(reversed(placed))
+    return column_of([t for t in (first, *(text(one, SMALL) for one in lines)) if t is not None])
 
 
 def build(cell: SymbolCell, spacing: Spacing, width: float = 0.0) -> Built:
@@ -171,6 +169,15 @@ def _kept(middle: float, width: float, low: float, high: float) -> float:
     return max(low + width / 2, min(high - width / 2, middle)) if width <= high - low else (low + high) / 2
 
 
+def coordinate(x: float, y: float, sign: int = 1) -> list[Placed]:
+    """Draw an arrow along x, from where x is nought to the right, or to the left (-1)."""
+    strokes = (*arrow((x, y), (x + sign * 15, y), THIN), line((x, y - 2), (x, y + 2), width=THIN))
+    shown = text("x", SMALL)
+    assert shown is not None
+    place = shown.moved(x + (17.5 if sign > 0 else -17.5 - shown.width), y - shown.height / 2)
+    return [Placed("axis", "x", strokes), Placed("label", "x", (), (place,))]
+
+
 def _points(cell: SymbolCell, start: float, length: float) -> list[Placed]:
     """Mark outputs along a member, beside what stands at the nodes at its ends."""
     part, ends = cell.part, (start + cell.margins[0], start + length - cell.margins[1])
@@ -184,9 +191,10 @@ def _points(cell: SymbolCell, start: float, length: float) -> list[Placed]:
         low = _kept(x, shown.width, ends[0] + 1.0, ends[1] - 1.0) - shown.width / 2
         level = level + 1 if low < last + SPACE else 0
         last = max(last, low + shown.width)
-        y = 8.0 + 10 * level
+        tip = half_depth(part.depths, (x - start) / length)
+        y = tip + 5.8 + 10 * level
         found.append(
-            Placed("output", name, (line((x, 3.0), (x, y), width=THIN), head((x, 2.2), (0, -1), 3.0)))
+            Placed("output", name, (line((x, tip + 0.8), (x, y), width=THIN), head((x, tip), (0, -1), 3.0)))
         )
         found.append(Placed("label", name, (), (shown.moved(low, y + 1.5 + shown.depth),)))
     return found

@@ -118,7 +118,7 @@ def body_size(part: DrawnPart, kind: str, size: float) -> tuple[float, float]:
     if kind == "rotation":
         return max(DISC_WIDTH, block.width + 2), block.height
     is_wide = part.type_name == "rigid_body"
-    wide = max(size + 12 if is_wide else size, block.width + size / 3)
+    wide = max(size + 12 if is_wide else size, block.width + size / 3, 2 * _arm(part) + 12)
     tall = max(size, block.height + (17 if is_wide else 8))
     return (wide, max(wide, tall)) if part.type_name == "inertia" else (wide, tall)
 
@@ -159,12 +159,31 @@ def _mass(part: DrawnPart, column: Column, y0: float, y1: float) -> list[Placed]
     if part.type_name == "inertia":
         strokes = (circle(x, middle, min(column.half, (y1 - y0) / 2), FILLED),)
     if part.type_name == "rigid_body":
-        cx, cy = x + column.half - 7, y0 + 6
-        cross = (line((cx - 3, cy), (cx + 3, cy), width=THIN), line((cx, cy - 3), (cx, cy + 3), width=THIN))
-        strokes = (*strokes, circle(cx, cy, 3.0), *cross)
         middle = (y0 + 9 + y1) / 2
+        strokes += _mass_centre(part, x, column.half, y0 + 6)
     label = tuple(t.moved(x, middle - (block.y0 + block.y1) / 2) for t in texts)
+    if offset := text(part.centre[0], SMALL):
+        left = x + 2.5 - (offset.width + 5 if part.centre[1] > 0 else 0.0)
+        label += (offset.moved(left, y0 + 6 - (offset.height - offset.depth) / 2),)
     return [Placed(part.kind, part.name, strokes), Placed("label", part.name, (), label)]
+
+
+def _arm(part: DrawnPart) -> float:
+    """Return how far the mass centre of a body is drawn from its node, with room for its label beyond."""
+    offset = text(part.centre[0], SMALL)
+    return max(13.0, offset.width) if offset else 0.0
+
+
+def _mass_centre(part: DrawnPart, x: float, half: float, y: float) -> Strokes:
+    """Draw the mass centre, and how far it is from the node, which stands in the middle of its body."""
+    arm = min(_arm(part), half - 5) * part.centre[1]
+    cx = x + arm
+    cross = (line((cx - 3, y), (cx + 3, y), width=THIN), line((cx, y - 3), (cx, y + 3), width=THIN))
+    centre = (circle(cx, y, 3.0), *cross)
+    if not arm:
+        return centre
+    length = arrow((x, y), (cx - 3 * part.centre[1], y), THIN)
+    return (line((x, y - 3.5), (x, y + 3.5), width=THIN), *length, *centre)
 
 
 def support_width(part: DrawnPart) -> float:

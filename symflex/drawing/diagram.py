@@ -16,8 +16,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
-from symflex.drawing.geometry import LINE, Extent, Lettering, Placed
-from symflex.drawing.lettering import SIZE, SMALL, text
+from symflex.drawing.geometry import LINE, Extent, Lettering, Placed, union
+from symflex.drawing.lettering import SIZE, SMALL, column_of, text
 from symflex.drawing.signals import formula
 from symflex.drawing.symbols import DOT, Strokes, arrow, circle, line, rectangle
 
@@ -323,14 +323,13 @@ class _Band:
 
     def _box(self, one: SignalNode) -> _Sized:
         label = _fitting(one.label, SIZE) or _fitting(r"\cdots", SIZE)
-        lines = [label] if label else []
         if one.kind == "block":
             block = self.graph.blocks[one.name]
             found = formula(block)
             shown = text(self.graph.labels.fraction(found), SIZE) if found is not None else None
             if shown and shown.width <= WIDEST:
                 return _boxed(one, shown, _fitting(one.label, SMALL))
-        return _boxed(one, lines[0] if lines else None, None)
+        return _boxed(one, label, None)
 
     def _tag(self, one: SignalNode, *, is_tag: bool) -> _Sized:
         """Return a name at the beginning or end of a wire."""
@@ -381,12 +380,13 @@ def _fitting(latex: str, size: float) -> Lettering | None:
 
 
 def _boxed(one: SignalNode, shown: Lettering | None, name: Lettering | None) -> _Sized:
-    wide = max(16.0, shown.width + 2 * EDGE) if shown else 16.0
-    tall = max(7.0, (shown.height + shown.depth) / 2 + EDGE) if shown else 7.0
+    texts = column_of([t for t in (shown, *(text(line, SMALL) for line in one.lines)) if t])
+    block = union(t.box for t in texts) if texts else Extent(0, 0, 0, 0)
+    wide, tall = max(16.0, block.width + 2 * EDGE), max(7.0, block.height / 2 + EDGE)
     items = [Placed(one.kind, one.name, (rectangle(0.0, -tall, wide, tall),))]
-    if shown:
-        place = shown.moved((wide - shown.width) / 2, -(shown.height - shown.depth) / 2)
-        items.append(Placed("label", one.name, (), (place,)))
+    if texts:
+        place = wide / 2, -(block.y0 + block.y1) / 2
+        items.append(Placed("label", one.name, (), tuple(t.moved(*place) for t in texts)))
     above = tall
     if name:
         items.append(

@@ -12,16 +12,43 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
+from symflex.drawing.cells import coordinate
 from symflex.drawing.columns import upright_mark, upright_width
-from symflex.drawing.geometry import FILLED, THIN, Extent, Placed, Stroke
+from symflex.drawing.geometry import THIN, Extent, Placed, Stroke
 from symflex.drawing.lettering import SMALL, Labels, text
-from symflex.drawing.scheme import Mark, Style, evaluate, without_s
-from symflex.drawing.symbols import Strokes, arrow, circle, floor, line, outline, rectangle, wall
-from symflex.expressions import Attribute, Call, Equation, Name, Number, names
+from symflex.drawing.scheme import UNKNOWN, Mark, Style, depths, evaluate, values_of, without_s
+from symflex.drawing.symbols import (
+    HALF,
+    Strokes,
+    arrow,
+    circle,
+    floor,
+    half_depth,
+    line,
+    outline,
+    rectangle,
+    slender,
+    wall,
+)
+from symflex.expressions import (
+    Attribute,
+    Call,
+    Derivative,
+    Equation,
+    Name,
+    Number,
+    names,
+    negative,
+    number,
+    replace_values,
+    sum_of,
+)
+from symflex.model.along import COORDINATE, is_tapered
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from symflex.drawing.scheme import Depths
     from symflex.expressions import Expression
     from symflex.model import FieldProblem, Model
 
@@ -29,7 +56,6 @@ LENGTH: Final = 150.0
 """Of a row of fields [points]."""
 SHORTEST: Final = 0.22
 """Share of the row that each takes at least."""
-HALF: Final = 2.4
 LEADING: Final = 3.0
 APART: Final = 14.0
 """Least distance of two columns of conditions [points]."""
@@ -46,7 +72,6 @@ class FieldRow:
     items: tuple[Placed, ...]
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
-    anchors: dict[str, tuple[float, float]]
 
 
 def field_rows(model: Model, labels: Labels, outputs: Sequence[str]) -> list[FieldRow]:
@@ -86,9 +111,10 @@ class _Row:
 
     def laid_out(self) -> FieldRow:
         """Return the row, its axis at y = 0."""
-        self.known = {p.name: float(p.value.nearly) for p in self.model.parameters if p.value}
+        self.known = values_of(self.model)
         self.starts = self._starts()
         self.unknowns = {u: f for f in self.fields for u in f.unknowns}
+        self.depths = {f.name: self._depths(f) for f in self.fields}
         inputs = self._collect_inputs()
         outputs = self._collect_outputs()
         for one in self.fields:
@@ -98,8 +124,7 @@ class _Row:
             self._draw_loads(one, above)
         self._draw_coordinate()
         self._draw_conditions()
-        anchors = {u: (self._x(f, f.end), -HALF) for u, f in self.unknowns.items()}
-        return FieldRow(tuple(self.items), tuple(inputs), tuple(outputs), anchors)
+        return FieldRow(tuple(self.items), tuple(inputs), tuple(outputs))
 
     def _starts(self) -> dict[str, tuple[float, float]]:
         """Return where each field begins and ends in the row."""
@@ -124,6 +149,27 @@ class _Row:
         if a is None or b is None or at is None or a == b:
             return (low + high) / 2
         return low + (high - low) * min(1.0, max(0.0, (at - a) / (b - a)))
+
+    def _depths(self, one: FieldProblem) -> Depths:
+        """Return the depths of a member that tapers, by the coefficients of the highest derivatives."""
+        if not is_tapered(self.model) or COORDINATE in one.unknowns:
+            return ()
+        ends = [evaluate(e, self.known) for e in (one.start, one.end)]
+        a, b = (0.0 if ends[0] is None else ends[0]), (UNKNOWN if ends[1] is None else ends[1])
+        root = 4 if self._is_beam(one) else 2
+        for equation in one.equations:
+            found = [n for n in names(equation) if isinstance(n, Derivative)]
+            highest = max(found, key=lambda d: d.order)
+            rest = {n: number(n == highest) for n in (*found, *map(Name, one.unknowns))}
+            left, right = (replace_values(side, rest) for side in equation.children)
+            if shape := depths(sum_of([left, negative(right)]), (a, b), self.known, root):
+                return shape
+        return ()
+
+    def _half(self, x: float) -> float:
+        """Return half the depth of what is drawn at x."""
+        here = [(f, ends) for f in self.fields for ends in (self.starts[f.name],) if ends[0] <= x <= ends[1]]
+        return max(half_depth(self.depths[f.name], (x - a) / (b - a)) for f, (a, b) in here)
 
     def _values(self, equation: Equation) -> list[Call]:
         return [
@@ -171,15 +217,16 @@ class _Row:
             call = self._single(out.expression) if out.name in self.wanted else None
             if call:
                 x = self._x(self.unknowns[call.name], call.argument)
-                style: Style = "turn" if call.order == 1 and self._is_beam(call) else "probe"
+                is_beam = self._is_beam(self.unknowns[call.name])
+                style: Style = "turn" if call.order == 1 and is_beam else "probe"
                 style = style if call.order else "lift"
                 label = self.labels.end(out.name, out.latex)
                 self.marks.setdefault((style, x), []).append(("output", out.name, label))
                 found.append(out.name)
         return found
 
-    def _is_beam(self, call: Call) -> bool:
-        one = self.unknowns[call.name]
+    @staticmethod
+    def _is_beam(one: FieldProblem) -> bool:
         return len(one.conditions) >= BENDING and len(one.unknowns) == 1
 
     def _single(self, expression: Expression) -> Call | None:
@@ -201,9 +248,9 @@ class _Row:
 
     def _draw_member(self, one: FieldProblem) -> None:
         low, high = self.starts[one.name]
-        self.items.append(Placed("field", one.name, (rectangle(low, -HALF, high, HALF, FILLED),)))
+        self.items.append(Placed("field", one.name, (slender(low, high, self.depths[one.name]),)))
         for x, point, side in ((low, one.start, -1), (high, one.end, 1)):
-            support = tuple(_support(self._held(one, point), x, side))
+            support = tuple(_support(self._held(one, point), x, side, self._half(x)))
             if support:
                 self.items.append(Placed("ground", one.name, support))
 
@@ -222,7 +269,7 @@ class _Row:
 
     def _draw_marks(self) -> float:
         """Draw arrows above the member, side by side or above each other; return how high they reach."""
-        occupied = [i.box for i in self.items if i.box.y1 > HALF]  # walls and guides
+        occupied = [i.box for i in self.items if i.kind == "ground" and i.box.y1 > HALF]
         places: dict[float, list[Mark]] = {}
         for (style, x), labels in sorted(
             self.marks.items(), key=lambda m: (-m[0][1], m[0][0] not in PUSHING)
@@ -231,17 +278,18 @@ class _Row:
         for x, marks in places.items():
             start = x - 5.0
             room = Extent(start, 0.0, start + sum(map(upright_width, marks)), 17.0)
-            y = HALF + 0.5
+            surface = self._half(x)
+            y = surface + 0.5
             while any(b.overlaps(room.moved(0, y)) for b in occupied):
                 y += 1.0
             occupied.append(room.moved(0, y))
-            if y > HALF + 1:
+            if y > surface + 1:
                 name = marks[0].labels[0][1]
-                self.items.append(Placed("wire", name, (line((x, HALF), (x, y + 2), width=THIN),)))
+                self.items.append(Placed("wire", name, (line((x, surface), (x, y + 2), width=THIN),)))
             for mark in marks:
                 self.items += upright_mark(mark, start, y)
                 start += upright_width(mark)
-        return max([HALF, *(b.y1 for b in occupied)])
+        return max(b.y1 for b in (*occupied, *(i.box for i in self.items if i.kind == "field")))
 
     def _draw_loads(self, one: FieldProblem, above: float) -> None:
         low, high = self.starts[one.name]
@@ -262,26 +310,18 @@ class _Row:
         """Draw an arrow from where x is nought, below the member."""
         start = self._x(self.fields[0], self.fields[0].start)
         y = min(i.box.y0 for i in self.items if i.kind in ("field", "ground")) - 5
-        shown = text("x", SMALL)
-        self.items.append(
-            Placed(
-                "axis",
-                "x",
-                (*arrow((start, y), (start + 16, y), THIN), line((start, y - 2), (start, y + 2), width=THIN)),
-            )
-        )
-        if shown:
-            self.items.append(Placed("label", "x", (), (shown.moved(start + 18.5, y - shown.height / 2),)))
+        self.items += coordinate(start, y)
 
     def _draw_conditions(self) -> None:
         """Write conditions below the points that they hold at, and the equations below all."""
         bottom = min(i.box.y0 for i in self.items) - 3
         columns: dict[float, list[str]] = {}
         for one in self.fields:
-            for condition in one.conditions:
+            sources = one.written[len(one.equations) :] or one.conditions
+            for condition, given in zip(one.conditions, sources, strict=True):
                 calls = self._values(condition)
                 xs = [self._x(self.unknowns[c.name], c.argument) for c in calls]
-                columns.setdefault(sum(xs) / len(xs) if xs else 0.0, []).append(self._sides(condition))
+                columns.setdefault(sum(xs) / len(xs) if xs else 0.0, []).append(self._sides(given))
         blocks = [
             (x, [t for one in lines if (t := text(one, SMALL))]) for x, lines in sorted(columns.items())
         ]
@@ -300,7 +340,7 @@ class _Row:
             lowest = min(lowest, y)
         middle = (min(b.x0 for b in (i.box for i in self.items)) + max(i.box.x1 for i in self.items)) / 2
         y = lowest - 1
-        for equation in (e for f in self.fields for e in f.equations):
+        for equation in (e for f in self.fields for e in f.written[: len(f.equations)] or f.equations):
             shown = text(self._sides(equation), SMALL)
             if shown:
                 y -= shown.height
@@ -312,13 +352,13 @@ class _Row:
         return f"{self.labels.expression(left)} = {self.labels.expression(right)}"
 
 
-def _support(held: tuple[bool, bool], x: float, side: int) -> Iterator[Stroke]:
+def _support(held: tuple[bool, bool], x: float, side: int, half: float) -> Iterator[Stroke]:
     """Yield a clamp, a hinge or a guide, by whether displacement and slope are held, or nothing."""
     is_still, is_level = held
     if is_still and is_level:
         yield from wall(-9, 9, side, x)
     elif is_still:
-        y = -HALF
+        y = -half
         yield from (outline((x, y), (x - 4.2, y - 7), (x + 4.2, y - 7)), *floor(x - 6.4, x + 6.4, y - 7))
     elif is_level:
         yield rectangle(min(x, x + side * 4.0), -8, max(x, x + side * 4.0), 8)

@@ -18,9 +18,10 @@ from symflex.drawing.cells import label_texts
 from symflex.drawing.columns import flat_mark, upright_mark
 from symflex.drawing.geometry import BOLD, FILLED, MEMBER, THIN, Extent, Placed, around, union
 from symflex.drawing.lettering import SMALL, name_latex, text
-from symflex.drawing.scheme import Mark, Style, evaluate
+from symflex.drawing.scheme import Mark, Style, evaluate, values_of
 from symflex.drawing.symbols import (
     DOT,
+    HALF,
     arrow,
     circle,
     head,
@@ -40,8 +41,6 @@ if TYPE_CHECKING:
 EXTENT: Final = 95.0
 """Of a frame, and the least length of a member [points]."""
 SHORTEST: Final = 40.0
-HALF: Final = 2.2
-"""Of a member's width."""
 JOINT: Final = 2.4
 """Radius of a joint of members."""
 CLEAR: Final = 1.2
@@ -134,7 +133,7 @@ class _Plan:
         return part.type_name in ALONE and len(part.nodes) == 1 and any(not e.node for e in part.ends)
 
     def _vectors(self) -> dict[str, tuple[float, float]]:
-        known = {p.name: float(p.value.nearly) for p in self.model.parameters if p.value}
+        known = values_of(self.model)
         values = {use.name: dict(use.values) for use in self.model.elements}
         found = {}
         for part in self.members:
@@ -213,7 +212,8 @@ class _Plan:
     def _draw_bodies(self, bodies: Sequence[DrawnPart]) -> None:
         for node in dict.fromkeys(p.nodes[0] for p in bodies):
             own = [p for p in bodies if p.nodes[0] == node]
-            texts = [label_texts(p.label, p.name, p.lines) for p in own]
+            written = [r",\,".join(one for one in (p.label, p.centre[0]) if one) for p in own]
+            texts = [label_texts(one, p.name, p.lines) for one, p in zip(written, own, strict=True)]
             blocks = [union(t.box for t in block) for block in texts]
             wide = max(14.0, *(b.width + 6 for b in blocks))
             heights = [

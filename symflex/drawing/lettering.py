@@ -15,7 +15,7 @@ from matplotlib.font_manager import FontProperties
 from matplotlib.mathtext import MathTextParser
 
 from symflex.drawing.geometry import Lettering
-from symflex.expressions import Attribute, Call, Name, replace_values, substitute
+from symflex.expressions import Attribute, Call, Differentiated, Name, replace_values, substitute
 from symflex.expressions import nodes as parts_of
 from symflex.figures.style import label_of_name, label_of_unit
 from symflex.print.label import read_label
@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 SIZE: Final = 8.0
 """Of the type [points], as in other figures."""
 SMALL: Final = 7.0
+LEADING: Final = 1.5
+"""Between lines of a label."""
 _FINE: Final = 20
 """Matplotlib rounds the size of a text up to whole dots: as many are measured to a point."""
 _PARSER: Final = MathTextParser("path")
@@ -55,6 +57,29 @@ def text(latex: str, size: float = SIZE) -> Lettering | None:
     """Return a text at the origin, None where matplotlib cannot typeset it."""
     found = _measured(f"${latex}$", size, str(rcParams["mathtext.fontset"])) if latex else None
     return None if found is None else Lettering(f"${latex}$", 0.0, 0.0, *found, size)
+
+
+def column_of(lines: Sequence[Lettering]) -> tuple[Lettering, ...]:
+    """Return lines one below the other, centred at x = 0, the last one on y = 0."""
+    placed, y = [], 0.0
+    for one in reversed(lines):
+        y += one.depth
+        placed.append(one.moved(-one.width / 2, y))
+        y += one.height + LEADING
+    return tuple(reversed(placed))
+
+
+def filled(parts: Sequence[str], width: float, size: float = SMALL) -> list[Lettering]:
+    """Return texts side by side in as few lines as they take, none of them wider than it may be."""
+    lines: list[str] = []
+    for part in parts:
+        longer = rf"{lines[-1]},\quad {part}" if lines else part
+        shown = text(longer, size) if lines else None
+        if shown is not None and shown.width <= width:
+            lines[-1] = longer
+        else:
+            lines.append(part)
+    return [t for one in lines if (t := text(one, size))]
 
 
 def name_latex(name: str) -> str:
@@ -111,8 +136,12 @@ class Labels:
 
     def expression(self, expression: Expression, style: Style = Style.INLINE) -> str:
         """Return an expression in mathematics, by default quotients with a slash."""
-        places = [n for n in parts_of(expression) if isinstance(n, Call) and "." in n.name]
-        plain = replace_values(expression, {c: Name(c.name) for c in places})
+        # A bracket with primes is a name to the writer, and put in afterwards.
+        brackets = [n for n in parts_of(expression) if isinstance(n, Differentiated)]
+        stands_for = {rf"\mathcal{{B}}_{{{i}}}": self._bracket(n) for i, n in enumerate(brackets)}
+        plain = replace_values(expression, dict(zip(brackets, map(Name, stands_for), strict=True)))
+        places = [n for n in parts_of(plain) if isinstance(n, Call) and "." in n.name]
+        plain = replace_values(plain, {c: Name(c.name) for c in places})
         plain = substitute(
             plain,
             {
@@ -123,8 +152,16 @@ class Labels:
         )
         names = {n.name for n in parts_of(plain) if isinstance(n, Name)} - {"s", "pi"}
         fields = {n.name for n in parts_of(plain) if isinstance(n, Call)}
-        labels = {n: self.name(n) for n in names | fields if n not in ("sqrt", "exp")}
-        return latex_expression(plain, labels, style)
+        labels = {n: self.name(n) for n in names | fields if n not in ("sqrt", "exp", *stands_for)}
+        written = latex_expression(plain, labels | {n: n for n in stands_for}, style)
+        for name, bracket in stands_for.items():
+            written = written.replace(name, bracket)
+        return written
+
+    def _bracket(self, one: Differentiated) -> str:
+        """Return a bracket with primes in mathematics."""
+        point = "" if one.point is None else f"({self.expression(one.point)})"
+        return f"({self.expression(one.operand)})" + one.order * "'" + point
 
     def quantity(self, expression: Expression, unit: str) -> str:
         """Return the value of an element: as it is written, a number with its unit."""
@@ -148,10 +185,12 @@ def number_latex(decimal: str) -> str:
 
     Examples
     --------
-    >>> print(number_latex("2.1e-11"), number_latex("95"))
-    2.1\cdot 10^{-11} 95
+    >>> print(number_latex("2.1e-11"), number_latex("1e6"), number_latex("95"))
+    2.1\cdot 10^{-11} 10^{6} 95
     """
     mantissa, _, exponent = decimal.partition("e")
+    if mantissa in ("1", "-1") and exponent:
+        return f"{mantissa[:-1]}10^{{{exponent}}}"
     return rf"{mantissa}\cdot 10^{{{exponent}}}" if exponent else mantissa
 
 

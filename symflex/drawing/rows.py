@@ -16,7 +16,17 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
-from symflex.drawing.cells import SPACE, SPACINGS, Built, Spacing, SymbolCell, build
+from symflex.drawing.cells import (
+    COORDINATES,
+    SPACE,
+    SPACINGS,
+    Built,
+    Spacing,
+    SymbolCell,
+    build,
+    coordinate,
+    label_texts,
+)
 from symflex.drawing.columns import (
     LANE,
     Column,
@@ -36,13 +46,13 @@ from symflex.drawing.columns import (
 from symflex.drawing.geometry import BOLD, LINE, THIN, Extent, Placed, around, union
 from symflex.drawing.lettering import text
 from symflex.drawing.order import ordered
-from symflex.drawing.scheme import Mark
+from symflex.drawing.scheme import Distance, Mark
 from symflex.drawing.symbols import DOT, HATCH, arrow, circle, earth, floor, line, rectangle, wall
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from symflex.drawing.scheme import Distance, DrawnNetwork, DrawnPart, End
+    from symflex.drawing.scheme import DrawnNetwork, DrawnPart, End
 
 EMPTY_GAP: Final = 14.0
 SIDE_ARROW: Final = 20.0
@@ -50,14 +60,6 @@ FACE: Final = 9.0
 """Room of a wall or a guide beside a node."""
 BLADE: Final = 2.2
 """Width of a lead to a member."""
-
-
-@dataclass(frozen=True, slots=True)
-class Row:
-    """A network laid out."""
-
-    items: tuple[Placed, ...]
-    anchors: Mapping[str, tuple[float, float]]  # of nodes: where something reads them, at their lower ends
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,10 +79,11 @@ class _Level:
     y: float
 
 
-def lay_out(network: DrawnNetwork, domains: Mapping[str, str], spacing: Spacing = SPACINGS[0]) -> Row:
+def lay_out(
+    network: DrawnNetwork, domains: Mapping[str, str], spacing: Spacing = SPACINGS[0]
+) -> tuple[Placed, ...]:
     """Return a network as a row, the axis of its columns at y = 0."""
-    layout = _Layout(network, domains, spacing)
-    return Row(tuple(layout.items), {c.name: (c.x, c.bottom) for c in layout.columns})
+    return tuple(_Layout(network, domains, spacing).items)
 
 
 def order_of(network: DrawnNetwork, domains: Mapping[str, str]) -> tuple[str, ...]:
@@ -103,7 +106,9 @@ def order_of(network: DrawnNetwork, domains: Mapping[str, str]) -> tuple[str, ..
     joints = [pair for p in network.parts for pair in _pairs(p)]
     directed = {pair for p in network.parts if p.symbol.role == "member" for pair in _pairs(p)}
     lanes = {n: domains[n] for n in network.nodes}
-    return ordered(network.nodes, joints, pull, lanes, directed)
+    found = ordered(network.nodes, joints, pull, lanes, directed)
+    wanted = iter(network.order)
+    return tuple(next(wanted) if n in network.order else n for n in found)
 
 
 def _pairs(part: DrawnPart) -> list[tuple[str, str]]:
@@ -122,10 +127,14 @@ class _Layout:
     occupied: list[Extent] = field(default_factory=list)
     bridges: list[SymbolCell] = field(default_factory=list)
     leads: list[Extent] = field(default_factory=list)  # upwards to bridges
+    spans: list[Distance] = field(default_factory=list)
+    # Members with a coordinate along them: where each begins and ends, and its lower side.
+    members: list[tuple[SymbolCell, float, float, float]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self.columns = [Column(n, self.domains[n]) for n in order_of(self.network, self.domains)]
         self.at = {c.name: i for i, c in enumerate(self.columns)}
+        self.spans = list(self.network.spans)
         self.direct: list[list[SymbolCell | _SideArrow]] = [[] for _ in range(len(self.columns) + 1)]
         self._sort_parts()
         self._sort_marks()
@@ -184,6 +193,10 @@ class _Layout:
     def _sort_branch(self, part: DrawnPart, columns: Sequence[int]) -> None:
         low, high = columns[0], columns[-1]
         gap = max(low + 1, (low + high + 1) // 2)
+        if part.type_name == "rigid_link" and high - low == 1:
+            ends = (self.columns[low].name, self.columns[high].name)
+            self.spans.append(Distance(ends, part.name, part.label, part.lines, is_length=True))
+            part = replace(part, label="")
         cell = SymbolCell(part, gap)
         for end in part.ends:
             if end.node:
@@ -222,7 +235,7 @@ class _Layout:
                 gap = last + 1 if index == last else 0
                 self.direct[gap].insert(0, _SideArrow(mark, index))
         ends = [e.node for cell in self.bridges for e in (*cell.left, *cell.right)]
-        for node in (*ends, *(n for span in self.network.spans for n in span.nodes)):
+        for node in (*ends, *(n for span in self.spans for n in span.nodes)):
             if node:
                 self.columns[self.at[node]].has_lead_up = True
 
@@ -320,6 +333,11 @@ class _Layout:
         x, top, bottom = column.x, column.top, column.bottom
         self._add(*bodies(column, self.spacing.body))
         if column.bodies:
+            stands = self.network.has_rollers and column.kind == "translation"
+            if stands and not (column.supports or column.hanging or column.stubs):
+                wheels = (circle(x + side * 0.55 * column.half, bottom - 2, 2.0) for side in (-1, 1))
+                below = floor(x - column.half, x + column.half, bottom - 4)
+                self._add(Placed("ground", column.name, (*wheels, *below)))
             return
         index = self.at[column.name]
         bare = [side for side in (-1, 1) if not self.gaps[index + (side > 0)]]
@@ -351,7 +369,11 @@ class _Layout:
                 first = left.x + left.half if left else low
                 last = right.x - right.half if right else high
                 cell.margins = (low - first, last - high)
-            self._add(*(p.moved(first, level.y) for p in build(cell, self.spacing, last - first).placed))
+            built = build(cell, self.spacing, last - first)
+            self._add(*(p.moved(first, level.y) for p in built.placed))
+            if cell.part.type_name in COORDINATES:
+                ends = next(i.box for i in built.placed if (i.kind, i.name) == ("element", cell.part.name))
+                self.members.append((cell, first + ends.x0, first + ends.x1, level.y + ends.y0))
             for side, edge, sign in ((cell.left, first, 1), (cell.right, last, -1)):
                 for end, offset in zip(side, cell.offsets(side), strict=True):
                     if end.node:
@@ -405,6 +427,11 @@ class _Layout:
         for column in reversed(self.columns):
             for part in column.stubs:
                 self._draw_stub(part, column)
+        for cell, start, end, y in self.members:
+            sign = -1 if cell.is_reversed else 1
+            items = coordinate(end if cell.is_reversed else start, 0.0, sign)
+            room = union(i.box for i in items).grown(1.0)
+            self._add(*(i.moved(0, self._free(room, y - 1.0, is_up=False)) for i in items))
 
     def _draw_face(self, part: DrawnPart, column: Column, side: int) -> None:
         x = column.x + side * column.half
@@ -523,7 +550,7 @@ class _Layout:
             for mark in column.upright:
                 self._add(*upright_mark(mark, x, column.top))
                 x += upright_width(mark)
-        for span in self.network.spans:
+        for span in self.spans:
             self._draw_span(span)
         flat = [(c, m, c.lead_x) for c in reversed(self.columns) for m in c.marks if m not in c.upright]
         rooms = [Extent(x - 1, -2.5, x + flat_width(m), 11.0) for _, m, x in flat]
@@ -542,12 +569,13 @@ class _Layout:
             self.occupied.append(room.moved(0, y))
 
     def _draw_span(self, span: Distance) -> None:
-        """Draw a distance between two nodes, with its arrow at the first."""
+        """Draw a distance between two nodes, with its arrow at the first, or at both where it is a length."""
         a, b = (self.columns[self.at[n]] for n in span.nodes)
-        shown = text(span.label)
+        texts = label_texts(span.label, span.name, span.lines)
+        shown = union(t.box for t in texts) if texts else Extent(0, 0, 0, 0)
         left, right = sorted((a.lead_x, b.lead_x))
-        wide = max(right - left, shown.width + 4 if shown else 0.0)
-        height = 5.0 + (shown.height + shown.depth if shown else 0.0)
+        wide = max(right - left, shown.width + 4)
+        height = 5.0 + shown.height
         room = Extent((left + right - wide) / 2 - 1, -3.0, (left + right + wide) / 2 + 1, height)
         y = self._free(room, max(a.top, b.top) + 4, is_up=True)
         for column in (a, b):
@@ -558,15 +586,16 @@ class _Layout:
                 (column.lead_x, y + 3),
                 width=THIN,
             )
-        self._add(Placed("output", span.name, arrow((b.lead_x, y), (a.lead_x, y), LINE)))
+        kind, width = ("length", THIN) if span.is_length else ("output", LINE)
+        ends = (b.lead_x, y), (a.lead_x, y)
+        self._add(Placed(kind, span.name, arrow(*ends, width, is_double=span.is_length)))
         self.occupied.append(room.moved(0, y))
-        if shown:
-            between = sorted(c.lead_x for c in self.columns if left <= c.lead_x <= right)
-            # Leads go up between them.
-            start, end = max(pairwise(between), key=lambda pair: pair[1] - pair[0])
-            start, end = (start, end) if end - start > shown.width + 2 else (left, right)
-            label = shown.moved((start + end - shown.width) / 2, y + 3 + shown.depth)
-            self._add(Placed("label", span.name, (), (label,)))
+        between = sorted(c.lead_x for c in self.columns if left <= c.lead_x <= right)
+        # Leads go up between them.
+        start, end = max(pairwise(between), key=lambda pair: pair[1] - pair[0])
+        start, end = (start, end) if end - start > shown.width + 2 else (left, right)
+        place = ((start + end) / 2, y + 3 - shown.y0)
+        self._add(Placed("label", span.name, (), tuple(t.moved(*place) for t in texts)))
 
 
 def _wire_width(cell: SymbolCell, end: End) -> float:

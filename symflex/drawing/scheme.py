@@ -11,16 +11,20 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from functools import partial
 from typing import TYPE_CHECKING, Final, Literal
 
 from symflex.drawing.symbols import (
     SYMBOLS,
+    TRANSFORMER_SYMBOLS,
     TRANSFORMERS,
     ElementSymbol,
     box,
     effort_between,
     motion_between,
     symbol_of,
+    tapered,
     torque_between,
 )
 from symflex.expressions import (
@@ -37,6 +41,7 @@ from symflex.expressions import (
     names,
 )
 from symflex.library.elements import COMPONENT_DOMAIN, COMPONENTS, LineElement
+from symflex.model.along import COORDINATE, is_tapered
 from symflex.model.model import INPUT_KINDS
 
 if TYPE_CHECKING:
@@ -44,10 +49,11 @@ if TYPE_CHECKING:
 
     from symflex.drawing.lettering import Labels
     from symflex.expressions import Expression
-    from symflex.model import Input, Model, NodeReference, Output, PlacedElement
+    from symflex.model import DrawingHints, Input, Model, NodeReference, Output, PlacedElement
 
 GROUND: Final = ""
 Domains = Mapping[str, str]
+Depths = tuple[float, ...]
 Style = Literal["shift", "lift", "turn", "probe", "force", "push", "torque", "motion", "raise", "twist"]
 
 
@@ -73,6 +79,9 @@ class DrawnPart:
     lines: tuple[str, ...] = ()  # values, where they are asked for
     tags: tuple[tuple[str, str, str], ...] = ()  # what shows or reads what it carries, as of a mark
     points: tuple[tuple[float, str, str], ...] = ()  # share of its length, output there and its label
+    depths: Depths = ()  # of a member that tapers, at even stations
+    # Of a body: where its mass centre lies, in mathematics, and whether that is before its node (-1).
+    centre: tuple[str, int] = ("", 1)
 
     @property
     def nodes(self) -> tuple[str, ...]:
@@ -92,11 +101,13 @@ class Mark:
 
 @dataclass(frozen=True, slots=True)
 class Distance:
-    """An output that is the difference of two nodes of one network."""
+    """An output that is the difference of two nodes, or how far apart a rigid link holds them."""
 
     nodes: tuple[str, str]
     name: str
     label: str
+    lines: tuple[str, ...] = ()  # values, where they are asked for
+    is_length: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,6 +118,8 @@ class DrawnNetwork:
     parts: tuple[DrawnPart, ...]
     marks: tuple[Mark, ...]
     spans: tuple[Distance, ...]
+    order: tuple[str, ...] = ()  # nodes as the specification wants them, from left to right
+    has_rollers: bool = False  # below its masses
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,7 +147,21 @@ def scheme_of(model: Model, labels: Labels) -> Scheme:
     networks = _networks(tuple(domains), found.parts, [*found.marks, *seen], found.spans)
     together = {node: i for i, net in enumerate(networks) for node in net.nodes}
     apart = [s.name for s in found.spans if together[s.nodes[0]] != together[s.nodes[1]]]
+    networks = tuple(_as_wanted(net, domains, model.drawing) for net in networks)
     return Scheme(networks, domains, (*found.others, *apart))
+
+
+def _as_wanted(net: DrawnNetwork, domains: Domains, hints: DrawingHints) -> DrawnNetwork:
+    """Return a network with what the specification says of its drawing.
+
+    Rollers stand below masses that nothing else shows to move along a line: no ground, no motion.
+    """
+    is_free = all(domains[n] == "translation" for n in net.nodes) and not (
+        any(p.symbol.role == "support" or any(not e.node for e in p.ends) for p in net.parts)
+        or any(m.style == "motion" and m.labels[0][0] == "input" for m in net.marks)
+    )
+    rollers = is_free if hints.rollers is None else hints.rollers
+    return replace(net, order=tuple(n for n in hints.order if n in net.nodes), has_rollers=rollers)
 
 
 def with_readings(scheme: Scheme, readings: Sequence[str], labels: Labels) -> Scheme:
@@ -224,8 +251,40 @@ def _part(use: PlacedElement, labels: Labels, domains: Domains) -> DrawnPart:
     if kind == "transformer":
         pair = (ends[0].domain, ends[1].domain)
         symbol = ElementSymbol("coupling", TRANSFORMERS.get(pair, box), 34.0)
+    if wanted := dict(labels.model.drawing.symbols).get(use.name):
+        symbol = replace(symbol, draw=TRANSFORMER_SYMBOLS[wanted])
     label, lines = _label(use, labels)
-    return DrawnPart("element", use.name, kind, symbol, ends, label, lines)
+    sections = _sections(use, labels.model) if kind in TAPERS else ()
+    if sections:
+        symbol = replace(symbol, draw=partial(tapered, symbol.draw, sections))
+    return DrawnPart(
+        "element", use.name, kind, symbol, ends, label, lines, depths=sections, centre=_centre(use, labels)
+    )
+
+
+def _centre(use: PlacedElement, labels: Labels) -> tuple[str, int]:
+    """Return where the mass centre of a rigid body lies."""
+    offset = dict(use.values).get("cg", Number(Fraction(0)))
+    if offset == Number(Fraction(0)):
+        return "", 1
+    value = evaluate(offset, values_of(labels.model))
+    return labels.quantity(offset, "m"), -1 if value is not None and value < 0 else 1
+
+
+TAPERS: Final = {"beam": {"I": 4, "A": 2}, "rod": {"A": 2}, "shaft": {"J": 4}}
+"""Measures of a section that may vary along a member, each with the root of it that is a depth."""
+
+
+def _sections(use: PlacedElement, model: Model) -> Depths:
+    if not is_tapered(model):
+        return ()
+    known, values = values_of(model), dict(use.values)
+    length = evaluate(values["l"], known) or UNKNOWN
+    found = (
+        depths(values[name], (0.0, length), known, root)
+        for name, root in TAPERS[use.element.type_name].items()
+    )
+    return next((d for d in found if d), ())
 
 
 def _end(reference: NodeReference, domain: str, domains: Domains) -> End:
@@ -278,8 +337,9 @@ def _label(use: PlacedElement, labels: Labels) -> tuple[str, tuple[str, ...]]:
             if groups and is_plain
             else [labels.name(use.name)]
         )
-        return r",\,".join(shown), tuple(labels.values([e for _, e in given]))
-    shown = [labels.quantity(e, use.element.unit_of(n, by_port)) for n, e in given if n != "angle"]
+        return r",\,".join(shown), ()
+    inside = ("angle", "cg")  # drawn, not written
+    shown = [labels.quantity(e, use.element.unit_of(n, by_port)) for n, e in given if n not in inside]
     seen = list(dict.fromkeys(shown))
     if not 0 < len(seen) <= LABEL_LENGTH:
         seen = [labels.name(use.name)]
@@ -382,11 +442,49 @@ def _share(model: Model, place: Call) -> float:
     """Return where a point lies along an element, as a share of its length; a half where that is unknown."""
     use = next(e for e in model.elements if e.name == place.name.partition(".")[0])
     length = dict(use.values)["l"]
-    known = {p.name: float(p.value.nearly) for p in model.parameters if p.value}
+    known = values_of(model)
     at, whole = evaluate(place.argument, known), evaluate(length, known)
     if at is None or not whole:
         return 0.5
     return min(1.0, max(0.0, at / whole))
+
+
+def values_of(model: Model) -> dict[str, float]:
+    """Return what parameters and definitions are, where that is known."""
+    known = {p.name: float(p.value.nearly) for p in model.parameters if p.value}
+    for one in model.definitions:
+        if (value := evaluate(one.expression, known)) is not None:
+            known[one.name] = value
+    return known
+
+
+STATIONS: Final = 24
+"""Sections at which a member that varies along x is measured."""
+UNKNOWN: Final = 0.5
+"""What a parameter without value is taken for, there: of ``1 - c*x/l`` a taper can be seen."""
+
+
+def depths(
+    coefficient: Expression, ends: tuple[float, float], known: Mapping[str, float], root: int
+) -> Depths:
+    """Return the depth of a member at even stations, the greatest as 1; nothing of a uniform one.
+
+    Of similar sections: the square root of an area, the fourth root of a second moment (``root``).
+
+    Examples
+    --------
+    >>> found = depths(Sum((Number(Fraction(1)), Name("x"))), (0.0, 1.0), {}, 1)
+    >>> [round(found[i], 2) for i in (0, 12, 24)]
+    [0.5, 0.75, 1.0]
+    """
+    a, b = ends
+    guessed = {n.name: UNKNOWN for n in names(coefficient) if isinstance(n, Name)} | dict(known)
+    found = []
+    for i in range(STATIONS + 1):
+        value = evaluate(coefficient, {**guessed, COORDINATE: a + (b - a) * i / STATIONS})
+        found.append(max(0.0, value or 0.0) ** (1 / root))
+    most, least = max(found), min(found)
+    return tuple(d / most for d in found) if least < (1 - 1e-6) * most else ()
 
 
 def evaluate(expression: Expression, known: Mapping[str, float]) -> float | None:

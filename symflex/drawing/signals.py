@@ -65,6 +65,7 @@ class SignalNode:
     kind: Kind
     name: str
     label: str = ""  # mathematics
+    lines: tuple[str, ...] = ()  # values, where they are asked for
     before: list[tuple[int, bool]] = field(
         default_factory=list
     )  # what leads to it, and whether it is subtracted
@@ -205,9 +206,11 @@ class SignalGraph:
         gain = rest if below is None else quotient(rest, below)
         if gain != number(1):
             origin = self._box("gain", "", self.labels.expression(gain), origin)
+            self.nodes[origin].lines = tuple(self.labels.values([gain]))
         for one in own:
             assert isinstance(one, Name)
             origin = self._box("block", one.name, self.labels.name(one.name), origin)
+            self.nodes[origin].lines = tuple(self.labels.values([e for _, e in self.blocks[one.name].values]))
         return origin, is_minus
 
 

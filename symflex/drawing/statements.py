@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from symflex.drawing.geometry import Placed
-from symflex.drawing.lettering import SMALL, text
+from symflex.drawing.lettering import SMALL, filled, text
 from symflex.drawing.signals import formula
 
 if TYPE_CHECKING:
@@ -31,8 +31,11 @@ def statements(graph: SignalGraph) -> list[Placed]:
         name = graph.labels.name(block.name)
         line = text(f"{name} = {graph.labels.fraction(value)}", SMALL) if value is not None else None
         line = line if line and line.width <= WIDEST else text(name, SMALL)
-        if line is not None:
-            y -= line.height
-            found.append(Placed("block", block.name, (), (line.moved(0.0, y),)))
-            y -= line.depth + LEADING
+        values = filled(graph.labels.values([e for _, e in block.values]), WIDEST)
+        lines = []
+        for one in (line, *values) if line else ():
+            y -= one.height
+            lines.append(one.moved(0.0, y))
+            y -= one.depth + LEADING
+        found.append(Placed("block", block.name, (), tuple(lines)))
     return found

@@ -236,21 +236,51 @@ def massless_beam(length: float) -> Strokes:
     return (rectangle(0, -1.0, length, 1.0),)
 
 
+HALF: Final = 2.2
+"""Half the width of a slender member [points]."""
+DEEPEST, THINNEST = 4.2, 0.8
+"""The same of one that tapers, where it is deepest, and at least."""
+
+
+def half_depth(depths: Sequence[float], share: float) -> float:
+    """Return half the width of a member at a share of its length.
+
+    Examples
+    --------
+    >>> half_depth((), 0.3), half_depth((1.0, 0.5), 0.0)
+    (2.2, 4.2)
+    """
+    if not depths:
+        return HALF
+    return max(THINNEST, DEEPEST * depths[round(share * (len(depths) - 1))])
+
+
+def slender(start: float, end: float, depths: Sequence[float] = ()) -> Stroke:
+    """Return the outline of a member along x, with its depths at even stations where they differ."""
+    count = max(1, len(depths) - 1)
+    upper = [(start + (end - start) * i / count, half_depth(depths, i / count)) for i in range(count + 1)]
+    return outline(*upper, *((x, -y) for x, y in reversed(upper)), fill=FILLED)
+
+
+def tapered(draw: Callable[[float], Strokes], depths: Sequence[float], length: float) -> Strokes:
+    """Return a member whose section varies: the first stroke of a uniform one is its outline."""
+    return (slender(0, length, depths), *draw(length)[1:])
+
+
 def beam(length: float) -> Strokes:
     """Return a slender member."""
-    return (rectangle(0, -2.2, length, 2.2, FILLED),)
+    return (slender(0, length),)
 
 
 def rod(length: float) -> Strokes:
     """Return a slender member with its axis."""
-    axis = Stroke(((-0.0, 0), (length, 0)), THIN, PLAIN, True)
-    return (rectangle(0, -2.2, length, 2.2, FILLED), axis)
+    return (slender(0, length), Stroke(((0, 0), (length, 0)), THIN, PLAIN, True))
 
 
 def shaft(length: float) -> Strokes:
     """Return a slender member between collars."""
     ends = (line((0, -3.4), (0, 3.4)), line((length, -3.4), (length, 3.4)))
-    return (rectangle(0, -2.2, length, 2.2, FILLED), Stroke(((0, 0), (length, 0)), THIN, PLAIN, True), *ends)
+    return (*rod(length), *ends)
 
 
 def string(length: float) -> Strokes:
@@ -308,7 +338,33 @@ def gears(length: float) -> Strokes:
     )
 
 
+def belt(length: float) -> Strokes:
+    """Return two pulleys with a belt, seen from the side."""
+    a, b = 0.26 * length, 0.74 * length
+    return (
+        line((0, 0), (a, 0), width=BOLD),
+        line((b, 0), (length, 0), width=BOLD),
+        line((a, 5), (b, 4)),
+        line((a, -5), (b, -4)),
+        *(circle(x, 0, r) for x, r in ((a, 5.0), (b, 4.0), (a, 0.8), (b, 0.8))),
+    )
+
+
 def rack(length: float) -> Strokes:
+    """Return a pinion on a rack."""
+    m, low = length / 2, -4.5
+    teeth = [(m - 9 + 1.5 * i, low + 1.6 * (i % 2)) for i in range(12)]
+    return (
+        line((0, 0), (m - 4, 0), width=BOLD),
+        circle(m, 0.6, 3.6),
+        circle(m, 0.6, 0.8),
+        line(*teeth, (m + 9, low)),
+        rectangle(m - 9, low - 2.4, m + 9, low, FILLED),
+        line((m + 9, low - 1.2), (length, low - 1.2), (length, 0)),
+    )
+
+
+def screw(length: float) -> Strokes:
     """Return a screw with its nut: teeth on a shaft, and what they move."""
     a, b = 0.2 * length, 0.8 * length
     threads = [line((a + i * 3.0, -2.4), (a + i * 3.0 + 2, 2.4), width=THIN) for i in range(int((b - a) / 3))]
@@ -455,12 +511,16 @@ SYMBOLS: Final[dict[str, ElementSymbol]] = {
 
 TRANSFORMERS: Final[dict[tuple[str, str], Callable[[float], Strokes]]] = {
     ("rotation", "rotation"): gears,
-    ("rotation", "translation"): rack,
-    ("translation", "rotation"): rack,
+    ("rotation", "translation"): screw,
+    ("translation", "rotation"): screw,
     ("translation", "translation"): lever,
     ("electrical", "electrical"): coils,
 }
 """A transformer by the domains of its two sides; of other domains it is a box."""
+TRANSFORMER_SYMBOLS: Final[dict[str, Callable[[float], Strokes]]] = {
+    draw.__name__: draw for draw in (gears, belt, screw, rack, lever, coils, box)
+}
+"""What a specification may call the symbol of a transformer."""
 
 
 def symbol_of(type_name: str) -> ElementSymbol:

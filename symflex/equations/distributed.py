@@ -416,8 +416,9 @@ def _line(
 
 def _solution(field: FieldProblem, evaluator: ExactEvaluator, demands: _Demands) -> FieldSolution:
     inside, given, unknowns = evaluator.along_x(), field.equations, field.unknowns
-    if field.written and any(map(varies_along_x, field.equations)):
-        given, unknowns = named_brackets(field.written, unknowns)
+    written = field.written[: len(given)]
+    if written not in ((), given) and any(map(varies_along_x, given)):
+        given, unknowns = named_brackets(written, unknowns)
     equations = [read_equation(e, unknowns, inside) for e in given]
     inputs = tuple(dict.fromkeys(v for e in equations for v in e.loads))
     zero = Factored.number(evaluator.ring, 0)

@@ -434,7 +434,7 @@ def substitute(expression: Expression, mapping: Mapping[str, Expression]) -> Exp
 
 
 def replace_values(expression: Expression, mapping: Mapping[Expression, Expression]) -> Expression:
-    """Replace values of fields at points, and their derivatives along x, by expressions.
+    """Replace names, values of fields at points, derivatives along x, and brackets by expressions.
 
     Examples
     --------
@@ -442,9 +442,8 @@ def replace_values(expression: Expression, mapping: Mapping[Expression, Expressi
     >>> replace_values(Sum((value, Name("x"))), {value: Name("tip")})
     Sum(terms=(Name(name='tip'), Name(name='x')))
     """
-    return _replaced(
-        expression, lambda node: mapping.get(node, node) if isinstance(node, Call | Derivative) else node
-    )
+    kinds = Name | Call | Derivative | Differentiated
+    return _replaced(expression, lambda node: mapping.get(node, node) if isinstance(node, kinds) else node)
 
 
 def replace_node(expression: Expression, old: Expression, new: Expression) -> Expression:

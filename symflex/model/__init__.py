@@ -3,6 +3,7 @@
 from symflex.model.model import (
     Analysis,
     Definition,
+    DrawingHints,
     ExactValue,
     FieldProblem,
     Figure,
@@ -25,6 +26,7 @@ from symflex.model.signs import check_value
 __all__ = [
     "Analysis",
     "Definition",
+    "DrawingHints",
     "ExactValue",
     "FieldProblem",
     "Figure",

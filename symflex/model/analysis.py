@@ -1,4 +1,4 @@
-"""Reading what a specification asks of the commands: analysis defaults, figures, published formulas.
+"""Reading what a specification asks of the commands: defaults, figures, drawings, published formulas.
 
 Whether the names of a printed formula are known is told from its tree.
 """
@@ -11,7 +11,7 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE
-from symflex.errors import Diagnostic, nearest
+from symflex.errors import Diagnostic, Text, nearest
 from symflex.expressions import (
     FUNCTIONS,
     Attribute,
@@ -24,7 +24,14 @@ from symflex.expressions import (
     names_among,
     nodes,
 )
-from symflex.model.model import PI_NEARLY, Analysis, Figure, Published
+from symflex.model.model import (
+    PI_NEARLY,
+    TRANSFORMER_SYMBOLS,
+    Analysis,
+    DrawingHints,
+    Figure,
+    Published,
+)
 from symflex.model.scope import COMPARED_NAMES, LISTED_NAMES, RESERVED
 from symflex.model.signs import Line
 from symflex.model.spec import ArrayValue, BooleanValue, NumberValue, TableValue
@@ -151,6 +158,42 @@ def read_figures(reader: Reader, section: TableValue | None, model: Model) -> tu
         until = _until(reader, table, kind, what)
         found.append(Figure(entry.key, kind, chosen, title, gain, entry.key_span, has_data, band, until))
     return tuple(found)
+
+
+def read_drawing(reader: Reader, section: TableValue | None, model: Model) -> DrawingHints:
+    """Return how the model is to be drawn."""
+    if section is None:
+        return DrawingHints()
+    reader.keys(section, ("order", "symbols", "rollers"), "[drawing]")
+    order, rollers, table = (section.get(key) for key in ("order", "rollers", "symbols"))
+    nodes = [n.name for n in model.nodes]
+    found: list[str] = []
+    for text in (reader.strings(order, "order of [drawing]", "an array of nodes") or ()) if order else ():
+        _check_among(reader, text, nodes, "node")
+        if text.value in found:
+            reader.note("SF213", f"node '{text.value[:64]}' stands twice in order", text.span)
+        found.append(text.value)
+    if rollers and not isinstance(rollers.value, BooleanValue):
+        reader.misfit("rollers of [drawing] must be true or false", rollers.value)
+    symbols: list[tuple[str, str]] = []
+    shown = reader.table(table, "symbols of [drawing]", 'as in { pinion = "rack" }') if table else None
+    turning = [e.name for e in model.elements if e.element.type_name == "transformer"]
+    for entry in shown.entries if shown else ():
+        _check_among(reader, Text(entry.key, entry.key_span), turning, "transformer")
+        kind = reader.string(entry, f"symbol of '{entry.key[:64]}'")
+        if kind is not None and kind.value not in TRANSFORMER_SYMBOLS:
+            hint = nearest(kind.value, TRANSFORMER_SYMBOLS) or "symbols: " + ", ".join(TRANSFORMER_SYMBOLS)
+            reader.note("SF208", f"unknown symbol '{kind.value[:60]}' of '{entry.key}'", kind.span, hint)
+        elif kind is not None:
+            symbols.append((entry.key, kind.value))
+    has_rollers = rollers.value.value if rollers and isinstance(rollers.value, BooleanValue) else None
+    return DrawingHints(tuple(found), tuple(symbols), has_rollers)
+
+
+def _check_among(reader: Reader, text: Text, known: Sequence[str], what: str) -> None:
+    if text.value not in known:
+        hint = nearest(text.value, known) or f"{what}s: " + (", ".join(known[:LISTED_NAMES]) or "none")
+        reader.note("SF210", f"there is no {what} '{text.value[:64]}'", text.span, hint)
 
 
 def _until(reader: Reader, table: TableValue, kind: str, what: str) -> Fraction | None:

@@ -72,7 +72,8 @@ def with_brackets_opened(
         reader.take(problems)
         if not problems:
             equations, conditions = (tuple(e for e, _ in group) for group in opened)
-            written = each.equations if equations != each.equations else ()
+            given = (*each.equations, *each.conditions)
+            written = given if given != (*equations, *conditions) else ()
             found.append(replace(each, equations=equations, conditions=conditions, written=written))
     return tuple(found)
 

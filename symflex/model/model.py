@@ -164,7 +164,7 @@ class FieldProblem:
     # latex and doc: label and description; empty when not given.
     latex: str = ""
     doc: str = ""
-    # The equations as they are written, where brackets in them bear primes.
+    # The equations and then the conditions as they are written, where brackets in them bear primes.
     written: tuple[Equation, ...] = ()
 
 
@@ -245,6 +245,19 @@ class Figure:
     until: Fraction | None = None
 
 
+TRANSFORMER_SYMBOLS: Final = ("gears", "belt", "screw", "rack", "lever", "coils", "box")
+"""What a transformer may be drawn as."""
+
+
+@dataclass(frozen=True, slots=True)
+class DrawingHints:
+    """How a specification wants its model drawn; a drawing needs none of them."""
+
+    order: tuple[str, ...] = ()  # nodes from left to right
+    symbols: tuple[tuple[str, str], ...] = ()  # transformers with what they are drawn as
+    rollers: bool | None = None  # below masses; None where that is left to the drawing
+
+
 @dataclass(frozen=True, slots=True)
 class Published:
     """What a paper printed for one transfer function."""
@@ -284,6 +297,7 @@ class Model:
     source: str = ""
     analysis: Analysis = Analysis()
     figures: tuple[Figure, ...] = ()
+    drawing: DrawingHints = DrawingHints()
     published: tuple[Published, ...] = ()
     signal_units: tuple[tuple[Variable, Dimension], ...] = ()
     quotients: tuple[tuple[tuple[str, str], Dimension], ...] = ()

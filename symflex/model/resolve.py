@@ -13,7 +13,14 @@ from typing import TYPE_CHECKING, Literal
 from symflex.errors import Diagnostic, Span, SpecError, UsageError
 from symflex.expressions import Equation, Expression, substitute
 from symflex.library.elements import COMPONENTS, Placing
-from symflex.model.analysis import check_printed, read_analysis, read_figures, read_published, readable_names
+from symflex.model.analysis import (
+    check_printed,
+    read_analysis,
+    read_drawing,
+    read_figures,
+    read_published,
+    readable_names,
+)
 from symflex.model.blocks import Loads, Origin, read_blocks
 from symflex.model.boundary import (
     Surroundings,
@@ -95,6 +102,7 @@ SECTIONS = (
     "published",
     "analysis",
     "figures",
+    "drawing",
 )
 MAX_PAIRS = 10_000
 """Transfer functions of one model, as of 100 outputs and 100 inputs: every list of them is printed in full. A
@@ -198,13 +206,14 @@ def resolve(spec: Spec, origin: Origin) -> Model:
     )
     broken = broken_names(sections, draft) | twins
     model, turned = _finish(reader, draft, broken)
-    later = Reader()
+    later, hints = Reader(), Reader()
     model = replace(
         model,
         title=reader.plain(spec.root, "title", "the specification"),
         source=reader.plain(spec.root, "source", "the specification"),
         analysis=read_analysis(reader, sections["analysis"]),
         figures=read_figures(later, sections["figures"], model),
+        drawing=read_drawing(hints, sections["drawing"], model),
         published=tuple(
             printed_in_cycles(p, draft, turned) for p in read_published(later, sections["published"], model)
         ),
@@ -219,6 +228,8 @@ def resolve(spec: Spec, origin: Origin) -> Model:
         if section
     )
     reader.take([p for p in later.problems if whole or p.code != "SF218"])
+    # A node may be missing for the same reason.
+    reader.take([p for p in hints.problems if not reader.problems or p.code != "SF210"])
     problems = reader.problems
     if _lost_sections(spec):
         problems = [p for p in problems if p.code not in CONSEQUENCES]

@@ -183,6 +183,37 @@ def test_a_band_that_is_none_is_refused(band, code):
     assert codes(MASS + f"[analysis]\nband = {band}\n") == [code]
 
 
+DRAWN = f"{MASS}[drawing]\n"
+
+
+def test_hints_for_a_drawing_are_read():
+    hints = pipeline.loads(f'{DRAWN}order = ["x"]\nrollers = false\n').drawing
+    assert (hints.order, hints.rollers, hints.symbols) == (("x",), False, ())
+    assert pipeline.loads(MASS).drawing.rollers is None
+
+
+@pytest.mark.parametrize(
+    ("line", "code"),
+    [
+        ('order = ["xx"]', "SF210"),
+        ('order = ["x", "x"]', "SF213"),
+        ("order = 3", "SF206"),
+        ('rollers = "yes"', "SF206"),
+        ('colour = "red"', "SF207"),
+        ('symbols = { M = "rack" }', "SF210"),
+        ('symbols = "rack"', "SF206"),
+    ],
+)
+def test_a_hint_that_cannot_be_followed_is_refused(line, code):
+    assert codes(f"{DRAWN}{line}\n") == [code]
+
+
+def test_an_unknown_symbol_is_refused():
+    gear = 'G = { type = "transformer", from = "x", to = "y", ratio = 2 }\n'
+    text = MASS.replace("[elements]\n", f"[elements]\n{gear}")
+    assert codes(f'{text}[drawing.symbols]\nG = "pulley"\n') == ["SF208"]
+
+
 @pytest.mark.parametrize("key", ["modes = 0", "modes = -1", "modes = 1.5", 'digits = "3"', "digits = 100000"])
 def test_a_count_that_is_none_is_refused(key):
     assert codes(MASS + f"[analysis]\n{key}\n") == ["SF206"]

@@ -1,0 +1,208 @@
+"""Members that taper, lengths, coordinates, rollers, and what a specification says of its drawing."""
+
+from __future__ import annotations
+
+import pytest
+
+from symflex import pipeline
+from symflex.drawing import drawing_of
+from symflex.drawing.symbols import TRANSFORMER_SYMBOLS
+from symflex.model import model as model_room
+from tests.unit.drawing.geometry_checks import count, outside, overlaps, struck_texts, wrongly_counted
+
+TAPERED = """
+symflex = 1
+parameters = { E = "70 GPa", rho = 2700, l = "0.8 m", c = 0.75, h = "40 mm", m = "1 kg" }
+definitions = { I_0 = "h^4/12", A_0 = "h^2" }
+elements.load = { type = "mass", at = "tip", m = "m" }
+inputs  = { F = { force = "tip" } }
+outputs = { Y = "tip" }
+[elements.arm]
+type = "beam"
+between = ["ground", "tip"]
+E = "E"
+rho = "rho"
+l = "l"
+"""
+SQUARE = 'I = "I_0*(1 - c*x/l)^4"\nA = "A_0*(1 - c*x/l)^2"\n'
+FIELD = """
+symflex = 1
+parameters = { EI = { unit = "N*m^2" }, rhoA = "1 kg/m", l = "1 m" }
+[fields.w]
+domain     = ["0", "l"]
+equation   = "(EI*(1 - x/(2*l))^4*w'')'' + rhoA*(1 - x/(2*l))^2*s^2*w = 0"
+conditions = ["w(0) = 0", "w'(0) = 0", "w''(l) = 0", "(EI*(1 - x/(2*l))^4*w'')'(l) = -F"]
+[inputs]
+F = { unit = "N" }
+[outputs]
+Y = "w(l)"
+"""
+LINKED = """
+symflex = 1
+parameters = { m = "1 kg", J = "1 kg*m^2", c = "0.1 m", h = "0.2 m" }
+[elements]
+body = { type = "rigid_body", at = "p", m = "m", J = "J", cg = "c" }
+link = { type = "rigid_link", between = ["p", "q"], length = "h" }
+end  = { type = "rigid_body", at = "q", m = "m", J = "J", cg = "-c" }
+lone = { type = "mass", at = "x", m = "m" }
+[inputs]
+F = { force = "x" }
+[outputs]
+X = "x"
+"""
+FREE = """
+symflex = 1
+[elements]
+a = { type = "mass", at = "x", m = "1 kg" }
+b = { type = "mass", at = "y", m = "1 kg" }
+k = { type = "spring", between = ["x", "y"], k = "1 N/m" }
+[inputs]
+F = { force = "x" }
+[outputs]
+Y = "y"
+"""
+TURNING = """
+symflex = 1
+[elements]
+rotor  = { type = "inertia", at = "phi", J = "1 kg*m^2" }
+pinion = { type = "transformer", from = "phi", to = "x", ratio = "3 mm/rad" }
+car    = { type = "mass", at = "x", m = "1 kg" }
+[inputs]
+T = { torque = "phi" }
+[outputs]
+X = "x"
+"""
+
+
+def sound(text):
+    model = pipeline.loads(text)
+    drawing = drawing_of(model)
+    assert (overlaps(drawing), struck_texts(drawing), outside(drawing)) == ([], [], [])
+    assert wrongly_counted(model, drawing) == []
+    return drawing
+
+
+def item(drawing, kind, name):
+    return next(i for i in drawing.items if (i.kind, i.name) == (kind, name))
+
+
+def depths(drawing, kind, name):
+    """Return the depth of a member at its left and right end."""
+    points = item(drawing, kind, name).strokes[0].points
+    left, right = min(x for x, _ in points), max(x for x, _ in points)
+    heights = ([y for x, y in points if x == pytest.approx(end)] for end in (left, right))
+    return [max(ys) - min(ys) for ys in heights]
+
+
+def markups(drawing):
+    return [t.markup for i in drawing.items for t in i.texts]
+
+
+def test_a_beam_is_drawn_as_thick_as_a_square_one_of_its_section():
+    """The side of a square whose second moment is (1 - c x/l)^4 I_0: a quarter is left where c = 0.75."""
+    thick, thin = depths(sound(TAPERED + SQUARE), "element", "arm")
+    assert thin / thick == pytest.approx(0.25)
+
+
+def test_a_beam_that_loses_width_alone_is_drawn_tapered_too():
+    thick, thin = depths(sound(TAPERED + 'I = "I_0*(1 - c*x/l)"\nA = "A_0"\n'), "element", "arm")
+    assert thin / thick == pytest.approx(0.25**0.25)
+
+
+def test_a_uniform_beam_is_drawn_uniform():
+    thick, thin = depths(sound(TAPERED + 'I = "I_0"\nA = "A_0"\n'), "element", "arm")
+    assert thick == thin
+
+
+def test_a_field_is_drawn_by_the_coefficient_of_its_highest_derivative():
+    drawing = sound(FIELD)
+    thick, thin = depths(drawing, "field", "w")
+    assert thin / thick == pytest.approx(0.5)
+    assert any("''" in t and "[1 - x/(2 l)]^{4}" in t for t in markups(drawing))  # as it is written
+
+
+def test_the_length_of_a_link_runs_from_node_to_node():
+    drawing = sound(LINKED)
+    length, left, right = (
+        item(drawing, *n).box for n in (("length", "link"), ("element", "body"), ("element", "end"))
+    )
+    assert length.x0 == pytest.approx((left.x0 + left.x1) / 2)
+    assert length.x1 == pytest.approx((right.x0 + right.x1) / 2)
+
+
+def test_a_mass_centre_lies_beyond_its_node_or_before_it():
+    drawing = sound(LINKED)
+    for name, sign in (("body", 1), ("end", -1)):
+        body = item(drawing, "element", name)
+        circle = body.strokes[-3].points  # before its cross
+        offset = sum(x for x, _ in circle) / len(circle) - (body.box.x0 + body.box.x1) / 2
+        assert offset * sign > 5
+    assert "$c$" in markups(drawing)
+
+
+def test_x_begins_at_the_first_node_of_a_beam():
+    text = TAPERED.replace('["ground", "tip"]', '["tip", "ground"]') + SQUARE
+    for case, sign in ((TAPERED + SQUARE, 1), (text, -1)):
+        drawing = sound(case)
+        arm, axis = item(drawing, "element", "arm").box, item(drawing, "axis", "x").box
+        start = arm.x0 if sign > 0 else arm.x1
+        assert (axis.x0 if sign > 0 else axis.x1) == pytest.approx(start)
+
+
+@pytest.mark.parametrize(("text", "wheels"), [(FREE, 2), (FREE + "[drawing]\nrollers = false\n", 0)])
+def test_free_masses_stand_on_rollers_unless_the_specification_says_no(text, wheels):
+    assert len(sound(text).of_kind("ground")) == wheels
+
+
+def test_rollers_are_drawn_where_the_specification_wants_them():
+    text = f'{FREE}[elements.wall]\ntype = "damper"\nbetween = ["x", "ground"]\nb = "1 N*s/m"\n'
+    for rollers, grounds in (("", 1), ("[drawing]\nrollers = true\n", 3)):
+        assert len(sound(text + rollers).of_kind("ground")) == grounds
+
+
+def test_nodes_stand_in_the_order_that_the_specification_wants():
+    for order in (["x", "y"], ["y", "x"]):
+        drawing = sound(f"{FREE}[drawing]\norder = {order}\n")
+        places = {n: item(drawing, "element", e).box.x0 for n, e in (("x", "a"), ("y", "b"))}
+        assert sorted(places, key=places.get) == order
+
+
+def test_a_transformer_is_drawn_with_the_symbol_that_the_specification_wants():
+    plain = item(sound(TURNING), "element", "pinion")
+    assert plain == item(sound(f'{TURNING}[drawing.symbols]\npinion = "screw"\n'), "element", "pinion")
+    for name in TRANSFORMER_SYMBOLS:
+        sound(f'{TURNING}[drawing.symbols]\npinion = "{name}"\n')
+    assert plain != item(sound(f'{TURNING}[drawing.symbols]\npinion = "rack"\n'), "element", "pinion")
+
+
+def test_every_symbol_that_a_specification_may_name_is_drawn():
+    assert tuple(TRANSFORMER_SYMBOLS) == model_room.TRANSFORMER_SYMBOLS
+
+
+def test_values_of_members_and_fields_stand_once_below():
+    for text in (TAPERED + SQUARE, FIELD):
+        drawing = drawing_of(pipeline.loads(text), values=True)
+        assert count(drawing, "values", "") == 1
+        assert sum(r"l = " in t for t in markups(drawing)) == 1
+
+
+def test_values_stand_in_gains_and_blocks():
+    text = FREE.replace('F = { force = "x" }', "r = {}").replace("[inputs]", SIGNALS)
+    drawing = drawing_of(pipeline.loads(text), values=True)
+    assert {r"$3\,\mathrm{N/m}$", r"$T = 2\,\mathrm{ms}$"} <= set(markups(drawing))
+    assert not overlaps(drawing)
+
+
+SIGNALS = """
+[parameters]
+K = "3 N/m"
+T = "2 ms"
+[blocks]
+G = { type = "lag", T = "T" }
+[signals]
+f = "K*G*(r - x)"
+[elements.drive]
+type = "force_source"
+at = "x"
+f = "f"
+[inputs]"""
