@@ -17,6 +17,7 @@ so that this norm is about a wavenumber.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from math import ceil, factorial, inf, isfinite, log2
 from typing import TYPE_CHECKING, Protocol
 
@@ -60,6 +61,8 @@ BEYOND = 32
 """Polynomials in u are bounded on a disc so many times larger than what they are used on."""
 FEWEST_BITS = 30
 """Of orders in u that hardly matter."""
+BOUNDED = 4
+"""Parts of a step on each of which coefficients are bounded: on the whole they would be a quarter larger."""
 SAMPLES = 8
 """Points at which the growth along x is sampled where about what it is suffices."""
 BITS_OF_E = 1.4426950408889634
@@ -73,6 +76,16 @@ class SingularCoefficientError(ValueError):
     def __init__(self, place: float) -> None:
         super().__init__(place)
         self.place = place
+
+
+@dataclass(frozen=True, slots=True)
+class RationalPart:
+    """A part of an entry: a quotient of polynomials in x, times powers of u."""
+
+    place: Place
+    numerator: Polynomial  # in x less the point of expansion
+    divisors: tuple[Polynomial, ...]  # of the same; a factor of the denominator stands as often as it occurs
+    rates: tuple[tuple[int, Number], ...]  # the powers of u, and what each is multiplied by
 
 
 class VaryingSystem(Protocol):
@@ -89,6 +102,10 @@ class VaryingSystem(Protocol):
 
     def series(self, x: arb, terms: int) -> Sequence[Coefficients]:
         """Return, per power of u, the entries' Taylor polynomials about a point."""
+        ...
+
+    def parts(self, x: arb) -> Sequence[RationalPart] | None:
+        """Return what entries are sums of about a point, ``None`` where some are not rational in x."""
         ...
 
     def bounds(self, x: acb, largest: arb) -> Mapping[Place, arb]:
@@ -191,13 +208,7 @@ def expand(system: VaryingSystem, largest: arb, bits: int, orders: int = 0) -> P
     """
     reach = (largest * BEYOND).abs_upper()
     steps = _steps(system, *system.ends(), reach, bits)
-    growth, before = arb(0), None
-    for step in steps:
-        hull = acb(step.start + step.length / 2 + arb(0, (step.length / 2).abs_upper()))
-        growth += _norm(system, hull, reach, step.weights) * abs(step.length)
-        if before is not None:
-            growth += max(x / y for x, y in zip(before, step.weights, strict=True)).log()
-        before = step.weights
+    growth, weights = _growth(system, steps, reach)
     doublings = float(growth.upper()) * BITS_OF_E
     terms = orders or max(2, ceil((bits + 2 * doublings) / log2(BEYOND / 2)))
     total: Matrix | None = None
@@ -209,8 +220,25 @@ def expand(system: VaryingSystem, largest: arb, bits: int, orders: int = 0) -> P
             spend()
             made = _stepped(system, step, reach, terms)
             total = made if total is None else _product(made, total, terms)
-        ends = steps[0].weights, steps[-1].weights
-        return PowerExpansion(total or [], terms, ctx.prec, reach, growth.exp().abs_upper(), ends)
+        return PowerExpansion(total or [], terms, ctx.prec, reach, growth.exp().abs_upper(), weights)
+
+
+def _growth(system: VaryingSystem, steps: Sequence[_Step], reach: arb) -> tuple[arb, tuple[Weights, Weights]]:
+    """Return by which power of e solutions grow at most for abs(u) up to a reach, and states at the ends.
+
+    States are scaled anew on every part of a step.
+    """
+    growth, found = arb(0), list[Weights]()
+    for step in steps:
+        part = step.length / BOUNDED
+        for k in range(BOUNDED):
+            middle = step.start + part * (k + 0.5)
+            found.append(_weights(system, middle.mid(), reach))
+            hull = acb(middle + arb(0, (part / 2).abs_upper()))
+            growth += _norm(system, hull, reach, found[-1]) * abs(part)
+    for before, after in pairwise(found):
+        growth += max(x / y for x, y in zip(before, after, strict=True)).log()
+    return growth, (found[0], found[-1])
 
 
 def _weights(system: VaryingSystem, middle: arb, reach: arb) -> Weights:
@@ -288,7 +316,111 @@ def _stepped(system: VaryingSystem, step: _Step, reach: arb, terms: int) -> Matr
     # An order in u is used times a power of the largest u, and needs so many bits fewer.
     needed = [max(FEWEST_BITS, bits - int(m * log2(BEYOND))) for m in range(terms)]
     counts = [ceil((x + step.growth) / doublings) for x in needed]
-    series = system.series(step.start, counts[0])
+    parts = system.parts(step.start)
+    if parts is None:
+        columns = _by_quadrature(system.series(step.start, counts[0]), n, step.length, needed, counts)
+    else:
+        columns = _by_recurrence(parts, n, step.length, counts, doublings)
+    made: Matrix = [[arb_poly([]) for _ in range(n)] for _ in range(n)]
+    for j, values in enumerate(columns):
+        for i in range(n):
+            scale = arb(2) ** step.growth / (1 - share) * step.weights[i] / step.weights[j]
+            made[i][j] = polynomial_of(
+                [
+                    arb(0) if v is None else v + around((scale * share**count / reach**m).abs_upper(), v)
+                    for m, (v, count) in enumerate(zip(values[i], counts, strict=True))
+                ]
+            )
+    return made
+
+
+Column = list[list[Number | None]]
+"""Per state its orders in u; what no coefficient reaches is zero, and stays None."""
+
+
+def _by_recurrence(
+    parts: Sequence[RationalPart], n: int, length: arb, counts: Sequence[int], doublings: float
+) -> list[Column]:
+    """Return the fundamental matrix of a step whose coefficients are rational in x.
+
+    Coefficients of powers of x, which are polynomials in u, follow from a few before them: if q = r/p, then
+    ``p_0 q_k = r_k - p_1 q_(k-1) - ...``. That is done factor by factor, so that balls grow no faster than
+    their middles; (1 - x)^4 multiplied out has signs that alternate, and balls would grow like those of
+    1/(1 - 4 x - 6 x^2 - ...).
+    """
+    bits, scaled = ctx.prec, [_to_unit_length(part, length) for part in parts]
+    # Order m of column j is coefficient n m + j: all columns at once.
+    states: list[list[Polynomial]] = [[arb_poly([int(i == j) for j in range(n)])] for i in range(n)]
+    divided = [[list[Polynomial]() for _ in divisors] for _, divisors in scaled]
+    kept = len(counts)
+    for k in range(counts[0] - 1):
+        # Counts fall with the order in u.
+        while counts[kept - 1] <= k + 1:
+            kept -= 1
+        slopes: list[Polynomial] = [arb_poly([])] * n
+        with ctx.workprec(max(FEWEST_BITS, bits - int(k * doublings))):
+            for part, (taps, divisors), histories in zip(parts, scaled, divided, strict=True):
+                i, value = part.place[0], _convolved(taps, states[part.place[1]], k)
+                for divisor, history in zip(divisors, histories, strict=True):
+                    history.append(value)
+                    history[k] = value = value + _convolved(divisor, history, k)
+                for order, rate in part.rates:
+                    moved = value if order and rate == 1 else value * rate
+                    slopes[i] = slopes[i] + (moved.left_shift(n * order) if order else moved)
+            for i in range(n):
+                states[i].append(slopes[i].truncate(n * kept) * (1 / arb(k + 1)))
+    reached = [_reached(parts, j, len(counts)) for j in range(n)]
+    columns: list[Column] = [[] for _ in range(n)]
+    for i, state in enumerate(states):
+        total: list[Number] = [*sum(state[1:], state[0]).coeffs()]
+        total += [arb(0)] * (n * len(counts) - len(total))
+        for j, column in enumerate(columns):
+            column.append([v if (i, m) in reached[j] else None for m, v in enumerate(total[j::n])])
+    return columns
+
+
+def _to_unit_length(part: RationalPart, length: arb) -> tuple[list[Number], list[list[Number]]]:
+    """Return the coefficients of numerator and divisors, as a recurrence on a step of length 1 takes them."""
+
+    def coefficients(polynomial: Polynomial) -> list[Number]:
+        own: Sequence[Number] = polynomial.coeffs()
+        return [c * length**p for p, c in enumerate(own)]
+
+    common: Number = length
+    divisors = []
+    for divisor in part.divisors:
+        first, *others = coefficients(divisor)
+        common = common / first
+        divisors.append([arb(0), *(-c / first for c in others)])
+    return [c * common for c in coefficients(part.numerator)], divisors
+
+
+def _convolved(taps: Sequence[Number], source: Sequence[Polynomial], k: int) -> Polynomial:
+    """Return coefficient k of a product of series."""
+    total: Polynomial = arb_poly([])
+    for p, tap in enumerate(taps[: k + 1]):
+        if tap != 0:
+            total = total + source[k - p] * tap
+    return total
+
+
+def _reached(parts: Sequence[RationalPart], start: int, terms: int) -> set[tuple[int, int]]:
+    """Return the states, and their orders in u, that a solution which starts as one of them has."""
+    found, pending = set[tuple[int, int]](), [(start, 0)]
+    while pending:
+        state, order = pending.pop()
+        if order < terms and (state, order) not in found:
+            found.add((state, order))
+            pending += [
+                (part.place[0], order + q) for part in parts if part.place[1] == state for q, _ in part.rates
+            ]
+    return found
+
+
+def _by_quadrature(
+    series: Sequence[Coefficients], n: int, length: arb, needed: Sequence[int], counts: Sequence[int]
+) -> list[Column]:
+    """Return the fundamental matrix of a step from power series of the coefficients, order by order in u."""
     gauge = _gauge(series[0], n, counts[0])
     if gauge is not None:
         # z = U v, where U' = A_0 U: what is left of the coefficients has no order 0.
@@ -298,11 +430,10 @@ def _stepped(system: VaryingSystem, step: _Step, reach: arb, terms: int) -> Matr
     rows = [
         [[(q, k, a) for (row, k), a in c.items() if row == i] for q, c in enumerate(series)] for i in range(n)
     ]
-    made: Matrix = [[arb_poly([]) for _ in range(n)] for _ in range(n)]
+    columns: list[Column] = []
     for j in range(n):
         orders: list[dict[int, Polynomial]] = []
-        # What no quadrature reaches is zero, and stays None.
-        values: list[list[Number | None]] = [[None] * terms for _ in range(n)]
+        values: Column = [[None] * len(counts) for _ in range(n)]
         for m, (precision, count) in enumerate(zip(needed, counts, strict=True)):
             here: dict[int, Polynomial] = {}
             orders.append(here)
@@ -321,16 +452,9 @@ def _stepped(system: VaryingSystem, step: _Step, reach: arb, terms: int) -> Matr
                 if gauge is not None:
                     here = _applied(gauge[0], here, count, n)
                 for i, grown in here.items():
-                    values[i][m] = grown(step.length)
-        for i in range(n):
-            scale = arb(2) ** step.growth / (1 - share) * step.weights[i] / step.weights[j]
-            made[i][j] = polynomial_of(
-                [
-                    arb(0) if v is None else v + around((scale * share**count / reach**m).abs_upper(), v)
-                    for m, (v, count) in enumerate(zip(values[i], counts, strict=True))
-                ]
-            )
-    return made
+                    values[i][m] = grown(length)
+        columns.append(values)
+    return columns
 
 
 def polynomial_of(coefficients: Sequence[Number]) -> Polynomial:

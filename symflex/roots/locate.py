@@ -13,6 +13,7 @@ from symflex.budget import Budget, entered_budget
 from symflex.errors import BudgetError, Diagnostic, SymflexError
 from symflex.model import with_numbers
 from symflex.model.signs import is_passive
+from symflex.roots.distributed.proof import limits
 from symflex.roots.distributed.right_half_plane import DEGENERATE, PASSIVE, search_right
 from symflex.roots.distributed.side import ACCUMULATION_DIGITS, Side, groups, polynomial_roots
 from symflex.roots.engines import LOSSLESS, POLYNOMIAL
@@ -31,7 +32,7 @@ from symflex.roots.pole_zero_map import (
 )
 from symflex.roots.polynomial_roots import in_order
 from symflex.roots.problem import problem_of
-from symflex.roots.region import Band, Everything, Mode, Modes, Position, Region
+from symflex.roots.region import Band, Everything, Mode, Modes, Position, Rectangle, Region
 from symflex.roots.root import ROUNDING, Root, overlap
 from symflex.transfer import BoundNested, bind
 from symflex.transfer.of_model import assemble_sparse, derive_all, derive_bound, may_be_expanded
@@ -198,6 +199,11 @@ class _Searched:
 
     def __init__(self, bound: BoundTransferFunction, region: Region, digits: int, budget: Budget) -> None:
         self.bound, self.region, self.digits, self.budget = bound, region, digits, budget
+        match region:
+            case Modes(count) | Mode(count):
+                bound.expect(count)
+            case Band() | Rectangle():
+                bound.expect(0, exp(min(limits(region, is_even=False)[1], HIGHEST)))
         self.sides: list[Side] = []
         self.hidden: list[HiddenRoot] = []
         self._within: Region = region

@@ -202,6 +202,14 @@ class BoundTransferFunction:
         minors = MinorSums(self.ratio.ring, self.kernels)
         return VaryingMatrices(minors, dict(self.constants), self.along, values)
 
+    def expect(self, modes: int, size: float = 0.0) -> None:
+        """Tell that values are wanted for abs(s) up to a size [rad/s], and at so many modes.
+
+        Members whose coefficients vary along x are expanded once then, and not again for every larger s.
+        """
+        if self._matrices is not None:
+            self._matrices.expect(modes, size)
+
     def enclosed(self, bits: int) -> Enclosed:
         """Return the function with ball coefficients of the given precision."""
         if self.kernels:

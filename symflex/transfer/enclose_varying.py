@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from math import ceil, inf, log2
+from math import ceil, inf, log2, pi
 from typing import TYPE_CHECKING
 
 from flint import acb, acb_series, arb, ctx
@@ -31,8 +31,14 @@ BUCKET = 64
 """Bits are rounded up to a multiple of this, so that few matrices are expanded."""
 FEWEST_BITS = 192
 """Of an expansion: roots to 30 digits need so many, and with half as many it takes two thirds of the time."""
-LOW = 20.0
-"""Power of e by which waves grow below which no expansion is made for a smaller s alone: some seven modes."""
+LOW = 8.0
+"""Power of e by which waves grow below which no expansion is made for a smaller s alone: some three modes."""
+BESIDE_MODES = 1
+"""Half waves that motion of a body as a whole, and masses at ends, may take besides."""
+BEYOND_MODES = 1.2
+"""How far beyond the last root circles are drawn on which roots are counted [in s]."""
+FURTHER = 1.5
+"""How much further than asked for an expansion reaches [in s], so that not every mode needs another."""
 HIGHEST_OCTAVE = 400
 """Nobody asks for a frequency [rad/s] beyond this power of two, or below its inverse."""
 PARTS = 4
@@ -54,17 +60,18 @@ class VaryingMatrices:
     constants: Mapping[str, Callable[[], arb]]  # what encloses each at the current precision
     functions: Mapping[str, Call]  # of x, by their generators
     parameters: Mapping[str, Callable[[], arb]]  # what functions of x are made of
-    # Per matrix: the octave up to which an expansion serves, and its bits.
-    _known: dict[int, list[tuple[int, int, PowerExpansion]]] = field(default_factory=dict, repr=False)
+    # Per matrix: the size of u up to which an expansion serves, and its bits.
+    _known: dict[int, list[tuple[arb, int, PowerExpansion]]] = field(default_factory=dict, repr=False)
     # Per matrix the last expansion about a middle, and for what it was made.
     _last: dict[int, tuple[tuple[object, ...], PowerExpansion | None]] = field(
         default_factory=dict, repr=False
     )
     _lowest: dict[int, int] = field(default_factory=dict, repr=False)
+    _expected: dict[int, float] = field(default_factory=dict, repr=False)
 
     def value(self, minor: Minor, s: Value) -> Value:
         """Return a minor at a point, on a ball, or as a series about either."""
-        law, terms = self._laws[minor.matrix], s.prec if isinstance(s, acb_series) else 1
+        law, terms = self.laws[minor.matrix], s.prec if isinstance(s, acb_series) else 1
         if law.is_polynomial:
             u: Value = raised(s, law.step)
             centre = at_centre(u)
@@ -88,29 +95,45 @@ class VaryingMatrices:
     def reach(self, dispersion: Dispersion, length: Factored, s: acb) -> float:
         """Return about by which power of e solutions grow along a member at ``s``."""
         size = float(abs(s).mid())
-        law = self._laws[self.minors.matrices.index((dispersion, length))]
+        law = self.laws[self.minors.matrices.index((dispersion, length))]
         return law.growth_at(round(PARTS * log2(size)), PARTS) if 0 < size < inf else 0.0
 
     @cached_property
-    def _laws(self) -> tuple[BoundLaw, ...]:
-        known = self.constants, self.functions, self.parameters
-        return tuple(BoundLaw(law, length, *known) for law, length in self.minors.matrices)
+    def laws(self) -> tuple[BoundLaw, ...]:
+        """The law of every matrix."""
+        return tuple(
+            BoundLaw(law, self.functions, length, self.constants, self.parameters)
+            for law, length in self.minors.matrices
+        )
+
+    def expect(self, modes: int, size: float = 0.0) -> None:
+        """Tell that values are wanted for abs(s) up to a size, and at so many modes.
+
+        One expansion then serves for all. A mode more takes half a wave more.
+        """
+        waves = pi * (modes + BESIDE_MODES) if modes else 0.0
+        low, high = -HIGHEST_OCTAVE * PARTS, HIGHEST_OCTAVE * PARTS
+        while waves and high - low > 1:
+            middle = (low + high) // 2
+            grows = sum(law.growth_at(middle, PARTS) for law in self.laws) > waves
+            low, high = (low, middle) if grows else (middle, high)
+        self._expected[0] = max(size, 2.0 ** (high / PARTS) if waves else 0.0) * BEYOND_MODES
 
     def _in_powers(self, matrix: int, size: arb) -> PowerExpansion:
         """Return an expansion that serves for abs(u) up to a size at the current precision."""
-        law, known = self._laws[matrix], self._known.setdefault(matrix, [])
-        if matrix not in self._lowest:
-            self._lowest[matrix] = self._lowest_octave(law)
-        octave = self._lowest[matrix]
-        if size > 0:
-            octave = max(octave, ceil(float((size.log() / arb(2).log()).upper()) / law.step))
+        law, known = self.laws[matrix], self._known.setdefault(matrix, [])
+        fitting = [e for reached, bits, e in known if size <= reached and bits >= ctx.prec]
         # One for larger frequencies, or with more bits, serves as well.
-        fitting = [e for reached, bits, e in known if reached >= octave and bits >= ctx.prec]
         if not fitting:
-            octave = max(octave, *(reached for reached, _, _ in known), octave)
-            bits = max(FEWEST_BITS, ceil(ctx.prec / BUCKET) * BUCKET, *(b for _, b, _ in known), 0)
-            fitting = [law.expanded(arb(2) ** (octave * law.step), bits)]
-            known.append((octave, bits, fitting[0]))
+            if matrix not in self._lowest:
+                self._lowest[matrix] = self._lowest_octave(law)
+            wanted = arb(self._expected.get(0, 0.0)) ** law.step
+            if not size <= wanted:
+                wanted = (size * FURTHER**law.step).upper()
+            largest = max(wanted, arb(2) ** (law.step * self._lowest[matrix]), *(r for r, _, _ in known))
+            bits = max(FEWEST_BITS, ceil(ctx.prec / BUCKET) * BUCKET, *(b for _, b, _ in known))
+            fitting = [law.expanded(largest, bits)]
+            known.append((largest, bits, fitting[0]))
         return fitting[0]
 
     @staticmethod
@@ -133,5 +156,5 @@ class VaryingMatrices:
         exact = (tuple(map(int, x.man_exp())) for x in (middle.real, middle.imag, reach.mid()))
         key = ctx.prec, orders, *exact
         if matrix not in self._last or self._last[matrix][0] != key:
-            self._last[matrix] = key, self._laws[matrix].expanded_about(middle, reach, orders)
+            self._last[matrix] = key, self.laws[matrix].expanded_about(middle, reach, orders)
         return self._last[matrix][1]

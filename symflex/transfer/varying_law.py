@@ -17,10 +17,16 @@ from functools import cached_property
 from math import gcd
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from flint import acb, acb_poly, acb_series, arb, arb_poly, arb_series, ctx
 
 from symflex.algebra import FUNCTIONS, LAPLACE, Factored, by_powers, degree_in
-from symflex.algebra.fundamental_matrix import SingularCoefficientError, expand, growth_along
+from symflex.algebra.fundamental_matrix import (
+    RationalPart,
+    SingularCoefficientError,
+    expand,
+    growth_along,
+)
 from symflex.algebra.ring import terms_of
 from symflex.errors import Diagnostic, ModelError
 from symflex.expressions import fold
@@ -31,8 +37,10 @@ from symflex.transfer.balls import ball, series_terms
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
+    from numpy.typing import NDArray
+
     from symflex.algebra import Dispersion
-    from symflex.algebra.fundamental_matrix import Coefficients, Place, PowerExpansion
+    from symflex.algebra.fundamental_matrix import Coefficients, Number, Place, PowerExpansion
     from symflex.expressions import Call, Expression
 
 ELSEWHERE = acb(0.7, 1.3)
@@ -44,7 +52,7 @@ Along = Any
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Summand:
+class Summand:
     """A part of an entry of A: ``s^power * along / divisor``."""
 
     power: int
@@ -53,38 +61,51 @@ class _Summand:
 
 
 @dataclass(frozen=True, eq=False)
-class BoundLaw:
-    """A law at one length of a member. Values are enclosed at the current precision."""
+class PartedLaw:
+    """A law whose coefficients are sums of products of a function of x and one of s."""
 
     law: Dispersion
-    length: Factored
-    constants: Mapping[str, Callable[[], arb]]  # generators free of s and x
     functions: Mapping[str, Call]  # generators that are functions of x
-    parameters: Mapping[str, Callable[[], arb]]  # what functions of x are made of
-    # Growth at rest and about frequencies, once it is known.
-    _growths: dict[int, float] = field(default_factory=dict, repr=False)
 
     @cached_property
-    def summands(self) -> Mapping[Place, tuple[_Summand, ...]]:
-        """The entries of A that are not zero, in parts."""
+    def summands(self) -> Mapping[Place, tuple[Summand, ...]]:
+        """The entries of A that are not zero, in parts.
+
+        Raises ModelError: SF910 where a coefficient is divided by what holds s and x together.
+        """
         rows = enumerate(self.law.matrix)
         return {(i, j): tuple(self._parted(x)) for i, row in rows for j, x in enumerate(row) if not x.is_zero}
 
     @cached_property
-    def _every(self) -> tuple[_Summand, ...]:
+    def every(self) -> tuple[Summand, ...]:
+        """All parts, in order."""
         return tuple(t for parts in self.summands.values() for t in parts)
 
     @cached_property
     def is_polynomial(self) -> bool:
         """Whether coefficients are polynomials in s."""
-        return all(t.divisor.is_one for t in self._every)
+        return all(t.divisor.is_one for t in self.every)
 
     @cached_property
     def step(self) -> int:
         """How often s is a factor of u: what depends on its square alone has half the powers."""
-        return gcd(*(t.power for t in self._every)) or 1
+        return gcd(*(t.power for t in self.every)) or 1
 
-    def _parted(self, value: Factored) -> Iterator[_Summand]:
+    @cached_property
+    def divisors(self) -> tuple[Factored, ...]:
+        """What parts are divided by, each once."""
+        return tuple(dict.fromkeys(t.divisor for t in self.every if not t.divisor.is_one))
+
+    @cached_property
+    def places(self) -> tuple[tuple[int, ...], ...]:
+        """Per part its row, its column, and its powers of ``s^step`` and of one over every divisor."""
+        return tuple(
+            (*place, t.power // self.step, *(int(t.divisor == d) for d in self.divisors))
+            for place, parts in self.summands.items()
+            for t in parts
+        )
+
+    def _parted(self, value: Factored) -> Iterator[Summand]:
         ring = value.ring
         moving = [ring.index[n] for n in (COORDINATE, *self.functions)]
         one = Factored.number(ring, 1)
@@ -102,7 +123,18 @@ class BoundLaw:
                 hint = "let losses be the same all along x"
                 raise ModelError(Diagnostic("SF910", message, None, hint))
         for power, coefficient in by_powers(ring, mixed.expand()).items():
-            yield _Summand(power, divisor, along * Factored.polynomial(ring, coefficient))
+            yield Summand(power, divisor, along * Factored.polynomial(ring, coefficient))
+
+
+@dataclass(frozen=True, eq=False)
+class BoundLaw(PartedLaw):
+    """A law at one length of a member. Values are enclosed at the current precision."""
+
+    length: Factored
+    constants: Mapping[str, Callable[[], arb]]  # generators free of s and x
+    parameters: Mapping[str, Callable[[], arb]]  # what functions of x are made of
+    # Growth at rest and about frequencies, once it is known.
+    _growths: dict[int, float] = field(default_factory=dict, repr=False)
 
     def growth(self, largest: arb) -> float:
         """Return about by which power of e solutions grow along the member at most, for an abs(u)."""
@@ -196,6 +228,37 @@ class BoundLaw:
             total = total * raised(own, exponent)
         return total
 
+    def rational_parts(
+        self, x: arb, rates: Callable[[Summand], tuple[tuple[int, Number], ...]]
+    ) -> list[RationalPart] | None:
+        """Return the entries of A about a point, each part as a quotient of polynomials in x."""
+        ring = self.law.matrix[0][0].ring
+        if any(t.along.depends_on(name) for t in self.every for name in self.functions):
+            return None
+        place = ring.index[COORDINATE]
+        degrees = (sum(degree_in(f, place) * e for f, e in t.along.factors if e > 0) for t in self.every)
+        with series_terms(1 + max(degrees, default=0)):
+            along = self.along(arb_series([x, 1]))
+
+            def polynomial(value: Factored) -> arb_poly:
+                return arb_poly(self.value(value, along).coeffs())
+
+            def parted(place: Place, part: Summand) -> RationalPart:
+                factors = [(Factored.polynomial(ring, f), e) for f, e in part.along.factors]
+                above = Factored.number(ring, part.along.unit)
+                for factor, exponent in factors:
+                    above = above * factor**exponent if exponent > 0 else above
+                below = (polynomial(f) for f, e in factors for _ in range(-e))
+                return RationalPart(place, polynomial(above), tuple(below), rates(part))
+
+            return [parted(place, t) for place, own in self.summands.items() for t in own]
+
+    def doubles_along(self, x: NDArray[np.float64]) -> list[NDArray[np.float64]]:
+        """Return what every part has of x, in order, at places in any array."""
+        found = [self.along(acb(place)) for place in x.reshape(-1).tolist()]
+        parts = ([float(self.value(t.along, along).real.mid()) for along in found] for t in self.every)
+        return [np.reshape(part, x.shape) for part in parts]
+
     def size(self, value: Factored, along: Mapping[str, Along], s: acb | None = None) -> arb:
         """Return a bound on a coefficient on balls: factor by factor, as powers of wide balls are wider."""
         total = abs(ball(value.unit))
@@ -229,6 +292,10 @@ class _InPowers:
                     own = arb_poly(self.law.value(t.along, along).coeffs())
                     found[order][place] = found[order].get(place, arb_poly([])) + own
         return found
+
+    def parts(self, x: arb) -> list[RationalPart] | None:
+        step = self.law.step
+        return self.law.rational_parts(x, lambda t: ((t.power // step, arb(1)),))
 
     def bounds(self, x: acb, largest: arb) -> dict[Place, arb]:
         along = self.law.along(x)
@@ -264,13 +331,20 @@ class _AboutMiddle:
                 for place, own in self.law.summands.items()
                 for t in own
             ]
+        for place, t, coefficient in parts:
+            for order, c in self._rates(t):
+                found[order][place] = found[order].get(place, acb_poly([])) + coefficient * c
+        return found
+
+    def parts(self, x: arb) -> list[RationalPart] | None:
+        return self.law.rational_parts(x, self._rates)
+
+    def _rates(self, part: Summand) -> tuple[tuple[int, acb], ...]:
+        """Return the powers of u in what a part is multiplied by."""
         with series_terms(self.orders):
             s = acb_series([self.middle, 1], self.orders)
-            for place, t, coefficient in parts:
-                rate: acb_series = raised(s, t.power) / self._divisor(t.divisor, s)
-                for order, c in enumerate(rate.coeffs()):
-                    found[order][place] = found[order].get(place, acb_poly([])) + coefficient * c
-        return found
+            rate: acb_series = raised(s, part.power) / self._divisor(part.divisor, s)
+            return tuple(enumerate(rate.coeffs()))
 
     def bounds(self, x: acb, largest: arb) -> dict[Place, arb]:
         along, radius = self.law.along(x), arb(0, largest.abs_upper())

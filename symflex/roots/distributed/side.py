@@ -7,7 +7,7 @@ shows that none is missing. Where that fails, the subdivision is repeated with e
 from __future__ import annotations
 
 from dataclasses import replace
-from math import inf, pi
+from math import exp, inf, pi
 from typing import TYPE_CHECKING
 
 from flint import acb
@@ -132,6 +132,7 @@ class Side:
         if modes > MODES_LIMIT:
             message = f"at most {MODES_LIMIT} modes of a distributed function are searched, not {modes}"
             raise BudgetError(Diagnostic("SF505", message, None, "ask for a band"))
+        self._bound.expect(modes, exp(min(radius, HIGHEST)))
         while self._scans and self._search is not None:
             if self._scanned(self._search, modes, radius):
                 return

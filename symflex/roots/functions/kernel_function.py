@@ -36,6 +36,7 @@ from symflex.transfer.balls import Value, at_centre, expansion
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    from symflex.roots.functions.double_minors import DoubleMinors
     from symflex.transfer import BoundTransferFunction
     from symflex.transfer.enclose_kernels import KernelValues
 
@@ -243,12 +244,19 @@ class KernelFunction:
         return tuple(found)
 
     @cached_property
-    def in_doubles(self) -> DoubleSums | None:
-        """The factors for guesses at many points; ``None`` where they are not sums of exponentials."""
-        if self.exponentials is None:
-            return None
+    def in_doubles(self) -> DoubleSums | DoubleMinors | None:
+        """The factors for guesses at many points; ``None`` where kernels are no exponentials nor entries."""
         with precision(FIRST_BITS):
-            return DoubleSums(self._sums(FIRST_BITS))
+            if self.exponentials is not None:
+                return DoubleSums(self._sums(FIRST_BITS))
+            evaluator, factors = self._values(FIRST_BITS), [f for f, _ in self.part.factors]
+            if evaluator.matrices is None or self.bound.kernels.wavenumbers:
+                return None
+            if any(k.function != "entry" for k in self.bound.kernels.kernels):
+                return None
+            from symflex.roots.functions.double_minors import DoubleMinors  # few beams are tapered
+
+            return DoubleMinors(evaluator, evaluator.matrices, factors, self.reach)
 
     def _anywhere(self) -> tuple[int, dict[str, Value], acb]:
         """Return a precision, the generators' values at a frequency like any other, and the product's."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import pytest
 from flint import acb, arb, arb_poly, ctx
 
-from symflex.algebra.fundamental_matrix import SingularCoefficientError, expand
+from symflex.algebra.fundamental_matrix import RationalPart, SingularCoefficientError, expand
 
 
 @dataclass
@@ -30,11 +30,26 @@ class Equation:
             first[1, 0] = arb_poly(list(self.constant))(shift)
         return [first, {(1, 0): arb_poly(list(self.moving))(shift)}]
 
+    def parts(self, x):
+        entries = self.series(x, 0)
+        return [
+            RationalPart(place, polynomial, (), ((order, arb(1)),))
+            for order, coefficients in enumerate(entries)
+            for place, polynomial in coefficients.items()
+        ]
+
     def bounds(self, x, largest):
         def size(coefficients):
             return sum((abs(acb(c)) * abs(x) ** k for k, c in enumerate(coefficients)), arb(0)).abs_upper()
 
         return {(0, 1): arb(1), (1, 0): size(self.constant) + size(self.moving) * largest}
+
+
+@pytest.fixture(autouse=True, params=["recurrence", "quadrature"])
+def way(request, monkeypatch):
+    """Steps by recurrences, where coefficients are rational in x, and by power series of any."""
+    if request.param == "quadrature":
+        monkeypatch.setattr(Equation, "parts", lambda _, __: None)
 
 
 def at(equation, row, column, u, bits=150):

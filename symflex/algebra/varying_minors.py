@@ -1,0 +1,183 @@
+"""Minors of fundamental matrices in doubles: of laws whose coefficients vary along x.
+
+Input: the parts of the coefficients A of ``z' = A z``: functions of x times powers of functions of s, the
+bases. Output: minors of Z, where Z is 1 at the start, over a scale that all of one size share.
+
+    a beam    y' = theta, theta' = tau/(E I(x)), tau' = -f, f' = rho A(x) u y, with one base, u = s^2
+
+The length is cut into pieces on which waves grow little. On each, Z is a polynomial in the bases, whose
+coefficients are found once for all s by Picard's iteration, where functions of x stand for their values at
+Chebyshev points. Minors of two rows are taken from piece to piece as such: differences of products of entries
+would lose as many digits as waves grow.
+
+Generated code gets copies of these functions: they use numpy and each other, and nothing else.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+Values = Any
+"""A number, an array of numbers, or lists of these."""
+
+
+def fundamental_minors(
+    polynomials: Callable[[Values, Values], Values], bases: Sequence[Values], wanted: Sequence[Values]
+) -> list[Values]:
+    """Return minors of Z over the scale of their size, then the logarithms of both scales.
+
+    polynomials(limits, where) gives what polynomials_along does for elements of the bases,
+    which are arrays of one axis. A minor is told by its rows and its columns, one or two of
+    each. What an element is does not depend on what others there are.
+    """
+    found = np.full((len(wanted) + 2, len(bases[0])), np.nan, dtype=complex)
+    with np.errstate(all="ignore"):
+        # Frequencies within a factor of four share their pieces.
+        octaves = [np.where(b == 0.0, -250.0, np.ceil(np.log2(np.abs(b)) / 4.0)) for b in bases]
+    octaves.append(np.any([np.imag(b) != 0.0 for b in bases], axis=0))
+    groups = np.transpose(octaves)
+    for group in np.unique(groups[np.all(np.isfinite(groups), axis=1)], axis=0):
+        where = np.flatnonzero(np.all(groups == group, axis=1))
+        limits = 16.0 ** group[:-1]
+        pieces = polynomials(limits, where)
+        if pieces is None:
+            continue
+        for first in range(0, len(where), 1024):
+            part = slice(first, first + 1024)
+            own = [b[where[part]] / limit for b, limit in zip(bases, limits, strict=True)]
+            own = own if group[-1] else [np.real(b) for b in own]
+            found[:, where[part]] = minors_through(pieces, own, part, wanted)
+    return list(found)
+
+
+def polynomials_along(
+    along: Callable[[Values], Sequence[Values]],
+    start: Values,
+    length: Values,
+    limits: Values,
+    places: Sequence[Sequence[int]],
+    where: Values,
+) -> Values:
+    """Return powers of the bases over their limits, and what Z has of each on every piece.
+
+    None where waves are too many to be followed.
+    """
+    n = 1 + max(max(place[:2]) for place in places)
+    scales = [np.prod(limits ** np.array(place[2:])) for place in places]
+
+    def values_at(share: Values) -> list[Values]:
+        x = start + length * share.reshape(-1, 1)
+        found = [np.broadcast_to(c * length, np.broadcast(c, x).shape) for c in along(x)]
+        found = [c[:, where] if c.shape[1] > 1 else c for c in found]
+        return [scale * c.reshape(*share.shape, -1) for scale, c in zip(scales, found, strict=True)]
+
+    # Of a matrix without negative entries the largest eigenvalue is the norm, if states are scaled well.
+    count, most, rounding = 64, 4000, 1e-13
+    sizes = np.zeros((count, n, n))
+    for place, c in zip(places, values_at((np.arange(count) + 0.5) / count), strict=True):
+        sizes[:, place[0], place[1]] += np.max(np.abs(c), axis=1)
+    if not np.all(np.isfinite(sizes)):
+        return None
+    growth = np.cumsum(np.max(np.abs(np.linalg.eigvals(sizes)), axis=1) / count)
+    # Where waves grow by e^3, sums of terms of both signs lose a digit.
+    number = int(growth[-1] / 3.0) + 1
+    if number > most:
+        return None
+    shares = np.concatenate([[0.0], growth + 1e-9 * np.arange(1, count + 1)])
+    edges = np.interp(shares[-1] * np.arange(number + 1) / number, shares, np.arange(count + 1) / count)
+    points, to_terms, integral = chebyshev_points(20)
+    widths = np.diff(edges)
+    values = values_at(edges[:-1, None] + widths[:, None] * points)
+    # Pieces are halved until functions of x are polynomials there to the last digits.
+    for _ in range(12):
+        rough = np.zeros(len(widths), dtype=bool)
+        for c in values:
+            spectrum = np.abs(to_terms @ c)
+            rough |= np.any(np.max(spectrum[:, -3:], axis=1) > rounding * np.max(spectrum, axis=1), axis=1)
+        if not np.any(rough):
+            break
+        edges = np.sort(np.concatenate([edges, (edges[:-1] + widths / 2.0)[rough]]))
+        widths = np.diff(edges)
+        values = values_at(edges[:-1, None] + widths[:, None] * points)
+    # Rows of Z by the powers of the bases they are times; each step of the iteration is one more factor A.
+    shape = len(widths), len(points), n, max(c.shape[-1] for c in values)
+    start_row = np.zeros(shape)
+    rows: Values = {(i, (0,) * len(limits)): start_row + np.eye(n)[i][:, None] for i in range(n)}
+    total = {key: row[:, -1] for key, row in rows.items()}
+    size, steps, last = 1.0, 0, 1e-18
+    while size > last or steps < 2 * n:
+        steps += 1
+        size *= growth[-1] / number / steps
+        following: Values = {}
+        for place, c in zip(places, values, strict=True):
+            for (i, before), row in rows.items():
+                if i == place[1]:
+                    key = place[0], tuple(p + q for p, q in zip(before, place[2:], strict=True))
+                    following[key] = following.get(key, 0.0) + c[:, :, None] * row
+        rows = {}
+        for key, slope in following.items():
+            grown = integral @ slope.reshape(*shape[:2], -1)
+            rows[key] = grown.reshape(shape) * widths[:, None, None, None]
+            total[key] = total.get(key, 0.0) + rows[key][:, -1]
+    powers = sorted({powers for _, powers in total})
+    coefficients = np.zeros((len(widths), len(powers), n, n, shape[-1]))
+    for (i, own), row in total.items():
+        coefficients[:, powers.index(own), i] = row
+    return powers, coefficients
+
+
+def minors_through(pieces: Values, bases: Sequence[Values], part: slice, wanted: Sequence[Values]) -> Values:
+    """Return minors of the product of all pieces over their scales, and the logarithms of these.
+
+    The bases are those of one part of the elements, over their limits.
+    """
+    powers, coefficients = pieces
+    n, count = coefficients.shape[2], len(bases[0])
+    monomials = np.array([np.prod([b**e for b, e in zip(bases, p, strict=True)], axis=0) for p in powers])
+    first, second = np.triu_indices(n, 1)
+    found: Values = np.zeros((len(wanted) + 2, count), dtype=complex)
+    every: Values = ([(i,) for i in range(n)], list(zip(first, second, strict=True)))
+    for order, lines in enumerate(every):
+        starts = sorted({tuple(columns) for _, columns in wanted if len(columns) == order + 1})
+        if not starts:
+            continue
+        # What minors of all rows there are, for every choice of columns that is wanted.
+        state = np.zeros((len(starts), len(lines), count), dtype=monomials.dtype)
+        for k, columns in enumerate(starts):
+            state[k, lines.index(columns)] = 1.0
+        scale = np.zeros(count)
+        for piece in coefficients:
+            if piece.shape[-1] == 1:
+                z = (piece.reshape(len(powers), -1).T @ monomials).reshape(n, n, count)
+            else:
+                z = np.sum(piece[..., part] * monomials[:, None, None], axis=0)
+            if order:
+                upper, lower = z[first], z[second]
+                z = upper[:, first] * lower[:, second] - upper[:, second] * lower[:, first]
+            state = np.einsum("ijs,kjs->kis", z, state)
+            largest = np.max(np.abs(state), axis=(0, 1))
+            state = state / largest
+            scale = scale + np.log(largest)
+        found[order - 2] = scale
+        for k, (rows, columns) in enumerate(wanted):
+            if len(rows) == order + 1:
+                found[k] = state[starts.index(tuple(columns)), lines.index(tuple(rows))]
+    return found
+
+
+def chebyshev_points(order: int) -> Values:
+    """Return points from 0 to 1, what makes Chebyshev's terms of values there, and their integrals from 0."""
+    angles = np.pi * np.arange(order, -1, -1) / order
+    terms = np.cos(np.outer(angles, np.arange(order + 2)))
+    to_terms = np.linalg.inv(terms[:, :-1])
+    m = np.arange(2, order + 1)
+    primitives = np.empty((order + 1, order + 1))
+    primitives[:, 0], primitives[:, 1] = terms[:, 1], terms[:, 2] / 4.0
+    primitives[:, 2:] = terms[:, 3:] / (2.0 * (m + 1)) - terms[:, 1:-2] / (2.0 * (m - 1))
+    integral = (primitives - primitives[:1]) @ to_terms / 2.0
+    return (1.0 + np.cos(angles)) / 2.0, to_terms, integral
