@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
     from symflex.model import ModelParameter
     from symflex.quantities import Quantity
+    from symflex.state_space.sampled import Sampling
 
     Stated = float | Fraction | str
     """A number, or a text with or without a unit."""
@@ -142,7 +143,23 @@ class ExportOptions:
         None,
         "--sample",
         metavar="TIME",
-        help="state-space: the step from one sample to the next, 1ms, exactly, with the declared values.",
+        help="state-space, c, numpy: the step from one sample to the next, 1ms, with the declared values.",
+    )
+    method: str | None = option(
+        None,
+        "--method",
+        choices=("zoh", "tustin", "matched"),
+        help="--sample: the input held between samples, exactly; for controllers the bilinear "
+        "transformation, or roots matched.  [default: zoh]",
+    )
+    prewarp: str | None = option(
+        None,
+        "--prewarp",
+        metavar="FREQUENCY",
+        help="--method tustin: where its response is right besides at 0, in Hz or with a unit.",
+    )
+    is_direct: bool = option(
+        False, "--direct", help="--sample, c and numpy: one section for all poles, not one for every two."
     )
     strict: bool = option(False, "--strict", help="Exit with 4 when the verified accuracy falls short.")
 
@@ -586,6 +603,39 @@ def duration(given: str, flag: str) -> Fraction:
     if not found > 0:
         raise wrong
     return found
+
+
+def sampling_of(
+    sample: Stated, method: str | None = None, prewarp: Stated | None = None, flag: str = "--sample"
+) -> Sampling:
+    """Return how a system is sampled, from a sampling time [s] and a frequency [Hz], with units or without.
+
+    Raises
+    ------
+    UsageError
+        SF902 for what is no time or frequency, and as :class:`~symflex.state_space.sampled.Sampling` does.
+
+    Examples
+    --------
+    >>> sampling_of("2 ms", "tustin").sample
+    Fraction(1, 500)
+    """
+    from symflex.model.model import PI_NEARLY
+    from symflex.state_space.sampled import Sampling  # numpy
+
+    time = duration(sample, flag) if isinstance(sample, str) else _finite(sample, flag)
+    if prewarp is None:
+        return Sampling(time, method or "zoh")
+    if not isinstance(prewarp, str):
+        prewarp = _finite(prewarp, "prewarp")
+    hertz = frequency(prewarp, "--prewarp", "10 or '0.1 kHz'", is_hertz=True)
+    return Sampling(time, method or "zoh", hertz * 2 * PI_NEARLY)
+
+
+def _finite(number: float | Fraction, flag: str) -> Fraction:
+    if not isfinite(number):
+        raise UsageError(Diagnostic("SF902", f"{flag} is a finite number, not {number}"))
+    return exact(number)
 
 
 def highest_frequency(given: Stated) -> float:

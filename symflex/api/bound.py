@@ -26,7 +26,7 @@ from symflex.api.root import (
 )
 from symflex.budget import Budget, entered_budget
 from symflex.errors import Diagnostic, UsageError
-from symflex.options import PlotOptions, RootsOptions
+from symflex.options import PlotOptions, RootsOptions, sampling_of
 from symflex.roots.region import region_of
 
 if TYPE_CHECKING:
@@ -40,8 +40,9 @@ if TYPE_CHECKING:
     from symflex.analysis import rational as rational_room
     from symflex.analysis.explanation import ZeroExplanation
     from symflex.analysis.input_shaping import InputShaper
+    from symflex.analysis.sampling import SampledTransferFunction
     from symflex.figures import AxesGiven
-    from symflex.options import Ends
+    from symflex.options import Ends, Stated
     from symflex.state_space.numeric import BoundStateSpace
 
 
@@ -641,6 +642,39 @@ class BoundTransferFunction:
         from symflex.analysis.rational.toolboxes import ExactFunction
 
         return ExactFunction(self.bound, is_minimal=minimal).state_space()
+
+    def discretise(
+        self, dt: Stated, method: str = "zoh", prewarp: Stated | None = None
+    ) -> SampledTransferFunction:
+        r"""Return the function from one sample to the next, with its poles and zeros in z.
+
+        Parameters
+        ----------
+        dt : float, Fraction or str
+            The sampling time, [s] or with a unit, ``"1 ms"``.
+        method : str
+            ``zoh``, the input held between samples, exactly, with dead times of any fraction; for controllers
+            ``tustin``, the bilinear transformation, and ``matched``, every root s becomes exp(s dt).
+        prewarp : float, Fraction or str, optional
+            Of ``tustin``: the frequency at which it is right besides at 0, [Hz] or with a unit.
+
+        Raises
+        ------
+        UsageError
+            SF902 for a method, a time or a frequency that cannot be.
+        ModelError
+            SF235 for beams, and delays in loops; SF236 for a function that grows with s.
+
+        Examples
+        --------
+        >>> from symflex import loads
+        >>> lag = loads('symflex = 1\ninputs.u = {}\noutputs.y = "u/(s + 2)"').transfer_function("y", "u")
+        >>> lag.bind().discretise("100 ms", "tustin").coefficients()
+        (array([0.04545455, 0.04545455]), array([ 1.        , -0.81818182]))
+        """
+        from symflex.analysis.sampling import sampled_transfer_function
+
+        return sampled_transfer_function(self.bound, sampling_of(dt, method, prewarp, "a sampling time"))
 
     def to_control(self, form: str = "transfer-function", *, minimal: bool = False) -> object:
         """Return a system of python-control with named input, output and states.

@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Final
 
 from symflex.codegen.state_space import StateEquations
-from symflex.options import duration, exact
+from symflex.options import duration, exact, sampling_of
 from symflex.print.sympy import symbols_of, to_sympy
 from symflex.transfer.bind import read_values
 
@@ -153,11 +153,15 @@ class StateSpace:
         self,
         dt: float | Fraction | str,
         delay: float | Fraction | str = 0,
+        *,
+        method: str = "zoh",
+        prewarp: float | Fraction | str | None = None,
         **values: int | float | Fraction | Decimal | str,
     ) -> SampledStateSpace:
         """Return the system as it is seen at samples, its inputs held from one to the next: exactly.
 
         Every entry is the double nearest to that of the matrix exponential, which is computed in balls.
+        ``tustin`` is for controllers: the difference equation that the bilinear transformation makes.
 
         Parameters
         ----------
@@ -165,6 +169,10 @@ class StateSpace:
             The sampling time, [s] or with a unit, ``"1 ms"``.
         delay : float, Fraction or str
             A dead time of all inputs [s], of any fraction of samples: past inputs become states.
+        method : str
+            ``zoh`` or ``tustin``.
+        prewarp : float, Fraction or str, optional
+            Of ``tustin``: the frequency at which it is right besides at 0, [Hz] or with a unit.
         **values : optional
             As for :meth:`bind`.
 
@@ -190,8 +198,9 @@ class StateSpace:
         """
         from symflex.state_space.sampled import sampled_state_space  # numpy
 
-        times = [duration(t, "a sampling time") if isinstance(t, str) else exact(t) for t in (dt, delay)]
-        return sampled_state_space(self.exact, self._known(values), times[0], times[1])
+        sampling = sampling_of(dt, method, prewarp, "a sampling time")
+        late = duration(delay, "a dead time") if isinstance(delay, str) else exact(delay)
+        return sampled_state_space(self.exact, self._known(values), sampling, late)
 
     def _known(self, values: dict[str, int | float | Fraction | Decimal | str]) -> dict[str, ExactValue]:
         """Return the values of all parameters that have one."""

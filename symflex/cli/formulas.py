@@ -13,7 +13,7 @@ from symflex.cli.command import Specification, command_of
 from symflex.cli.reporting import diagnostic_json, emit_json, listed, note, say, show, terminal_width
 from symflex.errors import Diagnostic, SymflexError, UsageError
 from symflex.errors.diagnostic import nearest, printable
-from symflex.options import AuditOptions, CheckOptions, DeriveOptions, ExportOptions, duration
+from symflex.options import AuditOptions, CheckOptions, DeriveOptions, ExportOptions, sampling_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -176,6 +176,9 @@ def export(spec: Specification, given: ExportOptions) -> int:
     With --to state-space all of them get one realisation, whose states are displacements, velocities,
     currents and the like of the model. Exit code 3 says that there is none: beams, rods and delays have
     infinitely many states, and what has more zeros than poles has no output equation.
+
+    With --sample, --to c and numpy write difference equations: code for a controller or a filter that takes
+    one step at every sample, whose rounding errors are measured. Dead times may be any fraction of samples.
     """
     from symflex import pipeline
     from symflex.codegen.exporters import EXPORTERS
@@ -228,11 +231,21 @@ def _chosen(exporter: Exporter, given: ExportOptions) -> Exporter:
         exporter = replace(exporter, form=given.form, width_mm=column, has_figures=not given.no_figures)
     elif given.form is not None or given.width is not None or given.no_figures:
         raise UsageError(Diagnostic("SF902", "--form, --width and --no-figures are for --to latex"))
+    if given.sample is None and (given.method or given.prewarp or given.is_direct):
+        raise UsageError(Diagnostic("SF902", "--method, --prewarp and --direct are of --sample"))
+    sampling = None if given.sample is None else sampling_of(given.sample, given.method, given.prewarp)
     if isinstance(exporter, StateSpaceExporter):
-        sample = None if given.sample is None else duration(given.sample, "--sample")
-        exporter = replace(exporter, is_minimal=given.is_minimal, sample=sample)
-    elif given.is_minimal or given.sample:
-        raise UsageError(Diagnostic("SF902", "--minimal and --sample are for --to state-space"))
+        if given.is_direct:
+            raise UsageError(Diagnostic("SF902", "--direct is for --to c and numpy"))
+        return replace(exporter, is_minimal=given.is_minimal, sampling=sampling)
+    if given.is_minimal:
+        raise UsageError(Diagnostic("SF902", "--minimal is for --to state-space"))
+    if sampling is not None:
+        from symflex.codegen.difference import DifferenceExporter
+
+        if given.target not in ("c", "numpy"):
+            raise UsageError(Diagnostic("SF902", "--sample is for --to state-space, c and numpy"))
+        return DifferenceExporter(given.target, sampling, is_direct=given.is_direct)
     return exporter
 
 

@@ -6,7 +6,7 @@ Output: an :class:`Export`, the module's text and how well its numbers agree wit
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from symflex.algebra import irreducible_factors
+from symflex.analysis.sampling import dead_time
 from symflex.codegen.export import Export, shortfalls
 from symflex.codegen.module_text import default_value, described, identifiers, inert, wrapped
 from symflex.codegen.program import nodes as tree
@@ -21,7 +22,7 @@ from symflex.codegen.program.evaluate import evaluate, nearest_double
 from symflex.codegen.program.verify import Verification, measure_values
 from symflex.codegen.python.module import NUMPY_DIALECT, docstring, literal, origin, parameter_table
 from symflex.codegen.python.pieces import WIDTH, PythonPrinter, statement
-from symflex.errors import BudgetError, Diagnostic
+from symflex.errors import BudgetError, Diagnostic, ModelError
 from symflex.expressions import (
     Call,
     Expression,
@@ -39,11 +40,13 @@ from symflex.expressions import (
     quotient,
     sum_of,
 )
+from symflex.library.blocks import BLOCKS
 from symflex.model.linearity import integer_exponent
 from symflex.print.forms.arrange import Arranger
-from symflex.state_space import minimal, realise
+from symflex.state_space import minimal, not_rational, realise
 from symflex.state_space.numeric import Arrays, response
 from symflex.state_space.sampled import sampled_state_space
+from symflex.transfer import NestedTransferFunction, bind
 from symflex.transfer.bind import read_values
 
 if TYPE_CHECKING:
@@ -55,6 +58,7 @@ if TYPE_CHECKING:
     from symflex.model import Model
     from symflex.state_space import State, StateSpace
     from symflex.state_space.popov import FieldElement, Vector
+    from symflex.state_space.sampled import Sampling
     from symflex.transfer import AnyTransferFunction
 
 
@@ -391,7 +395,7 @@ class StateSpaceExporter:
     """State equations as a function of the parameters, in one numpy module."""
 
     is_minimal: bool = False  # leave out what no input reaches or no output shows
-    sample: Fraction | None = None  # the sampling time [s] of a module of one step, with numbers
+    sampling: Sampling | None = None  # of a module of one step, with numbers
 
     suffix = ".py"
     summary = "numpy module with A, B, C, D as a function of the parameters, states named"
@@ -401,32 +405,71 @@ class StateSpaceExporter:
         self, model: Model, tfs: Sequence[AnyTransferFunction], stem: str = "", *, is_alone: bool = True
     ) -> Export:
         """Return the module; accuracy that was not reached is a warning."""
-        system = realise(model, [(tf.output.name, tf.input.name) for tf in tfs])
+        plain, delay = model, Fraction(0)
+        if self.sampling is not None and model.is_distributed:
+            plain, delay = _without_delays(model, tfs, self.sampling)
+        system = realise(plain, [(tf.output.name, tf.input.name) for tf in tfs])
         system = minimal(system) if self.is_minimal else system
-        if self.sample is not None:
-            return Export(sampled_module(system, self.sample), ())
+        if self.sampling is not None:
+            return Export(sampled_module(system, self.sampling, delay), ())
         return state_space_module(system, tfs, model.analysis.band)
 
 
-def sampled_module(system: StateSpace, sample: Fraction) -> str:
+def _without_delays(
+    model: Model, tfs: Sequence[AnyTransferFunction], sampling: Sampling
+) -> tuple[Model, Fraction]:
+    """Return the model with 1 in place of every dead time, and that which its functions have in common [s].
+
+    Each function was found to be exp(-s T) times a rational one, which 1 in place of exp(-s T) leaves.
+
+    Raises ModelError: SF235 for beams, delays in loops, and where dead times differ.
+    """
+    delays = {}
+    for tf in tfs:
+        if isinstance(tf, NestedTransferFunction):
+            raise not_rational(tf.name)
+        delays[dead_time(bind(tf), sampling)] = tf.name
+    if len(delays) > 1:
+        (one, first), (other, second), *_ = delays.items()
+        message = f"{first} has a dead time of {float(one):g} s, {second} one of {float(other):g} s"
+        raise ModelError(Diagnostic("SF235", message, None, "choose functions with one dead time with --tf"))
+    unity = (("num", number(1)), ("den", number(1)))
+    blocks = tuple(
+        replace(b, block=BLOCKS["tf"], values=unity) if b.block is not None and b.block.kernel_time else b
+        for b in model.blocks
+    )
+    return replace(model, blocks=blocks), next(iter(delays), Fraction(0))
+
+
+HOW = {
+    "zoh": "Every entry is the double nearest to its exact value, a matrix exponential.",
+    "tustin": "By the bilinear transformation; every entry is the double nearest to its exact value.",
+}
+
+
+def sampled_module(system: StateSpace, sampling: Sampling, delay: Fraction) -> str:
     """Return a module with the matrices of one sampling time, the inputs held from sample to sample.
 
     Raises ModelError: SF229 for parameters without value, SF233 where an entry does not fit in a double.
     """
     valued = tuple(p for p in system.model.parameters if p.value is not None)
-    found = sampled_state_space(system, dict(read_values(valued, {})), sample)
+    found = sampled_state_space(system, dict(read_values(valued, {})), sampling, delay)
     lines = ["One step of a linear system from a sample to the next, its inputs held between.", ""]
     lines += origin(system.model, "")
     lines += ["Written by symflex. With w the states, u the inputs and y the outputs, in every step", ""]
     lines += ["    w[k + 1] = A w[k] + B u[k],    y[k] = C w[k] + D u[k].", ""]
-    lines += wrapped("Every entry is the double nearest to its exact value, a matrix exponential.", WIDTH)
+    lines += wrapped(HOW[sampling.method], WIDTH)
+    if delay:
+        said = f"The inputs act {float(delay)!r} s late: past inputs are states, the oldest first."
+        lines += wrapped(said, WIDTH)
     if valued:
         given = ", ".join(f"{p.name} = {default_value(p)}" for p in valued)
         lines += ["", *wrapped(inert(f"Values: {given}."), WIDTH)]
     header = docstring(lines, "")
+    units = {x.name: x.unit for x in system.states}
     blocks = [
-        f"SAMPLE_TIME = {float(sample)!r}  # [s]\n",
-        _table("STATES", [(x.name, x.unit, "") for x in system.states]),
+        f"SAMPLE_TIME = {found.dt!r}  # [s]\n",
+        _table("STATES", [(name, units.get(name, ""), "") for name in found.states]),
         _table("INPUTS", [(x.name, x.unit, "") for x in system.inputs]),
         _table("OUTPUTS", [(x.name, x.unit, "") for x in system.outputs]),
     ]

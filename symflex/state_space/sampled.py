@@ -24,6 +24,7 @@ import numpy as np
 from flint import arb, arb_mat, ctx
 
 from symflex.errors import Diagnostic, ModelError, UsageError
+from symflex.errors.diagnostic import nearest
 from symflex.errors.optional import installed
 from symflex.state_space.numeric import Arrays, rounding_of
 from symflex.transfer.balls import ball
@@ -41,6 +42,65 @@ NOTHING_BITS = 150
 """By which an entry is smaller than the largest that counts as zero where no sign is told."""
 MOST_SAMPLES = 1000
 """Of a dead time: as many states."""
+METHODS = ("zoh", "tustin", "matched")
+"""Zero-order hold, bilinear transformation, and roots matched, which is of one transfer function."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sampling:
+    """How a system is seen, or computed, from sample to sample.
+
+    Raises
+    ------
+    UsageError
+        SF902 for an unknown method, a sampling time that is not positive, a frequency to prewarp at that is
+        not below half of the sampling frequency, or is not for ``tustin``.
+    """
+
+    sample: Fraction  # the sampling time [s]
+    method: str = "zoh"  # one of :data:`METHODS`
+    # Of ``tustin``: the angular frequency [rad/s] at which the value is that of the continuous system.
+    prewarp: Fraction | None = None
+
+    def __post_init__(self) -> None:
+        if self.method not in METHODS:
+            hint = nearest(self.method, METHODS) or "methods: " + ", ".join(METHODS)
+            message = f"there is no method of sampling '{self.method[:64]}'"
+            raise UsageError(Diagnostic("SF902", message, None, hint))
+        if not self.sample > 0:
+            raise UsageError(Diagnostic("SF902", "a sampling time is positive"))
+        if self.prewarp is None:
+            return
+        if self.method != "tustin":
+            message = f"a frequency to prewarp at is of 'tustin', not of '{self.method}'"
+            raise UsageError(Diagnostic("SF902", message))
+        if not (self.prewarp > 0 and ball(self.prewarp * self.sample) < arb.pi()):
+            message = "the frequency to prewarp at is positive and below half of the sampling frequency"
+            hint = f"that is {1 / (2 * float(self.sample)):g} Hz"
+            raise UsageError(Diagnostic("SF902", message, None, hint))
+
+    @property
+    def seconds(self) -> arb:
+        """The sampling time [s] at the current precision."""
+        return ball(self.sample)
+
+    @property
+    def rate(self) -> arb:
+        """The k of ``s = k (z - 1)/(z + 1)`` [1/s] at the current precision."""
+        if self.prewarp is None:
+            return 2 / ball(self.sample)
+        return ball(self.prewarp) / (ball(self.prewarp * self.sample) / 2).tan()
+
+    def check_delay(self, delay: Fraction) -> None:
+        """Refuse a dead time [s] that is negative, or takes too many states, with SF902."""
+        if not 0 <= delay <= MOST_SAMPLES * self.sample:
+            raise UsageError(Diagnostic("SF902", f"a dead time has from 0 to {MOST_SAMPLES} samples"))
+        if self.method != "zoh" and (delay / self.sample).denominator != 1:
+            message = (
+                f"a dead time of {float(delay / self.sample):.6g} samples has no place in '{self.method}'"
+            )
+            hint = "take zoh, or a sampling time of which it is a multiple"
+            raise UsageError(Diagnostic("SF902", message, None, hint))
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +112,7 @@ class SampledStateSpace:
     """
 
     arrays: Arrays
-    sample: Fraction  # the sampling time [s]
+    sampling: Sampling
     delay: Fraction  # the dead time of all inputs [s]
     # names: of the states, inputs and outputs
     states: tuple[str, ...]
@@ -82,7 +142,7 @@ class SampledStateSpace:
     @property
     def dt(self) -> float:
         """The sampling time [s]."""
-        return float(self.sample)
+        return float(self.sampling.sample)
 
     def __repr__(self) -> str:
         shape = f"{len(self.states)} states, {len(self.inputs)} inputs, {len(self.outputs)} outputs"
@@ -106,7 +166,7 @@ class SampledStateSpace:
 
 
 def sampled_state_space(
-    system: StateSpace, values: Mapping[str, ExactValue], sample: Fraction, delay: Fraction = Fraction(0)
+    system: StateSpace, values: Mapping[str, ExactValue], sampling: Sampling, delay: Fraction = Fraction(0)
 ) -> SampledStateSpace:
     """Return an exact realisation with numbers, as it is seen at samples; errors as of :func:`sampled`."""
     rounding = rounding_of(system, values)
@@ -123,48 +183,53 @@ def sampled_state_space(
 
     groups = (system.states, system.inputs, system.outputs)
     states, inputs, outputs = (tuple(x.name for x in group) for group in groups)
-    return sampled(balls, sample, delay, (states, inputs, outputs))
+    return sampled(balls, sampling, delay, (states, inputs, outputs))
 
 
 def sampled(
     balls: Balls,
-    sample: Fraction,
+    sampling: Sampling,
     delay: Fraction,
     names: tuple[Sequence[str], Sequence[str], Sequence[str]],
 ) -> SampledStateSpace:
-    """Return the system as it is seen at samples, the input held between them.
+    """Return the system as it is seen at samples, the input held between them, or as tustin computes it.
 
     ``names`` are those of states, inputs and outputs.
 
     Raises
     ------
     UsageError
-        SF902 for a sampling time that is not positive, a negative dead time, or one of too many samples.
+        SF902 for a negative dead time, one of too many samples, or with ``tustin`` of a part of one; for
+        ``matched``, and a pole that ``tustin`` takes to infinity.
     ModelError
         SF233 where an entry does not fit in double precision: the system is too fast for the sampling time.
 
     Examples
     --------
     >>> lag = lambda bits: (arb_mat([[-1]]), arb_mat([[1]]), arb_mat([[1]]), arb_mat([[0]]))
-    >>> found = sampled(lag, Fraction(1, 10), Fraction(0), (["y"], ["u"], ["y"]))
+    >>> found = sampled(lag, Sampling(Fraction(1, 10)), Fraction(0), (["y"], ["u"], ["y"]))
     >>> found.A.round(9).tolist(), found.B.round(9).tolist()
     ([[0.904837418]], [[0.095162582]])
     """
-    if not sample > 0 or not 0 <= delay <= MOST_SAMPLES * sample:
-        message = f"a sampling time is positive, and a dead time from 0 to {MOST_SAMPLES} samples"
-        raise UsageError(Diagnostic("SF902", message))
+    sampling.check_delay(delay)
+    if sampling.method == "matched":
+        message = "'matched' is of one transfer function, and state equations have none of their own"
+        raise UsageError(
+            Diagnostic("SF902", message, None, "take tustin, or export code with --to c or numpy")
+        )
     states, inputs, outputs = names
-    whole = ceil(delay / sample)
+    whole = ceil(delay / sampling.sample)
+    stepped = _stepped if sampling.method == "zoh" else _bilinear
     bits = FIRST_BITS
     while True:
         with ctx.workprec(bits):
-            found = [_doubles(m) for m in _stepped(balls(bits), sample, whole, whole * sample - delay)]
+            found = [_doubles(m) for m in stepped(balls(bits), sampling, delay, whole)]
         known = [array for array in found if array is not None]
         if len(known) == len(found):
             past = [f"{name}_{i}_before" for i in range(whole, 0, -1) for name in inputs]
             arrays = Arrays(known[0], known[1], known[2], known[3])
             every = (*states, *past)
-            return SampledStateSpace(arrays, sample, delay, every, tuple(inputs), tuple(outputs))
+            return SampledStateSpace(arrays, sampling, delay, every, tuple(inputs), tuple(outputs))
         if bits >= LAST_BITS:
             message = "an entry of the sampled state equations does not fit in double precision"
             raise ModelError(Diagnostic("SF233", message, None, "take a shorter sampling time"))
@@ -172,23 +237,50 @@ def sampled(
 
 
 def _stepped(
-    matrices: tuple[arb_mat, ...], sample: Fraction, whole: int, ahead: Fraction
+    matrices: tuple[arb_mat, ...], sampling: Sampling, delay: Fraction, whole: int
 ) -> tuple[arb_mat, arb_mat, arb_mat, arb_mat]:
-    """Return the matrices of one step; the input changes so long ``ahead`` of its end."""
+    """Return the matrices of one step, towards whose end the input changes."""
     a, b, c, d = matrices
-    n, m, p = a.nrows(), b.ncols(), c.nrows()
+    ahead = whole * sampling.sample - delay
     grown, newer = _held(a, b, ball(ahead))
-    before, older = _held(a, b, ball(sample - ahead))
-    step = grown * before
+    before, older = _held(a, b, ball(sampling.sample - ahead))
+    return _with_past_inputs(grown * before, grown * older, newer, c, d, whole)
+
+
+def _bilinear(
+    matrices: tuple[arb_mat, ...], sampling: Sampling, delay: Fraction, whole: int
+) -> tuple[arb_mat, arb_mat, arb_mat, arb_mat]:
+    """Return the matrices that ``s = k (z - 1)/(z + 1)`` makes of others, late by whole samples."""
+    del delay
+    a, b, c, d = matrices
+    n, k = a.nrows(), sampling.rate
+    one = arb_mat(n, n, [arb(int(i == j)) for i in range(n) for j in range(n)])
+    try:
+        inverse = (one * k - a).inv()
+    except ZeroDivisionError:
+        message = f"a pole at {float(k):g} rad/s, or one very near, is taken to infinity by tustin"
+        raise UsageError(Diagnostic("SF902", message, None, "take another sampling time")) from None
+    given = inverse * b * 2
+    step = inverse * (one * k + a)
+    return _with_past_inputs(step, given, given * 0, c * inverse * k, d + c * given * arb(0.5), whole)
+
+
+def _with_past_inputs(
+    step: arb_mat, older: arb_mat, newer: arb_mat, c: arb_mat, d: arb_mat, whole: int
+) -> tuple[arb_mat, arb_mat, arb_mat, arb_mat]:
+    """Return matrices with past inputs as states after the others, u[k - whole] to u[k - 1].
+
+    In a step ``older`` takes the first of these, ``newer`` the next; the output sees the first.
+    """
+    n, m, p = older.nrows(), older.ncols(), c.nrows()
     if not whole:
-        return step, grown * older + newer if n else newer, c, d
+        return step, older + newer if n else newer, c, d
     size = n + whole * m
     total = [[arb(0)] * size for _ in range(size)]
     given = [[arb(0)] * m for _ in range(size)]
     shown = [[arb(0)] * size for _ in range(p)]
     _put(total, 0, 0, step)
-    # The states after those of the system are u[k - whole], ..., u[k - 1].
-    _put(total, 0, n, grown * older)
+    _put(total, 0, n, older)
     _put(given if whole == 1 else total, 0, 0 if whole == 1 else n + m, newer)
     one = arb_mat(m, m, [arb(int(i == j)) for i in range(m) for j in range(m)])
     for i in range(whole - 1):
@@ -196,8 +288,7 @@ def _stepped(
     _put(given, n + (whole - 1) * m, 0, one)
     _put(shown, 0, 0, c)
     _put(shown, 0, n, d)
-    zero = arb_mat(p, m)
-    return _matrix(total, size), _matrix(given, m), _matrix(shown, size), zero
+    return _matrix(total, size), _matrix(given, m), _matrix(shown, size), arb_mat(p, m)
 
 
 def _held(a: arb_mat, b: arb_mat, time: arb) -> tuple[arb_mat, arb_mat]:

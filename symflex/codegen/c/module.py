@@ -49,7 +49,7 @@ def c_files(contents: Contents) -> Export:
     return _Files(contents, name).made()
 
 
-def _prefix(name: str | None) -> str:
+def prefix_of(name: str | None) -> str:
     """Return what all public names begin with."""
     found = identifiers({"": name or "model"}, KEYWORDS)[""]
     # Private functions are called value_of_... and piece_0_of_...
@@ -97,7 +97,7 @@ class _Files:
         self.model = contents.model
         self.name = name
         self.digits = contents.digits
-        self.prefix = _prefix(name)
+        self.prefix = prefix_of(name)
         self.structure = f"{self.prefix}_parameters"
         self.members = identifiers({p.name: p.name for p in self.model.parameters}, RESERVED)
         self.of_s = {m.tf.name: m for m in contents.members if not m.program.is_real}

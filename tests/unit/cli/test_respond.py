@@ -159,7 +159,48 @@ def test_a_sampled_module_steps_as_the_closed_form_does(oscillator, tmp_path):
     assert float((names["C"] @ w)[0]) == pytest.approx(step_of_oscillator(0.5), rel=1e-12)
 
 
-def test_only_state_equations_are_sampled(oscillator):
-    done = oscillator("export", "osc.toml", "--to", "numpy", "--sample", "1ms")
+def test_a_dead_time_of_the_specification_becomes_states(shell, tmp_path):
+    text = OSCILLATOR.replace("[elements]", 'blocks.D = { type = "delay", T = "13 ms" }\n[elements]')
+    (tmp_path / "late.toml").write_text(text.replace('X = "x"', 'X = "D*x"'), encoding="utf-8")
+    asked = ["--to", "state-space", "--sample", "10ms", "-o", "step.py"]
+    assert shell("export", "late.toml", "--tf", "X/F", *asked).code == 0
+    names = runpy.run_path(str(tmp_path / "step.py"))
+    assert [state["name"] for state in names["STATES"]] == ["x", "x_dot", "F_2_before", "F_1_before"]
+    w = np.zeros(4)
+    for _ in range(50):
+        w = names["A"] @ w + names["B"] @ [1.0]
+    assert float((names["C"] @ w)[0]) == pytest.approx(step_of_oscillator(0.487), rel=1e-12)
+    done = shell("export", "late.toml", *asked)
+    assert done.code == 3
+    assert "choose functions with one dead time with --tf" in done.err
+
+
+@pytest.mark.parametrize("target", ["c", "numpy"])
+def test_a_controller_is_exported_with_its_poles_and_what_rounding_costs(oscillator, tmp_path, target):
+    done = oscillator(
+        "export", "osc.toml", "--tf", "X/F", "--to", target, "--sample", "1ms", "--method", "tustin"
+    )
+    assert done.code == 0
+    assert "by the bilinear transformation" in done.out
+    assert "Poles in z: 0.9988" in done.out
+    assert "the output is off by at most" in " ".join(done.out.replace(" * ", " ").split())
+
+
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [
+        (["--to", "julia", "--sample", "1ms"], "--sample is for"),
+        (["--to", "c", "--method", "zoh"], "are of --sample"),
+        (["--to", "state-space", "--sample", "1ms", "--direct"], "--direct is for"),
+        (["--to", "state-space", "--sample", "1ms", "--method", "matched"], "of one transfer function"),
+        (["--to", "c", "--sample", "1ms", "--minimal"], "--minimal is for"),
+        (["--to", "c", "--sample", "0"], "positive time"),
+        (["--to", "c", "--sample", "1ms", "--method", "tustin", "--prewarp", "1kHz"], "that is 500 Hz"),
+        (["--to", "c", "--sample", "1ms", "--method", "tustin", "--prewarp", "1kg"], "--prewarp takes"),
+    ],
+    ids=" ".join,
+)
+def test_options_of_sampling_that_do_not_go_together_are_refused(oscillator, asked, said):
+    done = oscillator("export", "osc.toml", "--tf", "X/F", *asked)
     assert done.code == 2
-    assert "--sample" in done.err
+    assert said in done.err

@@ -14,7 +14,7 @@ from flint import arb, arb_mat
 
 from symflex import loads
 from symflex.errors import ModelError, UsageError
-from symflex.state_space.sampled import sampled
+from symflex.state_space.sampled import Sampling, sampled
 
 CHAIN = """
 symflex = 1
@@ -72,7 +72,7 @@ def test_a_dead_time_of_any_fraction_is_exact(samples):
     times = [k * h for k in range(40)]
     step = sampled(
         balls_of([[-2.0]], [[3.0]], [[1.0]], [[0.0]]),
-        Fraction(1, 10),
+        Sampling(Fraction(1, 10)),
         Fraction(str(samples)) / 10,
         (["w"], ["u"], ["y"]),
     )
@@ -88,7 +88,7 @@ def test_a_dead_time_of_any_fraction_is_exact(samples):
 def test_what_passes_straight_through_is_late_too(samples):
     step = sampled(
         balls_of([[-1.0]], [[0.0]], [[0.0]], [[1.0]]),
-        Fraction(1),
+        Sampling(Fraction(1)),
         Fraction(str(samples)),
         (["w"], ["u"], ["y"]),
     )
@@ -106,7 +106,7 @@ NAMES = (["w"], ["u"], ["y"])
 
 
 def test_every_entry_is_the_nearest_double():
-    step = sampled(balls_of(*LAG), Fraction(1, 3), Fraction(0), NAMES)
+    step = sampled(balls_of(*LAG), Sampling(Fraction(1, 3)), Fraction(0), NAMES)
     with mpmath.workdps(40):
         decay = mpmath.exp(-mpmath.mpf(1) / 3)
         assert (step.A[0, 0], step.B[0, 0]) == (float(decay), float(1 - decay))
@@ -133,4 +133,4 @@ def test_times_that_make_no_sense_are_refused(dt, delay):
 
 def test_growth_beyond_doubles_within_a_sample_is_refused():
     with pytest.raises(ModelError, match="SF233"):
-        sampled(balls_of([[1000.0]], *LAG[1:]), Fraction(1), Fraction(0), NAMES)
+        sampled(balls_of([[1000.0]], *LAG[1:]), Sampling(Fraction(1)), Fraction(0), NAMES)

@@ -1,0 +1,391 @@
+"""A transfer function from one sample to the next: its poles and zeros in z, and its difference equation.
+
+Input: a bound transfer function that is rational but for dead times, a sampling time h, a method.
+Output: a :class:`SampledTransferFunction`, everything in balls.
+
+    1/(s + 2), h = 0.1    zoh        0.0906 /(z - e^(-0.2))          its step response is that of 1/(s + 2)
+                          tustin     0.0455 (z + 1)/(z - 0.9/1.1)    s = 2/h (z - 1)/(z + 1)
+                          matched    0.0906 /(z - e^(-0.2))          every root s becomes e^(s h)
+
+``zoh`` is what a plant does whose input a computer holds between samples; ``tustin`` and ``matched`` make
+difference equations of controllers and filters that were designed in s (Franklin, Powell and Workman 1998,
+Digital Control of Dynamic Systems, chapter 6). A dead time of any fraction of samples is exact with ``zoh``:
+
+    g(k h - T), the step response at samples, less itself one sample before, is the impulse response, and that
+    times the denominator is the numerator: n + 1 numbers, whatever the multiplicities of the poles.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
+from math import ceil
+from typing import TYPE_CHECKING
+
+import numpy as np
+from flint import acb, acb_poly, arb
+
+from symflex.analysis.time_response.delayed_terms import delayed_quotient
+from symflex.analysis.time_response.exponentials import values_of
+from symflex.analysis.time_response.partial_fractions import EnclosedQuotient, partial_fractions
+from symflex.analysis.time_response.sample_times import SampleTimes
+from symflex.budget import spend
+from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
+from symflex.errors.optional import installed
+from symflex.roots.functions.simplified import without_lengths_of_zero
+from symflex.roots.polynomial_roots import find_polynomial_roots
+from symflex.roots.precision import bits_for_digits, precision
+from symflex.roots.problem import RootProblem, problem_of
+from symflex.roots.root import exact_fraction
+from symflex.state_space import not_rational
+from symflex.state_space.sampled import Sampling
+from symflex.transfer.balls import ball
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    import numpy.typing as npt
+
+    from symflex.roots import Root
+    from symflex.transfer import BoundTransferFunction
+
+FIRST_DIGITS, LAST_DIGITS = 60, 4000
+GOOD_BITS = 110
+"""Of every coefficient: twice a double and room for what measures rounding to it."""
+NOTHING_BITS = 180
+"""By which a coefficient is smaller than the largest that counts as zero where no sign is told."""
+
+
+@dataclass(frozen=True, eq=False)
+class SampledTransferFunction:
+    """``z^-late * gain * prod(z - zeros)/prod(z - poles)``, from one sample to the next."""
+
+    tf: str  # ``"OUT/IN"``
+    sampling: Sampling
+    late: int  # whole samples of dead time
+    numerator: tuple[arb, ...]  # in descending powers of z, as many as the denominator has
+    denominator: tuple[arb, ...]  # monic
+    poles: tuple[acb, ...]  # as often as their multiplicities say, without those of ``late``
+    zeros: tuple[acb, ...] | None  # likewise; None where they cannot be told apart
+    bits: int  # of the precision all this was computed at
+
+    @property
+    def dt(self) -> float:
+        """The sampling time [s]."""
+        return float(self.sampling.sample)
+
+    def __repr__(self) -> str:
+        count = len(self.poles) + self.late
+        return (
+            f"<SampledTransferFunction {self.tf}: {self.sampling.method}, every {self.dt:g} s, {count} poles>"
+        )
+
+    def __call__(self, z: complex) -> complex:
+        """Return the value at z; not a number at a pole."""
+        with precision(self.bits):
+            return complex(self.enclosed(acb(z)).mid())
+
+    def enclosed(self, z: acb) -> acb:
+        """Return the value in a ball of the current precision."""
+        above, below = (acb_poly([acb(c) for c in p[::-1]])(z) for p in (self.numerator, self.denominator))
+        return above / below / z**self.late
+
+    def coefficients(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+        """Return numerator and denominator in descending powers of z, dead time included, as doubles.
+
+        They lose digits where poles lie close together; second-order sections, as of exported code, do not.
+        """
+        above = np.array([float(c.mid()) for c in self.numerator])
+        below = np.array([float(c.mid()) for c in self.denominator])
+        first = int(np.argmax(above != 0)) if above.any() else above.size - 1
+        return above[first:], np.concatenate([below, np.zeros(self.late)])
+
+    def to_control(self) -> object:
+        """Return a discrete ``control.TransferFunction``; SF902 when python-control is not installed."""
+        return installed("control").TransferFunction(*self.coefficients(), self.dt)
+
+    def to_scipy(self) -> object:
+        """Return a discrete ``scipy.signal.TransferFunction``."""
+        return installed("scipy.signal").TransferFunction(*self.coefficients(), dt=self.dt)
+
+
+@dataclass(frozen=True, eq=False)
+class _Delayed:
+    """A quotient of polynomials times a dead time."""
+
+    numerator: acb_poly
+    late: arb  # the dead time [s]
+
+
+@dataclass(frozen=True, eq=False)
+class _Continuous:
+    """What is sampled: terms with a common denominator, in balls of the current precision."""
+
+    terms: tuple[_Delayed, ...]
+    denominator: acb_poly
+    poles: tuple[Root, ...]
+    zeros: tuple[Root, ...]  # of the only term; empty where there are several
+
+    @property
+    def order(self) -> int:
+        return int(self.denominator.degree())
+
+
+def sampled_transfer_function(bound: BoundTransferFunction, sampling: Sampling) -> SampledTransferFunction:
+    r"""Return a transfer function as it is seen, or is to be computed, at samples.
+
+    Parameters
+    ----------
+    bound : BoundTransferFunction
+        Rational, but for dead times outside of loops.
+    sampling : Sampling
+        How often, and by which method.
+
+    Raises
+    ------
+    UsageError
+        SF902 for a dead time of too many samples, or with another method than ``zoh`` of no whole number,
+        and for a pole that ``tustin`` takes to infinity.
+    ModelError
+        SF235 for beams, and for delays in loops; SF236 for a function that grows with s.
+    UncertifiedError
+        SF810 where poles cannot be told apart.
+
+    Examples
+    --------
+    >>> from symflex import loads
+    >>> lag = loads('symflex = 1\ninputs.u = {}\noutputs.y = "u/(s + 2)"').transfer_function("y", "u")
+    >>> found = sampled_transfer_function(lag.bind().bound, Sampling(Fraction(1, 10), "tustin"))
+    >>> [c.round(9).tolist() for c in found.coefficients()]  # (z + 1)/22 over z - 9/11
+    [[0.045454545, 0.045454545], [1.0, -0.818181818]]
+    """
+    bound = without_lengths_of_zero(bound)
+    digits = FIRST_DIGITS
+    while digits <= LAST_DIGITS:
+        spend()
+        bits = 2 * bits_for_digits(digits)
+        with precision(bits):
+            given = _continuous(bound, digits, bits)
+            found = MAPS[sampling.method](bound, given, sampling)
+            if found is not None:
+                numerator, denominator, poles, zeros, late = found
+                above, below = _told(numerator), _told(denominator)
+                if above is not None and below is not None:
+                    zeros = _roots_of(above) if zeros is None else zeros
+                    return SampledTransferFunction(
+                        bound.name, sampling, late, above, below, poles, zeros, bits
+                    )
+        digits *= 2
+    message = f"poles of {bound.name} cannot be told apart: it is not sampled"
+    raise UncertifiedError(Diagnostic("SF810", message))
+
+
+def _continuous(bound: BoundTransferFunction, digits: int, bits: int) -> _Continuous:
+    if not bound.is_distributed:
+        sides = [[(f, e * sign) for f, e in bound.ratio.factors if e * sign > 0] for sign in (1, -1)]
+        zeros, poles = (find_polynomial_roots(problem_of(bound, side), digits) for side in sides)
+        num, den = EnclosedQuotient.of(bound, bits).multiplied_out()
+        _check_order(bound, num, den)
+        return _Continuous((_Delayed(num, arb(0)),), den, poles, zeros)
+    quotient = delayed_quotient(bound)
+    if quotient is None:
+        raise not_rational(bound.name)
+    if len(quotient.below) > 1:
+        message = (
+            f"{bound.name} has a delay in a loop, or waves: infinitely many states from sample to sample"
+        )
+        hint = "open the loop, and sample what stands before and after the delay"
+        raise ModelError(Diagnostic("SF235", message, None, hint))
+    durations = quotient.durations
+    ((first, below),) = quotient.below.items()
+    den = acb_poly(durations.polynomial(below))
+    terms = []
+    for delay, above in quotient.above.items():
+        late = durations.seconds(delay) - durations.seconds(first)
+        num = acb_poly(durations.polynomial(above))
+        _check_order(bound, num, den)
+        if late < 0:
+            message = f"{bound.name} looks ahead: its output would come before its input"
+            raise ModelError(Diagnostic("SF235", message, None, "a dead time is not negative"))
+        terms.append(_Delayed(num, late))
+    exact = [durations.exact(p) for p in (below, *quotient.above.values())]
+    roots = [find_polynomial_roots(RootProblem(((p, 1),)), digits) if p.degree > 0 else () for p in exact[:2]]
+    return _Continuous(tuple(terms), den, roots[0], roots[1] if len(terms) == 1 else ())
+
+
+def _check_order(bound: BoundTransferFunction, num: acb_poly, den: acb_poly) -> None:
+    if num.degree() > den.degree():
+        message = f"{bound.name} has more zeros than poles: it cannot be computed from samples"
+        hint = "filter it, as with T_f of a pid, or take an output with fewer derivatives"
+        raise ModelError(Diagnostic("SF236", message, None, hint))
+
+
+Found = tuple["list[arb]", "list[arb]", "tuple[acb, ...]", "tuple[acb, ...] | None", int]
+"""Numerator, denominator, poles, zeros where they are known, and whole samples of dead time."""
+
+
+def _held(bound: BoundTransferFunction, given: _Continuous, sampling: Sampling) -> Found | None:
+    """Return the function whose step response is that of the given one at samples."""
+    del bound
+    poles = _mapped(given.poles, lambda p: (p * sampling.seconds).exp())
+    below = _product(poles)
+    n = given.order
+    parts: list[tuple[int, list[arb]]] = []
+    for term in given.terms:
+        delay = _delay(term.late, sampling)
+        whole = ceil(delay / sampling.sample)
+        ahead = whole * sampling.sample - delay
+        quotient = EnclosedQuotient(((term.numerator, 1),), ((given.denominator, 1),), acb(1))
+        exponentials = partial_fractions(quotient, given.poles, 1)
+        if exponentials is None:
+            return None
+        times = SampleTimes.evenly(sampling.sample * (n + 1), n + 2)
+        step = values_of(exponentials, times, delay=-ball(ahead))
+        if not ahead and term.numerator.degree() < n:
+            step[0] = arb(0)
+        pulses = [step[0], *(b - a for a, b in pairwise(step))]
+        above = [sum((below[i - k] * pulses[k] for k in range(i + 1)), arb(0)) for i in range(n + 1)]
+        parts.append((whole, above))
+    late = min(whole for whole, _ in parts)
+    extra = max(whole for whole, _ in parts) - late
+    total = [arb(0)] * (n + 1 + extra)
+    for whole, above in parts:
+        for i, c in enumerate(above):
+            total[i + whole - late] = total[i + whole - late] + c
+    none = [arb(0)] * extra
+    return total, [*below, *none], (*poles, *(acb(0) for _ in none)), None, late
+
+
+def _tustin(bound: BoundTransferFunction, given: _Continuous, sampling: Sampling) -> Found | None:
+    """Return the function of s = k (z - 1)/(z + 1)."""
+    late = _only_whole(bound, given, sampling)
+    k = acb(sampling.rate)
+    if any((k - p.enclosure()).contains(0) for p in given.poles):
+        message = f"{bound.name} has a pole at {float(k.real.mid()):g} rad/s, which tustin takes to infinity"
+        raise UsageError(Diagnostic("SF902", message, None, "take another sampling time"))
+
+    def move(s: acb) -> acb:
+        return (k + s) / (k - s)
+
+    poles, zeros = (_mapped(roots, move) for roots in (given.poles, given.zeros))
+    gain = _leading(given)
+    for root, sign in [*((r, 1) for r in given.zeros), *((r, -1) for r in given.poles)]:
+        gain = gain * (k - root.enclosure()) ** (sign * root.multiplicity)
+    zeros = (*zeros, *(acb(-1) for _ in range(len(poles) - len(zeros))))
+    return [c * gain.real for c in _product(zeros)], _product(poles), poles, zeros, late
+
+
+def _matched(bound: BoundTransferFunction, given: _Continuous, sampling: Sampling) -> Found | None:
+    """Return the function whose roots are exp(s h), and which is the same where s is small.
+
+    Of zeros at infinity all but one come to z = -1: the one left is the sample that computing may take.
+    """
+    late = _only_whole(bound, given, sampling)
+    h = sampling.seconds
+    poles, zeros = (_mapped(roots, lambda s: (s * h).exp()) for roots in (given.poles, given.zeros))
+    surplus = len(poles) - len(zeros)
+    gain = _leading(given)
+    for roots, sign in ((given.zeros, 1), (given.poles, -1)):
+        for root in roots:
+            s = root.enclosure()
+            ratio = 1 / acb(h) if root.is_zero else -s / (1 - (s * h).exp())
+            gain = gain * ratio ** (sign * root.multiplicity)
+    more = max(surplus - 1, 0)
+    zeros = (*zeros, *(acb(-1) for _ in range(more)))
+    gain = gain / 2**more
+    above = [c * gain.real for c in _product(zeros)]
+    return [arb(0)] * (len(poles) + 1 - len(above)) + above, _product(poles), poles, zeros, late
+
+
+MAPS: dict[str, Callable[[BoundTransferFunction, _Continuous, Sampling], Found | None]] = {
+    "zoh": _held,
+    "tustin": _tustin,
+    "matched": _matched,
+}
+"""One for every method of :class:`Sampling`."""
+
+
+def dead_time(bound: BoundTransferFunction, sampling: Sampling) -> Fraction:
+    """Return the dead time [s] of a function that is rational otherwise; errors as of sampling it."""
+    bits = 2 * bits_for_digits(FIRST_DIGITS)
+    with precision(bits):
+        given = _continuous(without_lengths_of_zero(bound), FIRST_DIGITS, bits)
+        if len(given.terms) > 1:
+            message = f"{bound.name} is a sum of dead times: its state equations are not those of the model"
+            raise ModelError(Diagnostic("SF235", message, None, "export code with --to c or numpy"))
+        return _delay(given.terms[0].late, sampling)
+
+
+def _delay(late: arb, sampling: Sampling) -> Fraction:
+    """Return a dead time as a number; one that no precision tells from whole samples is so many."""
+    ratio = late / sampling.seconds
+    near = round(float(ratio.mid()))
+    found = near * sampling.sample if ratio.contains(near) else exact_fraction(late.mid())
+    sampling.check_delay(found)
+    return found
+
+
+def _only_whole(bound: BoundTransferFunction, given: _Continuous, sampling: Sampling) -> int:
+    if len(given.terms) > 1:
+        message = f"{bound.name} is a sum of dead times, which '{sampling.method}' has no place for"
+        raise UsageError(Diagnostic("SF902", message, None, "take zoh"))
+    return int(_delay(given.terms[0].late, sampling) / sampling.sample)
+
+
+def _leading(given: _Continuous) -> acb:
+    above = given.terms[0].numerator
+    return above[above.degree()] / given.denominator[given.order]
+
+
+def _mapped(roots: Sequence[Root], move: Callable[[acb], acb]) -> tuple[acb, ...]:
+    found = []
+    for root in roots:
+        s = root.enclosure()
+        z = acb(move(s).real) if root.is_real else move(s)
+        found += [z] * root.multiplicity
+    return tuple(found)
+
+
+def _product(roots: Sequence[acb]) -> list[arb]:
+    """Return the monic polynomial with conjugate or real roots, in descending powers."""
+    found = acb_poly([1])
+    for root in roots:
+        found = found * acb_poly([-root, acb(1)])
+    return [c.real for c in found.coeffs()[::-1]]
+
+
+def _told(coefficients: Sequence[arb]) -> tuple[arb, ...] | None:
+    """Return coefficients that are known well, zeros that are nothing beside the others; else None."""
+    largest = max((c.abs_upper() for c in coefficients), default=arb(0))
+    found = []
+    for c in coefficients:
+        if c.contains(0):
+            if c != 0 and not c.abs_upper() < largest * arb(2) ** -NOTHING_BITS:
+                return None
+            found.append(arb(0))
+        elif c.rel_accuracy_bits() < GOOD_BITS:
+            return None
+        else:
+            found.append(c)
+    return tuple(found)
+
+
+def _roots_of(coefficients: Sequence[arb]) -> tuple[acb, ...] | None:
+    """Return the roots of a polynomial in descending powers; None where they cannot be told apart."""
+    left = list(coefficients)
+    while left and left[0] == 0:
+        left.pop(0)
+    at_zero = 0
+    while left and left[-1] == 0:
+        left.pop()
+        at_zero += 1
+    if not left:
+        return ()
+    try:
+        found = acb_poly([acb(c) for c in left[::-1]]).roots(tol=arb(2) ** -GOOD_BITS, maxprec=LAST_DIGITS)
+    except ValueError:
+        return None
+    # Of isolated roots one whose ball meets the real axis is its own conjugate.
+    real = (acb(z.real) if z.imag.contains(0) else z for z in found)
+    return (*real, *(acb(0) for _ in range(at_zero)))

@@ -1,0 +1,474 @@
+"""Difference equations for a computer that takes one step at every sample, in C and in Python.
+
+Input: transfer functions, and how they are sampled. Output: an :class:`Export` of code that was measured.
+
+    (z + 0.5)/((z - 1) (z - 0.8))    is one section of second order; in every step
+
+    y = w[0]
+    w[0] = x + 1.8 * y + w[1]        states are sums of what earlier steps leave for later ones
+    w[1] = 0.5 * x - 0.8 * y         (the transposed direct form II)
+
+Sections follow one another, each with a pole or two and the zeros next to them: so these keep their digits,
+which coefficients of high degree lose. In direct form there is one section of all poles.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import chain
+from math import isfinite, pi
+from random import Random
+from sys import float_info
+from typing import TYPE_CHECKING
+
+from flint import acb, arb
+
+from symflex.analysis.sampling import SampledTransferFunction, sampled_transfer_function
+from symflex.budget import spend
+from symflex.codegen.c.body import KEYWORDS, RESERVED
+from symflex.codegen.c.module import comment, prefix_of
+from symflex.codegen.export import Export
+from symflex.codegen.module_text import (
+    default_value,
+    identifiers,
+    inert,
+    origin_lines,
+    value_as_written,
+    wrapped,
+)
+from symflex.codegen.python.module import NUMPY_DIALECT, docstring
+from symflex.codegen.python.pieces import WIDTH
+from symflex.errors import BudgetError, Diagnostic, ModelError
+from symflex.roots.precision import precision
+from symflex.transfer import NestedTransferFunction, bind
+
+if TYPE_CHECKING:
+    from symflex.model import Model
+    from symflex.state_space.sampled import Sampling
+    from symflex.transfer import AnyTransferFunction
+
+SAMPLES = 1000
+"""Of a run that measures rounding; the input is +1 or -1 at random, which excites all frequencies."""
+FREQUENCIES = 200
+"""At which responses are compared, over four decades up to half of the sampling frequency."""
+MEASURE_BITS = 600
+"""Of the run that counts as exact: differences of poles close to each other cost it a few hundred."""
+LARGE = 1e-9
+"""Relative error from which the user is warned: the best converters, of 24 bits, resolve 6e-8."""
+SHOWN_POLES = 8
+PAIR = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """``y[k] = sum(above[i] x[k-i]) - sum(below[i] y[k-1-i])``; with as many past values on both sides."""
+
+    above: tuple[float, ...]
+    below: tuple[float, ...]
+
+    def lines(self, first: int) -> list[str]:
+        """Return the statements of one step, of x and the states from ``w[first]`` on; C and Python alike."""
+        count = len(self.below)
+        states = [f"w[{first + i}]" for i in range(count)]
+        found = [f"y = {_sum([(self.above[0], 'x')], states[:1])}"]
+        for i, (b, a) in enumerate(zip(self.above[1:], self.below, strict=True)):
+            found.append(f"{states[i]} = {_sum([(b, 'x'), (-a, 'y')], states[i + 1 : i + 2])}")
+        return found
+
+    def step(self, x: float, w: list[float], first: int) -> float:
+        """Do what :meth:`lines` say, in doubles."""
+        count = len(self.below)
+        y = self.above[0] * x + (w[first] if count else 0.0)
+        for i, (b, a) in enumerate(zip(self.above[1:], self.below, strict=True)):
+            more = w[first + i + 1] if i + 1 < count else 0.0
+            w[first + i] = b * x - a * y + more
+        return y
+
+    def enclosed(self, z: acb) -> acb:
+        """Return the value at z with these coefficients, exactly."""
+        above = sum((acb(b) * z**-i for i, b in enumerate(self.above)), acb(0))
+        return above / sum((acb(a) * z ** (-i - 1) for i, a in enumerate(self.below)), acb(1))
+
+
+@dataclass(frozen=True, eq=False)
+class DifferenceEquation:
+    """Sections that follow one another, after a dead time of whole samples."""
+
+    sampled: SampledTransferFunction
+    sections: tuple[Section, ...]
+
+    @property
+    def order(self) -> int:
+        """How many states the sections have."""
+        return sum(len(section.below) for section in self.sections)
+
+    def run(self, u: Sequence[float]) -> list[float]:
+        """Return the output in doubles, from rest, as generated code computes it."""
+        w, past = [0.0] * self.order, [0.0] * self.sampled.late
+        found = []
+        for k, value in enumerate(u):
+            x, first = value, 0
+            if past:
+                x, past[k % len(past)] = past[k % len(past)], value
+            for section in self.sections:
+                x = section.step(x, w, first)
+                first += len(section.below)
+            found.append(x)
+        return found
+
+    def error_of_output(self) -> float:
+        """Return how far a run is off an exact one, over the largest value; infinite on overflow."""
+        random = Random(1)
+        u = [random.choice((1.0, -1.0)) for _ in range(SAMPLES)]
+        found, exact = self.run(u), _exact_run(self.sampled, u)
+        largest = max(abs(y) for y in exact)
+        if largest == 0:
+            return 0.0
+        if not all(map(isfinite, found)):
+            return float("inf")
+        with precision(MEASURE_BITS):
+            return max(float(abs(y - x) / largest) for x, y in zip(found, exact, strict=True))
+
+    def error_of_response(self) -> float:
+        """Return how far rounding of coefficients takes the frequency response off, over its value."""
+        worst = 0.0
+        with precision(self.sampled.bits):
+            for i in range(FREQUENCIES):
+                angle = pi * 0.999 * 10 ** (-4 * i / (FREQUENCIES - 1))
+                z = acb(0, angle).exp()
+                exact, found = self.sampled.enclosed(z), z**-self.sampled.late
+                for section in self.sections:
+                    found = found * section.enclosed(z)
+                error = float((abs(found - exact) / abs(exact)).mid()) if exact.is_finite() else 0.0
+                worst = max(worst, error) if isfinite(error) else worst
+        return worst
+
+    def measured(self) -> tuple[str, str | None]:
+        """Return a sentence on both errors, and a warning where they are large."""
+        output, response = self.error_of_output(), self.error_of_response()
+        said = (
+            f"Over {SAMPLES} samples of +1 or -1 at random the output is off by at most {output:.2g} of its "
+        )
+        said += f"largest value; its frequency response is off by at most {response:.2g} of its value, at "
+        said += f"{FREQUENCIES} frequencies below half of the sampling frequency."
+        name = self.sampled.tf
+        if max(output, response) <= LARGE:
+            return said, None
+        return said, f"{name}: rounding costs {max(output, response):.2g}, more than {LARGE:g}"
+
+
+def difference_equation(sampled: SampledTransferFunction, *, is_direct: bool = False) -> DifferenceEquation:
+    """Return the sections of a sampled transfer function, their coefficients rounded once.
+
+    One section holds everything where ``is_direct``, or zeros cannot be told apart.
+
+    Raises
+    ------
+    ModelError
+        SF233 where a coefficient does not fit in double precision.
+
+    Examples
+    --------
+    >>> from fractions import Fraction
+    >>> from symflex import loads
+    >>> from symflex.state_space.sampled import Sampling
+    >>> tf = loads('symflex = 1' + chr(10) + 'inputs.u = {}' + chr(10) + 'outputs.y = "u*(s + 1)/s"')
+    >>> bound = tf.transfer_function("y", "u").bind().bound
+    >>> made = difference_equation(sampled_transfer_function(bound, Sampling(Fraction(1, 10), "tustin")))
+    >>> made.sections  # 1.05 and 0.95 over 1 - z^-1: a pole at 1 stays there
+    (Section(above=(1.05, -0.95), below=(-1.0,)),)
+    """
+    with precision(sampled.bits):
+        order = len(sampled.poles)
+        gain = next((c for c in sampled.numerator if c != 0), arb(0))
+        if is_direct or sampled.zeros is None or not order or gain == 0:
+            above = tuple(_double(c, sampled.tf) for c in sampled.numerator)
+            return DifferenceEquation(
+                sampled, (Section(above, tuple(_double(c, sampled.tf) for c in sampled.denominator[1:])),)
+            )
+        sections = []
+        for poles, zeros in _paired(sampled.poles, sampled.zeros):
+            below = _below(poles, sampled.tf)
+            scaled = [c * gain for c in _expanded(zeros)]
+            gain = arb(1)
+            scaled = [arb(0)] * (len(below) + 1 - len(scaled)) + scaled
+            sections.append(Section(tuple(_double(c, sampled.tf) for c in scaled), below))
+        return DifferenceEquation(sampled, tuple(sections))
+
+
+def _below(poles: Sequence[acb], name: str) -> tuple[float, ...]:
+    """Return the coefficients after the first; a pole at 1 stays there, as the integrator it is."""
+    coefficients = [_double(c, name) for c in _expanded(poles)[1:]]
+    if len(coefficients) == PAIR and any(p == 1 for p in poles):
+        # 1 + a_1 + a_2 = 0 exactly: the difference of two doubles this close is a double.
+        coefficients[1] = -1.0 - coefficients[0]
+    return tuple(coefficients)
+
+
+def _expanded(roots: Sequence[acb]) -> list[arb]:
+    """Return the monic polynomial of real roots or pairs, in descending powers."""
+    found = [acb(1)]
+    for root in roots:
+        found = [a - root * b for a, b in zip([*found, acb(0)], [acb(0), *found], strict=True)]
+    return [c.real for c in found]
+
+
+def _paired(poles: Sequence[acb], zeros: Sequence[acb]) -> list[tuple[list[acb], list[acb]]]:
+    """Return poles, those next to the unit circle first, each with the zeros next to them.
+
+    Real poles stand alone, as do real zeros, which keeps how far they are off z = 1; only a pair of complex
+    zeros without complex poles takes two.
+    """
+    wide, single = _conjugates(poles)
+    pairs, real_zeros = _conjugates(zeros)
+    while len(wide) < len(pairs):
+        wide.append([single.pop(), single.pop()])
+    groups: list[tuple[list[acb], list[acb]]] = [(g, []) for g in (*wide, *([p] for p in single))]
+    groups.sort(key=lambda group: abs(1 - float(abs(group[0][0]).mid())))
+    for two in pairs:
+        free = [group for group in groups if len(group[0]) == PAIR and not group[1]]
+        _nearest(free, two[0])[1].extend(two)
+    for zero in real_zeros:
+        room = [group for group in groups if len(group[1]) < len(group[0])]
+        _nearest([g for g in room if not g[1]] or room, zero)[1].append(zero)
+    return groups
+
+
+def _nearest(groups: Sequence[tuple[list[acb], list[acb]]], zero: acb) -> tuple[list[acb], list[acb]]:
+    return min(groups, key=lambda group: float(abs(group[0][0] - zero).mid()))
+
+
+def _conjugates(roots: Sequence[acb]) -> tuple[list[list[acb]], list[acb]]:
+    """Return pairs of complex roots, and the real ones."""
+    upper = [z for z in roots if z.imag > 0]
+    return [[z, z.conjugate()] for z in upper], [z for z in roots if z.imag == 0]
+
+
+def _exact_run(sampled: SampledTransferFunction, u: Sequence[float]) -> list[arb]:
+    """Return what no rounding leaves of the output, by the recursion of the whole polynomials."""
+    order = len(sampled.denominator) - 1
+    with precision(max(sampled.bits, MEASURE_BITS)):
+        above = [c.mid() for c in sampled.numerator]
+        below = [c.mid() for c in sampled.denominator[1:]]
+        late = [arb(0)] * sampled.late + [arb(v) for v in u[: len(u) - sampled.late]]
+        found: list[arb] = []
+        for k in range(len(u)):
+            value = sum((above[i] * late[k - i] for i in range(min(order, k) + 1)), arb(0))
+            value -= sum((below[i] * found[k - 1 - i] for i in range(min(order, k))), arb(0))
+            found.append(value.mid())
+        return found
+
+
+def _double(value: arb, name: str) -> float:
+    found = float(value.mid())
+    if not isfinite(found) or (value != 0 and abs(found) < float_info.min):
+        size = "large" if abs(found) > 1 else "small"
+        message = f"a coefficient of {name} from sample to sample is too {size} for double precision"
+        raise ModelError(Diagnostic("SF233", message, None, "choose other units, or another sampling time"))
+    return found
+
+
+def _sum(products: Sequence[tuple[float, str]], names: Sequence[str]) -> str:
+    """Return a sum of numbers times names, and of names, without what is zero."""
+    signed = [(factor < 0, _product(abs(factor), name)) for factor, name in products if factor]
+    signed += [(False, name) for name in names]
+    if not signed:
+        return "0.0"
+    text = "".join(f" {'-' if minus else '+'} {term}" for minus, term in signed)
+    return text[3:] if not signed[0][0] else f"-{text[3:]}"
+
+
+def _product(factor: float, name: str) -> str:
+    return name if factor == 1 else f"{factor!r} * {name}"
+
+
+@dataclass(frozen=True, slots=True)
+class DifferenceExporter:
+    """Transfer functions as code that takes one step a sample, in C or in Python."""
+
+    language: str  # ``c`` or ``numpy``
+    sampling: Sampling
+    is_direct: bool = False  # one section for all poles
+
+    solves = False
+
+    @property
+    def suffix(self) -> str:
+        """Of the file's name."""
+        return ".c" if self.language == "c" else ".py"
+
+    @property
+    def summary(self) -> str:
+        """What is made, in a line."""
+        return "difference equations, one step a sample"
+
+    def export(
+        self, model: Model, tfs: Sequence[AnyTransferFunction], stem: str = "", *, is_alone: bool = True
+    ) -> Export:
+        """Return the file; accuracy that was not reached is a warning."""
+        made, warnings = [], []
+        for tf in tfs:
+            spend()
+            if isinstance(tf, NestedTransferFunction):
+                message = f"the closed form of {tf.name} is too large to be sampled"
+                raise BudgetError(Diagnostic("SF502", message, None, "split the model"))
+            equation = difference_equation(
+                sampled_transfer_function(bind(tf), self.sampling), is_direct=self.is_direct
+            )
+            said, warning = equation.measured()
+            warnings += [warning] if warning else []
+            made.append((tf, equation, said))
+        text = _File(model, made, self.sampling)
+        if self.language == "numpy":
+            return Export(text.python(), tuple(warnings))
+        source, header = text.c(None if is_alone else stem)
+        return Export(source, tuple(warnings), {} if is_alone else {".h": header})
+
+
+@dataclass(frozen=True, eq=False)
+class _File:
+    model: Model
+    made: Sequence[tuple[AnyTransferFunction, DifferenceEquation, str]]
+    sampling: Sampling
+
+    def names(self, reserved: Sequence[str]) -> list[str]:
+        wanted = {tf.name: f"{tf.output.name}_over_{tf.input.name}" for tf, _, _ in self.made}
+        found = identifiers(wanted, reserved)
+        return [found[tf.name] for tf, _, _ in self.made]
+
+    def introduction(self, width: int) -> list[str]:
+        sampling = self.sampling
+        how = {
+            "zoh": "the input held from one to the next, exactly",
+            "tustin": "by the bilinear transformation",
+            "matched": "with poles and zeros matched",
+        }[sampling.method]
+        if sampling.prewarp is not None:
+            how += f", right at {float(sampling.prewarp) / (2 * pi):.6g} Hz"
+        lines = ["Difference equations, one step a sample.", "", *origin_lines(self.model, width)]
+        lines += [""] if lines[-1] else []
+        lines += wrapped(
+            f"Written by symflex for a sampling time of {float(sampling.sample)!r} s, {how}.", width
+        )
+        valued = [
+            f"{p.name} = {value_as_written(p) or f'{default_value(p)} {p.unit}'.rstrip()}"
+            for p in self.model.parameters
+            if p.value is not None
+        ]
+        return [*lines, "", *(wrapped(inert(f"Values: {', '.join(valued)}."), width) if valued else [])]
+
+    def described(self, index: int, width: int) -> list[str]:
+        tf, equation, said = self.made[index]
+        sampled = equation.sampled
+        poles = [_shown(p) for p in sampled.poles if not p.imag < 0]
+        more = f" and {len(poles) - SHOWN_POLES} more" if len(poles) > SHOWN_POLES else ""
+        unit = f" [{tf.unit}]" if tf.unit else ""
+        lines = [inert(f"{tf.name}{unit}: one step, from rest.")]
+        if poles:
+            lines += ["", *wrapped(f"Poles in z: {', '.join(poles[:SHOWN_POLES])}{more}.", width)]
+        if sampled.late:
+            lines += wrapped(f"Besides, a dead time of {sampled.late} times the sampling time.", width)
+        return [*lines, "", *wrapped(said, width)]
+
+    def python(self) -> str:
+        names = self.names(sorted(NUMPY_DIALECT.reserved | {"x", "y", "w", "u", "np"}))
+        lines = [*self.introduction(WIDTH), ""]
+        example = names[0]
+        lines += wrapped(
+            f"w = {example}_start() are the states at rest, and y = {example}_step(w, u) takes the input of "
+            "this sample, gives the output and moves the states on. u may be an array of many inputs.",
+            WIDTH,
+        )
+        blocks = [f"SAMPLE_TIME = {self.dt!r}  # [s]\n"]
+        for i, name in enumerate(names):
+            _, equation, _ = self.made[i]
+            late, order = equation.sampled.late, equation.order
+            body = ["x = u"]
+            if late:
+                body = [f"x = w[{order}]", f"w[{order}:-1] = w[{order + 1}:]", "w[-1] = u"]
+            body += _body(equation)
+            first, *others = self.described(i, WIDTH - 4)
+            described = docstring([first, *(f"    {x}" for x in others)], "    ").rstrip("\n")
+            blocks.append(
+                f"def {name}_start() -> list[Any]:\n"
+                f'    """Return the states at rest: those of sections, then past inputs."""\n'
+                f"    return [0.0] * {order + late}\n"
+            )
+            blocks.append(
+                "\n".join(
+                    [
+                        f"def {name}_step(w: list[Any], u: Any) -> Any:",
+                        described,
+                        *(f"    {line}" for line in body),
+                        "    return x",
+                    ]
+                )
+                + "\n"
+            )
+        head = f"{docstring(lines, '')}\nfrom __future__ import annotations\n\nfrom typing import Any\n\n"
+        return head + "\n\n".join(blocks)
+
+    @property
+    def dt(self) -> float:
+        return float(self.sampling.sample)
+
+    def c(self, stem: str | None) -> tuple[str, str]:
+        """Return source and header; all in the source where there is no name."""
+        prefix = prefix_of(stem)
+        names = [f"{prefix}_{name}" for name in self.names(sorted({*KEYWORDS, *RESERVED}))]
+        room = WIDTH - 3
+        lines = [*self.introduction(room), ""]
+        lines += wrapped(
+            f"A {names[0]}_state that is all zero is at rest; {names[0]}_step takes the input of this "
+            "sample, returns the output and moves the states on. Nothing is allocated, and nothing kept "
+            "elsewhere. Fused operations (-ffp-contract) change the last digits.",
+            room,
+        )
+        declared, defined = [], []
+        for i, name in enumerate(names):
+            _, equation, _ = self.made[i]
+            late, order = equation.sampled.late, equation.order
+            members = [f"    double w[{max(order, 1)}];"]
+            members += [f"    double past[{late}];", "    int next;"] if late else []
+            declared += [
+                *comment(self.described(i, room)),
+                "typedef struct {",
+                *members,
+                f"}} {name}_state;",
+                "",
+            ]
+            declared += [f"double {name}_step({name}_state *state, double u);", ""]
+            body = ["double *const w = state->w;"] if order else []
+            body += ["double x = u, y;"]
+            if late:
+                body += ["x = state->past[state->next];", "state->past[state->next] = u;"]
+                body += [f"state->next = (state->next + 1) % {late};"]
+            if not order:
+                body += ["(void)state;"] if not late else []
+            body += [f"{line};" for line in _body(equation)]
+            defined += [f"double {name}_step({name}_state *state, double u)", "{"]
+            defined += [*(f"    {line}" for line in body), "    return x;", "}", ""]
+        guard = f"{prefix.upper()}_H"
+        opening = [*comment(lines), f"#ifndef {guard}", f"#define {guard}", ""]
+        opening += ["#ifdef __cplusplus", 'extern "C" {', "#endif", ""]
+        closing = ["#ifdef __cplusplus", "}", "#endif", "", "#endif"]
+        header = "\n".join([*opening, *declared, *closing]) + "\n"
+        source = "\n".join(defined).rstrip("\n") + "\n"
+        if stem is None:
+            return f"{header}\n{source}", header
+        first = "\n".join(comment([f"{stem}.c: the functions that {stem}.h declares."]))
+        return f'{first}\n\n#include "{stem}.h"\n\n{source}', header
+
+
+def _body(equation: DifferenceEquation) -> list[str]:
+    starts = [0]
+    for section in equation.sections:
+        starts.append(starts[-1] + len(section.below))
+    steps = [[*s.lines(i), "x = y"] for s, i in zip(equation.sections, starts, strict=False)]
+    return list(chain.from_iterable(steps))
+
+
+def _shown(pole: acb) -> str:
+    re, im = float(pole.real.mid()), float(pole.imag.mid())
+    return f"{re:.9g}" if im == 0 else f"{re:.9g} +- {im:.9g}j"

@@ -1,0 +1,179 @@
+"""Sampled transfer functions: held inputs exactly, controllers by Tustin's method or matched roots."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import cos, exp, pi, sin
+
+import control
+import numpy as np
+import pytest
+import scipy.signal
+
+from symflex import loads
+from symflex.analysis.sampling import sampled_transfer_function
+from symflex.errors import ModelError, UsageError
+from symflex.state_space.sampled import Sampling
+from tests.unit.analysis.systems import rational
+
+H = Fraction(1, 50)
+FUNCTIONS = {
+    "lag": ("1/(s + 2)", [1.0], [1.0, 2.0]),
+    "lead": ("(3*s + 1)/(s + 20)", [3.0, 1.0], [1.0, 20.0]),
+    "oscillator": ("(3*s + 1)/(s^2 + 2*s + 50)", [3.0, 1.0], [1.0, 2.0, 50.0]),
+    "double integrator": ("1/s^2", [1.0], [1.0, 0.0, 0.0]),
+    "double pole": ("(s + 3)/((s + 5)^2*(s + 1))", [1.0, 3.0], [1.0, 11.0, 35.0, 25.0]),
+    "notch": ("(s^2 + 1*s + 900)/(s^2 + 30*s + 900)", [1.0, 1.0, 900.0], [1.0, 30.0, 900.0]),
+    "unstable": ("1/(s^2 - 9)", [1.0], [1.0, 0.0, -9.0]),
+}
+CIRCLE = np.exp(1j * np.array([0.05, 0.4, 1.3, 2.9]))
+
+
+def delayed(delay, text="1/(s + 2)"):
+    """Return a function behind a dead time [s]."""
+    lines = [
+        "symflex = 1",
+        f'parameters.T = {{ value = "{delay} s", assume = "nonnegative" }}',
+        'blocks.D = { type = "delay", T = "T" }',
+        "inputs.u = {}",
+    ]
+    return loads("\n".join([*lines, f'outputs.y = "({text})*D*u"'])).transfer_function("y", "u").bind().bound
+
+
+@pytest.mark.parametrize(("method", "other"), [("zoh", "zoh"), ("tustin", "bilinear")])
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_it_is_what_scipy_and_python_control_make_of_it(name, method, other):
+    text, num, den = FUNCTIONS[name]
+    found = sampled_transfer_function(rational(text), Sampling(H, method))
+    values = np.array([found(z) for z in CIRCLE])
+    above, below, _ = scipy.signal.cont2discrete((num, den), float(H), other)
+    # Their coefficients, of third degree at most, lose some six digits of a response next to z = 1.
+    assert values == pytest.approx(np.polyval(above[0], CIRCLE) / np.polyval(below, CIRCLE), rel=1e-8)
+    theirs = control.sample_system(control.tf(num, den), float(H), other)
+    assert values == pytest.approx(np.array([theirs(z) for z in CIRCLE]), rel=1e-8)
+
+
+def test_tustin_is_right_at_the_frequency_it_is_prewarped_at():
+    text, num, den = FUNCTIONS["notch"]
+    sampling = Sampling(H, "tustin", Fraction(30))
+    found = sampled_transfer_function(rational(text), sampling)
+    s, z = 30j, np.exp(30j * float(H))
+    assert found(z) == pytest.approx(np.polyval(num, s) / np.polyval(den, s), rel=1e-13)
+    theirs = control.sample_system(control.tf(num, den), float(H), "tustin", prewarp_frequency=30.0)
+    assert np.array([found(z) for z in CIRCLE]) == pytest.approx(np.array([theirs(z) for z in CIRCLE]))
+
+
+@pytest.mark.parametrize("name", ["lead", "notch"])
+def test_matched_roots_are_those_of_python_control(name):
+    text, num, den = FUNCTIONS[name]
+    found = sampled_transfer_function(rational(text), Sampling(H, "matched"))
+    theirs = control.sample_system(control.tf(num, den), float(H), "matched")
+    assert np.array([found(z) for z in CIRCLE]) == pytest.approx(np.array([theirs(z) for z in CIRCLE]))
+
+
+def test_of_matched_zeros_at_infinity_one_stays_and_small_s_decides_the_gain():
+    found = sampled_transfer_function(rational("7/(s*(s + 1)*(s + 2))"), Sampling(H, "matched"))
+    assert [complex(z) for z in found.zeros] == [-1, -1]  # of three
+    s = 1e-7
+    assert found(exp(s * float(H))) * s == pytest.approx(3.5, rel=1e-6)
+
+
+def test_poles_in_z_are_exponentials_of_those_in_s():
+    found = sampled_transfer_function(rational("1/((s + 5)^2*(s^2 + 2*s + 50))"), Sampling(H))
+    ring = exp(-1 / 50) * np.exp(7j / 50)
+    expected = [exp(-0.1), exp(-0.1), ring.conjugate(), ring]
+    found_poles = sorted((complex(p) for p in found.poles), key=lambda p: (abs(p.imag) > 0, p.imag))
+    assert found_poles == pytest.approx(expected, rel=1e-15)
+
+
+def test_the_zero_of_a_sampled_double_integrator_is_minus_one():
+    found = sampled_transfer_function(rational("1/s^2"), Sampling(H))  # h^2/2 (z + 1)/(z - 1)^2
+    assert [complex(z) for z in found.zeros] == [-1]
+    assert found.coefficients()[0] == pytest.approx([1 / 5000, 1 / 5000], rel=1e-15)
+
+
+@pytest.mark.parametrize("samples", [0.0, 0.3, 1.0, 2.7])
+def test_the_response_behind_a_dead_time_is_right_at_samples(samples):
+    # y' = -2 y + u(t - T): a step of the input makes (1 - exp(-2 (t - T)))/2.
+    h = 0.1
+    found = sampled_transfer_function(delayed(samples * h), Sampling(Fraction(1, 10)))
+    num, den = found.coefficients()
+    num = np.concatenate([np.zeros(len(den) - len(num)), num])
+    got = scipy.signal.lfilter(num, den, np.ones(30))
+    times = np.maximum(np.arange(30) * h - samples * h, 0)
+    assert np.max(np.abs(got - (1 - np.exp(-2 * times)) / 2)) < 1e-14
+
+
+def test_a_sum_of_dead_times_is_sampled_too():
+    text = 'symflex = 1\nblocks.D = { type = "delay", T = "T" }\nblocks.E = { type = "delay", T = "2.5*T" }\n'
+    text += 'parameters.T = "0.03 s"\ninputs.u = {}\noutputs.y = "(D + 2*E)*9/(s^2 + 9)*u"'
+    bound = loads(text).transfer_function("y", "u").bind().bound
+    found = sampled_transfer_function(bound, Sampling(Fraction(1, 20)))
+    num, den = found.coefficients()
+    num = np.concatenate([np.zeros(len(den) - len(num)), num])
+    got = scipy.signal.lfilter(num, den, np.ones(40))
+
+    def step(t):
+        return 1 - cos(3 * t) if t > 0 else 0.0
+
+    assert got == pytest.approx(
+        [step(k / 20 - 0.03) + 2 * step(k / 20 - 0.075) for k in range(40)], abs=1e-13
+    )
+
+
+def test_a_wave_that_only_travels_is_a_dead_time():
+    # exp(-s T)/s, as a ramp arrives; sampled with the wave between two samples.
+    found = sampled_transfer_function(delayed("0.0125", "1/s"), Sampling(H))
+    z = np.exp(0.7j)
+    late = 0.0125 / float(H)
+    expected = float(H) * ((1 - late) + late / z) / (z - 1)
+    assert found(z) == pytest.approx(expected, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("bound", "sampling", "error", "said"),
+    [
+        (lambda: rational("s"), ("1/10", "tustin"), ModelError, "more zeros than poles"),
+        (lambda: rational("1/(s - 20)"), ("1/10", "tustin"), UsageError, "takes to infinity"),
+        (lambda: delayed(0.03), ("1/10", "tustin"), UsageError, "0.3 samples"),
+        (lambda: delayed(0.03), ("1/10", "matched"), UsageError, "0.3 samples"),
+        (lambda: delayed(2000), ("1/10", "zoh"), UsageError, "1000 samples"),
+    ],
+)
+def test_what_has_no_difference_equation_is_refused(bound, sampling, error, said):
+    with pytest.raises(error, match=said):
+        sampled_transfer_function(bound(), Sampling(Fraction(sampling[0]), sampling[1]))
+
+
+def test_a_delay_in_a_loop_is_refused():
+    text = (
+        'symflex = 1\nblocks.D = { type = "delay", T = "1 s" }\ninputs.r = {}\nsignals.y = "2/s*D*(r - y)"\n'
+    )
+    bound = loads(text.replace("2/s", "K/s") + 'outputs.Y = "y"\nparameters.K = "2 1/s"')
+    with pytest.raises(ModelError, match="delay in a loop"):
+        bound.transfer_function("Y", "r").bind().discretise("1 ms")
+
+
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [
+        (("1 ms", "tustn"), "did you mean 'tustin'"),
+        (("1 ms", "zoh", 10.0), "is of 'tustin'"),
+        (("1 ms", "tustin", "600 Hz"), "half of the sampling frequency"),
+        (("1 ms", "tustin", -1.0), "half of the sampling frequency"),
+        ((0.0,), "sampling time is positive"),
+        ((-1.0,), "sampling time is positive"),
+        ((float("nan"),), "finite"),
+        (("1 kg",), "positive time"),
+    ],
+)
+def test_how_it_is_sampled_makes_sense(asked, said):
+    lag = loads('symflex = 1\ninputs.u = {}\noutputs.y = "u/(s + 2)"').transfer_function("y", "u").bind()
+    with pytest.raises(UsageError, match=said):
+        lag.discretise(*asked)
+
+
+def test_a_function_of_frequency_in_hertz_is_prewarped_in_hertz():
+    lag = loads('symflex = 1\ninputs.u = {}\noutputs.y = "u/(s + 2)"').transfer_function("y", "u").bind()
+    z = complex(cos(2 * pi * 0.1), sin(2 * pi * 0.1))  # 10 Hz at 10 ms
+    assert lag.discretise(0.01, "tustin", 10.0)(z) == pytest.approx(1 / (20j * pi + 2), rel=1e-12)

@@ -1,0 +1,213 @@
+"""Difference equations: generated code runs a controller, in C and in Python."""
+
+from __future__ import annotations
+
+import ctypes
+import runpy
+import subprocess
+from fractions import Fraction
+from itertools import pairwise
+from random import Random
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.signal import lfilter
+
+from symflex import loads
+from symflex.analysis.sampling import sampled_transfer_function
+from symflex.codegen.difference import DifferenceExporter, difference_equation
+from symflex.state_space.sampled import Sampling
+from symflex.transfer.of_model import derive_all
+from tests.unit.analysis.systems import rational
+
+CONTROLLER = """
+symflex = 1
+parameters = { k_p = "40", T_d = "0.1 s", T_f = "20 ms", T_i = "0.5 s" }
+inputs  = { e = {} }
+outputs = { u = "k_p*(1 + 1/(T_i*s) + T_d*s/(1 + T_f*s))*e", mean = "e/2" }
+"""
+PLANT = """
+symflex = 1
+parameters = { m = "1 kg", b = "0.8 N*s/m", k = "20 N/m", T = { value = "LATE s", assume = "nonnegative" } }
+inputs  = { u = { unit = "N" } }
+signals = { late = "D*u" }
+outputs = { x = "late/(m*s^2 + b*s + k)" }
+blocks.D = { type = "delay", T = "T" }
+"""
+
+
+def plant(late):
+    return loads(PLANT.replace("LATE", str(late))).transfer_function("x", "u").bind().bound
+
+
+def exported(language, text=CONTROLLER, stem="pid", **options):
+    model = loads(text).resolved
+    sampling = options.pop("sampling", Sampling(Fraction(1, 100), "tustin"))
+    exporter = DifferenceExporter(language, sampling, **options)
+    return exporter.export(model, derive_all(model), stem, is_alone=False)
+
+
+def compiled(folder, export, stem="pid"):
+    """Return the library that a strict compiler makes of the source and its header."""
+    (folder / f"{stem}.c").write_text(export.text, encoding="utf-8")
+    (folder / f"{stem}.h").write_text(export.companions[".h"], encoding="utf-8")
+    flags = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-O1", "-ffp-contract=off"]
+    library = folder / f"{stem}.so"
+    done = subprocess.run(
+        ["gcc", *flags, "-shared", "-fPIC", "-o", library, folder / f"{stem}.c"],
+        check=False,
+        capture_output=True,
+        text=True,
+    )
+    assert not done.returncode, done.stderr
+    return ctypes.CDLL(str(library))
+
+
+def stepper(library, name):
+    """Return a function of one sample after the other."""
+    step = getattr(library, f"{name}_step")
+    step.restype = ctypes.c_double
+    step.argtypes = [ctypes.c_void_p, ctypes.c_double]
+    state = ctypes.create_string_buffer(4096)
+    return lambda u: step(state, u)
+
+
+def closed_loop(controller, late, count, h=0.01):
+    """Return positions at samples: the plant is integrated between the moments at which its input changes."""
+    state, given, positions = np.zeros(2), [], []
+    for k in range(count):
+        positions.append(state[0])
+        given.append(controller(1.0 - state[0]))
+        moments = sorted({0.0, (late / h % 1) * h, h})
+        for begin, end in pairwise(moments):
+            acting = int(np.floor((k * h + (begin + end) / 2 - late) / h))
+            force = given[acting] if acting >= 0 else 0.0
+            state = solve_ivp(
+                lambda _, w, f=force: [w[1], f - 0.8 * w[1] - 20 * w[0]],
+                (begin, end),
+                state,
+                method="DOP853",
+                rtol=1e-13,
+                atol=1e-15,
+            ).y[:, -1]
+    return np.array(positions)
+
+
+@pytest.mark.needs_tool("gcc")
+@pytest.mark.parametrize("samples", [0.0, 0.3, 1.0, 2.7])
+def test_a_compiled_controller_in_the_loop_moves_the_plant_as_the_sampled_model_says(tmp_path, samples):
+    library = compiled(tmp_path, exported("c"))
+    moved = closed_loop(stepper(library, "pid_u_over_e"), samples * 0.01, 120)
+    # The same loop in z: C P/(1 + C P), of both sampled functions.
+    sampled = sampled_transfer_function(plant(samples * 0.01), Sampling(Fraction(1, 100)))
+    pid = loads(CONTROLLER).transfer_function("u", "e").bind().discretise("10 ms", "tustin")
+    (above, below), (num, den) = pid.coefficients(), sampled.coefficients()
+    forward, back = np.polymul(above, num), np.polymul(below, den)
+    whole = np.polyadd(forward, back)
+    expected = lfilter(np.concatenate([np.zeros(len(whole) - len(forward)), forward]), whole, np.ones(120))
+    assert np.max(np.abs(moved - expected)) < 1e-9
+    assert 0.5 < moved[-1] < 1.5
+
+
+@pytest.mark.slow
+@pytest.mark.needs_tool("gcc")
+def test_a_sampled_loop_comes_to_the_continuous_one_with_the_sampling_time(tmp_path):
+    # (s^2 + 0.8 s + 20) x = u, u = C (1 - x), integrated as one system; a hold is late by half a sample.
+    def motion(_, w):
+        x, v, integral, filtered = w
+        e = 1 - x
+        rate = (e - filtered) / 0.02
+        return [v, 40 * (e + 2 * integral + 0.1 * rate) - 0.8 * v - 20 * x, e, rate]
+
+    times = np.arange(0.1, 1.0, 0.1)
+    continuous = solve_ivp(motion, (0, 1), np.zeros(4), t_eval=times, method="DOP853", rtol=1e-11, atol=1e-12)
+    errors = []
+    for fine in (4, 8):
+        sampling = Sampling(Fraction(1, 100 * fine), "tustin")
+        library = compiled(tmp_path, exported("c", stem=f"pid{fine}", sampling=sampling), f"pid{fine}")
+        moved = closed_loop(stepper(library, f"pid{fine}_u_over_e"), 0.0, 100 * fine, 0.01 / fine)
+        errors.append(np.max(np.abs(moved[10 * fine :: 10 * fine] - continuous.y[0])))
+    assert errors[1] < 0.02
+    assert 1.7 < errors[0] / errors[1] < 2.3
+
+
+@pytest.mark.parametrize("is_direct", [False, True])
+def test_python_and_the_run_that_is_measured_take_the_same_steps(tmp_path, is_direct):
+    (tmp_path / "pid.py").write_text(exported("numpy", is_direct=is_direct).text, encoding="utf-8")
+    names = runpy.run_path(str(tmp_path / "pid.py"))
+    bound = loads(CONTROLLER).transfer_function("u", "e").bind().bound
+    made = difference_equation(
+        sampled_transfer_function(bound, Sampling(Fraction(1, 100), "tustin")), is_direct=is_direct
+    )
+    u = np.random.default_rng(2).normal(size=50).tolist()
+    w = names["u_over_e_start"]()
+    assert [names["u_over_e_step"](w, value) for value in u] == made.run(u)
+    assert names["mean_over_e_step"](names["mean_over_e_start"](), 3.0) == 1.5
+    assert names["SAMPLE_TIME"] == 0.01
+
+
+def test_a_step_takes_arrays_of_inputs(tmp_path):
+    text = PLANT.replace("LATE", "0.027")
+    sampling = Sampling(Fraction(1, 100))
+    (tmp_path / "plant.py").write_text(exported("numpy", text, sampling=sampling).text, encoding="utf-8")
+    names = runpy.run_path(str(tmp_path / "plant.py"))
+    u = np.random.default_rng(3).normal(size=(30, 4))
+    w = names["x_over_u_start"]()
+    both = np.array([row * 0 + names["x_over_u_step"](w, row) for row in u])
+    num, den = sampled_transfer_function(plant(0.027), sampling).coefficients()
+    expected = lfilter(np.concatenate([np.zeros(len(den) - len(num)), num]), den, u, axis=0)
+    assert np.max(np.abs(both - expected)) < 1e-12
+
+
+def test_sections_are_the_polynomials_they_come_from():
+    bound = rational("(s^2 + 1*s + 900)*(s + 3)/((s^2 + 30*s + 900)*(s^2 + 2*s + 25)*(s + 1)*(s + 2))")
+    sampled = sampled_transfer_function(bound, Sampling(Fraction(1, 20)))
+    made = difference_equation(sampled)
+    assert sorted(len(section.below) for section in made.sections) == [1, 1, 2, 2]
+    u = np.random.default_rng(4).normal(size=200)
+    num, den = sampled.coefficients()
+    expected = lfilter(np.concatenate([np.zeros(len(den) - len(num)), num]), den, u)
+    assert np.max(np.abs(np.array(made.run(u.tolist())) - expected)) < 1e-9 * np.max(np.abs(expected))
+
+
+def test_an_integrator_beside_another_pole_does_not_leak():
+    made = difference_equation(
+        sampled_transfer_function(rational("(s^2 + 1*s + 4)/(s*(s + 3))"), Sampling(Fraction(1, 70)))
+    )
+    ((a, b),) = (section.below for section in made.sections)
+    assert 1 + a + b == 0
+
+
+def test_sections_lose_far_less_than_one_direct_form():
+    bound = rational("1/((s + 1)*(s + 2)*(s + 3)*(s + 4)*(s + 5)*(s + 6))")
+    sampled = sampled_transfer_function(bound, Sampling(Fraction(1, 1000)))
+    by_two, direct = (difference_equation(sampled, is_direct=x) for x in (False, True))
+    assert by_two.error_of_response() < 1e-7
+    assert direct.error_of_response() > 1e3 * by_two.error_of_response()
+    assert "rounding costs" in direct.measured()[1]
+
+
+def test_the_errors_measured_are_those_of_another_run():
+    sampled = sampled_transfer_function(rational("1/(s^2 + s/10 + 9)"), Sampling(Fraction(1, 10)))
+    made = difference_equation(sampled)
+    stated = made.error_of_output()
+    # Extended precision is a thousand times finer, and lfilter another program.
+    random = Random(1)
+    u = np.array([random.choice((1.0, -1.0)) for _ in range(1000)], np.longdouble)
+    num, den = (
+        [np.longdouble(c.str(25, radius=False)) for c in p] for p in (sampled.numerator, sampled.denominator)
+    )
+    y = [np.longdouble(0)] * 2
+    for k in range(1000):
+        past = [u[k - i] if k >= i else np.longdouble(0) for i in range(3)]
+        y.append(sum(b * x for b, x in zip(num, past, strict=True)) - den[1] * y[-1] - den[2] * y[-2])
+    exact = np.array(y[2:])
+    found = np.array(made.run(u.astype(float).tolist()), np.longdouble)
+    assert float(np.max(np.abs(found - exact)) / np.max(np.abs(exact))) == pytest.approx(stated, rel=0.05)
+
+
+def test_hostile_names_stay_text():
+    text = CONTROLLER.replace("symflex = 1", 'symflex = 1\ntitle = "*/ int x; /* \\\\ \\"\\"\\" ??/"')
+    assert "*/ int x" not in exported("c", text).companions[".h"]
+    compile(exported("numpy", text).text, "pid.py", "exec")
