@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 
     from symflex.model import ModelParameter
     from symflex.quantities import Quantity
-    from symflex.state_space.sampled import Sampling
 
     Stated = float | Fraction | str
     """A number, or a text with or without a unit."""
@@ -603,39 +602,6 @@ def duration(given: str, flag: str) -> Fraction:
     if not found > 0:
         raise wrong
     return found
-
-
-def sampling_of(
-    sample: Stated, method: str | None = None, prewarp: Stated | None = None, flag: str = "--sample"
-) -> Sampling:
-    """Return how a system is sampled, from a sampling time [s] and a frequency [Hz], with units or without.
-
-    Raises
-    ------
-    UsageError
-        SF902 for what is no time or frequency, and as :class:`~symflex.state_space.sampled.Sampling` does.
-
-    Examples
-    --------
-    >>> sampling_of("2 ms", "tustin").sample
-    Fraction(1, 500)
-    """
-    from symflex.model.model import PI_NEARLY
-    from symflex.state_space.sampled import Sampling  # numpy
-
-    time = duration(sample, flag) if isinstance(sample, str) else _finite(sample, flag)
-    if prewarp is None:
-        return Sampling(time, method or "zoh")
-    if not isinstance(prewarp, str):
-        prewarp = _finite(prewarp, "prewarp")
-    hertz = frequency(prewarp, "--prewarp", "10 or '0.1 kHz'", is_hertz=True)
-    return Sampling(time, method or "zoh", hertz * 2 * PI_NEARLY)
-
-
-def _finite(number: float | Fraction, flag: str) -> Fraction:
-    if not isfinite(number):
-        raise UsageError(Diagnostic("SF902", f"{flag} is a finite number, not {number}"))
-    return exact(number)
 
 
 def highest_frequency(given: Stated) -> float:

@@ -26,7 +26,7 @@ from symflex.api.root import (
 )
 from symflex.budget import Budget, entered_budget
 from symflex.errors import Diagnostic, UsageError
-from symflex.options import PlotOptions, RootsOptions, sampling_of
+from symflex.options import PlotOptions, RootsOptions
 from symflex.roots.region import region_of
 
 if TYPE_CHECKING:
@@ -673,6 +673,7 @@ class BoundTransferFunction:
         (array([0.04545455, 0.04545455]), array([ 1.        , -0.81818182]))
         """
         from symflex.analysis.sampling import sampled_transfer_function
+        from symflex.state_space.sampled import sampling_of
 
         return sampled_transfer_function(self.bound, sampling_of(dt, method, prewarp, "a sampling time"))
 

@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Final
 
 from symflex.codegen.state_space import StateEquations
-from symflex.options import duration, exact, sampling_of
+from symflex.options import duration, exact
 from symflex.print.sympy import symbols_of, to_sympy
 from symflex.transfer.bind import read_values
 
@@ -196,7 +196,7 @@ class StateSpace:
         >>> step.A.tolist(), step.B.tolist()  # 1, h and h^2/(2 m), h/m
         ([[1.0, 0.1], [0.0, 1.0]], [[0.0025], [0.05]])
         """
-        from symflex.state_space.sampled import sampled_state_space  # numpy
+        from symflex.state_space.sampled import sampled_state_space, sampling_of  # numpy
 
         sampling = sampling_of(dt, method, prewarp, "a sampling time")
         late = duration(delay, "a dead time") if isinstance(delay, str) else exact(delay)

@@ -13,7 +13,7 @@ from symflex.cli.command import Specification, command_of
 from symflex.cli.reporting import diagnostic_json, emit_json, listed, note, say, show, terminal_width
 from symflex.errors import Diagnostic, SymflexError, UsageError
 from symflex.errors.diagnostic import nearest, printable
-from symflex.options import AuditOptions, CheckOptions, DeriveOptions, ExportOptions, sampling_of
+from symflex.options import AuditOptions, CheckOptions, DeriveOptions, ExportOptions
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -233,7 +233,11 @@ def _chosen(exporter: Exporter, given: ExportOptions) -> Exporter:
         raise UsageError(Diagnostic("SF902", "--form, --width and --no-figures are for --to latex"))
     if given.sample is None and (given.method or given.prewarp or given.is_direct):
         raise UsageError(Diagnostic("SF902", "--method, --prewarp and --direct are of --sample"))
-    sampling = None if given.sample is None else sampling_of(given.sample, given.method, given.prewarp)
+    sampling = None
+    if given.sample is not None:
+        from symflex.state_space.sampled import sampling_of
+
+        sampling = sampling_of(given.sample, given.method, given.prewarp)
     if isinstance(exporter, StateSpaceExporter):
         if given.is_direct:
             raise UsageError(Diagnostic("SF902", "--direct is for --to c and numpy"))

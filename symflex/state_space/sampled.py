@@ -17,7 +17,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import ceil
+from math import ceil, isfinite
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -26,6 +26,8 @@ from flint import arb, arb_mat, ctx
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.errors.optional import installed
+from symflex.model.model import PI_NEARLY
+from symflex.options import duration, exact, frequency
 from symflex.state_space.numeric import Arrays, rounding_of
 from symflex.transfer.balls import ball
 
@@ -33,6 +35,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from symflex.model import ExactValue
+    from symflex.options import Stated
     from symflex.state_space.realise import StateSpace
 
 Balls = Callable[[int], tuple[arb_mat, ...]]
@@ -101,6 +104,36 @@ class Sampling:
             )
             hint = "take zoh, or a sampling time of which it is a multiple"
             raise UsageError(Diagnostic("SF902", message, None, hint))
+
+
+def sampling_of(
+    sample: Stated, method: str | None = None, prewarp: Stated | None = None, flag: str = "--sample"
+) -> Sampling:
+    """Return how a system is sampled, from a sampling time [s] and a frequency [Hz], with units or without.
+
+    Raises
+    ------
+    UsageError
+        SF902 for what is no time or frequency, and as :class:`Sampling` does.
+
+    Examples
+    --------
+    >>> sampling_of("2 ms", "tustin").sample
+    Fraction(1, 500)
+    """
+    time = duration(sample, flag) if isinstance(sample, str) else _finite(sample, flag)
+    if prewarp is None:
+        return Sampling(time, method or "zoh")
+    if not isinstance(prewarp, str):
+        prewarp = _finite(prewarp, "prewarp")
+    hertz = frequency(prewarp, "--prewarp", "10 or '0.1 kHz'", is_hertz=True)
+    return Sampling(time, method or "zoh", hertz * 2 * PI_NEARLY)
+
+
+def _finite(number: float | Fraction, flag: str) -> Fraction:
+    if not isfinite(number):
+        raise UsageError(Diagnostic("SF902", f"{flag} is a finite number, not {number}"))
+    return exact(number)
 
 
 @dataclass(frozen=True, eq=False)
