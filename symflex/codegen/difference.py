@@ -61,7 +61,7 @@ PAIR = 2
 
 
 @dataclass(frozen=True, slots=True)
-class Section:
+class FilterSection:
     """``y[k] = sum(above[i] x[k-i]) - sum(below[i] y[k-1-i])``; with as many past values on both sides."""
 
     above: tuple[float, ...]
@@ -96,7 +96,7 @@ class DifferenceEquation:
     """Sections that follow one another, after a dead time of whole samples."""
 
     sampled: SampledTransferFunction
-    sections: tuple[Section, ...]
+    sections: tuple[FilterSection, ...]
 
     @property
     def order(self) -> int:
@@ -177,7 +177,7 @@ def difference_equation(sampled: SampledTransferFunction, *, is_direct: bool = F
     >>> bound = tf.transfer_function("y", "u").bind().bound
     >>> made = difference_equation(sampled_transfer_function(bound, Sampling(Fraction(1, 10), "tustin")))
     >>> made.sections  # 1.05 and 0.95 over 1 - z^-1: a pole at 1 stays there
-    (Section(above=(1.05, -0.95), below=(-1.0,)),)
+    (FilterSection(above=(1.05, -0.95), below=(-1.0,)),)
     """
     with precision(sampled.bits):
         order = len(sampled.poles)
@@ -185,7 +185,8 @@ def difference_equation(sampled: SampledTransferFunction, *, is_direct: bool = F
         if is_direct or sampled.zeros is None or not order or gain == 0:
             above = tuple(_double(c, sampled.tf) for c in sampled.numerator)
             return DifferenceEquation(
-                sampled, (Section(above, tuple(_double(c, sampled.tf) for c in sampled.denominator[1:])),)
+                sampled,
+                (FilterSection(above, tuple(_double(c, sampled.tf) for c in sampled.denominator[1:])),),
             )
         sections = []
         for poles, zeros in _paired(sampled.poles, sampled.zeros):
@@ -193,7 +194,7 @@ def difference_equation(sampled: SampledTransferFunction, *, is_direct: bool = F
             scaled = [c * gain for c in _expanded(zeros)]
             gain = arb(1)
             scaled = [arb(0)] * (len(below) + 1 - len(scaled)) + scaled
-            sections.append(Section(tuple(_double(c, sampled.tf) for c in scaled), below))
+            sections.append(FilterSection(tuple(_double(c, sampled.tf) for c in scaled), below))
         return DifferenceEquation(sampled, tuple(sections))
 
 
