@@ -320,7 +320,7 @@ class DifferenceExporter:
             said, warning = equation.measured()
             warnings += [warning] if warning else []
             made.append((tf, equation, said))
-        text = _File(model, made, self.sampling)
+        text = _StepCode(model, made, self.sampling)
         if self.language == "numpy":
             return Export(text.python(), tuple(warnings))
         source, header = text.c(None if is_alone else stem)
@@ -328,7 +328,7 @@ class DifferenceExporter:
 
 
 @dataclass(frozen=True, eq=False)
-class _File:
+class _StepCode:
     model: Model
     made: Sequence[tuple[AnyTransferFunction, DifferenceEquation, str]]
     sampling: Sampling
