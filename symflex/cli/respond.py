@@ -25,9 +25,9 @@ def respond(spec: Specification, given: RespondOptions) -> int:
 
     The system is at rest before t = 0. Every value is proved to lie within its radius; the response comes
     from proved poles, not from steps in time. An impulse that passes straight through to the output is said,
-    and is not among the values; that at t = 0 is the limit from above. Of Timoshenko's beams, and others of
-    whose modes too little is known, what those beyond the lowest 25 add is estimated, and the first line says
-    that the values are not certified.
+    and is not among the values; that at t = 0 is the limit from above. Of beams with controllers or imposed
+    motions, and others of whose modes too little is known, what those beyond the lowest 25 add is estimated,
+    and the first line says that the values are not certified.
 
     With --shaped the input goes through the input shaper that 'symflex shape' prints for the same transfer
     function: it is convolved by its impulses, at their proved times.

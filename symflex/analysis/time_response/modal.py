@@ -5,15 +5,18 @@ Input: a bound transfer function with waves. Output: enclosed values, and whethe
     y(t)  =  principal part at s = 0  +  sum over poles  +  the modes left out
 
 The first two are balls. What is left out is bounded for beams that lose nothing, see
-:mod:`~symflex.analysis.time_response.lossless_modes`, and for those that lose energy along their length
-alone, see :mod:`~symflex.analysis.time_response.damped_modes`. For others it is estimated from the last
-residues, and the response is not certified.
+:mod:`~symflex.analysis.time_response.lossless_modes`, for those that lose energy along their length
+alone, see :mod:`~symflex.analysis.time_response.damped_modes`, and for all that a force moves where nothing
+else supplies energy, see :mod:`~symflex.analysis.time_response.passive_modes`. For others it is estimated
+from the last residues, and the response is not certified.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
-from math import log
+from cmath import sqrt as csqrt
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import log, pi
 from typing import TYPE_CHECKING
 
 from flint import acb, arb
@@ -24,8 +27,17 @@ from symflex.analysis.time_response.damped_modes import Damping, damping_of
 from symflex.analysis.time_response.echoes import Sampled
 from symflex.analysis.time_response.exponentials import ExponentialTerm, values_of
 from symflex.analysis.time_response.lossless_modes import LosslessModes, lossless_modes
+from symflex.analysis.time_response.passive_modes import PassiveBound, passive_bound
+from symflex.budget import entered_budget
 from symflex.errors import Diagnostic, UncertifiedError
+from symflex.roots.counting.argument_principle import CertifiedWinding
+from symflex.roots.counting.winding import RootOnPathError
+from symflex.roots.distributed.side import Side
+from symflex.roots.engines import LOSSLESS
+from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.locate import locate
+from symflex.roots.plane.local_roots import prove_simple
+from symflex.roots.polynomial_roots import in_order
 from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.region import Modes
 
@@ -46,8 +58,22 @@ FIRST_MODES = (16, 32)
 """From whose bounds it is told how many modes it takes."""
 MOST_MODES = 2000
 """Velocities fall off so slowly that no number of modes is enough; so many are searched at most."""
+MOST_SEARCHED = 100
+"""The same where each is searched in the plane, and does not follow from others: that takes some seconds."""
+MOST_CONTINUED = 5000
+"""The same where each is told by those before: a millisecond or two."""
+SLOW_MODES = 1000
+"""Where even these would not do."""
+ROUNDS = 3
+"""Of telling how many it takes."""
+ENOUGH = 0.8
+"""Of the radius allowed: how bounds fall off is told from few modes."""
+CONTINUATION = (-1, 4, -6, 4)
+"""By what the last four of a smooth sequence are multiplied to give the next."""
+NEXT_TO = 0.05
+"""How far from there it may be, over the last step."""
 ESTIMATED_MODES = 25
-"""Where the rest is estimated: each takes far longer to find where energy is lost."""
+"""Where the rest is estimated."""
 LAST_MODES = 5
 """From whose residues the rest is estimated."""
 TOO_MUCH = 0.3
@@ -90,7 +116,7 @@ def _of_proved_modes(
     if bounds[0] is None or bounds[1] is None or found is None:
         return None
     largest = max((abs(y.mid()) for y in found.values), default=arb(0))
-    goal = float(largest) * 10.0 ** -min(digits, MOST_DIGITS)
+    goal = ENOUGH * float(largest) * 10.0 ** -min(digits, MOST_DIGITS)
     count = _needed((few, float(bounds[0])), (many, float(bounds[1])), goal)
     if count > many:
         turned = float(second[0][-1].im.mid()) * (count / many) ** 2 * float(times.seconds[-1])
@@ -98,6 +124,165 @@ def _of_proved_modes(
         finer = lossless_modes(plain, DIGITS + lost) if lost else modes
         found = None if finer is None else _summed(bound, finer, damping, count, integrations, times)
     return found
+
+
+def of_passive_modes(
+    bound: BoundTransferFunction, integrations: int, times: SampleTimes, digits: int
+) -> Sampled | None:
+    """Return a response of a passive model with a proved bound of the modes left out; None where none is."""
+    bounding = passive_bound(bound)
+    if bounding is None:
+        return None
+    modes = PassiveModes(bounding, integrations, times)
+    few, many = FIRST_MODES
+    first, found = modes.summed(few), modes.summed(many)
+    if first is None or found is None:
+        return None
+    largest = max((abs(y.mid()) for y in found.values), default=arb(0))
+    goal = float(largest) * 10.0 ** -min(digits, MOST_DIGITS)
+    counts = few, many
+    for _ in range(ROUNDS):
+        wanted = _needed((counts[0], float(first.rest)), (counts[1], float(found.rest)), goal, MOST_CONTINUED)
+        wanted = SLOW_MODES if wanted == MOST_CONTINUED else wanted
+        more = modes.summed(wanted) if wanted > counts[1] else None
+        if more is None:
+            break
+        counts, first, found = (counts[1], wanted), found, more
+    return Sampled(tuple(y + arb(0, found.rest) for y in found.values))
+
+
+@dataclass(frozen=True, slots=True)
+class PartialSum:
+    """The sum over some modes, at all times, and how much all others add at most."""
+
+    values: tuple[arb, ...]
+    rest: arb
+
+
+class PassiveModes:
+    """The lowest modes of a passive system, found as many as asked for."""
+
+    def __init__(self, bounding: PassiveBound, integrations: int, times: SampleTimes) -> None:
+        self._bounding, self._integrations, self._times = bounding, integrations, times
+        self._bound = bounding.function.bound
+        self._side = Side(self._bound, self._bound.den, DIGITS, entered_budget())
+
+    def summed(self, count: int) -> PartialSum | None:
+        """Return the sum over so many modes, None where it is not proved.
+
+        Where they are hard to find, fewer are taken.
+        """
+        side, last = self._side, arb(float(self._times.seconds[-1]))
+        if side.is_finite:
+            return None
+        continued = self._continued(count) if count > max(FIRST_MODES) and side.engine != LOSSLESS else None
+        if continued is not None:
+            reached, roots = continued
+        else:
+            wanted = Modes(count if side.engine == LOSSLESS else min(count, MOST_SEARCHED))
+            side.search(wanted)
+            if not side.prove(wanted).is_complete:
+                return None
+            reached, roots = side.reached, side.roots
+        origin = _at_origin(self._bound, self._integrations)
+        if origin is None:
+            return None
+        rest = self._bounding.rest(reached, self._integrations, last)
+        if rest is None:
+            return None
+        terms = list(origin)
+        with precision(bits_for_digits(2 * DIGITS)):
+            radius = arb(reached).exp()
+            poles = [root for root in roots if self._may_be_pole(root, radius)]
+            rings = []
+            for hole in side.holes:
+                if hole.low > reached:
+                    continue
+                found = self._bounding.around(hole, [p.enclosure() for p in poles], self._integrations)
+                if found is None or not found[0].reach < radius:
+                    return None
+                rings.append(found[0])
+                terms += found[1]
+                rest += found[2]
+            for root in poles:
+                within = [ring.holds(root.enclosure()) for ring in rings]
+                if None in within or not (root.certified and root.natural_frequency() < radius):
+                    return None
+                if any(within):
+                    continue
+                term = _term_at(self._bound, root, self._integrations)
+                if term is None:
+                    return None
+                terms.append(term)
+            return PartialSum(tuple(values_of(terms, self._times)), rest.upper())
+
+    def _continued(self, count: int) -> tuple[float, list[Root]] | None:
+        """Return ln of a radius and all roots within, those found so far continued; None where that fails.
+
+        Square roots of high poles of bending, of waves damped in the material too, are evenly spaced, nearly,
+        so each is next to where the last four point to. That none is missing a count of the ring says.
+        """
+        side = self._side
+        if any(hole.high > side.reached for hole in side.holes) or side.function.power != 1:
+            return None
+        begun = in_order([root for root in side.roots if root.natural_frequency().log() < side.reached])
+        chain = [root for root in begun if not root.im < 0 and not root.re > 0 and not root.is_zero]
+        if len(chain) < len(CONTINUATION):
+            return None
+        winding = CertifiedWinding(side.function, entered_budget())
+        try:
+            within = winding.count_within(side.reached, pi)
+            places = [_root_of(root) for root in chain[-len(CONTINUATION) :]]
+            added: list[Root] = []
+            while len(chain) + len(added) <= count:
+                place = sum(c * z for c, z in zip(CONTINUATION, places, strict=True))
+                found = prove_simple(side.function, acb(place**2), DIGITS)
+                if found is None or not found.certified:
+                    return None
+                places = [*places[1:], _root_of(found)]
+                if not abs(places[-1] - place) < NEXT_TO * abs(places[-1] - places[-2]):
+                    return None
+                added.append(found)
+            ends = [float(root.natural_frequency().log().mid()) for root in added[-2:]]
+            reached = sum(ends) / len(ends)
+            between = sum(1 if root.is_real else 2 for root in added[:-1])
+            if winding.count_within(reached, pi) != within + between:
+                return None
+        except RootOnPathError:
+            return None
+        return reached, [*begun, *added[:-1]]
+
+    def _may_be_pole(self, root: Root, radius: arb) -> bool:
+        """Tell whether a root of the denominator, in the upper half plane, may be a pole within a radius.
+
+        Right of the axis none is, as nothing supplies energy; without losses none is left of it either.
+        """
+        if root.is_zero or root.im < 0 or root.re > 0 or (root.re < 0 and self._is_lossless):
+            return False
+        return not root.natural_frequency() > radius
+
+    @cached_property
+    def _is_lossless(self) -> bool:
+        """Whether the function is even or odd in s."""
+        return all(KernelFunction(self._bound, p).is_even for p in (self._bound.num, self._bound.den))
+
+
+def _root_of(pole: Root) -> complex:
+    """Return the square root of a pole in the second quadrant."""
+    return csqrt(complex(float(pole.re.mid()), abs(float(pole.im.mid()))))
+
+
+def _term_at(bound: BoundTransferFunction, root: Root, integrations: int) -> ExponentialTerm | None:
+    """Return what a pole and its conjugate add; None where it is not told from other points."""
+    try:
+        (part,) = residues_at(bound, [root], DIGITS)
+    except UncertifiedError:
+        return None
+    if part.is_estimate:
+        return None
+    share = 1 if root.is_real else 2
+    found = _over_powers(part.pole, part.coefficients, integrations)
+    return ExponentialTerm(part.pole, tuple(share * c for c in found))
 
 
 def _summed(
@@ -151,7 +336,7 @@ def _damped(
     return found
 
 
-def _needed(few: tuple[int, float], many: tuple[int, float], goal: float) -> int:
+def _needed(few: tuple[int, float], many: tuple[int, float], goal: float, most: int = MOST_MODES) -> int:
     """Return about how many modes bring a bound below a goal, from two counts and their bounds.
 
     Examples
@@ -163,10 +348,10 @@ def _needed(few: tuple[int, float], many: tuple[int, float], goal: float) -> int
         return many[0]
     power = log(few[1] / many[1]) / log(many[0] / few[0])
     if not (goal > 0 and power > 0):
-        return MOST_MODES
+        return most
     # Logarithms, as a power of a small number may overflow.
     growth = log(many[1] / goal) / power
-    return min(MOST_MODES, round(1.2 * many[0] * 2 ** min(growth / log(2), 20)))
+    return min(most, round(1.2 * many[0] * 2 ** min(growth / log(2), 20)))
 
 
 def _at_origin(bound: BoundTransferFunction, integrations: int) -> list[ExponentialTerm] | None:

@@ -1,0 +1,334 @@
+"""Systems that only lose energy: how much the poles beyond a circle may add to a response, at any time.
+
+Input: a bound transfer function of a model in which nothing supplies energy but the input.
+Output: a bound of its step response less the terms of all poles with abs(s) below a radius R.
+
+Example: a force on a mass m gives ``H = 1/(m s^2)``, and beyond any R nothing is left out; the bound is of
+the size of H(R) = 1/(m R^2).
+
+Let a be the coordinate that the input acts on, and H_aa what a force at a moves there. ``s H_aa`` is positive
+real, so there is a measure nu >= 0 of frequencies, even, with (Cauer 1932; Anderson & Vongpanitlerd 1973)
+
+    H_aa(s) = alpha + integral of nu(dw)/(s^2 + w^2)    and a step response
+    y(t)    = alpha + integral of (1 - cos(w t))/w^2 nu(dw)
+
+At real s = R it shows how much lies beyond R: there 1/w^2 is at most 2/(R^2 + w^2), and so alpha and all
+w > R together add at most 4 H_aa(R), which is one value. Between a and another coordinate b, nu is at most
+the geometric mean of both (it is a matrix that is nowhere negative), and so is its bound.
+
+What lies below R is an integral of H (e^(st) + e^(-st) - 2)/(2 pi j s) along the imaginary axis, just right
+of it. The first exponential is moved to the left half of the circle abs(s) = R: between are the poles within
+R, whose residues are summed. The rest is moved to the right half, where there are none. On both halves no
+exponential is larger than 1, so what they add is at most (left + 3 right)/(2 pi), where left and right are
+integrals of abs(H/s). These are finite paths, covered with balls. Nothing is assumed about poles beyond R, or
+about how fast H falls off.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import pi
+from typing import TYPE_CHECKING
+
+from flint import acb, arb
+
+from symflex.algebra import Factored
+from symflex.algebra.exponential_sum import REAL, arguments_of, exponential_sum
+from symflex.analysis.explanation.coordinates import PAIR, acting, in_one_way, measured
+from symflex.analysis.time_response.exponentials import ExponentialTerm
+from symflex.budget import spend
+from symflex.expressions import Attribute, Expression, Name, Negative, Sum
+from symflex.library.elements import COMPONENT_DOMAIN
+from symflex.model.model import INPUT_KINDS, Input, NodeReference, Output
+from symflex.model.signs import is_passive
+from symflex.roots.counting.argument_principle import LogarithmicLine
+from symflex.roots.functions.exponential_values import ExponentialValues
+from symflex.roots.precision import precision
+from symflex.transfer.balls import at_centre, ball
+from symflex.transfer.bind import bind
+from symflex.transfer.of_model import assemble, derive_all
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.analysis.explanation.coordinates import Coordinates
+    from symflex.library.elements import Variable
+    from symflex.model import Model
+    from symflex.roots.counting.winding import Cell
+    from symflex.transfer import BoundTransferFunction
+
+BITS = 128
+"""Of sizes: exponents of some 10^6 leave a phase of 30 digits."""
+FIRST_STEP = 0.1
+"""Of arcs [rad]; where values vary much on one, it is halved."""
+SMALLEST_STEP = 1e-9
+SHARP = 0.25
+"""Radius of the balls of sums on a step, over their middle: sizes are that uncertain."""
+WIDEST = 2.0
+"""How far from poles that accumulate a ring about them is sought, over the size of what they lie in."""
+RING_STEPS = 16
+"""Of half a ring, at first."""
+RING_POWER = 50
+"""A sum over a ring lacks about exp(-50), or 10^-21, of the largest value on it."""
+OUTPUT, INPUT = "displacement", "reaction"
+"""Names in a model whose names begin differently."""
+
+
+@dataclass(frozen=True, eq=False)
+class SizeOfFunction:
+    """How large a transfer function is at most on a ball of s, as a sum of exponentials over another.
+
+    Of every sum the largest exponential is taken out, so that values far from the imaginary axis hardly vary.
+    """
+
+    bound: BoundTransferFunction
+    values: ExponentialValues
+
+    @classmethod
+    def of(cls, bound: BoundTransferFunction) -> SizeOfFunction | None:
+        """Return the evaluator of a function; None where a wavenumber has no formula, or for long sums."""
+        arguments = arguments_of(bound.kernels)
+        if arguments is None:
+            return None
+        found = []
+        for factor, exponent in bound.ratio.factors:
+            terms = exponential_sum(bound.ratio.ring, bound.kernels, arguments, factor)
+            if terms is None:
+                return None
+            found.append((terms, exponent))
+        with precision(BITS):
+            return cls(bound, ExponentialValues(bound.kernel_values(), arguments, tuple(found)))
+
+    def at(self, s: acb, sharp: float = 1.0) -> arb | None:
+        """Return the most that abs(H) is on a ball; None where it is not told, to about a share."""
+        spend()
+        place = self.values.at(s)
+        total = abs(acb(ball(self.bound.ratio.unit)))
+        grown: dict[int, complex] = {}
+        for i, (terms, exponent) in enumerate(self.values.sums):
+            only = next(iter(terms.terms), REAL)
+            largest = only if len(terms.terms) == 1 else self.values.largest([i], place)
+            value = at_centre(self.values.value(i, place, largest))
+            if not value.is_finite():
+                return None
+            scale = abs(value.mid())
+            if exponent > 0:
+                # A numerator may vanish on the way.
+                own = self.values.amplitudes(i, place)[list(terms.terms).index(largest)]
+                scale = scale.max(abs(at_centre(own).mid()))
+            if not value.rad() <= sharp * scale:
+                return None
+            size = abs(value)
+            total = total * (size.upper() if exponent > 0 else size.lower()) ** exponent
+            for k, real, imaginary in largest:
+                grown[k] = grown.get(k, 0j) + exponent * complex(real, imaginary)
+        # Added up first: the balls of what grows above and below would not cancel.
+        rest = place.combined(tuple((k, acb(c.real, c.imag)) for k, c in grown.items() if c))
+        found = total if rest is None else total * at_centre(rest).real.exp()
+        return found.upper() if found.is_finite() else None
+
+    def on_arc(self, reached: float, start: float, end: float) -> arb | None:
+        """Return the integral of abs(H) over the angle [rad] from one to another, at one ln(abs(s))."""
+        path = LogarithmicLine(complex(reached, start), complex(reached, end))
+        count = round((end - start) / FIRST_STEP) + 1
+        pending = [(i / count, (i + 1) / count) for i in range(count)]
+        total = arb(0)
+        while pending:
+            low, high = pending.pop()
+            size = self.at(path.step(low, high)[0], SHARP)
+            if size is not None:
+                total += size * (high - low) * (end - start)
+            elif (high - low) * (end - start) < SMALLEST_STEP:
+                return None
+            else:
+                middle = (low + high) / 2
+                pending += [(low, middle), (middle, high)]
+        return total.upper()
+
+
+@dataclass(frozen=True, eq=False)
+class PassiveBound:
+    """A passive model's transfer function from a force to ``factor * s^order`` times a displacement."""
+
+    function: SizeOfFunction
+    order: int
+    factor: arb  # its size
+    colocated: tuple[SizeOfFunction, ...]  # what forces at either end move there; one where both are the same
+
+    def rest(self, reached: float, integrations: int, last: arb) -> arb | None:
+        """Return how much a response differs at most from what the poles with ln(abs(s)) < ``reached`` add.
+
+        This holds up to a time ``last`` [s]. The input is an impulse, integrated so often. None where
+        nothing is proved: a step of a displacement, and what is smoother, is.
+        """
+        smooth = integrations - self.order
+        if smooth not in (1, 2):
+            return None
+        with precision(BITS):
+            radius = arb(reached).exp()
+            sizes = [each.at(acb(radius)) for each in self.colocated]
+            right, left = (self.function.on_arc(reached, *ends) for ends in ((0.0, pi / 2), (pi / 2, pi)))
+            known = [size for size in sizes if size is not None]
+            if right is None or left is None or len(known) < len(sizes):
+                return None
+            beyond = 4 * self.factor * (known[0] * known[-1]).sqrt()
+            # Both arcs stand for their mirror images as well.
+            step = beyond + (left + 3 * right) / arb.pi() / radius**self.order
+            if smooth == 1:
+                return step.upper()
+            # Of exp(st) - 1 in place of exp(st), the 1 adds an integral over the whole circle.
+            return (last * step + (left + right) / arb.pi() / radius ** (self.order + 1)).upper()
+
+    def around(
+        self, hole: Cell, poles: Sequence[acb], integrations: int
+    ) -> tuple[Annulus, list[ExponentialTerm], arb] | None:
+        """Return what all poles in a neighbourhood add where infinitely many accumulate, as about -1/eta.
+
+        It is an integral over a ring about them, as a sum over its points: what is summed is analytic on the
+        ring, so the error falls like a power of its width (Trefethen and Weideman 2014). First comes the
+        ring, with all ``poles`` that it holds besides; then the terms, and what they lack at most.
+        """
+        if not hole.right <= pi <= hole.left:
+            return None
+        with precision(2 * BITS):
+            ring = _ring_about(hole, poles)
+            if ring is None:
+                return None
+            largest = arb(0)
+            pending = [(k / RING_STEPS, 1 / RING_STEPS, -1.0, 2.0) for k in range(RING_STEPS)]
+            while pending:
+                start, angle, inner, depth = pending.pop()
+                s = ring.piece(start, angle, inner, depth)
+                size = self.function.at(s)
+                if size is not None:
+                    largest = largest.max(size / s.abs_lower() ** integrations)
+                elif angle < SMALLEST_STEP:
+                    return None
+                else:
+                    angle, depth = angle / 2, depth / 2
+                    halves = ((i, k) for i in (0, 1) for k in (0, 1))
+                    pending += [(start + i * angle, angle, inner + k * depth, depth) for i, k in halves]
+            count = 2 * int(RING_POWER / float(ring.width.log().mid()) / 2 + 1)
+            terms = []
+            values = self.function.bound.enclosed(2 * BITS)
+            for k in range(count // 2):
+                # Points come in conjugate pairs.
+                off = ring.radius * acb(0, arb(2 * k + 1) * arb.pi() / count).exp()
+                s = ring.centre + off
+                terms.append(ExponentialTerm(s, (2 * values(s) * off / s**integrations / count,)))
+            # Left of the imaginary axis no exponential is larger than 1.
+            missing = largest * ring.radius * (ring.width + 1 / ring.width) / (ring.width**count - 1)
+            return ring, terms, missing.upper()
+
+
+@dataclass(frozen=True, slots=True)
+class Annulus:
+    """All s whose distance from a real centre is a radius times a number between 1/width and width."""
+
+    centre: arb
+    radius: arb
+    width: arb
+
+    def piece(self, start: float, angle: float, inner: float, depth: float) -> acb:
+        """Return a ball around a part of the upper half.
+
+        From 0 to 1 the angle grows from the right end to the left one, from -1 to 1 the radius.
+        """
+        turn = arb(start + angle / 2, angle / 2) * arb.pi()
+        grown = self.width.log() * arb(inner + depth / 2, depth / 2)
+        return self.centre + self.radius * acb(grown, turn).exp()
+
+    @property
+    def reach(self) -> arb:
+        """Return the largest abs(s) on the ring."""
+        return abs(self.centre) + self.radius * self.width
+
+    def holds(self, point: acb) -> bool | None:
+        """Tell whether a point lies within; None on the ring."""
+        distance = abs(point - self.centre)
+        return True if distance < self.radius else False if distance > self.radius else None
+
+
+def _ring_about(hole: Cell, poles: Sequence[acb]) -> Annulus | None:
+    """Return a ring about a neighbourhood, left of the imaginary axis, as far as possible from all poles."""
+    centre = -arb((hole.low + hole.high) / 2).exp()
+    corner = acb(hole.high, hole.left).exp()
+    least = abs(corner - centre).upper()
+    most = least * WIDEST
+    if not most < -centre:
+        return None
+    off = sorted((d for p in poles if least < (d := abs(p - centre)) < most), key=arb.mid)
+    gaps = list(pairwise([least, *off, most]))
+    inner, outer = max(gaps, key=lambda gap: float(gap[1].mid() / gap[0].mid()))
+    width = (outer / inner).sqrt().sqrt().mid()
+    return Annulus(centre.mid(), (outer * inner).sqrt().mid(), width) if width > 1 else None
+
+
+def passive_bound(bound: BoundTransferFunction) -> PassiveBound | None:
+    """Return what bounds the modes of a function; None where its model is not known to be passive.
+
+    Its input is a force or torque, its output a node's displacement or angle, the difference of two, or a
+    derivative of one.
+    """
+    model = bound.source.model
+    if not bound.is_of_model or not is_passive(model, bound.values):
+        return None
+    model = in_one_way(model)
+    here = acting(model, bound.source.input)
+    there = measured(assemble(model), bound.source.output.name)
+    if not here or there is None:
+        return None
+    order = there.factor.exponent_of(there.factor.ring.context.gen(0))
+    s = Factored.generator(there.factor.ring, "s")
+    factor = there.factor / s**order
+    if not factor.is_constant or order < 0:
+        return None
+    function = SizeOfFunction.of(bound)
+    if function is None:
+        return None
+    ends = [here] if here == there.coordinates else [here, there.coordinates]
+    colocated = _colocated(bound, model, ends)
+    if colocated is None:
+        return None
+    sizes = tuple(found for c in colocated if (found := SizeOfFunction.of(c)) is not None)
+    size = abs(ball(factor.unit))
+    return PassiveBound(function, order, size, sizes) if len(sizes) == len(ends) else None
+
+
+def _colocated(
+    bound: BoundTransferFunction, model: Model, ends: list[Coordinates]
+) -> list[BoundTransferFunction] | None:
+    """Return what a force moves where it acts, at each end; None where the model is not reciprocal.
+
+    That a force at one end moves the other as much as the other way round is seen from both functions.
+    """
+    forces, shown = [], []
+    for i, coordinates in enumerate(ends):
+        kind = _force_on(model, coordinates[0][0])
+        if kind is None:
+            return None
+        nodes = tuple(NodeReference(v.owner, v.component) for v, _ in coordinates)
+        forces.append(Input(f"{INPUT}_{i}", kind, nodes))
+        shown.append(Output(f"{OUTPUT}_{i}", _written(coordinates)))
+    # What else drives the model stays, at rest: without it a support would be missing.
+    given = replace(model, inputs=(*model.inputs, *forces), outputs=tuple(shown), figures=(), published=())
+    pairs = [(o.name, i.name) for o in shown for i in forces]
+    found = [bind(tf, dict(bound.values)) for tf in derive_all(given, pairs)]
+    if len(ends) == PAIR and not (found[1].ratio / found[2].ratio).is_one:
+        return None
+    return [found[0], found[-1]] if len(ends) == PAIR else found
+
+
+def _force_on(model: Model, variable: Variable) -> str | None:
+    """Return the kind of input that does work on a coordinate; None for a voltage."""
+    domain = next(n.domain for n in model.nodes if n.name == variable.owner)
+    own = COMPONENT_DOMAIN.get(variable.component, domain)
+    kinds = (k for k, kind in INPUT_KINDS.items() if kind.domain == own and not kind.is_imposed)
+    return None if own == "electrical" else next(kinds, None)
+
+
+def _written(coordinates: Coordinates) -> Expression:
+    """Return coordinates as an expression, the first less the second."""
+    terms = [Attribute(v.owner, v.component) if v.component else Name(v.owner) for v, _ in coordinates]
+    return terms[0] if len(terms) == 1 else Sum((terms[0], Negative(terms[1])))

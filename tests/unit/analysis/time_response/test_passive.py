@@ -1,0 +1,292 @@
+"""Beams with anything passive at their ends: responses hold what closed forms, inverted otherwise, give."""
+
+from __future__ import annotations
+
+import mpmath
+import numpy as np
+import pytest
+
+from symflex import loads
+from symflex.analysis.time_response import SampleTimes, time_response
+
+UNIT = 'E = "1 Pa", A = "1 m^2", I = "1 m^4", rho = "1 kg/m^3"'
+WHOLE = 'l = "1 m"'
+
+
+def of(text, output="X", source="F"):
+    return loads(f"symflex = 1\n{text}").transfer_function(output, source).bind().bound
+
+
+def clamped(rest="", kind="", output="x"):
+    text = f'elements.arm = {{ type = "beam", between = ["ground", "x"], {UNIT}, {WHOLE}{kind} }}\n{rest}\n'
+    return of(f'{text}inputs.F = {{ force = "x" }}\noutputs.X = "{output}"')
+
+
+def damper(b):
+    return f'elements.d = {{ type = "damper", between = ["ground", "x"], b = "{b} N*s/m" }}'
+
+
+def spring(k):
+    return f'elements.k = {{ type = "spring", between = ["ground", "x"], k = "{k} N/m" }}'
+
+
+def hub(rest="", eta="0", output="tip"):
+    """Return a pinned beam with a hub at one end and a mass at the other, turned by a torque at the hub."""
+    return of(
+        f"""
+elements.arm  = {{ type = "beam", between = ["hub", "tip"], {UNIT}, {WHOLE}, eta = "{eta} s" }}
+elements.pin  = {{ type = "pin", at = "hub" }}
+elements.J    = {{ type = "inertia", at = "hub.theta", J = "0.1 kg*m^2" }}
+elements.loss = {{ type = "rotary_damper", between = ["hub.theta", "ground"], b = "0.2 N*m*s/rad" }}
+elements.m    = {{ type = "mass", at = "tip", m = "0.3 kg" }}
+inputs.F  = {{ torque = "hub" }}
+outputs.X = "{output}"
+{rest}"""
+    )
+
+
+MOTOR = """
+[elements.drive]
+type      = "dc_motor"
+terminals = ["u", "ground"]
+shaft     = "hub.theta"
+k_t       = "0.3 N*m/A"
+R         = "2 ohm"
+L         = "10 mH"
+
+[elements.wire]
+type    = "resistor"
+between = ["u", "ground"]
+R       = "1 ohm"
+"""
+
+
+def wave(s, eta):
+    """Return the wavenumber of a beam with E I = rho A = 1, and its bending stiffness."""
+    stiff = 1 + mpmath.mpf(eta) * s
+    return (-(s**2) / stiff) ** mpmath.mpf("0.25"), stiff
+
+
+def tip_of_clamped(s, load, eta):
+    """Return the deflection of a cantilever's tip under 1, with a stiffness ``load`` beside the beam's."""
+    q, stiff = wave(s, eta)
+    c, h = mpmath.cos, mpmath.cosh
+    beam = stiff * q**3 * (1 + c(q) * h(q)) / (h(q) * mpmath.sin(q) - mpmath.sinh(q) * c(q))
+    return 1 / (beam + load(s))
+
+
+def tip_of_hub(s, drive, eta):
+    """Return what the tip moves under a torque 1 at the hub: w = a sin + b sinh + d (cos - cosh)."""
+    q, stiff = wave(s, eta)
+    sine, cosine, sinh, cosh = mpmath.sin(q), mpmath.cos(q), mpmath.sinh(q), mpmath.cosh(q)
+    hinge = mpmath.mpf("0.1") * s**2 + mpmath.mpf("0.2") * s + drive(s)
+    mass = mpmath.mpf("0.3") * s**2
+    rows = mpmath.matrix(
+        [
+            # Moments at the hub: EI w'' = hinge w' - 1, w''(0) = -2 d q^2.
+            [hinge * q, hinge * q, 2 * stiff * q**2],
+            # No moment at the tip, and EI w''' = m s^2 w.
+            [-sine, sinh, -(cosine + cosh)],
+            [
+                -stiff * q**3 * cosine - mass * sine,
+                stiff * q**3 * cosh - mass * sinh,
+                stiff * q**3 * (sine - sinh) - mass * (cosine - cosh),
+            ],
+        ]
+    )
+    a, b, d = mpmath.lu_solve(rows, mpmath.matrix([1, 0, 0]))
+    return a * sine + b * sinh + d * (cosine - cosh)
+
+
+def inverted(function, integrations, times, degree=120):
+    """Return an inverse Laplace transform by Talbot's contour, right where high frequencies die."""
+    with mpmath.workdps(70):
+        return [
+            float(
+                mpmath.invertlaplace(
+                    lambda s: function(s) / s**integrations, t, method="talbot", degree=degree
+                )
+            )
+            for t in times
+        ]
+
+
+def assert_holds(found, expected, share=1e-9, off=0.0):
+    """Check that all values lie in their balls, and that these are narrow beside the largest."""
+    expected = np.array(expected)
+    assert found.certified
+    assert np.all(np.abs(found.values - expected) <= found.radius + off)
+    assert found.radius.max() <= share * np.abs(found.values).max()
+
+
+TIMES = [0.1, 0.37, 1.0, 2.9]
+LOADS = {
+    "a spring": (spring(5), lambda s: 5),
+    "a damper": (damper(0.5), lambda s: s / 2),
+    "a strong damper": (damper(8), lambda s: 8 * s),
+    "both": (f"{spring(5)}\n{damper(0.5)}", lambda s: 5 + s / 2),
+    "a mass on a spring": (
+        'elements.m = { type = "mass", at = "z", m = "0.2 kg" }\n'
+        'elements.k = { type = "spring", between = ["x", "z"], k = "3 N/m" }',
+        lambda s: 3 * s**2 / (s**2 + 15),
+    ),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("eta", ["0.02", "0.3"])
+@pytest.mark.parametrize("name", LOADS)
+def test_a_step_of_a_beam_damped_in_its_material_with_a_load_is_its_inverse_transform(name, eta):
+    text, load = LOADS[name]
+    found = time_response(clamped(text, f', eta = "{eta} s"'), "step", SampleTimes.of(TIMES))
+    assert_holds(found, inverted(lambda s: tip_of_clamped(s, load, eta), 1, TIMES), off=1e-15)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("rest", "drive"), [("", lambda s: 0), (MOTOR, lambda s: 0.09 * s / (3 + s / 100))])
+@pytest.mark.parametrize("kind", ["step", "ramp"])
+def test_an_arm_on_a_hub_with_friction_or_a_motor_moves_as_its_inverse_transform(rest, drive, kind):
+    found = time_response(hub(rest, "0.02"), kind, SampleTimes.of(TIMES))
+    expected = inverted(lambda s: tip_of_hub(s, drive, "0.02"), 1 if kind == "step" else 2, TIMES)
+    assert_holds(found, expected, off=1e-15)
+
+
+@pytest.mark.slow
+def test_a_ramp_of_a_velocity_is_a_step_of_the_displacement():
+    of_place = time_response(hub(), "step", SampleTimes.of(TIMES))
+    of_speed = time_response(hub(output="s*tip"), "ramp", SampleTimes.of(TIMES))
+    assert_holds(of_speed, of_place.values, off=of_place.radius)
+
+
+def modes_of_damped_tip(b, count):
+    """Return poles and residues of 1/(beam + b s) by Newton's method in doubles, s = j q^2.
+
+    With S = sin - cos tanh and C = cos + sech, both over cosh, the denominator is ``q C + j b S`` times q^2.
+    """
+
+    def parts(q):
+        low = np.real(q) > 15
+        bounded = np.where(low, 1, q)
+        tanh = np.where(low, 1, np.tanh(bounded))
+        sech = np.where(low, 0, 1 / np.cosh(bounded))
+        return np.sin(q) - np.cos(q) * tanh, np.cos(q) + sech, tanh, sech
+
+    def slopes(q):
+        _, _, tanh, sech = parts(q)
+        return np.cos(q) + np.sin(q) * tanh - np.cos(q) * sech**2, -np.sin(q) - sech * tanh
+
+    n = np.arange(1, count + 1)
+    q = (n - 0.5) * np.pi + 0j
+    for share in (*np.linspace(0.05, 1, 20), *[1] * 12):
+        S, C, _, _ = parts(q)
+        dS, dC = slopes(q)
+        q = q - (q * C + 1j * share * b * S) / (C + q * dC + 1j * share * b * dS)
+    S, _, _, _ = parts(q)
+    dS, dC = slopes(q)
+    # H = S/(q^3 C + b s S), and ds = 2 j q dq.
+    C = -1j * b * S / q
+    return 1j * q**2, S / (q**2 * (C + q * dC + 1j * b * dS)) * 2j * q
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("b", ["0.1", "0.5", "1"])
+def test_a_step_of_a_beam_with_a_damper_at_its_tip_is_its_modal_sum(b):
+    times = [0.0, 0.01, *TIMES]
+    found = time_response(clamped(damper(b)), "step", SampleTimes.of(times))
+    poles, residues = modes_of_damped_tip(float(b), 6000)
+    assert abs(1 / 3 + 2 * np.sum((residues / poles).real)) < 1e-11  # none is missing
+    expected = [1 / 3 + 2 * np.sum((residues / poles * np.exp(poles * t)).real[::-1]) for t in times]
+    assert_holds(found, expected, off=1e-11)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("cut", ["3*l/10", "70710678*l/100000000"])
+def test_a_beam_cut_in_two_moves_as_the_whole(cut):
+    text = 'parameters.l = "1 m"\n'
+    text += f'elements.p = {{ type = "beam", between = ["ground", "z"], {UNIT}, l = "{cut}" }}\n'
+    text += f'elements.q = {{ type = "beam", between = ["z", "x"], {UNIT}, l = "l - {cut}" }}\n'
+    times = SampleTimes.of([0.0, *TIMES])
+    found = time_response(of(f'{text}inputs.F = {{ force = "x" }}\noutputs.X = "x"'), "step", times)
+    whole = time_response(clamped(), "step", times)
+    assert_holds(found, whole.values, off=whole.radius)
+
+
+def rod(kind):
+    text = f'elements.bar = {{ type = "rod", between = ["ground", "x"], E = "1 Pa", A = "1 m^2", {kind}, '
+    return of(f'{text}rho = "1 kg/m^3", {WHOLE} }}\ninputs.F = {{ force = "x" }}\noutputs.X = "x"')
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("kind", "eta", "c", "share"),
+    [('c_f = "0.5 N*s/m^2"', 0, 0.5, 2e-3), ('eta = "0.05 s"', 0.05, 0, 1e-8), ('eta = "1 s"', 1, 0, 1e-8)],
+)
+def test_a_rod_that_loses_energy_is_a_sum_of_damped_modes(kind, eta, c, share):
+    found = time_response(rod(kind), "step", SampleTimes.of([0.3, 1.0, 2.9]))
+    kappa = ((np.arange(1, 2_000_001) - 0.5) * np.pi) ** 2
+    half = (c + eta * kappa) / 2
+    root = np.sqrt((half**2 - kappa).astype(complex))
+    fast = -half - root
+    slow = np.where(half**2 > kappa, kappa / fast, -half + root)
+    expected = []
+    for t in [0.3, 1.0, 2.9]:
+        left = (slow * np.exp(fast * t) - fast * np.exp(slow * t)) / (slow - fast)
+        # Of all that is left out the slow pole is -1/eta; what is 1/kappa adds up to 1/2.
+        last = (0.5 - np.sum(1 / kappa[::-1])) * (np.exp(-t / eta) if eta else 0)
+        expected.append(1 - 2 * np.sum((left.real / kappa)[::-1]) - 2 * last)
+    assert_holds(found, expected, share, off=1e-10 if eta else 2e-6)
+
+
+@pytest.mark.slow
+def test_timoshenkos_beam_is_held_too_with_a_wider_radius():
+    kind = 'theory = "timoshenko", G = "0.4 Pa", kappa = "5/6"'
+    text = 'elements.arm = { type = "beam", between = ["ground", "x"], E = "1 Pa", A = "1 m^2", l = "1 m", '
+    text += f'I = "0.01 m^4", rho = "1 kg/m^3", {kind} }}\ninputs.F = {{ force = "x" }}\noutputs.X = "x"'
+    times = [0.0, 3.0, 10.0, 31.0]
+    found = time_response(of(text), "step", SampleTimes.of(times))
+    # Legendre polynomials times x for deflection and slope: Ritz's method, whose statics are exact.
+    n, shear, bend, turn = 60, 0.4 * 5 / 6, 0.01, 0.01
+    x, weight = np.polynomial.legendre.leggauss(200)
+    x, weight = (x + 1) / 2, weight / 2
+    shapes = [np.polynomial.Legendre.basis(k, domain=[0, 1]) for k in range(n)]
+    value = np.array([x * p(x) for p in shapes])
+    slope = np.array([p(x) + x * p.deriv()(x) for p in shapes])
+    zero = np.zeros((n, n))
+
+    def product(a, b):
+        return (a * weight) @ b.T
+
+    mass = np.block([[product(value, value), zero], [zero, turn * product(value, value)]])
+    stiff = np.block(
+        [
+            [shear * product(slope, slope), -shear * product(slope, value)],
+            [-shear * product(value, slope), shear * product(value, value) + bend * product(slope, slope)],
+        ]
+    )
+    lower = np.linalg.inv(np.linalg.cholesky(mass))
+    squared, modes = np.linalg.eigh(lower @ stiff @ lower.T)
+    tip = np.concatenate([[p(1.0) for p in shapes], np.zeros(n)])
+    weights = (tip @ lower.T @ modes) ** 2
+    expected = [np.sum(weights / squared * (1 - np.cos(np.sqrt(squared) * t))) for t in times]
+    assert_holds(found, expected, share=1e-2)
+
+
+def test_the_bound_of_what_lies_beyond_a_circle_holds_for_a_thousand_modes():
+    from flint import arb
+
+    from symflex.analysis.time_response.modal import PassiveModes
+    from symflex.analysis.time_response.passive_modes import passive_bound
+
+    bounding = passive_bound(clamped())
+    modes = PassiveModes(bounding, 1, SampleTimes.of([0.0, 0.37, 1.0]))
+    few, many = modes.summed(16), modes.summed(1000)
+    off = [abs(a - b) for a, b in zip(few.values, many.values, strict=True)]
+    assert max(off, key=lambda d: d.mid()) < few.rest
+    assert few.rest < arb("1e-4")
+
+
+def test_what_an_active_model_leaves_out_is_not_bounded_by_its_energy():
+    from symflex.analysis.time_response.passive_modes import passive_bound
+
+    assert passive_bound(clamped(spring("-1"))) is None
+    assert passive_bound(clamped(output="arm.y(0.5 m)")) is None
