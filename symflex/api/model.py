@@ -659,7 +659,9 @@ class Model:
         from symflex.codegen.exporters import EXPORTERS  # the numeric exporters import numpy
 
         exporter, pairs = EXPORTERS[target], self.resolved.transfer_functions
-        derived, _ = pipeline.derive_as(self.resolved, pairs, solves=exporter.solves)
+        derived, _ = pipeline.derive_as(
+            self.resolved, pairs, solves=exporter.solves, is_read=target == "latex"
+        )
         return exporter.export(self.resolved, derived, name).text
 
 

@@ -121,7 +121,10 @@ def derive(spec: Specification, given: DeriveOptions) -> int:
         column = column_width(given.width)
     model = spec.load()
     derived, reason = pipeline.derive_as(
-        model, pipeline.pick_pairs(model, given.tfs), chosen_representation(given.representation, given.form)
+        model,
+        pipeline.pick_pairs(model, given.tfs),
+        chosen_representation(given.representation, given.form),
+        is_read=not given.as_json and given.format != "json",
     )
     if reason:
         note(reason)
@@ -196,7 +199,9 @@ def export(spec: Specification, given: ExportOptions) -> int:
     model = spec.load()
     representation = chosen_representation(given.representation, given.form)
     pairs = pipeline.pick_pairs(model, given.tfs)
-    derived, reason = pipeline.derive_as(model, pairs, representation, solves=exporter.solves)
+    derived, reason = pipeline.derive_as(
+        model, pairs, representation, solves=exporter.solves, is_read=given.target == "latex"
+    )
     if reason:
         note(reason)
     if isinstance(exporter, LatexExporter) and given.output and is_folder:

@@ -12,7 +12,8 @@ from symflex.model.model import Figure as Asked
 from symflex.print.forms import print_forms
 from symflex.print.latex import TEXT_WIDTH_MM, Picture, latex_document, latex_files
 from symflex.roots.locate import locate
-from symflex.transfer import NestedTransferFunction, bind
+from symflex.transfer import NestedTransferFunction
+from symflex.transfer.nested_form import bind_any
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from symflex.model import Model
     from symflex.print.forms import PrintedForm
     from symflex.roots import PoleZeroMap
-    from symflex.transfer import AnyTransferFunction, BoundTransferFunction
+    from symflex.transfer import AnyBoundFunction, AnyTransferFunction
 
 
 ROOT_DIGITS = 15
@@ -71,16 +72,7 @@ class LatexExporter:
 
     def _pictures(self, model: Model, tfs: Sequence[AnyTransferFunction]) -> tuple[list[Picture], list[str]]:
         """Return the model's figures, one of each kind besides, and why others are left out."""
-        bounds: list[BoundTransferFunction] = []
-        for tf in tfs:
-            if isinstance(tf, NestedTransferFunction):
-                continue
-            try:
-                bound = bind(tf)
-            except ModelError:
-                continue  # as for the tables
-            if not bound.ratio.is_zero:
-                bounds.append(bound)
+        bounds = [bound for bound in map(_bound, tfs) if bound is not None and not bound.is_zero]
         pictures: list[Picture] = []
         warnings: list[str] = []
         for figure in model.figures if bounds else ():
@@ -101,7 +93,7 @@ class LatexExporter:
         pictures: list[Picture],
         warnings: list[str],
         asked: Asked,
-        bounds: Sequence[BoundTransferFunction],
+        bounds: Sequence[AnyBoundFunction],
         title: str,
     ) -> None:
         """Draw one figure, without its title, which stands below it."""
@@ -128,14 +120,18 @@ class LatexExporter:
         latex = render(figure, "pgf", font="latex").decode("ascii")
         pictures.append(Picture(name, latex, title, shown))
 
-    def _drawn(self, asked: Asked, of: Sequence[BoundTransferFunction]) -> Figure:
+    def _drawn(self, asked: Asked, of: Sequence[AnyBoundFunction]) -> Figure:
         from symflex.figures import LOOP_FIGURES, draw, draw_loop
-        from symflex.loops import characteristic_loop, pick_gain
+        from symflex.loops import AnyLoop, characteristic_loop, pick_gain
+        from symflex.loops.of_model import characteristic_loop as loop_of_model
 
         kind, band = asked.kind, asked.band
         if asked.gain and kind in LOOP_FIGURES:
             source = of[0].source
-            loop = characteristic_loop(source, pick_gain(source.model.parameters, asked.gain))
+            if isinstance(source, NestedTransferFunction):
+                loop: AnyLoop = loop_of_model(source.model, asked.gain)
+            else:
+                loop = characteristic_loop(source, pick_gain(source.model.parameters, asked.gain))
             return draw_loop(kind, loop, band_hz=band, width_mm=self.width_mm, font="latex")
         sources = [bound.source for bound in of]
         return draw(kind, sources, of, band_hz=band, width_mm=self.width_mm, font="latex")
@@ -147,16 +143,27 @@ class LatexExporter:
         forms, sentences = print_forms(tfs, self.form)
         maps, warnings = [], list(sentences)
         for tf in tfs:
-            if isinstance(tf, NestedTransferFunction):
+            if isinstance(tf, NestedTransferFunction) and not tf.is_distributed:
                 warnings.append(f"poles and zeros of {tf.name} are left out: it is in nested form")
+            bound = _bound(tf)
+            if bound is None:
                 continue
-            try:
-                bound = bind(tf)
-            except ModelError:
-                continue  # symbolic, which is not a fault
             try:
                 maps.append(locate(bound, digits=ROOT_DIGITS))
             except SymflexError as error:
                 spend()
                 warnings.append(f"poles and zeros of {tf.name} are left out: {error.diagnostics[0].message}")
         return forms, maps, tuple(warnings)
+
+
+def _bound(tf: AnyTransferFunction) -> AnyBoundFunction | None:
+    """Return a function with numbers, ``None`` where a parameter has none.
+
+    Of large lumped models, which are nested, there is none either: their roots take too long for a print.
+    """
+    if isinstance(tf, NestedTransferFunction) and not tf.is_distributed:
+        return None
+    try:
+        return bind_any(tf)
+    except ModelError:
+        return None  # symbolic, which is not a fault

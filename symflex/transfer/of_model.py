@@ -44,6 +44,8 @@ EXPANDED_TERMS = 5_000
 EXPANDED_PRODUCTS = 500
 """The same of a distributed model, where a term holds kernels of every member: four beams on springs have
 900, which print on 1,500 lines, three have 120."""
+READABLE_TERMS = 100
+"""Terms of a formula of several members beyond which its steps say more: two columns of a page."""
 CODE_PRODUCTS = 8
 """The same of numeric code of several members: two beams at an angle have 12, and 90 kB of code."""
 QUICK_PRODUCTS = 50
@@ -161,13 +163,19 @@ def derive_nested(
 
 
 def derive_as(
-    model: Model, pairs: Sequence[tuple[str, str]], representation: str = "auto", *, solves: bool = False
+    model: Model,
+    pairs: Sequence[tuple[str, str]],
+    representation: str = "auto",
+    *,
+    solves: bool = False,
+    is_read: bool = False,
 ) -> tuple[tuple[AnyTransferFunction, ...], str]:
     """Return transfer functions in one of the two exact representations, and why in that one.
 
     ``expanded``: quotients of polynomials; ``nested``: straight-line programs; ``auto``: expanded, unless
     that would explode, and then a sentence says why it is not. With ``solves`` they are for code that solves
-    networks of distributed members, and is shorter than that of a formula already for small ones.
+    networks of distributed members, and is shorter than that of a formula already for small ones. With
+    ``is_read`` they are for people, to whom a formula of pages says less than its steps.
     """
     if representation == "nested":
         return derive_nested(model, pairs), ""
@@ -188,10 +196,18 @@ def derive_as(
         # Where one beam's motion is another's, the estimate may be far too small.
         if solves and _may_be_large(model) and max(map(_kernel_products, found)) > CODE_PRODUCTS:
             return derive_nested(model, pairs), SOLVED
+        if is_read and _may_be_large(model, 1) and (terms := max(map(_terms, found))) > READABLE_TERMS:
+            reason = f"in nested form: its formula would have {terms} terms (--representation expanded)"
+            return derive_nested(model, pairs), reason
         return found, ""
     except BudgetError as error:
         spend()
         return derive_nested(model, pairs), f"in nested form: {error.diagnostics[0].message}"
+
+
+def _terms(tf: TransferFunction) -> int:
+    """Return how many terms the longest factor of a transfer function has."""
+    return max((len(f) for f, _ in (*tf.num.factors, *tf.den.factors)), default=0)
 
 
 def _kernel_products(tf: TransferFunction) -> int:

@@ -9,6 +9,7 @@ from mpmath import mp, mpf, pi
 
 from symflex import pipeline
 from symflex.roots import Modes
+from symflex.transfer import NestedTransferFunction, TransferFunction
 from tests.independent.classics import values
 from tests.independent.plane_frames import Member, clamped, pinned, response
 
@@ -47,6 +48,18 @@ def test_the_portal_frame_moves_as_its_dynamic_stiffness_says():
         Member("p", "q", **v),
     ]
     assert agrees("portal_frame", members, clamped("a", "b"), ("p", "x"))
+
+
+def test_a_formula_of_pages_is_shown_in_steps_and_given_to_programs_whole():
+    model = pipeline.load(FOLDER / "portal_frame.toml")
+    (shown,), reason = pipeline.derive_as(model, [("x", "F")], is_read=True)
+    assert isinstance(shown, NestedTransferFunction) and "--representation expanded" in reason
+    (given_on,), _ = pipeline.derive_as(model, [("x", "F")])
+    assert isinstance(given_on, TransferFunction)
+    (read,), reason = pipeline.derive_as(
+        pipeline.load(FOLDER / "l_frame.toml"), [("y_tip", "F")], is_read=True
+    )
+    assert isinstance(read, TransferFunction) and not reason
 
 
 def test_the_sway_of_the_portal_frame_is_below_thomson_s_bound():

@@ -60,7 +60,7 @@ class Picture:
     name: str  # of its file, without suffix
     latex: str  # a ``pgfpicture`` as wide as the column
     title: str  # plain text; what it shows
-    of: tuple[TransferFunction, ...] = ()  # whose it shows that of; empty where that goes without saying
+    of: tuple[AnyTransferFunction, ...] = ()  # whose it shows that of; empty where that goes without saying
 
 
 def latex_fragment(tf: AnyTransferFunction, form: PrintedForm, *, width_mm: float = TEXT_WIDTH_MM) -> str:

@@ -277,8 +277,10 @@ def free_names(form: PrintedForm, writer: ExpressionWriter) -> tuple[str, str]:
 def _where_rows(form: PrintedForm, writer: Writer, width: float | None) -> list[_DisplayRow]:
     if not (form.where or form.laws):
         return []
-    rows = _broken_rows(form.where, writer, width) if form.where else []
-    rows += [_DisplayRow(left.markup, left.width, (value,)) for left, value in _laws(form, writer)]
+    laws = _laws(form, writer)
+    widest = max((left.width for left, _ in laws), default=0.0)
+    rows = _broken_rows(form.where, writer, width, widest) if form.where else []
+    rows += [_DisplayRow(left.markup, left.width, (value,)) for left, value in laws]
     first = rows[0]
     rows[0] = _DisplayRow(f"{_WHERE}{first.left}", first.left_width, first.right)
     return rows
@@ -301,10 +303,11 @@ def laws_and_starts(form: PrintedForm) -> Iterator[tuple[Expression, Expression]
 
 
 def _broken_rows(
-    equations: Sequence[tuple[str, Expression]], writer: Writer, width: float | None
+    equations: Sequence[tuple[str, Expression]], writer: Writer, width: float | None, beside: float = 0.0
 ) -> list[_DisplayRow]:
+    """Return equations below "where", aligned with others whose left sides are at most so wide [em]."""
     heads = [writer.label(name) for name, _ in equations]
-    column = max(_WHERE_WIDTH + heads[0].width, *(head.width for head in heads))
+    column = max(_WHERE_WIDTH + heads[0].width, beside, *(head.width for head in heads))
     return [
         _row(head.latex, head.width, expression, writer, width, column)
         for head, (_, expression) in zip(heads, equations, strict=True)
