@@ -105,7 +105,7 @@ def rational(spec: Specification, given: RationalOptions) -> None:
     from symflex.analysis.rational.text import rational_json, rational_text
 
     model = spec.load()
-    (bound,) = pipeline.derive_bound(model, [first_pair(model, given.tf, "showing")])
+    (bound,) = pipeline.derive_for_roots(model, [first_pair(model, given.tf, "showing")], is_explained=True)
     found = pipeline.rational(bound, given.modes, given.form)
     if given.as_json:
         emit_json(rational_json(found))

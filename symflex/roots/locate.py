@@ -40,6 +40,8 @@ from symflex.transfer.of_model import assemble_sparse, derive_all, derive_bound,
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from symflex.equations import Equations
+    from symflex.model import Model
     from symflex.roots.counting.winding import Cell
     from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 
@@ -77,21 +79,31 @@ def locate(
     )
 
 
+def equations_of(bound: BoundNested) -> Equations:
+    """Return the equations a function in nested form solves, with numbers in place of all parameters."""
+    source, model = bound.source, _with_values(bound)
+    known = source.equations if model == source.model else None
+    return known or assemble_sparse(model)
+
+
+def _with_values(bound: BoundNested) -> Model:
+    return with_numbers(bound.source.model, (), dict(bound.values), in_kernels=True)
+
+
 def _locate_nested(bound: BoundNested, region: Region | None, digits: int, budget: Budget) -> PoleZeroMap:
     """Find poles and zeros of a function in nested form, from the equations it solves."""
     from symflex.roots.networks.poles_zeros import locate_in_network  # few models are so large
 
     source = bound.source
-    model = with_numbers(source.model, (), dict(bound.values), in_kernels=True)
+    model = _with_values(bound)
     pair = (source.output.name, source.input.name)
     if not model.is_distributed:
         (lumped,) = derive_bound(model, [pair])
         return locate(lumped, region, digits, budget)
     is_default = region is None or isinstance(region, Everything)
     where = default_region(bound) if region is None or isinstance(region, Everything) else region
-    equations = source.equations if model == source.model else None
     found = locate_in_network(
-        equations or assemble_sparse(model), bound.name, pair, where, digits, budget, is_default=is_default
+        equations_of(bound), bound.name, pair, where, digits, budget, is_default=is_default
     )
     is_open = not found.certificate.certified and found.certificate.code is None
     if not is_open or not may_be_expanded(model, pair):

@@ -30,10 +30,11 @@ from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import locate
 from symflex.roots.pole_zero_map import is_right
 from symflex.roots.precision import to_complex_mpmath, to_mpmath
+from symflex.transfer import BoundNested
 from symflex.transfer.bind import EnclosedTransferFunction
 
 if TYPE_CHECKING:
-    from symflex.transfer import BoundTransferFunction
+    from symflex.transfer import AnyBoundFunction
 
 
 FURTHER = (1, 4)
@@ -65,7 +66,7 @@ class KeptRoots:
         return None
 
 
-def truncate(bound: BoundTransferFunction, modes: int, digits: int) -> KeptRoots:
+def truncate(bound: AnyBoundFunction, modes: int, digits: int) -> KeptRoots:
     """Return the poles of a number of modes, and the zeros below the first pole left out.
 
     Poles in the right half plane are kept wherever they lie: without them the approximation would be stable.
@@ -110,7 +111,7 @@ def _lowest(found: PoleZeroMap, modes: int) -> tuple[tuple[Root, ...], tuple[Roo
 
 
 def _zeros_below(
-    bound: BoundTransferFunction, found: PoleZeroMap, limit_hz: float | None, digits: int
+    bound: AnyBoundFunction, found: PoleZeroMap, limit_hz: float | None, digits: int
 ) -> tuple[tuple[Root, ...], tuple[Root, ...]]:
     """Return the zeros with natural frequencies below a limit, and all that are known."""
     known = found.zeros
@@ -139,7 +140,7 @@ SCANNED_DECADES = 3
 
 
 def approximate(
-    bound: BoundTransferFunction,
+    bound: AnyBoundFunction,
     modes: int | None = None,
     form: str = "product",
     band: tuple[float, float] | None = None,
@@ -174,8 +175,9 @@ def approximate(
     check_form(form, tuple(FORMS))
     if band is not None:
         check_band(*band)
-    bound = without_lengths_of_zero(bound)
-    if bound.ratio.is_zero:
+    if not isinstance(bound, BoundNested):
+        bound = without_lengths_of_zero(bound)
+    if bound.is_zero:
         message = f"{bound.name} is identically zero"
         raise ModelError(Diagnostic("SF402", message, None, "the input does not reach the output"))
     if modes is None:
@@ -201,7 +203,7 @@ def approximate(
     )
 
 
-def _default_modes(bound: BoundTransferFunction, band: tuple[float, float] | None) -> int:
+def _default_modes(bound: AnyBoundFunction, band: tuple[float, float] | None) -> int:
     if band is not None:
         return len(_modes_of(locate(bound, Band(Fraction(0), Fraction(band[1])), DIGITS).poles))
     return bound.source.model.analysis.modes or DEFAULT_MODES
@@ -226,10 +228,10 @@ BITS_PER_ROOT = 24
 """Coefficients of a polynomial cancel where its roots span decades."""
 
 
-Form = Callable[["BoundTransferFunction", KeptRoots, int], Approximant]
+Form = Callable[["AnyBoundFunction", KeptRoots, int], Approximant]
 
 
-def product_form(bound: BoundTransferFunction, kept: KeptRoots, digits: int) -> Approximant:
+def product_form(bound: AnyBoundFunction, kept: KeptRoots, digits: int) -> Approximant:
     """Return the product over the poles and zeros that are kept, right to the leading order at s = 0.
 
     SF405 when the behaviour near s = 0 cannot be told.
@@ -256,7 +258,7 @@ def product_form(bound: BoundTransferFunction, kept: KeptRoots, digits: int) -> 
     return Approximant(*function, evaluator, is_estimate=start.is_estimate)
 
 
-def modal_form(bound: BoundTransferFunction, kept: KeptRoots, digits: int) -> Approximant:
+def modal_form(bound: AnyBoundFunction, kept: KeptRoots, digits: int) -> Approximant:
     """Return the sum of the principal parts at the poles that are kept, and a static correction.
 
     With c_1/(s - p) + c_2/(s - p)^2 + ... at every pole and g_0 the coefficient of s^0 in the Laurent series
@@ -349,7 +351,7 @@ def _taylor(pole: acb, power: int, i: int) -> acb:
     return total
 
 
-def exact_coefficients(bound: BoundTransferFunction) -> tuple[tuple[mpmath.mpf, ...], tuple[mpmath.mpf, ...]]:
+def exact_coefficients(bound: AnyBoundFunction) -> tuple[tuple[mpmath.mpf, ...], tuple[mpmath.mpf, ...]]:
     """Return numerator and denominator of a rational transfer function, the latter beginning with 1.
 
     They are those of the function itself, to the working precision.

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     from symflex.analysis.rational.laurent import PrincipalPart
     from symflex.roots import PoleZeroMap
-    from symflex.transfer import BoundTransferFunction, TransferFunction
+    from symflex.transfer import AnyBoundFunction, AnyTransferFunction
 
 
 DIP = 0.1
@@ -133,7 +133,7 @@ class ErrorScan:
 
 
 def scan_error(
-    bound: BoundTransferFunction,
+    bound: AnyBoundFunction,
     approximation: Callable[[complex], complex],
     roots: PoleZeroMap,
     low_hz: float,
@@ -231,7 +231,7 @@ class RationalApproximation(Approximant, RationalFunction):
 
     Parameters
     ----------
-    bound : BoundTransferFunction
+    bound : AnyBoundFunction
         G.
     form : str
         ``product``: the poles and zeros of G, and its leading term at s = 0; ``modal``: the principal parts
@@ -250,7 +250,7 @@ class RationalApproximation(Approximant, RationalFunction):
         Of G and its hidden modes; all poles of G in the right half plane that are known are poles of R.
     """
 
-    bound: BoundTransferFunction
+    bound: AnyBoundFunction
     form: str
     modes: int
     is_exact: bool
@@ -270,7 +270,7 @@ class RationalApproximation(Approximant, RationalFunction):
         return rational_html(self)
 
     @property
-    def source(self) -> TransferFunction:
+    def source(self) -> AnyTransferFunction:
         """What it approximates."""
         return self.bound.source
 

@@ -14,11 +14,12 @@ Residues, how much of each mode a transfer function holds, are the first coeffic
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
+from math import pi
 from typing import TYPE_CHECKING
 
 import flint
@@ -26,6 +27,7 @@ from flint import acb, acb_mat, acb_series, arb, ctx
 
 from symflex.algebra import Factored
 from symflex.algebra.vanishing import OriginSeries
+from symflex.analysis.rational.networks import NetworkSides, Taylor
 from symflex.budget import spend
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.roots import Budget, Region, Root, precision
@@ -43,19 +45,19 @@ from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import locate
 from symflex.roots.precision import bits_for_digits
 from symflex.roots.root import GUARD_BITS
+from symflex.transfer import BoundNested
 from symflex.transfer.balls import Value, at_centre
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from symflex.algebra import Dispersion, Kernel
-    from symflex.transfer import BoundTransferFunction
+    from symflex.transfer import AnyBoundFunction, BoundTransferFunction
     from symflex.transfer.enclose_kernels import KernelValues
 
 
-Taylor = Callable[[acb, int], list[acb] | None]
-"""The Taylor coefficients of a function at a point, as many as are wanted."""
-
+FINER = (1, 2, 4)
+"""Times the digits asked for, to which the determinants of a network are known."""
 FIRST_BITS = 192
 LAST_BITS = 12288
 """Precision of the first attempt, and where doubling it ends: six times."""
@@ -89,11 +91,13 @@ class LaurentSeries:
         return tuple(self.coefficient(-power) for power in range(1, 1 - self.order))
 
 
-def expand_at_zero(bound: BoundTransferFunction, last: int, digits: int) -> LaurentSeries:
+def expand_at_zero(bound: AnyBoundFunction, last: int, digits: int) -> LaurentSeries:
     """Return the Laurent series at s = 0 up to the power ``last``, and at least its leading term.
 
     Every coefficient that is not zero has so many significant digits. SF405 when they cannot be told.
     """
+    if isinstance(bound, BoundNested):
+        return _network_at_zero(NetworkSides(bound, 0.0), last, digits)
     named = any(law.wavenumbers for law in bound.kernels.dispersions)
     branches = BRANCHES if named else 1
     origin = OriginSeries(bound.ratio.ring, bound.kernels)
@@ -121,6 +125,26 @@ def expand_at_zero(bound: BoundTransferFunction, last: int, digits: int) -> Laur
             if found == "unproved":
                 orders = [None] * len(orders)
     message = f"the behaviour of {bound.name} near s = 0 cannot be told"
+    raise UncertifiedError(Diagnostic("SF405", message))
+
+
+def _network_at_zero(sides: NetworkSides, last: int, digits: int) -> LaurentSeries:
+    for finer in FINER:
+        num, den = sides.at_zero(finer * digits)
+        order = num.at_zero - den.at_zero
+        count = max(last - order, 0) + 1
+        above, below = sides.taylor(finer * digits)
+        series = [part(acb(0), side.at_zero + count) for part, side in ((above, num), (below, den))]
+        with precision(num.series.bits), series_length(count):
+            first, second = (
+                acb_series((known or [])[side.at_zero :], count)
+                for known, side in zip(series, (num, den), strict=True)
+            )
+            quotient = first / second
+            found = [acb(quotient[i].real) for i in range(count)]
+        if _is_accurate(found, digits, bits_for_digits(digits)):
+            return LaurentSeries(order, tuple(acb(about_zero(c.real)) for c in found))
+    message = f"the behaviour of {sides.bound.name} near s = 0 cannot be told"
     raise UncertifiedError(Diagnostic("SF405", message))
 
 
@@ -168,35 +192,55 @@ def _quotient(
     return LaurentSeries(order, tuple(acb(about_zero(c.real)) for c in found), any(o is None for o in orders))
 
 
-def expand_at_pole(bound: BoundTransferFunction, root: Root, digits: int) -> tuple[acb, LaurentSeries]:
+def expand_at_pole(
+    bound: BoundTransferFunction | NetworkSides, root: Root, digits: int
+) -> tuple[acb, LaurentSeries]:
     """Return a pole other than 0, refined, and the principal part there, to so many significant digits.
 
     SF405 when poles cannot be told apart, or the coefficients cannot be told.
     """
-    multiplicity, ratio = root.multiplicity, bound.ratio
+    name = bound.bound.name if isinstance(bound, NetworkSides) else bound.name
     if not root.certified:
-        message = f"poles of {bound.name} that cannot be told apart have no residues of their own"
+        message = f"poles of {name} that cannot be told apart have no residues of their own"
         raise UncertifiedError(Diagnostic("SF405", message, None, "more digits may tell them apart"))
+    sides = _network_sides(bound, digits) if isinstance(bound, NetworkSides) else _sides(bound, root, digits)
+    for bits, (above, below) in sides:
+        with precision(bits):
+            known = _expanded(above, below, root)
+            if known is None:
+                continue
+            pole, found, extra = known
+            if root.is_real:
+                found = [acb(c.real) for c in found]
+            if _is_accurate(found, digits, bits):
+                found = [acb(about_zero(c.real), about_zero(c.imag)) for c in found]
+                return pole, LaurentSeries(-root.multiplicity, tuple(found), is_estimate=extra > 0)
+    re, im = float(root.re.mid()), float(root.im.mid())
+    message = f"the residue of {name} at {re:g} {im:+g} j rad/s cannot be told"
+    raise UncertifiedError(Diagnostic("SF405", message))
+
+
+def _sides(
+    bound: BoundTransferFunction, root: Root, digits: int
+) -> Iterator[tuple[int, tuple[Taylor, Taylor]]]:
+    """Yield the Taylor coefficients of numerator and denominator next to a pole, ever more precise."""
+    ratio = bound.ratio
     bits = max(FIRST_BITS, 2 * bits_for_digits(digits), root.working_bits())
     while bits <= LAST_BITS:
         with precision(bits):
             evaluator = bound.kernel_values()
-            above, below = (partial(_part, evaluator, v) for v in (ratio.numerator(), ratio.denominator()))
-            known = _expanded(above, below, root)
-            if known is None and (smooth := _smooth_sides(bound, root, bits)) is not None:
-                known = _expanded(*smooth, root)
-            if known is not None:
-                pole, found, extra = known
-                if root.is_real:
-                    found = [acb(c.real) for c in found]
-                if _is_accurate(found, digits, bits):
-                    found = [acb(about_zero(c.real), about_zero(c.imag)) for c in found]
-                    is_estimate = extra > 0
-                    return pole, LaurentSeries(-multiplicity, tuple(found), is_estimate)
+        above, below = (partial(_part, evaluator, v) for v in (ratio.numerator(), ratio.denominator()))
+        yield bits, (above, below)
+        with precision(bits):
+            smooth = _smooth_sides(bound, root, bits)
+        if smooth is not None:
+            yield bits, smooth
         bits *= 2
-    re, im = float(root.re.mid()), float(root.im.mid())
-    message = f"the residue of {bound.name} at {re:g} {im:+g} j rad/s cannot be told"
-    raise UncertifiedError(Diagnostic("SF405", message))
+
+
+def _network_sides(sides: NetworkSides, digits: int) -> Iterator[tuple[int, tuple[Taylor, Taylor]]]:
+    for finer in FINER:
+        yield 2 * bits_for_digits(finer * digits), sides.taylor(finer * digits)
 
 
 def _expanded(above: Taylor, below: Taylor, root: Root) -> tuple[acb, list[acb], int] | None:
@@ -359,7 +403,7 @@ class PrincipalPart:
 
 
 def find_residues(
-    bound: BoundTransferFunction, region: Region | None = None, digits: int = 15, budget: Budget | None = None
+    bound: AnyBoundFunction, region: Region | None = None, digits: int = 15, budget: Budget | None = None
 ) -> tuple[PrincipalPart, ...]:
     """Return the principal parts at the poles in a region, in their order; both members of a conjugate pair.
 
@@ -367,15 +411,19 @@ def find_residues(
     raises SF505 or SF506 when it takes too long. SF405 when poles cannot be told apart, or the behaviour at
     one cannot be told.
     """
-    bound = without_lengths_of_zero(bound)
+    if not isinstance(bound, BoundNested):
+        bound = without_lengths_of_zero(bound)
     return residues_at(bound, locate(bound, region, digits, budget).complete().all_poles, digits)
 
 
-def residues_at(
-    bound: BoundTransferFunction, poles: Sequence[Root], digits: int
-) -> tuple[PrincipalPart, ...]:
+def residues_at(bound: AnyBoundFunction, poles: Sequence[Root], digits: int) -> tuple[PrincipalPart, ...]:
     """Return the principal parts at known poles; see :func:`find_residues`."""
     found: list[PrincipalPart] = []
+    source: BoundTransferFunction | NetworkSides
+    if isinstance(bound, BoundNested):
+        source = NetworkSides(bound, max((2 * pi * root.frequency_hz() for root in poles), default=0.0))
+    else:
+        source = bound
     for root in poles:
         spend()
         upper = next((r for r in found if _are_conjugate(r.root, root)), None)
@@ -384,12 +432,12 @@ def residues_at(
         elif root.is_zero:
             found.append(_at_zero(bound, root, digits))
         else:
-            pole, series = expand_at_pole(bound, root, digits)
+            pole, series = expand_at_pole(source, root, digits)
             found.append(PrincipalPart(root, pole, series.principal_part, series.is_estimate))
     return tuple(found)
 
 
-def _at_zero(bound: BoundTransferFunction, root: Root, digits: int) -> PrincipalPart:
+def _at_zero(bound: AnyBoundFunction, root: Root, digits: int) -> PrincipalPart:
     series = expand_at_zero(bound, -1, digits)
     if series.order != -root.multiplicity:
         message = f"the order of the pole of {bound.name} at s = 0 is {root.multiplicity} or {-series.order}"

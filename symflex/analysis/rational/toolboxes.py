@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     import numpy.typing as npt
 
-    from symflex.transfer import BoundTransferFunction, TransferFunction
+    from symflex.transfer import AnyTransferFunction, BoundTransferFunction, TransferFunction
     from symflex.transfer.bind import Enclosed
 
 TRANSFER_FUNCTION, STATE_SPACE, ZEROS_POLES_GAIN = "transfer-function", "state-space", "zeros-poles-gain"
@@ -68,7 +68,7 @@ class RationalFunction(ABC):
 
     @property
     @abstractmethod
-    def source(self) -> TransferFunction:
+    def source(self) -> AnyTransferFunction:
         """What it is of, with the names and units of its ends."""
 
     @abstractmethod
@@ -253,7 +253,7 @@ class ExactFunction(RationalFunction):
 
 
 def frequency_response_data(
-    source: TransferFunction,
+    source: AnyTransferFunction,
     value: Callable[[complex], complex],
     omega: npt.ArrayLike,
     label: str,
@@ -281,7 +281,7 @@ def frequency_response_data(
     return data
 
 
-def end_units(source: TransferFunction) -> dict[str, object]:
+def end_units(source: AnyTransferFunction) -> dict[str, object]:
     """Return name, quantity and units of a transfer function."""
     return {
         "transfer_function": source.name,

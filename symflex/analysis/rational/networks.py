@@ -1,0 +1,88 @@
+"""Laurent series of networks that nobody writes out, from the series of their determinants in a disc.
+
+Numerator and denominator are entire, and in a disc about 0 each is a polynomial but for an error that is
+bounded there: so are, by Cauchy's estimate, the errors of its Taylor coefficients about any point inside.
+
+    f(r x) = p(x) + e(x), abs(e) <= 1e-30:  about x = 1/2, that of x^2 is off by 1e-30/(1 - 1/2)^2 at most
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property, partial
+from typing import TYPE_CHECKING
+
+from flint import acb, ctx
+
+from symflex.budget import entered_budget
+from symflex.errors import Diagnostic, UncertifiedError
+from symflex.roots.locate import equations_of
+from symflex.roots.networks.cramer import CramerEquations, EssentialSingularityError
+from symflex.roots.networks.disc_search import SERIES_BITS, DiscSearch, DiscSide
+from symflex.roots.networks.disc_series import DiscSeries, ball_about_zero
+from symflex.roots.networks.members import UndecidedError
+from symflex.roots.precision import bits_for_digits
+
+if TYPE_CHECKING:
+    from symflex.transfer import BoundNested
+
+Taylor = Callable[[acb, int], list[acb] | None]
+"""The Taylor coefficients of a function at a point, as many as are wanted."""
+WIDER = 1.1
+"""Than what holds the points asked for, the disc."""
+FEWEST_MODES = 3
+"""In a disc from which only the behaviour at 0 is asked for."""
+
+
+@dataclass(frozen=True, eq=False)
+class NetworkSides:
+    """Numerator and denominator of a network's transfer function in a disc, as precise as is asked for."""
+
+    bound: BoundNested
+    reach: float  # how far from 0 points are asked for [rad/s]
+
+    @cached_property
+    def _search(self) -> tuple[CramerEquations, dict[int, tuple[DiscSide, DiscSide]]]:
+        source = self.bound.source
+        pair = (source.output.name, source.input.name)
+        return CramerEquations.of(equations_of(self.bound), *pair), {}
+
+    def _to_digits(self, digits: int) -> tuple[DiscSide, DiscSide]:
+        """Return denominator and numerator; SF405 where they are not enclosed in the disc."""
+        cramer, known = self._search
+        if digits not in known:
+            bits = SERIES_BITS + 2 * bits_for_digits(digits)
+            search = DiscSearch(cramer, digits, entered_budget(), (False, False), bits)
+            try:
+                radius = WIDER * self.reach or search.radius_of(FEWEST_MODES)
+                known[digits] = search.sides(radius)
+            except (EssentialSingularityError, UndecidedError) as error:
+                message = f"the determinants of {self.bound.name} are not known as far as its poles"
+                hint = "ask for fewer modes"
+                raise UncertifiedError(Diagnostic("SF405", message, None, hint)) from error
+        return known[digits]
+
+    def taylor(self, digits: int) -> tuple[Taylor, Taylor]:
+        """Return the Taylor coefficients of numerator and denominator at points of the disc."""
+        den, num = self._to_digits(digits)
+        return partial(_coefficients, num.series), partial(_coefficients, den.series)
+
+    def at_zero(self, digits: int) -> tuple[DiscSide, DiscSide]:
+        """Return numerator and denominator, whose orders at 0 are proved; SF405 where they are not."""
+        den, num = self._to_digits(digits)
+        if den.zero_reach or num.zero_reach:
+            message = f"the behaviour of {self.bound.name} near s = 0 cannot be told"
+            raise UncertifiedError(Diagnostic("SF405", message))
+        return num, den
+
+
+def _coefficients(series: DiscSeries, centre: acb, terms: int) -> list[acb] | None:
+    with ctx.workprec(max(ctx.prec, series.bits)):
+        x = centre / series.radius
+        room = 1 - abs(x)
+        if not room > 0:
+            return None
+        local = series.about(x)[:terms]
+        local += [acb(0)] * (terms - len(local))
+        return [(c + ball_about_zero(series.off / room**k)) / series.radius**k for k, c in enumerate(local)]

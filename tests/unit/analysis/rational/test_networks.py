@@ -1,0 +1,45 @@
+"""Residues and approximations of networks, against their formula and the network itself."""
+
+from __future__ import annotations
+
+import pytest
+
+from symflex import pipeline
+from symflex.roots import Modes
+from symflex.transfer import BoundNested
+from symflex.transfer.nested_form import bind_any
+from symflex.transfer.of_model import derive_with_numbers
+from tests.unit.loops.test_networks import chain
+
+LAW = "K*r"
+"""Without the loop, so that a force alone drives."""
+
+
+def bound_of(count, representation):
+    model = pipeline.loads(chain(count, law=LAW))
+    if representation == "nested":
+        (nested,) = derive_with_numbers(model, [("Y", "r")])
+        return bind_any(nested)
+    (bound,) = pipeline.derive_bound(model, [("Y", "r")])
+    return bound
+
+
+def test_residues_are_those_of_the_formula():
+    written, network = (bound_of(1, kind) for kind in ("expanded", "nested"))
+    assert isinstance(network, BoundNested)
+    expected, found = (pipeline.residues(bound, Modes(3), 20) for bound in (written, network))
+    assert len(found) == len(expected) == 6
+    for one, other in zip(found, expected, strict=True):
+        assert not one.is_estimate
+        assert one.coefficients[0].overlaps(other.coefficients[0])
+        assert one.coefficients[0].rel_accuracy_bits() > 66
+
+
+@pytest.mark.parametrize("form", ["product", "modal"])
+def test_an_approximation_of_three_beams_is_close_to_them_below_its_modes(form):
+    bound = bound_of(3, "nested")
+    found = pipeline.rational(bound, 3, form)
+    assert found.modes == 3
+    assert found.leading_coefficient == pytest.approx(bound(0j).real, rel=1e-12)
+    omega = 2.5
+    assert abs(found(1j * omega) / bound(1j * omega) - 1) < 2e-3
