@@ -5,21 +5,24 @@ Model --scheme--> Scheme --rows--> parts in their places --page--> Drawing --> f
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 from symflex.drawing.abbreviation import abbreviated
 from symflex.drawing.cells import SPACINGS
 from symflex.drawing.diagram import diagrams
-from symflex.drawing.fields import field_rows
+from symflex.drawing.fields import FieldRow, field_rows
 from symflex.drawing.frames import frame_plan, is_planar, name_of
 from symflex.drawing.geometry import Drawing, Extent, Placed
+from symflex.drawing.joins import Join, joined
 from symflex.drawing.lettering import Labels, column_of, filled
-from symflex.drawing.page import POINTS, figure_of, render_drawing, stacked
+from symflex.drawing.page import MARGIN, POINTS, figure_of, render_drawing, stacked
 from symflex.drawing.rows import lay_out, order_of
 from symflex.drawing.scheme import DrawnNetwork, scheme_of, with_readings
 from symflex.drawing.signals import SignalGraph
 from symflex.drawing.statements import statements
 from symflex.errors import Diagnostic, UsageError
+from symflex.expressions import Name, names
 from symflex.figures.save import MM_PER_INCH
 from symflex.figures.style import DEFAULT_FONT, paper_style
 from symflex.library.elements import LineElement
@@ -64,19 +67,19 @@ def drawing_of(
     an unknown font.
     """
     with paper_style(font):
-        scheme, below = _prepared(model, Labels(model, values))
+        content = _content_of(model, Labels(model, values))
         asked = [] if width_mm is None else [checked_width(width_mm)]
         for width in asked or sorted(COLUMNS_MM.values()):
             points = width / MM_PER_INCH * POINTS
             for spacing in SPACINGS:
-                drawing = _laid_out(model, scheme, below, spacing, points)
+                drawing = _laid_out(content, spacing, points)
                 if drawing.width <= points:
-                    return drawing
+                    return _with_joins(content, drawing)
             if points >= (SMALLEST_ASKED if asked else SMALLEST) * drawing.width:
-                return drawing.scaled(points / drawing.width)
+                return _with_joins(content, drawing).scaled(points / drawing.width)
         needed = drawing.width / POINTS * MM_PER_INCH
         if not asked:
-            return drawing.scaled(min(1.0, WIDEST_MM / needed))
+            return _with_joins(content, drawing).scaled(min(1.0, WIDEST_MM / needed))
         message = f"the drawing has no room in {asked[0]:.4g} mm"
         hint = (
             f"it takes {min(needed * SMALLEST_ASKED, WIDEST_MM):.0f} mm; without a width it has what it needs"
@@ -99,24 +102,31 @@ def _network(
         shared = dict.fromkeys(n for p in others for n in p.nodes if scheme.domains[n] == "plane")
         marks += tuple(name_of(n) for n in shared)
         nodes = {n for p in others for n in p.nodes} | {m.node for m in marks}
-        names = tuple(n for n in network.nodes if n in nodes)
-        network = DrawnNetwork(names, tuple(others), marks, ())
+        own = tuple(n for n in network.nodes if n in nodes)
+        network = replace(network, nodes=own, parts=tuple(others), marks=marks, spans=())
     shortened, gone = abbreviated(network, order_of(network, scheme.domains), scheme.domains)
     yield lay_out(shortened, scheme.domains, spacing), gone
 
 
-def _prepared(model: Model, labels: Labels) -> tuple[Scheme, list[Sequence[Placed]]]:
-    """Return what is to be drawn of the network, and what stands below it: fields, diagrams, formulas."""
+@dataclass(frozen=True)
+class _Content:
+    """What is to be drawn of a model: a network, and below it fields, block diagrams, formulas and values."""
+
+    model: Model
+    scheme: Scheme
+    graph: SignalGraph
+    fields: tuple[FieldRow, ...]
+
+
+def _content_of(model: Model, labels: Labels) -> _Content:
     scheme = scheme_of(model, labels)
-    fields = field_rows(model, labels, scheme.others)
+    fields = tuple(field_rows(model, labels, scheme.others))
     shown = {o for f in fields for o in f.outputs}
     graph = SignalGraph(model, labels)
     used = {i for f in fields for i in f.inputs}
     free = [i.name for i in model.inputs if i.kind == "signal" and i.name not in used]
     graph.add_all([o for o in scheme.others if o not in shown], free)
-    rows: list[Sequence[Placed]] = [f.items for f in fields]
-    rows += [*diagrams(graph), statements(graph), _legend(model, labels)]
-    return with_readings(scheme, graph.readings(), labels), rows
+    return _Content(model, with_readings(scheme, graph.readings(), labels), graph, fields)
 
 
 def _legend(model: Model, labels: Labels) -> list[Placed]:
@@ -128,10 +138,36 @@ def _legend(model: Model, labels: Labels) -> list[Placed]:
     return [Placed("values", "", (), lines)] if lines else []
 
 
-def _laid_out(
-    model: Model, scheme: Scheme, below: Sequence[Sequence[Placed]], spacing: Spacing, width: float
-) -> Drawing:
+def _laid_out(content: _Content, spacing: Spacing, width: float) -> Drawing:
+    model, scheme, graph = content.model, content.scheme, content.graph
     found = [row for network in scheme.networks for row in _network(network, scheme, model, spacing)]
-    rows = [*(items for items, _ in found), *below]
-    gone = tuple(name for _, names in found for name in names)
+    rows = [*(items for items, _ in found), *(f.items for f in content.fields)]
+    rows += [*diagrams(graph, width - 2 * MARGIN), statements(graph), _legend(model, graph.labels)]
+    gone = tuple(name for _, left_out in found for name in left_out)
     return stacked([r for r in rows if r], width, gone)
+
+
+def _with_joins(content: _Content, drawing: Drawing) -> Drawing:
+    """Return a drawing with wires from what signals read, and to the sources that they drive."""
+    boxes: dict[tuple[str, str], list[Extent]] = {}
+    for item in drawing.items:
+        boxes.setdefault((item.kind, item.name), []).append(item.box)
+    bodies: dict[str, list[Extent]] = {}
+    for part in (p for net in content.scheme.networks for p in net.parts if p.symbol.role == "body"):
+        bodies.setdefault(part.nodes[0], []).extend(boxes.get(("element", part.name), ()))
+    joins = []
+    for name in content.graph.readings():
+        node = name.partition(".")[0]
+        starts = bodies.get(node) or boxes.get(("node", node)) or boxes.get(("reading", name), [])
+        joins += [Join(name, tuple(starts), (tag.grown(1.5),)) for tag in boxes.get(("tag", name), ())]
+    for use in (e for e in content.model.elements if e.element.is_source):
+        driving = [n.name for n in names(use.values[0][1]) if isinstance(n, Name)]
+        starts = [b for n in driving for b in boxes.get(("end", n), ())] or boxes.get(("drive", use.name), [])
+        ends = tuple(boxes.get(("element", use.name), ()))
+        joins.append(Join(use.name, tuple(starts), tuple(map(_tail, ends)), ends))
+    return replace(drawing, items=(*drawing.items, *joined(drawing, joins)))
+
+
+def _tail(box: Extent) -> Extent:
+    """Return where an arrow to the right begins; of another symbol all of it."""
+    return Extent(box.x0, box.y0, box.x0, box.y1) if box.width > 2 * box.height else box

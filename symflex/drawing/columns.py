@@ -271,14 +271,11 @@ def _texts_of_mark(mark: Mark, x: float, y: float) -> list[Placed]:
     """Write the labels of a mark side by side from x on; those after the first stand for themselves."""
     found = []
     for i, (kind, name, label) in enumerate(mark.labels):
-        shown = text(label)
+        shown = text(label if i == len(mark.labels) - 1 else f"{label},")
         if shown is None:
             continue
-        texts = [shown.moved(x, y)]
-        if i and (comma := text(",")):
-            texts.append(comma.moved(x - 3.5, y))
-        found.append(Placed(kind if i else "label", name, (), tuple(texts)))
-        x += shown.width + 4
+        found.append(Placed(kind if i else "label", name, (), (shown.moved(x, y),)))
+        x += shown.width + 2
     return found
 
 

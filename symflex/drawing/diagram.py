@@ -14,6 +14,7 @@ with the name:
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
 from symflex.drawing.geometry import LINE, Extent, Lettering, Placed, union
@@ -30,6 +31,8 @@ WIRE: Final = 11.0
 """Length of a wire between two symbols, enough for an arrow."""
 EDGE: Final = 3.5
 """Between a text and the box around it."""
+TURN: Final = 10.0
+"""Room for a wire that goes back to the left."""
 APART: Final = 6.0
 """Between rows."""
 WIDEST: Final = 66.0
@@ -61,14 +64,58 @@ class _Branch:
     is_tag: bool = False  # the last node is drawn elsewhere, and here its name
 
 
-def diagrams(graph: SignalGraph) -> list[list[Placed]]:
-    """Return the block diagrams of a graph, one band each."""
+def diagrams(graph: SignalGraph, widest: float = 1e9) -> list[list[Placed]]:
+    """Return the block diagrams of a graph, one band each; a wider one goes on below its beginning."""
     drawn: set[int] = set()
     joined: set[tuple[int, int]] = set()
     bands = []
     while path := _longest(graph, drawn, joined):
-        bands.append(_Band(graph, path, drawn, joined).items)
+        tags = frozenset(drawn.intersection(path))
+        whole = _Band(graph, path, tags, set(drawn), set(joined))
+        if whole.box.width <= widest:
+            drawn |= whole.drawn
+            joined |= whole.joined
+            bands.append(whole.items)
+            continue
+        drawn.update(path)
+        joined.update(pairwise(path))
+        pieces: list[_Band] = []
+        for piece in _cut(graph, whole, widest - 2 * TURN):
+            before = pieces[-1].path[-1] if pieces else None
+            pieces.append(_Band(graph, piece, tags.intersection(piece), drawn, joined, before))
+        bands.append(_wrapped(pieces))
     return bands
+
+
+def _cut(graph: SignalGraph, whole: _Band, widest: float) -> list[list[int]]:
+    """Return a path in pieces that are narrow enough, where a node alone is; none begins with a signal."""
+    pieces: list[list[int]] = []
+    start = 0.0
+    for node in whole.path:
+        begin, end = whole.x[node]
+        is_wide = end - start > widest and graph.nodes[node].kind not in ("signal", "output")
+        if not pieces or is_wide:
+            pieces.append([])
+            start = begin
+        pieces[-1].append(node)
+    return pieces
+
+
+def _wrapped(bands: list[_Band]) -> list[Placed]:
+    """Return the pieces of a path below each other, joined by wires back to the left."""
+    last, (shift, level), edge = bands[0], (0.0, 0.0), bands[0].box
+    items, left = list(last.items), edge.x0
+    for band in bands[1:]:
+        below = edge.y0 - TURN
+        dx, dy = left + TURN - band.box.x0, below - band.box.y1
+        far, between = edge.x1 + TURN / 2, below + TURN / 2
+        start = last.x[last.path[-1]][1] + shift
+        route = ((start, level), (far, level), (far, between), (left, between), (left, dy))
+        first = band.path[0]
+        items.append(Placed("wire", "", (line(*route), *arrow((left, dy), (dx + band.x[first][0], dy)))))
+        items += [i.moved(dx, dy) for i in band.items]
+        last, (shift, level), edge = band, (dx, dy), band.box.moved(dx, dy)
+    return items
 
 
 def _longest(graph: SignalGraph, drawn: set[int], joined: set[tuple[int, int]]) -> list[int]:
@@ -110,8 +157,10 @@ def _leads_back(graph: SignalGraph, path: list[int]) -> bool:
 class _Band:
     graph: SignalGraph
     path: list[int]
+    tags: frozenset[int]  # of the path, what is drawn elsewhere
     drawn: set[int]
     joined: set[tuple[int, int]]
+    before: int | None = None  # what leads to the path, where it goes on
     items: list[Placed] = field(default_factory=list)
     occupied: list[Extent] = field(default_factory=list)  # rows of chains among it
     solid: list[Extent] = field(default_factory=list)  # symbols and texts
@@ -121,9 +170,8 @@ class _Band:
     shown_at: dict[int, list[int]] = field(default_factory=dict)  # outputs that are named signals
 
     def __post_init__(self) -> None:
-        self.tags = {i for i in self.path if i in self.drawn}
         self.drawn.update(self.path)
-        self.joined.update(zip(self.path, self.path[1:], strict=False))
+        self.joined.update(pairwise(self.path))
         branches = self._branches(self.path)
         self._draw_path(branches)
         waiting = sorted(branches, key=lambda b: -self.x[b.target][0])
@@ -131,6 +179,11 @@ class _Band:
             branch = waiting.pop(0)
             self._draw_branch(branch)
             waiting += self._branches(branch.nodes)
+
+    @property
+    def box(self) -> Extent:
+        """The rectangle around it."""
+        return union(i.box for i in self.items)
 
     def _branches(self, nodes: list[int] | tuple[int, ...]) -> list[_Branch]:
         """Return what leads to the sums among nodes and is not joined yet."""
@@ -177,10 +230,13 @@ class _Band:
             self._place(node, shown, x, 0.0)
             if i:
                 self._wire(self.path[i - 1], node, x)
+            elif self.before is not None and self._kind(node) == "sum":
+                self._sign(node, "left", is_minus=self._is_minus(self.before, node))
             x += shown.width
         last = self.path[-1]
         if self._kind(last) == "signal" and not self.graph.nodes[last].after:
-            self.items.append(Placed("wire", "", arrow((x, 0.0), (x + WIRE, 0.0))))
+            name = self.graph.nodes[last].name
+            self.items.append(Placed("end", name, arrow((x, 0.0), (x + WIRE, 0.0))))
 
     def _length(self, branch: _Branch) -> float:
         return sum(one.width + WIRE for one in self._all_shown(branch))
@@ -196,8 +252,10 @@ class _Band:
         else:
             self.items.append(Placed("wire", "", arrow((start, 0.0), (x, 0.0))))
         if self._kind(node) == "sum":
-            is_minus = next(m for b, m in self.graph.nodes[node].before if b == before)
-            self._sign(node, "left", is_minus=is_minus)
+            self._sign(node, "left", is_minus=self._is_minus(before, node))
+
+    def _is_minus(self, before: int, node: int) -> bool:
+        return next(m for b, m in self.graph.nodes[node].before if b == before)
 
     def _sign(self, node: int, side: str, *, is_minus: bool) -> None:
         """Note from which side an arrow comes to a sum, and write its sign where it is subtracted."""
@@ -279,8 +337,8 @@ class _Band:
         )
         self.items.append(Placed("wire", "", strokes))
         if before is not None and self._kind(before) == "sum":
-            is_minus = next(m for b, m in self.graph.nodes[before].before if b == node)
-            self._sign(before, "right" if sign > 0 else "left", is_minus=is_minus)
+            side = "right" if sign > 0 else "left"
+            self._sign(before, side, is_minus=self._is_minus(node, before))
 
     def _close(self, branch: _Branch, x: float, end: float, y: float) -> None:
         """Draw the wire from a signal of the path to the branch that it feeds."""

@@ -41,6 +41,8 @@ if TYPE_CHECKING:
 EXTENT: Final = 95.0
 """Of a frame, and the least length of a member [points]."""
 SHORTEST: Final = 40.0
+LONGEST: Final = 500.0
+"""Of a member beside one of the least length; other frames are drawn in a row."""
 JOINT: Final = 2.4
 """Radius of a joint of members."""
 CLEAR: Final = 1.2
@@ -185,7 +187,7 @@ class _Plan:
             dx, dy = vectors[name]
             size = hypot(bx - ax, by - ay)
             along = ((bx - ax) * dx + (by - ay) * dy) / (size * hypot(dx, dy)) if size else 0.0
-            if size < SHORTEST - 1 or along < 1 - SAME:
+            if not SHORTEST - 1 < size < LONGEST or along < 1 - SAME:
                 return False
         for one, other in combinations(self.ends.values(), 2):
             pieces = [list(_pieces(*pair, skip=9.0)) for pair in (one, other)]
@@ -201,7 +203,7 @@ class _Plan:
 
     def _first_free(self, items: Sequence[Placed], moves: Iterable[Point]) -> Point:
         """Return the first move after which parts touch nothing that is drawn; the last one if all do."""
-        pieces = [e.grown(0.8) for i in items for e in i.extents]
+        pieces = [e.grown(1.6 if i.texts else 0.8) for i in items for e in i.extents]
         last = (0.0, 0.0)
         for dx, dy in moves:
             last = (dx, dy)

@@ -430,7 +430,7 @@ class _Layout:
         for cell, start, end, y in self.members:
             sign = -1 if cell.is_reversed else 1
             items = coordinate(end if cell.is_reversed else start, 0.0, sign)
-            room = union(i.box for i in items).grown(1.0)
+            room = union(i.box for i in items).grown(2.0)
             self._add(*(i.moved(0, self._free(room, y - 1.0, is_up=False)) for i in items))
 
     def _draw_face(self, part: DrawnPart, column: Column, side: int) -> None:

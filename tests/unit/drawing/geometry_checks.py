@@ -11,7 +11,7 @@ TOUCH = 0.4
 SLANTED = 1.3
 """The same of slanted members, which are covered by small rectangles and meet at sharp angles."""
 FEW = 20
-PASSIVE = ("wire", "node")
+PASSIVE = ("wire", "node", "join")
 
 
 def _within(box, by):
@@ -39,20 +39,25 @@ def overlaps(drawing):
     return found
 
 
+def _untouched(item, kind):
+    """Return what a wire of a kind must not pass through."""
+    return item.extents if kind == "join" and item.kind not in PASSIVE else [t.box for t in item.texts]
+
+
 def struck_texts(drawing):
-    """Return the texts that a wire passes through."""
+    """Return the texts that a wire passes through, and the symbols that a dashed one does."""
     wires = [
         (item, Extent(min(a[0], b[0]), min(a[1], b[1]), max(a[0], b[0]), max(a[1], b[1])).grown(0.01))
-        for item in drawing.of_kind("wire")
+        for item in drawing.of_kind("wire", "join")
         for stroke in item.strokes
         for a, b in zip(stroke.points, stroke.points[1:], strict=False)
     ]
     return [
         (wire.name, item.kind, item.name)
         for item in drawing.items
-        for text in item.texts
         for wire, segment in wires
-        if _within(text.box, TOUCH).overlaps(segment)
+        for box in _untouched(item, wire.kind)
+        if _within(box, TOUCH).overlaps(segment)
     ]
 
 

@@ -107,6 +107,32 @@ def test_what_a_signal_reads_is_marked_where_it_is():
     assert count(drawing, "tag", "x") == 2
 
 
+def test_a_loop_is_joined_to_what_it_reads_and_where_it_acts():
+    drawing = drawing_of(pipeline.loads(LOOP))
+    read, driven = (next(i for i in drawing.items if (i.kind, i.name) == ("join", n)) for n in ("x", "drive"))
+    car, tag, arrow = (place(drawing, *n) for n in (("element", "car"), ("tag", "x"), ("element", "drive")))
+    for wire, start, end in ((read, car, tag), (driven, place(drawing, "end", "f"), arrow)):
+        first, last = wire.strokes[0].points[0], wire.strokes[1].points[0]
+        for box, (x, y) in ((start, first), (end, last)):
+            assert box.grown(1.6).x0 <= x <= box.grown(1.6).x1
+            assert box.grown(1.6).y0 <= y <= box.grown(1.6).y1
+
+
+def test_a_long_diagram_goes_on_below_its_beginning():
+    count = 14
+    blocks = "".join(f'G_{i} = {{ type = "lag", T = "{i + 1} ms" }}\n' for i in range(count))
+    loop = f'y = "{"*".join(f"G_{i}" for i in range(count))}*(r - 2*y)"\n'
+    model = pipeline.loads(
+        f'symflex = 1\n[blocks]\n{blocks}[signals]\n{loop}[inputs]\nr = {{}}\n[outputs]\nY = "y"\n'
+    )
+    drawing = drawing_of(model)
+    assert sound(model, drawing)
+    assert drawing.width == pytest.approx(88.5 / 25.4 * 72)
+    first, last = (place(drawing, "block", f"G_{i}") for i in (0, count - 1))
+    assert abs(first.y0 - last.y0) > 2 * first.height
+    assert {t.size for i in drawing.items for t in i.texts} == {7.0, 8.0}  # nothing made smaller
+
+
 def test_fields_that_follow_each_other_are_drawn_end_to_end():
     model = pipeline.loads(TWO_SPANS)
     drawing = drawing_of(model)

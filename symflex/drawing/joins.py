@@ -1,0 +1,165 @@
+"""Dashed wires that join a block diagram to the mechanics: from what a sensor reads, to where a source acts.
+
+Input: a drawing, and what is to be joined. Output: the wires that find a way, each a part of its own.
+
+    [m]--k--[m]      A wire leaves the right mass, runs between the drawing and the diagram below it, and ends
+     :        :      at the name x_tip there. It bends as little as it can, crosses other wires only where it
+     '--[K]<--'      must, and nothing else. Where there is no way the names on both sides have to do.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from heapq import heappop, heappush
+from itertools import pairwise
+from typing import TYPE_CHECKING, Final
+
+from symflex.drawing.geometry import THIN, Extent, Placed, Stroke, around, union
+from symflex.drawing.symbols import head
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from symflex.drawing.geometry import Drawing, Point
+
+CELL: Final = 2.5
+"""Of the grid on which ways are looked for [points]."""
+CLEAR: Final = 1.6
+"""Between a wire and what it passes."""
+BEND, CROSSING = 8.0, 16.0
+"""What a corner, and a wire that is crossed, cost in cells of length."""
+LONGEST: Final = 300.0
+"""Cost of a way that would rather confuse."""
+STEPS: Final = ((1, 0), (-1, 0), (0, 1), (0, -1))
+Cell = tuple[int, int]
+
+
+@dataclass(frozen=True, slots=True)
+class Join:
+    """What is to be joined: a name, and the rectangles where its wire may begin and end."""
+
+    name: str
+    starts: tuple[Extent, ...]
+    ends: tuple[Extent, ...]
+    otherwise: tuple[Extent, ...] = ()  # where it may end if it cannot end there
+
+
+def joined(drawing: Drawing, joins: Sequence[Join]) -> tuple[Placed, ...]:
+    """Return the wires of what can be joined, in order."""
+    solid = [box for item in drawing.items if item.kind not in ("wire", "node") for box in item.extents]
+    blocked: set[Cell] = set()
+    crossed: set[Cell] = set()
+    for item in drawing.items:
+        is_wire = item.kind == "wire"
+        for stroke in item.strokes if is_wire else ():
+            for pair in pairwise(stroke.points):
+                # The head of an arrow is no line that may be crossed.
+                (blocked if stroke.fill else crossed).update(_covered(around(pair), 0.5 * CELL))
+        for box in () if is_wire else item.extents:
+            blocked.update(_covered(box, CLEAR))
+    right, top = int(drawing.width / CELL), int(drawing.height / CELL)
+    blocked.update((x, y) for x in (0, right) for y in range(top + 1))
+    blocked.update((x, y) for x in range(right + 1) for y in (0, top))
+    found = []
+    for one in joins:
+        points = _way(one.starts, one.ends, blocked, crossed)
+        points = points or _way(one.starts, one.otherwise, blocked, crossed)
+        # A symbol may reach into another one's place, where a way begins or ends.
+        if points and not any(_is_struck(pair, box) for pair in pairwise(points) for box in solid):
+            crossed.update(c for pair in pairwise(points) for c in _covered(around(pair), 0.5 * CELL))
+            (ax, ay), tip = points[-2:]
+            size = abs(tip[0] - ax) + abs(tip[1] - ay)
+            d = ((tip[0] - ax) / size, (tip[1] - ay) / size)
+            dashes = Stroke((*points[:-1], (tip[0] - 2 * d[0], tip[1] - 2 * d[1])), THIN, is_dashed=True)
+            found.append(Placed("join", one.name, (dashes, head(tip, d, 3.0))))
+    return tuple(found)
+
+
+def _is_struck(pair: tuple[Point, Point], box: Extent) -> bool:
+    return around(pair).grown(0.01).overlaps(box.grown(-0.3))
+
+
+def _centre(cell: Cell) -> Point:
+    return (cell[0] + 0.5) * CELL, (cell[1] + 0.5) * CELL
+
+
+def _covered(box: Extent, by: float) -> Iterator[Cell]:
+    """Yield the cells whose centres lie in a rectangle with a border around it."""
+    left, low, right, high = (round(v / CELL) for v in (box.x0 - by, box.y0 - by, box.x1 + by, box.y1 + by))
+    yield from ((x, y) for x in range(left, right) for y in range(low, high))
+
+
+def _beside(box: Extent) -> dict[Cell, Point]:
+    """Return the cells straight beside a rectangle, each with the point of its border that is nearest."""
+    found = {}
+    for cell in set(_covered(box, CLEAR + CELL)) - set(_covered(box, CLEAR)):
+        x, y = _centre(cell)
+        nearest = (min(max(x, box.x0), box.x1), min(max(y, box.y0), box.y1))
+        if (nearest[0] == x) is not (nearest[1] == y):
+            found[cell] = nearest
+    return found
+
+
+def _way(
+    first: Sequence[Extent], last: Sequence[Extent], blocked: set[Cell], crossed: set[Cell]
+) -> list[Point]:
+    """Return the corners of the cheapest way, or nothing where there is none (A*)."""
+    starts = {c: p for box in first for c, p in _beside(box).items() if c not in blocked}
+    ends = {c: p for box in last for c, p in _beside(box).items() if c not in blocked}
+    if not starts or not ends:
+        return []
+    goal = union(Extent(x, y, x, y) for x, y in ends)
+
+    def left(cell: Cell) -> float:
+        """Return a number of cells that the rest of a way takes at least."""
+        across = max(goal.x0 - cell[0], 0.0, cell[0] - goal.x1)
+        return across + max(goal.y0 - cell[1], 0.0, cell[1] - goal.y1)
+
+    pending: list[tuple[float, Cell, int]] = []
+    best: dict[tuple[Cell, int], float] = {}
+    before: dict[tuple[Cell, int], tuple[Cell, int] | None] = {}
+    for cell in sorted(starts):
+        for d, (dx, dy) in enumerate(STEPS):
+            x, y = _centre(cell)
+            is_away = (x - starts[cell][0]) * dx + (y - starts[cell][1]) * dy > 0
+            if is_away:
+                best[cell, d], before[cell, d] = 0.0, None
+                heappush(pending, (left(cell), cell, d))
+    seen: set[tuple[Cell, int]] = set()
+    while pending:
+        _, cell, d = heappop(pending)
+        if (cell, d) in seen:
+            continue
+        seen.add((cell, d))
+        if cell in ends and _leads_to(cell, d, ends[cell]):
+            return _corners(cell, d, before, starts, ends)
+        for turn, (dx, dy) in enumerate(STEPS):
+            other = (cell[0] + dx, cell[1] + dy)
+            if other in blocked or turn == d ^ 1:
+                continue
+            price = best[cell, d] + 1 + BEND * (turn != d) + CROSSING * (other in crossed)
+            if price + left(other) < LONGEST and price < best.get((other, turn), LONGEST):
+                best[other, turn], before[other, turn] = price, (cell, d)
+                heappush(pending, (price + left(other), other, turn))
+    return []
+
+
+def _leads_to(cell: Cell, d: int, goal: Point) -> bool:
+    (x, y), (dx, dy) = _centre(cell), STEPS[d]
+    return (goal[0] - x) * dx + (goal[1] - y) * dy > 0
+
+
+def _corners(
+    cell: Cell,
+    d: int,
+    before: dict[tuple[Cell, int], tuple[Cell, int] | None],
+    starts: dict[Cell, Point],
+    ends: dict[Cell, Point],
+) -> list[Point]:
+    """Return where a way begins, turns and ends."""
+    points, place = [ends[cell]], (cell, d)
+    while (last := before[place]) is not None:
+        if last[1] != place[1]:
+            points.append(_centre(last[0]))
+        place = last
+    return [starts[place[0]], *reversed(points[1:]), points[0]]
