@@ -14,8 +14,11 @@ does not; so every turn has as many poles as there are such places, and what a r
 a power of t, bounds the sum over all.
 
 The places are as many as a trigonometric polynomial of that order has zeros, so all poles beyond T lie on the
-axis; and as the function falls off on arcs between them, the modes are all there is (Churchill 1937, The
-inversion of the Laplace transformation by a direct expansion in series).
+axis. That the modes are all there is follows from paths about 0 in the s plane that pass between them
+(Churchill 1937, The inversion of the Laplace transformation by a direct expansion in series):
+t = T_n + j y/r, abs(y) <= r T_n, all with the same theta. There d over e^(abs(y)) is a polynomial in
+e^(-abs(y)) as well. Where it keeps away from 0 for all e^(-abs(y)) from 0 to 1, a compact set again, H falls
+off on the paths like a power of t, and with it what lies beyond them (Jordan's lemma).
 """
 
 from __future__ import annotations
@@ -44,6 +47,10 @@ if TYPE_CHECKING:
 
 CELLS = 360
 """Balls that one turn is covered with."""
+PATHS = 24
+"""Thetas at which paths between poles are tried."""
+DEPTHS = 64
+"""Balls that a path is covered with."""
 ANYWHERE = 0.7310585786
 """Turns of theta at which there is no root as a rule: the constant in front is read off there."""
 
@@ -90,6 +97,43 @@ class AxisFactor:
             slope += decay * (even_slope + growth * even + turn * odd) * cosine
             slope += decay * (odd_slope + growth * odd - turn * even) * sine
         return total, slope
+
+    def keeps_away_from_zero(self, theta: arb, least: arb) -> bool:
+        """Tell whether there is no zero at ``t + j y/r``, for all t beyond one with this theta, and all y.
+
+        Then the values over ``t^degree e^(turns abs(y))`` keep away from 0, too.
+        """
+        for i in range(DEPTHS):
+            v = (arb(i).union(arb(i + 1))) / DEPTHS  # exp(-abs(y))
+            if self._across(theta, v, least).contains(0):
+                return False
+        return True
+
+    def _across(self, theta: arb, v: arb, least: arb) -> acb:
+        """Return values over ``t^degree e^(turns y)``, with ``v = exp(-y)`` for a positive y."""
+        total = acb(0)
+        for wave in self.function.waves:
+            multiple = sum(wave.phase)
+            k = abs(multiple)
+            turned = acb(0, k * theta).exp()
+            # exp(j k (theta + j y)) and its inverse, both over exp(turns y).
+            fading, grown = turned * v ** (self.turns + k), v ** (self.turns - k) / turned
+            sine = (fading - grown) / acb(0, 2 if multiple >= 0 else -2)
+            own = self._disc(wave.even, least) * (fading + grown) / 2 + self._disc(wave.odd, least) * sine
+            if any(wave.growth):
+                rate, _ = self.function.enclosures.rate(wave.growth)
+                size = ((rate * least).exp() * own.abs_upper()).upper()
+                own = acb(arb(0, size), arb(0, size))
+            total += own
+        return total
+
+    def _disc(self, polynomial: Polynomial, least: arb) -> acb:
+        """Return a polynomial in t over ``t^degree``, at all complex t beyond a radius."""
+        total = acb(0)
+        for n, c in self.function.enclosures.coefficients(polynomial).items():
+            reach = (least ** (n - self.degree)).upper()
+            total += c * (acb(arb(0, reach), arb(0, reach)) if n < self.degree else acb(1))
+        return total
 
     def _over_power(self, polynomial: Polynomial, least: arb) -> tuple[arb, arb]:
         """Return a polynomial in t and its derivative, over ``t^degree``, at all t from ``least`` on."""
@@ -172,6 +216,8 @@ class LosslessModes:
             power = sum(f.degree * f.exponent for f in self.factors) + 1 - 2 * integrations
             if power >= -1 or not all(f.has_corner for f in self.poles):
                 return None
+            if not self._has_paths(least):
+                return None
             largest, places, most = arb(0), 0, 0
             for factor in self.poles:
                 found = self._largest(factor, least)
@@ -185,6 +231,11 @@ class LosslessModes:
             # One turn may begin and end in the middle of a place.
             total = least**power + least ** (power + 1) / (turn * (-power - 1))
             return (scale * largest * (places + 1) * total).upper()
+
+    def _has_paths(self, least: arb) -> bool:
+        """Tell whether paths pass between the poles on which no denominator comes close to 0."""
+        places = (2 * arb.pi() * k / PATHS for k in range(PATHS))
+        return any(all(f.keeps_away_from_zero(theta, least) for f in self.poles) for theta in places)
 
     def _largest(self, factor: AxisFactor, least: arb) -> tuple[arb, int] | None:
         """Return how large a residue may be over powers of t, and at how many places in a turn it may be one.

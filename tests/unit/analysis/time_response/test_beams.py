@@ -130,6 +130,18 @@ def test_the_bound_of_modes_left_out_holds_for_a_thousand_of_them(output):
     assert left < rest < 20 * left
 
 
+def test_paths_between_the_modes_are_told_from_those_through_them():
+    modes = lossless_modes(beam(), 24)
+    roots, reached = modes.lowest(40)
+    (factor,) = modes.poles
+    with precision(modes.bits):
+        least = (arb(reached).exp() / 2).sqrt()
+        through = [modes.rate * (root.im / 2).sqrt() for root in roots[-2:]]
+        between = (through[0] + through[1]) / 2
+        assert not factor.keeps_away_from_zero(through[0], least)
+        assert factor.keeps_away_from_zero(between, least)
+
+
 def test_a_mass_and_a_spring_at_the_tip_leave_a_modal_sum():
     rest = 'elements.m = { type = "mass", at = "x", m = "0.3 kg" }\n'
     rest += 'elements.k = { type = "spring", between = ["ground", "x"], k = "5 N/m" }'
