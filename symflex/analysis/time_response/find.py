@@ -19,7 +19,7 @@ from symflex.analysis.time_response.enclosed_response import (
     JumpAt,
 )
 from symflex.analysis.time_response.exponentials import values_of
-from symflex.analysis.time_response.modal import estimated, of_passive_modes, of_proved_modes
+from symflex.analysis.time_response.modal import estimated, proved_modes
 from symflex.analysis.time_response.partial_fractions import (
     EnclosedQuotient,
     at_infinity,
@@ -166,10 +166,8 @@ def _found(
             raise UncertifiedError(Diagnostic("SF810", message, None, "ask for a shorter time"))
         message = f"{bound.name} has delays and waves that spread: its response in time is not known"
         raise ModelError(Diagnostic("SF813", message, None, "take 'symflex rational' of the beam first"))
-    proved = of_proved_modes(bound, integrations, times, digits)
-    if proved is None:
-        proved = of_passive_modes(bound, integrations, times, digits)
-    return (proved, None) if proved is not None else estimated(bound, integrations, times)
+    proved = proved_modes(bound, integrations, times, digits)
+    return (proved.sampled, None) if proved is not None else estimated(bound, integrations, times)
 
 
 def _of_lumped(bound: BoundTransferFunction, integrations: int, times: SampleTimes, digits: int) -> Sampled:

@@ -80,24 +80,24 @@ TOO_MUCH = 0.3
 """Estimated rest over the largest value from which on the modes say nothing."""
 
 
-def of_proved_modes(
+def proved_modes(
     bound: BoundTransferFunction, integrations: int, times: SampleTimes, digits: int
-) -> Sampled | None:
-    """Return a response with a proved bound of the modes left out; None where there is none.
+) -> PartialSum | None:
+    """Return a sum over modes with a proved bound of those left out; None where there is none.
 
     A step of a velocity is an impulse of a displacement, and so a function over s is tried as well.
     """
     found = _of_proved_modes(bound, integrations, times, digits)
-    if found is not None or not integrations:
-        return found
-    s = Factored.generator(bound.ratio.ring, "s")
-    over_s = replace(bound, ratio=bound.ratio / s, parts=(bound.num, bound.den * s))
-    return _of_proved_modes(over_s, integrations - 1, times, digits)
+    if found is None and integrations:
+        s = Factored.generator(bound.ratio.ring, "s")
+        over_s = replace(bound, ratio=bound.ratio / s, parts=(bound.num, bound.den * s))
+        found = _of_proved_modes(over_s, integrations - 1, times, digits)
+    return _of_passive_modes(bound, integrations, times, digits) if found is None else found
 
 
 def _of_proved_modes(
     bound: BoundTransferFunction, integrations: int, times: SampleTimes, digits: int
-) -> Sampled | None:
+) -> PartialSum | None:
     damping = damping_of(bound)
     if damping is not None and damping.is_none:
         damping = None
@@ -126,10 +126,10 @@ def _of_proved_modes(
     return found
 
 
-def of_passive_modes(
+def _of_passive_modes(
     bound: BoundTransferFunction, integrations: int, times: SampleTimes, digits: int
-) -> Sampled | None:
-    """Return a response of a passive model with a proved bound of the modes left out; None where none is."""
+) -> PartialSum | None:
+    """Return the same for a passive model, from its energy."""
     bounding = passive_bound(bound)
     if bounding is None:
         return None
@@ -148,15 +148,21 @@ def of_passive_modes(
         if more is None:
             break
         counts, first, found = (counts[1], wanted), found, more
-    return Sampled(tuple(y + arb(0, found.rest) for y in found.values))
+    return found
 
 
 @dataclass(frozen=True, slots=True)
 class PartialSum:
     """The sum over some modes, at all times, and how much all others add at most."""
 
-    values: tuple[arb, ...]
+    terms: tuple[ExponentialTerm, ...]
+    values: tuple[arb, ...]  # of the terms, at all times
     rest: arb
+
+    @property
+    def sampled(self) -> Sampled:
+        """The response, with what is left out as part of its balls."""
+        return Sampled(tuple(y + arb(0, self.rest) for y in self.values))
 
 
 class PassiveModes:
@@ -214,7 +220,7 @@ class PassiveModes:
                 if term is None:
                     return None
                 terms.append(term)
-            return PartialSum(tuple(values_of(terms, self._times)), rest.upper())
+            return PartialSum(tuple(terms), tuple(values_of(terms, self._times)), rest.upper())
 
     def _continued(self, count: int) -> tuple[float, list[Root]] | None:
         """Return ln of a radius and all roots within, those found so far continued; None where that fails.
@@ -292,7 +298,7 @@ def _summed(
     count: int,
     integrations: int,
     times: SampleTimes,
-) -> Sampled | None:
+) -> PartialSum | None:
     lowest = modes.lowest(count)
     origin = _at_origin(bound, integrations)
     if lowest is None or origin is None:
@@ -307,8 +313,7 @@ def _summed(
         known = [term for term in terms if term is not None]
         if rest is None or len(known) < len(terms):
             return None
-        values = values_of([*origin, *known], times)
-        return Sampled(tuple(y + arb(0, rest) for y in values))
+        return PartialSum((*origin, *known), tuple(values_of([*origin, *known], times)), rest)
 
 
 def _damped(

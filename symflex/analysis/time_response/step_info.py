@@ -12,12 +12,16 @@ from __future__ import annotations
 
 import heapq
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from math import inf
+from typing import TYPE_CHECKING, Final
 
 from flint import acb, arb
 
 from symflex.analysis.time_response.exponentials import ExponentialTerm
+from symflex.analysis.time_response.horizon import default_until
+from symflex.analysis.time_response.modal import proved_modes
 from symflex.analysis.time_response.partial_fractions import EnclosedQuotient, partial_fractions
+from symflex.analysis.time_response.sample_times import SampleTimes
 from symflex.budget import spend
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.polynomial_roots import find_polynomial_roots
@@ -42,6 +46,12 @@ MOST_INTERVALS = 20_000
 HALVINGS = 50
 MORE_DIGITS = 10
 """Of poles: differences of their terms lose some."""
+MODES_DIGITS = 8
+"""Of responses of waves, of which few high modes are needed then."""
+MODES_BITS = 128
+SMOOTH_MODES = (40, 20, 10, 5, 3)
+"""Terms of which the slope of such a response is made, tried in turn: few are smooth, many are sharp."""
+ZERO: Final = arb(0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +67,18 @@ class StepInfo:
     overshoot: arb | None  # of the final value, as a fraction; [0, 1e-6] where there is no peak
     rise_time: arb | None  # from the first 10 % to the first 90 % of the final value
     settling_time: arb | None  # after which it stays within 2 % of the final value
+
+    @property
+    def missing(self) -> int:
+        """How many of the properties are not found."""
+        has_none = self.overshoot is not None and self.overshoot.contains(0)
+        wanted = (
+            self.overshoot,
+            self.rise_time,
+            self.settling_time,
+            *(() if has_none else (self.peak_time,)),
+        )
+        return sum(each is None for each in wanted)
 
     def lines(self, unit: str) -> list[str]:
         """Return what is found as text, with ten digits at most."""
@@ -92,11 +114,14 @@ class StepInfo:
 def find_step_info(bound: BoundTransferFunction, digits: int = 12) -> StepInfo | None:
     """Return the properties of a step response, from poles of about so many digits.
 
-    None where it does not come to rest, or at 0, where poles cannot be told apart, and for waves and delays.
+    None where it does not come to rest, or at 0, where poles cannot be told apart, with delays, and with
+    waves whose modes are not bounded. With waves, numbers are as sharp as the modes left out allow.
     """
     bound = without_lengths_of_zero(bound)
-    if bound.is_distributed or bound.is_zero:
+    if bound.is_zero:
         return None
+    if bound.is_distributed:
+        return _of_modes(bound)
     wanted = 2 * digits + MORE_DIGITS
     poles = find_polynomial_roots(
         problem_of(bound, [(f, -e) for f, e in bound.ratio.factors if e < 0]), wanted
@@ -107,8 +132,37 @@ def find_step_info(bound: BoundTransferFunction, digits: int = 12) -> StepInfo |
         return None if terms is None else step_info(terms)
 
 
-def step_info(terms: Sequence[ExponentialTerm]) -> StepInfo | None:
+def _of_modes(bound: BoundTransferFunction) -> StepInfo | None:
+    """Return the properties of a sum over modes; high ones, which make it rough, are a part of its rest."""
+    if any(law.kind == "exponential" for law in bound.kernels.dispersions):
+        return None
+    found = proved_modes(bound, 1, SampleTimes.of([0.0, default_until(bound)]), MODES_DIGITS)
+    if found is None:
+        return None
+    with precision(MODES_BITS):
+        resting = [t for t in found.terms if t.rate == 0]
+        moving = sorted((t for t in found.terms if t.rate != 0), key=_size, reverse=True)
+        best: StepInfo | None = None
+        for count in SMOOTH_MODES:
+            left = sum((arb(_size(t)) for t in moving[count:]), found.rest)
+            info = step_info([*resting, *moving[:count]], left)
+            if info is None:
+                break
+            best = info if best is None or info.missing < best.missing else best
+            if not best.missing:
+                break
+        return best
+
+
+def _size(term: ExponentialTerm) -> float:
+    """Return a bound of a term that decays; what does not is the largest."""
+    return float(abs(term.coefficients[0]).upper()) if term.rate.real < 0 else inf
+
+
+def step_info(terms: Sequence[ExponentialTerm], rest: arb = ZERO) -> StepInfo | None:
     """Return the properties of a step response; None where it does not come to rest, or at 0.
+
+    The response differs by no more than ``rest`` from the sum of its terms, at any time.
 
     Examples
     --------
@@ -124,33 +178,33 @@ def step_info(terms: Sequence[ExponentialTerm]) -> StepInfo | None:
         return None
     if not all(t.rate.real < 0 for t in moving):
         return None
+    left = (rest / abs(final)).upper()
+    if not left < SETTLED / 4:
+        return StepInfo(final, None, None, None, None, None)
     motion = NormalisedResponse(
-        tuple(ExponentialTerm(t.rate, tuple(c / final for c in t.coefficients)) for t in moving)
+        tuple(ExponentialTerm(t.rate, tuple(c / final for c in t.coefficients)) for t in moving), left
     )
     until = motion.quiet(arb(SETTLED))
     peak = motion.peak()
     rises = [motion.first(arb(level), until) for level in RISE]
-    ends = [motion.crossing(1 + sign * arb(SETTLED), until, is_last=True) for sign in (1, -1)]
     rise = None if rises[0] is None or rises[1] is None else rises[1] - rises[0]
-    settled = [end for end in ends if end is not None]
-    settling = None if motion.is_lost else max(settled, key=lambda t: t.mid(), default=arb(0))
+    settling = motion.settling(arb(SETTLED), until)
     if peak is None:
         return StepInfo(final, None, None, None, rise, settling)
     when, height = peak
-    if when is None:
-        return StepInfo(final, None, None, height - 1, rise, settling)
-    return StepInfo(final, height * final, when, height - 1, rise, settling)
+    return StepInfo(final, height * final if height > 1 else None, when, height - 1, rise, settling)
 
 
 class NormalisedResponse:
-    """A response over its final value: 1 plus exponentials that decay."""
+    """A response over its final value: 1 plus exponentials that decay, and at most ``rest`` besides."""
 
-    def __init__(self, terms: tuple[ExponentialTerm, ...]) -> None:
+    def __init__(self, terms: tuple[ExponentialTerm, ...], rest: arb = ZERO) -> None:
         self._orders = [terms]
+        self._rest = rest
         self.is_lost = False  # something could not be told
 
     def at(self, t: arb, order: int = 0) -> arb:
-        """Return the value, or a derivative, on a ball of times."""
+        """Return the value without the rest, or a derivative, on a ball of times."""
         while len(self._orders) <= order:
             self._orders.append(tuple(_derivative(term) for term in self._orders[-1]))
         total = arb(0 if order else 1)
@@ -170,7 +224,7 @@ class NormalisedResponse:
 
     def beyond(self, t: arb) -> arb:
         """Return how far the response is from its end at most, from a time on."""
-        total = arb(0)
+        total = self._rest
         for term in self._orders[0]:
             for j, c in enumerate(term.coefficients):
                 # t^j exp(-d t) falls from j/d on.
@@ -191,15 +245,16 @@ class NormalisedResponse:
 
         None where it cannot be told.
         """
-        until = self.quiet(arb(CLOSE))
-        best = (1 + arb(CLOSE)).upper()
+        rest = self._rest
+        until = self.quiet(CLOSE + 2 * rest)
+        best = (1 + CLOSE + 2 * rest).upper()
         start = self.at(arb(0))
         found = [(arb(0), start)] if start > best else []
         best = best.max(start.lower())
         queue = [(-float(self.over(arb(0), until).upper()), 0, arb(0), until)]
         for count in range(1, MOST_INTERVALS):
             spend()
-            if not queue or -queue[0][0] < float(best):
+            if not queue or -queue[0][0] < float((best - 2 * rest).lower()):
                 break
             _, _, low, high = heapq.heappop(queue)
             middle = ((low + high) / 2).mid()
@@ -222,14 +277,49 @@ class NormalisedResponse:
                 heapq.heappush(queue, (-float(self.over(a, b).upper()), 2 * count + k, a, b))
         else:
             return None
-        highest = [(when, height) for when, height in found if not height < best]
+        highest = [(when, height) for when, height in found if not height < best - 2 * rest]
         if not highest:
-            return None, arb(1).union(best)
-        return highest[0] if len(highest) == 1 else None
+            return None, arb(1).union(best + rest)
+        if len(highest) > 1:
+            return None
+        when, height = highest[0]
+        return self._about_peak(when), height + arb(0, rest)
+
+    def _about_peak(self, when: arb) -> arb | None:
+        """Return when the response with its rest is highest, given when it is without."""
+        if self._rest == 0 or when == 0:
+            return when
+        reach = when.rad()
+        for _ in range(HALVINGS):
+            # Within a box the response falls off from its peak as bent as it is the least.
+            reach = 2 * reach.max(self._rest)
+            bent = -self.at(when.mid() + arb(0, reach), 2).upper()
+            needed = (4 * self._rest / bent).sqrt() + 2 * when.rad() if bent > 0 else reach
+            if bent > 0 and needed < reach:
+                return arb(when.mid(), needed.upper())
+        return None
 
     def first(self, level: arb, until: arb) -> arb | None:
         """Return when the response first reaches a level below 1; at once, if it begins above."""
-        return arb(0) if self.at(arb(0)) > level else self.crossing(level, until, is_last=False)
+        if self.at(arb(0)) > level + self._rest:
+            return arb(0)
+        # Without its rest it has not reached the lower of these before, and has reached the upper one after.
+        ends = [self.crossing(level + sign * self._rest, until, is_last=False) for sign in (-1, 1)]
+        if not self.at(arb(0)) < level - self._rest:
+            ends[0] = arb(0)
+        return None if ends[0] is None or ends[1] is None else ends[0].union(ends[1])
+
+    def settling(self, band: arb, until: arb) -> arb | None:
+        """Return after which time the response stays within a band about 1; None where that is not told."""
+        self.is_lost = False
+        earliest, latest = arb(0), arb(0)
+        for sign in (1, -1):
+            outer, inner = (
+                self.crossing(1 + sign * (band + side * self._rest), until, is_last=True) for side in (1, -1)
+            )
+            earliest = earliest if outer is None else earliest.max(outer)
+            latest = latest if inner is None else latest.max(inner)
+        return None if self.is_lost else earliest.union(latest)
 
     def crossing(self, level: arb, until: arb, *, is_last: bool) -> arb | None:
         """Return the first or last time at which the response passes a level; None if it does not.

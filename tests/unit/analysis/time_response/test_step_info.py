@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from math import acos, exp, log, pi, sin, sqrt
 
+import numpy as np
 import pytest
-from scipy.optimize import brentq
+from flint import arb
+from scipy.optimize import brentq, minimize_scalar
 
 from symflex.analysis.time_response import find_step_info
 from tests.unit.analysis.systems import rational
+from tests.unit.analysis.time_response.test_beams import UNIT, beam, cantilever, damped_step
 
 
 @pytest.mark.parametrize("zeta", [0.05, 0.3, 0.7])
@@ -68,3 +71,43 @@ def test_a_response_that_rings_six_hundred_times_is_followed_to_its_end():
 @pytest.mark.parametrize("expression", ["1/s", "1/(s^2 + 4)", "1/(s - 1)", "s/(s + 1)^2"])
 def test_what_does_not_come_to_rest_or_at_zero_has_no_such_properties(expression):
     assert find_step_info(rational(expression)) is None
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("kind", "loss"), [('eta = "0.02 s"', (0.02, 0, 0)), ('c_f = "2 N*s/m^2"', (0, 2, 0))]
+)
+def test_the_properties_of_a_beam_hold_those_of_its_modal_sum(kind, loss):
+    beta, weights = (each[:400] for each in cantilever())
+
+    def response(t):
+        # What higher modes lack is below 10^-8 of the final value.
+        return 3 * damped_step(beta, weights, *loss, np.atleast_1d(t))
+
+    found = find_step_info(beam(kind=f"{UNIT}, {kind}"))
+    grid = np.linspace(0, 40, 8001)
+    values = response(grid)
+    top = int(np.argmax(values))
+    peak = minimize_scalar(lambda t: -response(t)[0], bounds=(grid[top - 1], grid[top + 1]), method="bounded")
+    rises = []
+    for level in (0.1, 0.9):
+        after = int(np.argmax(values > level))
+        rises.append(brentq(lambda t, level=level: response(t)[0] - level, grid[after - 1], grid[after]))
+    last = int(np.flatnonzero(np.abs(values - 1) > 0.02)[-1])
+    settled = brentq(lambda t: abs(response(t)[0] - 1) - 0.02, grid[last], grid[last + 1])
+
+    def holds(ball, value, off, share):
+        assert (ball + arb(0, off)).overlaps(arb(value))
+        assert float(ball.rad()) < share * value
+
+    holds(found.final, 1 / 3, 1e-12, 1e-9)
+    holds(found.peak, -peak.fun / 3, 1e-7, 1e-4)
+    holds(found.overshoot, -peak.fun - 1, 1e-7, 1e-4)
+    holds(found.rise_time, rises[1] - rises[0], 1e-6, 1e-3)
+    holds(found.settling_time, settled, 1e-6, 1e-3)
+    if found.peak_time is not None:
+        holds(found.peak_time, peak.x, 1e-5, 1e-1)
+
+
+def test_a_beam_that_loses_nothing_does_not_come_to_rest():
+    assert find_step_info(beam()) is None
