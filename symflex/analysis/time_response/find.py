@@ -8,8 +8,9 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from flint import arb
+from flint import acb, arb
 
+from symflex.algebra import Factored, KernelTable
 from symflex.analysis.time_response.delayed_terms import DelayedQuotient, delayed_quotient
 from symflex.analysis.time_response.echoes import Sampled, TooManyEchoesError, echoed
 from symflex.analysis.time_response.enclosed_response import (
@@ -36,9 +37,10 @@ from symflex.roots.polynomial_roots import find_polynomial_roots
 from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.problem import problem_of
 from symflex.roots.root import exact_fraction
+from symflex.transfer.balls import at_centre
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from symflex.analysis.input_shaping import InputShaper
     from symflex.transfer import BoundTransferFunction
@@ -164,10 +166,60 @@ def _found(
         if quotient is not None:
             message = f"too many echoes of the delays of {bound.name} arrive by then"
             raise UncertifiedError(Diagnostic("SF810", message, None, "ask for a shorter time"))
+        late = _without_delay(bound)
+        if late is not None:
+            return _later(*late, integrations, times, digits)
         message = f"{bound.name} has delays and waves that spread: its response in time is not known"
         raise ModelError(Diagnostic("SF813", message, None, "take 'symflex rational' of the beam first"))
     proved = proved_modes(bound, integrations, times, digits)
     return (proved.sampled, None) if proved is not None else estimated(bound, integrations, times)
+
+
+def _without_delay(bound: BoundTransferFunction) -> tuple[BoundTransferFunction, Callable[[], arb]] | None:
+    """Return a function without the delay that it is multiplied by, and that [s]; None where delays are else.
+
+    So it is with a sensor that is late: ``exp(-s T) w(l)/F``.
+    """
+    table, ratio, num = bound.kernels, bound.ratio, bound.num
+    ring = ratio.ring
+    delays = [k for k in table.kernels if k.dispersion.kind == "exponential"]
+    shares = [(k, ratio.exponent_of(ring.generator(k.generator))) for k in delays]
+    for kernel, exponent in shares:
+        factor = Factored.generator(ring, kernel.generator) ** exponent
+        ratio, num = ratio / factor, num / factor
+        if exponent < 0 or any(part.depends_on(kernel.generator) for part in (ratio, num, bound.den)):
+            return None
+
+    def seconds() -> arb:
+        evaluator = bound.kernel_values()
+        values = {"s": acb(1), **{name: acb(c) for name, c in evaluator.constants.items()}}
+        total = arb(0)
+        for kernel, exponent in shares:
+            rate, length = (evaluator.value(x, values) for x in (kernel.dispersion.shift, kernel.length))
+            total += exponent * at_centre(rate * length).real
+        return total
+
+    laws = tuple(law for law in table.dispersions if law.kind != "exponential")
+    kernels = tuple(k for k in table.kernels if k not in delays)
+    undelayed = replace(bound, ratio=ratio, parts=(num, bound.den), kernels=KernelTable(laws, kernels))
+    return undelayed, seconds
+
+
+def _later(
+    undelayed: BoundTransferFunction,
+    delay: Callable[[], arb],
+    integrations: int,
+    times: SampleTimes,
+    digits: int,
+) -> tuple[Sampled, str | None]:
+    """Return a response that comes a delay later."""
+    with precision(bits_for_digits(2 * digits)):
+        wait = delay()
+        start, later = times.since(wait)
+        instants = times.enclosed(start)
+    found, reason = _found(undelayed, integrations, later, digits)
+    values = [y if t > wait else y.union(arb(0)) for t, y in zip(instants, found.values, strict=False)]
+    return Sampled((*[arb(0)] * start, *values)), reason
 
 
 def _of_lumped(bound: BoundTransferFunction, integrations: int, times: SampleTimes, digits: int) -> Sampled:

@@ -272,9 +272,29 @@ def test_an_acceleration_of_a_beam_is_refused_as_modes_do_not_fall_off():
         time_response(beam(output="s^2*x"), "impulse", SampleTimes.of([0.5]))
 
 
-def test_a_beam_in_a_loop_with_a_delay_is_refused():
+def with_delay(output):
     text = f'blocks.D = {{ type = "delay", T = "1 s" }}\nelements.arm = {{ type = "beam", {UNIT}, '
-    text += 'between = ["ground", "x"] }\ninputs.F = { force = "x" }\noutputs.X = "D*x"'
-    bound = loads(f"symflex = 1\n{text}").transfer_function("X", "F").bind().bound
+    text += f'between = ["ground", "x"] }}\ninputs.F = {{}}\n{output}\noutputs.X = "D*x"'
+    return loads(f"symflex = 1\n{text}").transfer_function("X", "F").bind().bound
+
+
+def test_a_beam_that_is_seen_late_does_the_same_later():
+    late = with_delay('elements.push = { type = "force_source", at = "x", f = "F" }')
+    found = time_response(late, "step", SampleTimes.of([0.5, 1.0, 1.37, 2.0, 3.9]))
+    alone = time_response(late, "step", SampleTimes.of([0.5, 1.37]))
+    beta, weights = cantilever()
+    expected, left = step_of(beta, weights, [0.37, 1.0, 2.9])
+    assert found.certified
+    assert found.values[0] == 0 == found.radius[0]
+    assert found.enclosures[1].contains(0)
+    assert alone.enclosures[1].overlaps(found.enclosures[2])
+    assert np.all(np.abs(found.values[2:] - expected) <= found.radius[2:] + left + 1e-14)
+    assert found.radius.max() <= 1e-9 * np.max(np.abs(expected))
+
+
+def test_a_beam_in_a_loop_with_a_delay_is_refused():
+    loop = with_delay(
+        'elements.push = { type = "force_source", at = "x", f = "F - k*D*x" }\nparameters.k = "1 N/m"'
+    )
     with pytest.raises(ModelError, match="SF813"):
-        time_response(bound, "step", SampleTimes.of([0.5]))
+        time_response(loop, "step", SampleTimes.of([0.5]))
