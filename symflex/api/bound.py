@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
+from fractions import Fraction
 from math import inf
 from typing import TYPE_CHECKING
 
@@ -44,6 +45,9 @@ if TYPE_CHECKING:
     from symflex.figures import AxesGiven
     from symflex.options import Ends, Stated
     from symflex.state_space.numeric import BoundStateSpace
+
+POINTS = 201
+"""Of a response in time where no times are given."""
 
 
 @dataclass(frozen=True)
@@ -88,9 +92,12 @@ class BoundTransferFunction:
         return FrequencyResponse.of(response_room.respond(self.bound, omega))
 
     def step_response(
-        self, times: ArrayLike, digits: int = 12, shaper: InputShaper | None = None
+        self, times: ArrayLike | None = None, digits: int = 12, shaper: InputShaper | None = None
     ) -> TimeResponse:
         r"""Return the response to a unit step at t = 0, from rest, at increasing times [s] from 0 on.
+
+        Without ``times`` at 201, until the slowest motion has died away or was seen often enough: in a
+        notebook ``H.step_response()`` is a figure.
 
         Every value has a radius, within which the true one is proved to lie where the result says
         ``certified``: ``digits`` digits of the largest value are correct. With a ``shaper``, as of
@@ -133,7 +140,7 @@ class BoundTransferFunction:
         return find_step_info(self.bound, digits)
 
     def impulse_response(
-        self, times: ArrayLike, digits: int = 12, shaper: InputShaper | None = None
+        self, times: ArrayLike | None = None, digits: int = 12, shaper: InputShaper | None = None
     ) -> TimeResponse:
         r"""Return the response to a unit impulse at t = 0; see :meth:`step_response`.
 
@@ -151,7 +158,7 @@ class BoundTransferFunction:
         return self._in_time("impulse", times, digits, shaper)
 
     def ramp_response(
-        self, times: ArrayLike, digits: int = 12, shaper: InputShaper | None = None
+        self, times: ArrayLike | None = None, digits: int = 12, shaper: InputShaper | None = None
     ) -> TimeResponse:
         """Return the response to the input t from t = 0 on; see :meth:`step_response`."""
         return self._in_time("ramp", times, digits, shaper)
@@ -214,10 +221,16 @@ class BoundTransferFunction:
 
         return input_shaper(self.bound, modes, kind, digits, joint=joint)
 
-    def _in_time(self, kind: str, times: ArrayLike, digits: int, shaper: InputShaper | None) -> TimeResponse:
-        from symflex.analysis.time_response import SampleTimes
+    def _in_time(
+        self, kind: str, times: ArrayLike | None, digits: int, shaper: InputShaper | None
+    ) -> TimeResponse:
+        from symflex.analysis.time_response import SampleTimes, default_until
 
-        found = pipeline.time_response(self.bound, kind, SampleTimes.of(times), digits, shaper)
+        if times is None:
+            instants = SampleTimes.evenly(Fraction(default_until(self.bound)), POINTS)
+        else:
+            instants = SampleTimes.of(times)
+        found = pipeline.time_response(self.bound, kind, instants, digits, shaper)
         return TimeResponse(**{f.name: getattr(found, f.name) for f in fields(found)})
 
     def poles(

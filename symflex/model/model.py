@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING, Final, Literal
 
+from symflex.expressions import Attribute, names
 from symflex.library.elements import COMPONENTS, THROUGH_NAME, LineElement, Variable
 from symflex.model.direction import direction_of
 from symflex.quantities import Dimension
@@ -320,6 +321,38 @@ class Model:
                 for b in self.blocks
             )
         )
+
+    @property
+    def is_closed_loop(self) -> bool:
+        r"""True when a signal depends on itself: by others, or by what it drives in the network.
+
+        Examples
+        --------
+        >>> from symflex import pipeline
+        >>> text = 'symflex = 1\ninputs.r = {}\nsignals.y = "2*(r - y)"\noutputs.y_out = "y"'
+        >>> pipeline.loads(text).is_closed_loop
+        True
+        """
+        network = {n.name for n in self.nodes} | {use.name for use in self.elements}
+        uses: dict[str, set[str]] = {"": set()}
+        told = [(d.name, d.expression) for d in self.definitions]
+        told += [(x.name, x.expression) for x in self.signals]
+        for use in self.elements:
+            driven = {port.name for port in use.element.parameters if port.signal}
+            told += [("", value) for name, value in use.values if name in driven]
+        for owner, expression in told:
+            found = {n.owner if isinstance(n, Attribute) else n.name for n in names(expression)}
+            uses.setdefault(owner, set()).update("" if name in network else name for name in found)
+        for start, first in uses.items():
+            reached, pending = set[str](), [*first]
+            while pending:
+                name = pending.pop()
+                if name not in reached:
+                    reached.add(name)
+                    pending += uses.get(name, ())
+            if start in reached:
+                return True
+        return False
 
     def expressions(self) -> Iterator[tuple[str, Expression]]:
         """Yield all expressions but printed ones, each with the name it defines or an empty one."""

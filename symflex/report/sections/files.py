@@ -64,7 +64,8 @@ def figure_section(study: Study) -> ChapterPart | None:
     warnings: list[str] = []
     files: dict[str, bytes] = {}
     code = 0
-    for figure in study.model.figures or _defaults(study, drawable):
+    asked = study.model.figures
+    for figure in (*(asked or _defaults(drawable)), *_steps(study, drawable)):
         chosen = [drawable[pair] for pair in figure.of or tuple(drawable) if pair in drawable]
         drawn: PageFigure | SymflexError
         if figure.gain and figure.kind in LOOP_FIGURES:
@@ -80,15 +81,35 @@ def figure_section(study: Study) -> ChapterPart | None:
             blocks.append(Notice(why))
             warnings.append(f"{study.stem}, figure {why}")
             # What the specification asks for is missing. Nobody asked for the figures by default.
-            code = max(code, code_of(drawn), UncertifiedError.exit_code if study.model.figures else 0)
+            if figure in asked:
+                code = max(code, code_of(drawn), UncertifiedError.exit_code)
+            elif figure.kind != "step":
+                code = max(code, code_of(drawn))
         else:
             blocks.append(drawn)
     return ChapterPart("Figures", tuple(blocks), files, tuple(warnings), code) if blocks else None
 
 
-def _defaults(study: Study, drawable: dict[tuple[str, str], AnyBoundFunction]) -> tuple[Figure, ...]:
+def _defaults(drawable: dict[tuple[str, str], AnyBoundFunction]) -> tuple[Figure, ...]:
     pairs = tuple(drawable)[:MOST_CURVES]
     return (Figure("bode", "bode", pairs), Figure("poles_zeros", "poles_zeros", pairs)) if pairs else ()
+
+
+def _steps(study: Study, drawable: dict[tuple[str, str], AnyBoundFunction]) -> tuple[Figure, ...]:
+    """Return the step of a closed loop that is proved stable, of a reference, unless one is asked for."""
+    model = study.model
+    if not model.is_closed_loop or any(figure.kind in ("step", "impulse") for figure in model.figures):
+        return ()
+    references = {x.name for x in model.inputs if x.kind == "signal"}
+    stable = {found.tf for found in study.maps if found.verdict.word == "stable"}
+    pairs = [pair for pair in drawable if pair[1] in references and "/".join(pair) in stable]
+    # Curves of one input and one quantity share an axis.
+    first = [pair for pair in pairs if _ends(drawable[pair]) == _ends(drawable[pairs[0]])]
+    return (Figure("step", "step", tuple(first[:MOST_CURVES])),) if first else ()
+
+
+def _ends(bound: AnyBoundFunction) -> tuple[str, str]:
+    return bound.source.input.name, bound.source.output.unit
 
 
 def _loop_picture(study: Study, figure: Figure, files: dict[str, bytes]) -> PageFigure:

@@ -105,3 +105,10 @@ def test_a_shaper_with_too_few_digits_is_refused():
     bound = rational(OSCILLATOR)
     with pytest.raises(UsageError, match="more digits"):
         time_response(bound, "step", SampleTimes.of([1.0]), 60, input_shaper(bound))
+
+
+def test_without_times_a_response_lasts_until_the_motion_has_died_away():
+    text = 'symflex = 1\ninputs.u = {}\noutputs.y = "9*u/(s^2 + 6*s/10 + 9)"'  # exp(-0.3 t): 0.67 % is left
+    found = loads(text).transfer_function("y", "u").bind().step_response()
+    assert found.times[-1] == pytest.approx(5 / 0.3)
+    assert found._repr_svg_().startswith("<?xml")
