@@ -27,13 +27,32 @@ Values = Any
 
 
 def fundamental_minors(
+    along: Callable[[Values], Sequence[Values]],
+    start: Values,
+    length: Values,
+    bases: Sequence[Values],
+    places: Sequence[Sequence[int]],
+    wanted: Sequence[Values],
+) -> list[Values]:
+    """Return minors of Z(start + length) over the scale of their size, then the logarithms of both scales.
+
+    Part k of A is along(x)[k] times powers of the bases: places[k] holds its row, its
+    column and these powers. A minor is told by its rows and its columns, one or two of
+    each. Bases are arrays of one axis; parameters may be arrays of that shape.
+    """
+    return minors_by_octaves(
+        lambda limits, where: polynomials_along(along, start, length, places, limits, where),
+        np.broadcast_arrays(*bases),
+        wanted,
+    )
+
+
+def minors_by_octaves(
     polynomials: Callable[[Values, Values], Values], bases: Sequence[Values], wanted: Sequence[Values]
 ) -> list[Values]:
-    """Return minors of Z over the scale of their size, then the logarithms of both scales.
+    """Return what fundamental_minors does, given what polynomials_along makes of limits and elements.
 
-    polynomials(limits, where) gives what polynomials_along does for elements of the bases,
-    which are arrays of one axis. A minor is told by its rows and its columns, one or two of
-    each. What an element is does not depend on what others there are.
+    What an element is does not depend on what others there are.
     """
     found = np.full((len(wanted) + 2, len(bases[0])), np.nan, dtype=complex)
     with np.errstate(all="ignore"):
@@ -59,8 +78,8 @@ def polynomials_along(
     along: Callable[[Values], Sequence[Values]],
     start: Values,
     length: Values,
-    limits: Values,
     places: Sequence[Sequence[int]],
+    limits: Values,
     where: Values,
 ) -> Values:
     """Return powers of the bases over their limits, and what Z has of each on every piece.
@@ -69,17 +88,12 @@ def polynomials_along(
     """
     n = 1 + max(max(place[:2]) for place in places)
     scales = [np.prod(limits ** np.array(place[2:])) for place in places]
-
-    def values_at(share: Values) -> list[Values]:
-        x = start + length * share.reshape(-1, 1)
-        found = [np.broadcast_to(c * length, np.broadcast(c, x).shape) for c in along(x)]
-        found = [c[:, where] if c.shape[1] > 1 else c for c in found]
-        return [scale * c.reshape(*share.shape, -1) for scale, c in zip(scales, found, strict=True)]
-
     # Of a matrix without negative entries the largest eigenvalue is the norm, if states are scaled well.
     count, most, rounding = 64, 4000, 1e-13
     sizes = np.zeros((count, n, n))
-    for place, c in zip(places, values_at((np.arange(count) + 0.5) / count), strict=True):
+    for place, c in zip(
+        places, parts_at(along, start, length, scales, where, (np.arange(count) + 0.5) / count), strict=True
+    ):
         sizes[:, place[0], place[1]] += np.max(np.abs(c), axis=1)
     if not np.all(np.isfinite(sizes)):
         return None
@@ -92,7 +106,7 @@ def polynomials_along(
     edges = np.interp(shares[-1] * np.arange(number + 1) / number, shares, np.arange(count + 1) / count)
     points, to_terms, integral = chebyshev_points(20)
     widths = np.diff(edges)
-    values = values_at(edges[:-1, None] + widths[:, None] * points)
+    values = parts_at(along, start, length, scales, where, edges[:-1, None] + widths[:, None] * points)
     # Pieces are halved until functions of x are polynomials there to the last digits.
     for _ in range(12):
         rough = np.zeros(len(widths), dtype=bool)
@@ -103,17 +117,17 @@ def polynomials_along(
             break
         edges = np.sort(np.concatenate([edges, (edges[:-1] + widths / 2.0)[rough]]))
         widths = np.diff(edges)
-        values = values_at(edges[:-1, None] + widths[:, None] * points)
+        values = parts_at(along, start, length, scales, where, edges[:-1, None] + widths[:, None] * points)
     # Rows of Z by the powers of the bases they are times; each step of the iteration is one more factor A.
     shape = len(widths), len(points), n, max(c.shape[-1] for c in values)
     start_row = np.zeros(shape)
-    rows: Values = {(i, (0,) * len(limits)): start_row + np.eye(n)[i][:, None] for i in range(n)}
+    rows: Any = {(i, (0,) * len(limits)): start_row + np.eye(n)[i][:, None] for i in range(n)}
     total = {key: row[:, -1] for key, row in rows.items()}
     size, steps, last = 1.0, 0, 1e-18
     while size > last or steps < 2 * n:
         steps += 1
         size *= growth[-1] / number / steps
-        following: Values = {}
+        following: Any = {}
         for place, c in zip(places, values, strict=True):
             for (i, before), row in rows.items():
                 if i == place[1]:
@@ -131,6 +145,21 @@ def polynomials_along(
     return powers, coefficients
 
 
+def parts_at(
+    along: Callable[[Values], Sequence[Values]],
+    start: Values,
+    length: Values,
+    scales: Sequence[float],
+    where: Values,
+    shares: Values,
+) -> list[Values]:
+    """Return the parts of A, for bases at their limits, at shares of the length; elements come last."""
+    x = start + length * shares.reshape(-1, 1)
+    found = [np.broadcast_to(c * length, np.broadcast(c, x).shape) for c in along(x)]
+    found = [c[:, where] if c.shape[1] > 1 else c for c in found]
+    return [scale * c.reshape(*shares.shape, -1) for scale, c in zip(scales, found, strict=True)]
+
+
 def minors_through(pieces: Values, bases: Sequence[Values], part: slice, wanted: Sequence[Values]) -> Values:
     """Return minors of the product of all pieces over their scales, and the logarithms of these.
 
@@ -140,8 +169,8 @@ def minors_through(pieces: Values, bases: Sequence[Values], part: slice, wanted:
     n, count = coefficients.shape[2], len(bases[0])
     monomials = np.array([np.prod([b**e for b, e in zip(bases, p, strict=True)], axis=0) for p in powers])
     first, second = np.triu_indices(n, 1)
-    found: Values = np.zeros((len(wanted) + 2, count), dtype=complex)
-    every: Values = ([(i,) for i in range(n)], list(zip(first, second, strict=True)))
+    found: Any = np.zeros((len(wanted) + 2, count), dtype=complex)
+    every: Any = ([(i,) for i in range(n)], list(zip(first, second, strict=True)))
     for order, lines in enumerate(every):
         starts = sorted({tuple(columns) for _, columns in wanted if len(columns) == order + 1})
         if not starts:

@@ -138,6 +138,7 @@ class Language:
     summary: str  # what is made, in a line
     print: Callable[[Contents], Export]  # makes the file of its contents
     solves: bool = False  # true where there is what solves networks of line elements
+    follows: bool = False  # true where there is what follows waves through members that vary along x
 
     def export(
         self,
@@ -181,7 +182,7 @@ class Language:
         if not self.solves:
             _refuse_networks(tfs)
         for tf in tfs:
-            if not isinstance(tf, NestedTransferFunction):
+            if not isinstance(tf, NestedTransferFunction) and not self.follows:
                 tf.kernels.without_tapers("exported code is")
         members = _members(tfs, band_hz or model.analysis.band, samples)
         contents = Contents(model, members, stem, is_alone, digits)

@@ -8,7 +8,7 @@ own way is overridden: numbers, powers, a statement, a branch, a function.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from textwrap import TextWrapper
 from typing import TYPE_CHECKING, ClassVar
 
@@ -34,6 +34,8 @@ class InfixPrinter(ABC):
     locals: Mapping[str, str]
     variable: str  # identifier of s, or of what takes its place
     inverse: str = ""  # identifier of 1/s; only far branches have it
+    # What calls the functions of x that members vary like.
+    follows: Mapping[tree.Straight, str] = field(default_factory=dict, kw_only=True)
 
     times: ClassVar[str] = "*"
     over: ClassVar[str] = "/"
@@ -153,6 +155,12 @@ class InfixPrinter(ABC):
             case tree.ModalValue(modes, coefficients, frames):
                 lists = [self._listed(modes), self._listed(coefficients)]
                 return self.call("modal_value", [*lists, self.frames(frames)])
+            case tree.ScaledSum(amplitudes, exponents):
+                return self.call("scaled_sum", [self._listed(amplitudes), self._listed(exponents)])
+            case tree.FundamentalMinors(start, length, bases, along, places, wanted):
+                ends, tables = (self.print(start), self.print(length)), (repr(places), repr(wanted))
+                given = [self.follows[along], *ends, self._listed(bases), *tables]
+                return self.call("fundamental_minors", given)
             case tree.Item(values, position):
                 return self.item(self.within(values, LEAF), position)
         message = f"no text for {type(node).__name__}"

@@ -40,6 +40,12 @@ NESTED_SIZE = 300
 NAMED = 12
 """Members of a network that a docstring names: three lines."""
 
+FOLLOWED = (
+    "Waves are followed along members whose coefficients vary, in pieces: ever more of them the faster they "
+    "oscillate, and beyond some thousand waves there is no number."
+)
+"""What is said of functions of members that vary along x."""
+
 COST = (
     "Exponents without a formula are found numerically, which costs some hundred times a complex exponential."
 )

@@ -30,6 +30,7 @@ from symflex.codegen.program.polynomials import (
 )
 from symflex.errors import BudgetError, Diagnostic
 from symflex.expressions import Expression, fold
+from symflex.model.along import COORDINATE
 from symflex.model.linearity import integer_exponent
 from symflex.print.forms.nested import step_names
 
@@ -174,6 +175,9 @@ class Generators:
                 if label == name:
                     total, degree = self.polynomial(tf.closed.closure.base, polynomial)
                     return self._labelled(total, label), degree
+        if name == COORDINATE:
+            # Coefficients along x are functions of that alone.
+            return forge.s, 0
         raise KeyError(name)
 
     def _definition(self, name: str, value: Factored) -> tuple[int, int]:
@@ -190,14 +194,16 @@ class Generators:
 
 
 def constant_of(forge: Forge, model: Model, expression: Expression) -> int:
-    """Return an expression of constants as the model writes it."""
+    """Return an expression of constants, or of the coordinate along x, as the model writes it."""
 
     def named(name: str) -> int:
         if name == PI:
             return forge.constant(1, 1)
         inner = next((e for n, e in _every_definition(model) if n == name), None)
-        if inner is None or any(p.name == name for p in model.parameters):
+        if any(p.name == name for p in model.parameters):
             return forge.parameter(name)
+        if inner is None:
+            return forge.s if name == COORDINATE else forge.parameter(name)
         return forge.label(constant_of(forge, model, inner), name)
 
     def power(base: int, exponent: Expression) -> int:

@@ -40,6 +40,7 @@ from symflex.codegen.program.series import (
     wave_basis,
 )
 from symflex.codegen.program.site import Site
+from symflex.codegen.program.varying import build_varying
 from symflex.errors import BudgetError, Diagnostic
 from symflex.transfer.lowest_terms import cancel
 
@@ -142,18 +143,20 @@ class Pieces:
             message = f"a program for {self.tf.name} would have more than {TERM_LIMIT} terms"
             raise BudgetError(Diagnostic("SF503", message, None, "keep repeated sums in [definitions]"))
         if use not in self._programs:
-            is_nameless = self.tf.is_nameless
-            self._programs[use] = (
-                build_modal(self.tf, use.reach) if is_nameless else self._maker(use).program()
-            )
+            self._programs[use] = self._made(use)
         return self._programs[use]
+
+    def _made(self, use: SeriesUse) -> Piecewise:
+        if any(law.matrix for law in self.tf.kernels.dispersions):
+            return build_varying(self.tf)
+        return build_modal(self.tf, use.reach) if self.tf.is_nameless else self._maker(use).program()
 
     def of_frequency(self, use: SeriesUse) -> Piecewise | None:
         """Return the program of the response at an angular frequency in real arithmetic.
 
         ``None`` with losses, and where it would be very long.
         """
-        if self.tf.length > REAL_TERMS:
+        if self.tf.length > REAL_TERMS or any(law.matrix for law in self.tf.kernels.dispersions):
             return None
         positive = tuple(p.name for p in self.tf.parameters if p.assume == "positive")
         axis = RealAxis(self.tf.ratio.ring, self.tf.kernels, positive)

@@ -7,7 +7,7 @@ numpy, each other and :func:`symflex.algebra.modal_sum.modal_amplitudes`, and no
 from __future__ import annotations
 
 from fractions import Fraction
-from functools import reduce
+from functools import partial, reduce
 from math import isfinite
 from operator import mul
 from sys import float_info
@@ -18,6 +18,7 @@ from flint import arb, ctx, fmpq
 
 from symflex.algebra.line_networks import network_value
 from symflex.algebra.modal_sum import modal_amplitudes, mode_values
+from symflex.algebra.varying_minors import fundamental_minors
 from symflex.codegen.program import nodes as tree
 from symflex.errors import Diagnostic, ModelError
 
@@ -228,12 +229,25 @@ class _ProgramRun:
                 return modal_value(
                     [self.value(m) for m in modes], [self.value(c) for c in coefficients], frames
                 )
+            case tree.FundamentalMinors(start, length, bases, along, places, wanted):
+                ends = self.value(start), self.value(length)
+                given = [np.atleast_1d(self.value(b)) for b in bases]
+                return fundamental_minors(partial(self._along, along), *ends, given, places, wanted)
+            case tree.ScaledSum(amplitudes, exponents):
+                return scaled_sum([self.value(a) for a in amplitudes], [self.value(e) for e in exponents])
             case tree.Solve(entries, network, output, source):
                 return network_value([self.value(e) for e in entries], network, output, source)
             case tree.Item(values, position):
                 return self.value(values)[position]
         message = f"no value for {type(node).__name__}"
         raise TypeError(message)
+
+    def _along(self, code: tree.Straight, x: Values) -> list[Values]:
+        """Return values of functions of x."""
+        run = _ProgramRun(x, self._parameters)
+        run.assign(code.constants)
+        run.assign(code.assignments)
+        return [run.value(node) for node in code.values]
 
 
 Values = Any
@@ -350,11 +364,16 @@ def characteristic_roots(coefficients: list[Values]) -> list[Values]:
 def modal_value(modes: list[Values], coefficients: list[Values], frames: Values) -> list[Values]:
     """Return a sum of exponentials over the largest one, and the logarithm of that."""
     found = modal_amplitudes(modes, coefficients, frames)
-    growth = np.real(found[0][1])
-    for _, exponent in found[1:]:
+    return scaled_sum([amplitude for amplitude, _ in found], [exponent for _, exponent in found])
+
+
+def scaled_sum(amplitudes: list[Values], exponents: list[Values]) -> list[Values]:
+    """Return a sum of amplitudes times exponentials over the largest one, and the logarithm of that."""
+    growth = np.real(exponents[0])
+    for exponent in exponents[1:]:
         growth = np.maximum(growth, np.real(exponent))
     total = 0.0
-    for amplitude, exponent in found:
+    for amplitude, exponent in zip(amplitudes, exponents, strict=True):
         left = np.asarray(exponent - growth, dtype=complex)[()]
         total = total + amplitude * complex_exp(left)
     return [total, growth]

@@ -205,6 +205,27 @@ class Forge:
         """Return what an output of a network is per unit of an input; see :class:`nodes.Solve`."""
         return self._make(tree.Solve, tuple(entries), network, output, source)
 
+    def fundamental_minors(
+        self,
+        ends: tuple[int, int],
+        bases: Sequence[int],
+        along: tree.Straight,
+        places: tuple[tuple[int, ...], ...],
+        wanted: tuple[tuple[tuple[int, ...], tuple[int, ...]], ...],
+    ) -> tuple[list[int], list[int]]:
+        """Return minors, and the logarithms of the scales of those of one row and of two.
+
+        The ``ends`` are where x starts, and the length.
+        """
+        row = self._make(tree.FundamentalMinors, *ends, tuple(bases), along, places, wanted)
+        items = [self.item(self.label(row, "minors"), k) for k in range(len(wanted) + 2)]
+        return items[:-2], items[-2:]
+
+    def scaled_sum(self, amplitudes: Sequence[int], exponents: Sequence[int]) -> tuple[int, int]:
+        """Return a sum over its largest exponential, and the logarithm of that."""
+        row = self.label(self._make(tree.ScaledSum, tuple(amplitudes), tuple(exponents)), "total")
+        return self.item(row, 0), self.item(row, 1)
+
     def item(self, values: int, position: int) -> int:
         """Return one value of a list."""
         return self._make(tree.Item, values, position)

@@ -263,6 +263,35 @@ class Solve(CodeNode):
 
 
 @dataclass(frozen=True, slots=True)
+class FundamentalMinors(CodeNode):
+    """Minors of a fundamental matrix whose law varies along x, as a list.
+
+    See :func:`symflex.algebra.varying_minors.fundamental_minors`.
+    """
+
+    OPERANDS: ClassVar = ("start", "length", "bases")
+
+    start: CodeNode  # of x
+    length: CodeNode
+    bases: tuple[CodeNode, ...]  # functions of s
+    along: (
+        Straight  # the parts of the coefficients: functions of x, for which the leaf :class:`Laplace` stands
+    )
+    places: tuple[tuple[int, ...], ...]  # per part its row, its column, and its powers of the bases
+    wanted: tuple[tuple[tuple[int, ...], tuple[int, ...]], ...]  # rows and columns of every minor
+
+
+@dataclass(frozen=True, slots=True)
+class ScaledSum(CodeNode):
+    """A sum of amplitudes times exponentials, over the largest one, and the logarithm of that, as a list."""
+
+    OPERANDS: ClassVar = ("amplitudes", "exponents")
+
+    amplitudes: tuple[CodeNode, ...]
+    exponents: tuple[CodeNode, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Item(CodeNode):
     """One value of a list."""
 
@@ -359,6 +388,12 @@ class Piecewise:
         """True when exponents are roots of polynomials without a formula."""
         codes = (self.tests, *(piece.code for piece in self.code))
         return any(isinstance(n, Roots) for code in codes for n in code.nodes())
+
+    @property
+    def minors(self) -> tuple[FundamentalMinors, ...]:
+        """The fundamental matrices that are followed along x, one for every law and length."""
+        nodes = (n for piece in self.code for n in piece.code.nodes())
+        return tuple(dict.fromkeys(n for n in nodes if isinstance(n, FundamentalMinors)))
 
     @property
     def network(self) -> Solve | None:

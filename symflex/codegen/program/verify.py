@@ -309,6 +309,9 @@ def _choose_pieces(programs: Iterator[Piecewise], gauge: _Gauge, form: str) -> t
     references, first = gauge.references, next(programs)
     if references is None:
         return first, gauge.verified(form, None)
+    if first.minors:
+        # There are no others, and none is accurate at all frequencies.
+        return first, gauge.verified(form, references.worst_error(first))
     if first.solves:
         return _choose_general(chain([first], programs), gauge, references)
     candidates: list[tuple[bool, float, Piecewise]] = []
@@ -477,6 +480,8 @@ class References:
         pieces: Pieces | None = None,
     ) -> None:
         self.bound = bound
+        if not isinstance(bound, BoundNested):
+            bound.expect(0, tau * float(band_hz[1]))
         self._first_bits = FIRST_BITS
         self._known: dict[int, Enclosed | EnclosedNested | EnclosedNetwork] = {}
         low, high = (float(f) for f in band_hz)

@@ -14,11 +14,12 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
-from symflex.algebra import line_networks
+from symflex.algebra import line_networks, varying_minors
 from symflex.algebra.modal_sum import modal_amplitudes, mode_values
 from symflex.codegen.export import Export, Language, called_parts, parts_of
 from symflex.codegen.module_text import (
     COST,
+    FOLLOWED,
     ITERATED,
     default_value,
     described,
@@ -49,6 +50,12 @@ COPIED = (
     evaluate.characteristic_roots,
     mode_values,
     modal_amplitudes,
+    varying_minors.fundamental_minors,
+    varying_minors.minors_by_octaves,
+    varying_minors.polynomials_along,
+    varying_minors.parts_at,
+    varying_minors.minors_through,
+    varying_minors.chebyshev_points,
     line_networks.network_value,
     line_networks.solved_network,
     line_networks.size_of,
@@ -60,6 +67,7 @@ COPIED = (
     line_networks.eliminated,
     line_networks.substituted,
     evaluate.modal_value,
+    evaluate.scaled_sum,
     evaluate.mean_over_circle,
 )
 """Functions with which programs are measured; modules get copies where they have no others."""
@@ -298,7 +306,9 @@ class _Function:
         lines += ["", "    Returns", "    -------", f"    {kind}", f"        {sentence}"]
         lines += ["", "    Notes", "    -----", *origin(tf.model, "    ")]
         notes = [self.sentence, *([MEASURED] if dialect.is_traced else [])]
-        if program.solves:
+        if program.minors:
+            notes.append(FOLLOWED)
+        elif program.solves:
             notes.append(ITERATED if dialect.is_traced and program.finds_roots else COST)
         for note in notes:
             lines += wrapped(inert(note), WIDTH, "    ")
@@ -383,6 +393,7 @@ NUMPY = Language(
     "numpy module, one function per transfer function, verified against ball arithmetic",
     partial(python_module, dialect=NUMPY_DIALECT),
     solves=True,
+    follows=True,
 )
 ARRAY_API = Language(
     ".py",

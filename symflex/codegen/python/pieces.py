@@ -138,6 +138,12 @@ class BlockText(PrivateText):
         if program.is_lumped:
             return self._lumped(program)
         lines = [*(self._real_tests(program) if program.is_real else self._tests(program)), "", ""]
+        for number, minors in enumerate(program.minors):
+            variable = identifiers({"x": "x"}, {*self.dialect.reserved, *self.arguments})["x"]
+            own, printer = self._body(minors.along, variable)
+            values = ", ".join(printer.print(v) for v in minors.along.values)
+            head = self._head(f"_along_{number}_of_{self.name}", [variable, *self.arguments[1:]])
+            lines += [*head, *own, *statement("return", f"[{values}]", "    "), "", ""]
         for i, piece in enumerate(program.code):
             lines += [*self._piece(i, piece), "", ""]
         names = [f"_piece_{i}_of_{self.name}" for i in program.pieces]
@@ -190,7 +196,12 @@ class BlockText(PrivateText):
         assignments: list[tree.Assignment] = [*code.constants, *code.assignments]
         taken = {*self.dialect.reserved, *self.parameters.values(), self.variable, variable, "z"}
         names = identifiers({a.name: a.name for a in assignments}, taken)
-        printer = PythonPrinter(self.parameters, names, variable, "inverse")
+        given = ", ".join(["_x", *self.arguments[1:]])
+        follows = {
+            minors.along: f"lambda _x: _along_{number}_of_{self.name}({given})"
+            for number, minors in enumerate(self.given.minors)
+        }
+        printer = PythonPrinter(self.parameters, names, variable, "inverse", follows=follows)
         return [line for a in assignments for line in printer.assignment(a.name, a.value, "    ")], printer
 
     def _tests(self, program: tree.Piecewise) -> list[str]:

@@ -8,7 +8,7 @@ import numpy as np
 from flint import acb
 
 from symflex.algebra import Factored, by_powers
-from symflex.algebra.varying_minors import fundamental_minors, polynomials_along
+from symflex.algebra.varying_minors import minors_by_octaves, polynomials_along
 from symflex.roots.functions.exponential_values import SampledSum
 from symflex.transfer.balls import at_centre
 
@@ -125,7 +125,7 @@ class _Member:
             for powers, exponent in factors:
                 total = total * sum(c * s**p for p, c in powers.items()) ** -exponent
             bases.append(total)
-        *values, single, double = fundamental_minors(self._polynomials, bases, self._wanted)
+        *values, single, double = minors_by_octaves(self._polynomials, bases, self._wanted)
         scales = {1: single.real, 2: double.real}
         return {m: (v, scales[len(m.rows)]) for m, v in zip(self._minors, values, strict=True)}
 
@@ -133,6 +133,6 @@ class _Member:
         key = limits.tobytes()
         if key not in self._pieces:
             self._pieces[key] = polynomials_along(
-                self._law.doubles_along, self._start, self._length, limits, self._law.places, where
+                self._law.doubles_along, self._start, self._length, self._law.places, limits, where
             )
         return self._pieces[key]

@@ -6,17 +6,15 @@ import mpmath
 import numpy as np
 import pytest
 
-from symflex.algebra.varying_minors import fundamental_minors, polynomials_along
+from symflex.algebra.varying_minors import fundamental_minors
 
 BEAM = ((0, 1, 0), (1, 2, 0), (2, 3, 0), (3, 0, 1))
 SECOND = ((0, 1, 0), (1, 0, 1))
 
 
 def minors(along, places, bases, wanted, start=0.0, length=1.0):
-    def polynomials(limits, where):
-        return polynomials_along(along, start, length, limits, places, where)
-
-    *values, single, double = fundamental_minors(polynomials, [np.atleast_1d(b) for b in bases], wanted)
+    given = [np.atleast_1d(b) for b in bases]
+    *values, single, double = fundamental_minors(along, start, length, given, places, wanted)
     scales = {1: np.exp(single), 2: np.exp(double)}
     return [v * scales[len(rows)] for v, (rows, _) in zip(values, wanted, strict=True)]
 

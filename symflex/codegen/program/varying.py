@@ -1,0 +1,126 @@
+"""From a transfer function with members whose coefficients vary along x to a program.
+
+Input: a :class:`symflex.transfer.TransferFunction` with entries of fundamental matrices among its kernels.
+Output: a :class:`Piecewise` of one piece. Numerator and denominator are sums of minors of these matrices,
+each over its largest term; what follows the matrices along x is a function of the generated code.
+
+    a clamped beam that tapers     num = |Z_03 Z_04; Z_23 Z_24|,  den = |Z_23 Z_24; Z_33 Z_34|
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from symflex.algebra import Factored
+from symflex.algebra.minors import MinorSums
+from symflex.codegen.program.build import Generators
+from symflex.codegen.program.forge import Forge, straight
+from symflex.codegen.program.nodes import CodePiece, Piecewise
+from symflex.codegen.program.site import Site
+from symflex.errors import Diagnostic, ModelError
+from symflex.model.along import varies_along_x
+from symflex.transfer.varying_law import PartedLaw
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from flint import fmpz_mpoly
+
+    from symflex.algebra.minors import Minor
+    from symflex.expressions import Call
+    from symflex.transfer import TransferFunction
+
+
+def build_varying(tf: TransferFunction) -> Piecewise:
+    """Return the program for complex s.
+
+    Raises ModelError: SF910 where there are uniform members besides, or losses that vary along x.
+    """
+    if tf.kernels.wavenumbers:
+        message = f"{tf.name} has uniform members besides tapered ones, for which there is no code yet"
+        raise ModelError(
+            Diagnostic("SF910", message, None, "its poles, zeros and values at frequencies are there")
+        )
+    return _Workshop(tf).program()
+
+
+@dataclass
+class _Workshop:
+    tf: TransferFunction
+    _minors: dict[Minor, tuple[int, int]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.ring = self.tf.ratio.ring
+        self.forge = Forge()
+        self.site = Site(self.forge, self.tf, ())
+        self.sums = MinorSums(self.ring, self.tf.kernels)
+
+    def program(self) -> Piecewise:
+        forge, sides = self.forge, (self.tf.num, self.tf.den)
+        bearing = [v.filter(self.sums.has_entries) for v in sides]
+        plain = sides[0] / sides[1] / (bearing[0] / bearing[1])
+        self._follow([f for v in bearing for f, _ in v.factors])
+        halves = []
+        for half in (
+            bearing[0].numerator() * bearing[1].denominator(),
+            bearing[1].numerator() * bearing[0].denominator(),
+        ):
+            values, growth = [], []
+            for factor, exponent in half.factors:
+                value, logarithm = self._sum(factor)
+                values.append(forge.power(value, exponent))
+                growth.append(forge.multiply([forge.constant(exponent), logarithm]))
+            halves.append((forge.multiply(values), forge.add(growth)))
+        (num, up), (den, down) = halves
+        over = forge.apply("exp", forge.add([up, forge.negate(down)]))
+        num = forge.multiply([self.site.value(plain.numerator()), num, over])
+        den = forge.multiply([self.site.value(plain.denominator()), den])
+        parameters = tuple(p.name for p in self.tf.parameters)
+        nothing = straight(forge, [forge.constant(1)])
+        return Piecewise(
+            parameters, nothing, (), (0,), (CodePiece(straight(forge, [num, den])),), solves=True
+        )
+
+    def _follow(self, factors: Sequence[fmpz_mpoly]) -> None:
+        """Make all minors that are in use."""
+        used = sorted({m for f in factors for _, product in self.sums.of(f) for m in product})
+        for number, (law, length) in enumerate(self.sums.matrices):
+            own = [m for m in used if m.matrix == number]
+            parted = PartedLaw(law, self._functions)
+            inner = Forge()
+            along = _Along(inner, self.tf, is_far=False)
+            parts = straight(inner, [along.value(t.along) for t in parted.every])
+            s = self.ring.generator("s")
+            bases = [Factored.polynomial(self.ring, s) ** parted.step, *(1 / d for d in parted.divisors)]
+            ends = self.site.value(law.start[0]), self.site.length(length)
+            wanted = tuple((m.rows, m.columns) for m in own)
+            values, scales = self.forge.fundamental_minors(
+                ends, [self.site.value(b) for b in bases], parts, parted.places, wanted
+            )
+            self._minors |= {m: (v, scales[len(m.rows) - 1]) for m, v in zip(own, values, strict=True)}
+
+    @property
+    def _functions(self) -> Mapping[str, Call]:
+        known = ((c.generator, c.expression) for c in self.tf.constants if c.generator in self.ring.index)
+        return {name: call for name, call in known if varies_along_x(call)}
+
+    def _sum(self, factor: fmpz_mpoly) -> tuple[int, int]:
+        """Return a factor over its largest term, and the logarithm of that."""
+        forge, amplitudes, exponents = self.forge, [], []
+        for coefficient, product in self.sums.of(factor):
+            made = [self._minors[m] for m in product]
+            amplitudes.append(forge.multiply([self.site.polynomial(coefficient), *(v for v, _ in made)]))
+            exponents.append(forge.add([scale for _, scale in made]))
+        return forge.scaled_sum(amplitudes, exponents)
+
+
+class _Along(Generators):
+    """Generators of a program of x."""
+
+    def value(self, value: Factored) -> int:
+        """Return a rational function of x and parameters."""
+        forge = self.forge
+        above, below = (self.product(v)[0] for v in (value.numerator(), value.denominator()))
+        unit = forge.divide(forge.constant(value.unit.numerator), forge.constant(value.unit.denominator))
+        return forge.divide(forge.multiply([unit, above]), below)
