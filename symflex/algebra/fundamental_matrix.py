@@ -317,8 +317,16 @@ def _stepped(system: VaryingSystem, step: _Step, reach: arb, terms: int) -> Matr
     needed = [max(FEWEST_BITS, bits - int(m * log2(BEYOND))) for m in range(terms)]
     counts = [ceil((x + step.growth) / doublings) for x in needed]
     parts = system.parts(step.start)
+    series = system.series(step.start, counts[0]) if parts is None else []
+    if parts is None and not _order(series[0], n):
+        # No quadratures: each slope needs what it is a slope of.
+        parts = [
+            RationalPart(place, coefficient, (), ((q, arb(1)),))
+            for q, own in enumerate(series)
+            for place, coefficient in own.items()
+        ]
     if parts is None:
-        columns = _by_quadrature(system.series(step.start, counts[0]), n, step.length, needed, counts)
+        columns = _by_quadrature(series, n, step.length, needed, counts)
     else:
         columns = _by_recurrence(parts, n, step.length, counts, doublings)
     made: Matrix = [[arb_poly([]) for _ in range(n)] for _ in range(n)]
@@ -341,7 +349,7 @@ Column = list[list[Number | None]]
 def _by_recurrence(
     parts: Sequence[RationalPart], n: int, length: arb, counts: Sequence[int], doublings: float
 ) -> list[Column]:
-    """Return the fundamental matrix of a step whose coefficients are rational in x.
+    """Return the fundamental matrix of a step whose coefficients are rational in x, or power series.
 
     Coefficients of powers of x, which are polynomials in u, follow from a few before them: if q = r/p, then
     ``p_0 q_k = r_k - p_1 q_(k-1) - ...``. That is done factor by factor, so that balls grow no faster than
@@ -420,12 +428,10 @@ def _reached(parts: Sequence[RationalPart], start: int, terms: int) -> set[tuple
 def _by_quadrature(
     series: Sequence[Coefficients], n: int, length: arb, needed: Sequence[int], counts: Sequence[int]
 ) -> list[Column]:
-    """Return the fundamental matrix of a step from power series of the coefficients, order by order in u."""
-    gauge = _gauge(series[0], n, counts[0])
-    if gauge is not None:
-        # z = U v, where U' = A_0 U: what is left of the coefficients has no order 0.
-        ahead, back = gauge
-        series = [{}, *(_conjugated(back, a, ahead, n, counts[0]) for a in series[1:])]
+    """Return the fundamental matrix of a step from power series of the coefficients, order by order in u.
+
+    At order 0 slopes follow from one another.
+    """
     order = _order(series[0], n)
     rows = [
         [[(q, k, a) for (row, k), a in c.items() if row == i] for q, c in enumerate(series)] for i in range(n)
@@ -449,8 +455,6 @@ def _by_quadrature(
                         here[i] = sum(parts[1:], parts[0]).integral()
                     if m == 0 and i == j:
                         here[i] = here[i] + 1 if i in here else arb_poly([1])
-                if gauge is not None:
-                    here = _applied(gauge[0], here, count, n)
                 for i, grown in here.items():
                     values[i][m] = grown(length)
         columns.append(values)
@@ -492,58 +496,4 @@ def _order(coefficients: Coefficients, n: int) -> list[int]:
         if not ready:
             return []
         found += ready
-    return found
-
-
-def _gauge(coefficients: Coefficients, n: int, count: int) -> tuple[Coefficients, Coefficients] | None:
-    """Return U and its inverse, where ``U' = A_0 U``; None where quadratures suffice."""
-    if _order(coefficients, n):
-        return None
-    turned = {(k, i): -a for (i, k), a in coefficients.items()}
-    ahead = _solution(coefficients, n, count)
-    back = {(j, i): x for (i, j), x in _solution(turned, n, count).items()}
-    return ahead, back
-
-
-def _solution(coefficients: Coefficients, n: int, count: int) -> Coefficients:
-    """Return the power series of U, term by term."""
-    size = {place: a.coeffs() for place, a in coefficients.items()}
-    columns: list[list[list[Number]]] = [[[arb(int(i == j))] for i in range(n)] for j in range(n)]
-    for column in columns:
-        for m in range(count - 1):
-            slopes: list[Number] = [arb(0)] * n
-            for (i, k), a in size.items():
-                own = column[k]
-                slopes[i] += sum((a[p] * own[m - p] for p in range(min(m + 1, len(a)))), arb(0))
-            for i in range(n):
-                column[i].append(slopes[i] / (m + 1))
-    return {(i, j): polynomial_of(columns[j][i]) for j in range(n) for i in range(n)}
-
-
-def _conjugated(
-    back: Coefficients, middle: Coefficients, ahead: Coefficients, n: int, count: int
-) -> Coefficients:
-    """Return ``U^-1 A U``."""
-    half: Coefficients = {}
-    for (i, k), a in middle.items():
-        for j in range(n):
-            term = (a * ahead[k, j]).truncate(count)
-            half[i, j] = half[i, j] + term if (i, j) in half else term
-    found: Coefficients = {}
-    for (i, j), x in half.items():
-        for row in range(n):
-            term = (back[row, i] * x).truncate(count)
-            found[row, j] = found[row, j] + term if (row, j) in found else term
-    return found
-
-
-def _applied(
-    ahead: Coefficients, moved: Mapping[int, Polynomial], count: int, n: int
-) -> dict[int, Polynomial]:
-    """Return ``U v``, of which the power series has so many terms."""
-    found = {}
-    for i in range(n):
-        parts = [(ahead[i, k] * v).truncate(count) for k, v in moved.items()]
-        if parts:
-            found[i] = sum(parts[1:], parts[0])
     return found

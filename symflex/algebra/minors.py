@@ -1,8 +1,8 @@
-"""Polynomials in the entries of fundamental matrices, with minors of these in place of differences.
+"""Polynomials in the entries of fundamental matrices, with minors of these in place of signed sums.
 
 Input: a polynomial over a ring whose kernels are entries of fundamental matrices, by their laws and lengths.
 Output: a :class:`MinorSum`. Entries grow like waves, and so do the minors that determinants are made of; the
-products of entries these are differences of grow like their squares, and lose as many digits.
+products of entries these are signed sums of grow like their powers, and lose as many digits.
 
     a T_22 T_33 - a T_23 T_32 + b T_12    is    a |T_22 T_23; T_32 T_33| + b T_12
 """
@@ -11,12 +11,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import permutations
 from typing import TYPE_CHECKING
 
 from symflex.algebra.ring import PolynomialMemo, Ring, coefficients_of, degree_in
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from flint import fmpz_mpoly
 
@@ -88,26 +89,34 @@ class MinorSums:
 
 
 def _joined(terms: Mapping[Product, fmpz_mpoly], matrix: int) -> dict[Product, fmpz_mpoly]:
-    """Return terms with the differences of two products of two entries of a matrix as its minors."""
+    """Return terms with the signed sums of products of entries of a matrix as its minors."""
     left = dict(terms)
     found: dict[Product, fmpz_mpoly] = {}
     while left:
         product, part = next(iter(left.items()))
-        del left[product]
         own = [m for m in product if m.matrix == matrix]
         others = tuple(m for m in product if m.matrix != matrix)
-        if len(own) == 2 and own[0].rows != own[1].rows and own[0].columns != own[1].columns:  # noqa: PLR2004
-            (a, b), (c, d) = ((m.rows[0], m.columns[0]) for m in own)
-            twins = Minor(matrix, (a,), (d,)), Minor(matrix, (c,), (b,))
-            twin = tuple(sorted((*others, *twins)))
-            if twin in left and (left[twin] + part).is_zero():
+        rows, columns = ([m.rows[0] for m in own], [m.columns[0] for m in own])
+        known: dict[Product, int] = {}
+        if 1 < len(own) == len(set(rows)) == len(set(columns)):
+            for order in permutations(range(len(own))):
+                twins = (Minor(matrix, (i,), (columns[k],)) for i, k in zip(rows, order, strict=True))
+                known[tuple(sorted((*others, *twins)))] = _sign(order)
+        is_whole = all(t in left and (left[t] - part * sign).is_zero() for t, sign in known.items())
+        if known and is_whole:
+            for twin in known:
                 del left[twin]
-                rows, columns = (a, c), (b, d)
-                sign = 1
-                if b > d:
-                    columns, sign = (d, b), -1
-                joint = Minor(matrix, rows, columns)
-                found[tuple(sorted((*others, joint)))] = part * sign
-                continue
+            # Rows ascend, as factors are sorted.
+            ranks = [sorted(columns).index(c) for c in columns]
+            joint = Minor(matrix, tuple(rows), tuple(sorted(columns)))
+            found[tuple(sorted((*others, joint)))] = part * _sign(ranks)
+            continue
+        del left[product]
         found[product] = part
     return found
+
+
+def _sign(order: Sequence[int]) -> int:
+    """Return the sign of a permutation."""
+    turned = sum(a > b for i, b in enumerate(order) for a in order[:i])
+    return -1 if turned % 2 else 1

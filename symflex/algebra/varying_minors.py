@@ -34,42 +34,49 @@ def fundamental_minors(
     places: Sequence[Sequence[int]],
     wanted: Sequence[Values],
 ) -> list[Values]:
-    """Return minors of Z(start + length) over the scale of their size, then the logarithms of both scales.
+    """Return minors of Z(start + length) over the scale of their size, then the logarithms of all scales.
 
     Part k of A is along(x)[k] times powers of the bases: places[k] holds its row, its
-    column and these powers. A minor is told by its rows and its columns, one or two of
-    each. Bases are arrays of one axis; parameters may be arrays of that shape.
+    column and these powers. A minor is told by its rows and its columns; scales come in
+    order of the number of these. Bases are arrays of one axis; parameters may be arrays of that shape.
     """
     return minors_by_octaves(
         lambda limits, where: polynomials_along(along, start, length, places, limits, where),
         np.broadcast_arrays(*bases),
+        1 + max(max(place[:2]) for place in places),
         wanted,
     )
 
 
 def minors_by_octaves(
-    polynomials: Callable[[Values, Values], Values], bases: Sequence[Values], wanted: Sequence[Values]
+    polynomials: Callable[[Values, Values], Values],
+    bases: Sequence[Values],
+    size: int,
+    wanted: Sequence[Values],
 ) -> list[Values]:
-    """Return what fundamental_minors does, given what polynomials_along makes of limits and elements.
+    """Return what fundamental_minors does, of a matrix of a size, given polynomials_along.
 
     What an element is does not depend on what others there are.
     """
-    found = np.full((len(wanted) + 2, len(bases[0])), np.nan, dtype=complex)
+    found = np.full((len(wanted) + size, len(bases[0])), np.nan, dtype=complex)
     with np.errstate(all="ignore"):
         # Frequencies within a factor of four share their pieces.
         octaves = [np.where(b == 0.0, -250.0, np.ceil(np.log2(np.abs(b)) / 4.0)) for b in bases]
-    octaves.append(np.any([np.imag(b) != 0.0 for b in bases], axis=0))
-    groups = np.transpose(octaves)
-    for group in np.unique(groups[np.all(np.isfinite(groups), axis=1)], axis=0):
-        where = np.flatnonzero(np.all(groups == group, axis=1))
-        limits = 16.0 ** group[:-1]
+    is_complex = np.any([np.imag(b) != 0.0 for b in bases], axis=0)
+    code = np.where(is_complex, 0.5, 0.0)
+    for octave in octaves:
+        code = 1000.0 * code + octave
+    block = 512
+    for chosen in np.unique(code[np.isfinite(code)]):
+        where = np.flatnonzero(code == chosen)
+        limits = np.array([16.0 ** octave[where[0]] for octave in octaves])
         pieces = polynomials(limits, where)
         if pieces is None:
             continue
-        for first in range(0, len(where), 1024):
-            part = slice(first, first + 1024)
+        for first in range(0, len(where), block):
+            part = slice(first, first + block)
             own = [b[where[part]] / limit for b, limit in zip(bases, limits, strict=True)]
-            own = own if group[-1] else [np.real(b) for b in own]
+            own = own if is_complex[where[0]] else [np.real(b) for b in own]
             found[:, where[part]] = minors_through(pieces, own, part, wanted)
     return list(found)
 
@@ -168,13 +175,11 @@ def minors_through(pieces: Values, bases: Sequence[Values], part: slice, wanted:
     powers, coefficients = pieces
     n, count = coefficients.shape[2], len(bases[0])
     monomials = np.array([np.prod([b**e for b, e in zip(bases, p, strict=True)], axis=0) for p in powers])
-    first, second = np.triu_indices(n, 1)
-    found: Any = np.zeros((len(wanted) + 2, count), dtype=complex)
-    every: Any = ([(i,) for i in range(n)], list(zip(first, second, strict=True)))
-    for order, lines in enumerate(every):
-        starts = sorted({tuple(columns) for _, columns in wanted if len(columns) == order + 1})
-        if not starts:
-            continue
+    found: Any = np.zeros((len(wanted) + n, count), dtype=complex)
+    for order in sorted({len(rows) for rows, _ in wanted}):
+        lines = lines_of(n, order)
+        own = [k for k, (rows, _) in enumerate(wanted) if len(rows) == order]
+        starts = sorted({tuple(wanted[k][1]) for k in own})
         # What minors of all rows there are, for every choice of columns that is wanted.
         state = np.zeros((len(starts), len(lines), count), dtype=monomials.dtype)
         for k, columns in enumerate(starts):
@@ -185,18 +190,38 @@ def minors_through(pieces: Values, bases: Sequence[Values], part: slice, wanted:
                 z = (piece.reshape(len(powers), -1).T @ monomials).reshape(n, n, count)
             else:
                 z = np.sum(piece[..., part] * monomials[:, None, None], axis=0)
-            if order:
-                upper, lower = z[first], z[second]
-                z = upper[:, first] * lower[:, second] - upper[:, second] * lower[:, first]
-            state = np.einsum("ijs,kjs->kis", z, state)
+            state = np.einsum("ijs,kjs->kis", compound(z, order), state)
             largest = np.max(np.abs(state), axis=(0, 1))
             state = state / largest
             scale = scale + np.log(largest)
-        found[order - 2] = scale
-        for k, (rows, columns) in enumerate(wanted):
-            if len(rows) == order + 1:
-                found[k] = state[starts.index(tuple(columns)), lines.index(tuple(rows))]
+        found[len(wanted) + order - 1] = scale
+        for k in own:
+            rows, columns = wanted[k]
+            found[k] = state[starts.index(tuple(columns)), lines.index(tuple(rows))]
     return found
+
+
+def lines_of(n: int, order: int) -> list[tuple[int, ...]]:
+    """Return all choices of so many of n lines."""
+    found: list[tuple[int, ...]] = [(i,) for i in range(n)]
+    for _ in range(order - 1):
+        found = [(*chosen, i) for chosen in found for i in range(chosen[-1] + 1, n)]
+    return found
+
+
+def compound(z: Values, order: int) -> Values:
+    """Return all minors of one size of a matrix, expanded along their first rows."""
+    if order == 1:
+        return z
+    n = len(z)
+    lines, inner = lines_of(n, order), lines_of(n, order - 1)
+    smaller = compound(z, order - 1)[[inner.index(rows[1:]) for rows in lines]]
+    first = z[[rows[0] for rows in lines]]
+    total = 0.0
+    for k in range(order):
+        left = [inner.index(columns[:k] + columns[k + 1 :]) for columns in lines]
+        total = total + (-1) ** k * first[:, [columns[k] for columns in lines]] * smaller[:, left]
+    return total
 
 
 def chebyshev_points(order: int) -> Values:

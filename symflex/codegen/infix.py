@@ -156,11 +156,11 @@ class InfixPrinter(ABC):
                 lists = [self._listed(modes), self._listed(coefficients)]
                 return self.call("modal_value", [*lists, self.frames(frames)])
             case tree.ScaledSum(amplitudes, exponents):
-                return self.call("scaled_sum", [self._listed(amplitudes), self._listed(exponents)])
+                return self.call("scaled_sum", [self._listed(x) for x in (amplitudes, exponents)])
             case tree.FundamentalMinors(start, length, bases, along, places, wanted):
-                ends, tables = (self.print(start), self.print(length)), (repr(places), repr(wanted))
-                given = [self.follows[along], *ends, self._listed(bases), *tables]
-                return self.call("fundamental_minors", given)
+                ends = [self.print(start), self.print(length), self._listed(bases)]
+                everything = [self.follows[along], *ends, repr(places), repr(wanted)]
+                return self.call("fundamental_minors", everything)
             case tree.Item(values, position):
                 return self.item(self.within(values, LEAF), position)
         message = f"no text for {type(node).__name__}"

@@ -213,13 +213,14 @@ class Forge:
         places: tuple[tuple[int, ...], ...],
         wanted: tuple[tuple[tuple[int, ...], tuple[int, ...]], ...],
     ) -> tuple[list[int], list[int]]:
-        """Return minors, and the logarithms of the scales of those of one row and of two.
+        """Return minors, and the logarithms of their scales by numbers of rows.
 
         The ``ends`` are where x starts, and the length.
         """
         row = self._make(tree.FundamentalMinors, *ends, tuple(bases), along, places, wanted)
-        items = [self.item(self.label(row, "minors"), k) for k in range(len(wanted) + 2)]
-        return items[:-2], items[-2:]
+        size = 1 + max(max(place[:2]) for place in places)
+        items = [self.item(self.label(row, "minors"), k) for k in range(len(wanted) + size)]
+        return items[: len(wanted)], items[len(wanted) :]
 
     def scaled_sum(self, amplitudes: Sequence[int], exponents: Sequence[int]) -> tuple[int, int]:
         """Return a sum over its largest exponential, and the logarithm of that."""

@@ -55,6 +55,8 @@ COPIED = (
     varying_minors.polynomials_along,
     varying_minors.parts_at,
     varying_minors.minors_through,
+    varying_minors.lines_of,
+    varying_minors.compound,
     varying_minors.chebyshev_points,
     line_networks.network_value,
     line_networks.solved_network,

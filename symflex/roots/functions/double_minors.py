@@ -125,9 +125,9 @@ class _Member:
             for powers, exponent in factors:
                 total = total * sum(c * s**p for p, c in powers.items()) ** -exponent
             bases.append(total)
-        *values, single, double = minors_by_octaves(self._polynomials, bases, self._wanted)
-        scales = {1: single.real, 2: double.real}
-        return {m: (v, scales[len(m.rows)]) for m, v in zip(self._minors, values, strict=True)}
+        found = minors_by_octaves(self._polynomials, bases, self._law.law.order, self._wanted)
+        scales = found[len(self._wanted) :]
+        return {m: (v, scales[len(m.rows) - 1].real) for m, v in zip(self._minors, found, strict=False)}
 
     def _polynomials(self, limits: Values, where: Values) -> Values:
         key = limits.tobytes()

@@ -14,9 +14,9 @@ SECOND = ((0, 1, 0), (1, 0, 1))
 
 def minors(along, places, bases, wanted, start=0.0, length=1.0):
     given = [np.atleast_1d(b) for b in bases]
-    *values, single, double = fundamental_minors(along, start, length, given, places, wanted)
-    scales = {1: np.exp(single), 2: np.exp(double)}
-    return [v * scales[len(rows)] for v, (rows, _) in zip(values, wanted, strict=True)]
+    found = fundamental_minors(along, start, length, given, places, wanted)
+    scales = found[len(wanted) :]
+    return [v * np.exp(scales[len(rows) - 1]) for v, (rows, _) in zip(found, wanted, strict=False)]
 
 
 def of_uniform_beams(x):

@@ -1,0 +1,240 @@
+"""Members of all kinds and theories that taper against Taylor steps of their own equations in many digits.
+
+The equations are written down here from equilibrium of a slice; nothing of the program is used to solve them.
+"""
+
+from __future__ import annotations
+
+import random
+from functools import cache
+from itertools import cycle
+
+import numpy as np
+import pytest
+from flint import acb, acb_mat, acb_series, ctx, fmpq
+
+from symflex import pipeline
+from symflex.codegen.program.evaluate import evaluate
+from symflex.codegen.program.varying import build_varying
+from symflex.codegen.program.verify import doubles
+
+E, RHO, G, N, K_F, C_F, M_TIP, J_HUB = 200 * 10**9, 7800, 77 * 10**9, 20_000, 300_000, 40, 1.5, 0.25
+A_0, I_0, ETA, KAPPA = fmpq(16, 10**4), fmpq(213, 10**9), fmpq(2, 10**5), fmpq(17, 20)
+BITS, TERMS, STEPS = 160, 50, 10
+
+TAPERS = {
+    "wedge": ("(1 - x/(2*l))^3", "(1 - x/(2*l))", lambda x: ((1 - x / 2) ** 3, 1 - x / 2)),
+    "double": ("(1 - 0.6*x/l)^4", "(1 - 0.6*x/l)^2", lambda x: ((1 - x * 3 / 5) ** 4, (1 - x * 3 / 5) ** 2)),
+    "exponential": (
+        "exp(-2*a*x)*(1 + x/l)",
+        "exp(-a*x)",
+        lambda x: ((x * -1.5).exp() * (1 + x), (x * -0.75).exp()),
+    ),
+    "quotient": (
+        "1/(1 + x^2/l^2)",
+        "(2 + x/l)/(2 + x^2/l^2)",
+        lambda x: (1 / (1 + x**2), (2 + x) / (2 + x**2)),
+    ),
+    "root": ("sqrt(1 + x/l)", "(1 - sin(2*x/l)/3)", lambda x: ((1 + x).sqrt(), 1 - (x * 2).sin() / 3)),
+}
+GROUND = ', k_f = "k_f*(1 + x/l)", c_f = "c_f"'
+MORE = {"none": "", "eta": ', eta = "eta"', "foundation": GROUND, "tension": ', N = "N*(2 - x/l)"'}
+THEORIES = ("euler-bernoulli", "rayleigh", "timoshenko")
+LOSSES = ("none", "eta", "foundation", "tension")
+MODEL = """
+symflex = 1
+[parameters]
+E = "200 GPa"
+rho = "7800 kg/m^3"
+G = "77 GPa"
+A_0 = "16 cm^2"
+I_0 = "21.3 cm^4"
+l = "1 m"
+a = "0.75 1/m"
+eta = "20 us"
+k_f = "300 kN/m^2"
+c_f = "40 N*s/m^2"
+N = "20 kN"
+[elements]
+%s
+[inputs]
+F = { %s }
+[outputs]
+y = "%s"
+"""
+TIP = 'load = { type = "mass", at = "tip", m = "1.5 kg" }'
+HUB = 'pin = { type = "pin", at = "base" }\nhub = { type = "inertia", at = "base.theta", J = "0.25 kg*m^2" }'
+# Under functions that are not rational a foundation takes seconds a point; rational ones stand for them.
+RATIONAL = {"exponential": "quotient", "root": "double"}
+BEAMS = list(
+    dict.fromkeys(
+        (theory, RATIONAL.get(taper, taper) if loss == "foundation" else taper, loss, ends)
+        for theory in THEORIES
+        for taper, loss, ends in zip(
+            list(TAPERS) * 3,
+            cycle(LOSSES[:3] if theory == "timoshenko" else LOSSES),
+            cycle(["tip", "hub"]),
+            strict=False,
+        )
+    )
+)
+
+
+def beam_text(theory, taper, loss, ends):
+    second, section, _ = TAPERS[taper]
+    start = "ground" if ends == "tip" else "base"
+    values = f'E = "E", rho = "rho", l = "l", I = "I_0*{second}", A = "A_0*{section}", theory = "{theory}"'
+    shear = ', kappa = "0.85", G = "G"' if theory == "timoshenko" else ""
+    arm = f'arm = {{ type = "beam", between = ["{start}", "tip"], {values}{MORE[loss]}{shear} }}'
+    if ends == "tip":
+        return MODEL % (f"{arm}\n{TIP}", 'force = "tip"', "tip")
+    return MODEL % (f"{arm}\n{HUB}", 'torque = "base"', "base.theta")
+
+
+def beam_slopes(theory, taper, loss):
+    """Return the coefficients of y, slope, moment and M' - N y'."""
+
+    def slopes(x, s):
+        second, section = TAPERS[taper][2](x)
+        one = section * 0 + 1
+        lossy = 1 + ETA * s if loss == "eta" else acb(1)
+        tension = (one * 2 - x) * N if loss == "tension" else one * 0
+        ground = (one + x) * K_F + one * (C_F * s) if loss == "foundation" else one * 0
+        rotary = second * (RHO * I_0) * s**2 if theory != "euler-bernoulli" else one * 0
+        made = {(0, 1): one, (1, 2): 1 / (second * (E * I_0) * lossy), (2, 3): one}
+        made[2, 1] = tension + rotary
+        made[3, 0] = -(section * (RHO * A_0) * s**2 + ground)
+        if theory == "timoshenko":
+            made[0, 3] = -1 / (section * (KAPPA * G * A_0) * lossy)
+        return made
+
+    return slopes
+
+
+def propagated(slopes, size, s):
+    """Return the state at x = 1 per state at x = 0, by Taylor steps."""
+    total = acb_mat(np.eye(size, dtype=int).tolist())
+    for step in range(STEPS):
+        ctx.cap = TERMS
+        made = slopes(acb_series([acb(step) / STEPS, 1]), s)
+        ctx.cap = 10
+        parts = [acb_mat(size, size) for _ in range(TERMS)]
+        for place, series in made.items():
+            for k, c in enumerate(series.coeffs()):
+                parts[k][place] = c
+        terms = [acb_mat(np.eye(size, dtype=int).tolist())]
+        for k in range(TERMS - 1):
+            following = parts[0] * terms[k]
+            for p in range(1, k + 1):
+                following += parts[p] * terms[k - p]
+            terms.append(following * (acb(1) / (k + 1)))
+        grown = terms[0]
+        for k, term in enumerate(terms[1:], 1):
+            grown += term * (acb(1) / STEPS) ** k
+        total = grown * total
+    return total
+
+
+def beam_response(z, s, ends):
+    if ends == "tip":
+        # Clamped: moment and shear at the start follow from M = 0 and V = m s^2 y - F at the tip.
+        rows = acb_mat(2, 2)
+        for j in (0, 1):
+            rows[0, j] = z[2, 2 + j]
+            rows[1, j] = z[3, 2 + j] - M_TIP * s**2 * z[0, 2 + j]
+        found = rows.solve(acb_mat([[0], [-1]]))
+        return z[0, 2] * found[0, 0] + z[0, 3] * found[1, 0]
+    # Hinged: y = 0 and M = J s^2 theta - 1 at the start, no moment and no force at the end.
+    rows, right = acb_mat(2, 2), acb_mat(2, 1)
+    for i in (0, 1):
+        rows[i, 0] = z[2 + i, 1] + J_HUB * s**2 * z[2 + i, 2]
+        rows[i, 1] = z[2 + i, 3]
+        right[i, 0] = z[2 + i, 2]
+    return rows.solve(right)[0, 0]
+
+
+def bar_text(kind, taper, loss):
+    second, section, _ = TAPERS[taper]
+    values = {
+        "rod": f'type = "rod", E = "E", A = "A_0*{section}"',
+        "shaft": f'type = "shaft", G = "G", J = "I_0*{second}"',
+        "string": f'type = "string", N = "N*{second}", A = "A_0*{section}"',
+    }[kind]
+    force = 'torque = "tip"' if kind == "shaft" else 'force = "tip"'
+    arm = f'arm = {{ between = ["ground", "tip"], rho = "rho", l = "l", {values}{MORE[loss]} }}'
+    return MODEL % (arm, force, "tip")
+
+
+def bar_slopes(kind, taper, loss):
+    def slopes(x, s):
+        second, section = TAPERS[taper][2](x)
+        lossy = 1 + ETA * s if loss == "eta" else acb(1)
+        stiff, heavy = {
+            "rod": (section * (E * A_0), section * (RHO * A_0)),
+            "shaft": (second * (G * I_0), second * (RHO * I_0)),
+            "string": (second * N, section * (RHO * A_0)),
+        }[kind]
+        ground = (x + 1) * K_F + C_F * s if loss == "foundation" else section * 0
+        return {(0, 1): 1 / (stiff * lossy), (1, 0): heavy * s**2 + ground}
+
+    return slopes
+
+
+BARS = [
+    *(("rod", taper, loss) for taper, loss in zip(TAPERS, cycle(["none", "eta", "foundation"]))),
+    *(("shaft", taper, loss) for taper, loss in zip(TAPERS, cycle(["eta", "none"]))),
+    *(("string", taper, loss) for taper, loss in zip(TAPERS, cycle(["foundation", "none"]))),
+]
+
+
+def points(seed, fastest, count=20):
+    """Return complex frequencies, of which most are far from the imaginary axis."""
+    chance = random.Random(seed)
+    return [
+        complex(fastest * chance.uniform(-0.3, 0.3), fastest * chance.uniform(0.001, 1)) for _ in range(count)
+    ]
+
+
+@cache
+def bound_of(text):
+    model = pipeline.loads(text)
+    (found,) = pipeline.derive_bound(model, model.transfer_functions)
+    (tf,) = pipeline.derive_all(model)
+    return found, tf
+
+
+def check(text, slopes, size, response, fastest):
+    bound, tf = bound_of(text)
+    places = points(text, fastest)
+    enclosed = bound.enclosed(128)
+    with ctx.workprec(BITS):
+        expected = [response(propagated(slopes, size, acb(s)), acb(s)) for s in places]
+        for s, value in zip(places, expected, strict=True):
+            ball = enclosed(acb(s))
+            # Taylor steps are cut off, but far below the ball's digits.
+            assert (ball - value.mid()).abs_upper() < 1e-25 * abs(value)
+    program = build_varying(tf)
+    found = evaluate(program, np.array(places), doubles(bound))
+    for value, e in zip(found, map(complex, expected), strict=True):
+        assert abs(value - e) <= 1e-11 * abs(e)
+
+
+@pytest.mark.parametrize(
+    "case",
+    [BEAMS[0], *(pytest.param(c, marks=pytest.mark.slow) for c in BEAMS[1:])],
+    ids="-".join,
+)
+def test_tapered_beams_answer_as_taylor_steps_do(case):
+    theory, taper, loss, ends = case
+    check(
+        beam_text(*case), beam_slopes(theory, taper, loss), 4, lambda z, s: beam_response(z, s, ends), 4000.0
+    )
+
+
+@pytest.mark.parametrize(
+    "case", [BARS[0], *(pytest.param(c, marks=pytest.mark.slow) for c in BARS[1:])], ids="-".join
+)
+def test_tapered_rods_shafts_and_strings_answer_as_taylor_steps_do(case):
+    kind, _, _ = case
+    fastest = 500.0 if kind == "string" else 4e4
+    check(bar_text(*case), bar_slopes(*case), 2, lambda z, _: z[0, 1] / z[1, 1], fastest)
