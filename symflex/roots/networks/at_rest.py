@@ -174,9 +174,11 @@ def _series(cramer: CramerEquations, field: TaylorField) -> dict[str, nmod_poly]
             return None
         values[name] = found
     propagation = equations.propagation
-    for (number, place), group in cramer.waves.items() if propagation is not None else ():
-        law = propagation.table.dispersions[number]  # type: ignore[union-attr]
-        parts = [*law.characteristic, law.shift, propagation.lengths[number][place]]  # type: ignore[union-attr]
+    if propagation is None:
+        return values
+    for (number, place), group in cramer.waves.items():
+        law = propagation.table.dispersions[number]
+        parts = [*law.characteristic, law.shift, propagation.lengths[number][place]]
         series = [field.rational(c, c.ring.names, values) for c in parts]
         *coefficients, shift, length = [x for x in series if x is not None]
         if len(coefficients) != len(law.characteristic) or int(shift[0]):

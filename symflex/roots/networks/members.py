@@ -178,7 +178,7 @@ def _weights(entries: Sequence[Sequence[float]]) -> tuple[int, ...]:
     for _ in range(8):  # a few rounds settle four states
         for i in range(n):
             row = [x + weights[j] for j, x in enumerate(logs[i]) if x is not None]
-            column = [logs[j][i] - weights[j] for j in range(n) if logs[j][i] is not None]  # type: ignore[operator]
+            column = [x - weights[j] for j in range(n) if (x := logs[j][i]) is not None]
             if row and column:
                 weights[i] = (max(row) - max(column)) / 2
     return tuple(map(round, weights))

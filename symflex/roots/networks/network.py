@@ -246,9 +246,10 @@ class _NetworkReading:
         expected: dict[Variable, Variable | None] = {}
         for continuum in self.equations.continua:
             half = len(continuum.initial) // 2
-            for i in range(half):
-                expected[continuum.initial[half + i]] = continuum.initial[i]  # type: ignore[index]
-                expected[continuum.final[half + i][0]] = continuum.final[i][0]  # type: ignore[index]
+            for state in (continuum.initial, [v for v, *_ in continuum.final]):
+                for motion, force in zip(state[:half], state[half:], strict=True):
+                    if force is not None:
+                        expected[force] = motion
         for about, row in rows.items():
             for variable in [v for v in row if v in self.delivered]:
                 flow = row.pop(variable)
