@@ -1,0 +1,138 @@
+"""Responses in time beside numeric ones: python-control's of state equations, mpmath's inverse Laplace.
+
+The lumped system is the six masses of derivations/eppinger1988, V_tip/F after a step at 1000 times; the
+distributed one the sliding-free beam's X_tip/F, which is V_tip/F after a ramp, at 1000 times to 10^-9 of the
+largest value. python-control has no beams. mpmath inverts one time after the other, so it is asked for few
+and counts for 1000; of the beam infinitely many poles lie right of Talbot's contour, and what it is off by
+there stands beside it.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import mpmath
+import numpy as np
+
+import symflex
+from benchmarks.measure import Claim, Measurement, fastest
+from symflex.errors.optional import installed
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+FOLDER = Path(__file__).parents[1] / "derivations" / "eppinger1988"
+POINTS = 1000
+CHAIN_LAST, BEAM_LAST = 1.0, 0.02
+"""Last times [s]: some periods of the lowest modes."""
+FEW = 5
+"""Times that mpmath inverts."""
+ROUNDS = 7
+CHAIN, BEAM = "six masses, a step at 1000 times", "sliding-free beam, a step at 1000 times to 1e-9"
+OURS = "symflex, enclosed"
+CONTROL_AGREEMENT = 1e-6
+"""Median relative difference; python-control steps through 1000 samples."""
+
+CHAIN_SECONDS, BEAM_SECONDS = 0.02, 0.5
+AS_FAST_AS_CONTROL = 0.5
+AS_FAST_AS_MPMATH = {CHAIN: 50.0, BEAM: 5.0}
+BEAM_RADIUS = 1e-9
+
+
+def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
+    """Measure both responses, as many rounds as fit in ``limit`` seconds, and compare.
+
+    Raises
+    ------
+    RuntimeError
+        When the ways do not compute the same response.
+    """
+    chain = symflex.load(FOLDER / "six_mass.toml").transfer_function("V_tip", "F").bind()
+    times = np.linspace(0, CHAIN_LAST, POINTS + 1)[1:]
+    ways: dict[str, Callable[[], NDArray[Any]]] = {OURS: lambda: chain.step_response(times).values}
+    try:
+        control: Any = installed("control")
+    except symflex.errors.UsageError:
+        print("skipped, python-control is not installed: step_response of six masses", file=sys.stderr)
+    else:
+        system = chain.to_control("state-space")
+        every = np.linspace(0, CHAIN_LAST, POINTS + 1)
+        ways["`control.step_response` of state equations"] = lambda: control.step_response(system, every)[1][
+            1:
+        ]
+    best = fastest(ways, limit, rounds=ROUNDS, agreement=CONTROL_AGREEMENT)
+    found = [Measurement(CHAIN, way, taken, limit) for way, taken in best.items()]
+    claims = [Claim(CHAIN, CHAIN_SECONDS, best[OURS], larger_is_better=False, is_ratio=False)]
+    claims += [
+        Claim(f"{CHAIN}: times as fast as {way}", AS_FAST_AS_CONTROL, taken / best[OURS])
+        for way, taken in best.items()
+        if way != OURS
+    ]
+    seconds, _ = _inverted(_chain(chain.to_control()), times, chain.step_response(times).values)
+    found.append(Measurement(CHAIN, "`mpmath.invertlaplace` (Talbot), 1000 times", seconds, limit))
+    claims.append(Claim(f"{CHAIN}: times as fast as mpmath", AS_FAST_AS_MPMATH[CHAIN], seconds / best[OURS]))
+
+    model = symflex.load(FOLDER / "sliding_free_beam.toml")
+    beam = model.transfer_function("V_tip", "F").bind()
+    times = np.linspace(0, BEAM_LAST, POINTS + 1)[1:]
+    response = beam.ramp_response(times, 9)
+    ours = fastest({OURS: lambda: beam.ramp_response(times, 9).values}, limit, rounds=3, agreement=1.0)[OURS]
+    seconds, off = _inverted(_beam(model), times, response.values)
+    largest = float(np.max(np.abs(response.values)))
+    found.append(Measurement(BEAM, OURS, ours, limit))
+    found.append(Measurement(BEAM, f"`mpmath.invertlaplace` (Talbot), off by {off:.1e}", seconds, limit))
+    claims += [
+        Claim(BEAM, BEAM_SECONDS, ours, larger_is_better=False, is_ratio=False),
+        Claim(
+            f"{BEAM}: largest radius over the largest value",
+            BEAM_RADIUS,
+            float(np.max(response.radius)) / largest,
+            larger_is_better=False,
+        ),
+        Claim(f"{BEAM}: times as fast as mpmath", AS_FAST_AS_MPMATH[BEAM], seconds / ours),
+    ]
+    return found, claims
+
+
+def _chain(system: Any) -> Callable[[mpmath.mpc], mpmath.mpc]:  # noqa: ANN401
+    """Return the step response's transform, from coefficients in double precision."""
+    num, den = ([mpmath.mpf(float(c)) for c in side[0][0]] for side in (system.num, system.den))
+    return lambda s: mpmath.polyval(num, s) / mpmath.polyval(den, s) / s
+
+
+def _beam(model: symflex.Model) -> Callable[[mpmath.mpc], mpmath.mpc]:
+    """Return the transform of X_tip after a step of F: w = a cosh + b cos + c (sinh - sin) of q x.
+
+    w'(0) = 0 holds; EI w'''(0) = F gives c, and w''(l) = w'''(l) = 0 give a and b.
+    """
+    value = {p.name: mpmath.mpf(float(p.value.nearly)) for p in model.parameters if p.value is not None}
+    stiffness, mass = value["E"] * value["I"], value["rho"] * value["A"]
+
+    def transform(s: mpmath.mpc) -> mpmath.mpc:
+        q = mpmath.root(-mass * s**2 / stiffness, 4)
+        x = q * value["l"]
+        c = 1 / (2 * stiffness * q**3)
+        cosh, sinh, cos, sin = mpmath.cosh(x), mpmath.sinh(x), mpmath.cos(x), mpmath.sin(x)
+        below = cosh * sin + sinh * cos
+        a = -c * ((sinh + sin) * sin + (cosh + cos) * cos) / below
+        b = (a * cosh + c * (sinh + sin)) / cos
+        return (a * cosh + b * cos + c * (sinh - sin)) / s
+
+    return transform
+
+
+def _inverted(
+    transform: Callable[[mpmath.mpc], mpmath.mpc], times: NDArray[Any], values: NDArray[Any]
+) -> tuple[float, float]:
+    """Return the seconds that 1000 times take, and how far mpmath is off, over the largest value."""
+    chosen = np.linspace(POINTS // 10, POINTS - 1, FEW).astype(int)
+    began = time.process_time()
+    found = [mpmath.invertlaplace(transform, float(times[i]), method="talbot") for i in chosen]
+    taken = (time.process_time() - began) / FEW * POINTS
+    off = max(abs(float(y) - values[i]) for y, i in zip(found, chosen, strict=True))
+    return taken, float(off / np.max(np.abs(values)))
