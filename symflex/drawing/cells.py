@@ -182,19 +182,24 @@ def _points(cell: SymbolCell, start: float, length: float) -> list[Placed]:
     """Mark outputs along a member, beside what stands at the nodes at its ends."""
     part, ends = cell.part, (start + cell.margins[0], start + length - cell.margins[1])
     found: list[Placed] = []
-    last, level = -1e9, 0
-    for share, name, label in part.points:
+    taken: list[tuple[float, float, int]] = []  # from where to where texts reach, and at which level
+    beyond = 1e9
+    for share, name, label in reversed(part.points):
         shown = text(label, SMALL)
         if shown is None:
             continue
         x = min(max(start + length * share, ends[0] + NEAR_END), ends[1] - NEAR_END)
-        low = _kept(x, shown.width, ends[0] + 1.0, ends[1] - 1.0) - shown.width / 2
-        level = level + 1 if low < last + SPACE else 0
-        last = max(last, low + shown.width)
+        low = min(x - 1.0, ends[1] - 1.0 - shown.width)
+        # Texts to the right stand lower, and so no arrow passes through one.
+        level = 1 + max([-1, *(n for a, b, n in taken if a - SPACE < low + shown.width and low < b + SPACE)])
+        taken.append((min(low, x), low + shown.width, level))
         tip = half_depth(part.depths, (x - start) / length)
         y = tip + 5.8 + 10 * level
-        found.append(
-            Placed("output", name, (line((x, tip + 0.8), (x, y), width=THIN), head((x, tip), (0, -1), 3.0)))
-        )
-        found.append(Placed("label", name, (), (shown.moved(low, y + 1.5 + shown.depth),)))
+        arrow_down = (line((x, tip + 0.8), (x, y), width=THIN), head((x, tip), (0, -1), 3.0))
+        place = shown.moved(low, y + 1.5 + shown.depth)
+        if beyond - x > SPACE:
+            found += [Placed("output", name, arrow_down), Placed("label", name, (), (place,))]
+            beyond = x
+        else:
+            found.append(Placed("output", name, (), (place,)))  # at the arrow of the one beside it
     return found

@@ -315,7 +315,7 @@ class _Band:
         self.items.append(Placed("wire", "", arrow((centre, y), (centre, edge))))
         if branch.origin is not None:
             self._close(branch, other, before, y)
-        self.occupied.append(room.moved(0, y))
+        self.occupied += [room.moved(0, y), Extent(centre - 1, min(y, edge), centre + 1, max(y, edge))]
 
     def _height(self, branch: _Branch, room: Extent, risers: list[float]) -> tuple[float, bool]:
         """Return where a branch runs, and whether that is above its sum."""

@@ -155,10 +155,11 @@ class Placed:
         """
         found = [t.box for t in self.texts]
         for stroke in self.strokes:
-            if len(stroke.points) > MOST_CORNERS or not any(
-                _is_slanted(*ends) for ends in pairwise(stroke.points)
-            ):
-                found.append(around(stroke.points))
+            box, is_simple = around(stroke.points), len(stroke.points) <= MOST_CORNERS
+            if not is_simple and box.width > LARGE:
+                found += [around(ends) for ends in pairwise(stroke.points)]
+            elif not (is_simple and any(_is_slanted(*ends) for ends in pairwise(stroke.points))):
+                found.append(box)
             else:
                 found += [piece for ends in pairwise(stroke.points) for piece in _pieces(*ends)]
         return tuple(found)
@@ -177,8 +178,8 @@ class Placed:
         return replace(self, strokes=tuple(turned))
 
 
-MOST_CORNERS = 6
-"""Of what may be a slanted member; what has more is a symbol and small."""
+MOST_CORNERS, LARGE = 6, 36.0
+"""Of what may be a slanted member; what has more is a symbol, or a long member that tapers [points]."""
 _SHORT, _PIECE = 20.0, 3.0
 
 

@@ -166,6 +166,7 @@ class Labels:
     def quantity(self, expression: Expression, unit: str) -> str:
         """Return the value of an element: as it is written, a number with its unit."""
         written = self.expression(expression)
+        written = written.removeprefix(r"1 \cdot ")  # of a power of ten
         is_named = any(isinstance(n, Name | Attribute | Call) for n in parts_of(expression))
         return written if is_named else with_unit(written, unit)
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import combinations
+
 import pytest
 
 from symflex import pipeline
@@ -29,7 +31,45 @@ X = "x_{count - 1}"
 """
 
 
+MEMBER = 'E = "1 GPa", rho = "1 kg/m^3", I = "1 m^4"'
+DRIVEN = '[inputs]\nF = { force = "x" }\n[outputs]\n'
+
+
+def frame(name, first, last, length, angle):
+    ends = f'between = ["{first}", "{last}"], l = "{length}", angle = "{angle} deg", A = "1 m^2"'
+    return f'{name} = {{ type = "frame", {ends}, {MEMBER} }}\n'
+
+
+def beam(area, outputs):
+    ends = f'between = ["ground", "x"], l = "l", A = "{area}"'
+    known = 'parameters = { A = "1 m^2", l = "1 m" }\n[elements]\n'
+    return f'{known}arm = {{ type = "beam", {ends}, {MEMBER} }}\n{DRIVEN}{outputs}'
+
+
+def joined_masses(pairs, count):
+    masses = "".join(f'm_{i} = {{ type = "mass", at = "x_{i}", m = "1 kg" }}\n' for i in range(count))
+    springs = "".join(
+        f'k_{a}_{b} = {{ type = "spring", between = ["x_{a}", "x_{b}"], k = "1 N/m" }}\n' for a, b in pairs
+    )
+    return f'[elements]\n{masses}{springs}[inputs]\nF = {{ force = "x_0" }}\n[outputs]\nX = "x_1"\n'
+
+
 ODD = {
+    "a star": joined_masses([(0, i) for i in range(1, 9)], 9),
+    "all joined to all": joined_masses(list(combinations(range(6), 2)), 6),
+    "a sum of thirty": "[inputs]\n"
+    + "".join(f"u_{i} = {{}}\n" for i in range(30))
+    + f'[outputs]\ny = "{" + ".join(f"u_{i}" for i in range(30))}"\n',
+    "thirty points of a beam": beam("A", "".join(f'Y_{i} = "arm.y(l*{i}/29)"\n' for i in range(30))),
+    "a beam to a point": beam("A*(1 - 0.999*x/l)^2", 'Y = "arm.y(l/2)"\n'),
+    "a millimetre and a kilometre": "[elements]\n"
+    + frame("foot", "ground", "p", "1 mm", 0)
+    + frame("mast", "p", "x", "1 km", 90)
+    + '[inputs]\nF = { force = "x.x" }\n[outputs]\nX = "x.x"\n',
+    "a frame there and back": "[elements]\n"
+    + frame("there", "p", "x", "1 m", 0)
+    + frame("back", "x", "p", "1 m", 0)
+    + '[inputs]\nF = { force = "x.x" }\n[outputs]\nX = "x.x"\n',
     "no ground": chain(2),
     "a ring": chain(5, closed=True),
     "two hundred masses": chain(200),
