@@ -23,6 +23,35 @@ KernelFunction = Literal["cosh", "sinh", "cos", "sin", "exp", "fundamental", "en
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class SingularStart:
+    """Solutions that are finite where x begins, and where coefficients have poles.
+
+    ``z_i = h^powers_i * v_i`` with h the way from there, ``h dv/dh = B v``, all of it analytic, and
+    ``B_ij = h^orders_ij * matrix_ij``. At h = 0 B is triangular, for some order of the states, and nowhere
+    positive on its diagonal.
+    """
+
+    powers: tuple[int, ...]
+    orders: tuple[tuple[int, ...], ...]
+    matrix: tuple[tuple[Factored, ...], ...]
+    # v at the start, per state that is free there; columns of others are zero.
+    values: tuple[tuple[Factored, ...], ...]
+
+    @property
+    def free(self) -> tuple[int, ...]:
+        """The states whose values at the start tell a solution."""
+        size = range(len(self.powers))
+        return tuple(j for j in size if not self.values[j][j].is_zero)
+
+    def at_start(self) -> tuple[tuple[Factored, ...], ...]:
+        """Return the states at the start, per state that is free there."""
+        return tuple(
+            tuple(x * 0 if power else x for x in row)
+            for power, row in zip(self.powers, self.values, strict=True)
+        )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Dispersion:
     """The characteristic polynomial of a set of field equations, and what its roots are called.
 
@@ -44,6 +73,7 @@ class Dispersion:
     # Of a varying one, A in ``z' = A(x, s) z``, and where x begins.
     matrix: tuple[tuple[Factored, ...], ...] = ()
     start: tuple[Factored, ...] = ()
+    singular: SingularStart | None = None  # where a stiffness vanishes at the start
 
     @property
     def order(self) -> int:
@@ -53,16 +83,28 @@ class Dispersion:
     @property
     def coefficients(self) -> tuple[Factored, ...]:
         """All that solutions are made of."""
-        return (*self.characteristic, self.shift, *(x for row in self.matrix for x in row), *self.start)
+        own = () if self.singular is None else (*self.singular.matrix, *self.singular.values)
+        return (
+            *self.characteristic,
+            self.shift,
+            *(x for row in (*self.matrix, *own) for x in row),
+            *self.start,
+        )
 
     def replaced(self, image: Callable[[Factored], Factored]) -> Dispersion:
         """Return the law with every coefficient replaced."""
+
+        def rows(matrix: Sequence[Sequence[Factored]]) -> tuple[tuple[Factored, ...], ...]:
+            return tuple(tuple(map(image, row)) for row in matrix)
+
+        own = self.singular
         return replace(
             self,
             characteristic=tuple(map(image, self.characteristic)),
             shift=image(self.shift),
-            matrix=tuple(tuple(map(image, row)) for row in self.matrix),
+            matrix=rows(self.matrix),
             start=tuple(map(image, self.start)),
+            singular=own and replace(own, matrix=rows(own.matrix), values=rows(own.values)),
         )
 
     def roots(self, c: Sequence[Value], square_root: Callable[[Value], Value]) -> dict[str, Value]:

@@ -12,6 +12,11 @@ On a step every order in u is a power series in x, one quadrature after the othe
 together, Cauchy's estimate bounds what these leave out: a coefficient of ``x^k u^m`` is at most
 ``exp(rho K)/(rho^k R^m)``, if the norm of A is at most K for abs(x) <= rho and abs(u) <= R. States are scaled
 so that this norm is about a wavenumber.
+
+Where A has a pole at the start, the first step is that of a :class:`SingularBeginning`, whose finite
+solutions are power series: ``h v' = B v`` makes ``(k - B_0) v_k = B_1 v_(k-1) + ... + B_k v_0``. The same
+with sizes in place of numbers bounds as many terms as one likes. If B is at most M on abs(h) <= rho and
+``k (k - B_0)^-1`` at most c, then all terms with k > c M fall at least as those of ``1/(1 - 2 h/rho)`` do.
 """
 
 from __future__ import annotations
@@ -26,7 +31,7 @@ from flint import acb, acb_poly, arb, arb_poly, ctx
 from symflex.budget import spend
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
 Place = tuple[int, int]
 """Row and column."""
@@ -65,6 +70,12 @@ BOUNDED = 4
 """Parts of a step on each of which coefficients are bounded: on the whole they would be a quarter larger."""
 SAMPLES = 8
 """Points at which the growth along x is sampled where about what it is suffices."""
+MOST_TERMS = 1500
+"""Of the power series about a singular start: three times what the tenth mode of a hanging string takes."""
+MOST_HALVINGS = 40
+"""Of the first step from a singular start."""
+BOUND_BITS = 64
+"""Of bounds, which are added up and rounded up."""
 BITS_OF_E = 1.4426950408889634
 WIDE = 2.0**-30
 """Relative radius of balls about whose middle a polynomial is expanded before it is evaluated."""
@@ -96,6 +107,11 @@ class VaryingSystem(Protocol):
         """The number of states."""
         ...
 
+    @property
+    def beginning(self) -> SingularBeginning | None:
+        """What stands in place of the coefficients at a start where these have poles."""
+        ...
+
     def ends(self) -> tuple[arb, arb]:
         """Return where x begins and ends."""
         ...
@@ -111,6 +127,18 @@ class VaryingSystem(Protocol):
     def bounds(self, x: acb, largest: arb) -> Mapping[Place, arb]:
         """Return the sizes of entries on a ball of x for abs(u) <= ``largest``; not finite near a pole."""
         ...
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SingularBeginning:
+    """Solutions that are finite at a start where coefficients have poles: ``z_i = h^powers_i v_i``.
+
+    See :class:`symflex.algebra.dispersion.SingularStart`, of which these are the matrices.
+    """
+
+    powers: tuple[int, ...]
+    matrix: VaryingSystem  # B, with series and bounds about the start; what vanishes there is exactly zero
+    values: VaryingSystem  # v at the start
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,6 +210,8 @@ class _Step:
     radius: arb  # about the start, in which coefficients are bounded
     growth: float  # bits by which solutions grow on the radius at most
     weights: Weights  # with which they do
+    # Of a first step from a start where coefficients have poles: bits by which solutions grow up to its end.
+    reached: float | None = None
 
     @property
     def length(self) -> arb:
@@ -195,7 +225,7 @@ def growth_along(system: VaryingSystem, largest: arb) -> float:
     share, total = (end - start) / SAMPLES, 0.0
     for k in range(SAMPLES):
         x = (start + share * (k + 0.5)).mid()
-        norm = _norm(system, acb(x), largest, _weights(system, x, largest))
+        norm = _norm(system, acb(x), largest, _weights(system, acb(x), largest))
         total += float((norm * abs(share)).mid())
     return total
 
@@ -207,7 +237,9 @@ def expand(system: VaryingSystem, largest: arb, bits: int, orders: int = 0) -> P
     are given. Raises SingularCoefficientError where a coefficient has a singularity on the interval.
     """
     reach = (largest * BEYOND).abs_upper()
-    steps = _steps(system, *system.ends(), reach, bits)
+    begin, end = system.ends()
+    first = [] if system.beginning is None else [_first_step(system.beginning, begin, end, reach, bits)]
+    steps = first + _steps(system, first[0].end if first else begin, end, reach, bits)
     growth, weights = _growth(system, steps, reach)
     doublings = float(growth.upper()) * BITS_OF_E
     terms = orders or max(2, ceil((bits + 2 * doublings) / log2(BEYOND / 2)))
@@ -218,7 +250,12 @@ def expand(system: VaryingSystem, largest: arb, bits: int, orders: int = 0) -> P
         steps[-1] = replace(steps[-1], end=end)
         for step in steps:
             spend()
-            made = _stepped(system, step, reach, terms)
+            beginning = None if step.reached is None else system.beginning
+            made = (
+                _stepped(system, step, reach, terms)
+                if beginning is None
+                else _begun(beginning, step, reach, terms)
+            )
             total = made if total is None else _product(made, total, terms)
         return PowerExpansion(total or [], terms, ctx.prec, reach, growth.exp().abs_upper(), weights)
 
@@ -230,10 +267,14 @@ def _growth(system: VaryingSystem, steps: Sequence[_Step], reach: arb) -> tuple[
     """
     growth, found = arb(0), list[Weights]()
     for step in steps:
+        if step.reached is not None:
+            growth += step.reached * arb(2).log()
+            found.append(step.weights)
+            continue
         part = step.length / BOUNDED
         for k in range(BOUNDED):
             middle = step.start + part * (k + 0.5)
-            found.append(_weights(system, middle.mid(), reach))
+            found.append(_weights(system, acb(middle.mid()), reach))
             hull = acb(middle + arb(0, (part / 2).abs_upper()))
             growth += _norm(system, hull, reach, found[-1]) * abs(part)
     for before, after in pairwise(found):
@@ -241,11 +282,11 @@ def _growth(system: VaryingSystem, steps: Sequence[_Step], reach: arb) -> tuple[
     return growth, (found[0], found[-1])
 
 
-def _weights(system: VaryingSystem, middle: arb, reach: arb) -> Weights:
+def _weights(system: VaryingSystem, middle: acb, reach: arb) -> Weights:
     """Return powers of two that make rows and columns of the coefficients alike (Osborne 1960)."""
     sizes = {
         place: log2(size)
-        for place, x in system.bounds(acb(middle), reach).items()
+        for place, x in system.bounds(middle, reach).items()
         if place[0] != place[1] and 0 < (size := float(x.upper())) < inf
     }
     found = [0.0] * system.size
@@ -274,7 +315,7 @@ def _steps(system: VaryingSystem, start: arb, end: arb, reach: arb, bits: int) -
     whole, at, found = end - start, start, list[_Step]()
     while at is not end:
         best: tuple[float, arb, float] | None = None
-        weights = _weights(system, at, reach)
+        weights = _weights(system, acb(at), reach)
         for share in RADII:
             radius = (abs(whole) * share).upper()
             square = arb(0, radius)
@@ -295,6 +336,144 @@ def _steps(system: VaryingSystem, start: arb, end: arb, reach: arb, bits: int) -
         found.append(_Step(at, following, radius, growth, weights))
         at = following
     return found
+
+
+def _first_step(beginning: SingularBeginning, start: arb, end: arb, reach: arb, bits: int) -> _Step:
+    """Return the longest step from a start where coefficients have poles that costs not too many terms.
+
+    It is a sixth of the radius on which coefficients are bounded, and a third of that on which solutions are.
+    """
+    whole = abs(end - start)
+    for k in range(MOST_HALVINGS):
+        radius = (whole * 2 * SHARE / 2**k).upper()
+        square = arb(0, radius)
+        hull = acb(start + square, square)
+        weights = _weights(beginning.matrix, hull, reach)
+        norm = _norm(beginning.matrix, hull, reach, weights)
+        if not norm < MOST_TERMS:
+            continue
+        length = (radius / (2 * SHARE)).mid()
+        following = end if k == 0 else (start + (length if end > start else -length)).mid()
+        growth = _bounded(beginning, start, reach, weights, (norm, radius / 2, abs(following - start)), bits)
+        if growth is not None:
+            way = abs(following - start)
+            scaled = tuple((w * way**d).mid() for w, d in zip(weights, beginning.powers, strict=True))
+            return _Step(start, following, radius / 2, growth[0], scaled, growth[1])
+    raise SingularCoefficientError(float(start.mid()))
+
+
+def _bounded(
+    beginning: SingularBeginning,
+    start: arb,
+    reach: arb,
+    weights: Weights,
+    sizes: tuple[arb, arb, arb],
+    bits: int,
+) -> tuple[float, float] | None:
+    """Return by how many bits solutions grow on a radius at most, and up to the step's end.
+
+    Sizes are the norm of B on twice the radius, the radius, and the step. None where too many terms of v have
+    to be bounded before those that follow fall.
+    """
+    norm, radius, way = sizes
+    with ctx.workprec(BOUND_BITS):
+        parts = [
+            [(i, j, x * weights[j] / weights[i]) for i, j, x in rates]
+            for rates in _by_powers(beginning.matrix, start, MOST_TERMS, reach)
+        ]
+        inside = [(i, j, x) for i, j, x in parts[0] if i != j]
+        # Nowhere positive itself, so its size is what k is increased by.
+        diagonal = {i: x for i, j, x in parts[0] if i == j}
+        sequence = _order({(i, j): acb_poly([1]) for i, j, _ in inside}, len(weights))
+        across = sum((x for _, _, x in inside), arb(0))
+        first = [arb(0)] * len(weights)
+        for i, j, x in _by_powers(beginning.values, start, 1, reach)[0]:
+            first[i] += x * weights[j] / weights[i]
+        column, largest, total = [first], arb(0), arb(0)
+        for k in range(MOST_TERMS):
+            size = sum(column[k], arb(0)).abs_upper()
+            if not size.is_finite():
+                return None
+            largest = max(largest, size * radius**k)
+            total += size * way**k
+            resolvent = sum(((across / (k + 1)) ** j for j in range(len(weights))), arb(0))
+            left = largest * (way / radius) ** (k + 1)
+            if norm * resolvent < k + 1 and left * arb(2) ** bits < 1:
+                most, reached = (float(x.log().upper()) * BITS_OF_E for x in (largest, total + 2 * left))
+                return most, reached
+            new = [arb(0)] * len(weights)
+            for p in range(1, k + 2):
+                for i, j, x in parts[p] if p < MOST_TERMS else ():
+                    new[i] += x * column[k + 1 - p][j]
+            for i in sequence:
+                new[i] += sum((x * new[j] for row, j, x in inside if row == i), arb(0))
+                new[i] = (new[i] / (k + 1 + diagonal.get(i, 0))).abs_upper()
+            column.append(new)
+    return None
+
+
+def _by_powers(system: VaryingSystem, start: arb, count: int, reach: arb) -> list[list[tuple[int, int, arb]]]:
+    """Return bounds on the coefficients of every power of the way from a start, for abs(u) up to a reach."""
+    found: list[dict[Place, arb]] = [{} for _ in range(count)]
+    for order, coefficients in enumerate(system.series(start, count)):
+        for place, polynomial in coefficients.items():
+            for p, x in enumerate(acb_poly(polynomial).coeffs()):
+                if (size := abs(x).upper()) > 0:
+                    found[p][place] = found[p].get(place, arb(0)) + size * reach**order
+    return [[(*place, x) for place, x in each.items()] for each in found]
+
+
+def _begun(beginning: SingularBeginning, step: _Step, reach: arb, terms: int) -> Matrix:
+    """Return the solutions that are finite at a singular start, at the end of the first step."""
+    n, share = beginning.matrix.size, abs(step.length) / step.radius
+    count = ceil((ctx.prec + step.growth) / -log2(float(share.upper())))
+    orders = beginning.matrix.series(step.start, count)
+    rates: list[list[tuple[int, int, Polynomial]]] = []
+    for p in range(count):
+        places = {place for c in orders for place in c}
+        parts = {place: [c[place][p] if place in c else arb(0) for c in orders] for place in sorted(places)}
+        rates.append([(*place, polynomial_of(x)) for place, x in parts.items() if any(c != 0 for c in x)])
+    diagonal: list[Number] = [arb(0)] * n
+    for i, j, x in rates[0]:
+        if i == j:
+            diagonal[i] = x[0]
+    inside = [(i, j, x) for i, j, x in rates[0] if i != j]
+    sequence = _order({(i, j): x for i, j, x in inside}, n)
+    given = beginning.values.series(step.start, 1)
+    edges = {(*place, q) for q, c in enumerate(orders) for place in c}
+    made: Matrix = [[arb_poly([]) for _ in range(n)] for _ in range(n)]
+    for j in range(n):
+        first = [polynomial_of([c[i, j][0] if (i, j) in c else arb(0) for c in given]) for i in range(n)]
+        if all(x.degree() < 0 for x in first):
+            continue
+        reached = _reached(
+            edges, [(i, q) for q, c in enumerate(given) for i in range(n) if (i, j) in c], terms
+        )
+        column, sums, power = [first], list(first), arb(1)
+        for k in range(1, count):
+            spend()
+            new: list[Polynomial] = [arb_poly([])] * n
+            for p in range(1, k + 1):
+                for i, m, x in rates[p]:
+                    new[i] = new[i] + x * column[k - p][m]
+            for i in sequence:
+                for row, m, x in inside:
+                    if row == i:
+                        new[i] = new[i] + x * new[m]
+                new[i] = new[i].truncate(terms) * (1 / (k - diagonal[i]))
+            column.append(new)
+            power = power * step.length
+            sums = [total + x * power for total, x in zip(sums, new, strict=True)]
+        for i in range(n):
+            scale = arb(2) ** step.growth / (1 - share) * step.weights[i] / step.weights[j] * share**count
+            values = (sums[i] * step.length ** beginning.powers[i]).coeffs()
+            made[i][j] = polynomial_of(
+                [
+                    v + around((scale / reach**m).abs_upper(), v) if (i, m) in reached else arb(0)
+                    for m, v in enumerate([*values[:terms], *[arb(0)] * (terms - len(values))])
+                ]
+            )
+    return made
 
 
 def _singular_place(system: VaryingSystem, at: arb, end: arb, reach: arb, weights: Sequence[arb]) -> float:
@@ -377,7 +556,8 @@ def _by_recurrence(
                     slopes[i] = slopes[i] + (moved.left_shift(n * order) if order else moved)
             for i in range(n):
                 states[i].append(slopes[i].truncate(n * kept) * (1 / arb(k + 1)))
-    reached = [_reached(parts, j, len(counts)) for j in range(n)]
+    edges = [(*part.place, q) for part in parts for q, _ in part.rates]
+    reached = [_reached(edges, [(j, 0)], len(counts)) for j in range(n)]
     columns: list[Column] = [[] for _ in range(n)]
     for i, state in enumerate(states):
         total: list[Number] = [*sum(state[1:], state[0]).coeffs()]
@@ -412,16 +592,19 @@ def _convolved(taps: Sequence[Number], source: Sequence[Polynomial], k: int) -> 
     return total
 
 
-def _reached(parts: Sequence[RationalPart], start: int, terms: int) -> set[tuple[int, int]]:
-    """Return the states, and their orders in u, that a solution which starts as one of them has."""
-    found, pending = set[tuple[int, int]](), [(start, 0)]
+def _reached(
+    edges: Collection[tuple[int, int, int]], starts: Sequence[tuple[int, int]], terms: int
+) -> set[tuple[int, int]]:
+    """Return the states, and their orders in u, that a solution has which starts with some of them.
+
+    Edges are the row and the column of an entry, with a power of u that it holds.
+    """
+    found, pending = set[tuple[int, int]](), list(starts)
     while pending:
         state, order = pending.pop()
         if order < terms and (state, order) not in found:
             found.add((state, order))
-            pending += [
-                (part.place[0], order + q) for part in parts if part.place[1] == state for q, _ in part.rates
-            ]
+            pending += [(row, order + q) for row, column, q in edges if column == state]
     return found
 
 

@@ -118,14 +118,18 @@ class Propagation:
     def _entries(self, dispersion: int, length: Factored) -> tuple[Factored, ...]:
         law = self.table.dispersions[dispersion]
         n, one = law.order, Factored.number(self.ring, 1)
+        free = range(n) if law.singular is None else law.singular.free
         if length.is_zero:
+            if law.singular is not None:
+                return tuple(self.embed(x) for row in law.singular.at_start() for x in row)
             return tuple(one * int(i == j) for i in range(n) for j in range(n))
         position = self._places[dispersion][residue(length, self._point)]
         found = []
         for i, reached in enumerate(reachable(law)):
             for j in range(n):
                 known = self._known.get((dispersion, position, i * n + j))
-                found.append(known if known is not None else one * int(i == j and i not in reached))
+                stays = i == j and i not in reached and j in free
+                found.append(known if known is not None else one * int(stays))
         return tuple(found)
 
 
@@ -225,8 +229,9 @@ class _Shape:
     @property
     def _entries(self) -> list[int]:
         """The numbers of the entries of a fundamental matrix that are not 0 or 1."""
-        n = self.law.order
-        return [i * n + j for i, reached in enumerate(reachable(self.law)) for j in sorted(reached)]
+        n, own = self.law.order, self.law.singular
+        free = set(range(n)) if own is None else set(own.free)
+        return [i * n + j for i, reached in enumerate(reachable(self.law)) for j in sorted(reached & free)]
 
     def _kernels(self, i: int, length: Factored) -> list[Kernel]:
         law, found = self.law, []

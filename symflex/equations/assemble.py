@@ -286,6 +286,7 @@ class _Assembly:
             self._equal(Variable("signal", signal.name), signal.expression, evaluator)
         for solution in self._solutions():
             self._impose(solution, evaluator)
+        self._count_conditions()
         outputs = [self._output(o.name, o.expression, evaluator) for o in self.model.outputs]
         if self.problems:
             spend()
@@ -362,10 +363,11 @@ class _Assembly:
 
     def _impose(self, solution: FieldSolution, evaluator: ExactEvaluator) -> None:
         """Take a field's state at its start as unknowns, and its conditions as rows."""
-        self.unknowns += solution.initial
+        self.unknowns += [v for v in solution.initial if v is not None]
         if self.distributed is not None:
             found, start = solution.field, solution.origin
-            length = self.distributed.evaluator.constant(found.end) - start
+            ends = map(self.distributed.evaluator.constant, (found.start, found.end))
+            length = sum((end - start for end in ends), start * 0)
             system, initial = solution.medium.system, solution.initial
             self.continua.append(
                 Continuum(found.name, "field", system, start, length, initial, solution.inputs)
@@ -379,6 +381,21 @@ class _Assembly:
             form = left + right * Factored.number(self.ring, -1)
             about = Variable("field", solution.field.name, f"condition {i + 1}")
             self.rows.append(EquationRow(about, form, "condition"))
+
+    def _count_conditions(self) -> None:
+        """Note conditions that are too many or too few where solutions have to be finite at a tip."""
+        solutions = list(self._solutions())
+        tips = [s for s in solutions if s.medium.held]
+        wanted = sum(1 for s in solutions for v in s.initial if v is not None)
+        given = sum(len(s.field.conditions) for s in solutions)
+        if tips and given != wanted:
+            name = tips[0].field.name
+            message = (
+                f"a stiffness of field '{name}' vanishes at an end: of solutions that are finite there, "
+                f"{wanted} conditions are needed, and there are {given}"
+            )
+            hint = "write no condition for what is finite at the tip, such as forces of zero"
+            self.problems.append(Diagnostic("SF243", message, tips[0].field.span, hint))
 
     @property
     def _definitions(self) -> dict[str, Expression]:
@@ -501,14 +518,19 @@ class _Assembly:
             forms,
             dict(use.choices),
             transmissions.get(use.name, ()),
+            self.distributed is not None and use.name in self.distributed.turned,
         )
         if isinstance(use.element, LineElement):
             self.lines[use.name] = (use.element, element_use)
             if self.distributed is not None:
                 medium, length = self.distributed.lines[use.name]
-                self.states[use.name] = state = use.element.initial_state(element_use)
+                state = use.element.initial_state(element_use)
                 final = tuple((v, int(c.unit)) for v, c in use.element.final_state(element_use))
                 kind, start = use.element.type_name, length * 0
+                if element_use.is_turned:
+                    final = tuple((v, 1) for v in state)
+                    state, start, length = use.element.tip_state(element_use), length, -length
+                self.states[use.name] = state
                 self.continua.append(
                     Continuum(use.name, kind, medium.system, start, length, state, final=final)
                 )

@@ -22,6 +22,7 @@ from symflex.algebra.propagators import propagate
 from symflex.algebra.ring import terms_of
 from symflex.budget import spend
 from symflex.equations.along import AlongX
+from symflex.equations.singular_ends import UnsolvedEndError, singular_start
 from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError
 from symflex.expressions import (
     Call,
@@ -29,9 +30,11 @@ from symflex.expressions import (
     Expression,
     Name,
     Negative,
+    Number,
     Product,
     Quotient,
     Sum,
+    format_expression,
     names,
     nodes,
 )
@@ -48,12 +51,13 @@ from symflex.library.fields import (
     varies,
     varying_components,
 )
-from symflex.model.along import varies_along_x
+from symflex.model.along import COORDINATE, varies_along_x
 from symflex.model.brackets import named_brackets
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
 
+    from symflex.algebra.dispersion import SingularStart
     from symflex.algebra.propagators import Propagation
     from symflex.equations.evaluate import ExactEvaluator
     from symflex.errors import Span
@@ -74,6 +78,14 @@ class Medium:
     parts: tuple[tuple[Component, int], ...]
 
     along: AlongX | None = None  # where its coefficients vary along x
+    # Of these the end at which the state is taken for a start: the one at which a stiffness vanishes, if any.
+    origin: Factored | None = None
+    is_turned: bool = False  # whether that is where x ends
+    held: frozenset[str] = frozenset()  # states that are zero there, or follow from others, in what is finite
+
+    def way(self, place: Factored) -> Factored:
+        """Return how far a point of a line element is from where its state is taken for a start."""
+        return place - self.origin if self.is_turned and self.origin is not None else place
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,12 +95,16 @@ class FieldSolution:
     field: FieldProblem  # as resolved
     medium: Medium  # its equations
     inputs: tuple[Variable, ...]  # what loads it all along
-    origin: Factored  # where x begins, over the ring without kernels
+    origin: Factored  # the start, over the ring without kernels: where x begins, or the end that is singular
 
     @property
-    def initial(self) -> tuple[Variable, ...]:
-        """The unknowns: the state at the start."""
-        return tuple(Variable("field", self.field.name, name) for name in self.medium.system.states)
+    def initial(self) -> tuple[Variable | None, ...]:
+        """The unknowns: the state at the start, None what a finite one leaves out."""
+        own = self.medium
+        return tuple(
+            None if name in own.held else Variable("field", self.field.name, name)
+            for name in own.system.states
+        )
 
     def value(self, call: Call, length: Factored, propagation: Propagation) -> LinearForm:
         """Return what a call names, at a distance from the start."""
@@ -144,7 +160,13 @@ def _local(
         direct = [_dot(row, column, x) for column, x in zip(loads, moved, strict=True)]
         row = [_dot(row, [line[j] for line in matrix], slopes[j]) for j in range(len(states))]
     if along is not None:
-        row, direct = ([along.at(x, point) for x in values] for values in (row, direct))
+        try:
+            row, direct = ([along.at(x, point) for x in values] for values in (row, direct))
+        except ZeroDivisionError:
+            at = format_expression(point)
+            message = f"{unknown}{chr(39) * order}({at}) is not known: a stiffness vanishes at x = {at}"
+            hint = "leave the condition out: only solutions that are finite there are taken"
+            raise ModelError(Diagnostic("SF250", message, point.span, hint)) from None
     return [propagation.embed(x) for x in row], [propagation.embed(x) for x in direct]
 
 
@@ -158,7 +180,7 @@ class AlongPoint:
 
     owner: str  # the element's or field's name
     medium: Medium  # its equations
-    initial: tuple[Variable, ...]  # a field's state at its start
+    initial: tuple[Variable | None, ...]  # a field's state at its start
     inputs: tuple[Variable, ...]  # what loads it all along
     length: Factored  # of a line element
     at: Factored  # distance from the start
@@ -207,6 +229,11 @@ class Distributed:
     along: Mapping[str, str]  # per quantity of a line element along x, the state of its field theory
     links: tuple[ChainEnd, ...] = ()  # of elements that follow from the start of a chain
 
+    @property
+    def turned(self) -> frozenset[str]:
+        """The line elements whose state follows from that at their second end, a tip."""
+        return frozenset(name for name, (medium, _) in self.lines.items() if medium.is_turned)
+
     def place(self, call: Call) -> AlongPoint:
         """Return the quantity that a call names."""
         owner, dot, _ = call.name.partition(".")
@@ -228,7 +255,7 @@ class Distributed:
         owner, dot, _ = call.name.partition(".")
         if dot:
             medium, _ = self.lines[owner]
-            at, state = self.evaluator.constant(call.argument), self.along[call.name]
+            at, state = medium.way(self.evaluator.constant(call.argument)), self.along[call.name]
             own = medium, states[owner], ()
             return _value(*own, state, call.order, at, self.propagation, call.argument)
         solution = self.solutions[call.name]
@@ -245,10 +272,12 @@ class _Demands:
         self.found: dict[tuple[str, ...], tuple[Component, ...]] = {}
         self.demands: list[tuple[Dispersion, list[Factored]]] = []
 
-    def medium(self, name: str, system: FieldSystem, span: Span | None, start: Factored) -> Medium:
-        """Return the system with the numbers of its dispersions; ``start`` is where x begins."""
+    def medium(
+        self, name: str, system: FieldSystem, span: Span | None, ends: tuple[Expression, Expression]
+    ) -> Medium:
+        """Return the system with the numbers of its dispersions; ``ends`` are those of x."""
         if self.along is not None and varies(system, self.along.names):
-            return self._varying(name, system, span, start)
+            return self._varying(name, system, span, self.along, ends)
         parts = []
         key = tuple(text(x) for row in system.matrix for x in row)
         try:
@@ -266,17 +295,37 @@ class _Demands:
             parts.append((part, self._number((law.kind, *law.key), dispersion)))
         return Medium(system, tuple(parts))
 
-    def _varying(self, name: str, system: FieldSystem, span: Span | None, start: Factored) -> Medium:
+    def _varying(
+        self,
+        name: str,
+        system: FieldSystem,
+        span: Span | None,
+        along: AlongX,
+        ends: tuple[Expression, Expression],
+    ) -> Medium:
         if system.axes is not None:
             message = f"a member of a frame that varies along x ('{name}') is not available yet"
             hint = "cut it into uniform pieces, or model its bending as a beam"
             raise ModelError(Diagnostic("SF910", message, span, hint))
-        parts = []
-        for part in varying_components(system):
-            law = Dispersion(name, "varying", (), start * 0, (), part.matrix, (start,))
-            key = ("varying", text(start), *(text(x) for row in part.matrix for x in row))
+        components = varying_components(system)
+        found = [[_singular(part, along, end, name, span) for part in components] for end in ends]
+        singular = [any(own) for own in found]
+        if all(singular):
+            message = f"stiffnesses vanish at both ends of '{name}'"
+            hint = "cut it in two between them, so that each part has one such end"
+            raise ModelError(Diagnostic("SF910", message, span, hint))
+        own, origin = found[singular[1]], along.evaluator.constant(ends[singular[1]])
+        parts, held = [], set[str]()
+        for part, start in zip(components, own, strict=True):
+            law = Dispersion(name, "varying", (), origin * 0, (), part.matrix, (origin,), start)
+            key = ("varying", text(origin), *(text(x) for row in part.matrix for x in row))
             parts.append((part, self._number(key, law)))
-        return Medium(system, tuple(parts), self.along)
+            free = range(len(part.matrix)) if start is None else start.free
+            held |= {system.states[i] for j, i in enumerate(part.states) if j not in free}
+            if not set(free) >= set(range(len(part.states), len(part.matrix))):
+                message = f"a load on '{name}' does not vanish where its stiffness does, and moves it too far"
+                raise ModelError(Diagnostic("SF910", message, span, "let the load enter the conditions"))
+        return Medium(system, tuple(parts), along, origin, singular[1], frozenset(held))
 
     def delay(self, name: str, s: Factored, time: Factored) -> int:
         """Return the number of the dispersion all delays share."""
@@ -325,6 +374,8 @@ def survey(
         for use in model.elements:
             if isinstance(use.element, LineElement):
                 medium, length = _line(use, evaluator, demands, s)
+                if medium.held:
+                    _check_tip(model, use, is_second=medium.is_turned)
                 lines.append((use.name, medium, length))
                 own = medium.system.axes
                 read = (*medium.system.states, *(() if own is None else own.readings()))
@@ -335,7 +386,11 @@ def survey(
         linked = {link.name: link for link in links}
         media = {name: medium for name, medium, _ in lines}
         wanted = [(media[link.name], (link.length, *(x for _, _, x in link.entries))) for link in links]
-        wanted += [(medium, (length,)) for name, medium, length in lines if name not in linked]
+        wanted += [
+            (medium, (-length if medium.is_turned else length,))
+            for name, medium, length in lines
+            if name not in linked
+        ]
         for medium, lengths in () if is_cut else wanted:
             for length in lengths:
                 demands.need(medium, length)
@@ -353,7 +408,7 @@ def survey(
             elif call.name in along:
                 owner = call.name.partition(".")[0]
                 medium = next(medium for name, medium, _ in lines if name == owner)
-                demands.need(medium, evaluator.constant(call.argument))
+                demands.need(medium, medium.way(evaluator.constant(call.argument)))
     except SymflexError as error:
         problems.extend(error.diagnostics)
     if problems:
@@ -367,7 +422,11 @@ def survey(
     return Distributed(
         propagation,
         {
-            name: transfer_matrix(medium, linked[name].length if name in linked else length, propagation)
+            name: transfer_matrix(
+                medium,
+                linked[name].length if name in linked else -length if medium.is_turned else length,
+                propagation,
+            )
             for name, medium, length in lines
             if not is_cut
         },
@@ -411,7 +470,20 @@ def _line(
     except ZeroDivisionError:
         message = f"a stiffness of {element.type_name} '{use.name}' is zero"
         raise ModelError(Diagnostic("SF224", message, use.span)) from None
-    return demands.medium(use.name, system, use.span, zero), values[element.length]
+    ends = Number(Fraction(0)), dict(use.all_values)[element.length]
+    return demands.medium(use.name, system, use.span, ends), values[element.length]
+
+
+def _check_tip(model: Model, use: PlacedElement, *, is_second: bool) -> None:
+    """Refuse what acts on the end of an element at which a stiffness vanishes."""
+    tip = dict(use.nodes)["between"][is_second]
+    touching = [r for other in model.elements for _, references in other.nodes for r in references]
+    touching += [r for given in model.inputs for r in given.nodes]
+    if tip.is_ground or sum(r.node == tip.node for r in touching) > 1:
+        message = f"a stiffness of {use.element.type_name} '{use.name}' vanishes at its end '{tip.node}', "
+        message += "which can be neither held nor loaded: it would move without bound"
+        hint = "let the section be small there, but not zero, or leave the end free"
+        raise ModelError(Diagnostic("SF250", message, use.span, hint))
 
 
 def _solution(field: FieldProblem, evaluator: ExactEvaluator, demands: _Demands) -> FieldSolution:
@@ -438,7 +510,8 @@ def _solution(field: FieldProblem, evaluator: ExactEvaluator, demands: _Demands)
         message = f"the equations of field '{field.name}' hold no derivative of " + " and ".join(static)
         hint = "put what it equals in its place in the other equations and conditions"
         raise ModelError(Diagnostic("SF305", message, field.span, hint))
-    medium = demands.medium(field.name, system, field.span, evaluator.constant(field.start))
+    span, ends = field.equations[0].span or field.span, (field.start, field.end)
+    medium = demands.medium(field.name, system, span, ends)
     for part, number in medium.parts:
         if (
             part.coefficients
@@ -450,7 +523,19 @@ def _solution(field: FieldProblem, evaluator: ExactEvaluator, demands: _Demands)
                 f"field '{field.name}' has a solution constant in x; a uniform load on it is not available"
             )
             raise ModelError(Diagnostic("SF910", message, field.span, "let the load enter the conditions"))
-    return FieldSolution(field, medium, inputs, evaluator.constant(field.start))
+    return FieldSolution(field, medium, inputs, medium.origin or evaluator.constant(field.start))
+
+
+def _singular(
+    part: Component, along: AlongX, end: Expression, name: str, span: Span | None
+) -> SingularStart | None:
+    """Return the solutions of a part that are finite at an end, None where all are."""
+    way = Factored.generator(part.matrix[0][0].ring, COORDINATE) - along.evaluator.constant(end)
+    try:
+        return singular_start(part.matrix, way, COORDINATE, lambda value: along.at(value, end))
+    except UnsolvedEndError as error:
+        message = f"a stiffness of '{name}' vanishes at x = {format_expression(end)}: {error}"
+        raise ModelError(Diagnostic("SF250", message, span, error.hint)) from None
 
 
 def _is_loaded(part: Component, system: FieldSystem) -> bool:

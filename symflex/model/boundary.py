@@ -15,6 +15,7 @@ from symflex.algebra import LAPLACE
 from symflex.expressions import (
     Call,
     Derivative,
+    Equation,
     Name,
     Negative,
     Number,
@@ -22,8 +23,10 @@ from symflex.expressions import (
     format_expression,
     measured,
     names,
+    substitute,
 )
 from symflex.library.elements import LineElement
+from symflex.model.along import COORDINATE, varies_along_x
 from symflex.model.independence import RandomPoint, repetitions
 from symflex.model.linearity import check_equation, check_expression
 from symflex.model.reading import QuantityLiteral
@@ -33,7 +36,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from symflex.errors import Span
-    from symflex.expressions import Equation, Expression
+    from symflex.expressions import Expression
     from symflex.model.independence import Repetition
     from symflex.model.model import Definition, FieldProblem, PlacedBlock, PlacedElement
     from symflex.model.reading import Reader
@@ -345,14 +348,17 @@ def _check_group(
     kept = [c for i, c in enumerate(conditions) if i not in dropped]
     places = _PlaceCounts(members, orders, kept, point)
     missing = order - len(kept)
+    has_tip = any(_has_tip(f, point) for f in members)
     for repetition in repeated:
         message = _repetition_message("condition", repetition, [c.equation for c in conditions])
         hint = "keep one of them" if repetition.contradicts else "remove it"
-        if missing > 0:
+        if missing > 0 and not has_tip:
             hint = f"another condition is needed in its place{places.likely()}"
         reader.note("SF244", message, conditions[repetition.condition].equation.span, hint)
     if missing == 0 or (repeated and missing > 0):
         return
+    if missing > 0 and has_tip:
+        return  # that solutions are finite there counts, for which exponents are needed: see the equations
     shown = [f"'{f.name}'" for f in members[:SHOWN_NAMES]] + ["..."][: len(members) > SHOWN_NAMES]
     who = f"field {shown[0]} has" if len(members) == 1 else f"fields {', '.join(shown)} together have"
     count = "1 condition" if len(kept) == 1 else f"{len(kept)} conditions"
@@ -365,6 +371,24 @@ def _check_group(
     else:
         message = f"{who} {count} for order {order} in x: {amount} too many{places.likely(surplus=True)}"
         reader.note("SF243", message, spans[order], places.summary())
+
+
+def _has_tip(field: FieldProblem, point: RandomPoint) -> bool:
+    """Tell whether what a highest derivative is multiplied by vanishes at an end, whatever the values."""
+    if COORDINATE in field.unknowns or not any(map(varies_along_x, field.equations)):
+        return False
+    along = point.within(field.unknowns)
+    for end in (field.start, field.end):
+        forms = [
+            along.condition(Equation(*(substitute(side, {COORDINATE: lower(end)}) for side in e.children)))
+            for e in field.equations
+        ]
+        whole = [along.condition(e) for e in field.equations]
+        for unknown in field.unknowns:
+            highest = max(k[2] for f in whole for k in f if isinstance(k, tuple) and k[0] == unknown)
+            if not any((unknown, 0, highest) in f for f in forms):
+                return True
+    return False
 
 
 def _line(span: Span | None) -> int:

@@ -91,6 +91,10 @@ class Line:
         value = self._value(polynomial)
         return None if value is None else (value > 0) - (value < 0)
 
+    def is_zero(self, value: Expression) -> bool:
+        """Tell whether a value is zero whatever the parameters are."""
+        return self._read(value) == {}
+
     def value(self, place: Expression) -> Fraction | None:
         """Return the number a place is with the parameters' values."""
         polynomial = self._read(place)
@@ -203,6 +207,14 @@ class RangedValue:
     sign: Sign
     reason: str
     is_extent: bool = False  # a length or a delay, which cannot depend on s
+    is_end: bool = False  # what varies along x, at an end, where it may vanish whatever the values
+
+    def is_wrong(self, line: Line) -> bool:
+        """Tell whether the value has a sign it cannot have."""
+        sign = line.sign(self.expression)
+        if sign is None or (self.is_end and line.is_zero(self.expression)):
+            return False
+        return sign < (1 if self.sign == "positive" else 0)
 
 
 def ranged_values(draft: Draft | Model) -> Iterator[RangedValue]:
@@ -223,7 +235,7 @@ def ranged_values(draft: Draft | Model) -> Iterator[RangedValue]:
                 for place, end in ends.items() if port.varies else ():
                     if end is not None and COORDINATE in {n.name for n in names(given[port.name])}:
                         at = substitute(given[port.name], {COORDINATE: lower(end)})
-                        yield RangedValue(f"{what} at x = {place}", at, sign, reason)
+                        yield RangedValue(f"{what} at x = {place}", at, sign, reason, is_end=True)
     for placed in draft.blocks:
         block = placed.block
         if block is not None and block.kernel_time:
@@ -239,14 +251,11 @@ def check_ranges(reader: Reader, draft: Draft, line: Line, unsound: set[Span | N
     mistake already; those found here are added.
     """
     for ranged in ranged_values(draft):
-        expression, least = ranged.expression, 1 if ranged.sign == "positive" else 0
-        if expression.span in unsound:
-            continue
-        sign = line.sign(expression)
-        if sign is None or sign >= least:
+        expression = ranged.expression
+        if expression.span in unsound or not ranged.is_wrong(line):
             continue
         value = None if literal_value(expression) is not None else line.value(expression)
-        reader.note("SF209", _message(ranged, sign, value), expression.span)
+        reader.note("SF209", _message(ranged, line.sign(expression) or 0, value), expression.span)
         unsound.add(expression.span)
 
 
@@ -265,8 +274,8 @@ def check_value(model: Model, name: str, value: ExactValue, varied: Collection[s
         {each: v.nearly for each, v in known.items()},
     )
     for ranged in ranged_values(model):
-        sign = line.sign(ranged.expression)
-        if sign is not None and sign < (1 if ranged.sign == "positive" else 0):
+        if ranged.is_wrong(line):
+            sign = line.sign(ranged.expression) or 0
             message = _message(ranged, sign, line.value(ranged.expression))
             shown = float(value.nearly)
             raise UsageError(Diagnostic("SF209", f"with {name} = {shown:.6g}, {message}"))

@@ -11,7 +11,7 @@ where u is s, its square, or s less the middle of a ball; and bounds on them.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from math import gcd
@@ -23,6 +23,7 @@ from flint import acb, acb_poly, acb_series, arb, arb_poly, arb_series, ctx
 from symflex.algebra import FUNCTIONS, LAPLACE, Factored, by_powers, degree_in
 from symflex.algebra.fundamental_matrix import (
     RationalPart,
+    SingularBeginning,
     SingularCoefficientError,
     expand,
     growth_along,
@@ -35,7 +36,7 @@ from symflex.model.linearity import integer_exponent
 from symflex.transfer.balls import ball, series_terms
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -133,12 +134,25 @@ class BoundLaw(PartedLaw):
     length: Factored
     constants: Mapping[str, Callable[[], arb]]  # generators free of s and x
     parameters: Mapping[str, Callable[[], arb]]  # what functions of x are made of
+    # Powers of the way from the start that entries are multiplied by.
+    orders: Mapping[Place, int] = field(default_factory=dict)
     # Growth at rest and about frequencies, once it is known.
     _growths: dict[int, float] = field(default_factory=dict, repr=False)
 
+    @cached_property
+    def beginning(self) -> tuple[tuple[int, ...], BoundLaw, BoundLaw] | None:
+        """About a singular start: the powers, and as laws B and the values there."""
+        own = self.law.singular
+        if own is None:
+            return None
+        plain = (replace(self.law, matrix=m, singular=None) for m in (own.matrix, own.values))
+        matrix, values = (replace(self, law=law) for law in plain)
+        orders = {(i, j): n for i, row in enumerate(own.orders) for j, n in enumerate(row) if n}
+        return own.powers, replace(matrix, orders=orders), values
+
     def growth(self, largest: arb) -> float:
         """Return about by which power of e solutions grow along the member at most, for an abs(u)."""
-        return growth_along(_InPowers(self), largest)
+        return growth_along(_InPowers(self, self.step), largest)
 
     def growth_at(self, octave: int, parts: int) -> float:
         """Return the same for ``abs(s) = 2^(octave/parts)``."""
@@ -157,7 +171,7 @@ class BoundLaw(PartedLaw):
         """
         try:
             with ctx.workprec(bits):
-                return expand(_InPowers(self), largest, bits)
+                return expand(_InPowers(self, self.step), largest, bits)
         except SingularCoefficientError as error:
             raise self._singular(error) from None
 
@@ -259,6 +273,16 @@ class BoundLaw(PartedLaw):
         parts = ([float(self.value(t.along, along).real.mid()) for along in found] for t in self.every)
         return [np.reshape(part, x.shape) for part in parts]
 
+    def shifted(self, place: Place, coefficients: Sequence[arb], terms: int) -> arb_poly:
+        """Return an entry's power series about the start, or anywhere where no power of the way is apart."""
+        order = self.orders.get(place, 0)
+        return arb_poly([*[arb(0)] * order, *coefficients][:terms])
+
+    def far(self, place: Place, x: acb) -> arb:
+        """Return a bound on the power of the way from the start by which an entry is multiplied."""
+        order = self.orders.get(place, 0)
+        return (x - self.ends()[0]).abs_upper() ** order if order else arb(1)
+
     def size(self, value: Factored, along: Mapping[str, Along], s: acb | None = None) -> arb:
         """Return a bound on a coefficient on balls: factor by factor, as powers of wide balls are wider."""
         total = abs(ball(value.unit))
@@ -273,10 +297,18 @@ class _InPowers:
     """A law in powers of u, that is s or its square."""
 
     law: BoundLaw
+    step: int  # of powers of s
 
     @property
     def size(self) -> int:
         return self.law.law.order
+
+    @property
+    def beginning(self) -> SingularBeginning | None:
+        if self.law.beginning is None:
+            return None
+        powers, *laws = self.law.beginning
+        return SingularBeginning(powers, *(_InPowers(law, self.step) for law in laws))
 
     def ends(self) -> tuple[arb, arb]:
         return self.law.ends()
@@ -287,9 +319,9 @@ class _InPowers:
             along = self.law.along(arb_series([x, 1], terms))
             for place, parts in self.law.summands.items():
                 for t in parts:
-                    order = t.power // self.law.step
+                    order = t.power // self.step
                     found += [{} for _ in range(order + 1 - len(found))]
-                    own = arb_poly(self.law.value(t.along, along).coeffs())
+                    own = self.law.shifted(place, self.law.value(t.along, along).coeffs(), terms)
                     found[order][place] = found[order].get(place, arb_poly([])) + own
         return found
 
@@ -300,9 +332,8 @@ class _InPowers:
     def bounds(self, x: acb, largest: arb) -> dict[Place, arb]:
         along = self.law.along(x)
         return {
-            place: sum(
-                (self.law.size(t.along, along) * largest ** (t.power // self.law.step) for t in parts), arb(0)
-            )
+            place: self.law.far(place, x)
+            * sum((self.law.size(t.along, along) * largest ** (t.power // self.step) for t in parts), arb(0))
             for place, parts in self.law.summands.items()
         }
 
@@ -319,6 +350,13 @@ class _AboutMiddle:
     def size(self) -> int:
         return self.law.law.order
 
+    @property
+    def beginning(self) -> SingularBeginning | None:
+        if self.law.beginning is None:
+            return None
+        powers, *laws = self.law.beginning
+        return SingularBeginning(powers, *(_AboutMiddle(law, self.middle, self.orders) for law in laws))
+
     def ends(self) -> tuple[arb, arb]:
         return self.law.ends()
 
@@ -327,7 +365,7 @@ class _AboutMiddle:
         with series_terms(terms):
             along = self.law.along(arb_series([x, 1], terms))
             parts = [
-                (place, t, acb_poly(self.law.value(t.along, along).coeffs()))
+                (place, t, acb_poly(self.law.shifted(place, self.law.value(t.along, along).coeffs(), terms)))
                 for place, own in self.law.summands.items()
                 for t in own
             ]
@@ -350,7 +388,8 @@ class _AboutMiddle:
         along, radius = self.law.along(x), arb(0, largest.abs_upper())
         s = self.middle + acb(radius, radius)
         return {
-            place: sum(
+            place: self.law.far(place, x)
+            * sum(
                 (
                     self.law.size(t.along, along)
                     * s.abs_upper() ** t.power

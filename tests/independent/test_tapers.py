@@ -212,7 +212,7 @@ def test_an_exponential_taper_with_constant_coefficients_is_certified():
     ("values", "place"),
     [
         ('I = "I_0*(1 - 2*x/l)^2", A = "A_0"', 0.5),
-        ('I = "I_0*(1 - x/l)^3", A = "A_0"', 1.0),
+        ('I = "I_0*(1 - a*x/0.7)^3", A = "A_0"', 1.0),
         ('I = "I_0*sqrt(1 - 1.5*x/l)", A = "A_0"', 2 / 3),
         ('I = "I_0", A = "A_0/(1 - 4*x/l)^2"', 0.25),
         ('I = "I_0", A = "A_0*log(x/l - 0.75)"', 0.0),

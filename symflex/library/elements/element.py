@@ -206,6 +206,7 @@ class ElementUse:
     # Of a distributed element, row by row, the matrix that takes its state from the first end to the second;
     # empty for others.
     transmission: tuple[tuple[Factored, ...], ...] = ()
+    is_turned: bool = False  # whether the matrix takes the state from the second end, a tip, to the first
 
     @property
     def one(self) -> Factored:

@@ -61,18 +61,19 @@ class LineElement(Element):
         Of a beam: the unknowns ``f_a``, ``tau_a`` (delivered at the first end), ``f`` and ``tau`` (delivered
         at the second), and four rows.
 
-        Where the law is solved otherwise ``use`` has no matrix T, and there are no rows.
+        Where the law is solved otherwise ``use`` has no matrix T, and there are no rows. Where a stiffness
+        vanishes at x = l they are ``z(0) = T*z(l)``, with nothing delivered there.
         """
         one = use.one
         a, b = use.terminals["between"]
         first = self._delivered_first(use)
         second = [use.unknown(quantity) for quantity in self.through]
-        state_a = self.initial_state(use)
-        state_b = self.final_state(use)
+        given = self.tip_state(use) if use.is_turned else self.initial_state(use)
+        wanted = [(v, one) for v in self.initial_state(use)] if use.is_turned else self.final_state(use)
         unknowns = (*first, *second)
         rows = [
-            EquationRow(about, LinearForm.of(end, *((v, -c) for v, c in zip(state_a, line, strict=True))))
-            for about, end, line in zip(unknowns, state_b, use.transmission, strict=bool(use.transmission))
+            EquationRow(about, LinearForm.of(end, *((v, -c) for v, c in zip(given, line, strict=True))))
+            for about, end, line in zip(unknowns, wanted, use.transmission, strict=bool(use.transmission))
         ]
         delivered = [*zip(self._across(a), first, strict=True), *zip(self._across(b), second, strict=True)]
         return Stamp(
@@ -90,6 +91,10 @@ class LineElement(Element):
         """Return the unknowns that are the state at x = l, each with its sign."""
         across = self._across(use.terminals["between"][1])
         return [*((v, use.one) for v in across), *((use.unknown(q), -use.one) for q in self.through)]
+
+    def tip_state(self, use: ElementUse) -> tuple[Variable | None, ...]:
+        """Return the unknowns that are the state at a tip at x = l, which carries no force."""
+        return (*self._across(use.terminals["between"][1]), *(None for _ in self.through))
 
     def _delivered_first(self, use: ElementUse) -> list[Variable]:
         return [use.unknown(f"{quantity}_a") for quantity in self.through]

@@ -168,6 +168,11 @@ def entries_of_matrices(
         first = number(0) if start.is_zero else printer.quotient(start)
         ends = Call(f"{stem}_ij", first)
         lines.append((ends.name, Equation(ends, Name("delta_ij"))))
+        for j in () if d.singular is None else d.singular.free:
+            for i, row in enumerate(d.singular.at_start() if d.singular else ()):
+                if i != j and not row[j].is_zero:
+                    entry = Call(f"{stem}_{i + 1}{apart}{j + 1}", first)
+                    lines.append((entry.name, Equation(entry, printer.quotient(row[j]))))
     return symbols, tuple(lines)
 
 

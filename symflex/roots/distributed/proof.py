@@ -307,6 +307,8 @@ def roots_at_zero(
     exact = None
     for terms in SERIES_TERMS:
         exact = OriginSeries(part.ring, function.bound.kernels, terms=terms).order(function.part**power)
+        if exact is None and any(law.matrix for law in function.bound.kernels.dispersions):
+            exact = function.proved_order(terms)
         if exact is not None:
             break
     if exact is not None and (is_hidden or exact % power == 0):

@@ -117,6 +117,16 @@ class KernelFunction:
         )
         return even and not shifted and all(_parity(f) is not None for f, _ in self.part.factors)
 
+    def proved_order(self, terms: int) -> int | None:
+        """Return how often s = 0 is a root, where the first of so many terms about it are exactly zero."""
+        with precision(2 * FIRST_BITS):
+            evaluator = self.bound.kernel_values()
+            s = acb_series([0, 1], terms)
+            value = evaluator.value(self.part**self.power, evaluator.at(s))
+            coefficients = value.coeffs() if isinstance(value, acb_series) else []
+            first = next((c for c in enumerate(coefficients) if c[1] != 0), None)
+            return None if first is None or first[1].contains(0) else first[0]
+
     @property
     def is_negated(self) -> bool:
         """True when a minus sign stands in front of the factors."""
@@ -252,7 +262,8 @@ class KernelFunction:
             evaluator, factors = self._values(FIRST_BITS), [f for f, _ in self.part.factors]
             if evaluator.matrices is None or self.bound.kernels.wavenumbers:
                 return None
-            if any(k.function != "entry" for k in self.bound.kernels.kernels):
+            kernels = self.bound.kernels.kernels
+            if any(k.function != "entry" or k.dispersion.singular for k in kernels):
                 return None
             from symflex.roots.functions.double_minors import DoubleMinors  # few beams are tapered
 
