@@ -7,7 +7,12 @@ from dataclasses import dataclass, field
 import pytest
 from flint import acb, arb, arb_poly, ctx
 
-from symflex.algebra.fundamental_matrix import RationalPart, SingularCoefficientError, expand
+from symflex.algebra.fundamental_matrix import (
+    RationalPart,
+    SingularBeginning,
+    SingularCoefficientError,
+    expand,
+)
 
 
 @dataclass
@@ -19,6 +24,7 @@ class Equation:
     start: float = 0.0
     end: float = 1.0
     size: int = field(default=2, init=False)
+    beginning: SingularBeginning | None = field(default=None, init=False)
 
     def ends(self):
         return arb(self.start), arb(self.end)
@@ -115,3 +121,40 @@ def test_a_pole_is_met():
     with pytest.raises(SingularCoefficientError) as caught:
         expand(Pole((), (1.0,)), arb(1), 60)
     assert 0.3 < caught.value.place <= 0.5
+
+
+@dataclass
+class Entries:
+    """Entries that are polynomials in x, per power of u."""
+
+    orders: tuple[dict[tuple[int, int], tuple[float, ...]], ...]
+    size: int = field(default=2, init=False)
+
+    def series(self, x, terms):
+        return [
+            {place: arb_poly(list(c))(arb_poly([x, 1])) for place, c in each.items()} for each in self.orders
+        ]
+
+    def bounds(self, x, largest):
+        found = {}
+        for q, each in enumerate(self.orders):
+            for place, c in each.items():
+                size = sum((abs(acb(a)) * abs(x) ** k for k, a in enumerate(c)), arb(0)) * largest**q
+                found[place] = found.get(place, arb(0)) + size.abs_upper()
+        return found
+
+
+@pytest.mark.parametrize("u", [7.0, -300.0, 20 + 50j])
+@pytest.mark.parametrize("end", [1.0, 0.015625])
+def test_what_is_finite_where_a_coefficient_has_a_pole_is_a_bessel_function(u, end):
+    # w' = f/x and f' = u w: I_0(2 sqrt(u x)) is finite at 0, and f there is x times its slope.
+    tip = Equation((), (1.0,), 0.0, end)
+    values = Entries(({(0, 0): (1.0,)},))
+    tip.beginning = SingularBeginning((0, 0), Entries(({(0, 1): (1.0,)}, {(1, 0): (0.0, 1.0)})), values)
+    made = expand(tip, arb(abs(u) + 1).upper(), 150)
+    with ctx.workprec(150):
+        root = acb(u * end).sqrt()
+        for row, expected in ((0, (2 * root).bessel_i(0)), (1, root * (2 * root).bessel_i(1))):
+            (value,) = made.series((row,), (0,), acb(u))
+            assert value.overlaps(expected)
+            assert value.rel_accuracy_bits() > 100
