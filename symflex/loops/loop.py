@@ -95,8 +95,7 @@ def characteristic_loop(
     position = tf.ratio.ring.index.get(gain.name)
     if position is not None and any(value.depends_on(gain.name) for value in tf.kernels.values):
         message = f"'{gain.name}' is part of a wavenumber, a length or a delay, and no gain"
-        hint = f"follow its poles by value: symflex sweep FILE --over {gain.name}=FROM:TO:lin:20"
-        raise ModelError(Diagnostic("SF801", message, gain.span, hint))
+        raise no_loop("SF801", message, gain)
     if position is None or not _depends(tf, position):
         message = f"no pole of the model depends on '{gain.name}'"
         hint = "a loop is closed in [signals], as in e = 'r - y', u = 'K*e'"
@@ -111,6 +110,12 @@ def characteristic_loop(
         found.append(GainPolynomial(pieces, exponent, is_hidden))
     rational = None if nominal is None or nominal.pi_power else nominal.rational
     return Loop(bound, gain, rational, tuple(found))
+
+
+def no_loop(code: str, message: str, gain: ModelParameter) -> ModelError:
+    """Return what says that a parameter is no gain, and how its poles are followed all the same."""
+    hint = f"follow its poles by value: symflex sweep FILE --over {gain.name}=FROM:TO:lin:20"
+    return ModelError(Diagnostic(code, message, gain.span, hint))
 
 
 def _depends(tf: TransferFunction, position: int) -> bool:

@@ -25,7 +25,7 @@ from symflex.errors import Diagnostic, ModelError, UncertifiedError
 from symflex.expressions import names_among
 from symflex.loops.axis import LoopAtOrigin
 from symflex.loops.axis_factors import AxisFactors
-from symflex.loops.loop import NOTHING, Loop, LoopValue
+from symflex.loops.loop import NOTHING, Loop, LoopValue, no_loop
 from symflex.loops.stability_map import PoleCount
 from symflex.roots.counting.local_series import LocalSeries
 from symflex.roots.networks.cramer import CramerEquations, EssentialSingularityError
@@ -118,14 +118,18 @@ AnyLoop = Loop | NetworkLoop
 def network_loop(equations: Equations, gain: ModelParameter, nominal: Fraction | None) -> NetworkLoop | None:
     """Return a network's loop from equations with numbers in place of all parameters but the gain.
 
-    ``None`` where the gain does not stand in one row alone, as a factor.
+    ``None`` where the gain does not stand in one row alone, as a factor. SF801 where it shapes waves.
     """
     columns = {v: i for i, v in enumerate(equations.unknowns)}
     size = len(columns)
     ring = equations.ring
     place = ring.index.get(gain.name)
-    if place is None or _shapes_waves(equations, gain.name):
+    if place is None:
         return None
+    if _shapes_waves(equations, gain.name):
+        raise no_loop(
+            "SF801", f"'{gain.name}' is part of a wavenumber, a length or a delay, and no gain", gain
+        )
     read = equations.outputs[0].name
     plain = CramerEquations.of(equations, read, equations.inputs[0].owner).entries[:size]
     rows: list[dict[int, Factored]] = []

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import pi
 from typing import TYPE_CHECKING
 
+from symflex.errors import BudgetError
 from symflex.loops import loop as loop_room
 from symflex.loops.colocation import DynamicColocation, dynamic_colocation
 from symflex.loops.find import find_stable_gains
@@ -41,14 +42,15 @@ if TYPE_CHECKING:
 def characteristic_loop(model: Model, gain: str, values: Mapping[str, Given] | None = None) -> AnyLoop:
     """Return the characteristic function in a gain, of a large network without writing it out.
 
-    SF902 when there is no such parameter, SF801 when no pole depends on it; SF501, SF502 when it is too large
-    written out, and the gain stands in more than one row of a network.
+    SF902 when there is no such parameter, SF801 when no pole depends on it or it shapes waves; SF501, SF502
+    when it is too large written out, SF803 where the gain stands in more than one row of a large network.
     """
     parameter = pick_gain(model.parameters, gain)
     given = dict(values or {})
     for name in given:
         pick_gain(model.parameters, name)
-    if is_large_network(model):
+    is_large = is_large_network(model)
+    if is_large:
         has_value = parameter.value is not None or gain in given
         valued = tuple(p for p in model.parameters if p.name != gain or has_value)
         known = dict(read_values(valued, given))
@@ -63,7 +65,13 @@ def characteristic_loop(model: Model, gain: str, values: Mapping[str, Given] | N
     equations = assemble(prepared)
     plain = {row.name for row in equations.outputs if row.divisor.is_one}
     pair = next((p for p in model.transfer_functions if p[0] in plain), model.transfer_functions[0])
-    (tf,) = derive_all(prepared, [pair])
+    try:
+        (tf,) = derive_all(prepared, [pair])
+    except BudgetError as error:
+        if not is_large:
+            raise
+        message = f"'{gain}' stands in several places of a network too large to be written out"
+        raise loop_room.no_loop("SF803", message, parameter) from error
     return loop_room.characteristic_loop(tf, parameter, given)
 
 

@@ -156,6 +156,15 @@ def test_without_losses_nothing_is_claimed_of_the_axis():
     assert not network.stable
 
 
+@pytest.mark.parametrize(
+    ("name", "message"), [("k", "'k' stands in several places of a network"), ("rho", "'rho' is part of")]
+)
+def test_what_is_no_gain_of_a_network_is_followed_by_value(name, message):
+    with pytest.raises(ModelError, match=message) as caught:
+        of_model.characteristic_loop(pipeline.loads(chain(6)), name)
+    assert "symflex sweep FILE --over" in caught.value.diagnostics[0].hint
+
+
 def test_a_gain_that_closes_no_loop_is_refused():
     with pytest.raises(ModelError, match="no pole of the model depends on 'K'"):
         found(chain(6, law="K*r"))
