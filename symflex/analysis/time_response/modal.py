@@ -26,6 +26,7 @@ from symflex.analysis.rational.laurent import expand_at_zero, residues_at
 from symflex.analysis.time_response.damped_modes import Damping, damping_of
 from symflex.analysis.time_response.echoes import Sampled
 from symflex.analysis.time_response.exponentials import ExponentialTerm, values_of
+from symflex.analysis.time_response.filtered import filtered
 from symflex.analysis.time_response.lossless_modes import LosslessModes, lossless_modes
 from symflex.analysis.time_response.passive_modes import PassiveBound, passive_bound
 from symflex.budget import entered_budget
@@ -132,7 +133,14 @@ def _of_passive_modes(
     """Return the same for a passive model, from its energy."""
     bounding = passive_bound(bound)
     if bounding is None:
-        return None
+        return _of_filtered(bound, integrations, times, digits)
+    return _of_bounded(bounding, integrations, times, digits)
+
+
+def _of_bounded(
+    bounding: PassiveBound, integrations: int, times: SampleTimes, digits: int
+) -> PartialSum | None:
+    """Return the sum over so many modes that what is left is within the digits, or as little as can be."""
     modes = PassiveModes(bounding, integrations, times)
     few, many = FIRST_MODES
     first, found = modes.summed(few), modes.summed(many)
@@ -149,6 +157,22 @@ def _of_passive_modes(
             break
         counts, first, found = (counts[1], wanted), found, more
     return found
+
+
+def _of_filtered(
+    bound: BoundTransferFunction, integrations: int, times: SampleTimes, digits: int
+) -> PartialSum | None:
+    """Return the same where something rational stands between the input and a force."""
+    found = filtered(bound, DIGITS)
+    force = None if found is None else passive_bound(found.driven)
+    inner = None if force is None else _of_bounded(force, integrations, times, digits)
+    if found is None or inner is None:
+        return None
+    with precision(bits_for_digits(2 * DIGITS)):
+        terms = found.convolved(inner.terms)
+        if terms is None:
+            return None
+        return PartialSum(tuple(terms), tuple(values_of(terms, times)), (inner.rest * found.weight).upper())
 
 
 @dataclass(frozen=True, slots=True)

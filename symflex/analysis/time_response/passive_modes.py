@@ -305,7 +305,7 @@ def _colocated(
     """
     forces, shown = [], []
     for i, coordinates in enumerate(ends):
-        kind = _force_on(model, coordinates[0][0])
+        kind = force_on(model, coordinates[0][0])
         if kind is None:
             return None
         nodes = tuple(NodeReference(v.owner, v.component) for v, _ in coordinates)
@@ -320,7 +320,7 @@ def _colocated(
     return [found[0], found[-1]] if len(ends) == PAIR else found
 
 
-def _force_on(model: Model, variable: Variable) -> str | None:
+def force_on(model: Model, variable: Variable) -> str | None:
     """Return the kind of input that does work on a coordinate; None for a voltage."""
     domain = next(n.domain for n in model.nodes if n.name == variable.owner)
     own = COMPONENT_DOMAIN.get(variable.component, domain)

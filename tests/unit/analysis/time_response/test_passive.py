@@ -5,9 +5,14 @@ from __future__ import annotations
 import mpmath
 import numpy as np
 import pytest
+from flint import acb, arb
 
 from symflex import loads
 from symflex.analysis.time_response import SampleTimes, time_response
+from symflex.analysis.time_response.exponentials import ExponentialTerm, values_of
+from symflex.analysis.time_response.filtered import Filtered
+from symflex.analysis.time_response.modal import PassiveModes
+from symflex.analysis.time_response.passive_modes import passive_bound
 
 UNIT = 'E = "1 Pa", A = "1 m^2", I = "1 m^4", rho = "1 kg/m^3"'
 WHOLE = 'l = "1 m"'
@@ -30,7 +35,7 @@ def spring(k):
     return f'elements.k = {{ type = "spring", between = ["ground", "x"], k = "{k} N/m" }}'
 
 
-def hub(rest="", eta="0", output="tip"):
+def hub(rest="", eta="0", output="tip", drives='torque = "hub"'):
     """Return a pinned beam with a hub at one end and a mass at the other, turned by a torque at the hub."""
     return of(
         f"""
@@ -39,13 +44,13 @@ elements.pin  = {{ type = "pin", at = "hub" }}
 elements.J    = {{ type = "inertia", at = "hub.theta", J = "0.1 kg*m^2" }}
 elements.loss = {{ type = "rotary_damper", between = ["hub.theta", "ground"], b = "0.2 N*m*s/rad" }}
 elements.m    = {{ type = "mass", at = "tip", m = "0.3 kg" }}
-inputs.F  = {{ torque = "hub" }}
+inputs.F  = {{ {drives} }}
 outputs.X = "{output}"
 {rest}"""
     )
 
 
-MOTOR = """
+DRIVE = """
 [elements.drive]
 type      = "dc_motor"
 terminals = ["u", "ground"]
@@ -53,7 +58,8 @@ shaft     = "hub.theta"
 k_t       = "0.3 N*m/A"
 R         = "2 ohm"
 L         = "10 mH"
-
+"""
+MOTOR = f"""{DRIVE}
 [elements.wire]
 type    = "resistor"
 between = ["u", "ground"]
@@ -149,6 +155,32 @@ def test_an_arm_on_a_hub_with_friction_or_a_motor_moves_as_its_inverse_transform
     found = time_response(hub(rest, "0.02"), kind, SampleTimes.of(TIMES))
     expected = inverted(lambda s: tip_of_hub(s, drive, "0.02"), 1 if kind == "step" else 2, TIMES)
     assert_holds(found, expected, off=1e-15)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["step", "ramp"])
+def test_an_arm_driven_by_a_voltage_moves_as_its_inverse_transform(kind):
+    found = time_response(hub(DRIVE, "0.02", drives='voltage = "u"'), kind, SampleTimes.of(TIMES))
+
+    def tip(s):
+        around = 2 + s / 100
+        return tip_of_hub(s, lambda s: mpmath.mpf("0.09") * s / around, "0.02") * mpmath.mpf("0.3") / around
+
+    assert_holds(found, inverted(tip, 1 if kind == "step" else 2, TIMES), off=1e-15)
+
+
+def test_a_filter_of_a_ramp_and_an_oscillation_gives_their_convolutions():
+    decay = Filtered(clamped(), (ExponentialTerm(acb(-3), (acb(2),)),))
+    assert 2 / 3 <= float(decay.weight) < 0.667
+    times = SampleTimes.of([0.0, 0.4, 1.3])
+    ramp = decay.convolved([ExponentialTerm(acb(0), (acb(1), acb(6)))])  # 1 + 6 t
+    turns = decay.convolved([ExponentialTerm(acb(0, 5), (acb(0, -1),))])  # sin 5 t
+    t = np.array([0.0, 0.4, 1.3])
+    fading = np.exp(-3 * t)
+    of_ramp = 2 / 3 * (1 - fading) + 12 * (t / 3 - (1 - fading) / 9)
+    of_turns = 2 * (3 * np.sin(5 * t) - 5 * np.cos(5 * t) + 5 * fading) / 34
+    assert [float(y) for y in values_of(ramp, times)] == pytest.approx(of_ramp, abs=1e-14)
+    assert [float(y) for y in values_of(turns, times)] == pytest.approx(of_turns, abs=1e-14)
 
 
 @pytest.mark.slow
@@ -272,11 +304,6 @@ def test_timoshenkos_beam_is_held_too_with_a_wider_radius():
 
 
 def test_the_bound_of_what_lies_beyond_a_circle_holds_for_a_thousand_modes():
-    from flint import arb
-
-    from symflex.analysis.time_response.modal import PassiveModes
-    from symflex.analysis.time_response.passive_modes import passive_bound
-
     bounding = passive_bound(clamped())
     modes = PassiveModes(bounding, 1, SampleTimes.of([0.0, 0.37, 1.0]))
     few, many = modes.summed(16), modes.summed(1000)
@@ -286,7 +313,5 @@ def test_the_bound_of_what_lies_beyond_a_circle_holds_for_a_thousand_modes():
 
 
 def test_what_an_active_model_leaves_out_is_not_bounded_by_its_energy():
-    from symflex.analysis.time_response.passive_modes import passive_bound
-
     assert passive_bound(clamped(spring("-1"))) is None
     assert passive_bound(clamped(output="arm.y(0.5 m)")) is None
