@@ -695,5 +695,10 @@ def _quantity(given: str, flag: str, wrong: UsageError) -> Quantity:
 
     try:
         return parse_quantity(Text(given, Span(Source(flag, given), 0, len(given))))
-    except SpecError:
+    except SpecError as error:
+        (first, *_) = error.diagnostics
+        if first.code == "SF103":
+            # A quantity, but of a size that nothing here computes with.
+            message = f"{flag} '{given[:60]}': {first.message}"
+            raise UsageError(Diagnostic("SF103", message, None, first.hint)) from None
         raise wrong from None

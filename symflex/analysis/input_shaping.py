@@ -46,6 +46,8 @@ MORE_MODES = 8
 MOST_IMPULSES = 2187
 """Of seven modes with three each."""
 TEXT_DIGITS = 10
+LEAST = 1e-300
+"""The smallest bound that is printed."""
 
 
 def _zv(k: arb, tolerance: arb) -> tuple[arb, ...]:
@@ -143,7 +145,9 @@ class InputShaper:
         lines = [f"{self.tf}   {how}{self.kind.upper()} shaper, {len(self.impulses)} impulses", ""]
         for pole in self.poles:
             left = self.residual(pole.enclosure())
-            said = f"at most {float(left.upper()):.2g}" if left.contains(0) else f"{float(left.mid()):.6g}"
+            # A bound below the range of doubles is none of 0.
+            most = max(float(left.upper()), LEAST)
+            said = f"at most {most:.2g}" if left.contains(0) else f"{float(left.mid()):.6g}"
             damping = f"{pole.damping_ratio() or 0:.6g}"
             lines.append(f"  mode at {pole.frequency_hz():.6g} Hz, zeta {damping}: residual vibration {said}")
         rows = [("t [s]", "amplitude")]

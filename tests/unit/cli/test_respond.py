@@ -7,6 +7,7 @@ import io
 import math
 import runpy
 
+import mpmath
 import numpy as np
 import pytest
 
@@ -204,3 +205,43 @@ def test_options_of_sampling_that_do_not_go_together_are_refused(oscillator, ask
     done = oscillator("export", "osc.toml", "--tf", "X/F", *asked)
     assert done.code == 2
     assert said in done.err
+
+
+@pytest.mark.parametrize(
+    ("asked", "code", "said"),
+    [
+        (["--until", "1e300"], 2, "error[SF103]: --until '1e300': a decimal exponent beyond 60"),
+        (["--until", "1", "--modes", "2"], 2, "--modes and --joint are of --shaped"),
+        (["--until", "1", "--shaped", "zv", "--modes", "7"], 2, "has 1 modes that oscillate, not 7"),
+        (["--to", "gap.csv"], 3, "gap.csv:3:1: error[SF603]: a number is missing"),
+        (["--to", "odd.csv"], 2, "times have too little in common"),
+        (["--to", "same.csv"], 3, "same.csv:3:1: error[SF604]: times do not increase"),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, list) else "",
+)
+def test_inputs_that_were_broken_by_hand_get_a_sentence(oscillator, tmp_path, asked, code, said):
+    (tmp_path / "gap.csv").write_text("time_s,u\n0,0\n1,\n2,1\n", encoding="utf-8")
+    (tmp_path / "odd.csv").write_text("time_s,u\n0,0\n0.1234567890123456,1\n1,1\n", encoding="utf-8")
+    (tmp_path / "same.csv").write_text("time_s,u\n0,0\n0,1\n", encoding="utf-8")
+    done = oscillator("respond", "osc.toml", "--tf", "X/F", *asked)
+    assert (done.code, done.err.count(said)) == (code, 1)
+
+
+def test_what_grows_beyond_doubles_is_printed_in_decimals_and_not_drawn(shell, tmp_path):
+    text = 'symflex = 1\ninputs.u = {}\noutputs.y = "u/(s - 5)"\n'
+    (tmp_path / "up.toml").write_text(text, encoding="utf-8")
+    document = shell("respond", "up.toml", "--until", "1000", "--points", "2", "--json").json
+    with mpmath.workdps(20):
+        expected = (mpmath.exp(5000) - 1) / 5
+        assert abs(mpmath.mpf(document["value"][1]) / expected - 1) < mpmath.mpf("1e-11")
+    drawn = shell("respond", "up.toml", "--until", "1000", "--points", "3", "-o", "up.svg")
+    assert drawn.code == 2
+    assert "error[SF812]: the response of y/u is beyond the range of doubles from 500 s on" in drawn.err
+    sampled = shell("export", "up.toml", "--to", "c", "--sample", "1000s")
+    assert sampled.code == 3
+    assert "error[SF233]" in sampled.err
+
+
+def test_a_bound_below_the_range_of_doubles_is_not_called_zero(oscillator):
+    out = oscillator("shape", "osc.toml", "--digits", "400").out
+    assert "residual vibration at most 1e-300" in out
