@@ -72,8 +72,8 @@ class VaryingMatrices:
     def value(self, minor: Minor, s: Value) -> Value:
         """Return a minor at a point, on a ball, or as a series about either."""
         law, terms = self.laws[minor.matrix], s.prec if isinstance(s, acb_series) else 1
-        if law.is_polynomial:
-            u: Value = raised(s, law.step)
+        if law.weights is not None:
+            u: Value = law.rate(s)
             centre = at_centre(u)
             expansion = self._in_powers(minor.matrix, abs(centre).upper())
         else:
@@ -85,11 +85,15 @@ class VaryingMatrices:
             expansion = about
         found = expansion.series(minor.rows, minor.columns, centre, terms)
         if isinstance(u, acb):
-            return found[0]
-        step = u - at_centre(u)
-        total = acb_series([found[-1]], terms)
-        for c in reversed(found[:-1]):
-            total = total * step + c
+            total: Value = found[0]
+        else:
+            step = u - at_centre(u)
+            total = acb_series([found[-1]], terms)
+            for c in reversed(found[:-1]):
+                total = total * step + c
+        if law.weights is not None and law.divisors:
+            scaled = sum(law.weights[i] for i in minor.rows) - sum(law.weights[j] for j in minor.columns)
+            total = total * raised(law.divisor(s), scaled)
         return total
 
     def reach(self, dispersion: Dispersion, length: Factored, s: acb) -> float:
@@ -127,7 +131,7 @@ class VaryingMatrices:
         if not fitting:
             if matrix not in self._lowest:
                 self._lowest[matrix] = self._lowest_octave(law)
-            wanted = arb(self._expected.get(0, 0.0)) ** law.step
+            wanted = abs(at_centre(law.rate(acb(0, self._expected.get(0, 0.0))))).upper()
             if not size <= wanted:
                 wanted = (size * FURTHER**law.step).upper()
             largest = max(wanted, arb(2) ** (law.step * self._lowest[matrix]), *(r for r, _, _ in known))

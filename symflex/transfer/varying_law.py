@@ -33,7 +33,7 @@ from symflex.errors import Diagnostic, ModelError
 from symflex.expressions import fold
 from symflex.model.along import COORDINATE
 from symflex.model.linearity import integer_exponent
-from symflex.transfer.balls import ball, series_terms
+from symflex.transfer.balls import at_centre, ball, series_terms
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from symflex.algebra import Dispersion
     from symflex.algebra.fundamental_matrix import Coefficients, Number, Place, PowerExpansion
     from symflex.expressions import Call, Expression
+    from symflex.transfer.balls import Value
 
 ELSEWHERE = acb(0.7, 1.3)
 """A frequency like any other, at which coefficients have no pole in s."""
@@ -83,9 +84,29 @@ class PartedLaw:
         return tuple(t for parts in self.summands.values() for t in parts)
 
     @cached_property
-    def is_polynomial(self) -> bool:
-        """Whether coefficients are polynomials in s."""
-        return all(t.divisor.is_one for t in self.every)
+    def weights(self) -> tuple[int, ...] | None:
+        """Powers of the divisor by which states are scaled: A is a polynomial in ``u = s^step/divisor`` then.
+
+        None where there are no such. Of a beam whose modulus is E (1 + eta s) moments and forces are scaled
+        by 1 + eta s, and u is s^2/(1 + eta s). Without divisors all are 0.
+        """
+        if not self.divisors:
+            return (0,) * self.law.order
+        if len(self.divisors) > 1:
+            return None
+        # An entry of row i and column j is then times divisor^(w_j - w_i): that has to make it a power of u.
+        apart = [(i, j, below - power) for i, j, power, below in self.places]
+        found: dict[int, int] = {}
+        for first in range(self.law.order):
+            pending = [] if first in found else [(first, 0)]
+            while pending:
+                state, weight = pending.pop()
+                if found.setdefault(state, weight) != weight:
+                    return None
+                more = [(j, weight + n) for i, j, n in apart if i == state]
+                more += [(i, weight - n) for i, j, n in apart if j == state]
+                pending += [(k, w) for k, w in more if found.get(k) != w]
+        return tuple(found[i] for i in range(self.law.order))
 
     @cached_property
     def step(self) -> int:
@@ -95,13 +116,13 @@ class PartedLaw:
     @cached_property
     def divisors(self) -> tuple[Factored, ...]:
         """What parts are divided by, each once."""
-        return tuple(dict.fromkeys(t.divisor for t in self.every if not t.divisor.is_one))
+        return tuple({str(t.divisor): t.divisor for t in self.every if not t.divisor.is_one}.values())
 
     @cached_property
     def places(self) -> tuple[tuple[int, ...], ...]:
         """Per part its row, its column, and its powers of ``s^step`` and of one over every divisor."""
         return tuple(
-            (*place, t.power // self.step, *(int(t.divisor == d) for d in self.divisors))
+            (*place, t.power // self.step, *(int(str(t.divisor) == str(d)) for d in self.divisors))
             for place, parts in self.summands.items()
             for t in parts
         )
@@ -160,9 +181,21 @@ class BoundLaw(PartedLaw):
             size = arb(2.0 ** (octave / parts))
             near = _AboutMiddle(self, acb(0, size), 1)
             self._growths[octave] = (
-                self.growth(size**self.step) if self.is_polynomial else growth_along(near, arb(0))
+                growth_along(near, arb(0))
+                if self.weights is None
+                else self.growth(abs(at_centre(self.rate(acb(0, size)))))
             )
         return self._growths[octave]
+
+    def rate(self, s: Value) -> Value:
+        """Return u, of which A is a polynomial once states are scaled by their weights."""
+        found: Value = raised(s, self.step) / self.divisor(s)
+        return found
+
+    def divisor(self, s: Value) -> Value:
+        """Return what states are scaled by powers of."""
+        found: Value = self.value(self.divisors[0], {}, s) if self.divisors else s * 0 + 1
+        return found
 
     def expanded(self, largest: arb, bits: int) -> PowerExpansion:
         """Return the fundamental matrix in powers of u, for abs(u) up to the largest.
@@ -224,7 +257,7 @@ class BoundLaw(PartedLaw):
             call=lambda inner, argument: _called(inner.name, argument),
         )
 
-    def value(self, value: Factored, along: Mapping[str, Along], s: acb | None = None) -> Along:
+    def value(self, value: Factored, along: Mapping[str, Along], s: Value | None = None) -> Along:
         """Return a coefficient, given the coordinate and functions of it, and s where that occurs."""
         names = value.ring.names
         is_series = isinstance(along.get(COORDINATE), arb_series)
@@ -294,7 +327,7 @@ class BoundLaw(PartedLaw):
 
 @dataclass(frozen=True, eq=False)
 class _InPowers:
-    """A law in powers of u, that is s or its square."""
+    """A law in powers of u, that is s or its square, over a divisor where states are scaled by that."""
 
     law: BoundLaw
     step: int  # of powers of s
