@@ -89,6 +89,11 @@ class InputShaper:
     joint: bool = False  # one for all modes together, not the convolution of one for each
 
     @property
+    def title(self) -> str:
+        """What it is, such as ``joint ZVD shaper``."""
+        return f"{'joint ' if self.joint else ''}{self.kind.upper()} shaper"
+
+    @property
     def times(self) -> tuple[float, ...]:
         """The times [s], to double precision."""
         return tuple(float(t.mid()) for t, _ in self.impulses)
@@ -141,8 +146,7 @@ class InputShaper:
 
     def __str__(self) -> str:
         zero, digits = arb(0), min(self.digits, TEXT_DIGITS)
-        how = "joint " if self.joint else ""
-        lines = [f"{self.tf}   {how}{self.kind.upper()} shaper, {len(self.impulses)} impulses", ""]
+        lines = [f"{self.tf}   {self.title}, {len(self.impulses)} impulses", ""]
         for pole in self.poles:
             left = self.residual(pole.enclosure())
             # A bound below the range of doubles is none of 0.

@@ -133,5 +133,5 @@ def _label(axes: Axes, response: EnclosedResponse, unit: str) -> None:
     axes.set_xlim(0, float(response.times[-1]) / scale)
     axes.set_xlabel(f"Time [{second}]")
     label = label_of_unit(unit)
-    name = response.title.capitalize() if response.input in INTEGRATIONS else "Response"
+    name = f"{response.input} response".capitalize() if response.input in INTEGRATIONS else "Response"
     axes.set_ylabel(f"{name} [{label}]" if label else name)

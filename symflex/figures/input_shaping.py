@@ -39,5 +39,5 @@ def draw_residual(shaper: InputShaper) -> Figure:
         axes.set_ylabel("Residual vibration [%]")
         add_legend_above(axes, len(DASHES))
         figure = axes.figure.get_figure(root=True)
-        write_title(figure, title_lines(f"{shaper.tf}, {shaper.kind.upper()} shaper", COLUMN_INCHES))
+        write_title(figure, title_lines(f"{shaper.tf}, {shaper.title}", COLUMN_INCHES))
     return figure

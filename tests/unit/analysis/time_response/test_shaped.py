@@ -14,6 +14,7 @@ from symflex import loads
 from symflex.analysis.input_shaping import input_shaper
 from symflex.analysis.time_response import SampleTimes, forced_response, time_response
 from symflex.errors import UsageError
+from symflex.figures import draw_in_time
 from tests.unit.analysis.systems import rational
 
 OSCILLATOR = "9/(s^2 + 3*s/5 + 9)"  # zeta = 0.1
@@ -112,3 +113,11 @@ def test_without_times_a_response_lasts_until_the_motion_has_died_away():
     found = loads(text).transfer_function("y", "u").bind().step_response()
     assert found.times[-1] == pytest.approx(5 / 0.3)
     assert found._repr_svg_().startswith("<?xml")
+
+
+def test_a_figure_of_a_shaped_response_names_the_shaper_once_in_its_title():
+    bound = rational(OSCILLATOR)
+    found = time_response(bound, "step", SampleTimes.evenly(Fraction(4), 41), shaper=input_shaper(bound))
+    (axes,) = draw_in_time(found).axes
+    assert axes.get_ylabel() == "Step response"
+    assert found.title == "step response, shaped by ZV"
