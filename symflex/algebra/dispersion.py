@@ -154,7 +154,7 @@ class KernelTable:
     def __bool__(self) -> bool:
         return bool(self.dispersions)
 
-    def without_tapers(self, what: str) -> None:
+    def without_tapers(self, what: str, hint: str = "its poles, zeros and values at frequencies are") -> None:
         """Return if no coefficient varies along x.
 
         Raises ModelError: SF910 when one does, saying that ``what`` is not available then.
@@ -162,7 +162,6 @@ class KernelTable:
         tapered = next((d for d in self.dispersions if d.matrix), None)
         if tapered is not None:
             message = f"{what} not available yet where coefficients vary along x, as in '{tapered.name}'"
-            hint = "its poles, zeros and values at frequencies are"
             raise ModelError(Diagnostic("SF910", message, None, hint))
 
     @property
