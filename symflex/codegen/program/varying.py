@@ -35,8 +35,15 @@ if TYPE_CHECKING:
 def build_varying(tf: TransferFunction) -> Piecewise:
     """Return the program for complex s.
 
-    Raises ModelError: SF910 where there are uniform members besides, or losses that vary along x.
+    Raises ModelError: SF910 where there are uniform members besides, losses that vary along x, or tips.
     """
+    tip = next((law.name for law in tf.kernels.dispersions if law.singular is not None), None)
+    if tip is not None:
+        message = (
+            f"code that starts where a stiffness vanishes, as at an end of '{tip}', is not available yet"
+        )
+        hint = "its poles, zeros and values at frequencies are there"
+        raise ModelError(Diagnostic("SF910", message, None, hint))
     if tf.kernels.wavenumbers:
         message = f"{tf.name} has uniform members besides tapered ones, for which there is no code yet"
         raise ModelError(
