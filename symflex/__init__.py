@@ -30,6 +30,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from symflex.api import (
+        BoundNestedTransferFunction,
         BoundTransferFunction,
         Fit,
         Form,
@@ -55,6 +56,7 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 _HOME = {
+    "BoundNestedTransferFunction": "symflex.api",
     "BoundTransferFunction": "symflex.api",
     "Budget": "symflex.budget",
     "Fit": "symflex.api",
@@ -79,6 +81,7 @@ _HOME = {
 }
 
 __all__ = [
+    "BoundNestedTransferFunction",
     "BoundTransferFunction",
     "Budget",
     "Fit",

@@ -8,9 +8,16 @@ from symflex.api.report import WrittenReport, write_report
 from symflex.api.root import Mode, Residue, Root, Sensitivity
 from symflex.api.stability import Stability, StabilityBoundary
 from symflex.api.state_space import StateSpace
-from symflex.api.transfer_function import Form, NestedTransferFunction, Number, TransferFunction
+from symflex.api.transfer_function import (
+    BoundNestedTransferFunction,
+    Form,
+    NestedTransferFunction,
+    Number,
+    TransferFunction,
+)
 
 __all__ = [
+    "BoundNestedTransferFunction",
     "BoundTransferFunction",
     "Fit",
     "Form",

@@ -12,7 +12,7 @@ from symflex import pipeline
 from symflex.analysis import response as response_room
 from symflex.analysis.time_response import StepInfo
 from symflex.api.mode_shape import ModeShape
-from symflex.api.plots import plot_functions
+from symflex.api.plots import Plotted
 from symflex.api.response import FrequencyResponse, TimeResponse
 from symflex.api.root import (
     Mode,
@@ -27,13 +27,12 @@ from symflex.api.root import (
 )
 from symflex.budget import Budget, entered_budget
 from symflex.errors import Diagnostic, UsageError
-from symflex.options import PlotOptions, RootsOptions
+from symflex.options import RootsOptions
 from symflex.roots.region import region_of
 
 if TYPE_CHECKING:
     import numpy as np
     import sympy
-    from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
     from symflex import roots as roots_room
@@ -42,8 +41,7 @@ if TYPE_CHECKING:
     from symflex.analysis.explanation import ZeroExplanation
     from symflex.analysis.input_shaping import InputShaper
     from symflex.analysis.sampling import SampledTransferFunction
-    from symflex.figures import AxesGiven
-    from symflex.options import Ends, Stated
+    from symflex.options import Stated
     from symflex.state_space.numeric import BoundStateSpace
 
 POINTS = 201
@@ -51,7 +49,7 @@ POINTS = 201
 
 
 @dataclass(frozen=True)
-class BoundTransferFunction:
+class BoundTransferFunction(Plotted):
     """A transfer function with numbers: evaluates, and finds its poles and zeros.
 
     Each is proved. A distributed system has infinitely many; they are found in a region.
@@ -510,131 +508,6 @@ class BoundTransferFunction:
 
         found = mode_shapes(self.bound, plain_mode(mode), digits)
         return tuple(ModeShape(shape, self.bound.source.model) for shape in found)
-
-    def bode(
-        self,
-        *others: BoundTransferFunction,
-        band: Ends | None = None,
-        ylim: Ends | None = None,
-        phase: Ends | None = None,
-        width: float | str | None = None,
-        font: str | None = None,
-        ax: AxesGiven | None = None,
-    ) -> Figure:
-        r"""Return a Bode plot, of other transfer functions too, as ``symflex plot bode`` draws it.
-
-        Parameters
-        ----------
-        *others : BoundTransferFunction
-            Drawn over it.
-        band : (float, float), optional
-            Frequencies shown [Hz], or texts with units; by default the model's, or all poles and zeros.
-        ylim, phase : (float, float), optional
-            Ends of the axes of magnitudes [dB] and phases [deg].
-        width : float or str, optional
-            Of the figure [mm], or ``"ieee"`` or ``"a4"``.
-        font : str, optional
-            ``times``, ``latex`` or ``sans``.
-        ax : two matplotlib axes, optional
-            Of your own, to draw on, in your own style; where there are lines already, the next colours are
-            taken. One alone shows magnitudes.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            A figure of no window: a notebook shows it, ``savefig`` writes it, its ``axes`` can be added to.
-            For a window give axes of :func:`matplotlib.pyplot.subplots`.
-
-        Raises
-        ------
-        UsageError
-            SF902 for limits that are none, and for too many axes or too few.
-        ModelError
-            SF402 where a function is identically zero.
-
-        Examples
-        --------
-        >>> from symflex import loads
-        >>> loop = loads('symflex = 1\ninputs.u = {}\noutputs.y = "u/((s + 1)*(s + 3))"')
-        >>> figure = loop.transfer_function("y", "u").bind().bode(band=(0.01, 10), ylim=(-60, 0))
-        >>> [axes.get_ylabel() for axes in figure.axes], figure.axes[0].get_ylim() == (-60, 0)
-        (['Magnitude [dB, 0 dB = 1 $\\mathrm{s^{2}}$]', 'Phase [deg]'], True)
-        """
-        given = PlotOptions("bode", band=band, ylim=ylim, phase=phase, width=width, font=font)
-        return plot_functions(given, [self.bound, *(other.bound for other in others)], ax)
-
-    def pole_zero_plot(
-        self,
-        *others: BoundTransferFunction,
-        modes: int | None = None,
-        band: Ends | None = None,
-        xlim: Ends | None = None,
-        ylim: Ends | None = None,
-        width: float | str | None = None,
-        font: str | None = None,
-        ax: AxesGiven | None = None,
-    ) -> Figure:
-        r"""Return the poles and zeros in the s plane, of other transfer functions in panels beside it.
-
-        Roots far outside of what is shown are named at the border, where an arrow points to them.
-
-        Parameters
-        ----------
-        *others, width, font, ax : optional
-            As for :meth:`bode`; one axes per function.
-        modes : int, optional
-            Of a distributed system, how many modes are shown; by default the model's, or five.
-        band : (float, float), optional
-            What is shown ends with that of the band [Hz].
-        xlim, ylim : (float, float), optional
-            Ends of the axes [rad/s].
-
-        Examples
-        --------
-        >>> from symflex import loads
-        >>> loop = loads('symflex = 1\ninputs.u = {}\noutputs.y = "u/((s + 1)*(s + 3))"')
-        >>> (panel,) = loop.transfer_function("y", "u").bind().pole_zero_plot(xlim=(-4, 1)).axes
-        >>> panel.get_xlim() == (-4, 1), panel.get_title()
-        (True, '$y/u$')
-        """
-        given = PlotOptions(
-            "poles_zeros", band=band, xlim=xlim, ylim=ylim, modes=modes, width=width, font=font
-        )
-        return plot_functions(given, [self.bound, *(other.bound for other in others)], ax)
-
-    def nyquist(
-        self,
-        *others: BoundTransferFunction,
-        band: Ends | None = None,
-        xlim: Ends | None = None,
-        ylim: Ends | None = None,
-        width: float | str | None = None,
-        font: str | None = None,
-        ax: AxesGiven | None = None,
-    ) -> Figure:
-        r"""Return the values on the imaginary axis as a curve, with the number of unstable poles.
-
-        :meth:`Model.nyquist` draws the gain of a loop that is closed in the model.
-
-        Parameters
-        ----------
-        *others, width, font, ax : optional
-            As for :meth:`bode`; one axes for all.
-        band : (float, float), optional
-            Frequencies drawn [Hz].
-        xlim, ylim : (float, float), optional
-            Ends of the axes.
-
-        Examples
-        --------
-        >>> from symflex import loads
-        >>> loop = loads('symflex = 1\ninputs.u = {}\noutputs.y = "u/((s - 1)*(s + 3))"')
-        >>> figure = loop.transfer_function("y", "u").bind().nyquist()
-        >>> figure.legends[0].get_title().get_text()
-        '1 pole in the right half plane'
-        """
-        given = PlotOptions("nyquist", band=band, xlim=xlim, ylim=ylim, width=width, font=font)
-        return plot_functions(given, [self.bound, *(other.bound for other in others)], ax)
 
     def state_space(self, *, minimal: bool = False) -> BoundStateSpace:
         """Return state equations of the model's network as arrays, every entry rounded once.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from symflex.options import PlotOptions, gain_ends
 from symflex.print.latex import column_width
@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 
     from symflex.figures import AxesGiven
     from symflex.loops import AnyLoop
-    from symflex.transfer import BoundTransferFunction
+    from symflex.options import Ends
+    from symflex.transfer import AnyBoundFunction
 
 
 def width_of(width: float | str | None) -> float | None:
@@ -30,7 +31,7 @@ def width_of(width: float | str | None) -> float | None:
 
 
 def plot_functions(
-    given: PlotOptions, bounds: Sequence[BoundTransferFunction], ax: AxesGiven | None = None
+    given: PlotOptions, bounds: Sequence[AnyBoundFunction], ax: AxesGiven | None = None
 ) -> Figure:
     """Draw a figure of transfer functions; see :func:`symflex.figures.draw`."""
     from symflex.figures import DEFAULT_FONT, draw, part_shown  # imports matplotlib
@@ -50,11 +51,147 @@ def plot_functions(
     )
 
 
-def _with_modes(bound: BoundTransferFunction, modes: int) -> BoundTransferFunction:
+def _with_modes(bound: AnyBoundFunction, modes: int) -> AnyBoundFunction:
     """Return a function whose model asks for so many modes."""
     model = bound.source.model
     model = replace(model, analysis=replace(model.analysis, modes=modes))
-    return replace(bound, source=replace(bound.source, model=model))
+    source: Any = replace(bound.source, model=model)  # of the kind that it was
+    return replace(bound, source=source)
+
+
+class Plotted:
+    """A transfer function with numbers that draws itself, alone or with others."""
+
+    if TYPE_CHECKING:
+
+        @property
+        def bound(self) -> AnyBoundFunction:
+            """What is drawn."""
+
+    def bode(
+        self,
+        *others: Plotted,
+        band: Ends | None = None,
+        ylim: Ends | None = None,
+        phase: Ends | None = None,
+        width: float | str | None = None,
+        font: str | None = None,
+        ax: AxesGiven | None = None,
+    ) -> Figure:
+        r"""Return a Bode plot, of other transfer functions too, as ``symflex plot bode`` draws it.
+
+        Parameters
+        ----------
+        *others : BoundTransferFunction or BoundNestedTransferFunction
+            Drawn over it.
+        band : (float, float), optional
+            Frequencies shown [Hz], or texts with units; by default the model's, or all poles and zeros.
+        ylim, phase : (float, float), optional
+            Ends of the axes of magnitudes [dB] and phases [deg].
+        width : float or str, optional
+            Of the figure [mm], or ``"ieee"`` or ``"a4"``.
+        font : str, optional
+            ``times``, ``latex`` or ``sans``.
+        ax : two matplotlib axes, optional
+            Of your own, to draw on, in your own style; where there are lines already, the next colours are
+            taken. One alone shows magnitudes.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            A figure of no window: a notebook shows it, ``savefig`` writes it, its ``axes`` can be added to.
+            For a window give axes of :func:`matplotlib.pyplot.subplots`.
+
+        Raises
+        ------
+        UsageError
+            SF902 for limits that are none, and for too many axes or too few.
+        ModelError
+            SF402 where a function is identically zero.
+
+        Examples
+        --------
+        >>> from symflex import loads
+        >>> loop = loads('symflex = 1\ninputs.u = {}\noutputs.y = "u/((s + 1)*(s + 3))"')
+        >>> figure = loop.transfer_function("y", "u").bind().bode(band=(0.01, 10), ylim=(-60, 0))
+        >>> [axes.get_ylabel() for axes in figure.axes], figure.axes[0].get_ylim() == (-60, 0)
+        (['Magnitude [dB, 0 dB = 1 $\\mathrm{s^{2}}$]', 'Phase [deg]'], True)
+        """
+        given = PlotOptions("bode", band=band, ylim=ylim, phase=phase, width=width, font=font)
+        return plot_functions(given, [self.bound, *(other.bound for other in others)], ax)
+
+    def pole_zero_plot(
+        self,
+        *others: Plotted,
+        modes: int | None = None,
+        band: Ends | None = None,
+        xlim: Ends | None = None,
+        ylim: Ends | None = None,
+        width: float | str | None = None,
+        font: str | None = None,
+        ax: AxesGiven | None = None,
+    ) -> Figure:
+        r"""Return the poles and zeros in the s plane, of other transfer functions in panels beside it.
+
+        Roots far outside of what is shown are named at the border, where an arrow points to them.
+
+        Parameters
+        ----------
+        *others, width, font, ax : optional
+            As for :meth:`bode`; one axes per function.
+        modes : int, optional
+            Of a distributed system, how many modes are shown; by default the model's, or five.
+        band : (float, float), optional
+            What is shown ends with that of the band [Hz].
+        xlim, ylim : (float, float), optional
+            Ends of the axes [rad/s].
+
+        Examples
+        --------
+        >>> from symflex import loads
+        >>> loop = loads('symflex = 1\ninputs.u = {}\noutputs.y = "u/((s + 1)*(s + 3))"')
+        >>> (panel,) = loop.transfer_function("y", "u").bind().pole_zero_plot(xlim=(-4, 1)).axes
+        >>> panel.get_xlim() == (-4, 1), panel.get_title()
+        (True, '$y/u$')
+        """
+        given = PlotOptions(
+            "poles_zeros", band=band, xlim=xlim, ylim=ylim, modes=modes, width=width, font=font
+        )
+        return plot_functions(given, [self.bound, *(other.bound for other in others)], ax)
+
+    def nyquist(
+        self,
+        *others: Plotted,
+        band: Ends | None = None,
+        xlim: Ends | None = None,
+        ylim: Ends | None = None,
+        width: float | str | None = None,
+        font: str | None = None,
+        ax: AxesGiven | None = None,
+    ) -> Figure:
+        r"""Return the values on the imaginary axis as a curve, with the number of unstable poles.
+
+        :meth:`Model.nyquist` draws the gain of a loop that is closed in the model.
+
+        Parameters
+        ----------
+        *others, width, font, ax : optional
+            As for :meth:`bode`; one axes for all.
+        band : (float, float), optional
+            Frequencies drawn [Hz].
+        xlim, ylim : (float, float), optional
+            Ends of the axes.
+
+        Examples
+        --------
+        >>> from symflex import loads
+        >>> loop = loads('symflex = 1\ninputs.u = {}\noutputs.y = "u/((s - 1)*(s + 3))"')
+        >>> figure = loop.transfer_function("y", "u").bind().nyquist()
+        >>> figure.legends[0].get_title().get_text()
+        '1 pole in the right half plane'
+        """
+        given = PlotOptions("nyquist", band=band, xlim=xlim, ylim=ylim, width=width, font=font)
+        return plot_functions(given, [self.bound, *(other.bound for other in others)], ax)
 
 
 def plot_loop(given: PlotOptions, loop: AnyLoop, ax: AxesGiven | None = None) -> Figure:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from symflex import pipeline
 from symflex.api.bound import BoundTransferFunction
+from symflex.api.plots import Plotted
 from symflex.api.state_space import StateSpace
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
@@ -18,7 +19,7 @@ from symflex.print.forms import PrintedForm, counts_of, hidden_expressions, prin
 from symflex.print.json_format import derive_json
 from symflex.print.sympy import symbols_of, to_sympy
 from symflex.print.text import form_text
-from symflex.transfer import bind_nested
+from symflex.transfer import BoundNested, bind_nested
 
 if TYPE_CHECKING:
     import sympy
@@ -298,7 +299,7 @@ class NestedTransferFunction(_Derived):
         """Return the transfer function as ``symflex derive --json`` lists it."""
         return derive_json(self.exact, print_form(self.exact))
 
-    def bind(self, **values: Number) -> transfer_room.BoundNested:
+    def bind(self, **values: Number) -> BoundNestedTransferFunction:
         """Return the function with the declared values, or the given ones in their place.
 
         Numbers are in SI units; strings may carry a unit, ``k="95 kN/m"``. Of what it returns, ``H(2j)`` is a
@@ -311,7 +312,27 @@ class NestedTransferFunction(_Derived):
         UsageError
             SF902 for an unknown parameter.
         """
-        return bind_nested(self.exact, values)
+        found = bind_nested(self.exact, values)
+        return BoundNestedTransferFunction(found.source, found.values)
 
     def __repr__(self) -> str:
         return f"<NestedTransferFunction {self.name}, {self.size} operations>"
+
+
+@dataclass(frozen=True, repr=False)
+class BoundNestedTransferFunction(BoundNested, Plotted):
+    r"""A nested transfer function with numbers: ``H(s)``, ``H.at(s)``, and figures.
+
+    Examples
+    --------
+    >>> from symflex import loads
+    >>> model = loads('symflex = 1\ninputs.u = {}\noutputs.y = "u/((s + 1)*(s + 3))"')
+    >>> bound = model.nested("y", "u").bind()
+    >>> round(abs(bound(1j)), 4), len(bound.bode(band=(0.01, 10)).axes)
+    (0.2236, 2)
+    """
+
+    @property
+    def bound(self) -> BoundNestedTransferFunction:
+        """Itself."""
+        return self

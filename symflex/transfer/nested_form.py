@@ -239,7 +239,7 @@ class BoundNested:
     values: tuple[tuple[str, ExactValue], ...]  # every parameter's value, in declared order
 
     def __repr__(self) -> str:
-        return f"<BoundNested {self.name}, {self.source.size} operations>"
+        return f"<{type(self).__name__} {self.name}, {self.source.size} operations>"
 
     @property
     def name(self) -> str:
