@@ -135,9 +135,9 @@ class Stability:
         return stability_text(self.proved)
 
     def _repr_html_(self) -> str:
-        from symflex.print.html import text_html  # only notebooks ask
+        from symflex.loops.stability_map import stability_html
 
-        return text_html(str(self))
+        return stability_html(self.proved)
 
     def __repr__(self) -> str:
         pieces = (f"{mpmath.nstr(a, 8)} < {self.proved.gain} < {mpmath.nstr(b, 8)}" for a, b in self.stable)

@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 
 DEFAULT_MODES: Final = 5
 MODES_LIMIT: Final = 40
-ROW_INCHES, PLAN_INCHES, HEADING_INCHES, AXIS_INCHES, LEGEND_INCHES = 0.56, 1.1, 0.17, 0.38, 0.06
+ROW_INCHES, PLAN_INCHES, HEADING_INCHES, AXIS_INCHES, LEGEND_INCHES = 0.56, 1.5, 0.17, 0.38, 0.06
 LEFT, RIGHT = 0.46, 0.08
 GAP, LABELLED_GAP = 0.34, 0.54
 LABEL_OFFSET: Final = 0.35
@@ -111,7 +111,8 @@ def draw_shapes(
         message = f"{len(panels)} panels side by side have no room in {MM_PER_INCH * width:.4g} mm"
         raise UsageError(Diagnostic("SF902", message, None, "the width of a page is 170 mm"))
     is_lagging = any(_lags(panel, shape) for shape in shapes for panel in panels)
-    below = AXIS_INCHES + _name_inches(panels, columns)
+    has_axis = any(not isinstance(panel, Plan) for panel in panels)
+    below = AXIS_INCHES + _name_inches(panels, columns) if has_axis else RIGHT
     above = LINE_INCHES * len(lines) + (LEGEND_INCHES if is_lagging else 0) + 0.02
     row = PLAN_INCHES if any(isinstance(panel, Plan) for panel in panels) else ROW_INCHES
     height = above + len(shapes) * (HEADING_INCHES + row) + below
@@ -259,7 +260,7 @@ def _draw_plan(axes: Axes, panel: Plan, shape: EnclosedModeShape) -> None:
             zorder=4,
         )
     axes.set_aspect("equal", adjustable="datalim")
-    axes.margins(SWING + 0.02)
+    axes.margins(0.03)  # beyond the moved members, which count for the limits
     axes.set_axis_off()
 
 

@@ -5,12 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from math import pi
+from typing import TYPE_CHECKING
 
 from flint import arb
 
 from symflex.print.text import INDENT, aligned
 from symflex.roots import decimals, precision
 from symflex.transfer.balls import ball
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 SCHEMA = "symflex.stability/1"
 BITS = 128
@@ -295,40 +299,57 @@ class PoleCount:
 SHORT_DIGITS = 6
 
 
+Block = tuple[list[str], list[tuple[str, ...]]]
+"""Lines, and the rows of a table below them; the first one is its head, except of margins."""
+
+
 def stability_text(found: StabilityMap) -> str:
     """Return stable ranges, boundaries, counts and margins, in 80 columns for up to 20 digits."""
+    return "\n\n".join(
+        "\n".join([*lines, *(aligned(rows) if rows else ())]) for lines, rows in _blocks(found)
+    )
+
+
+def stability_html(found: StabilityMap) -> str:
+    """Return the same for a notebook: paragraphs and tables."""
+    from symflex.print.html import TEXT, escape_html, html_table  # only notebooks ask
+
+    parts = []
+    for lines, rows in _blocks(found):
+        said = "<br>".join(map(escape_html, lines))
+        head, *body = [[escape_html(cell).replace("-", "\u2212") for cell in row] for row in rows] or [[]]
+        if lines[0].startswith(f"{INDENT}margins"):
+            head, body = [""] * len(head), [head, *body]
+        parts.append(html_table(head, [TEXT] * len(head), body, said) if rows else f"<p>{said}</p>")
+    return "\n".join(parts)
+
+
+def _blocks(found: StabilityMap) -> Iterator[Block]:
     unit = f" [{found.unit}]" if found.unit else ""
     lines = [f"{found.gain}{unit}   {_status(found)}", f"{INDENT}examined: {_examined(found)}"]
     lines += [f"{INDENT}not proved: {reason}" for reason in found.reasons]
     if found.nominal is not None:
         lines.append(f"{INDENT}{found.gain} = {_number(found.nominal)}: {nominal_text(found)}")
+    yield lines, []
     scope = "" if found.is_complete else ", as far as poles were counted"
-    stable = found.stable
-    lines += ["", f"{INDENT}stable for{scope}" + (":" if stable else ": no gain")]
-    lines += [2 * INDENT + _between(interval, found) for interval in stable]
-    lines += ["", f"{INDENT}boundaries: {len(found.boundaries) or 'none'}"]
-    if found.boundaries:
-        lines += aligned(
-            [
-                (found.gain, "radius", "omega [rad/s]", "f [Hz]", "unstable poles"),
-                *(_boundary_row(found, i) for i in range(len(found.boundaries))),
-            ]
-        )
-    lines += ["", f"{INDENT}poles that are not in the left half plane"]
-    rows = [("from", "to", "right of the axis", "on the axis")]
-    rows += [
+    stable = [2 * INDENT + _between(interval, found) for interval in found.stable]
+    yield [f"{INDENT}stable for{scope}" + (":" if stable else ": no gain"), *stable], []
+    head = (found.gain, "radius", "omega [rad/s]", "f [Hz]", "unstable poles")
+    rows = [head, *(_boundary_row(found, i) for i in range(len(found.boundaries)))]
+    yield [f"{INDENT}boundaries: {len(found.boundaries) or 'none'}"], rows if found.boundaries else []
+    counted = [
         (_end(i.low, "-inf"), _end(i.high, "inf"), str(i.poles.right), str(i.poles.axis))
         for i in found.intervals
     ]
-    lines += aligned(rows)
+    title = f"{INDENT}poles that are not in the left half plane"
+    yield [title], [("from", "to", "right of the axis", "on the axis"), *counted]
     if found.gain_margins or found.phase_margins:
-        lines += _margins(found)
+        yield _margins(found)
     if found.bandwidth is not None:
-        lines += ["", f"{INDENT}bandwidth, where the gain may still double (6 dB)"]
-        lines.append(2 * INDENT + bandwidth_text(found.gain, found.bandwidth))
+        said = 2 * INDENT + bandwidth_text(found.gain, found.bandwidth)
+        yield [f"{INDENT}bandwidth, where the gain may still double (6 dB)", said], []
     if found.boundaries:
-        lines += ["", f"{INDENT}radius bounds the distance from the printed gain to the boundary"]
-    return "\n".join(lines)
+        yield [f"{INDENT}radius bounds the distance from the printed gain to the boundary"], []
 
 
 def _status(found: StabilityMap) -> str:
@@ -398,8 +419,8 @@ def _places(boundary: Boundary, digits: int) -> tuple[str, str]:
     return ", ".join(omegas), ", ".join(cycles)
 
 
-def _margins(found: StabilityMap) -> list[str]:
-    lines = ["", f"{INDENT}margins of {found.gain} = {_number(found.nominal)}"]
+def _margins(found: StabilityMap) -> Block:
+    lines = [f"{INDENT}margins of {found.gain} = {_number(found.nominal)}"]
     rows: list[tuple[str, ...]] = []
     for margin in found.gain_margins:
         places = ", ".join(
@@ -416,7 +437,7 @@ def _margins(found: StabilityMap) -> list[str]:
         flag = ", the smallest" if each is worst and len(found.phase_margins) > 1 else ""
         shown = decimals(abs(angle), arb(0), SHORT_DIGITS).re
         rows.append(("phase", f"{shown} deg", direction, place + flag))
-    return lines + aligned(rows)
+    return lines, rows
 
 
 def bandwidth_text(gain: str, found: AllowedBandwidth) -> str:

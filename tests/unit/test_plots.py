@@ -6,6 +6,7 @@ import re
 from io import BytesIO
 
 import matplotlib
+import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
@@ -256,3 +257,30 @@ def test_state_equations_are_matrices_in_a_notebook(drive):
 
 def test_a_mode_shape_is_a_picture_in_a_notebook(actuator):
     assert actuator.mode_shape(1)._repr_png_()[0].startswith(PNG)
+
+
+def test_a_nested_function_draws_the_curve_of_the_expanded_one():
+    model = symflex.loads(
+        'symflex = 1\nelements.m = { type = "mass", at = "x", m = "2 kg" }\n'
+        'elements.k = { type = "spring", between = ["x", "ground"], k = "8 N/m" }\n'
+        'inputs.F = { force = "x" }\noutputs.X = "x"\n'
+    )
+    nested, expanded = model.nested("X", "F").bind(), model.transfer_function("X", "F").bind()
+    curve = nested.bode(band=(0.01, 1)).axes[0].lines[0]
+    # |1/(8 - 2 omega^2)| in dB, by hand.
+    omega = 2 * np.pi * np.asarray(curve.get_xdata())
+    beside = abs(8 - 2 * omega**2) > 1e-3  # the pole itself is at infinity
+    drawn = np.asarray(curve.get_ydata())[beside]
+    assert drawn == pytest.approx(-20 * np.log10(abs(8 - 2 * omega[beside] ** 2)), abs=1e-6)
+    assert len(drawn) > 50
+    assert len(expanded.bode(nested).axes[0].lines) == 2
+    assert len(nested.pole_zero_plot().axes) == 1
+    assert nested.nyquist().legends[0].get_title().get_text() == "no pole in the right half plane"
+
+
+def test_a_notebook_shows_stability_as_tables():
+    """K/(s (s + 1)(s + 2)) around a loop: the boundary lies at K = 6, by Routh's table."""
+    shown = symflex.loads(LOOP).stability("K")._repr_html_()
+    assert "<pre>" not in shown
+    assert shown.count("<table>") == 3
+    assert re.search(r"<td[^>]*>6</td>", shown)
