@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import random
 from functools import cache
-from itertools import cycle
+from itertools import cycle, pairwise
 
 import numpy as np
 import pytest
@@ -236,3 +236,29 @@ def test_tapered_rods_shafts_and_strings_answer_as_taylor_steps_do(case):
     kind, _, _ = case
     fastest = 500.0 if kind == "string" else 4e4
     check(bar_text(*case), bar_slopes(*case), 2, lambda z, _: z[0, 1] / z[1, 1], fastest)
+
+
+def stepped(s, count):
+    """Return the receptance of a rod of uniform pieces, each with the section of its middle."""
+    state = np.array([0, 1], dtype=complex)
+    speed = 1j * s * np.sqrt(RHO / E)
+    for piece in range(count):
+        stiff = E * float(A_0) * (1 - (piece + 0.5) / (2 * count))
+        grown = -speed / count
+        wave = np.array(
+            [
+                [np.cos(grown), np.sin(grown) / (-speed * stiff)],
+                [speed * stiff * np.sin(grown), np.cos(grown)],
+            ]
+        )
+        state = wave @ state
+    return state[0] / state[1]
+
+
+def test_uniform_steps_come_closer_by_the_square_of_their_number():
+    bound, _ = bound_of(bar_text("rod", "wedge", "none"))
+    s = 700 + 9000j
+    errors = [abs(stepped(s, count) - bound(s)) for count in (20, 40, 80, 160)]
+    assert errors[0] < 1e-2 * abs(bound(s))
+    for coarse, fine in pairwise(errors):
+        assert coarse / fine == pytest.approx(4, rel=0.01)
