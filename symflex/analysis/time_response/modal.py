@@ -63,6 +63,8 @@ MOST_SEARCHED = 100
 """The same where each is searched in the plane, and does not follow from others: that takes some seconds."""
 MOST_CONTINUED = 5000
 """The same where each is told by those before: a millisecond or two."""
+LONG = 100
+"""Exponentials of a function of which no more are searched than at first: a portal frame has 274."""
 SLOW_MODES = 1000
 """Where even these would not do."""
 ROUNDS = 3
@@ -149,9 +151,10 @@ def _of_bounded(
     largest = max((abs(y.mid()) for y in found.values), default=arb(0))
     goal = float(largest) * 10.0 ** -min(digits, MOST_DIGITS)
     counts = few, many
+    most = MOST_CONTINUED if bounding.function.length <= LONG else many
     for _ in range(ROUNDS):
-        wanted = _needed((counts[0], float(first.rest)), (counts[1], float(found.rest)), goal, MOST_CONTINUED)
-        wanted = SLOW_MODES if wanted == MOST_CONTINUED else wanted
+        wanted = _needed((counts[0], float(first.rest)), (counts[1], float(found.rest)), goal, most)
+        wanted = min(SLOW_MODES, most) if wanted == most else wanted
         more = modes.summed(wanted) if wanted > counts[1] else None
         if more is None:
             break

@@ -100,6 +100,11 @@ class SizeOfFunction:
         with precision(BITS):
             return cls(bound, ExponentialValues(bound.kernel_values(), arguments, tuple(found)))
 
+    @property
+    def length(self) -> int:
+        """How many exponentials it is made of."""
+        return sum(len(terms.terms) for terms, _ in self.values.sums)
+
     def at(self, s: acb, sharp: float = 1.0) -> arb | None:
         """Return the most that abs(H) is on a ball; None where it is not told, to about a share."""
         spend()
