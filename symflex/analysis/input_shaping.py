@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from symflex.roots import Root
-    from symflex.transfer import BoundTransferFunction
+    from symflex.transfer import AnyBoundFunction
 
 SCHEMA = "symflex.shape/1"
 TOLERANCE = 0.05
@@ -165,13 +165,13 @@ class InputShaper:
 
 
 def input_shaper(
-    bound: BoundTransferFunction, modes: int = 1, kind: str = "zv", digits: int = 15, *, joint: bool = False
+    bound: AnyBoundFunction, modes: int = 1, kind: str = "zv", digits: int = 15, *, joint: bool = False
 ) -> InputShaper:
     """Return a shaper for the lowest modes that oscillate.
 
     Parameters
     ----------
-    bound : BoundTransferFunction
+    bound : BoundTransferFunction or BoundNested
         Whose poles they are; proved.
     modes : int
         How many of them, by natural frequency.
@@ -225,7 +225,7 @@ def input_shaper(
     return InputShaper(bound.name, kind, chosen, tuple(impulses), digits, bits, joint)
 
 
-def _of_mode(bound: BoundTransferFunction, root: Root, kind: str) -> list[tuple[arb, arb]]:
+def _of_mode(bound: AnyBoundFunction, root: Root, kind: str) -> list[tuple[arb, arb]]:
     half = arb.pi() / root.im
     amplitudes = SHAPERS[kind]((root.re * half).exp(), arb(TOLERANCE))
     if not all(a > 0 for a in amplitudes):
@@ -235,7 +235,7 @@ def _of_mode(bound: BoundTransferFunction, root: Root, kind: str) -> list[tuple[
 
 
 def _jointly(
-    bound: BoundTransferFunction, chosen: Sequence[Root], kind: str, longest: float, bits: int
+    bound: AnyBoundFunction, chosen: Sequence[Root], kind: str, longest: float, bits: int
 ) -> list[tuple[arb, arb]]:
     poles = [root.enclosure() for root in chosen]
     found = joint_impulses(poles, ORDERS[kind], longest, bits)

@@ -37,6 +37,7 @@ def respond(spec: Specification, given: RespondOptions) -> int:
     from symflex import pipeline
     from symflex.analysis.time_response import SampleTimes, evenly, find_step_info, response_text
     from symflex.data.measurement.input_signal import read_signal
+    from symflex.transfer import BoundNested
 
     if given.output:
         check_place(given.output, (TABLE, *PICTURES))
@@ -49,7 +50,8 @@ def respond(spec: Specification, given: RespondOptions) -> int:
     if signal is None and until is None:
         raise UsageError(Diagnostic("SF902", "--until is missing: how long?", None, "as in --until 0.5s"))
     model = spec.load()
-    (bound,) = pipeline.derive_bound(model, [first_pair(model, given.tf, "showing")])
+    pair = first_pair(model, given.tf, "showing")
+    (bound,) = pipeline.derive_for_roots(model, [pair], is_explained=True)
     shaper = None
     if given.shaped is not None:
         from symflex.analysis.input_shaping import input_shaper
@@ -62,7 +64,8 @@ def respond(spec: Specification, given: RespondOptions) -> int:
         wanted = signal.times
         if until is not None or given.points is not None:
             wanted = evenly(until or signal.times[-1], given.points or POINTS)
-        forced = pipeline.forced_response(bound, signal.times, signal.values, wanted, given.digits, shaper)
+        whole = pipeline.derive_bound(model, [pair])[0] if isinstance(bound, BoundNested) else bound
+        forced = pipeline.forced_response(whole, signal.times, signal.values, wanted, given.digits, shaper)
         found = replace(forced, input=Path(given.to).name)
     if given.output and Path(given.output).suffix.lower() == TABLE:
         from symflex.files.write import write_atomically
@@ -101,7 +104,7 @@ def shape(spec: Specification, given: ShapeOptions) -> int:
     if given.output:
         check_place(given.output, PICTURES)
     model = spec.load()
-    (bound,) = pipeline.derive_bound(model, [first_pair(model, given.tf, "shaping")])
+    (bound,) = pipeline.derive_for_roots(model, [first_pair(model, given.tf, "shaping")], is_explained=True)
     found = input_shaper(bound, given.modes, given.kind, given.digits, joint=given.joint)
     if given.as_json:
         emit_json(found.to_json_dict())

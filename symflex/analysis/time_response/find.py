@@ -33,17 +33,19 @@ from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.expressions.format import decimal_exponent
 from symflex.roots.functions.simplified import without_lengths_of_zero
+from symflex.roots.locate import equations_of
 from symflex.roots.polynomial_roots import find_polynomial_roots
 from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.problem import problem_of
 from symflex.roots.root import exact_fraction
+from symflex.transfer import BoundNested
 from symflex.transfer.balls import at_centre
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from symflex.analysis.input_shaping import InputShaper
-    from symflex.transfer import BoundTransferFunction
+    from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 
 GUARD_DIGITS = 6
 SHAPED_DIGITS = 2
@@ -54,7 +56,7 @@ MOST_DIGITS = 20_000
 
 
 def time_response(
-    bound: BoundTransferFunction,
+    bound: AnyBoundFunction,
     kind: str,
     times: SampleTimes,
     digits: int = 12,
@@ -89,8 +91,11 @@ def time_response(
         raise UsageError(Diagnostic("SF902", f"there is no input '{kind[:64]}'", None, hint))
     if shaper is not None:
         return _shaped(bound, kind, times, digits, shaper)
-    bound = without_lengths_of_zero(bound)
-    found, reason = _found(bound, INTEGRATIONS[kind], times, digits)
+    if isinstance(bound, BoundNested):
+        found, reason = _of_network(bound, INTEGRATIONS[kind], times)
+    else:
+        bound = without_lengths_of_zero(bound)
+        found, reason = _found(bound, INTEGRATIONS[kind], times, digits)
     unit, certified = bound.source.output.unit, reason is None
     return EnclosedResponse(
         bound.name,
@@ -107,7 +112,7 @@ def time_response(
 
 
 def _shaped(
-    bound: BoundTransferFunction, kind: str, times: SampleTimes, digits: int, shaper: InputShaper
+    bound: AnyBoundFunction, kind: str, times: SampleTimes, digits: int, shaper: InputShaper
 ) -> EnclosedResponse:
     """Return the sum of the responses to the impulses of a shaper, each from its own moment on."""
     inner = digits + SHAPED_DIGITS
@@ -146,6 +151,18 @@ def _shaped(
         digits=digits,
         shaper=shaper.kind,
     )
+
+
+def _of_network(bound: BoundNested, integrations: int, times: SampleTimes) -> tuple[Sampled, str | None]:
+    """Return the response of a network that nobody writes out, and what is not proved of it."""
+    if bound.is_zero or not len(times):
+        return Sampled((arb(0),) * len(times)), None
+    propagation = equations_of(bound).propagation
+    laws = () if propagation is None else propagation.table.dispersions
+    if any(law.kind == "exponential" for law in laws):
+        message = f"{bound.name} is of a large network with delays: its response in time is not known"
+        raise ModelError(Diagnostic("SF813", message, None, "take 'symflex rational' of it first"))
+    return estimated(bound, integrations, times)
 
 
 def _found(

@@ -47,7 +47,7 @@ if TYPE_CHECKING:
 
     from symflex.analysis.time_response.sample_times import SampleTimes
     from symflex.roots import Root
-    from symflex.transfer import BoundTransferFunction
+    from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 
 MOST_DIGITS = 9
 """Of the largest value, where modes have no end: 10^-9 takes some 500 of a beam's displacement."""
@@ -386,7 +386,7 @@ def _needed(few: tuple[int, float], many: tuple[int, float], goal: float, most: 
     return min(most, round(1.2 * many[0] * 2 ** min(growth / log(2), 20)))
 
 
-def _at_origin(bound: BoundTransferFunction, integrations: int) -> list[ExponentialTerm] | None:
+def _at_origin(bound: AnyBoundFunction, integrations: int) -> list[ExponentialTerm] | None:
     """Return what the pole at s = 0 adds, a polynomial in t; None where it is not proved."""
     series = expand_at_zero(bound, integrations - 1, DIGITS)
     if series.is_estimate:
@@ -398,7 +398,7 @@ def _at_origin(bound: BoundTransferFunction, integrations: int) -> list[Exponent
     return [ExponentialTerm(acb(0), coefficients)]
 
 
-def estimated(bound: BoundTransferFunction, integrations: int, times: SampleTimes) -> tuple[Sampled, str]:
+def estimated(bound: AnyBoundFunction, integrations: int, times: SampleTimes) -> tuple[Sampled, str]:
     """Return the sum over the lowest modes, and what is not proved of it.
 
     Raises UncertifiedError: SF810 where modes do not say what the response is.

@@ -28,11 +28,12 @@ from symflex.roots.polynomial_roots import find_polynomial_roots
 from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.problem import problem_of
 from symflex.roots.root import decimals
+from symflex.transfer import BoundNested
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.transfer import BoundTransferFunction
+    from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 
 RISE = (0.1, 0.9)
 """Of the final value, between which the rise time is counted."""
@@ -111,12 +112,15 @@ class StepInfo:
         return found
 
 
-def find_step_info(bound: BoundTransferFunction, digits: int = 12) -> StepInfo | None:
+def find_step_info(bound: AnyBoundFunction, digits: int = 12) -> StepInfo | None:
     """Return the properties of a step response, from poles of about so many digits.
 
     None where it does not come to rest, or at 0, where poles cannot be told apart, with delays, and with
-    waves whose modes are not bounded. With waves, numbers are as sharp as the modes left out allow.
+    waves whose modes are not bounded, as those of large networks. With waves, numbers are as sharp as the
+    modes left out allow.
     """
+    if isinstance(bound, BoundNested):
+        return None
     bound = without_lengths_of_zero(bound)
     if bound.is_zero:
         return None

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import pytest
 
 from symflex import pipeline
+from symflex.analysis.time_response import SampleTimes
 from symflex.roots import Modes
 from symflex.transfer import BoundNested
 from symflex.transfer.nested_form import bind_any
@@ -43,3 +46,12 @@ def test_an_approximation_of_three_beams_is_close_to_them_below_its_modes(form):
     assert found.leading_coefficient == pytest.approx(bound(0j).real, rel=1e-12)
     omega = 2.5
     assert abs(found(1j * omega) / bound(1j * omega) - 1) < 2e-3
+
+
+def test_a_step_response_is_that_of_the_formula_and_not_certified():
+    times = SampleTimes.evenly(Fraction(1, 5), 9)
+    written, network = (pipeline.time_response(bound_of(1, k), "step", times) for k in ("expanded", "nested"))
+    assert not network.certified and "the lowest 25" in network.reason
+    assert all(a.overlaps(b) for a, b in zip(network.enclosures, written.enclosures, strict=True))
+    largest = max(abs(written.values))
+    assert float(max(y.rad() for y in network.enclosures)) < 1e-3 * largest
