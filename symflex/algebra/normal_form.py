@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from symflex.algebra.ring import Ring
 
 
+TWO_STATES = 2
 PAIR_TERMS = 60_000
 """Terms up to which powers of a pair of wavenumbers are replaced: some seconds."""
 
@@ -64,7 +65,7 @@ class NormalForm:
 
         Without ``pairs``, the relations between two wavenumbers of one dispersion are left unused.
         """
-        polynomial = self.without_odd_squares(polynomial)
+        polynomial = self._without_determinants(self.without_odd_squares(polynomial))
         result = Factored.number(self.ring, 1)
         for dispersion in self.table.dispersions:
             if dispersion.kind == "pair" and not pairs:
@@ -119,6 +120,39 @@ class NormalForm:
             spend()
             _, moved = divmod(moved, relation)
         return moved.project_to_context(self.ring.context)
+
+    @cached_property
+    def _determinants(self) -> tuple[tuple[fmpz_mpoly_ctx, fmpz_mpoly, tuple[int, int]], ...]:
+        """The relation ``T_00 T_11 - T_01 T_10 = 1`` of every matrix of two states whose law has no trace.
+
+        So it is by Liouville's formula, of rods, shafts and strings that change along x. With it goes a ring
+        in which its first product leads, and where the two entries of that stand in this one.
+        """
+        matrices: dict[tuple[Dispersion, Factored], dict[int, str]] = {}
+        for k in self.table.kernels:
+            law = k.dispersion
+            if k.function == "entry" and law.order == TWO_STATES and law.singular is None:
+                matrices.setdefault((law, k.length), {})[k.order] = k.generator
+        found = []
+        for (law, _), entries in matrices.items():
+            if len(entries) == TWO_STATES**2 and (law.matrix[0][0] + law.matrix[1][1]).is_zero:
+                first, second = entries[0], entries[3]
+                rest = [n for n in self.ring.context.names() if n not in (first, second)]
+                context = fmpz_mpoly_ctx.get([first, second, *rest], Ordering.lex)
+                a, b, c, d = (self.ring.generator(entries[i]).project_to_context(context) for i in range(4))
+                place = self.ring.index[first], self.ring.index[second]
+                found.append((context, a * d - b * c - 1, place))
+        return tuple(found)
+
+    def _without_determinants(self, polynomial: fmpz_mpoly) -> fmpz_mpoly:
+        """Return the polynomial with 1 in place of determinants that are always 1."""
+        for context, relation, place in self._determinants:
+            degrees = polynomial.degrees()
+            if all(int(degrees[i]) for i in place):
+                spend()
+                _, rest = divmod(polynomial.project_to_context(context), relation)
+                polynomial = rest.project_to_context(self.ring.context)
+        return polynomial
 
     def _disperse(self, polynomial: fmpz_mpoly, dispersion: Dispersion) -> tuple[fmpz_mpoly, Factored]:
         """Return a multiple of the polynomial in normal form, and the factor it was multiplied by."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, exp, isclose, sin, sqrt
+from math import cos, exp, isclose, sin, sqrt, tan
 from pathlib import Path
 
 import numpy as np
@@ -140,6 +140,15 @@ def test_the_conical_horn_is_a_uniform_rod_in_u_times_the_diameter():
         c, s = cos(k * v["l"]), sin(k * v["l"])
         b = -(-k * s * d + c * v["c"] / v["l"]) / (k * c * d + s * v["c"] / v["l"])
         assert found(1j * omega) == pytest.approx((c + b * s) / d, rel=1e-11)
+
+
+def test_the_conical_horn_has_the_poles_of_its_closed_form_and_no_zeros():
+    """A base that is driven and a tool that is free: tan(q) = -q (1 - c)/c with q = omega l sqrt(rho/E)."""
+    v, located = given("conical_horn"), pipeline.roots(bound("conical_horn"), Modes(3))
+    assert located.certificate.certified and not located.zeros
+    for pole in located.poles[::2]:
+        q = abs(float(pole.im)) * v["l"] * sqrt(v["rho"] / v["E"])
+        assert isclose(tan(q), -q * (1 - v["c"]) / v["c"], rel_tol=1e-11)
 
 
 def test_the_exponential_horn_is_a_rod_with_a_cut_off():
