@@ -41,6 +41,14 @@ def specifications(folder: Path, pattern: str) -> list[Path]:
     return sorted(path for path in folder.glob(pattern) if path.name != "claims.toml")
 
 
+def uniform(paths: Iterable[Path]) -> list[Path]:
+    """Return the specifications without those of members that taper.
+
+    These have no mode shapes, sensitivities, JSON of kernels or code but numpy's yet (SF910).
+    """
+    return [path for path in paths if path.parent.name != "tapers"]
+
+
 def tracked_files() -> list[Path]:
     """Return every file that is, or would be, under version control."""
     command = [

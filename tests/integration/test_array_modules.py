@@ -17,13 +17,13 @@ from flint import acb
 
 from symflex import pipeline
 from symflex.codegen.exporters import EXPORTERS
-from tests.house.repository import slow_ones, specifications
+from tests.house.repository import slow_ones, specifications, uniform
 from tests.unit.codegen.against_balls import axis_points, worst_errors
 from tests.unit.codegen.exportable import MASSLESS, PIPE
 from tests.unit.codegen.test_numpy_distributed import beam, clamped_end_compliance, specification
 
 ROOT = Path(__file__).parents[2]
-SPECS = {path.stem: path for path in specifications(ROOT / "derivations", "*/*.toml")}
+SPECS = {path.stem: path for path in uniform(specifications(ROOT / "derivations", "*/*.toml"))}
 
 needs_strict = pytest.mark.needs_module("array_api_strict")
 needs_jax = pytest.mark.needs_module("jax")

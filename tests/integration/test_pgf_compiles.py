@@ -96,8 +96,10 @@ def test_the_files_of_every_model_compile_without_a_warning(engine, path, width,
     model = pipeline.load(path)
     derived, _ = pipeline.derive_as(model, model.transfer_functions, is_read=True)
     files, warnings = LatexExporter(width).export_files(model, derived)
-    assert warnings == ()
-    assert sum(name.endswith(".pgf") for name in files) >= len(PICTURES) - 1
+    without_modes = [w for w in warnings if "mode shapes are not available yet where coefficients vary" in w]
+    assert list(warnings) == without_modes
+    pictures = sum(name.endswith(".pgf") for name in files)
+    assert pictures >= len(PICTURES) - 1 - len(without_modes)
     for name, text in files.items():
         (tmp_path / name).write_text(text, encoding="ascii")
     assert compiled(engine, tmp_path, DOCUMENT.removesuffix(".tex")) == []

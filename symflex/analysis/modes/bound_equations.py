@@ -138,11 +138,12 @@ class BoundEquations:
     def at(self, s: acb) -> SystemAt:
         """Return the equations at a ball of s [rad/s], at the current precision."""
         equations = self.equations
+        if equations.propagation is not None:
+            equations.propagation.table.without_tapers("mode shapes are")
         known = self._constants()
         values: Values = {LAPLACE: s, **{name: acb(value) for name, value in known.items()}}
         waiting = [(n, v) for n, v in equations.definitions if not _define(n, v, values)]
         if equations.propagation is not None:
-            equations.propagation.table.without_tapers("mode shapes are")
             values |= _propagators(equations.propagation, values)
         for name, value in waiting:
             _define(name, value, values)

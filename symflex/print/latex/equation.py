@@ -39,6 +39,8 @@ _LINES_PER_DISPLAY: Final = 300
 _TAG: Final = 2.9
 """A number of three digits and the least room before it."""
 _PARENTHESES: Final = 0.781
+_Sides = tuple[str, float, "Expression"]
+"""The left side of an equation with its width [em], and the right one."""
 _WHERE: Final = r"\text{where}\quad "
 _WHERE_WIDTH: Final = 3.57
 _LEAST_ROOM: Final = 17.5
@@ -128,7 +130,7 @@ def formula_latex(
     rows = [_row(left, left_width, expression, writer, width, left_width)]
     parts = [_align(rows, "align*", "")]
     if where:
-        lines = _broken_rows(where, writer, width - _WHERE_WIDTH)
+        lines = _broken_rows(_defined(where, writer), writer, width - _WHERE_WIDTH)
         lines[0] = _DisplayRow(f"{_WHERE}{lines[0].left}", lines[0].left_width, lines[0].right)
         parts.append(_align(lines, "align*", ""))
     return "\n".join(parts)
@@ -140,8 +142,8 @@ def inline_latex(tf: AnyTransferFunction, form: PrintedForm) -> str:
     formula = f"{_left_side(tf, form, writer)[0]} = {_right_side(form, writer)[0]}"
     if not (form.where or form.laws):
         return formula
-    where = [f"{writer.label(n).latex} = {writer.piece(e).markup}" for n, e in form.where]
-    where += [f"{law.markup} = {value}" for law, value in _laws(form, writer)]
+    sides = [*_defined(form.where, writer), *_laws(form, writer)]
+    where = [f"{left} = {writer.piece(right).markup}" for left, _, right in sides]
     return rf"{formula},\quad \text{{where }} " + r",\; ".join(where)
 
 
@@ -277,18 +279,22 @@ def free_names(form: PrintedForm, writer: ExpressionWriter) -> tuple[str, str]:
 def _where_rows(form: PrintedForm, writer: Writer, width: float | None) -> list[_DisplayRow]:
     if not (form.where or form.laws):
         return []
-    laws = _laws(form, writer)
-    widest = max((left.width for left, _ in laws), default=0.0)
-    rows = _broken_rows(form.where, writer, width, widest) if form.where else []
-    rows += [_DisplayRow(left.markup, left.width, (value,)) for left, value in laws]
+    rows = _broken_rows([*_defined(form.where, writer), *_laws(form, writer)], writer, width)
     first = rows[0]
     rows[0] = _DisplayRow(f"{_WHERE}{first.left}", first.left_width, first.right)
     return rows
 
 
-def _laws(form: PrintedForm, writer: Writer) -> list[tuple[Written, str]]:
+def _defined(where: Sequence[tuple[str, Expression]], writer: Writer) -> list[_Sides]:
+    """Return both sides of definitions of names."""
+    labels = [(writer.label(name), expression) for name, expression in where]
+    return [(label.latex, label.width, expression) for label, expression in labels]
+
+
+def _laws(form: PrintedForm, writer: Writer) -> list[_Sides]:
     """Return the differential equations of functions of x and their values at x = 0."""
-    return [(writer.piece(left), writer.piece(right).markup) for left, right in laws_and_starts(form)]
+    sides = [(writer.piece(left), right) for left, right in laws_and_starts(form)]
+    return [(left.markup, left.width, right) for left, right in sides]
 
 
 def laws_and_starts(form: PrintedForm) -> Iterator[tuple[Expression, Expression]]:
@@ -302,16 +308,10 @@ def laws_and_starts(form: PrintedForm) -> Iterator[tuple[Expression, Expression]
         yield from ((Call(name, number(0), k), number(int(k == order - 1))) for k in range(order))
 
 
-def _broken_rows(
-    equations: Sequence[tuple[str, Expression]], writer: Writer, width: float | None, beside: float = 0.0
-) -> list[_DisplayRow]:
-    """Return equations below "where", aligned with others whose left sides are at most so wide [em]."""
-    heads = [writer.label(name) for name, _ in equations]
-    column = max(_WHERE_WIDTH + heads[0].width, beside, *(head.width for head in heads))
-    return [
-        _row(head.latex, head.width, expression, writer, width, column)
-        for head, (_, expression) in zip(heads, equations, strict=True)
-    ]
+def _broken_rows(equations: Sequence[_Sides], writer: Writer, width: float | None) -> list[_DisplayRow]:
+    """Return equations below "where", aligned with each other."""
+    column = max(_WHERE_WIDTH + equations[0][1], *(left_width for _, left_width, _ in equations))
+    return [_row(left, own, right, writer, width, column) for left, own, right in equations]
 
 
 def _row(

@@ -22,14 +22,14 @@ from symflex.codegen.program import verify
 from symflex.errors import UsageError
 from symflex.transfer import bind, bind_any
 from symflex.transfer.nested_form import BoundNested, EnclosedNested
-from tests.house.repository import ROOT, blocks, slow_ones, specifications
+from tests.house.repository import ROOT, blocks, slow_ones, specifications, uniform
 from tests.unit.codegen.against_balls import axis_points, worst_errors
 from tests.unit.codegen.exportable import BAR, DELAY, MASSLESS, PIPE
 from tests.unit.codegen.test_numpy_distributed import COMPRESSED, SENSOR, specification
 
 pytestmark = pytest.mark.needs_tool("gcc")
 
-SPECS = specifications(ROOT / "derivations", "*/*.toml")
+SPECS = uniform(specifications(ROOT / "derivations", "*/*.toml"))
 STRICT = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic"]
 FEW = ("two_mass", "six_mass", "rigid_body", "sliding_free_beam", "rod_tip_mass", "two_mass_force")
 """Models whose values are compared in every run; the others with -m slow."""
