@@ -52,7 +52,7 @@ def vanishing_order(value: Factored, h: fmpz_mpoly) -> tuple[int, Factored]:
     >>> l, x = Factored.generator(ring, "l"), Factored.generator(ring, "x")
     >>> order, value = vanishing_order(1 / (l * l - x * x), (l - x).expand())
     >>> order, str(value)
-    (-1, '-1*(-l + x)^-1*(l + x)^-1')
+    (-1, '(l - x)^-1*(l + x)^-1')
     """
     order, rest = 0, Factored.number(value.ring, value.unit)
     for factor, exponent in value.factors:

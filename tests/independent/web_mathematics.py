@@ -2,7 +2,7 @@
 
 The base, ams and boldsymbol packages of MathJax 3.2 list their commands (its documentation, "Supported
 TeX/LaTeX commands"); each was given to KaTeX 0.16 in its strict mode and to MathJax, alone, with an argument
-and with two, and those that both set without an error are kept.
+and with two, and those that both set without an error are kept; and ``right``, which goes with ``left``.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ COMMANDS = frozenset(
     overleftrightarrow overline overrightarrow overset owns parallel partial perp phantom phi pi
     pitchfork pm pmb pmod pod prec precapprox preccurlyeq preceq precnapprox precneqq precnsim precsim
     prime prod projlim propto psi qquad quad restriction rhd rho rightarrow rightarrowtail
-    rightharpoondown rightharpoonup rightleftarrows rightleftharpoons rightrightarrows rightsquigarrow
+    right rightharpoondown rightharpoonup rightleftarrows rightleftharpoons rightrightarrows rightsquigarrow
     rightthreetimes risingdotseq rlap rm rtimes scriptscriptstyle scriptsize scriptstyle searrow sec
     setminus sf sharp shortmid shortparallel sigma sim simeq sin sinh small smallfrown smallint
     smallsetminus smallsmile smash smile space spadesuit sphericalangle sqcap sqcup sqrt sqsubset

@@ -17,10 +17,10 @@ from symflex.errors import UsageError
 from symflex.quantities import unit_of
 from symflex.roots import Modes
 from symflex.roots.precision import to_complex_mpmath as to_complex
-from tests.house.repository import specifications
+from tests.house.repository import specifications, uniform
 from tests.unit.roots.distributed_models import DELAY_LOOP, FREE, KELVIN_VOIGT, ON_A_FOUNDATION
 
-MODELS = specifications(Path(__file__).parents[4], "derivations/*/*.toml")
+MODELS = uniform(specifications(Path(__file__).parents[4], "derivations/*/*.toml"))
 OSCILLATOR = """
 symflex = 1
 parameters = { m = "2 kg", b = "3 N*s/m", k = "50 N/m" }
