@@ -110,6 +110,7 @@ def test_a_chain_has_the_stable_gains_of_its_formula(monkeypatch, up_to):
     assert not network.certified and network.radius >= 2 * pi * float(up_to.split()[0])
 
 
+@pytest.mark.slow
 def test_a_locus_is_that_of_the_formula(monkeypatch):
     model, limits = pipeline.loads(chain(1)), (Fraction(0), Fraction(20))
     written = trace_locus(of_model.characteristic_loop(model, "K"), limits, modes=2)

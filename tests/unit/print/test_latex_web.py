@@ -58,6 +58,7 @@ def test_notebooks_hold_only_what_katex_and_mathjax_have_in_common(printed):
     assert sum(line is not None for line in latex) > 100
 
 
+@pytest.mark.slow
 def test_one_line_of_mathematics_has_no_environment(printed):
     whole = "\n".join(inline_latex(tf, form) for tf, form in printed if form.name != "monic")
     assert commands(whole) <= COMMANDS

@@ -48,6 +48,7 @@ def test_an_approximation_of_three_beams_is_close_to_them_below_its_modes(form):
     assert abs(found(1j * omega) / bound(1j * omega) - 1) < 2e-3
 
 
+@pytest.mark.slow
 def test_a_step_response_is_that_of_the_formula_and_not_certified():
     times = SampleTimes.evenly(Fraction(1, 5), 9)
     written, network = (pipeline.time_response(bound_of(1, k), "step", times) for k in ("expanded", "nested"))
