@@ -14,6 +14,7 @@ from symflex import pipeline
 from symflex.budget import Budget
 from symflex.model import with_numbers
 from symflex.roots.networks.anywhere import roots_in_disc
+from symflex.roots.networks.cramer import CramerEquations
 from symflex.roots.networks.poles_zeros import locate_in_network
 from symflex.roots.region import Band, Modes
 from tests.independent.boundary_value import DIGITS
@@ -107,7 +108,8 @@ def test_counts_of_eigenvalues_and_winding_numbers_find_the_same(seed):
     region = Band(Fraction(0), Fraction(top) / Fraction(2 * pi))
     counted = located(network, region)
     assert counted.certificate.certified
-    wound = roots_in_disc(equations_of(network), ("X", "F"), region, 15, Budget(), symmetric=(False, False))
+    cramer = CramerEquations.of(equations_of(network), "X", "F")
+    wound = roots_in_disc(cramer, region, 15, Budget(), symmetric=(False, False))
     assert frequencies(counted.poles, top) == pytest.approx(frequencies(wound.poles, top))
     assert frequencies(counted.zeros, top) == pytest.approx(frequencies(wound.zeros, top), abs=1e-9)
     hidden = [h.root for h in counted.hidden]
