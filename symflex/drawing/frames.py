@@ -172,7 +172,7 @@ class _Plan:
         least = min(sizes)
         scale = EXTENT / (max(box.width, box.height) or 1.0)
         scale = max(scale, SHORTEST / least) if least > SAME else scale
-        return {n: tuple((x * scale, y * scale) for x, y in pair) for n, pair in ends.items()}  # type: ignore[misc]
+        return {n: ((a[0] * scale, a[1] * scale), (b[0] * scale, b[1] * scale)) for n, (a, b) in ends.items()}
 
     def _draw_joints(self) -> None:
         for node, (x, y) in self.at.items():

@@ -109,7 +109,7 @@ class NetworkLoop:
 
         UndecidedError, EssentialSingularityError where they are not enclosed there.
         """
-        return _in_disc(DiscSearch(self.cramer, DIGITS, budget, (False, False)), radius)
+        return LoopInDisc.of(DiscSearch(self.cramer, DIGITS, budget, (False, False)), radius)
 
 
 AnyLoop = Loop | NetworkLoop
@@ -199,6 +199,13 @@ class LoopInDisc:
     b: DiscSeries
     orders: tuple[int, int] | None  # of their roots at 0; ``None`` where these are not proved
 
+    @classmethod
+    def of(cls, search: DiscSearch, radius: float) -> LoopInDisc:
+        """Return denominator and numerator of a search, which are A and -B; it raises where they are not."""
+        a, b = search.sides(radius)
+        orders = (a.at_zero, b.at_zero) if not a.zero_reach and not b.zero_reach else None
+        return cls(a.series, replace(b.series, polynomial=-b.series.polynomial), orders)
+
     @property
     def radius(self) -> arb:
         """Of the disc [rad/s]."""
@@ -279,12 +286,6 @@ class LoopInDisc:
         return found[0], found[1]
 
 
-def _in_disc(search: DiscSearch, radius: float) -> LoopInDisc:
-    a, b = search.sides(radius)
-    orders = (a.at_zero, b.at_zero) if not a.zero_reach and not b.zero_reach else None
-    return LoopInDisc(a.series, replace(b.series, polynomial=-b.series.polynomial), orders)
-
-
 @dataclass
 class NetworkFactors(AxisFactors[LoopInDisc]):
     """A network's characteristic function on the imaginary axis and in half a disc right of it."""
@@ -317,7 +318,7 @@ class NetworkFactors(AxisFactors[LoopInDisc]):
         try:
             if self._wanted is None:
                 self._wanted = self.up_to or search.radius_of(2 * self.loop.modes + 1)
-            return _in_disc(search, self._wanted / SHRUNK[-1])
+            return LoopInDisc.of(search, self._wanted / SHRUNK[-1])
         except (EssentialSingularityError, UndecidedError) as error:
             raise UncertifiedError(Diagnostic("SF802", NOT_COUNTED, None, LOWER)) from error
 

@@ -9,7 +9,7 @@ bounded there: so are, by Cauchy's estimate, the errors of its Taylor coefficien
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
@@ -41,27 +41,26 @@ class NetworkSides:
 
     bound: BoundNested
     reach: float  # how far from 0 points are asked for [rad/s]
+    _known: dict[int, tuple[DiscSide, DiscSide]] = field(default_factory=dict)  # by digits
 
     @cached_property
-    def _search(self) -> tuple[CramerEquations, dict[int, tuple[DiscSide, DiscSide]]]:
+    def _cramer(self) -> CramerEquations:
         source = self.bound.source
-        pair = (source.output.name, source.input.name)
-        return CramerEquations.of(equations_of(self.bound), *pair), {}
+        return CramerEquations.of(equations_of(self.bound), source.output.name, source.input.name)
 
     def _to_digits(self, digits: int) -> tuple[DiscSide, DiscSide]:
         """Return denominator and numerator; SF405 where they are not enclosed in the disc."""
-        cramer, known = self._search
-        if digits not in known:
+        if digits not in self._known:
             bits = SERIES_BITS + 2 * bits_for_digits(digits)
-            search = DiscSearch(cramer, digits, entered_budget(), (False, False), bits)
+            search = DiscSearch(self._cramer, digits, entered_budget(), (False, False), bits)
             try:
                 radius = WIDER * self.reach or search.radius_of(FEWEST_MODES)
-                known[digits] = search.sides(radius)
+                self._known[digits] = search.sides(radius)
             except (EssentialSingularityError, UndecidedError) as error:
                 message = f"the determinants of {self.bound.name} are not known as far as its poles"
                 hint = "ask for fewer modes"
                 raise UncertifiedError(Diagnostic("SF405", message, None, hint)) from error
-        return known[digits]
+        return self._known[digits]
 
     def taylor(self, digits: int) -> tuple[Taylor, Taylor]:
         """Return the Taylor coefficients of numerator and denominator at points of the disc."""
