@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from symflex.algebra import irreducible_factors
-from symflex.analysis.sampling import dead_time
 from symflex.codegen.export import Export, shortfalls
 from symflex.codegen.module_text import default_value, described, identifiers, inert, wrapped
 from symflex.codegen.program import nodes as tree
@@ -424,6 +423,8 @@ def _without_delays(
 
     Raises ModelError: SF235 for beams, delays in loops, and where dead times differ.
     """
+    from symflex.analysis.sampling import dead_time  # only sampled modules ask
+
     delays = {}
     for tf in tfs:
         if isinstance(tf, NestedTransferFunction):
