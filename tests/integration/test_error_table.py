@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from tests.house.repository import ROOT
+from tests.house.repository import ROOT, uniform
 from tests.integration.error_table import WAYS, worst
 from tests.unit.codegen.exportable import DERIVATIONS
 
@@ -20,6 +20,7 @@ ACCURACY = 1e-13
 LIBRARIES_DIFFER = 2.0
 """How many times the printed error another mathematical library may have."""
 
+UNIFORM = uniform(DERIVATIONS.values())
 ROW = re.compile(r"^\| `(\w+)` \|((?: [-0-9.e–]+ \|)+)$", re.MULTILINE)
 PRINTED = {
     name: dict(zip(WAYS, (cell.strip() for cell in cells.split("|")), strict=False))
@@ -31,8 +32,8 @@ PRINTED = {
 @pytest.mark.parametrize("name", DERIVATIONS)
 def test_what_is_exported_is_as_accurate_as_the_documentation_says(name, target):
     found, printed = worst(name, target), PRINTED[name][target]
-    if printed == "–":
-        assert target == "state-space"
+    if printed == "–":  # refused: no state equations of a beam, and no code yet of most members that taper
+        assert target == "state-space" or DERIVATIONS[name] not in UNIFORM
         assert found is None
         return
     error, count = found
