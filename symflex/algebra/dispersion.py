@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Container, Iterable, Sequence
 
     from symflex.algebra.factored import Factored
+    from symflex.errors import Span
 
 Value = TypeVar("Value", bound=Any)
 DispersionKind = Literal["exponential", "wave", "bending", "pair", "general", "varying"]
@@ -74,6 +75,7 @@ class Dispersion:
     matrix: tuple[tuple[Factored, ...], ...] = ()
     start: tuple[Factored, ...] = ()
     singular: SingularStart | None = None  # where a stiffness vanishes at the start
+    span: Span | None = None  # where such equations are written
 
     @property
     def order(self) -> int:

@@ -54,6 +54,10 @@ SHARE = 3
 """The radius on which coefficients are bounded, over the length of a step."""
 SHORTEST = 1e-5
 """Share of the whole below which the radius of a step means that there is a singularity."""
+ROUNDING = 2.0**-50
+"""Of a place in doubles: that of a singularity at an end is met then, too."""
+MOST_STEPS = 1000
+"""Ten times those of a thousand modes, and more than coefficients need that anyone means."""
 HALVINGS = 40
 """Of an interval in which a singularity lies: it is told to six digits."""
 LAST = 1.2
@@ -82,11 +86,12 @@ WIDE = 2.0**-30
 
 
 class SingularCoefficientError(ValueError):
-    """A coefficient is not analytic about a point of the interval."""
+    """A coefficient is not analytic about a point of the interval, or so steep that none could tell."""
 
-    def __init__(self, place: float) -> None:
+    def __init__(self, place: float, *, is_steep: bool = False) -> None:
         super().__init__(place)
         self.place = place
+        self.is_steep = is_steep  # analytic as far as is known
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,7 +207,7 @@ class PowerExpansion:
 
 
 @dataclass(frozen=True, slots=True)
-class _Step:
+class Leg:
     """A part of the interval."""
 
     start: arb
@@ -237,9 +242,7 @@ def expand(system: VaryingSystem, largest: arb, bits: int, orders: int = 0) -> P
     are given. Raises SingularCoefficientError where a coefficient has a singularity on the interval.
     """
     reach = (largest * BEYOND).abs_upper()
-    begin, end = system.ends()
-    first = [] if system.beginning is None else [_first_step(system.beginning, begin, end, reach, bits)]
-    steps = first + _steps(system, first[0].end if first else begin, end, reach, bits)
+    steps = steps_along(system, reach, bits)
     growth, weights = _growth(system, steps, reach)
     doublings = float(growth.upper()) * BITS_OF_E
     terms = orders or max(2, ceil((bits + 2 * doublings) / log2(BEYOND / 2)))
@@ -260,7 +263,17 @@ def expand(system: VaryingSystem, largest: arb, bits: int, orders: int = 0) -> P
         return PowerExpansion(total or [], terms, ctx.prec, reach, growth.exp().abs_upper(), weights)
 
 
-def _growth(system: VaryingSystem, steps: Sequence[_Step], reach: arb) -> tuple[arb, tuple[Weights, Weights]]:
+def steps_along(system: VaryingSystem, reach: arb, bits: int) -> list[Leg]:
+    """Return the parts of the interval on each of which solutions are expanded, for abs(u) <= ``reach``.
+
+    Raises SingularCoefficientError where a coefficient has a singularity on the interval.
+    """
+    begin, end = system.ends()
+    first = [] if system.beginning is None else [_first_step(system.beginning, begin, end, reach, bits)]
+    return first + _steps(system, first[0].end if first else begin, end, reach, bits)
+
+
+def _growth(system: VaryingSystem, steps: Sequence[Leg], reach: arb) -> tuple[arb, tuple[Weights, Weights]]:
     """Return by which power of e solutions grow at most for abs(u) up to a reach, and states at the ends.
 
     States are scaled anew on every part of a step.
@@ -310,10 +323,12 @@ def _norm(system: VaryingSystem, x: acb, reach: arb, weights: Sequence[arb]) -> 
     return max((row.abs_upper() if row.is_finite() else arb("inf") for row in rows), key=float)
 
 
-def _steps(system: VaryingSystem, start: arb, end: arb, reach: arb, bits: int) -> list[_Step]:
+def _steps(system: VaryingSystem, start: arb, end: arb, reach: arb, bits: int) -> list[Leg]:
     """Return steps of which each costs few terms over its length."""
-    whole, at, found = end - start, start, list[_Step]()
+    whole, at, found = end - start, start, list[Leg]()
     while at is not end:
+        if len(found) == MOST_STEPS:
+            raise SingularCoefficientError(float(at.mid()), is_steep=True)
         best: tuple[float, arb, float] | None = None
         weights = _weights(system, acb(at), reach)
         for share in RADII:
@@ -329,16 +344,16 @@ def _steps(system: VaryingSystem, start: arb, end: arb, reach: arb, bits: int) -
                 break
             best = (cost, radius, growth)
         if best is None or best[1] < abs(whole) * SHORTEST:
-            raise SingularCoefficientError(_singular_place(system, at, end, reach, weights))
+            raise _no_step(system, at, end, reach, weights)
         _, radius, growth = best
         length, left = (radius / SHARE).mid(), end - at
         following = end if abs(left) <= length * LAST else (at + (length if left > 0 else -length)).mid()
-        found.append(_Step(at, following, radius, growth, weights))
+        found.append(Leg(at, following, radius, growth, weights))
         at = following
     return found
 
 
-def _first_step(beginning: SingularBeginning, start: arb, end: arb, reach: arb, bits: int) -> _Step:
+def _first_step(beginning: SingularBeginning, start: arb, end: arb, reach: arb, bits: int) -> Leg:
     """Return the longest step from a start where coefficients have poles that costs not too many terms.
 
     It is a sixth of the radius on which coefficients are bounded, and a third of that on which solutions are.
@@ -358,7 +373,7 @@ def _first_step(beginning: SingularBeginning, start: arb, end: arb, reach: arb, 
         if growth is not None:
             way = abs(following - start)
             scaled = tuple((w * way**d).mid() for w, d in zip(weights, beginning.powers, strict=True))
-            return _Step(start, following, radius / 2, growth[0], scaled, growth[1])
+            return Leg(start, following, radius / 2, growth[0], scaled, growth[1])
     raise SingularCoefficientError(float(start.mid()))
 
 
@@ -423,7 +438,7 @@ def _by_powers(system: VaryingSystem, start: arb, count: int, reach: arb) -> lis
     return [[(*place, x) for place, x in each.items()] for each in found]
 
 
-def _begun(beginning: SingularBeginning, step: _Step, reach: arb, terms: int) -> Matrix:
+def _begun(beginning: SingularBeginning, step: Leg, reach: arb, terms: int) -> Matrix:
     """Return the solutions that are finite at a singular start, at the end of the first step."""
     n, share = beginning.matrix.size, abs(step.length) / step.radius
     count = ceil((ctx.prec + step.growth) / -log2(float(share.upper())))
@@ -476,7 +491,9 @@ def _begun(beginning: SingularBeginning, step: _Step, reach: arb, terms: int) ->
     return made
 
 
-def _singular_place(system: VaryingSystem, at: arb, end: arb, reach: arb, weights: Sequence[arb]) -> float:
+def _no_step(
+    system: VaryingSystem, at: arb, end: arb, reach: arb, weights: Sequence[arb]
+) -> SingularCoefficientError:
     """Return about where the first singularity behind a point is, which steps do not come closer to."""
     low, high = at.mid(), end.mid()
     for _ in range(HALVINGS):
@@ -484,10 +501,14 @@ def _singular_place(system: VaryingSystem, at: arb, end: arb, reach: arb, weight
         between = acb((low + middle) / 2 + arb(0, abs(middle - low) / 2))
         finite = _norm(system, between, reach, weights).is_finite()
         low, high = (middle, high) if finite else (low, middle)
-    return float(low)
+    # Balls in which a steep function is far from its middle are not finite either, but small ones are.
+    closest = abs(end - at).upper() / 2 ** (HALVINGS - 2) + abs(low).upper() * ROUNDING
+    around = acb(low + arb(0, closest), arb(0, closest))
+    is_steep = _norm(system, around, reach, weights).is_finite()
+    return SingularCoefficientError(float(low), is_steep=bool(is_steep))
 
 
-def _stepped(system: VaryingSystem, step: _Step, reach: arb, terms: int) -> Matrix:
+def _stepped(system: VaryingSystem, step: Leg, reach: arb, terms: int) -> Matrix:
     """Return the fundamental matrix of a step."""
     n, bits = system.size, ctx.prec
     share = abs(step.length) / step.radius

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 def check(spec: Specification, given: CheckOptions) -> int:
     """Parse and resolve SPEC; report every problem at once.
 
-    Names, units, ports, linearity and solvability are checked; nothing is derived.
+    Names, units, ports, linearity and solvability are checked, and that what varies along x is analytic.
 
     Warnings tell what a typing error may have left behind: a node that one element touches, a name that
     nothing uses, an input that reaches nothing, an element without effect. They also say how a frequency was
@@ -40,6 +40,7 @@ def check(spec: Specification, given: CheckOptions) -> int:
         model = pipeline.load(spec.path, spec.allow_outside, spec.settings)
         equations = pipeline.assemble_for_checks(model)
         pipeline.check_solvable(equations)
+        pipeline.check_along(model)
     except SymflexError as error:
         if not given.as_json:
             raise

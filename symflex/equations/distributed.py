@@ -317,7 +317,7 @@ class _Demands:
         own, origin = found[singular[1]], along.evaluator.constant(ends[singular[1]])
         parts, held = [], set[str]()
         for part, start in zip(components, own, strict=True):
-            law = Dispersion(name, "varying", (), origin * 0, (), part.matrix, (origin,), start)
+            law = Dispersion(name, "varying", (), origin * 0, (), part.matrix, (origin,), start, span)
             key = ("varying", text(origin), *(text(x) for row in part.matrix for x in row))
             parts.append((part, self._number(key, law)))
             free = range(len(part.matrix)) if start is None else start.free

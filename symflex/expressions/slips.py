@@ -146,7 +146,8 @@ def _neighbour_hint(value: str, recent: Sequence[Token]) -> str | None:
     before, token = recent[-2], recent[-1]
     types = [word.type for word in recent]
     if token.type == "PRIMES":
-        return "primes follow the name of a field: w''(l)" if before.type == "RPAR" else None
+        hint = "primes follow the name of a field, w''(l), or a bracket, (a*x*w')'"
+        return hint if before.type == "RPAR" else None
     if token.type == "DOT":
         return "a decimal point stands in a number once" if before.type == "NUMBER" else None
     if before.type == "NAME" and str(before) in FUNCTIONS and token.type != "LPAR":

@@ -226,8 +226,12 @@ class DimensionSystem:
         whole = substitute(equation, {name: Derivative(name, 0) for name in unknowns})
         terms = [t for side in whole.children for t in (side.terms if isinstance(side, Sum) else (side,))]
         self._coordinate = self._axes[unknowns[0]] if unknowns else None
+        before = len(self.problems)
         measure = self._sum(Sum(tuple(terms), span=equation.span), tuple(terms))
         self._coordinate = None
+        if any(d.code == "SF203" for d in self.problems[before:]):
+            # What stands beside a function of a wrong argument disagrees for that reason alone.
+            self.problems[before:] = [d for d in self.problems[before:] if d.code != "SF205"]
         self._read_cycles(measure, None, equation.span)
 
     def dimension(self, measure: Measure) -> Dimension | None:

@@ -386,13 +386,16 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> tuple[Model
             unsound.add(expression.span)
     around = _surroundings(draft, scope)
     _check_lengths(reader, draft, around, unsound)
-    check_ranges(reader, draft, around.line, unsound)
+    check_ranges(reader, draft, around.line, unsound, is_along=False)
     before = len(reader.problems)
     fields_placed = check_fields(reader, draft.fields, around)
     unsound |= _unsound_equations(draft, reader.problems[before:])
     system = check_units(reader, draft, placed, scope, unsound, fields_placed)
     readings = system.finish()
     reader.take(system.problems)
+    # A section of other units has other signs, too.
+    unsound |= {r.expression.span for r in ranged_values(draft) if _holds(r.expression, system.problems)}
+    check_ranges(reader, draft, around.line, unsound, is_along=True)
     _check_points(reader, draft, placed, around, fields_placed)
     implied = implied_units(placed, draft.blocks)
     parameters = [
@@ -496,9 +499,14 @@ def _check_lengths(reader: Reader, draft: Draft, around: Surroundings, unsound: 
 
 def _unsound_equations(draft: Draft, problems: Sequence[Diagnostic]) -> set[Span | None]:
     """Return the places of the fields' equations and conditions that hold a problem."""
-    wrong = [p.span for p in problems if p.span]
     equations = [e for f in draft.fields for e in (*f.equations, *f.conditions)]
-    return {e.span for e in equations if e.span and any(_covers(e.span, s) for s in wrong)}
+    return {e.span for e in equations if _holds(e, problems)}
+
+
+def _holds(expression: Expression, problems: Sequence[Diagnostic]) -> bool:
+    """Tell whether some problem lies within an expression."""
+    own = expression.span
+    return own is not None and any(p.span is not None and _covers(own, p.span) for p in problems)
 
 
 def _check_points(

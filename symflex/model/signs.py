@@ -208,13 +208,38 @@ class RangedValue:
     reason: str
     is_extent: bool = False  # a length or a delay, which cannot depend on s
     is_end: bool = False  # what varies along x, at an end, where it may vanish whatever the values
+    length: Expression | None = None  # of the member, of what varies along it
 
-    def is_wrong(self, line: Line) -> bool:
-        """Tell whether the value has a sign it cannot have."""
+    def complaint(self, line: Line) -> str:
+        """Return what is wrong with the value's sign, nothing where it may have it."""
         sign = line.sign(self.expression)
-        if sign is None or (self.is_end and line.is_zero(self.expression)):
-            return False
-        return sign < (1 if self.sign == "positive" else 0)
+        if self.length is not None and sign is None:
+            return self._complaint_inside(line, self.length)
+        if sign is None or (self.is_end and line.is_zero(self.expression)) or sign >= self._least:
+            return ""
+        value = None if literal_value(self.expression) is not None else line.value(self.expression)
+        shown = f" ({float(value):.6g})" if value else ""
+        return f"{self.what} is {'negative' if sign < 0 else '0'}{shown}; {self.reason}"
+
+    @property
+    def _least(self) -> int:
+        return 1 if self.sign == "positive" else 0
+
+    def _complaint_inside(self, line: Line, length: Expression) -> str:
+        """Return what is wrong at the first of some points between the ends."""
+        whole = line.value(length)
+        if whole is None:
+            return ""
+        for k in range(1, PIECES):
+            place = whole * k / PIECES
+            value = _value_along(self.expression, _ball(place), line)
+            if value is None or not value.is_finite():
+                return ""
+            if value < 0 or (self._least and value == 0):
+                # Near a simple zero balls of exact numbers are as exact as these.
+                shown = f"negative ({float(value.mid()):.6g})" if value < 0 else "0"
+                return f"{self.what} at x = {float(place):.6g} m is {shown}; {self.reason}"
+        return ""
 
 
 def ranged_values(draft: Draft | Model) -> Iterator[RangedValue]:
@@ -229,13 +254,16 @@ def ranged_values(draft: Draft | Model) -> Iterator[RangedValue]:
             if sign != "any" and port.name in given:
                 reason = f"{port.doc} is positive" if sign == "positive" else f"{port.doc} cannot be"
                 what = f"{port.name} of {element.type_name} '{use.name}'"
-                yield RangedValue(what, given[port.name], sign, reason, port.name == element.length)
+                is_along = port.varies and COORDINATE in {n.name for n in names(given[port.name])}
+                length = given.get(element.length) if is_along else None
+                is_length = port.name == element.length
                 # What varies along x is told at the ends, where it mostly is least.
-                ends = {"0": Number(Fraction(0)), element.length: given.get(element.length)}
-                for place, end in ends.items() if port.varies else ():
-                    if end is not None and COORDINATE in {n.name for n in names(given[port.name])}:
+                ends = {"0": Number(Fraction(0)), element.length: length}
+                for place, end in ends.items() if is_along else ():
+                    if end is not None:
                         at = substitute(given[port.name], {COORDINATE: lower(end)})
                         yield RangedValue(f"{what} at x = {place}", at, sign, reason, is_end=True)
+                yield RangedValue(what, given[port.name], sign, reason, is_length, length=length)
     for placed in draft.blocks:
         block = placed.block
         if block is not None and block.kernel_time:
@@ -244,19 +272,21 @@ def ranged_values(draft: Draft | Model) -> Iterator[RangedValue]:
             yield RangedValue(what, time, "nonnegative", "a delay cannot look ahead", is_extent=True)
 
 
-def check_ranges(reader: Reader, draft: Draft, line: Line, unsound: set[Span | None]) -> None:
+def check_ranges(
+    reader: Reader, draft: Draft, line: Line, unsound: set[Span | None], *, is_along: bool
+) -> None:
     """Note values of distributed parts that are zero or negative where they cannot be.
 
-    Signs are told by ``line``, from values and what is assumed of parameters. Places in ``unsound`` hold a
-    mistake already; those found here are added.
+    They are those that vary along x, or the others. Signs are told by ``line``, from values and what is
+    assumed of parameters. Places in ``unsound`` hold a mistake already; those found here are added.
     """
     for ranged in ranged_values(draft):
         expression = ranged.expression
-        if expression.span in unsound or not ranged.is_wrong(line):
+        if (ranged.is_end or ranged.length is not None) != is_along:
             continue
-        value = None if literal_value(expression) is not None else line.value(expression)
-        reader.note("SF209", _message(ranged, line.sign(expression) or 0, value), expression.span)
-        unsound.add(expression.span)
+        if expression.span not in unsound and (message := ranged.complaint(line)):
+            reader.note("SF209", message, expression.span)
+            unsound.add(expression.span)
 
 
 def check_value(model: Model, name: str, value: ExactValue, varied: Collection[str]) -> None:
@@ -274,54 +304,51 @@ def check_value(model: Model, name: str, value: ExactValue, varied: Collection[s
         {each: v.nearly for each, v in known.items()},
     )
     for ranged in ranged_values(model):
-        if ranged.is_wrong(line):
-            sign = line.sign(ranged.expression) or 0
-            message = _message(ranged, sign, line.value(ranged.expression))
+        if message := ranged.complaint(line):
             shown = float(value.nearly)
             raise UsageError(Diagnostic("SF209", f"with {name} = {shown:.6g}, {message}"))
 
 
-def _message(ranged: RangedValue, sign: int, value: Fraction | None) -> str:
-    shown = f" ({float(value):.6g})" if value else ""
-    return f"{ranged.what} is {'negative' if sign < 0 else '0'}{shown}; {ranged.reason}"
-
-
 PIECES = 64
-"""Of a member, on each of which a value that varies along x is enclosed."""
+"""Of a member, on each of which a value that varies along x is enclosed; it is tried between any two."""
+
+
+def _ball(number: Fraction) -> arb:
+    return arb(fmpq(number.numerator, number.denominator))
+
+
+def _value_along(value: Expression, x: arb, line: Line) -> arb | None:
+    """Return what varies along x on a ball of x, None where a parameter has no value."""
+
+    def named(name: str) -> arb:
+        if name == COORDINATE:
+            return x
+        if name in line.definitions:
+            return inside(line.definitions[name])
+        return arb.pi() if name == "pi" else _ball(line.values[name])
+
+    def inside(expression: Expression) -> arb:
+        found: arb = fold(
+            lower(expression),
+            number=_ball,
+            name=named,
+            power=lambda base, exponent: base ** (integer_exponent(exponent) or 0),
+            call=lambda call, argument: FUNCTIONS[call.name].evaluate(argument),
+        )
+        return found
+
+    try:
+        return inside(value)
+    except (KeyError, TypeError):
+        return None  # a parameter without value, or a quantity that is no number
 
 
 def _sign_along(value: Expression, length: Fraction, line: Line) -> int | None:
     """Return 1 where a value is proved to be positive all along a member, else None."""
-
-    def ball(number: Fraction) -> arb:
-        return arb(fmpq(number.numerator, number.denominator))
-
-    def at(x: arb) -> arb:
-        def named(name: str) -> arb:
-            if name == COORDINATE:
-                return x
-            if name in line.definitions:
-                return inside(line.definitions[name])
-            return arb.pi() if name == "pi" else ball(line.values[name])
-
-        def inside(expression: Expression) -> arb:
-            found: arb = fold(
-                lower(expression),
-                number=ball,
-                name=named,
-                power=lambda base, exponent: base ** (integer_exponent(exponent) or 0),
-                call=lambda call, argument: FUNCTIONS[call.name].evaluate(argument),
-            )
-            return found
-
-        return inside(value)
-
-    half = ball(length) / (2 * PIECES)
-    try:
-        is_positive = all(at((2 * k + 1) * half + arb(0, half.upper())) > 0 for k in range(PIECES))
-    except (KeyError, TypeError):
-        return None  # a parameter without value, or a quantity that is no number
-    return 1 if is_positive else None
+    half = _ball(length) / (2 * PIECES)
+    pieces = ((2 * k + 1) * half + arb(0, half.upper()) for k in range(PIECES))
+    found = (_value_along(value, x, line) for x in pieces)
+    return 1 if all(x is not None and x > 0 for x in found) else None
 
 
 def is_passive(model: Model, values: Iterable[tuple[str, ExactValue]] | None = None) -> bool:

@@ -210,6 +210,11 @@ class BoundTransferFunction:
         if self._matrices is not None:
             self._matrices.expect(modes, size)
 
+    def check_along(self) -> None:
+        """Raise ModelError: SF250 where what varies along x is not analytic on its whole member."""
+        for law in () if self._matrices is None else self._matrices.laws:
+            law.check()
+
     def enclosed(self, bits: int) -> Enclosed:
         """Return the function with ball coefficients of the given precision."""
         if self.kernels:

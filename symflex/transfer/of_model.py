@@ -99,6 +99,16 @@ def check_solvable(equations: Equations) -> None:
         raise explain_singular(equations)
 
 
+def check_along(model: Model) -> None:
+    """Return if coefficients that vary along x are analytic where they are needed, with the declared values.
+
+    Nothing is told where a parameter has none. Raises ModelError: SF250 saying where one is not.
+    """
+    if is_tapered(model) and all(p.value is not None for p in model.parameters):
+        for bound in derive_bound(model, model.transfer_functions[:1]):
+            bound.check_along()
+
+
 def derive_all(model: Model, pairs: Sequence[tuple[str, str]] | None = None) -> tuple[TransferFunction, ...]:
     """Return the transfer functions of the given pairs, all by default, from one elimination.
 

@@ -27,6 +27,7 @@ from symflex.algebra.fundamental_matrix import (
     SingularCoefficientError,
     expand,
     growth_along,
+    steps_along,
 )
 from symflex.algebra.ring import terms_of
 from symflex.errors import Diagnostic, ModelError
@@ -208,6 +209,13 @@ class BoundLaw(PartedLaw):
         except SingularCoefficientError as error:
             raise self._singular(error) from None
 
+    def check(self) -> None:
+        """Raise ModelError: SF250 where a coefficient is not analytic on the whole member."""
+        try:
+            steps_along(_InPowers(self, self.step), arb(TINY), FEW_BITS)
+        except SingularCoefficientError as error:
+            raise self._singular(error) from None
+
     def expanded_about(self, middle: acb, reach: arb, orders: int) -> PowerExpansion | None:
         """Return the same in so many powers of s less a middle, for abs(s - middle) up to a reach.
 
@@ -223,9 +231,13 @@ class BoundLaw(PartedLaw):
             return None
 
     def _singular(self, error: SingularCoefficientError) -> ModelError:
-        message = f"a coefficient of '{self.law.name}' is not analytic near x = {error.place:.6g} m"
-        hint = "a stiffness vanishes, or a coefficient has a pole or a branch point; end the member before it"
-        return ModelError(Diagnostic("SF250", message, None, hint))
+        what, near = f"a coefficient of '{self.law.name}'", f"near x = {error.place:.6g} m"
+        message, hint = f"{what} is not analytic {near}", "a stiffness vanishes, or a coefficient has a pole"
+        hint += " or a branch point; end the member before it"
+        if error.is_steep:
+            message = f"{what} is too steep {near}"
+            hint = "it changes many times over within a thousandth of the length: are units of rates right?"
+        return ModelError(Diagnostic("SF250", message, self.law.span, hint))
 
     def ends(self) -> tuple[arb, arb]:
         """Return where x begins and ends."""
