@@ -12,11 +12,16 @@ from itertools import cycle, pairwise
 import numpy as np
 import pytest
 from flint import acb, acb_mat, acb_series, ctx, fmpq
+from mpmath import findroot, mp, mpf
+from scipy.linalg import expm
 
 from symflex import pipeline
 from symflex.codegen.program.evaluate import evaluate
 from symflex.codegen.program.varying import build_varying
 from symflex.codegen.program.verify import doubles
+from symflex.roots.locate import locate
+from symflex.roots.region import Modes
+from symflex.transfer import bind
 
 E, RHO, G, N, K_F, C_F, M_TIP, J_HUB = 200 * 10**9, 7800, 77 * 10**9, 20_000, 300_000, 40, 1.5, 0.25
 A_0, I_0, ETA, KAPPA = fmpq(16, 10**4), fmpq(213, 10**9), fmpq(2, 10**5), fmpq(17, 20)
@@ -255,10 +260,95 @@ def stepped(s, count):
     return state[0] / state[1]
 
 
-def test_uniform_steps_come_closer_by_the_square_of_their_number():
-    bound, _ = bound_of(bar_text("rod", "wedge", "none"))
-    s = 700 + 9000j
-    errors = [abs(stepped(s, count) - bound(s)) for count in (20, 40, 80, 160)]
+def stepped_beam(s, count):
+    """Return the receptance of a cantilever of uniform pieces with a mass at its tip."""
+    state = np.eye(4, dtype=complex)
+    for piece in range(count):
+        thick = 1 - (piece + 0.5) / (2 * count)
+        law = np.zeros((4, 4), dtype=complex)
+        law[0, 1] = law[2, 3] = 1
+        law[1, 2] = 1 / (E * float(I_0) * thick**3)
+        law[3, 0] = -RHO * float(A_0) * thick * s**2
+        state = expm(law / count) @ state
+    # Clamped: the state starts with moment and M' alone; at the tip M = 0 and M' = m s^2 y - F.
+    y, m, v = state[0, 2:], state[2, 2:], state[3, 2:]
+    return y @ np.linalg.solve([m, v - M_TIP * s**2 * y], [0, -1])
+
+
+@pytest.mark.parametrize(
+    ("text", "steps", "s"),
+    [
+        (bar_text("rod", "wedge", "none"), stepped, 700 + 9000j),
+        (beam_text("euler-bernoulli", "wedge", "none", "tip"), stepped_beam, 30 + 900j),
+    ],
+    ids=["rod", "beam"],
+)
+def test_uniform_steps_come_closer_by_the_square_of_their_number(text, steps, s):
+    bound, _ = bound_of(text)
+    errors = [abs(steps(s, count) - bound(s)) for count in (20, 40, 80, 160)]
     assert errors[0] < 1e-2 * abs(bound(s))
     for coarse, fine in pairwise(errors):
         assert coarse / fine == pytest.approx(4, rel=0.01)
+
+
+SLOPE = """
+symflex = 1
+[parameters]
+E = "200 GPa"
+rho = "7800 kg/m^3"
+l = "1 m"
+c = { value = 0, assume = "nonnegative" }
+[elements]
+arm = { type = "beam", between = ["ground", "tip"], E = "E", rho = "rho", l = "l", %s }
+[inputs]
+F = { force = "tip" }
+[outputs]
+y = "tip"
+"""
+SLIGHT = "1e-15"
+
+
+@cache
+def slight_taper():
+    return bound_of(SLOPE % 'I = "2.13e-7*l^4*(1 - c*x/l)^3", A = "1.6e-3*l^2*(1 - c*x/l)"')[0].source
+
+
+def lowest_frequencies(slope, digits=30):
+    located = locate(bind(slight_taper(), {"c": slope}), Modes(3), digits=digits)
+    assert located.certificate.certified
+    return [mpf(root.im.mid().str(digits + 2, radius=False)) for root in located.poles if root.im > 0]
+
+
+def uniform_frequencies():
+    """Return wavenumbers and frequencies of a clamped beam: cos q cosh q = -1."""
+    found = [findroot(lambda q: mp.cos(q) + 1 / mp.cosh(q), guess) for guess in (1.875, 4.694, 7.855)]
+    unit = mp.sqrt(mpf(E) * mpf("2.13e-7") / (RHO * mpf("1.6e-3")))
+    return [(q, q**2 * unit) for q in found]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("slope", ["0", "1e-40"])
+def test_a_taper_of_no_slope_has_the_frequencies_of_the_uniform_beam_to_all_digits(slope):
+    with mp.workdps(40):
+        for found, (_, expected) in zip(lowest_frequencies(slope), uniform_frequencies(), strict=True):
+            assert abs(found - expected) < mpf(10) ** -28 * expected
+
+
+@pytest.mark.slow
+def test_a_slight_slope_moves_frequencies_as_rayleighs_quotient_says():
+    with mp.workdps(40):
+        for found, (q, expected) in zip(lowest_frequencies(SLIGHT), uniform_frequencies(), strict=True):
+            ratio = (mp.cosh(q) + mp.cos(q)) / (mp.sinh(q) + mp.sin(q))
+
+            def squared(x, sign, q=q, ratio=ratio):
+                """Return the square of the shape, or with 1 that of its second derivative over q^2."""
+                even = mp.cosh(q * x) + sign * mp.cos(q * x)
+                return (even - ratio * (mp.sinh(q * x) + sign * mp.sin(q * x))) ** 2
+
+            # Where stiffness and mass sit on average; they fall by 3 c x and c x (Rayleigh 1877, section 90).
+            stiff, heavy = (
+                mp.quad(lambda x: x * squared(x, sign), [0, 1]) / mp.quad(lambda x: squared(x, sign), [0, 1])  # noqa: B023
+                for sign in (1, -1)
+            )
+            moved = (found - expected) / expected / mpf(SLIGHT)
+            assert abs(moved - (heavy - 3 * stiff) / 2) < mpf(10) ** -12
