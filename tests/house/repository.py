@@ -44,9 +44,17 @@ def specifications(folder: Path, pattern: str) -> list[Path]:
 def uniform(paths: Iterable[Path]) -> list[Path]:
     """Return the specifications without those of members that taper.
 
-    These have no mode shapes, sensitivities, JSON of kernels or code but numpy's yet (SF910).
+    These have no mode shapes, sensitivities or JSON of kernels yet, and not code in every language (SF910).
     """
     return [path for path in paths if path.parent.name != "tapers"]
+
+
+def without_tips(paths: Iterable[Path]) -> list[Path]:
+    """Return the specifications without those of members whose stiffness vanishes at an end.
+
+    These have no code yet (SF910).
+    """
+    return [path for path in paths if path.stem not in ("cone", "hanging_string", "wedge")]
 
 
 def tracked_files() -> list[Path]:

@@ -348,7 +348,9 @@ FUNCTIONS = frozenset(
 ).union(*PARTS)
 """What the code calls, and the types it uses."""
 
-LOCALS = frozenset("s p omega n i j w x g re im real imag sign value padded near is_near count entry".split())
+LOCALS = frozenset(
+    "s p omega n i j w x g re im real imag sign value padded near is_near count entry part kept".split()
+)
 """Arguments and variables that every function has under these names."""
 
 RESERVED = KEYWORDS | MACROS
@@ -396,6 +398,17 @@ def statement(opening: str, value: str, depth: int) -> list[str]:
     return wrapper.wrap(f"{opening} {value};")
 
 
+LISTS = (
+    tree.Solutions,
+    tree.Roots,
+    tree.ModeValues,
+    tree.ModalValue,
+    tree.FundamentalMinors,
+    tree.ScaledSum,
+)
+"""Nodes whose values are lists."""
+
+
 @dataclass
 class Body:
     """The variables of one C function, and the statements that make them."""
@@ -407,6 +420,8 @@ class Body:
     lines: list[str] = field(default_factory=list)  # the statements so far
     known: dict[str, Term] = field(default_factory=dict)  # assigned values by their names in the program
     used: set[str] = field(default_factory=set)  # names of the parameters in use
+    # What the functions of matrices followed along x are called, of each its number and its program's name.
+    followed: Mapping[tree.FundamentalMinors, str] = field(default_factory=dict)
     _taken: set[str] = field(default_factory=set)
     _shared: dict[tuple[str, Kind], Term] = field(default_factory=dict)
 
@@ -458,7 +473,7 @@ class Body:
     def assign(self, assignments: Sequence[tree.Assignment]) -> None:
         """Make variables; what is free of s and made already is not made again."""
         for assignment in assignments:
-            if isinstance(assignment.value, tree.Solutions | tree.Roots | tree.ModeValues | tree.ModalValue):
+            if isinstance(assignment.value, LISTS):
                 self.known[assignment.name] = self._array(assignment.value, assignment.name)
                 continue
             term = self.printer.whole(assignment.value)
@@ -515,6 +530,20 @@ class Body:
                 return Term(found, Kind.COMPLEX, held.varies or scale.varies)
             case tree.ModalValue():
                 return self._modal(node, wanted)
+            case tree.ScaledSum(amplitudes, exponents):
+                given, number, varies = self._given(amplitudes)
+                logarithms, _, grows = self._given(exponents)
+                found = self.name(wanted)
+                self.add(f"cx {found}[2];", f"cx_total({given}, {logarithms}, {number}, {found});")
+                return Term(found, Kind.COMPLEX, varies or grows, real_at=1)
+            case tree.FundamentalMinors(start, length, bases):
+                given, _, varies = self._given(bases)
+                ends = ", ".join(self.term(x).text for x in (start, length))
+                found, own = self.name(wanted), self.followed[node]
+                self.add(f"cx {found}[{len(node.wanted) + node.size}];")
+                opening = f"cx_minors(along_{own}, plan_{own}, p, {ends},"
+                self.say(opening, f"{given}, kept + {own.partition('_')[0]}, {found})")
+                return Term(found, Kind.COMPLEX, varies)
         message = f"no text for {type(node).__name__}"
         raise TypeError(message)
 

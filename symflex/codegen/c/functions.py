@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from itertools import chain, pairwise
 from typing import TYPE_CHECKING
 
+from symflex.algebra.varying_minors import lines_of
 from symflex.codegen.c.body import (
     AXIS,
     AXIS_LANE,
@@ -80,6 +81,8 @@ class Functions:
         program = self.program
         if program.network is not None:
             return "\n\n".join("\n".join(block) for block in self._solving(program.network)) + "\n"
+        if program.minors:
+            return "\n\n".join("\n".join(block) for block in self._following(program)) + "\n"
         blocks = [self._lumped_value(program)] if program.is_lumped else self._pieces(program)
         return "\n\n".join("\n".join(block) for block in (*blocks, self._frequency_response())) + "\n"
 
@@ -90,7 +93,8 @@ class Functions:
             return max((len(signs) for _, signs, _ in self.program.network.network[-1]), default=1)
         codes = [c for p in (self.program, self.axis) if p for c in (p.tests, *(x.code for x in p.code))]
         solving = (n for code in codes for n in code.nodes() if isinstance(n, tree.Solutions | tree.Roots))
-        return max((len(n.coefficients) for n in solving), default=0)
+        followed = (max(n.size, len(n.bases)) for n in self.program.minors)
+        return max((*(len(n.coefficients) for n in solving), *followed), default=0)
 
     # ------------------------------------------------------------------------------------- at a complex s
 
@@ -109,30 +113,75 @@ class Functions:
     def _solving(self, solve: tree.Solve) -> list[list[str]]:
         """Return the functions of a network's output and input."""
         ends = f"network_plan, {solve.output}, {solve.source}"
-        value = [
+        whole = [
             *self._head(f"value_of_{self.name}"),
             f"{STEP}cx entry[{len(solve.entries)}];",
             f"{STEP}network_entries(s, p, entry);",
             f"{STEP}return cx_network(entry, {ends});",
             "}",
         ]
-        response = [
+        call = f"value_of_{self.name}(cx_of(0.0, omega[i]), p)"
+        return [self._wrapped_value(whole), self._response(call)]
+
+    def _following(self, program: tree.Piecewise) -> list[list[str]]:
+        """Return the functions of a program that follows matrices along x."""
+        blocks, followed = [], {node: f"{k}_of_{self.name}" for k, node in enumerate(program.minors)}
+        for node, own in followed.items():
+            table = f"{{{', '.join(map(str, minors_plan(node)))}}}"
+            blocks.append(statement(f"static const int plan_{own}[] =", table, 0))
+            scope = Body.of(self.members, ALONG)
+            scope.assign((*node.along.constants, *node.along.assignments))
+            for k, value in enumerate(node.along.values):
+                scope.say(f"part[{k}] =", scope.term(value).text)
+            head = [f"static void along_{own}(double x, const {self.structure} *p, double *part)", "{"]
+            blocks.append(self._ends(scope, head, "x"))
+        scope = Body.of(self.members, S)
+        scope.followed = followed
+        (piece,) = program.code
+        scope.assign((*piece.code.constants, *piece.code.assignments))
+        num, den = (scope.term(v) for v in piece.code.values)
+        scope.say("return", complex_term(quotient(num, den)).text)
+        count = len(followed)
+        head = [f"static cx value_at_{self.name}(cx s, const {self.structure} *p, cx_pieces *kept)", "{"]
+        begin = [f"{STEP}cx_pieces kept[{count}];", f"{STEP}cx_begin(kept, {count});"]
+        end = [f"{STEP}cx_end(kept, {count});"]
+        whole = [
+            *self._head(f"value_of_{self.name}"),
+            *begin,
+            f"{STEP}const cx value = value_at_{self.name}(s, p, kept);",
+            *end,
+            f"{STEP}return value;",
+            "}",
+        ]
+        call = f"value_at_{self.name}(cx_of(0.0, omega[i]), p, kept)"
+        return [
+            *blocks,
+            self._ends(scope, head),
+            self._wrapped_value(whole),
+            self._response(call, begin, end),
+        ]
+
+    def _response(self, value: str, begin: Sequence[str] = (), end: Sequence[str] = ()) -> list[str]:
+        """Return the response whose values calls at ``omega[i]`` give."""
+        return [
             *self.freq_prototype.split("\n"),
             "{",
+            *begin,
             f"{STEP}for (size_t i = 0; i < n; i++) {{",
-            f"{STEP * 2}const cx g = value_of_{self.name}(cx_of(0.0, omega[i]), p);",
+            f"{STEP * 2}const cx g = {value};",
             f"{STEP * 2}real[i] = g.re;",
             f"{STEP * 2}imag[i] = g.im;",
             f"{STEP}}}",
+            *end,
             "}",
         ]
-        return [self._wrapped_value(value), response]
 
     def _head(self, name: str) -> list[str]:
         return [f"static cx {name}(cx s, const {self.structure} *p)", "{"]
 
-    def _ends(self, scope: Body, head: list[str]) -> list[str]:
-        unused = [] if any(_mentions(line, "s") for line in scope.lines) else [f"{STEP}(void)s;"]
+    def _ends(self, scope: Body, head: list[str], variable: str = "s") -> list[str]:
+        is_used = any(_mentions(line, variable) for line in scope.lines)
+        unused = [] if is_used else [f"{STEP}(void){variable};"]
         return [*head, *scope.opening(self.members), *unused, *scope.lines, "}"]
 
     def _lumped_value(self, program: tree.Piecewise) -> list[str]:
@@ -310,6 +359,60 @@ def network_plan(solve: tree.Solve) -> list[int]:
         for first, entries, length, start, end in elements:
             plan += [first, *entries, length, *start, *end]
     return plan
+
+
+ALONG = Term("x", Kind.REAL, varies=True)
+"""What the leaf for s stands for in functions of x."""
+
+
+GROWTH, LAST = 3.0, 1e-18
+"""By which power of e waves grow on a piece at most, and the last term of Picard's iteration."""
+
+
+def minors_plan(node: tree.FundamentalMinors) -> list[int]:
+    """Return a law along x as a table of numbers in the order in which ``cx_minors`` reads them."""
+    bases, size = len(node.bases), node.size
+    # No piece takes more steps of Picard's iteration.
+    steps, left = 0, 1.0
+    while left > LAST or steps < 2 * size:
+        steps += 1
+        left *= GROWTH / steps
+    reached = {(i, (0,) * bases) for i in range(size)}
+    every = set(reached)
+    for _ in range(steps):
+        reached = {
+            (row, tuple(p + q for p, q in zip(before, powers, strict=True)))
+            for row, column, *powers in node.places
+            for i, before in reached
+            if i == column
+        }
+        every |= reached
+    products = sorted({powers for _, powers in every})
+    places = {powers: k for k, powers in enumerate(products)}
+    parts: list[int] = []
+    for row, column, *powers in node.places:
+        made = (tuple(p + q for p, q in zip(before, powers, strict=True)) for before in products)
+        parts += [row, column, *powers, *(places.get(x, -1) for x in made)]
+    lines = {q: lines_of(size, q) for q in range(1, size + 1)}
+    largest = max(len(rows) for rows, _ in node.wanted)
+    choices = [largest]
+    for q in range(2, largest + 1):
+        choices.append(len(lines[q]))
+        for chosen in lines[q]:
+            rest = (lines[q - 1].index(chosen[:k] + chosen[k + 1 :]) for k in range(q))
+            choices += [*chosen, *rest]
+    starts = sorted({columns for _, columns in node.wanted}, key=lambda columns: (len(columns), columns))
+    ends = [len(starts)]
+    for columns in starts:
+        ends += [len(columns), lines[len(columns)].index(columns)]
+    ends.append(len(node.wanted))
+    for rows, columns in node.wanted:
+        ends += [starts.index(columns), lines[len(rows)].index(rows)]
+    room = len(products) + sum(len(lines[q]) ** 2 for q in range(1, largest + 1))
+    room += 2 * sum(len(lines[len(columns)]) for columns in starts)
+    at = 7 + len(parts) + len(products) * bases
+    head = [size, len(node.places), bases, len(products), room, at, at + len(choices)]
+    return [*head, *parts, *chain.from_iterable(products), *choices, *ends]
 
 
 LOOP = "for (int j = 0; j < LANES; j++) {"

@@ -14,6 +14,7 @@ from symflex.codegen.c.functions import Functions
 from symflex.codegen.export import Export, Language, called_parts
 from symflex.codegen.module_text import (
     COST,
+    FOLLOWED,
     ITERATED,
     default_value,
     formula_lines,
@@ -157,10 +158,10 @@ class _Files:
         files = f"{self.name}.h" if self.name else "C99"
         public = [f"{self.prefix}_{f.name}" for f in self.functions.values()]
         example = public[0] if public and len(public[0]) < WIDTH // 2 else f"{self.prefix}_OUT_over_IN"
-        is_solved = any(f.program.network for f in self.functions.values())
+        allocates = any(f.program.network or f.program.minors for f in self.functions.values())
         kept = "Nothing is allocated and nothing is kept between calls"
-        if is_solved:
-            kept = "Memory is allocated for one value at a time, which is NAN where there is none, and freed"
+        if allocates:
+            kept = "Memory is allocated during calls and freed; values are NAN where there is none"
         paragraphs = [
             f"Written by symflex. For every transfer function OUT/IN there are {example}(s, p), its value at "
             f"the Laplace variable s, and {example}_freq(omega, real, imag, n, p), which writes the real and "
@@ -222,7 +223,9 @@ class _Files:
         if key in self.on_axis:
             real = self.on_axis[key].verification.text(self.digits)
             sentences = [f"Of s, {said}.", f"At s = j omega, in real arithmetic, {real}."]
-        if program.solves:
+        if program.minors:
+            sentences.append(FOLLOWED)
+        elif program.solves:
             sentences.append(ITERATED if program.finds_roots else COST)
         lines.append("")
         for sentence in sentences:
@@ -279,4 +282,5 @@ C99 = Language(
     "C99 source and header, values at s and arrays of frequencies, verified likewise",
     c_files,
     solves=True,
+    follows=True,
 )

@@ -280,6 +280,11 @@ class FundamentalMinors(CodeNode):
     places: tuple[tuple[int, ...], ...]  # per part its row, its column, and its powers of the bases
     wanted: tuple[tuple[tuple[int, ...], tuple[int, ...]], ...]  # rows and columns of every minor
 
+    @property
+    def size(self) -> int:
+        """The number of states; so many logarithms of scales follow the minors."""
+        return 1 + max(max(place[:2]) for place in self.places)
+
 
 @dataclass(frozen=True, slots=True)
 class ScaledSum(CodeNode):

@@ -777,6 +777,449 @@ static cx cx_network(const cx *entry, const int *plan, int output, int source)
     return found;
 }
 
+//: cx_pieces cx_begin cx_end
+/* What a fundamental matrix whose law varies along x is on pieces of its length: polynomials in
+ * the bases over their limits, which frequencies within a factor of four share. Of every piece
+ * there are so many coefficients; place has of each the power of the bases and the entry.
+ */
+typedef struct {
+    double octave[CX_ORDER];    /* of the bases */
+    int pieces, count, *place;
+    size_t room;
+    double *coefficient;
+    cx *work;
+} cx_pieces;
+
+static void cx_begin(cx_pieces *kept, int count)
+{
+    for (int k = 0; k < count; k++) {
+        kept[k].pieces = -1;
+        kept[k].count = 0;
+        kept[k].room = 0;
+        kept[k].place = NULL;
+        kept[k].coefficient = NULL;
+        kept[k].work = NULL;
+    }
+}
+
+static void cx_end(cx_pieces *kept, int count)
+{
+    for (int k = 0; k < count; k++) {
+        free(kept[k].place);
+        free(kept[k].coefficient);
+        free(kept[k].work);
+    }
+}
+
+//: cx_chebyshev
+/* The number of Chebyshev points on a piece, less one. */
+enum { cx_points = 20 };
+
+/* Points from 0 to 1, what makes Chebyshev's terms of values there, and their integrals from 0. */
+typedef struct {
+    double point[cx_points + 1];
+    double term[cx_points + 1][cx_points + 1], integral[cx_points + 1][cx_points + 1];
+} cx_table;
+
+static void cx_chebyshev(cx_table *table)
+{
+    enum { N = cx_points };
+    double cosine[2 * N];
+    for (int m = 0; m < 2 * N; m++) {
+        cosine[m] = cos(3.141592653589793 * m / N);
+    }
+    for (int j = 0; j <= N; j++) {
+        table->point[j] = 0.5 + 0.5 * cosine[N - j];
+        for (int k = 0; k <= N; k++) {
+            const double ends = (j % N ? 1.0 : 0.5) * (k % N ? 1.0 : 0.5);
+            table->term[k][j] = 2.0 / N * ends * cosine[k * (N - j) % (2 * N)];
+        }
+    }
+    for (int i = 0; i <= N; i++) {
+        double grown[N + 1];
+        for (int m = 0; m <= N; m++) {
+            /* The integral of the term m, at the point i less that at the first one. */
+            const double above = cosine[(m + 1) * (N - i) % (2 * N)] - cosine[(m + 1) * N % (2 * N)];
+            grown[m] = m == 0 ? above : above / (2 * m + 2);
+            if (m > 1) {
+                const double below = cosine[(m - 1) * (N - i) % (2 * N)] - cosine[(m - 1) * N % (2 * N)];
+                grown[m] -= below / (2 * m - 2);
+            }
+        }
+        for (int j = 0; j <= N; j++) {
+            table->integral[i][j] = 0.0;
+            for (int m = 0; m <= N; m++) {
+                table->integral[i][j] += 0.5 * grown[m] * table->term[m][j];
+            }
+        }
+    }
+}
+
+//: cx_parts cx_growth
+/* A law along x, the parts of whose coefficients are functions of x times powers of the bases;
+ * scale has what these are at the limits. The plan begins with the numbers of states, parts, bases
+ * and products of their powers, how many complex numbers cx_through needs, and where choices and
+ * starts stand. Then follow per part its row, its column, its powers, and what it makes of each
+ * product, -1 for none; the powers in each product; the choices: the largest number of rows, and for
+ * each above one how many choices of so many rows there are, and of each choice these, and the
+ * choices that are left without one of them; the starts: how many, of each how many columns and
+ * which choice of these; and how many minors, of each its start and its choice of rows.
+ */
+typedef struct {
+    void (*along)(double x, const PARAMETERS *p, double *part);
+    const PARAMETERS *p;
+    const int *plan;
+    double start, length, *scale;
+} cx_law;
+
+static void cx_parts(const cx_law *law, double share, double *part)
+{
+    law->along(law->start + law->length * share, law->p, part);
+    for (int k = 0; k < law->plan[1]; k++) {
+        part[k] *= law->length * law->scale[k];
+    }
+}
+
+/* The largest eigenvalue of a matrix without negative entries, which is its norm if states are
+ * scaled well: the growth of its powers, found by squaring.
+ */
+static double cx_growth(const cx_law *law, const double *part)
+{
+    const int n = law->plan[0], stride = 2 + law->plan[2] + law->plan[3];
+    double a[CX_ORDER * CX_ORDER] = {0.0}, b[CX_ORDER * CX_ORDER], grown = 0.0;
+    for (int k = 0; k < law->plan[1]; k++) {
+        const int *const own = law->plan + 7 + stride * k;
+        a[n * own[0] + own[1]] += fabs(part[k]);
+    }
+    for (int turn = 0; turn < 12; turn++) {
+        double most = 0.0;
+        for (int i = 0; i < n * n; i++) {
+            if (!(a[i] < HUGE_VAL)) {
+                return NAN;
+            }
+            most = fmax(most, a[i]);
+        }
+        if (most == 0.0) {
+            return 0.0;
+        }
+        grown = 2.0 * grown + log(most);
+        for (int i = 0; i < n; i++) {
+            for (int j = 0; j < n; j++) {
+                b[n * i + j] = 0.0;
+                for (int k = 0; k < n; k++) {
+                    b[n * i + j] += a[n * i + k] / most * (a[n * k + j] / most);
+                }
+            }
+        }
+        memcpy(a, b, sizeof a);
+    }
+    return exp(ldexp(grown, -11));
+}
+
+//: cx_followed
+/* Append the fundamental matrix of a piece, from one share of the length to another, by so many
+ * steps of Picard's iteration; pieces are halved until the parts are polynomials there to the
+ * last digits. work holds values of the parts, and rows of the matrix at Chebyshev points, by
+ * product of powers, row and column, each followed by whether there is any. 0 without memory.
+ */
+static int cx_followed(const cx_law *law, const cx_table *table, double from, double to, int halvings,
+                       int steps, double *work, cx_pieces *kept)
+{
+    enum { N = cx_points, STRIDE = cx_points + 2 };
+    const int n = law->plan[0], parts = law->plan[1], bases = law->plan[2], products = law->plan[3];
+    const int total = products * n * n;
+    double *const value = work, *const sum = value + (N + 1) * parts;
+    double *row = sum + 2 * total, *next = row + STRIDE * total, *const part = next + STRIDE * total;
+    int is_rough = 0;
+    for (int i = 0; i <= N; i++) {
+        cx_parts(law, from + (to - from) * table->point[i], part);
+        for (int k = 0; k < parts; k++) {
+            value[(N + 1) * k + i] = part[k];
+        }
+    }
+    for (int k = 0; k < parts && halvings < 12; k++) {
+        double most = 0.0, last = 0.0;
+        for (int m = 0; m <= N; m++) {
+            double own = 0.0;
+            for (int i = 0; i <= N; i++) {
+                own += table->term[m][i] * value[(N + 1) * k + i];
+            }
+            most = fmax(most, fabs(own));
+            last = m > N - 3 ? fmax(last, fabs(own)) : 0.0;
+        }
+        is_rough |= last > 1e-13 * most;
+    }
+    if (is_rough) {
+        const double middle = 0.5 * (from + to);
+        return cx_followed(law, table, from, middle, halvings + 1, steps, work, kept)
+            && cx_followed(law, table, middle, to, halvings + 1, steps, work, kept);
+    }
+    for (int k = 0; k < total; k++) {
+        row[STRIDE * k + N + 1] = sum[2 * k] = sum[2 * k + 1] = 0.0;
+    }
+    for (int i = 0; i < n; i++) {
+        const int at = (n + 1) * i;
+        sum[2 * at] = sum[2 * at + 1] = 1.0;
+        for (int k = 0; k <= N + 1; k++) {
+            row[STRIDE * at + k] = 1.0;
+        }
+    }
+    for (int step = 0; step < steps; step++) {
+        for (int k = 0; k < STRIDE * total; k++) {
+            next[k] = 0.0;
+        }
+        for (int k = 0; k < parts; k++) {
+            const int *const own = law->plan + 7 + k * (2 + bases + products), *const made = own + 2 + bases;
+            for (int m = 0; m < n * products; m++) {
+                const double *const given = row + STRIDE * (n * (n * (m / n) + own[1]) + m % n);
+                if (given[N + 1] == 0.0 || made[m / n] < 0) {
+                    continue;
+                }
+                double *const slope = next + STRIDE * (n * (n * made[m / n] + own[0]) + m % n);
+                for (int i = 0; i <= N; i++) {
+                    slope[i] += value[(N + 1) * k + i] * given[i];
+                }
+                slope[N + 1] = 1.0;
+            }
+        }
+        for (int k = 0; k < total; k++) {
+            double *const grown = row + STRIDE * k, *const slope = next + STRIDE * k;
+            grown[N + 1] = slope[N + 1];
+            for (int i = 0; i <= N && slope[N + 1] != 0.0; i++) {
+                grown[i] = 0.0;
+                for (int j = 0; j <= N; j++) {
+                    grown[i] += table->integral[i][j] * slope[j];
+                }
+                grown[i] *= to - from;
+            }
+            if (slope[N + 1] != 0.0) {
+                sum[2 * k] += grown[N];
+                sum[2 * k + 1] = 1.0;
+            }
+        }
+    }
+    if (kept->place == NULL) {
+        /* The same for all pieces of one cut. */
+        kept->place = malloc((size_t)total * sizeof *kept->place);
+        for (int k = 0; k < total && kept->place; k++) {
+            if (sum[2 * k + 1] != 0.0) {
+                kept->place[kept->count++] = k;
+            }
+        }
+    }
+    const size_t used = (size_t)kept->count * (size_t)kept->pieces, more = used + (size_t)kept->count;
+    if (more > kept->room) {
+        double *const larger = realloc(kept->coefficient, 2 * more * sizeof *larger);
+        kept->room = larger ? 2 * more : kept->room;
+        kept->coefficient = larger ? larger : kept->coefficient;
+    }
+    if (kept->place == NULL || more > kept->room) {
+        return 0;
+    }
+    for (int k = 0; k < kept->count; k++) {
+        kept->coefficient[used + k] = sum[2 * kept->place[k]];
+    }
+    kept->pieces++;
+    return 1;
+}
+
+//: cx_cut
+/* Make the pieces of a law for bases up to limits; there are none where waves are too many to be
+ * followed, or where there is no memory.
+ */
+static void cx_cut(const cx_law *law, double *work, cx_pieces *kept)
+{
+    enum { COUNT = 64, MOST = 4000 };
+    double share[COUNT + 1] = {0.0}, growth = 0.0, size = 1.0, from = 0.0;
+    cx_table table;
+    int steps = 0, at = 0, is_made = 1;
+    free(kept->place);
+    kept->place = NULL;
+    kept->count = kept->pieces = 0;
+    for (int i = 0; i < COUNT; i++) {
+        cx_parts(law, (i + 0.5) / COUNT, work);
+        growth += cx_growth(law, work) / COUNT;
+        share[i + 1] = growth + 1e-9 * (i + 1);
+    }
+    /* Where waves grow by e^3, sums of terms of both signs lose a digit. */
+    if (!(growth < 3.0 * MOST)) {
+        return;
+    }
+    const int number = (int)(growth / 3.0) + 1;
+    while (size > 1e-18 || steps < 2 * law->plan[0]) {
+        steps++;
+        size *= growth / number / steps;
+    }
+    cx_chebyshev(&table);
+    for (int k = 1; k <= number && is_made; k++) {
+        const double wanted = share[COUNT] * k / number;
+        while (at < COUNT - 1 && share[at + 1] < wanted) {
+            at++;
+        }
+        const double rest = (wanted - share[at]) / (share[at + 1] - share[at]);
+        const double to = k == number ? 1.0 : (at + rest) / COUNT;
+        is_made = cx_followed(law, &table, from, to, 0, steps, work, kept);
+        from = to;
+    }
+    kept->pieces = is_made ? kept->pieces : 0;
+}
+
+//: cx_through
+/* Minors of the product of all pieces, and the logarithms of the scales of their sizes. */
+static void cx_through(const int *plan, const cx *base, cx_pieces *kept, cx *minor)
+{
+    const int n = plan[0], bases = plan[2], products = plan[3], largest = plan[plan[5]];
+    const int *const starts = plan + plan[6], *const wanted = starts + 1 + 2 * starts[0];
+    const int *exponent = plan + 7 + plan[1] * (2 + bases + products), *choice[CX_ORDER + 1];
+    int count[CX_ORDER + 1] = {0, n};
+    double growth[CX_ORDER + 1] = {0.0};
+    cx *const power = kept->work, *level[CX_ORDER + 1] = {NULL, power + products}, *state, *grown;
+    choice[1] = plan + plan[5] + 1;
+    for (int q = 2, before = 0; q <= largest; q++) {
+        choice[q] = choice[q - 1] + 2 * (q - 1) * before;
+        before = count[q] = *choice[q]++;
+        level[q] = level[q - 1] + count[q - 1] * count[q - 1];
+    }
+    state = level[largest] + count[largest] * count[largest];
+    for (int k = 0; k < starts[0]; k++) {
+        for (int i = 0; i < count[starts[1 + 2 * k]]; i++) {
+            *state++ = cx_of(i == starts[2 + 2 * k] ? 1.0 : 0.0, 0.0);
+        }
+    }
+    grown = state;
+    for (int m = 0; m < products; m++) {
+        power[m] = cx_of(1.0, 0.0);
+        for (int b = 0; b < bases; b++, exponent++) {
+            for (int k = 0; k < *exponent; k++) {
+                power[m] = cx_mul(power[m], base[b]);
+            }
+        }
+    }
+    for (int piece = 0; piece < kept->pieces; piece++) {
+        const double *const coefficient = kept->coefficient + (size_t)kept->count * (size_t)piece;
+        double most[CX_ORDER + 1] = {0.0};
+        for (int i = 0; i < n * n; i++) {
+            level[1][i] = cx_of(0.0, 0.0);
+        }
+        for (int k = 0; k < kept->count; k++) {
+            cx *const entry = level[1] + kept->place[k] % (n * n);
+            *entry = cx_add(*entry, cx_scale(coefficient[k], power[kept->place[k] / (n * n)]));
+        }
+        for (int q = 2; q <= largest; q++) {
+            /* Expanded along the first rows. */
+            for (int i = 0; i < count[q] * count[q]; i++) {
+                const int *const rows = choice[q] + 2 * q * (i / count[q]);
+                const int *const columns = choice[q] + 2 * q * (i % count[q]);
+                const cx *const smaller = level[q - 1] + count[q - 1] * rows[q];
+                cx sum = cx_of(0.0, 0.0);
+                for (int k = 0; k < q; k++) {
+                    const cx term = cx_mul(level[1][n * rows[0] + columns[k]], smaller[columns[q + k]]);
+                    sum = k % 2 ? cx_sub(sum, term) : cx_add(sum, term);
+                }
+                level[q][i] = sum;
+            }
+        }
+        cx *before = level[largest] + count[largest] * count[largest], *after = grown;
+        for (int k = 0; k < starts[0]; k++) {
+            const int q = starts[1 + 2 * k], size = count[q];
+            for (int i = 0; i < size; i++, after++) {
+                *after = cx_of(0.0, 0.0);
+                for (int j = 0; j < size; j++) {
+                    *after = cx_add(*after, cx_mul(level[q][size * i + j], before[j]));
+                }
+                most[q] = fmax(most[q], cx_abs(*after));
+            }
+            before += size;
+        }
+        for (int q = 1; q <= largest; q++) {
+            growth[q] += most[q] > 0.0 ? log(most[q]) : 0.0;
+        }
+        state = level[largest] + count[largest] * count[largest];
+        after = grown;
+        for (int k = 0; k < starts[0]; k++) {
+            const int q = starts[1 + 2 * k];
+            for (int i = 0; i < count[q]; i++) {
+                *state++ = cx_over(*after++, most[q]);
+            }
+        }
+    }
+    for (int w = 0; w < wanted[0]; w++) {
+        const cx *own = level[largest] + count[largest] * count[largest];
+        for (int k = 0; k < wanted[1 + 2 * w]; k++) {
+            own += count[starts[1 + 2 * k]];
+        }
+        minor[w] = own[wanted[2 + 2 * w]];
+    }
+    for (int q = 1; q <= n; q++) {
+        minor[wanted[0] + q - 1] = cx_of(q <= largest ? growth[q] : 0.0, 0.0);
+    }
+}
+
+//: cx_minors
+/* Minors of the fundamental matrix of a law over the scales of their sizes, then the logarithms of
+ * these. Its pieces are kept for frequencies alike.
+ */
+static void cx_minors(void (*along)(double x, const PARAMETERS *p, double *part), const int *plan,
+                      const PARAMETERS *p, double start, double length, const cx *base,
+                      cx_pieces *kept, cx *minor)
+{
+    const int n = plan[0], parts = plan[1], bases = plan[2], products = plan[3];
+    const size_t total = (size_t)(products * n * n);
+    double octave[CX_ORDER];
+    cx reduced[CX_ORDER];
+    int is_new = kept->pieces < 0;
+    for (int k = 0; k < plan[plan[6] + 1 + 2 * plan[plan[6]]] + n; k++) {
+        minor[k] = cx_of(NAN, NAN);
+    }
+    for (int b = 0; b < bases; b++) {
+        const double size = cx_abs(base[b]);
+        if (!(size < HUGE_VAL)) {
+            return;
+        }
+        /* Frequencies within a factor of four share their pieces. */
+        octave[b] = size == 0.0 ? -250.0 : ceil(0.25 * log2(size));
+        reduced[b] = cx_over(base[b], pow(16.0, octave[b]));
+        is_new = is_new || octave[b] != kept->octave[b];
+    }
+    if (is_new) {
+        const size_t room = 2 * (cx_points + 3) * total + (cx_points + 3) * (size_t)parts;
+        double *const scale = malloc(room * sizeof *scale);
+        const cx_law law = {along, p, plan, start, length, scale};
+        kept->work = kept->work ? kept->work : malloc((size_t)plan[4] * sizeof *kept->work);
+        kept->pieces = 0;
+        for (int k = 0; k < parts && scale; k++) {
+            scale[k] = 1.0;
+            for (int b = 0; b < bases; b++) {
+                kept->octave[b] = octave[b];
+                scale[k] *= pow(16.0, octave[b] * plan[9 + k * (2 + bases + products) + b]);
+            }
+        }
+        if (scale && kept->work) {
+            cx_cut(&law, scale + parts, kept);
+        }
+        free(scale);
+    }
+    if (kept->pieces > 0) {
+        cx_through(plan, reduced, kept, minor);
+    }
+}
+
+//: cx_total
+/* A sum of amplitudes times exponentials over the largest one, and the logarithm of that. */
+static void cx_total(const cx *amplitude, const cx *exponent, int n, cx *value)
+{
+    double growth = -HUGE_VAL;
+    value[0] = cx_of(0.0, 0.0);
+    for (int k = 0; k < n; k++) {
+        growth = !(exponent[k].re <= growth) ? exponent[k].re : growth;
+    }
+    for (int k = 0; k < n; k++) {
+        const cx left = cx_exp(cx_of(exponent[k].re - growth, exponent[k].im));
+        value[0] = cx_add(value[0], cx_mul(amplitude[k], left));
+    }
+    value[1] = cx_of(growth, 0.0);
+}
+
 //: cx_circle
 /* Numerator over denominator at s, each the mean of its values on a circle around s,
  * because the formula itself is singular near s though they are not. At z, parts gives

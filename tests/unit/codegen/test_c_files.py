@@ -22,14 +22,15 @@ from symflex.codegen.program import verify
 from symflex.errors import UsageError
 from symflex.transfer import bind, bind_any
 from symflex.transfer.nested_form import BoundNested, EnclosedNested
-from tests.house.repository import ROOT, blocks, slow_ones, specifications, uniform
+from tests.house.repository import ROOT, blocks, slow_ones, specifications, without_tips
 from tests.unit.codegen.against_balls import axis_points, worst_errors
 from tests.unit.codegen.exportable import BAR, DELAY, MASSLESS, PIPE
 from tests.unit.codegen.test_numpy_distributed import COMPRESSED, SENSOR, specification
+from tests.unit.codegen.test_numpy_tapers import CONE, receptance
 
 pytestmark = pytest.mark.needs_tool("gcc")
 
-SPECS = uniform(specifications(ROOT / "derivations", "*/*.toml"))
+SPECS = without_tips(specifications(ROOT / "derivations", "*/*.toml"))
 STRICT = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic"]
 FEW = ("two_mass", "six_mass", "rigid_body", "sliding_free_beam", "rod_tip_mass", "two_mass_force")
 """Models whose values are compared in every run; the others with -m slow."""
@@ -110,6 +111,59 @@ def exported(text, **options):
 
 
 # ------------------------------------------------------------------------------------------ values
+
+
+def test_a_conical_rod_is_its_formula_in_any_order_of_frequencies(tmp_path):
+    library, _ = compiled(tmp_path, exported(CONE))
+    omega = np.array([60.0, 2e4, 70.0, 65.0, 1.9e4, 3e3, -3e3, 3e3])
+    assert response(library, 0, omega) == pytest.approx(receptance(1j * omega), rel=1e-11)
+    s = np.array([2000 + 9000j, -5000 + 20000j, 400.0, 30j])
+    assert value_at(library, 0, s) == pytest.approx(receptance(s), rel=1e-11)
+    values = np.array([200e9, 7800.0, 16e-4, 0.5, 0.8])  # as they are declared
+    assert value_at(library, 0, s, values) == pytest.approx(receptance(s, c=0.8, l=0.5), rel=1e-11)
+
+
+def test_waves_that_are_too_many_have_no_value(tmp_path):
+    library, _ = compiled(tmp_path, exported(CONE))
+    assert np.all(np.isnan(value_at(library, 0, [1e9j, 1e200, np.inf])))
+    assert np.isfinite(value_at(library, 0, 1e4j)[0])
+
+
+def test_two_members_with_losses_that_taper_agree_with_balls(tmp_path):
+    text = """
+symflex = 1
+[parameters]
+E = "70 GPa"
+eta = "20 us"
+rho = "2700 kg/m^3"
+h = "20 mm"
+l = "0.5 m"
+[elements.arm]
+type = "beam"
+between = ["ground", "q"]
+E = "E*(1 + eta*s)"
+I = "h^4/12*(1 - x/(2*l))^3"
+rho = "rho"
+A = "h^2*(1 - x/(2*l))"
+l = "l"
+[elements.rod]
+type = "rod"
+between = ["q", "r"]
+E = "E"
+A = "h^2*exp(-x/l)"
+rho = "rho"
+l = "l"
+[inputs]
+F = { force = "r" }
+[outputs]
+y = "r"
+"""
+    library, _ = compiled(tmp_path, exported(text))
+    enclosed = bind_any(pipeline.derive_all(pipeline.loads(text))[0]).enclosed(192)
+    omega = np.geomspace(1, 1e5, 60)
+    s = np.geomspace(1, 1e5, 20) * np.exp(1j * np.linspace(0.1, 6.2, 20))
+    assert errors(enclosed, 1j * omega, response(library, 0, omega)) <= ACCURACY
+    assert errors(enclosed, s, value_at(library, 0, s)) <= ACCURACY
 
 
 @pytest.mark.slow

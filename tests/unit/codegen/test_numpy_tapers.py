@@ -74,7 +74,7 @@ def test_the_taper_may_be_an_array_and_none_is_the_uniform_rod(cone):
 def test_languages_without_code_for_it_refuse_and_name_one_that_has():
     model = pipeline.loads(CONE)
     with pytest.raises(ModelError) as caught:
-        EXPORTERS["c"].export(model, pipeline.derive_all(model), "cone")
+        EXPORTERS["julia"].export(model, pipeline.derive_all(model), "cone")
     (problem,) = caught.value.diagnostics
     assert problem.code == "SF910"
     assert "numpy" in problem.hint
