@@ -10,7 +10,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field, replace
 from textwrap import TextWrapper
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from symflex.codegen.module_text import identifiers
 from symflex.codegen.program import nodes as tree
@@ -19,6 +19,9 @@ from symflex.codegen.program.evaluate import nearest_double
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
 
+
+Places = Any
+"""Tuples of positions, counted from 0, as :class:`nodes.FundamentalMinors` holds them."""
 
 _SUM, _PRODUCT, _SIGN, _POWER, LEAF = range(5)
 
@@ -108,6 +111,10 @@ class InfixPrinter(ABC):
     def frames(self, frames: tree.Frames) -> str:
         """Return the frames of a sum of exponentials."""
 
+    def positions(self, places: Places, wanted: Places) -> list[str]:
+        """Return where parts of a law along x stand, and which minors of its matrix are wanted."""
+        return [repr(places), repr(wanted)]
+
     # -------------------------------------------------------------------------------------------- the tree
 
     def _print(self, node: tree.CodeNode) -> tuple[str, int]:
@@ -159,7 +166,7 @@ class InfixPrinter(ABC):
                 return self.call("scaled_sum", [self._listed(x) for x in (amplitudes, exponents)])
             case tree.FundamentalMinors(start, length, bases, along, places, wanted):
                 ends = [self.print(start), self.print(length), self._listed(bases)]
-                everything = [self.follows[along], *ends, repr(places), repr(wanted)]
+                everything = [self.follows[along], *ends, *self.positions(places, wanted)]
                 return self.call("fundamental_minors", everything)
             case tree.Item(values, position):
                 return self.item(self.within(values, LEAF), position)
@@ -234,6 +241,11 @@ class PrivateFunctions(ABC):
     def blocks(self) -> list[str]:
         """Return the functions, each as text that ends with a line end."""
 
+    def along(self, number: int) -> str:
+        """Return the text of a function without name, of x, that gives the parts of a law along x."""
+        message = f"no text for what member {number} varies like"
+        raise TypeError(message)
+
     def arguments(self, variable: str) -> list[str]:
         """Return what the functions take: s or its like, and the parameters."""
         return [variable, *(self.parameters[p] for p in self.program.parameters)]
@@ -244,7 +256,8 @@ class PrivateFunctions(ABC):
         taken = {*self.reserved, *self.parameters.values()}
         names = identifiers({**own, **{a.name: a.name for a in assignments}}, taken, self.longest)
         found = [names[key] for key in own]
-        return self.printer(self.parameters, names, found[0], found[-1]), found
+        follows = {minors.along: self.along(number) for number, minors in enumerate(self.program.minors)}
+        return self.printer(self.parameters, names, found[0], found[-1], follows=follows), found
 
     def assigned(
         self, assignments: Sequence[tree.Assignment], printer: InfixPrinter, depth: int = 1

@@ -16,6 +16,7 @@ from symflex.codegen.export import Export, Language, called_parts, parts_of
 from symflex.codegen.infix import InfixPrinter, PrivateFunctions, in_lines
 from symflex.codegen.module_text import (
     COST,
+    FOLLOWED,
     FORMULA_TERMS,
     default_value,
     described,
@@ -37,7 +38,8 @@ if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
     from symflex.codegen.export import Contents, Member
-    from symflex.codegen.program.nodes import CodeNode, CodePiece, Frames, Piecewise
+    from symflex.codegen.infix import Places
+    from symflex.codegen.program.nodes import CodeNode, CodePiece, Frames, Piecewise, Straight
     from symflex.expressions import Expression
     from symflex.transfer import AnyTransferFunction
 
@@ -62,7 +64,8 @@ FUNCTIONS = frozenset(
     "i j pi e eps Inf inf NaN nan NA ans true false end nargin nargout varargin varargout exp log sqrt sin "
     "cos tan sinh cosh tanh abs real imag conj complex any all size zeros ones reshape numel unique isempty "
     "isnumeric islogical isreal isscalar isstruct isfield isa ischar char double error cell cellfun "
-    "fieldnames struct2cell mod max min find repmat eye eig diag ceil log2 isfinite sum struct".split()
+    "fieldnames struct2cell mod max min find repmat eye eig diag ceil log2 isfinite sum struct "
+    "cumsum diff floor interp1 inv isequal ismember kron nchoosek num2cell prod sort".split()
 )
 """What generated code uses, and constants that a reader would miss."""
 
@@ -142,6 +145,12 @@ class MatlabPrinter(InfixPrinter):
         """Return a call of a run-time function."""
         return f"{function}({', '.join(arguments)})"
 
+    def positions(self, places: Places, wanted: Places) -> list[str]:
+        """Return matrices of positions counted from 1."""
+        rows = [(row + 1, column + 1, *powers) for row, column, *powers in places]
+        minors = "; ".join(", ".join(_matrix([lines], 1) for lines in minor) for minor in wanted)
+        return [_matrix(rows, 0), f"{{{minors}}}"]
+
     def frames(self, frames: Frames) -> str:
         """Return a cell per frame: slots, orders and coefficients of terms, roots and divisors of keys."""
         texts = []
@@ -203,9 +212,17 @@ class LocalFunctions(PrivateFunctions):
         if self.program.is_lumped:
             return [self._lumped(self.program)]
         blocks = [self._number(self.program)]
+        for i, minors in enumerate(self.program.minors):
+            blocks.append(self._along(i, minors.along))
         for i, piece in enumerate(self.program.code):
             blocks += self._piece(i, piece)
         return blocks
+
+    def along(self, number: int) -> str:
+        """Return the text of a function without name, of x, that gives the parts of a law along x."""
+        x = identifiers({"x": "x"}, {*self.reserved, *self.parameters.values()}, self.longest)["x"]
+        given = ", ".join(self.arguments(x))
+        return f"@({x}) {self.names[f'{number}_along']}({given})"
 
     # ------------------------------------------------------------------------------------------- functions
 
@@ -274,6 +291,13 @@ class LocalFunctions(PrivateFunctions):
             text = f"(-1.0i) .* ({text})"
         lines += [*self.statement(num, text), *self.statement(den, printer.print(below))]
         return [self._function(f"[{num}, {den}]", str(number), variable, lines)]
+
+    def _along(self, number: int, code: Straight) -> str:
+        assignments = (*code.constants, *code.assignments)
+        printer, (x, value) = self.scope(assignments, "x", "value")
+        listed = printer.listed(printer.print(v) for v in code.values)
+        lines = [*self.assigned(assignments, printer), *self.statement(value, listed)]
+        return self._function(value, f"{number}_along", x, lines)
 
     def _mean(self, number: int, points: int) -> str:
         _, (variable, value, z) = self.scope((), self.variable, "value", "z")
@@ -368,6 +392,7 @@ class _File:
         roles = ["value"] if program.is_lumped else ["number"]
         for i, piece in enumerate(() if program.is_lumped else program.code):
             roles += [f"{i}_parts", str(i)] if piece.circle else [str(i)]
+        roles += [f"{i}_along" for i, _ in enumerate(program.minors)]
         return [*roles, *(SYSTEM_ROLES if member.key in self.systems else ())]
 
     def made(self) -> Export:
@@ -479,7 +504,8 @@ class _File:
         if origin := origin_lines(tf.model, ROOM):
             help_text += [*(_disarmed(line) for line in origin), ""]
         help_text += wrapped(_text(member.verification.text(self.digits)), ROOM)
-        help_text += wrapped(COST, ROOM) if member.program.solves else []
+        if member.program.solves:
+            help_text += wrapped(FOLLOWED if member.program.minors else COST, ROOM)
         first = f"{name.upper()}  {_disarmed(headline(tf, is_real=member.program.is_real))}"
         return _function(
             f"function value = {name}({functions.variable}, varargin)",
@@ -531,6 +557,7 @@ MATLAB = Language(
     ".m",
     "MATLAB and Octave function file, a handle per transfer function, verified likewise",
     matlab_function_file,
+    follows=True,
 )
 
 

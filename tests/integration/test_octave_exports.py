@@ -11,6 +11,7 @@ from symflex.transfer import bind
 from tests.integration.octave import Octave
 from tests.unit.codegen.against_balls import axis_points, worst_errors
 from tests.unit.codegen.exportable import SPECS, derived, public_name
+from tests.unit.codegen.test_numpy_tapers import CONE, receptance
 
 pytestmark = pytest.mark.needs_tool("octave")
 
@@ -59,6 +60,19 @@ def test_powers_that_overflow_are_taken_of_one_over_s(octave):
     assert "is_far" in (octave.folder / "chain.m").read_text()
     octave.run()
     assert worst_errors(tf, s, octave.value(key))[0] <= ACCURACY
+
+
+def test_a_conical_rod_is_its_formula_also_where_the_taper_is_an_array(octave):
+    model = pipeline.loads(CONE)
+    octave.write("cone", MATLAB.export(model, pipeline.derive_all(model), "cone", samples=5).text)
+    octave.do("G = cone();")
+    s = np.array([30j, 400.0, 2000 + 9000j, -5000 + 20000j, 19000j, 1e9j])
+    keys = octave.keep(f"G.y_over_F({octave.points(s)})"), octave.keep("G.y_over_F(9000i, 'c', [0 0.3 0.8])")
+    octave.run()
+    assert octave.value(keys[0])[:5] == pytest.approx(receptance(s[:5]), rel=1e-11)
+    assert np.isnan(octave.value(keys[0])[5])  # too many waves
+    found = octave.value(keys[1])
+    assert found == pytest.approx(receptance(9000j, np.array([0.0, 0.3, 0.8])), rel=1e-11)
 
 
 # ------------------------------------------------------------------------------------------ what is called

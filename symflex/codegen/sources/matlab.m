@@ -316,6 +316,234 @@ function found = modal_value(modes, coefficients, frames)
       exponents{end + 1} = exponent;
     end
   end
+  found = scaled_sum(amplitudes, exponents);
+end
+
+%: fundamental_minors parts_at pieces_along minors_through compound
+function found = fundamental_minors(along, start, len, bases, places, wanted)
+%FUNDAMENTAL_MINORS  Minors of the matrix Z(len), Z' = A(start + x) Z, over the scales of their
+%   sizes, and the logarithms of these. Part k of A is along(x){k} times powers of
+%   the bases; a row of places has its row, its column, and these powers.
+  n = max(max(places(:, 1:2)));
+  count = 1;
+  for k = 1:numel(bases)
+    count = max(count, numel(bases{k}));
+  end
+  b = zeros(count, numel(bases));
+  for k = 1:numel(bases)
+    b(:, k) = bases{k}(:);
+  end
+  % Frequencies within a factor of four share their pieces.
+  octaves = ceil(log2(abs(b)) ./ 4);
+  octaves(b == 0) = -250;
+  [every, ~, own] = unique(octaves, 'rows');
+  values = complex(NaN(count, size(wanted, 1) + n));
+  for k = find(all(isfinite(every), 2)).'
+    limits = 16 .^ every(k, :);
+    where = find(own == k);
+    [powers, z] = pieces_along(along, start, len, places, limits, where);
+    if ~isempty(z)
+      values(where, :) = minors_through(powers, z, b(where, :) ./ limits, wanted);
+    end
+  end
+  found = num2cell(values, 1);
+end
+
+function c = parts_at(along, start, len, scales, where, shares)
+%PARTS_AT  Parts of A, for bases at their limits, at shares of the length: a row per element.
+  x = start + len .* shares;
+  c = along(x);
+  for k = 1:numel(c)
+    c{k} = scales(k) .* c{k} .* len + zeros(size(x));
+    if size(c{k}, 1) > 1
+      c{k} = c{k}(where, :);
+    end
+  end
+end
+
+function [powers, z] = pieces_along(along, start, len, places, limits, where)
+%PIECES_ALONG  Z on every piece: entries by powers of the bases over their limits.
+%   Rows of z are row, column and powers, and z{k, 2} has a row per element and a
+%   column per piece; empty where waves are too many to be followed.
+  z = {};
+  powers = [];
+  n = max(max(places(:, 1:2)));
+  scales = prod(limits .^ places(:, 3:end), 2);
+  count = 64;
+  c = parts_at(along, start, len, scales, where, ((1:count) - 0.5) ./ count);
+  % Of a matrix without negative entries the largest eigenvalue is the norm, if states
+  % are scaled well.
+  growth = zeros(1, count);
+  for i = 1:count
+    sizes = zeros(n);
+    for k = 1:numel(c)
+      at = places(k, 1) + n * (places(k, 2) - 1);
+      sizes(at) = sizes(at) + max(abs(c{k}(:, i)));
+    end
+    if ~all(isfinite(sizes(:)))
+      return;
+    end
+    growth(i) = max(abs(eig(sizes))) ./ count;
+  end
+  growth = cumsum(growth);
+  % Where waves grow by e^3, sums of terms of both signs lose a digit.
+  number = floor(growth(end) ./ 3) + 1;
+  if number > 4000
+    return;
+  end
+  shares = [0, growth + 1e-9 .* (1:count)];
+  edges = interp1(shares, (0:count) ./ count, shares(end) .* (0:number) ./ number);
+  edges([1, end]) = [0, 1];
+  % Points from 0 to 1, what makes Chebyshev's terms of values there, and their integrals.
+  order = 20;
+  angles = pi .* (order:-1:0).' ./ order;
+  terms = cos(angles * (0:order + 1));
+  to_terms = inv(terms(:, 1:end - 1));
+  m = 2:order;
+  grown = terms(:, 4:end) ./ (2 .* (m + 1)) - terms(:, 2:end - 2) ./ (2 .* (m - 1));
+  grown = [terms(:, 2), terms(:, 3) ./ 4, grown];
+  integral = (grown - grown(1, :)) * to_terms ./ 2;
+  points = (1 + cos(angles)) ./ 2;
+  % Pieces are halved until functions of x are polynomials there to the last digits.
+  for turn = 0:12
+    widths = diff(edges);
+    places_of_x = edges(1:end - 1) + points .* widths;
+    c = parts_at(along, start, len, scales, where, places_of_x(:).');
+    rough = false(1, numel(widths));
+    elements = max(cellfun(@(v) size(v, 1), c));
+    for k = 1:numel(c)
+      c{k} = reshape(repmat(c{k}, elements ./ size(c{k}, 1), 1).', order + 1, []);
+      spectrum = abs(to_terms * c{k});
+      bad = max(spectrum(end - 2:end, :), [], 1) > 1e-13 .* max(spectrum, [], 1);
+      rough = rough | any(reshape(bad, numel(widths), []), 2).';
+    end
+    if turn == 12 || ~any(rough)
+      break;
+    end
+    middles = edges(1:end - 1) + widths ./ 2;
+    edges = sort([edges, middles(rough)]);
+  end
+  widths = repmat(widths, 1, elements);
+  % Rows of Z by row, column and powers; each step of the iteration is one more factor A.
+  keys = [kron([1; 1], 1:n).', zeros(n, numel(limits))];
+  rows = repmat({ones(size(c{1}))}, n, 1);
+  every = keys;
+  total = repmat({ones(1, size(c{1}, 2))}, n, 1);
+  size_left = 1;
+  steps = 0;
+  while size_left > 1e-18 || steps < 2 .* n
+    steps = steps + 1;
+    size_left = size_left .* growth(end) ./ number ./ steps;
+    made = zeros(0, size(keys, 2));
+    slopes = {};
+    for k = 1:numel(c)
+      for i = find(keys(:, 1) == places(k, 2)).'
+        key = [places(k, 1), keys(i, 2), keys(i, 3:end) + places(k, 3:end)];
+        at = find(all(made == key, 2));
+        if isempty(at)
+          made(end + 1, :) = key;
+          slopes{end + 1, 1} = c{k} .* rows{i};
+        else
+          slopes{at} = slopes{at} + c{k} .* rows{i};
+        end
+      end
+    end
+    keys = made;
+    rows = cellfun(@(v) integral * v .* widths, slopes, 'UniformOutput', false);
+    for i = 1:size(keys, 1)
+      at = find(all(every == keys(i, :), 2));
+      if isempty(at)
+        every(end + 1, :) = keys(i, :);
+        total{end + 1, 1} = rows{i}(end, :);
+      else
+        total{at} = total{at} + rows{i}(end, :);
+      end
+    end
+  end
+  powers = every;
+  z = cellfun(@(v) reshape(v, [], elements).', total, 'UniformOutput', false);
+end
+
+function values = minors_through(powers, z, b, wanted)
+%MINORS_THROUGH  Minors of the product of all pieces over their scales, and the logarithms.
+  n = max(powers(:, 1));
+  count = size(b, 1);
+  factor = ones(count, size(powers, 1));
+  for k = 1:size(b, 2)
+    own = 1;
+    for e = 0:max(powers(:, k + 2))
+      at = powers(:, k + 2) == e;
+      factor(:, at) = factor(:, at) .* own;
+      own = own .* b(:, k);
+    end
+  end
+  orders = cellfun(@numel, wanted(:, 1));
+  values = complex(zeros(count, size(wanted, 1) + n));
+  for order = unique(orders(:)).'
+    lines = nchoosek(1:n, order);
+    own = find(orders == order);
+    state = cell(size(lines, 1), numel(own));
+    for k = 1:numel(own)
+      for i = 1:size(lines, 1)
+        state{i, k} = double(isequal(lines(i, :), wanted{own(k), 2})) .* ones(count, 1);
+      end
+    end
+    scale = zeros(count, 1);
+    for piece = 1:size(z{1}, 2)
+      entries = repmat({0}, n, n);
+      for k = 1:numel(z)
+        at = powers(k, 1) + n .* (powers(k, 2) - 1);
+        entries{at} = entries{at} + z{k}(:, piece) .* factor(:, k);
+      end
+      taken = compound(entries, order);
+      following = repmat({zeros(count, 1)}, size(state));
+      largest = zeros(count, 1);
+      for k = 1:numel(own)
+        for i = 1:size(lines, 1)
+          for j = 1:size(lines, 1)
+            following{i, k} = following{i, k} + taken{i, j} .* state{j, k};
+          end
+          largest = max(largest, abs(following{i, k}));
+        end
+      end
+      state = cellfun(@(v) v ./ largest, following, 'UniformOutput', false);
+      scale = scale + log(largest);
+    end
+    values(:, size(wanted, 1) + order) = scale;
+    for k = 1:numel(own)
+      values(:, own(k)) = state{ismember(lines, wanted{own(k), 1}, 'rows'), k};
+    end
+  end
+end
+
+function found = compound(z, order)
+%COMPOUND  All minors of one size, expanded along their first rows.
+  found = z;
+  if order == 1
+    return;
+  end
+  n = size(z, 1);
+  lines = nchoosek(1:n, order);
+  smaller_lines = nchoosek(1:n, order - 1);
+  smaller = compound(z, order - 1);
+  found = cell(size(lines, 1));
+  for i = 1:size(lines, 1)
+    row = ismember(smaller_lines, lines(i, 2:end), 'rows');
+    for j = 1:size(lines, 1)
+      sum_of_terms = 0;
+      for k = 1:order
+        column = ismember(smaller_lines, lines(j, [1:k - 1, k + 1:order]), 'rows');
+        term = z{lines(i, 1), lines(j, k)} .* smaller{row, column};
+        sum_of_terms = sum_of_terms + (-1) .^ (k - 1) .* term;
+      end
+      found{i, j} = sum_of_terms;
+    end
+  end
+end
+
+%: scaled_sum
+function found = scaled_sum(amplitudes, exponents)
+%SCALED_SUM  A sum of amplitudes times exponentials over the largest one, and its logarithm.
   growth = real(exponents{1});
   for k = 2:numel(exponents)
     growth = max(growth, real(exponents{k}));
