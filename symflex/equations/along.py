@@ -76,11 +76,11 @@ class AlongX:
         place = {COORDINATE: point}
         images = {COORDINATE: self.evaluator.constant(point)}
         images |= {n: self.evaluator.constant(substitute(call, place)) for n, call in self.functions}
-        return value.map_factors(value.ring, lambda factor: _composed(value, factor, images))
+        return value.map_factors(value.ring, lambda factor: composed(value, factor, images))
 
 
-def _composed(value: Factored, factor: fmpz_mpoly, images: Mapping[str, Factored]) -> Factored:
-    """Return a polynomial with rational functions in place of some generators."""
+def composed(value: Factored, factor: fmpz_mpoly, images: Mapping[str, Factored]) -> Factored:
+    """Return a polynomial with rational functions in place of some generators, over the ring of a value."""
     ring = value.ring
     found = Factored.polynomial(ring, factor)
     for name, image in images.items():

@@ -370,7 +370,16 @@ class _Assembly:
             length = sum((end - start for end in ends), start * 0)
             system, initial = solution.medium.system, solution.initial
             self.continua.append(
-                Continuum(found.name, "field", system, start, length, initial, solution.inputs)
+                Continuum(
+                    found.name,
+                    "field",
+                    system,
+                    start,
+                    length,
+                    initial,
+                    solution.inputs,
+                    parts=solution.medium.laws(self.distributed.propagation),
+                )
             )
         for i, condition in enumerate(solution.field.conditions):
             try:
@@ -532,7 +541,16 @@ class _Assembly:
                     state, start, length = use.element.tip_state(element_use), length, -length
                 self.states[use.name] = state
                 self.continua.append(
-                    Continuum(use.name, kind, medium.system, start, length, state, final=final)
+                    Continuum(
+                        use.name,
+                        kind,
+                        medium.system,
+                        start,
+                        length,
+                        state,
+                        final=final,
+                        parts=medium.laws(self.distributed.propagation),
+                    )
                 )
         return use.element.stamp(element_use)
 

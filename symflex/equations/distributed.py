@@ -83,6 +83,11 @@ class Medium:
     is_turned: bool = False  # whether that is where x ends
     held: frozenset[str] = frozenset()  # states that are zero there, or follow from others, in what is finite
 
+    def laws(self, propagation: Propagation) -> tuple[tuple[tuple[int, ...], Dispersion], ...]:
+        """Return the states that are coupled, and their law, where coefficients vary along x."""
+        laws = propagation.table.dispersions
+        return () if self.along is None else tuple((p.states, laws[number]) for p, number in self.parts)
+
     def way(self, place: Factored) -> Factored:
         """Return how far a point of a line element is from where its state is taken for a start."""
         return place - self.origin if self.is_turned and self.origin is not None else place

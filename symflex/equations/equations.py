@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from symflex.algebra import Factored, Ring
+    from symflex.algebra import Dispersion, Factored, Ring
     from symflex.algebra.propagators import Propagation
     from symflex.expressions import Call
     from symflex.library.elements import EquationRow, LinearForm, Variable
@@ -49,6 +49,8 @@ class Continuum:
     loads: tuple[Variable, ...] = ()  # what acts all along it, per column of ``system.loads``
     # Of a line element, per state, the unknown it equals at the end, and the sign with which it does.
     final: tuple[tuple[Variable | None, int], ...] = ()
+    # Where coefficients vary along x, the states that are coupled, and their law.
+    parts: tuple[tuple[tuple[int, ...], Dispersion], ...] = ()
 
 
 @dataclass(frozen=True)

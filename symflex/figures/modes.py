@@ -202,7 +202,9 @@ def _curves(panel: Run, shape: EnclosedModeShape) -> list[Curve]:
         part = shape.along(segment.name)
         points = list(part.sampled(part.intervals()))
         length = float(part.length.mid())
-        share = np.array([float(1 - s if segment.is_reversed else s) for s, _ in points])
+        # From a tip at its second end x falls.
+        is_reversed = segment.is_reversed != (length < 0)
+        length, share = abs(length), np.array([float(1 - s if is_reversed else s) for s, _ in points])
         found.append((segment.offset + length * share, np.array([complex(z[0].mid()) for _, z in points])))
     return found
 

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from flint import acb, acb_series, arb, ctx
 
 from symflex.transfer.balls import Value, at_centre
-from symflex.transfer.varying_law import BoundLaw, raised
+from symflex.transfer.varying_law import LEAST, ROOM, BoundLaw, raised
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -45,11 +45,7 @@ PARTS = 4
 """Of an octave, on which about how far waves grow is the same."""
 MORE_ORDERS = 6
 """Powers of s less the middle of a wide ball that are kept beyond those asked for."""
-LEAST = 2.0**-20
-"""Relative radius on which an expansion is used at least, so that slopes are bounded."""
 NOWHERE = acb("nan", "nan")
-ROOM = 2.0
-"""How much wider than a ball of s it may be within the disc on which an expansion is used."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -50,6 +50,13 @@ ELSEWHERE = acb(0.7, 1.3)
 """A frequency like any other, at which coefficients have no pole in s."""
 TINY = 2.0**-30
 FEW_BITS = 30
+LINEAR = 2
+"""Powers of s less a pole's middle that are kept: what the next ones give is far smaller than its radius."""
+LEAST = 2.0**-20
+"""Relative radius on which an expansion is used at least, so that slopes are bounded."""
+ROOM = 2.0
+"""How much wider than a ball of s it may be within the disc on which an expansion is used."""
+Ends = tuple[arb, arb]
 Along = Any
 """A value along x: a real power series about a point, or a complex ball. Their arithmetic is one."""
 
@@ -216,13 +223,16 @@ class BoundLaw(PartedLaw):
         except SingularCoefficientError as error:
             raise self._singular(error) from None
 
-    def expanded_about(self, middle: acb, reach: arb, orders: int) -> PowerExpansion | None:
+    def expanded_about(
+        self, middle: acb, reach: arb, orders: int, within: Ends | None = None
+    ) -> PowerExpansion | None:
         """Return the same in so many powers of s less a middle, for abs(s - middle) up to a reach.
 
+        It is from end to end, or ``within`` two places.
         None where coefficients may have a pole in s so close by.
         """
         try:
-            return expand(_AboutMiddle(self, middle, orders), reach, ctx.prec, orders)
+            return expand(_AboutMiddle(self, middle, orders, within), reach, ctx.prec, orders)
         except SingularCoefficientError as error:
             try:
                 expand(_AboutMiddle(self, ELSEWHERE, 1), arb(TINY), FEW_BITS, 1)
@@ -239,7 +249,20 @@ class BoundLaw(PartedLaw):
             hint = "it changes many times over within a thousandth of the length: are units of rates right?"
         return ModelError(Diagnostic("SF250", message, self.law.span, hint))
 
-    def ends(self) -> tuple[arb, arb]:
+    def growth_about(self, s: acb, within: Ends) -> float:
+        """Return about by which power of e solutions grow between two places at ``s``."""
+        return growth_along(_AboutMiddle(self, s.mid(), 1, within), arb(0))
+
+    def matrix_at(self, s: acb, within: Ends) -> list[list[acb]]:
+        """Return what takes states from one place to another, on a ball of s: of a pole, a small one."""
+        middle, size = s.mid(), range(self.law.order)
+        least = abs(middle).upper() * LEAST if middle != 0 else arb(LEAST)
+        expansion = self.expanded_about(middle, max(least, (s.rad() * ROOM).upper()), LINEAR, within)
+        if expansion is None:
+            return [[acb("nan", "nan") for _ in size] for _ in size]
+        return [[expansion.series((i,), (j,), s - middle)[0] for j in size] for i in size]
+
+    def ends(self) -> Ends:
         """Return where x begins and ends."""
         (first,) = self.law.start
         start, length = (acb(self.value(x, {})).real for x in (first, self.length))
@@ -295,7 +318,8 @@ class BoundLaw(PartedLaw):
         if any(t.along.depends_on(name) for t in self.every for name in self.functions):
             return None
         place = ring.index[COORDINATE]
-        degrees = (sum(degree_in(f, place) * e for f, e in t.along.factors if e > 0) for t in self.every)
+        degrees = [sum(degree_in(f, place) * e for f, e in t.along.factors if e > 0) for t in self.every]
+        degrees += [degree_in(f, place) for t in self.every for f, e in t.along.factors if e < 0]
         with series_terms(1 + max(degrees, default=0)):
             along = self.along(arb_series([x, 1]))
 
@@ -355,7 +379,7 @@ class _InPowers:
         powers, *laws = self.law.beginning
         return SingularBeginning(powers, *(_InPowers(law, self.step) for law in laws))
 
-    def ends(self) -> tuple[arb, arb]:
+    def ends(self) -> Ends:
         return self.law.ends()
 
     def series(self, x: arb, terms: int) -> list[Coefficients]:
@@ -390,6 +414,7 @@ class _AboutMiddle:
     law: BoundLaw
     middle: acb
     orders: int
+    within: Ends | None = None  # places other than the ends; at the start coefficients may have poles
 
     @property
     def size(self) -> int:
@@ -397,13 +422,13 @@ class _AboutMiddle:
 
     @property
     def beginning(self) -> SingularBeginning | None:
-        if self.law.beginning is None:
+        if self.law.beginning is None or self.ends()[0] != self.law.ends()[0]:
             return None
         powers, *laws = self.law.beginning
         return SingularBeginning(powers, *(_AboutMiddle(law, self.middle, self.orders) for law in laws))
 
-    def ends(self) -> tuple[arb, arb]:
-        return self.law.ends()
+    def ends(self) -> Ends:
+        return self.law.ends() if self.within is None else self.within
 
     def series(self, x: arb, terms: int) -> list[Coefficients]:
         found: list[Coefficients] = [{} for _ in range(self.orders)]

@@ -92,6 +92,10 @@ CASES = {
         'I = "I_0*exp(-2*a*x)", A = "A_0*exp(-a*x)"',
         beam(lambda x: I_0 * np.exp(-1.4 * x), lambda x: A_0 * np.exp(-0.7 * x)),
     ),
+    "stiffness": (
+        'I = "I_0*(1 - x/(2*l))", A = "A_0"',
+        beam(lambda x: I_0 * linear(x), lambda x: A_0 + 0 * x),
+    ),
     "root": (
         'I = "I_0*sqrt(1 + x/l)", A = "A_0/(1 + x^2/l^2)"',
         beam(lambda x: I_0 * np.sqrt(1 + x), lambda x: A_0 / (1 + x * x)),
@@ -123,7 +127,8 @@ def bound(values):
 
 
 @pytest.mark.parametrize(
-    "name", ["wedge", *(pytest.param(n, marks=pytest.mark.slow) for n in CASES if n != "wedge")]
+    "name",
+    [n if n in ("wedge", "stiffness") else pytest.param(n, marks=pytest.mark.slow) for n in CASES],
 )
 def test_tapered_cantilevers_answer_as_collocation_does(name):
     values, matrix = CASES[name]

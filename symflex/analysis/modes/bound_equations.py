@@ -7,6 +7,7 @@ of the null space of one that is singular somewhere in its balls.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from random import Random
 from typing import TYPE_CHECKING
 
@@ -14,14 +15,19 @@ from flint import acb, acb_mat, arb, arb_mat
 
 from symflex.algebra import LAPLACE, Factored, terms_of
 from symflex.algebra.propagators import EXPONENTIAL, Propagation
-from symflex.analysis.modes.shape import DistributedShape
+from symflex.analysis.modes.shape import DistributedShape, VaryingCarrier
+from symflex.equations.along import composed
+from symflex.model.along import is_tapered, varies_along_x
 from symflex.transfer.balls import at_centre, ball, enclose, enclosure
 from symflex.transfer.enclose_kernels import fundamental_functions
+from symflex.transfer.varying_law import BoundLaw
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    from symflex.algebra import Dispersion
     from symflex.equations import Continuum, Equations
+    from symflex.expressions import Call
     from symflex.library.elements import Variable
     from symflex.model import ExactValue
     from symflex.transfer.balls import Value
@@ -124,6 +130,7 @@ def _exponent(value: acb) -> int | None:
 
 
 Values = dict[str, acb]
+Laws = dict["Dispersion", BoundLaw]
 
 
 @dataclass(frozen=True)
@@ -138,13 +145,12 @@ class BoundEquations:
     def at(self, s: acb) -> SystemAt:
         """Return the equations at a ball of s [rad/s], at the current precision."""
         equations = self.equations
-        if equations.propagation is not None:
-            equations.propagation.table.without_tapers("mode shapes are")
         known = self._constants()
         values: Values = {LAPLACE: s, **{name: acb(value) for name, value in known.items()}}
         waiting = [(n, v) for n, v in equations.definitions if not _define(n, v, values)]
+        laws = self._laws(values)
         if equations.propagation is not None:
-            values |= _propagators(equations.propagation, values)
+            values |= _propagators(equations.propagation, values, laws)
         for name, value in waiting:
             _define(name, value, values)
         columns = {variable: j for j, variable in enumerate(equations.unknowns)}
@@ -153,7 +159,7 @@ class BoundEquations:
             for variable, coefficient in row.form.terms:
                 if variable in columns:
                     entry[columns[variable]] += evaluated(coefficient, values)
-        continua = tuple(_continuum(c, values) for c in equations.continua)
+        continua = tuple(_continuum(c, values, laws) for c in equations.continua)
         return SystemAt(tuple(columns), acb_mat(entries), continua)
 
     def _constants(self) -> Mapping[str, arb]:
@@ -161,8 +167,46 @@ class BoundEquations:
         found = {name: evaluate() for name, evaluate in later.items()}
         found["pi"] = arb.pi()
         for constant in self.equations.constants:
-            found[constant.generator] = enclose(constant.expression, later)
+            if constant.generator not in self._along:
+                found[constant.generator] = enclose(constant.expression, later)
         return found
+
+    @property
+    def _along(self) -> Mapping[str, Call]:
+        """The functions of the coordinate along x among the generators."""
+        if not is_tapered(self.equations.model):
+            return {}
+        return {c.generator: c.expression for c in self.equations.constants if varies_along_x(c.expression)}
+
+    def _laws(self, values: Values) -> Laws:
+        """Return the laws that vary along x with numbers, given those of all that does not."""
+        propagation = self.equations.propagation
+        if propagation is None:
+            return {}
+        constants = {name: _constant(value.real) for name, value in values.items() if name != LAPLACE}
+        parameters = {name: enclosure(value) for name, value in self.values}
+        return {
+            law: BoundLaw(
+                law.replaced(lambda x: self._opened(propagation.embed(x))),
+                self._along,
+                law.start[0],
+                constants,
+                parameters,
+            )
+            for law in propagation.table.dispersions
+            if law.kind == "varying"
+        }
+
+    def _opened(self, value: Factored) -> Factored:
+        """Return a coefficient without definitions that depend on s: of laws that is told."""
+        moving = {LAPLACE}
+        for name, meant in self.equations.definitions:
+            if any(meant.depends_on(each) for each in moving):
+                moving.add(name)
+        for name, meant in reversed(self.equations.definitions):
+            if name in moving and value.depends_on(name):
+                value = value.map_factors(value.ring, partial(composed, value, images={name: meant}))
+        return value
 
 
 @dataclass(frozen=True, slots=True)
@@ -179,18 +223,31 @@ class ContinuumAt:
     initial: tuple[Variable | None, ...]
     loads: tuple[Variable, ...]
     direction: tuple[arb, ...]
+    varying: VaryingCarrier | None  # where coefficients vary along x, and the matrices are empty
 
     def shape(self, values: Mapping[Variable, acb], bits: int) -> DistributedShape:
         """Return how it moves when the unknowns have these values; inputs are at rest."""
         initial = tuple(acb(0) if v is None else values[v] for v in self.initial)
         load = [acb(0)] * len(self.states)
-        for variable, column in zip(self.loads, self.load_columns, strict=True):
+        for variable, column in zip(self.loads if self.load_columns else (), self.load_columns, strict=True):
             if variable in values:
                 load = [x + b * values[variable] for x, b in zip(load, column, strict=True)]
         matrix, states = self.matrix, self.states
+        if self.varying is not None:
+            load = [values.get(variable, acb(0)) for variable in self.loads]
+            initial = self.varying.started(initial)
         within = (self.start, self.length)
         return DistributedShape(
-            self.name, self.kind, states, matrix, tuple(load), initial, *within, bits, self.direction
+            self.name,
+            self.kind,
+            states,
+            matrix,
+            tuple(load),
+            initial,
+            *within,
+            bits,
+            self.direction,
+            self.varying,
         )
 
 
@@ -227,9 +284,14 @@ def _define(name: str, value: Factored, values: Values) -> bool:
     return True
 
 
-def _propagators(propagation: Propagation, values: Values) -> Values:
+def _constant(value: arb) -> Callable[[], arb]:
+    return lambda: value
+
+
+def _propagators(propagation: Propagation, values: Values, laws: Laws) -> Values:
     """Return the fundamental functions and exponentials at s."""
     found: Values = {}
+    matrices: dict[tuple[int, int], list[list[acb]]] = {}
     columns: dict[tuple[int, int], tuple[Value, ...]] = {}
     for p in propagation.propagators:
         law = propagation.table.dispersions[p.dispersion]
@@ -238,6 +300,13 @@ def _propagators(propagation: Propagation, values: Values) -> Values:
             found[p.generator] = (-evaluated(law.shift, values) * length).exp()
             continue
         key = (p.dispersion, p.length)
+        if law in laws:
+            if key not in matrices:
+                start, _ = laws[law].ends()
+                matrices[key] = laws[law].matrix_at(values[LAPLACE], (start, start + length.real))
+            row, column = divmod(p.order, law.order)
+            found[p.generator] = matrices[key][row][column]
+            continue
         if key not in columns:
             coefficients = [evaluated(c, values) for c in law.characteristic]
             columns[key] = fundamental_functions(coefficients, length)
@@ -245,18 +314,24 @@ def _propagators(propagation: Propagation, values: Values) -> Values:
     return found
 
 
-def _continuum(continuum: Continuum, values: Values) -> ContinuumAt:
+def _continuum(continuum: Continuum, values: Values, laws: Laws) -> ContinuumAt:
     system = continuum.system
     axes = system.axes
+    varying: VaryingCarrier | None = None
+    if continuum.parts:
+        parts = tuple((states, laws[law]) for states, law in continuum.parts)
+        varying = VaryingCarrier(parts, values[LAPLACE], len(system.states))
+    matrix, loads = (() if varying else x for x in (system.matrix, system.loads))
     return ContinuumAt(
         continuum.name,
         continuum.kind,
         system.states,
-        tuple(tuple(evaluated(x, values) for x in row) for row in system.matrix),
-        tuple(tuple(evaluated(x, values) for x in column) for column in system.loads),
+        tuple(tuple(evaluated(x, values) for x in row) for row in matrix),
+        tuple(tuple(evaluated(x, values) for x in column) for column in loads),
         evaluated(continuum.start, values).real,
         evaluated(continuum.length, values).real,
         continuum.initial,
         continuum.loads,
         () if axes is None else tuple(evaluated(x, values).real for x in (axes.cos, axes.sin)),
+        varying,
     )

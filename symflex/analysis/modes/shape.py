@@ -5,12 +5,12 @@ Amplitudes are found up to a factor and divided by the largest displacement.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from math import ceil, log2, pi
 from typing import TYPE_CHECKING
 
-from flint import acb, acb_mat, arb, arb_mat
+from flint import acb, acb_mat, arb, arb_mat, ctx
 
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
     from symflex.library.elements import Variable
+    from symflex.transfer.varying_law import BoundLaw
 
 
 SQUARINGS = 7
@@ -40,6 +41,54 @@ class Motion:
     unit: str  # SI unit; empty for signals and fields
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class VaryingCarrier:
+    """What takes the state along a part whose coefficients vary along x."""
+
+    parts: tuple[tuple[tuple[int, ...], BoundLaw], ...]  # states that are coupled, and their law
+    s: acb  # the pole
+    size: int  # how many states there are
+    # What was computed, by the exact places and the precision.
+    _known: dict[tuple[object, ...], list[list[acb]]] = field(default_factory=dict, repr=False)
+
+    def started(self, initial: tuple[acb, ...]) -> tuple[acb, ...]:
+        """Return the whole state at the start, given what is free there: at a tip others follow."""
+        found = list(initial)
+        for states, law in self.parts:
+            if law.law.singular is None:
+                continue
+            rows = law.law.singular.at_start()
+            for i, row in zip(states, rows, strict=False):
+                terms = (law.value(x, {}, self.s) * initial[j] for x, j in zip(row, states, strict=False))
+                found[i] = sum(terms, acb(0))
+        return tuple(found)
+
+    def step(self, first: arb, second: arb) -> list[list[acb]]:
+        """Return what takes the state, and the loads, from one distance from the start to another."""
+        ends = (tuple(map(int, y.man_exp())) for x in (first, second) for y in (x.mid(), x.rad()))
+        key = ctx.prec, *ends
+        if key in self._known:
+            return self._known[key]
+        self._known[key] = rows = [[acb(int(i == j)) for j in range(self.size)] for i in range(self.size)]
+        for states, law in self.parts if second != first else ():
+            start, _ = law.ends()
+            within = start if first == 0 else start + first, start + second
+            matrix = law.matrix_at(self.s, within)
+            for row, i in zip(matrix, states, strict=False):
+                for x, j in zip(row, states, strict=False):
+                    rows[i][j] = x
+                rows[i] += row[len(states) :]
+        return rows
+
+    def growth(self, length: arb) -> float:
+        """Return about by which power of e waves grow from end to end at most."""
+        starts = [(law, law.ends()[0]) for _, law in self.parts]
+        # Next to a tip coefficients have poles: a little away from it.
+        return max(
+            law.growth_about(self.s, (start + length / MOST_SAMPLES, start + length)) for law, start in starts
+        )
+
+
 @dataclass(frozen=True, slots=True)
 class DistributedShape:
     """What a distributed element or field does along x.
@@ -54,13 +103,16 @@ class DistributedShape:
         ``theta tau`` of a shaft, ``w f`` of a string. Of a field, its unknowns and their derivatives:
         ``w w' w''``.
     matrix, load, initial : tuples of acb
-        ``dz/dx = matrix z + load``, from ``initial`` on.
+        ``dz/dx = matrix z + load``, from ``initial`` on. Where coefficients vary along x there is no matrix,
+        and ``load`` is the values of the loads.
     start, length : arb
         Where x begins, and how far it reaches [m].
     bits : int
         The precision everything is computed at.
     direction : tuple of arb
         Cosine and sine of the angle of a member in the plane; else empty.
+    varying : VaryingCarrier or None
+        What takes the state along where coefficients vary along x.
     """
 
     name: str
@@ -73,6 +125,7 @@ class DistributedShape:
     length: arb
     bits: int
     direction: tuple[arb, ...] = ()
+    varying: VaryingCarrier | None = None
 
     @property
     def displacements(self) -> tuple[int, ...]:
@@ -99,27 +152,35 @@ class DistributedShape:
         """Return the state at a place x [m], enclosed."""
         with precision(self.bits):
             distance = arb(x.numerator) / x.denominator - self.start
-            return self._carried(self._step(distance), self.initial)
+            return self._carried(self._step(arb(0), distance), self.initial)
 
     def state_at_share(self, share: Fraction) -> tuple[acb, ...]:
         """Return the state at a share of the length from the start, enclosed."""
         with precision(self.bits):
-            return self._carried(self._step(self.length * share.numerator / share.denominator), self.initial)
+            distance = self.length * share.numerator / share.denominator
+            return self._carried(self._step(arb(0), distance), self.initial)
 
     def sampled(self, intervals: int) -> Iterator[tuple[Fraction, tuple[acb, ...]]]:
         """Yield the share of the length, from 0 to 1, and the state there, at equal steps."""
         with precision(self.bits):
-            step = self._step(self.length / intervals)
+            part = self.length / intervals
+            step = self._step(arb(0), part)
         state = self.initial
-        for i in range(intervals + 1):
+        for i in range(intervals):
             yield Fraction(i, intervals), state
             with precision(self.bits):
+                if i and self.varying is not None:
+                    step = self._step(part * i, part * (i + 1))
                 state = self._carried(step, state)
+        yield Fraction(1), state
 
     def intervals(self) -> int:
         """Return in how many steps no wave is missed: some per half wavelength."""
-        rate = self._spectral_radius() * float(self.length.mid())
-        wanted = ceil(SAMPLES_PER_HALF_WAVE * rate / pi)
+        with precision(self.bits):
+            waves = None if self.varying is None else self.varying.growth(self.length)
+        if waves is None:
+            waves = self._spectral_radius() * float(self.length.mid())
+        wanted = ceil(SAMPLES_PER_HALF_WAVE * waves / pi)
         return min(max(FEWEST_SAMPLES, wanted + wanted % 2), MOST_SAMPLES)
 
     def scaled(self, factor: acb) -> DistributedShape:
@@ -127,8 +188,11 @@ class DistributedShape:
         load, initial = (tuple(x * factor for x in part) for part in (self.load, self.initial))
         return replace(self, load=load, initial=initial)
 
-    def _step(self, distance: arb) -> list[list[acb]]:
-        """Return what takes the state, and a one for the load, over a distance."""
+    def _step(self, first: arb, second: arb) -> list[list[acb]]:
+        """Return what takes the state, and a one for the load or all loads, between distances."""
+        if self.varying is not None:
+            return self.varying.step(first, second)
+        distance = second - first
         rows = [
             [*(x * distance for x in row), b * distance]
             for row, b in zip(self.matrix, self.load, strict=True)
@@ -140,9 +204,8 @@ class DistributedShape:
         found: list[list[acb]] = acb_mat(rows).exp().tolist()
         return found
 
-    @staticmethod
-    def _carried(step: Sequence[Sequence[acb]], state: tuple[acb, ...]) -> tuple[acb, ...]:
-        whole = (*state, acb(1))
+    def _carried(self, step: Sequence[Sequence[acb]], state: tuple[acb, ...]) -> tuple[acb, ...]:
+        whole = (*state, *((acb(1),) if self.varying is None else self.load))[: len(step[0])]
         rows = step[: len(state)]
         return tuple(sum((a * z for a, z in zip(row, whole, strict=True)), acb(0)) for row in rows)
 

@@ -45,8 +45,8 @@ def test_texts_of_a_figure_keep_apart(path, kind, bound):
         figure = draw(kind, [one.source for one in bounds], bounds)
     except symflex.SymflexError as error:
         assert kind == "modes"
-        # Nothing moves in a model of blocks; shapes of tapers are not there yet.
-        assert error.diagnostics[0].code == ("SF910" if path.parent.name == "tapers" else "SF402")
+        # Nothing moves in a model of blocks.
+        assert error.diagnostics[0].code == "SF402"
         return
     assert not faults(figure)
 
