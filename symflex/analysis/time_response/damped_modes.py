@@ -103,8 +103,8 @@ def damping_of(bound: BoundTransferFunction) -> Damping | None:
     if power is None:
         return None
     # first = stiffness * L, with L = inertial/elastic, both of them normalised.
-    lead = _product(ring, ((_coefficient(bound, f, degree_in(f, 0)), e) for f, e in above))
-    low = _product(ring, ((_coefficient(bound, f, 0), e) for f, e in below))
+    lead = _product(ring, ((coefficient_of(bound, f, degree_in(f, 0)), e) for f, e in above))
+    low = _product(ring, ((coefficient_of(bound, f, 0), e) for f, e in below))
     if lead.is_zero or low.is_zero:
         return None
     s = Factored.generator(ring, "s")
@@ -163,7 +163,8 @@ def _without_s(value: Factored) -> Factored:
     return Factored(value.ring, value.unit, tuple((f, e) for f, e in value.factors if not degree_in(f, 0)))
 
 
-def _coefficient(bound: BoundTransferFunction, factor: fmpz_mpoly, power: int) -> Factored:
+def coefficient_of(bound: BoundTransferFunction, factor: fmpz_mpoly, power: int) -> Factored:
+    """Return the coefficient of a power of s."""
     ring = bound.ratio.ring
     terms = {(0, *map(int, m[1:])): int(c) for m, c in factor.terms() if int(m[0]) == power}
     return Factored.polynomial(ring, ring.context.from_dict(terms))

@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING
 from flint import acb, arb, arb_poly
 
 from symflex.algebra import Factored, Ring
-from symflex.algebra.exponential_sum import Argument, arguments_of, exponential_sum
+from symflex.algebra.exponential_sum import Argument, Exponent, arguments_of, exponential_sum
 from symflex.roots.problem import PolynomialInS, RealConstant
 from symflex.transfer.balls import at_centre, ball
 
@@ -95,7 +95,7 @@ def delayed_quotient(bound: BoundTransferFunction) -> DelayedQuotient | None:
         if found is None:
             return None
         slowness[name] = found
-    reader = _Reader.of(bound, arguments, slowness)
+    reader = DelayReader.of(bound, arguments, slowness)
     if reader is None:
         return None
     one = {NO_DELAY: {(0,) * (1 + len(reader.durations.names)): bound.ratio.unit}}
@@ -113,7 +113,7 @@ def delayed_quotient(bound: BoundTransferFunction) -> DelayedQuotient | None:
 
 
 @dataclass(frozen=True, eq=False)
-class _Reader:
+class DelayReader:
     """Reads polynomials in kernels as sums of delays."""
 
     bound: BoundTransferFunction
@@ -126,7 +126,7 @@ class _Reader:
     @classmethod
     def of(
         cls, bound: BoundTransferFunction, arguments: tuple[Argument, ...], slowness: Mapping[str, Factored]
-    ) -> _Reader | None:
+    ) -> DelayReader | None:
         """Return the reader of a function; None where an argument is no delay."""
         ring = bound.ratio.ring
 
@@ -165,6 +165,10 @@ class _Reader:
         known_constants = Durations(tuple(durations), tuple(names), tuple(constants))
         return cls(bound, arguments, tuple(delays), places, waves, known_constants)
 
+    def delay_of(self, exponent: Exponent) -> Delay:
+        """Return what an exponential is late by."""
+        return sum_of(*(((self.delays[x][0], self.delays[x][1] * a),) for x, a, _ in exponent))
+
     def read(self, factor: fmpz_mpoly) -> dict[Delay, Amplitude] | None:
         """Return a factor as a sum of delays; None where there are too many."""
         terms = exponential_sum(self.bound.ratio.ring, self.bound.kernels, self.arguments, factor)
@@ -172,8 +176,7 @@ class _Reader:
             return None
         found: dict[Delay, Amplitude] = {}
         for exponent, amplitude in terms.terms.items():
-            delay = sum_of(*(((self.delays[x][0], self.delays[x][1] * a),) for x, a, _ in exponent))
-            own = found.setdefault(delay, {})
+            own = found.setdefault(self.delay_of(exponent), {})
             for monomial, (number, _) in amplitude.items():
                 exponents = [0] * (1 + len(self.durations.names))
                 for i, e in monomial:

@@ -17,11 +17,18 @@ from __future__ import annotations
 
 import heapq
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from flint import acb, acb_poly, arb, arb_poly
 
-from symflex.analysis.time_response.delayed_terms import NO_DELAY, Delay, DelayedQuotient, later, sum_of
+from symflex.analysis.time_response.delayed_terms import (
+    NO_DELAY,
+    Delay,
+    DelayedQuotient,
+    Durations,
+    later,
+    sum_of,
+)
 from symflex.analysis.time_response.enclosed_response import ImpulseAt, JumpAt
 from symflex.analysis.time_response.exponentials import ExponentialTerm, values_of
 from symflex.analysis.time_response.partial_fractions import (
@@ -36,7 +43,7 @@ from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.problem import RootProblem
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from symflex.analysis.time_response.sample_times import SampleTimes
     from symflex.roots import Root
@@ -77,50 +84,84 @@ def echoes(quotient: DelayedQuotient, last: arb) -> list[Echo] | None:
 
     None where the output would come before the input; TooManyEchoesError where it is too long.
     """
-    seconds = quotient.durations.seconds
-    first = _earliest(quotient)
+    first = earliest(quotient.below, quotient.durations)
     below = {later(delay, first): quotient.durations.polynomial(p) for delay, p in quotient.below.items()}
     leading = below.pop(NO_DELAY)
-    waiting: dict[Delay, list[tuple[arb_poly, int]]] = {}
-    queue: list[tuple[float, Delay]] = []
 
-    def put(delay: Delay, numerator: arb_poly, power: int) -> None:
-        if delay not in waiting:
-            when = seconds(delay)
-            if when > last:
-                return
-            waiting[delay] = []
-            heapq.heappush(queue, (float(when.mid()), delay))
-        waiting[delay].append((numerator, power))
-
-    for delay, amplitude in quotient.above.items():
-        own = later(delay, first)
-        if own and seconds(own) < 0:
-            return None
-        put(own, quotient.durations.polynomial(amplitude), 1)
-    found: list[Echo] = []
-    powers = 0
-    while queue:
-        spend()
-        _, delay = heapq.heappop(queue)
-        parts = waiting.pop(delay)
+    def joined(parts: list[tuple[arb_poly, int]]) -> tuple[arb_poly, int] | None:
         power = max(m for _, m in parts)
         numerator = sum((p * leading ** (power - m) for p, m in parts), arb_poly([0]))
-        if numerator.degree() < 0:
-            continue
+        return None if numerator.degree() < 0 else (numerator, power)
+
+    begun = {
+        later(delay, first): (quotient.durations.polynomial(p), 1) for delay, p in quotient.above.items()
+    }
+    if any(delay and quotient.durations.seconds(delay) < 0 for delay in begun):
+        return None
+    found: list[Echo] = []
+    powers = 0
+    for delay, (numerator, power) in arriving(
+        begun, below, joined, lambda own, p: (-(own[0] * p), own[1] + 1), quotient.durations, last
+    ):
         found.append(Echo(delay, numerator, power))
         powers += power if leading.degree() else 0
-        if len(found) > MOST_ECHOES or powers > MOST_POWERS:
+        if powers > MOST_POWERS:
             raise TooManyEchoesError
-        for more, polynomial in below.items():
-            put(sum_of(delay, more), -(numerator * polynomial), power + 1)
     return found
 
 
-def _earliest(quotient: DelayedQuotient) -> Delay:
-    """Return the shortest delay of the denominator; a negative one is a growing exponential."""
+Coming = TypeVar("Coming")
+Factor = TypeVar("Factor")
+
+
+def arriving(
+    begun: Mapping[Delay, Coming],
+    below: Mapping[Delay, Factor],
+    joined: Callable[[list[Coming]], Coming | None],
+    followed: Callable[[Coming, Factor], Coming],
+    durations: Durations,
+    last: arb,
+) -> Iterator[tuple[Delay, Coming]]:
+    """Yield what comes after each delay up to a time [s], in order.
+
+    ``begun`` comes by itself; everything comes again after every delay of ``below``, as ``followed`` says.
+    What comes at the same time is ``joined``; None for nothing. Raises TooManyEchoesError.
+    """
+    waiting: dict[Delay, list[Coming]] = {}
+    queue: list[tuple[float, Delay]] = []
+
+    def waited_for(delay: Delay) -> bool:
+        if delay not in waiting:
+            when = durations.seconds(delay)
+            if when > last:
+                return False
+            waiting[delay] = []
+            heapq.heappush(queue, (float(when.mid()), delay))
+        return True
+
+    for delay, part in begun.items():
+        if waited_for(delay):
+            waiting[delay].append(part)
+    count = 0
+    while queue:
+        spend()
+        _, delay = heapq.heappop(queue)
+        whole = joined(waiting.pop(delay))
+        if whole is None:
+            continue
+        count += 1
+        if count > MOST_ECHOES:
+            raise TooManyEchoesError
+        yield delay, whole
+        for more, factor in below.items():
+            if waited_for(again := sum_of(delay, more)):
+                waiting[again].append(followed(whole, factor))
+
+
+def earliest(below: Iterable[Delay], durations: Durations) -> Delay:
+    """Return the shortest delay of a denominator; a negative one is a growing exponential."""
     with precision(TIE_BITS):
-        return min(quotient.below, key=lambda delay: quotient.durations.seconds(delay).mid())
+        return min(below, key=lambda delay: durations.seconds(delay).mid())
 
 
 def echoed(quotient: DelayedQuotient, integrations: int, times: SampleTimes, digits: int) -> Sampled | None:
@@ -128,7 +169,8 @@ def echoed(quotient: DelayedQuotient, integrations: int, times: SampleTimes, dig
 
     Where only poles that are not told apart stand in the way, more digits may help.
     """
-    leading = quotient.durations.exact(quotient.below[_earliest(quotient)])
+    first = earliest(quotient.below, quotient.durations)
+    leading = quotient.durations.exact(quotient.below[first])
     poles = find_polynomial_roots(RootProblem(((leading, 1),)), digits) if leading.degree else ()
     bits = max((root.working_bits() for root in poles), default=0) + bits_for_digits(digits)
     with precision(bits):
@@ -137,30 +179,55 @@ def echoed(quotient: DelayedQuotient, integrations: int, times: SampleTimes, dig
         expansion = echoes(quotient, last)
         if expansion is None:
             return None
-        below = acb_poly(quotient.durations.polynomial(quotient.below[_earliest(quotient)]))
-        total = [arb(0)] * len(times)
-        impulses: list[ImpulseAt] = []
-        jumps: list[JumpAt] = []
-        at_jumps: set[int] = set()
+        below = acb_poly(quotient.durations.polynomial(quotient.below[first]))
+        total = Gathered(seconds)
         for echo in expansion:
             spend()
             part = EnclosedQuotient(((acb_poly(echo.numerator), 1),), ((below, echo.power),), acb(1))
             delay = quotient.durations.seconds(echo.delay)
-            weights, height = at_infinity(part, integrations)
-            impulses += [ImpulseAt(delay, k, w) for k, w in enumerate(weights) if not w.contains(0)]
-            if echo.delay and not height.contains(0):
-                jumps.append(JumpAt(delay, height))
             terms = _terms(part, poles, echo.power, integrations, last, digits)
             if terms is None:
                 return None
-            start = next((i for i, t in enumerate(seconds) if not t < delay), len(seconds))
-            for i, value in enumerate(values_of(terms, times, start, delay), start):
-                if echo.delay and not seconds[i] > delay:
-                    total[i] = total[i] + value.union(arb(0))
-                    at_jumps |= set() if height == 0 else {i}
-                else:
-                    total[i] = total[i] + value
-        return Sampled(tuple(total), tuple(impulses), tuple(jumps), frozenset(at_jumps))
+            start = total.start(delay)
+            values = values_of(terms, times, start, delay)
+            total.add(delay, *at_infinity(part, integrations), values, is_late=bool(echo.delay))
+        return total.sampled
+
+
+class Gathered:
+    """The sum of what has come by each time [s]."""
+
+    def __init__(self, seconds: Sequence[arb]) -> None:
+        self._seconds = seconds
+        self._values = [arb(0)] * len(seconds)
+        self._impulses: list[ImpulseAt] = []
+        self._jumps: list[JumpAt] = []
+        self._at_jumps: set[int] = set()
+
+    def start(self, delay: arb) -> int:
+        """Return the number of the first time that may lie after a delay."""
+        return next((i for i, t in enumerate(self._seconds) if not t < delay), len(self._seconds))
+
+    def add(
+        self, delay: arb, weights: Sequence[arb], height: arb, values: Iterable[arb], *, is_late: bool
+    ) -> None:
+        """Add what comes after a delay: weights of impulses, a jump, and values from then on."""
+        self._impulses += [ImpulseAt(delay, k, w) for k, w in enumerate(weights) if not w.contains(0)]
+        if is_late and not height.contains(0):
+            self._jumps.append(JumpAt(delay, height))
+        for i, value in enumerate(values, self.start(delay)):
+            if is_late and not self._seconds[i] > delay:
+                self._values[i] = self._values[i] + value.union(arb(0))
+                self._at_jumps |= set() if height == 0 else {i}
+            else:
+                self._values[i] = self._values[i] + value
+
+    @property
+    def sampled(self) -> Sampled:
+        """All of it."""
+        return Sampled(
+            tuple(self._values), tuple(self._impulses), tuple(self._jumps), frozenset(self._at_jumps)
+        )
 
 
 def _terms(

@@ -6,12 +6,13 @@ Input: a bound transfer function, the name of an input, times. Output: a :class:
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
 from symflex.algebra import Factored, KernelTable
-from symflex.analysis.time_response.delayed_terms import DelayedQuotient, delayed_quotient
+from symflex.analysis.time_response.delayed_terms import delayed_quotient
 from symflex.analysis.time_response.echoes import Sampled, TooManyEchoesError, echoed
 from symflex.analysis.time_response.enclosed_response import (
     INTEGRATIONS,
@@ -28,6 +29,7 @@ from symflex.analysis.time_response.partial_fractions import (
     power_series_terms,
 )
 from symflex.analysis.time_response.sample_times import SampleTimes
+from symflex.analysis.time_response.wave_echoes import wave_quotient
 from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
 from symflex.errors.diagnostic import nearest
@@ -176,16 +178,22 @@ def _found(
     quotient = delayed_quotient(bound)
     if quotient is not None:
         try:
-            return _of_delays(bound, quotient, integrations, times, digits), None
+            return _of_delays(bound, partial(echoed, quotient), integrations, times, digits), None
         except TooManyEchoesError:
             spend()
+    waves = None if quotient is not None else wave_quotient(bound)
+    if waves is not None:
+        try:
+            return _of_delays(bound, waves.echoed, integrations, times, digits), None
+        except (TooManyEchoesError, UncertifiedError):
+            spend()
     if any(law.kind == "exponential" for law in bound.kernels.dispersions):
-        if quotient is not None:
-            message = f"too many echoes of the delays of {bound.name} arrive by then"
-            raise UncertifiedError(Diagnostic("SF810", message, None, "ask for a shorter time"))
-        late = _without_delay(bound)
+        late = _without_delay(bound) if quotient is None else None
         if late is not None:
             return _later(*late, integrations, times, digits)
+        if quotient is not None or waves is not None:
+            message = f"too many echoes of the delays of {bound.name} arrive by then"
+            raise UncertifiedError(Diagnostic("SF810", message, None, "ask for a shorter time"))
         message = f"{bound.name} has delays and waves that spread: its response in time is not known"
         raise ModelError(Diagnostic("SF813", message, None, "take 'symflex rational' of the beam first"))
     proved = proved_modes(bound, integrations, times, digits)
@@ -269,14 +277,14 @@ def _of_lumped(bound: BoundTransferFunction, integrations: int, times: SampleTim
 
 def _of_delays(
     bound: BoundTransferFunction,
-    quotient: DelayedQuotient,
+    echoes: Callable[[int, SampleTimes, int], Sampled | None],
     integrations: int,
     times: SampleTimes,
     digits: int,
 ) -> Sampled:
     wanted = digits + GUARD_DIGITS
     for _ in range(ATTEMPTS):
-        found = echoed(quotient, integrations, times, wanted)
+        found = echoes(integrations, times, wanted)
         if found is not None:
             apart = [y for i, y in enumerate(found.values) if i not in found.at_jumps]
             if is_precise(apart, digits) and (times.is_exact or not found.at_jumps):
