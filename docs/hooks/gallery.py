@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import html
 import re
+import tomllib
 from dataclasses import dataclass
 from functools import cache
 from math import inf
@@ -38,6 +39,7 @@ FOLDERS: Final = {
     "eppinger1988": "One axis of a robot, and what bends in it",
     "eppinger1988/loops": "Loops around it, of position and of force",
     "classics": "Textbooks",
+    "tapers": "Members that change along x",
     "frames": "Plane frames",
 }
 """Sections of the gallery."""
@@ -60,6 +62,7 @@ class Entry:
     path: str  # below derivations/
     title: str
     source: str
+    doc: str
     formula: str  # HTML
     figures: tuple[tuple[str, bytes], ...]  # what each shows, and the drawing
 
@@ -107,7 +110,8 @@ def entry_of(path: Path) -> Entry:
     bounds = [bound for bound in found if not bound.is_zero]
     figures = tuple(_figures(model, bounds, is_loop="loops" in name))
     (symbolic,), _ = pipeline.derive_as(model, model.transfer_functions[:1])
-    return Entry(name, model.title, model.source, formula_html(symbolic, LONGEST), figures)
+    doc = tomllib.loads(path.read_text(encoding="utf-8")).get("doc", "")
+    return Entry(name, model.title, model.source, doc, formula_html(symbolic, LONGEST), figures)
 
 
 def _figures(
@@ -154,8 +158,7 @@ def _sections() -> Iterator[str]:
             if Path(entry.path).parent.as_posix() != folder:
                 continue
             yield f"### {entry.title}\n"
-            if entry.source:
-                yield f"{html.escape(entry.source)}\n"
+            yield from (f"{html.escape(line)}\n" for line in (entry.source, entry.doc) if line)
             yield f'<div class="gallery" id="{entry.stem}">'
             for name, _ in entry.figures:
                 shown = "root locus" if name == "map" and "loops" in entry.path else CAPTIONS[name]

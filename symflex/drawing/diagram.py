@@ -291,6 +291,9 @@ class _Band:
         if branch.origin is not None:
             left, right = self.x[branch.origin]
             other = right if left > centre else left
+        is_read = branch.origin is None and self._kind(branch.nodes[-1]) == "reading"
+        if is_read:  # from beyond the end of the path, where a wire finds it without crossing that
+            other = max(other, self.box.x1)
         low, high, sign = min(centre, other), max(centre, other), 1.0 if other >= centre else -1.0
         room = Extent(
             low - 3,
@@ -300,13 +303,14 @@ class _Band:
         )
         y, is_up = self._height(branch, room, [centre] if branch.origin is None else [centre, other])
         self._sign(target, "above" if is_up else "below", is_minus=branch.is_minus)
-        slack = 0.0 if branch.origin is None else max(0.0, (high - low - length) / 2)
+        spare = max(0.0, high - low - length)
+        slack = 0.0 if branch.origin is None else spare / 2
         x = before = centre + sign * slack
         if slack:
             self.items.append(Placed("wire", "", (line((centre, y), (x, y)),)))
             before = centre
         for i, (node, one) in enumerate(zip(branch.nodes, shown, strict=True)):
-            x += sign * WIRE
+            x += sign * WIRE + (spare if is_read and node == branch.nodes[-1] else 0.0)
             self._place(node, one, x if sign > 0 else x - one.width, y)
             self._wire_back(branch.nodes[i - 1] if i else None, node, (x, before), y, sign)
             x += sign * one.width

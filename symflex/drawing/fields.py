@@ -16,7 +16,7 @@ from symflex.drawing.cells import coordinate
 from symflex.drawing.columns import upright_mark, upright_width
 from symflex.drawing.geometry import THIN, Extent, Placed, Stroke
 from symflex.drawing.lettering import SMALL, Labels, text
-from symflex.drawing.scheme import UNKNOWN, Mark, Style, depths, evaluate, values_of, without_s
+from symflex.drawing.scheme import UNKNOWN, Mark, Style, evaluate, sections, values_of, without_s
 from symflex.drawing.symbols import (
     HALF,
     Strokes,
@@ -46,7 +46,7 @@ from symflex.expressions import (
 from symflex.model.along import COORDINATE, is_tapered
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from symflex.drawing.scheme import Depths
     from symflex.expressions import Expression
@@ -151,18 +151,20 @@ class _Row:
         return low + (high - low) * min(1.0, max(0.0, (at - a) / (b - a)))
 
     def _depths(self, one: FieldProblem) -> Depths:
-        """Return the depths of a member that tapers, by the coefficients of the highest derivatives."""
+        """Return the depths of a member that tapers, by how stiff and how heavy its equations say it is."""
         if not is_tapered(self.model) or COORDINATE in one.unknowns:
             return ()
         ends = [evaluate(e, self.known) for e in (one.start, one.end)]
         a, b = (0.0 if ends[0] is None else ends[0]), (UNKNOWN if ends[1] is None else ends[1])
-        root = 4 if self._is_beam(one) else 2
         for equation in one.equations:
             found = [n for n in names(equation) if isinstance(n, Derivative)]
             highest = max(found, key=lambda d: d.order)
-            rest = {n: number(n == highest) for n in (*found, *map(Name, one.unknowns))}
-            left, right = (replace_values(side, rest) for side in equation.children)
-            if shape := depths(sum_of([left, negative(right)]), (a, b), self.known, root):
+            others = {n: number(0) for n in (*found, *map(Name, one.unknowns))}
+            stiff = _coefficient(equation, {**others, highest: number(1)})
+            moved = {**others, Name(highest.name): number(1)}
+            inert, still = (_coefficient(equation, {**moved, Name("s"): number(n)}) for n in (1, 0))
+            heavy = sum_of([inert, negative(still)])
+            if shape := sections(stiff, heavy, (a, b), self.known, None if self._is_beam(one) else 2):
                 return shape
         return ()
 
@@ -182,7 +184,7 @@ class _Row:
     def _collect_inputs(self) -> list[str]:
         found: list[str] = []
         for one in self.fields:
-            order = len(one.conditions)
+            is_beam = self._is_beam(one)
             for condition in one.conditions:
                 calls = self._values(condition)
                 driving = [n.name for s in condition.children for n in names(s) if isinstance(n, Name)]
@@ -190,9 +192,9 @@ class _Row:
                     if not calls:
                         continue
                     at = max(calls, key=lambda c: c.order)
-                    is_moment = order >= BENDING and len(one.unknowns) == 1 and at.order == BENDING // 2
+                    is_moment = is_beam and at.order == BENDING // 2
                     style: Style = "torque" if is_moment else "push" if at.order else "raise"
-                    if at.order == 1 and order >= BENDING and len(one.unknowns) == 1:
+                    if at.order == 1 and is_beam:
                         style = "twist"
                     x = self._x(self.unknowns[at.name], at.argument)
                     self.marks.setdefault((style, x), []).append(("input", name, self._label(name)))
@@ -227,7 +229,8 @@ class _Row:
 
     @staticmethod
     def _is_beam(one: FieldProblem) -> bool:
-        return len(one.conditions) >= BENDING and len(one.unknowns) == 1
+        orders = [n.order for e in one.equations for n in names(e) if isinstance(n, Derivative)]
+        return len(one.unknowns) == 1 and max(orders) >= BENDING
 
     def _single(self, expression: Expression) -> Call | None:
         """Return the one value of a field that an expression is, but for constants."""
@@ -264,8 +267,7 @@ class _Row:
                 zero.add((one.unknowns.index(calls[0].name), calls[0].order))
         if len(one.unknowns) > 1:
             return (0, 0) in zero, (1, 0) in zero
-        is_beam = len(one.conditions) >= BENDING
-        return (0, 0) in zero, ((0, 1) in zero if is_beam else (0, 0) in zero)
+        return (0, 0) in zero, (0, 1 if self._is_beam(one) else 0) in zero
 
     def _draw_marks(self) -> float:
         """Draw arrows above the member, side by side or above each other; return how high they reach."""
@@ -350,6 +352,12 @@ class _Row:
     def _sides(self, equation: Equation) -> str:
         left, right = equation.children
         return f"{self.labels.expression(left)} = {self.labels.expression(right)}"
+
+
+def _coefficient(equation: Equation, values: Mapping[Expression, Expression]) -> Expression:
+    """Return the left side less the right one, with values in place of what it holds."""
+    left, right = (replace_values(side, values) for side in equation.children)
+    return sum_of([left, negative(right)])
 
 
 def _support(held: tuple[bool, bool], x: float, side: int, half: float) -> Iterator[Stroke]:

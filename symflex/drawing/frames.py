@@ -109,6 +109,9 @@ class _Plan:
             self._label(part)
         for node in dict.fromkeys(n for p in self.others for n in p.nodes if n in self.at):
             self._draw_mark(name_of(node))
+        for part in self.members:
+            if part.type_name == "frame":
+                self._draw_coordinate(part)
 
     # -------------------------------------------------------------------------------------------- places
 
@@ -421,6 +424,27 @@ class _Plan:
         flat = mark.style in ("shift", "force", "motion")
         items = flat_mark(mark, 0.0, 0.0) if flat else upright_mark(mark, 0.0, 0.0)
         self._beside(items, mark.node)
+
+    def _draw_coordinate(self, part: DrawnPart) -> None:
+        """Draw an arrow along x close to where a member begins, if there is room on one side."""
+        (x, y), b = self._shortened(part)
+        size = hypot(b[0] - x, b[1] - y) or 1.0
+        d = ((b[0] - x) / size, (b[1] - y) / size)
+        shown = text("x", SMALL)
+        assert shown is not None
+        far = 18.5 + abs(d[0]) * shown.width / 2 + abs(d[1]) * shown.height / 2
+        for off in (s * (HALF + more) for more in (3.5, 5.5) for s in (-1, 1)):
+            start = line((1.5, off - 2), (1.5, off + 2), width=THIN)
+            strokes = (*arrow((1.5, off), (16.5, off), THIN), start)
+            tip = (x + far * d[0] - off * d[1], y + far * d[1] + off * d[0])
+            written = shown.moved(tip[0] - shown.width / 2, tip[1] - (shown.height - shown.depth) / 2)
+            items = [
+                Placed("axis", "x", strokes).rotated(*d).moved(x, y),
+                Placed("label", "x", (), (written,)),
+            ]
+            if self._first_free(items, [(0.0, 0.0), (1.0, 1.0)]) == (0.0, 0.0):
+                self._add(*items)
+                return
 
     def _label(self, part: DrawnPart) -> None:
         """Write the label of a member beside it, and mark outputs at its points."""

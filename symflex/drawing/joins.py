@@ -18,7 +18,7 @@ from symflex.drawing.geometry import THIN, Extent, Placed, Stroke, around, union
 from symflex.drawing.symbols import head
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from symflex.drawing.geometry import Drawing, Point
 
@@ -26,8 +26,8 @@ CELL: Final = 2.5
 """Of the grid on which ways are looked for [points]."""
 CLEAR: Final = 1.6
 """Between a wire and what it passes."""
-BEND, CROSSING = 8.0, 16.0
-"""What a corner, and a wire that is crossed, cost in cells of length."""
+BEND, CROSSING, STRIKING = 8.0, 16.0, 40.0
+"""What a corner, a dashed wire that is crossed, and another line that is, cost in cells of length."""
 LONGEST: Final = 300.0
 """Cost of a way that would rather confuse."""
 STEPS: Final = ((1, 0), (-1, 0), (0, 1), (0, -1))
@@ -48,13 +48,17 @@ def joined(drawing: Drawing, joins: Sequence[Join]) -> tuple[Placed, ...]:
     """Return the wires of what can be joined, in order."""
     solid = [box for item in drawing.items if item.kind not in ("wire", "node") for box in item.extents]
     blocked: set[Cell] = set()
-    crossed: set[Cell] = set()
+    crossed: dict[Cell, float] = {}  # and what that costs
     for item in drawing.items:
         is_wire = item.kind == "wire"
         for stroke in item.strokes if is_wire else ():
             for pair in pairwise(stroke.points):
                 # The head of an arrow is no line that may be crossed.
-                (blocked if stroke.fill else crossed).update(_covered(around(pair), 0.5 * CELL))
+                cells = _covered(around(pair), 0.5 * CELL)
+                if stroke.fill:
+                    blocked.update(cells)
+                else:
+                    crossed.update(dict.fromkeys(cells, STRIKING))
         for box in () if is_wire else item.extents:
             blocked.update(_covered(box, CLEAR))
     right, top = int(drawing.width / CELL), int(drawing.height / CELL)
@@ -66,7 +70,8 @@ def joined(drawing: Drawing, joins: Sequence[Join]) -> tuple[Placed, ...]:
         points = points or _way(one.starts, one.otherwise, blocked, crossed)
         # A symbol may reach into another one's place, where a way begins or ends.
         if points and not any(_is_struck(pair, box) for pair in pairwise(points) for box in solid):
-            crossed.update(c for pair in pairwise(points) for c in _covered(around(pair), 0.5 * CELL))
+            own = (c for pair in pairwise(points) for c in _covered(around(pair), 0.5 * CELL))
+            crossed = dict.fromkeys(own, CROSSING) | crossed
             (ax, ay), tip = points[-2:]
             size = abs(tip[0] - ax) + abs(tip[1] - ay)
             d = ((tip[0] - ax) / size, (tip[1] - ay) / size)
@@ -101,7 +106,7 @@ def _beside(box: Extent) -> dict[Cell, Point]:
 
 
 def _way(
-    first: Sequence[Extent], last: Sequence[Extent], blocked: set[Cell], crossed: set[Cell]
+    first: Sequence[Extent], last: Sequence[Extent], blocked: set[Cell], crossed: Mapping[Cell, float]
 ) -> list[Point]:
     """Return the corners of the cheapest way, or nothing where there is none (A*)."""
     starts = {c: p for box in first for c, p in _beside(box).items() if c not in blocked}
@@ -137,7 +142,7 @@ def _way(
             other = (cell[0] + dx, cell[1] + dy)
             if other in blocked or turn == d ^ 1:
                 continue
-            price = best[cell, d] + 1 + BEND * (turn != d) + CROSSING * (other in crossed)
+            price = best[cell, d] + 1 + BEND * (turn != d) + crossed.get(other, 0.0)
             if price + left(other) < LONGEST and price < best.get((other, turn), LONGEST):
                 best[other, turn], before[other, turn] = price, (cell, d)
                 heappush(pending, (price + left(other), other, turn))

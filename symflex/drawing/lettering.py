@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 SIZE: Final = 8.0
 """Of the type [points], as in other figures."""
 SMALL: Final = 7.0
-LEADING: Final = 1.5
+LEADING: Final = 2.5
 """Between lines of a label."""
 _FINE: Final = 20
 """Matplotlib rounds the size of a text up to whole dots: as many are measured to a point."""

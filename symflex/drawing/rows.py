@@ -20,6 +20,7 @@ from symflex.drawing.cells import (
     COORDINATES,
     SPACE,
     SPACINGS,
+    WALL,
     Built,
     Spacing,
     SymbolCell,
@@ -52,12 +53,17 @@ from symflex.drawing.symbols import DOT, HATCH, arrow, circle, earth, floor, lin
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from symflex.drawing.geometry import Point
     from symflex.drawing.scheme import DrawnNetwork, DrawnPart, End
 
 EMPTY_GAP: Final = 14.0
 SIDE_ARROW: Final = 20.0
 FACE: Final = 9.0
 """Room of a wall or a guide beside a node."""
+MARK: Final = 17.0
+"""Height of what stands upright at a node."""
+WIDEST_LENGTH: Final = 34.0
+"""Of a length that a dimension shows; a longer one stands in the label of its member [points]."""
 BLADE: Final = 2.2
 """Width of a lead to a member."""
 
@@ -128,8 +134,7 @@ class _Layout:
     bridges: list[SymbolCell] = field(default_factory=list)
     leads: list[Extent] = field(default_factory=list)  # upwards to bridges
     spans: list[Distance] = field(default_factory=list)
-    # Members with a coordinate along them: where each begins and ends, and its lower side.
-    members: list[tuple[SymbolCell, float, float, float]] = field(default_factory=list)
+    members: dict[str, tuple[SymbolCell, Extent]] = field(default_factory=dict)  # and where they are drawn
 
     def __post_init__(self) -> None:
         self.columns = [Column(n, self.domains[n]) for n in order_of(self.network, self.domains)]
@@ -170,6 +175,19 @@ class _Layout:
                 self._sort_grounded(part, columns[0])
             else:
                 self._sort_branch(part, columns)
+        for cells in self.direct:
+            members = [c for c in cells if isinstance(c, SymbolCell) and c.is_member]
+            if len(members) == 1:
+                self._measure_length(members[0])
+
+    def _measure_length(self, cell: SymbolCell) -> None:
+        """Show the length of a member that is alone in its gap as a dimension, instead of in its label."""
+        part, (length, rest) = cell.part, cell.part.dimension
+        nodes = tuple(next((e.node for e in side if e.node), "") for side in (cell.left, cell.right))
+        if (shown := text(length)) and shown.width <= WIDEST_LENGTH:
+            lines = () if rest else part.lines
+            self.spans.append(Distance((nodes[0], nodes[1]), part.name, length, lines, is_length=True))
+            cell.part = replace(part, label=rest)
 
     def _sort_grounded(self, part: DrawnPart, index: int) -> None:
         """Place what lies between a node and the ground, or two components of a node."""
@@ -193,10 +211,6 @@ class _Layout:
     def _sort_branch(self, part: DrawnPart, columns: Sequence[int]) -> None:
         low, high = columns[0], columns[-1]
         gap = max(low + 1, (low + high + 1) // 2)
-        if part.type_name == "rigid_link" and high - low == 1:
-            ends = (self.columns[low].name, self.columns[high].name)
-            self.spans.append(Distance(ends, part.name, part.label, part.lines, is_length=True))
-            part = replace(part, label="")
         cell = SymbolCell(part, gap)
         for end in part.ends:
             if end.node:
@@ -235,7 +249,7 @@ class _Layout:
                 gap = last + 1 if index == last else 0
                 self.direct[gap].insert(0, _SideArrow(mark, index))
         ends = [e.node for cell in self.bridges for e in (*cell.left, *cell.right)]
-        for node in (*ends, *(n for span in self.spans for n in span.nodes)):
+        for node in (*ends, *(n for span in self.spans for n in span.nodes if not span.is_length)):
             if node:
                 self.columns[self.at[node]].has_lead_up = True
 
@@ -371,9 +385,9 @@ class _Layout:
                 cell.margins = (low - first, last - high)
             built = build(cell, self.spacing, last - first)
             self._add(*(p.moved(first, level.y) for p in built.placed))
-            if cell.part.type_name in COORDINATES:
-                ends = next(i.box for i in built.placed if (i.kind, i.name) == ("element", cell.part.name))
-                self.members.append((cell, first + ends.x0, first + ends.x1, level.y + ends.y0))
+            if cell.is_member:
+                box = next(i.box for i in built.placed if (i.kind, i.name) == ("element", cell.part.name))
+                self.members[cell.part.name] = (cell, box.moved(first, level.y))
             for side, edge, sign in ((cell.left, first, 1), (cell.right, last, -1)):
                 for end, offset in zip(side, cell.offsets(side), strict=True):
                     if end.node:
@@ -427,23 +441,24 @@ class _Layout:
         for column in reversed(self.columns):
             for part in column.stubs:
                 self._draw_stub(part, column)
-        for cell, start, end, y in self.members:
-            sign = -1 if cell.is_reversed else 1
-            items = coordinate(end if cell.is_reversed else start, 0.0, sign)
+        along = [(c, box) for c, box in self.members.values() if c.part.type_name in COORDINATES]
+        ends = {(c.part.ends[1].node, c.is_reversed) for c, _ in along} - {("", False), ("", True)}
+        for cell, box in along:
+            if (cell.part.ends[0].node, cell.is_reversed) in ends:
+                continue  # x of the member before runs on
+            items = coordinate(box.x1, 0.0, -1) if cell.is_reversed else coordinate(box.x0, 0.0)
             room = union(i.box for i in items).grown(2.0)
-            self._add(*(i.moved(0, self._free(room, y - 1.0, is_up=False)) for i in items))
+            self._add(*(i.moved(0, self._free(room, box.y0 - 1.0, is_up=False)) for i in items))
 
     def _draw_face(self, part: DrawnPart, column: Column, side: int) -> None:
         x = column.x + side * column.half
         low, high = column.bottom, column.top - column.crown
         if part.type_name == "slider":
             rollers = (circle(x + side * 2.0, low + 4, 2.0), circle(x + side * 2.0, high - 4, 2.0))
-            shoe = (
-                ()
-                if column.bodies or side != next(iter(column.faces))
-                else (rectangle(column.x - column.half, low, column.x + column.half, high),)
-            )
-            strokes = (*shoe, *rollers, *wall(low, high, side, x + side * 4.0))
+            if not column.bodies and side == next(iter(column.faces)):
+                shoe = rectangle(column.x - column.half, low, column.x + column.half, high)
+                self._add(Placed("node", column.name, (shoe,)))
+            strokes = (*rollers, *wall(low, high, side, x + side * 4.0))
         else:
             strokes = wall(low, high, side, x)
         self._add(Placed(part.kind, part.name, strokes))
@@ -530,9 +545,8 @@ class _Layout:
             between = self.columns[spanned(cell)[0] : spanned(cell)[1] + 1]
             ends = (min(between[0].lead_x, start), max(between[-1].lead_x, start + built.width))
             room = Extent(ends[0] - 2, built.below - SPACE, ends[1] + 2, built.above + SPACE)
-            y = self._free(
-                room, max(c.top for c in between) + (18 if any(c.upright for c in between) else 3), is_up=True
-            )
+            above = MARK + 1 if any(c.upright for c in between) else 3
+            y = self._free(room, max(c.top for c in between) + above, is_up=True)
             self._add(*(p.moved(start, y) for p in built.placed))
             self.occupied.append(room.moved(0, y))
             for side, edge in ((cell.left, start), (cell.right, start + built.width)):
@@ -550,8 +564,7 @@ class _Layout:
             for mark in column.upright:
                 self._add(*upright_mark(mark, x, column.top))
                 x += upright_width(mark)
-        for span in self.spans:
-            self._draw_span(span)
+        self._draw_spans()
         flat = [(c, m, c.lead_x) for c in reversed(self.columns) for m in c.marks if m not in c.upright]
         rooms = [Extent(x - 1, -2.5, x + flat_width(m), 11.0) for _, m, x in flat]
         # Datums stand at one height where that is possible.
@@ -568,34 +581,45 @@ class _Layout:
             self._add(*flat_mark(mark, x, y))
             self.occupied.append(room.moved(0, y))
 
-    def _draw_span(self, span: Distance) -> None:
-        """Draw a distance between two nodes, with its arrow at the first, or at both where it is a length."""
-        a, b = (self.columns[self.at[n]] for n in span.nodes)
-        texts = label_texts(span.label, span.name, span.lines)
-        shown = union(t.box for t in texts) if texts else Extent(0, 0, 0, 0)
-        left, right = sorted((a.lead_x, b.lead_x))
-        wide = max(right - left, shown.width + 4)
-        height = 5.0 + shown.height
-        room = Extent((left + right - wide) / 2 - 1, -3.0, (left + right + wide) / 2 + 1, height)
-        y = self._free(room, max(a.top, b.top) + 4, is_up=True)
-        for column in (a, b):
-            self._wire(
-                span.name,
-                (column.x, column.top),
-                (column.lead_x, column.top),
-                (column.lead_x, y + 3),
-                width=THIN,
-            )
-        kind, width = ("length", THIN) if span.is_length else ("output", LINE)
-        ends = (b.lead_x, y), (a.lead_x, y)
-        self._add(Placed(kind, span.name, arrow(*ends, width, is_double=span.is_length)))
-        self.occupied.append(room.moved(0, y))
-        between = sorted(c.lead_x for c in self.columns if left <= c.lead_x <= right)
-        # Leads go up between them.
-        start, end = max(pairwise(between), key=lambda pair: pair[1] - pair[0])
-        start, end = (start, end) if end - start > shown.width + 2 else (left, right)
-        place = ((start + end) / 2, y + 3 - shown.y0)
-        self._add(Placed("label", span.name, (), tuple(t.moved(*place) for t in texts)))
+    def _end_of(self, span: Distance, i: int) -> Point:
+        """Return the point from which a lead goes up to one end of a distance."""
+        if span.nodes[i]:
+            column = self.columns[self.at[span.nodes[i]]]
+            if span.is_length:
+                return column.x, column.top + MARK * bool(column.upright)
+            return column.lead_x, column.top
+        box = self.members[span.name][1]
+        return (box.x1 if i else box.x0), (box.y0 + box.y1) / 2 + WALL
+
+    def _draw_spans(self) -> None:
+        """Draw distances between two nodes; lengths, with an arrow at both ends, stand at one height."""
+        found = []
+        for span in sorted(self.spans, key=lambda s: not s.is_length):
+            ends = (self._end_of(span, 0), self._end_of(span, 1))
+            texts = label_texts(span.label, span.name, span.lines)
+            shown = union(t.box for t in texts) if texts else Extent(0, 0, 0, 0)
+            left, right = sorted(x for x, _ in ends)
+            more = max(0.0, shown.width + 4 - (right - left)) / 2 + (0.0 if span.is_length else 1.0)
+            room = Extent(left - more, -3.0, right + more, 5.0 + shown.height)
+            y = self._free(room, max(y for _, y in ends) + 4, is_up=True)
+            found.append((span, ends, texts, shown, room, y))
+        level = max((y for span, *_, y in found if span.is_length), default=0.0)
+        for span, ends, texts, shown, room, free in found:
+            y = self._free(room, (level if span.is_length else free) - 3.0, is_up=True)
+            for node, (x, top) in zip(span.nodes, ends, strict=True):
+                foot = (self.columns[self.at[node]].x if node else x, top)
+                self._wire(span.name, foot, (x, top), (x, y + 3), width=THIN)
+            kind, width = ("length", THIN) if span.is_length else ("output", LINE)
+            (a, _), (b, _) = ends
+            self._add(Placed(kind, span.name, arrow((b, y), (a, y), width, is_double=span.is_length)))
+            self.occupied.append(room.moved(0, y))
+            low, high = sorted((a, b))
+            # Leads go up between them.
+            between = sorted(c.lead_x for c in self.columns if low <= c.lead_x <= high)
+            widest = max(pairwise(between), key=lambda pair: pair[1] - pair[0], default=(low, high))
+            start, end = widest if widest[1] - widest[0] > shown.width + 2 else (low, high)
+            place = ((start + end) / 2, y + 3 - shown.y0)
+            self._add(Placed("label", span.name, (), tuple(t.moved(*place) for t in texts)))
 
 
 def _wire_width(cell: SymbolCell, end: End) -> float:

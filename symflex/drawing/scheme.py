@@ -76,12 +76,14 @@ class DrawnPart:
     symbol: ElementSymbol
     ends: tuple[End, ...]
     label: str  # mathematics
-    lines: tuple[str, ...] = ()  # values, where they are asked for
+    lines: tuple[str, ...] = ()  # what it is called, and values where they are asked for
     tags: tuple[tuple[str, str, str], ...] = ()  # what shows or reads what it carries, as of a mark
     points: tuple[tuple[float, str, str], ...] = ()  # share of its length, output there and its label
     depths: Depths = ()  # of a member that tapers, at even stations
     # Of a body: where its mass centre lies, in mathematics, and whether that is before its node (-1).
     centre: tuple[str, int] = ("", 1)
+    # Of a member: its length, and what is left of its label where a dimension shows that.
+    dimension: tuple[str, str] = ("", "")
 
     @property
     def nodes(self) -> tuple[str, ...]:
@@ -101,9 +103,9 @@ class Mark:
 
 @dataclass(frozen=True, slots=True)
 class Distance:
-    """An output that is the difference of two nodes, or how far apart a rigid link holds them."""
+    """An output that is the difference of two nodes, or the length of a member between them."""
 
-    nodes: tuple[str, str]
+    nodes: tuple[str, str]  # one of a member's is empty where it ends at the ground
     name: str
     label: str
     lines: tuple[str, ...] = ()  # values, where they are asked for
@@ -254,12 +256,25 @@ def _part(use: PlacedElement, labels: Labels, domains: Domains) -> DrawnPart:
     if wanted := dict(labels.model.drawing.symbols).get(use.name):
         symbol = replace(symbol, draw=TRANSFORMER_SYMBOLS[wanted])
     label, lines = _label(use, labels)
+    if use.latex and label != (called := labels.end(use.name, use.latex)):
+        lines = (called, *lines)
     sections = _sections(use, labels.model) if kind in TAPERS else ()
     if sections:
         symbol = replace(symbol, draw=partial(tapered, symbol.draw, sections))
+    centre, dimension = _centre(use, labels), _dimension(use, labels, label)
     return DrawnPart(
-        "element", use.name, kind, symbol, ends, label, lines, depths=sections, centre=_centre(use, labels)
+        "element", use.name, kind, symbol, ends, label, lines, (), (), sections, centre, dimension
     )
+
+
+def _dimension(use: PlacedElement, labels: Labels, label: str) -> tuple[str, str]:
+    """Return the length of a member, and its label without it; nothing of what has no length."""
+    values = dict(use.values)
+    length = values.get("l", values.get("length"))
+    if length is None:
+        return "", ""
+    written = labels.quantity(length, "m")
+    return written, JOINED.join(one for one in label.split(JOINED) if one not in (written, f"{{{written}}}"))
 
 
 def _centre(use: PlacedElement, labels: Labels) -> tuple[str, int]:
@@ -271,20 +286,34 @@ def _centre(use: PlacedElement, labels: Labels) -> tuple[str, int]:
     return labels.quantity(offset, "m"), -1 if value is not None and value < 0 else 1
 
 
-TAPERS: Final = {"beam": {"I": 4, "A": 2}, "rod": {"A": 2}, "shaft": {"J": 4}}
-"""Measures of a section that may vary along a member, each with the root of it that is a depth."""
+TAPERS: Final = {"beam": ("I", "A"), "rod": ("A", "A"), "shaft": ("J", "J")}
+"""Measures of a section that may vary along a member: how stiff it is, and how heavy."""
 
 
 def _sections(use: PlacedElement, model: Model) -> Depths:
     if not is_tapered(model):
         return ()
     known, values = values_of(model), dict(use.values)
-    length = evaluate(values["l"], known) or UNKNOWN
-    found = (
-        depths(values[name], (0.0, length), known, root)
-        for name, root in TAPERS[use.element.type_name].items()
-    )
-    return next((d for d in found if d), ())
+    stiff, heavy = (values[name] for name in TAPERS[use.element.type_name])
+    ends = (0.0, evaluate(values["l"], known) or UNKNOWN)
+    return sections(stiff, heavy, ends, known, {"rod": 2, "shaft": 4}.get(use.element.type_name))
+
+
+def sections(
+    stiff: Expression,
+    heavy: Expression,
+    ends: tuple[float, float],
+    known: Mapping[str, float],
+    root: int | None,
+) -> Depths:
+    """Return the depths of a member by its section.
+
+    Of a bar or shaft with round or square sections the ``root`` of an area or a second moment. Of a beam in
+    bending (None) the radius of gyration, sqrt(I/A), and the width where that alone varies.
+    """
+    if root:
+        return depths(heavy, ends, known, root)
+    return depths(Quotient(stiff, heavy), ends, known, 2) or depths(heavy, ends, known, 1)
 
 
 def _end(reference: NodeReference, domain: str, domains: Domains) -> End:
@@ -307,6 +336,7 @@ STIFF: Final[dict[str, tuple[tuple[str, ...], str]]] = {
     "string": (("N",), "A"),
 }
 """What makes a member stiff, and the measure of its section by which it is heavy."""
+JOINED: Final = r",\,"
 LABEL_LENGTH: Final = 4
 """Parameters of an element that are written at it; of more, its name is."""
 
@@ -335,15 +365,15 @@ def _label(use: PlacedElement, labels: Labels) -> tuple[str, tuple[str, ...]]:
         shown = (
             ["".join(f"{{{one}}}" for one in g) for g in groups]
             if groups and is_plain
-            else [labels.name(use.name)]
+            else [labels.end(use.name, use.latex)]
         )
-        return r",\,".join(shown), ()
+        return JOINED.join(shown), ()
     inside = ("angle", "cg")  # drawn, not written
     shown = [labels.quantity(e, use.element.unit_of(n, by_port)) for n, e in given if n not in inside]
     seen = list(dict.fromkeys(shown))
     if not 0 < len(seen) <= LABEL_LENGTH:
-        seen = [labels.name(use.name)]
-    return r",\,".join(seen), tuple(labels.values([e for _, e in given]))
+        seen = [labels.end(use.name, use.latex)]
+    return JOINED.join(seen), tuple(labels.values([e for _, e in given]))
 
 
 def _input_part(one: Input, labels: Labels) -> DrawnPart:
@@ -467,9 +497,7 @@ UNKNOWN: Final = 0.5
 def depths(
     coefficient: Expression, ends: tuple[float, float], known: Mapping[str, float], root: int
 ) -> Depths:
-    """Return the depth of a member at even stations, the greatest as 1; nothing of a uniform one.
-
-    Of similar sections: the square root of an area, the fourth root of a second moment (``root``).
+    """Return a root at even stations, the greatest as 1; nothing of a coefficient that does not vary.
 
     Examples
     --------

@@ -136,6 +136,7 @@ class PlacedElement:
     values: tuple[tuple[str, Expression], ...]
     span: Span | None = field(default=None, compare=False, repr=False)
     choices: tuple[tuple[str, str], ...] = ()
+    latex: str = ""  # what it is called in a drawing
 
     @property
     def all_values(self) -> tuple[tuple[str, Expression], ...]:

@@ -50,6 +50,7 @@ class DraftElement:
     values: tuple[tuple[str, Expression], ...]
     span: Span
     choices: tuple[tuple[str, str], ...] = ()
+    latex: str = ""
 
     def attachments(self, measure: Callable[[Expression], Dimension | None]) -> list[Attachment]:
         """Return what this element says about its nodes; ``measure`` tells a constant's dimension."""
@@ -104,7 +105,7 @@ def _read_element(reader: Reader, entry: KeyValue) -> DraftElement | None:
     keys = [key for p in element.ports for key in (p.name, p.pair) if key]
     keys += [p.name for p in element.parameters]
     keys += [c.name for c in element.choices]
-    reader.keys(table, ("type", *keys, "doc"), f"{element.type_name} '{entry.key}'")
+    reader.keys(table, ("type", *keys, "latex", "doc"), f"{element.type_name} '{entry.key}'")
     nodes = [(port, _references(reader, table, port, entry, element)) for port in element.ports]
     choices = _choices(reader, table, entry, element)
     values = None if choices is None else _values(reader, table, entry, element, dict(choices))
@@ -115,7 +116,8 @@ def _read_element(reader: Reader, entry: KeyValue) -> DraftElement | None:
         reader.note("SF218", message, entry.key_span, "the ground does not move; name a node")
         return None
     attached = tuple((p, r) for p, r in nodes if r is not None)
-    return DraftElement(entry.key, element, attached, values or (), entry.key_span, choices or ())
+    label = read_label(reader, table, what)
+    return DraftElement(entry.key, element, attached, values or (), entry.key_span, choices or (), label)
 
 
 def _choices(

@@ -470,7 +470,14 @@ def _place(draft: DraftElement, nodes: Mapping[str, NetworkNode]) -> PlacedEleme
         domains.append((port.name, domain))
     attached = tuple((port.name, references) for port, references in draft.nodes)
     return PlacedElement(
-        draft.name, draft.element, attached, tuple(domains), draft.values, draft.span, draft.choices
+        draft.name,
+        draft.element,
+        attached,
+        tuple(domains),
+        draft.values,
+        draft.span,
+        draft.choices,
+        draft.latex,
     )
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import pytest
 
 from symflex import Model, pipeline
@@ -116,6 +118,24 @@ def test_a_loop_is_joined_to_what_it_reads_and_where_it_acts():
         for box, (x, y) in ((start, first), (end, last)):
             assert box.grown(1.6).x0 <= x <= box.grown(1.6).x1
             assert box.grown(1.6).y0 <= y <= box.grown(1.6).y1
+
+
+def test_what_is_measured_comes_back_from_beyond_the_end_of_the_path():
+    """So a wire to it crosses no line of the path."""
+    drawing = drawing_of(pipeline.load(ROOT / "derivations/eppinger1988/loops/rigid_body_position.toml"))
+    tag, end, driven = (place(drawing, *n) for n in (("tag", "x"), ("end", "F_act"), ("input", "X_cmd")))
+    assert tag.x1 == pytest.approx(end.x1, abs=2)
+    wires = [s for i in drawing.of_kind("join") for s in i.strokes if s.is_dashed]
+    for (ax, ay), (bx, by) in (pair for wire in wires for pair in pairwise(wire.points)):
+        level = (end.y0 + end.y1) / 2
+        assert not (ax == bx and min(ay, by) < level < max(ay, by) and driven.x1 < ax < end.x1)
+
+
+def test_a_node_that_a_guide_holds_is_joined_to_what_reads_it():
+    drawing = drawing_of(
+        pipeline.load(ROOT / "derivations/eppinger1988/loops/sliding_free_beam_position.toml")
+    )
+    assert count(drawing, "join", "act") == 1
 
 
 def test_a_long_diagram_goes_on_below_its_beginning():

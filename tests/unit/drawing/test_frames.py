@@ -46,6 +46,16 @@ Y = "q.y"
     assert slanted.height == pytest.approx((level.width + thick * 3**0.5) / 2)
 
 
+def test_x_runs_along_the_members_of_a_frame_from_their_first_nodes():
+    drawing = drawing_of(pipeline.load(ROOT / "derivations/frames/portal_frame.toml"))
+    posts = [place(drawing, "element", n) for n in ("left", "right")]
+    arrows = [i.box for i in drawing.of_kind("axis")]
+    assert len(arrows) >= len(posts)
+    for post in posts:
+        beside = [a for a in arrows if a.height > a.width and abs(a.x0 - post.x1) < 6]
+        assert [a.y0 for a in beside] == [pytest.approx(post.y0, abs=2)]
+
+
 def test_what_a_frame_shares_with_a_row_beside_it_is_named_in_both():
     text = """
 symflex = 1

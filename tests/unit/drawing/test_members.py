@@ -8,6 +8,7 @@ from symflex import pipeline
 from symflex.drawing import drawing_of
 from symflex.drawing.symbols import TRANSFORMER_SYMBOLS
 from symflex.model import model as model_room
+from tests.house.repository import ROOT
 from tests.unit.drawing.geometry_checks import count, outside, overlaps, struck_texts, wrongly_counted
 
 TAPERED = """
@@ -74,6 +75,9 @@ X = "x"
 """
 
 
+ARM_AND_LOAD = (("element", "arm"), ("element", "load"))
+
+
 def sound(text):
     model = pipeline.loads(text)
     drawing = drawing_of(model)
@@ -105,8 +109,10 @@ def test_a_beam_is_drawn_as_thick_as_a_square_one_of_its_section():
 
 
 def test_a_beam_that_loses_width_alone_is_drawn_tapered_too():
-    thick, thin = depths(sound(TAPERED + 'I = "I_0*(1 - c*x/l)"\nA = "A_0"\n'), "element", "arm")
-    assert thin / thick == pytest.approx(0.25**0.25)
+    """I/A, which tells its depth, is the same everywhere, and a quarter of its width is left."""
+    section = 'I = "I_0*(1 - c*x/l)"\nA = "A_0*(1 - c*x/l)"\n'
+    thick, thin = depths(sound(TAPERED + section), "element", "arm")
+    assert thin / thick == pytest.approx(0.25)
 
 
 def test_a_uniform_beam_is_drawn_uniform():
@@ -114,7 +120,23 @@ def test_a_uniform_beam_is_drawn_uniform():
     assert thick == thin
 
 
-def test_a_field_is_drawn_by_the_coefficient_of_its_highest_derivative():
+def test_a_string_whose_tension_varies_is_drawn_uniform():
+    drawing = drawing_of(pipeline.load(ROOT / "derivations/tapers/hanging_string.toml"))
+    top, end = depths(drawing, "field", "w")
+    assert top == pytest.approx(end)
+
+
+def test_a_cone_is_drawn_straight_to_its_tip_and_its_driven_root_in_a_guide():
+    drawing = drawing_of(pipeline.load(ROOT / "derivations/tapers/cone.toml"))
+    points = item(drawing, "field", "w").strokes[0].points
+    upper = points[: len(points) // 2]
+    (x0, y0), (xm, ym) = upper[0], upper[len(upper) // 2]
+    axis = (max(y for _, y in points) + min(y for _, y in points)) / 2
+    assert (ym - axis) / (y0 - axis) == pytest.approx(1 - (xm - x0) / (upper[-1][0] - x0))
+    assert count(drawing, "ground", "w") == 1
+
+
+def test_a_field_is_drawn_by_its_radius_of_gyration():
     drawing = sound(FIELD)
     thick, thin = depths(drawing, "field", "w")
     assert thin / thick == pytest.approx(0.5)
@@ -128,6 +150,46 @@ def test_the_length_of_a_link_runs_from_node_to_node():
     )
     assert length.x0 == pytest.approx((left.x0 + left.x1) / 2)
     assert length.x1 == pytest.approx((right.x0 + right.x1) / 2)
+
+
+def test_the_length_of_a_beam_is_a_dimension_and_stands_in_its_label_no_more():
+    text = TAPERED.replace("elements.load", "elements.hub = { type = 'pin', at = 'a' }\nelements.load")
+    drawing = sound(text.replace('"ground"', '"a"') + 'I = "I_0"\nA = "A_0"\n')
+    length, arm, load = (item(drawing, *n).box for n in (("length", "arm"), *ARM_AND_LOAD))
+    assert (length.x0, length.x1) == (pytest.approx(arm.x0), pytest.approx((load.x0 + load.x1) / 2))
+    assert length.y0 > arm.y1
+    labels = [t.markup for i in drawing.of_kind("label") if i.name == "arm" for t in i.texts]
+    assert sum("l" in label.replace(r"\rho", "") for label in labels) == 1
+
+
+def test_parallel_beams_keep_their_lengths_in_their_labels():
+    beams = "".join(
+        f'{n} = {{ type = "massless_beam", between = ["a", "b"], EI = "B", l = "l" }}\n'
+        for n in ("one", "two")
+    )
+    drawing = sound(
+        f'symflex = 1\nparameters = {{ B = "1 N*m^2", l = "1 m" }}\n[elements]\n{beams}'
+        'hold = { type = "fixed", at = "a" }\n[inputs]\nF = { force = "b" }\n[outputs]\nY = "b"\n'
+    )
+    assert drawing.of_kind("length") == ()
+    assert markups(drawing).count(r"$B,\,l$") == 2
+
+
+@pytest.mark.parametrize(("second", "arrows"), [('["q", "r"]', 1), ('["r", "q"]', 2)])
+def test_beams_in_line_share_one_coordinate_where_x_runs_on(second, arrows):
+    section = "E = 1, I = 1, rho = 1, A = 1, l = 1"
+    drawing = sound(
+        f'symflex = 1\n[elements]\na = {{ type = "beam", between = ["p", "q"], {section} }}\n'
+        f'b = {{ type = "beam", between = {second}, {section} }}\n'
+        '[inputs]\nF = { force = "p" }\n[outputs]\nY = "r"\n'
+    )
+    assert count(drawing, "axis", "x") == arrows
+
+
+def test_an_element_is_called_what_its_latex_says_besides_its_parameters():
+    text = FREE.replace('m = "1 kg" }\nb', "m = \"1 kg\", latex = '\\text{motor}' }\nb")
+    box = item(sound(text), "label", "a")
+    assert [t.markup for t in box.texts] == [r"$1\,\mathrm{kg}$", r"${\text{motor}}$"]
 
 
 def test_a_mass_centre_lies_beyond_its_node_or_before_it():
