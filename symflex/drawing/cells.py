@@ -98,13 +98,24 @@ def label_texts(latex: str, name: str, lines: Sequence[str] = ()) -> tuple[Lette
     return column_of([t for t in (first, *(text(one, SMALL) for one in lines)) if t is not None])
 
 
+def tags_of(part: DrawnPart) -> list[Built]:
+    """Return what shows or reads what a part carries: each a text at the origin, and an arrow to it."""
+    found = []
+    for kind, name, label in part.tags:
+        if shown := text(label, SMALL):
+            pointer = Placed(kind, name, arrow((-10, shown.height / 2), (-2, shown.height / 2), THIN))
+            placed = (pointer, Placed("label", name, (), (shown,)))
+            found.append(Built(shown.width + 10, placed, -shown.depth, shown.height))
+    return found
+
+
 def build(cell: SymbolCell, spacing: Spacing, width: float = 0.0) -> Built:
     """Draw a cell at least so wide."""
     part, is_member = cell.part, cell.is_member
     length = part.symbol.length * (spacing.member if is_member else spacing.length)
     texts = label_texts(part.label, part.name, part.lines)
-    tags = [t for *_, label in part.tags if (t := text(label, SMALL))]
-    widest = max([0.0, *(t.width for t in texts), *(t.width + 12 for t in tags)])
+    tags = tags_of(part)
+    widest = max([0.0, *(t.width for t in texts), *(one.width + 2 for one in tags)])
     lead = 0.0 if is_member else spacing.lead
     walls = [HATCH + 3.0 if any(not e.node for e in side) else 0.0 for side in (cell.left, cell.right)]
     width = max(max(length + 2 * lead, widest + 4) + sum(walls), width)
@@ -130,13 +141,11 @@ def build(cell: SymbolCell, spacing: Spacing, width: float = 0.0) -> Built:
         shift = _kept(middle, block.width, 1.0 + cell.margins[0], width - 1.0 - cell.margins[1])
         items.append(Placed("label", part.name, (), tuple(t.moved(shift, y) for t in texts)))
         above, below = max(above, y + block.y1), min(below, y + block.y0)
-    for (kind, name, _), tag in zip(part.tags, tags, strict=False):
-        y = below - SPACE - tag.height
-        x = _kept(middle, tag.width + 10, 1.0, width - 1.0) - (tag.width + 10) / 2
-        level = y + tag.height / 2 - 0.5
-        items.append(Placed(kind, name, arrow((x, level), (x + 8, level), THIN)))
-        items.append(Placed("label", name, (), (tag.moved(x + 10, y),)))
-        below = y - tag.depth
+    for one in tags:
+        y = below - SPACE - one.above
+        x = _kept(middle, one.width, 1.0, width - 1.0) - one.width / 2
+        items += [i.moved(x + 10, y) for i in one.placed]
+        below = y + one.below
     return Built(width, tuple(items), below, above)
 
 

@@ -5,14 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
-from symflex.drawing.cells import SPACE, label_texts
-from symflex.drawing.geometry import BOLD, FILLED, LINE, THIN, Lettering, Placed, around, union
+from symflex.drawing.cells import SPACE, label_texts, tags_of
+from symflex.drawing.geometry import BOLD, FILLED, LINE, THIN, Placed, around, union
 from symflex.drawing.lettering import SMALL, text
-from symflex.drawing.scheme import Mark
+from symflex.drawing.scheme import Mark, Style
 from symflex.drawing.symbols import Strokes, arc, arrow, circle, head, line, rectangle, turning
 from symflex.library.elements import COMPONENTS
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from symflex.drawing.scheme import DrawnPart
 
 DISC_WIDTH, DISC_HEIGHT = 9.0, 34.0
@@ -188,22 +190,17 @@ def _mass_centre(part: DrawnPart, x: float, half: float, y: float) -> Strokes:
 
 def support_width(part: DrawnPart) -> float:
     """Return how wide a support below a node is."""
-    tags = [t.width + 12 for *_, label in part.tags if (t := text(label, SMALL))]
+    tags = [one.width + 2 for one in tags_of(part)]
     return max([around(p for s in part.symbol.hold() for p in s.points).width, *tags]) + 3
 
 
 def tags_below(part: DrawnPart, x: float, y: float) -> list[Placed]:
     """Write what outputs show of a support below it, centred."""
     found = []
-    for kind, name, label in part.tags:
-        shown = text(label, SMALL)
-        if shown:
-            y -= shown.height + SPACE
-            start = x - (shown.width + 10) / 2
-            pointer = arrow((start, y + shown.height / 2), (start + 8, y + shown.height / 2), THIN)
-            found.append(Placed(kind, name, pointer))
-            found.append(Placed("label", name, (), (shown.moved(start + 10, y),)))
-            y -= shown.depth
+    for one in tags_of(part):
+        y -= one.above + SPACE
+        found += [i.moved(x - one.width / 2 + 10, y) for i in one.placed]
+        y += one.below
     return found
 
 
@@ -218,30 +215,44 @@ def hanging_reach(part: DrawnPart) -> tuple[float, float]:
     return max(7.0, -box.y0), max(6.0, box.y1)
 
 
-def hanging_texts(part: DrawnPart) -> list[tuple[str, str, tuple[Lettering, ...]]]:
-    """Return the texts to the right of a part that hangs, each with kind and name of what it belongs to."""
-    found = [(part.kind, part.name, label_texts(part.label, part.name, part.lines))]
-    return [*found, *((kind, name, (t,)) for kind, name, label in part.tags if (t := text(label, SMALL)))]
+def hanging_texts(part: DrawnPart, x: float, y: float) -> list[Placed]:
+    """Write what belongs to a part that hangs from x on, its middle at y."""
+    texts = label_texts(part.label, part.name, part.lines)
+    blocks: list[Sequence[Placed]] = [[Placed("label", part.name, (), texts)]] if texts else []
+    blocks += [one.placed for one in tags_of(part)]
+    boxes = [union(i.box for i in block) for block in blocks]
+    y += sum(b.height + 3 for b in boxes) / 2
+    found = []
+    for block, box in zip(blocks, boxes, strict=True):
+        y -= box.height + 1.5
+        found += [i.moved(x - box.x0, y - box.y0) for i in block]
+        y -= 1.5
+    return found
 
 
 def hanging_width(part: DrawnPart) -> float:
     """Return how wide it is with its texts."""
     left, right = hanging_reach(part)
-    wide = max(union(t.box for t in block).width for *_, block in hanging_texts(part) if block)
-    return left + right + SPACE + wide + (6 if part.tags else 0) + 5
+    return left + right + SPACE + union(i.box for i in hanging_texts(part, 0.0, 0.0)).width + 5
+
+
+def labels_width(mark: Mark) -> float:
+    """Return how wide the labels of a mark are side by side, with the space after each."""
+    return sum(t.width + 4 for _, _, label in mark.labels if (t := text(label)))
 
 
 def upright_width(mark: Mark) -> float:
     """Return how wide an upright mark is with its texts."""
-    return ARROW + sum(t.width + 4 for _, _, label in mark.labels if (t := text(label)))
+    return ARROW + labels_width(mark)
 
 
-def mark_of_source(part: DrawnPart, column: Column) -> Mark:
-    """Return the arrow of a source at one node."""
-    is_turning = part.ends[0].domain == "rotation"
-    is_flat = column.is_flat and part.ends[0].component != "x"
-    own = (("element", part.name, part.label), *part.tags)
-    return Mark("torque" if is_turning else "push" if is_flat else "force", column.name, own)
+def mark_of_source(part: DrawnPart, *, is_flat: bool = True) -> Mark:
+    """Return the arrow of a source at one node, which moves across the row or in its plane, or along."""
+    end = part.ends[0]
+    style: Style = "push" if is_flat and end.component != "x" else "force"
+    label = r",\,".join((part.label, *part.lines))
+    own = (("element", part.name, label), *part.tags)
+    return Mark("torque" if end.domain == "rotation" else style, end.node, own)
 
 
 def upright_mark(mark: Mark, x: float, foot: float) -> list[Placed]:
@@ -264,10 +275,10 @@ def upright_mark(mark: Mark, x: float, foot: float) -> list[Placed]:
             strokes = (arc(middle, foot + 7, 4.2, -50, 190, LINE), tip)
         case _:
             strokes = turning(middle, foot + 7, 4.6)
-    return [Placed(kind, name, strokes), *_texts_of_mark(mark, x + ARROW, foot + 5)]
+    return [Placed(kind, name, strokes), *texts_of_mark(mark, x + ARROW, foot + 5)]
 
 
-def _texts_of_mark(mark: Mark, x: float, y: float) -> list[Placed]:
+def texts_of_mark(mark: Mark, x: float, y: float) -> list[Placed]:
     """Write the labels of a mark side by side from x on; those after the first stand for themselves."""
     found = []
     for i, (kind, name, label) in enumerate(mark.labels):
@@ -286,9 +297,9 @@ def flat_mark(mark: Mark, x: float, foot: float) -> list[Placed]:
     bold = BOLD if mark.style == "force" else LINE
     strokes = arrow((x, y), (x + 15, y), bold, is_double=mark.style == "motion")
     datum = line((x, foot), (x, foot + 8), width=THIN)
-    return [Placed(kind, name, (*strokes, datum)), *_texts_of_mark(mark, x + 18, foot + 1.5)]
+    return [Placed(kind, name, (*strokes, datum)), *texts_of_mark(mark, x + 18, foot + 1.5)]
 
 
 def flat_width(mark: Mark) -> float:
     """Return how far such a mark reaches beyond its datum."""
-    return 18 + sum(t.width + 4 for _, _, label in mark.labels if (t := text(label)))
+    return 18 + labels_width(mark)

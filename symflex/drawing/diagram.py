@@ -17,12 +17,14 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
-from symflex.drawing.geometry import LINE, Extent, Lettering, Placed, union
+from symflex.drawing.cells import Built
+from symflex.drawing.geometry import LINE, Extent, Lettering, Placed, free_level, union
 from symflex.drawing.lettering import SIZE, SMALL, column_of, text
 from symflex.drawing.signals import formula
 from symflex.drawing.symbols import DOT, Strokes, arrow, circle, line, rectangle
 
 if TYPE_CHECKING:
+    from symflex.drawing.geometry import Point
     from symflex.drawing.signals import SignalGraph, SignalNode
 
 RADIUS: Final = 4.2
@@ -41,16 +43,6 @@ MOST_PATHS: Final = 2000
 """Paths that are tried for the longest one."""
 NAMED: Final = ("input", "reading", "signal")
 SOURCES: Final = ("input", "reading")
-
-
-@dataclass(frozen=True, slots=True)
-class _Sized:
-    """A node with its line at y = 0, from x = 0 on."""
-
-    items: tuple[Placed, ...]
-    width: float
-    above: float
-    below: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -241,16 +233,17 @@ class _Band:
     def _length(self, branch: _Branch) -> float:
         return sum(one.width + WIRE for one in self._all_shown(branch))
 
-    def _all_shown(self, branch: _Branch) -> list[_Sized]:
+    def _all_shown(self, branch: _Branch) -> list[Built]:
         last = len(branch.nodes) - 1
         return [self._shown(n, is_tag=branch.is_tag and i == last) for i, n in enumerate(branch.nodes)]
 
+    def _lead(self, start: Point, end: Point, to: int | None) -> None:
+        """Draw a straight wire, with a head where it enters a symbol."""
+        is_plain = to is None or self._kind(to) == "signal"
+        self.items.append(Placed("wire", "", (line(start, end),) if is_plain else arrow(start, end)))
+
     def _wire(self, before: int, node: int, x: float) -> None:
-        start = self.x[before][1]
-        if self._kind(node) == "signal":
-            self.items.append(Placed("wire", "", (line((start, 0.0), (x, 0.0)),)))
-        else:
-            self.items.append(Placed("wire", "", arrow((start, 0.0), (x, 0.0))))
+        self._lead((self.x[before][1], 0.0), (x, 0.0), node)
         if self._kind(node) == "sum":
             self._sign(node, "left", is_minus=self._is_minus(before, node))
 
@@ -278,8 +271,8 @@ class _Band:
         self.occupied.extend(solid)
         self.solid.extend(solid)
 
-    def _place(self, node: int, shown: _Sized, x: float, y: float) -> None:
-        self._add(*(i.moved(x, y) for i in shown.items))
+    def _place(self, node: int, shown: Built, x: float, y: float) -> None:
+        self._add(*(i.moved(x, y) for i in shown.placed))
         self.x[node], self.y[node] = (x, x + shown.width), y
 
     def _draw_branch(self, branch: _Branch) -> None:
@@ -297,7 +290,7 @@ class _Band:
         low, high, sign = min(centre, other), max(centre, other), 1.0 if other >= centre else -1.0
         room = Extent(
             low - 3,
-            -max([RADIUS, *(s.below for s in shown)]) - APART / 2,
+            -max([RADIUS, *(-s.below for s in shown)]) - APART / 2,
             high + 4,
             max([RADIUS, *(s.above for s in shown)]) + APART / 2,
         )
@@ -324,8 +317,8 @@ class _Band:
     def _height(self, branch: _Branch, room: Extent, risers: list[float]) -> tuple[float, bool]:
         """Return where a branch runs, and whether that is above its sum."""
         level, taken = self.y[branch.target], self.sides.setdefault(branch.target, [])
-        down = self._free(room, level - RADIUS - 5, is_up=False)
-        up = self._free(room, level + RADIUS + 5, is_up=True)
+        down = free_level(room, level - RADIUS - 5, self.occupied, is_up=False)
+        up = free_level(room, level + RADIUS + 5, self.occupied, is_up=True)
         is_up = "below" in taken
         if not is_up and "above" not in taken and self._is_blocked(risers, down, level):
             is_up = not self._is_blocked(risers, up, level)
@@ -335,28 +328,16 @@ class _Band:
         self, before: int | None, node: int, ends: tuple[float, float], y: float, sign: float
     ) -> None:
         """Draw the wire from a node of a branch to the one before it, towards the sum."""
-        is_plain = before is None or self._kind(before) == "signal"
-        strokes: Strokes = (
-            (line((ends[0], y), (ends[1], y)),) if is_plain else arrow((ends[0], y), (ends[1], y))
-        )
-        self.items.append(Placed("wire", "", strokes))
+        self._lead((ends[0], y), (ends[1], y), before)
         if before is not None and self._kind(before) == "sum":
             side = "right" if sign > 0 else "left"
             self._sign(before, side, is_minus=self._is_minus(node, before))
 
     def _close(self, branch: _Branch, x: float, end: float, y: float) -> None:
         """Draw the wire from a signal of the path to the branch that it feeds."""
-        is_plain = not branch.nodes or self._kind(branch.nodes[-1]) == "signal"
-        strokes: Strokes = (line((x, 0.0), (x, y)),)
-        strokes += (line((x, y), (end, y)),) if is_plain else arrow((x, y), (end, y))
-        self.items.append(Placed("wire", "", strokes))
+        self.items.append(Placed("wire", "", (line((x, 0.0), (x, y)),)))
+        self._lead((x, y), (end, y), branch.nodes[-1] if branch.nodes else None)
         self.items.append(Placed("node", "", (circle(x, 0.0, DOT, fill="#000000"),)))
-
-    def _free(self, room: Extent, limit: float, *, is_up: bool) -> float:
-        y = limit - (room.y0 if is_up else room.y1)
-        while hit := [b for b in self.occupied if b.overlaps(room.moved(0, y))]:
-            y = max(b.y1 for b in hit) - room.y0 + 0.1 if is_up else min(b.y0 for b in hit) - room.y1 - 0.1
-        return y
 
     def _is_blocked(self, risers: list[float], y: float, level: float) -> bool:
         """Tell whether vertical wires would pass through something."""
@@ -369,13 +350,12 @@ class _Band:
     def _kind(self, node: int) -> str:
         return self.graph.nodes[node].kind
 
-    def _shown(self, node: int, *, is_tag: bool) -> _Sized:
+    def _shown(self, node: int, *, is_tag: bool) -> Built:
         one = self.graph.nodes[node]
         match one.kind:
             case "sum":
-                return _Sized(
-                    (Placed("sum", "", (circle(RADIUS, 0.0, RADIUS),)),), 2 * RADIUS, RADIUS, RADIUS
-                )
+                ring = Placed("sum", "", (circle(RADIUS, 0.0, RADIUS),))
+                return Built(2 * RADIUS, (ring,), -RADIUS, RADIUS)
             case "gain" | "block":
                 return self._box(one)
             case "signal" if not is_tag:
@@ -383,7 +363,7 @@ class _Band:
             case _:
                 return self._tag(one, is_tag=is_tag)
 
-    def _box(self, one: SignalNode) -> _Sized:
+    def _box(self, one: SignalNode) -> Built:
         label = _fitting(one.label, SIZE) or _fitting(r"\cdots", SIZE)
         if one.kind == "block":
             block = self.graph.blocks[one.name]
@@ -393,22 +373,22 @@ class _Band:
                 return _boxed(one, shown, _fitting(one.label, SMALL))
         return _boxed(one, label, None)
 
-    def _tag(self, one: SignalNode, *, is_tag: bool) -> _Sized:
+    def _tag(self, one: SignalNode, *, is_tag: bool) -> Built:
         """Return a name at the beginning or end of a wire."""
         shown = _fitting(one.label, SIZE)
         if shown is None:
-            return _Sized((), 1.0, 1.0, 1.0)
+            return Built(1.0, (), -1.0, 1.0)
         middle = -(shown.height - shown.depth) / 2
         kind = "tag" if is_tag or one.kind == "reading" else one.kind
         placed = Placed(kind, one.name, (), (shown.moved(1.5, middle),))
-        return _Sized((placed,), shown.width + 3, middle + shown.height, shown.depth - middle)
+        return Built(shown.width + 3, (placed,), middle - shown.depth, middle + shown.height)
 
-    def _signal(self, one: SignalNode) -> _Sized:
+    def _signal(self, one: SignalNode) -> Built:
         """Return a wire with its name, and the outputs that show it."""
         items: list[Placed] = []
         shown = _fitting(one.label, SIZE)
         wide = shown.width + 4 if shown else 4.0
-        above = below = 1.0
+        below, above = -1.0, 1.0
         if shown:
             items.append(Placed("signal", one.name, (), (shown.moved(2.0, 2.5 + shown.depth),)))
             above = 2.5 + shown.depth + shown.height
@@ -429,10 +409,9 @@ class _Band:
             if label:
                 items.append(Placed("label", out.name, (), (label.moved(wide + 3, -10.0),)))
                 wide += label.width + 8
-            below = 14.0
-        return _Sized(
-            (*items, Placed("wire", one.name, (line((0.0, 0.0), (wide, 0.0)),))), wide, above, below
-        )
+            below = -14.0
+        wire = Placed("wire", one.name, (line((0.0, 0.0), (wide, 0.0)),))
+        return Built(wide, (*items, wire), below, above)
 
 
 def _fitting(latex: str, size: float) -> Lettering | None:
@@ -441,9 +420,9 @@ def _fitting(latex: str, size: float) -> Lettering | None:
     return shown if shown is None or shown.width <= WIDEST else text(r"\cdots", size)
 
 
-def _boxed(one: SignalNode, shown: Lettering | None, name: Lettering | None) -> _Sized:
+def _boxed(one: SignalNode, shown: Lettering | None, name: Lettering | None) -> Built:
     texts = column_of([t for t in (shown, *(text(line, SMALL) for line in one.lines)) if t])
-    block = union(t.box for t in texts) if texts else Extent(0, 0, 0, 0)
+    block = union(t.box for t in texts)
     wide, tall = max(16.0, block.width + 2 * EDGE), max(7.0, block.height / 2 + EDGE)
     items = [Placed(one.kind, one.name, (rectangle(0.0, -tall, wide, tall),))]
     if texts:
@@ -455,4 +434,4 @@ def _boxed(one: SignalNode, shown: Lettering | None, name: Lettering | None) -> 
             Placed("label", one.name, (), (name.moved((wide - name.width) / 2, tall + 2 + name.depth),))
         )
         above += name.height + name.depth + 2
-    return _Sized(tuple(items), wide, above, tall)
+    return Built(wide, tuple(items), -tall, above)

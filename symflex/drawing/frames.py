@@ -14,11 +14,11 @@ from itertools import combinations
 from math import cos, hypot, pi, sin
 from typing import TYPE_CHECKING, Final
 
-from symflex.drawing.cells import label_texts
-from symflex.drawing.columns import flat_mark, upright_mark
+from symflex.drawing.cells import label_texts, tags_of
+from symflex.drawing.columns import flat_mark, mark_of_source, upright_mark
 from symflex.drawing.geometry import BOLD, FILLED, MEMBER, THIN, Extent, Placed, around, union
 from symflex.drawing.lettering import SMALL, name_latex, text
-from symflex.drawing.scheme import Mark, Style, evaluate, values_of
+from symflex.drawing.scheme import Mark, evaluate, values_of
 from symflex.drawing.symbols import (
     DOT,
     HALF,
@@ -102,7 +102,10 @@ class _Plan:
         for part in own:
             if part.type_name in ALONE:
                 self._draw_grounded(part)
-        for mark in (*map(_mark_of, (p for p in own if p.symbol.role == "source")), *self.network.marks):
+        for mark in (
+            *map(mark_of_source, (p for p in own if p.symbol.role == "source")),
+            *self.network.marks,
+        ):
             if mark.node in self.at:
                 self._draw_mark(mark)
         for part in self.members:
@@ -204,6 +207,9 @@ class _Plan:
         self.items.extend(items)
         self.solid.extend(e for i in items for e in i.extents)
 
+    def _is_free(self, items: Sequence[Placed]) -> bool:
+        return self._first_free(items, [(0.0, 0.0), (1.0, 1.0)]) == (0.0, 0.0)
+
     def _first_free(self, items: Sequence[Placed], moves: Iterable[Point]) -> Point:
         """Return the first move after which parts touch nothing that is drawn; the last one if all do."""
         pieces = [e.grown(1.6 if i.texts else 0.8) for i in items for e in i.extents]
@@ -244,8 +250,7 @@ class _Plan:
     def _shortened(self, part: DrawnPart) -> tuple[Point, Point]:
         """Return the ends of a member at the surfaces of bodies."""
         a, b = self.ends[part.name]
-        size = hypot(b[0] - a[0], b[1] - a[1])
-        d = ((b[0] - a[0]) / size, (b[1] - a[1]) / size)
+        _, d = _direction(a, b)
         cuts = []
         for end in part.ends:
             wide, tall = self.radius.get(end.node, (0.0, 0.0)) if end.node else (0.0, 0.0)
@@ -259,16 +264,10 @@ class _Plan:
 
     def _draw_member(self, part: DrawnPart) -> None:
         a, b = self._shortened(part)
-        size = hypot(b[0] - a[0], b[1] - a[1]) or 1.0
-        dx, dy = (b[0] - a[0]) / size, (b[1] - a[1]) / size
+        _, (dx, dy) = _direction(a, b)
         nx, ny = -dy * HALF, dx * HALF
-        shape = outline(
-            (a[0] + nx, a[1] + ny),
-            (b[0] + nx, b[1] + ny),
-            (b[0] - nx, b[1] - ny),
-            (a[0] - nx, a[1] - ny),
-            fill=FILLED,
-        )
+        corners = ((x + s * nx, y + s * ny) for (x, y), s in ((a, 1), (b, 1), (b, -1), (a, -1)))
+        shape = outline(*corners, fill=FILLED)
         self._add(
             Placed(part.kind, part.name, (shape if part.type_name == "frame" else line(a, b, width=MEMBER),))
         )
@@ -280,12 +279,8 @@ class _Plan:
     def _free_directions(self, node: str) -> list[Point]:
         """Return directions from a node, the one farthest from its members first."""
         x, y = self.at[node]
-        taken = []
-        for a, b in self.ends.values():
-            for (px, py), (qx, qy) in ((a, b), (b, a)):
-                if _is_near((px, py), (x, y)):
-                    size = hypot(qx - px, qy - py) or 1.0
-                    taken.append(((qx - px) / size, (qy - py) / size))
+        pairs = (pair for a, b in self.ends.values() for pair in ((a, b), (b, a)))
+        taken = [_direction(*pair)[1] for pair in pairs if _is_near(pair[0], (x, y))]
         return sorted(
             DIRECTIONS, key=lambda d: round(max((d[0] * t[0] + d[1] * t[1] for t in taken), default=0.0), 3)
         )
@@ -328,39 +323,27 @@ class _Plan:
 
     def _beside(self, items: Sequence[Placed], node: str) -> None:
         """Draw parts near a node, in the first place that is free."""
-        self._add(*self._near(items, self.at[node], self.radius.get(node, (2.0, 2.0))))
+        self._near(items, _about(self.at[node], *self.radius.get(node, (2.0, 2.0))))
 
-    def _near(self, items: Sequence[Placed], at: Point, size: tuple[float, float]) -> list[Placed]:
+    def _near(self, items: Sequence[Placed], what: Extent) -> None:
+        """Draw parts beside a rectangle, in the first place that is free."""
         box = union(i.box for i in items)
-        centre = ((box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2)
+        centre, at, size = box.centre, what.centre, (what.width / 2, what.height / 2)
 
         def moves() -> Iterator[Point]:
             for distance in DISTANCES:
                 for dx, dy in AROUND:
-                    x = (
-                        at[0]
-                        + dx * (size[0] + distance)
-                        + (box.width / 2) * (dx > SAME)
-                        - (box.width / 2) * (dx < -SAME)
-                    )
-                    y = (
-                        at[1]
-                        + dy * (size[1] + distance)
-                        + (box.height / 2) * (dy > SAME)
-                        - (box.height / 2) * (dy < -SAME)
-                    )
+                    side = ((dx > SAME) - (dx < -SAME), (dy > SAME) - (dy < -SAME))
+                    x = at[0] + dx * (size[0] + distance) + side[0] * box.width / 2
+                    y = at[1] + dy * (size[1] + distance) + side[1] * box.height / 2
                     yield x - centre[0], y - centre[1]
 
         move = self._first_free(items, moves())
-        return [i.moved(*move) for i in items]
+        self._add(*(i.moved(*move) for i in items))
 
     def _tags(self, part: DrawnPart, node: str) -> None:
-        for kind, name, label in part.tags:
-            shown = text(label, SMALL)
-            if shown:
-                level = shown.height / 2
-                pointer = Placed(kind, name, arrow((-10, level), (-2, level), THIN))
-                self._beside([pointer, Placed("label", name, (), (shown,))], node)
+        for one in tags_of(part):
+            self._beside(one.placed, node)
 
     def _draw_grounded(self, part: DrawnPart) -> None:
         """Draw a spring or damper from a node to the ground, along the component that it acts on."""
@@ -371,27 +354,26 @@ class _Plan:
         ]
         x, y = self.at[node]
         length = part.symbol.length
-        tried: list[tuple[list[Placed], Point]] = []
+        tried: list[list[Placed]] = []
         for stub in (2.0, 10.0, 20.0, 34.0, 50.0):
             for d in allowed:
                 reach = self._surface(node, d) + stub
                 symbol = Placed(part.kind, part.name, part.symbol.draw(length)).moved(reach, 0)
                 base = Placed("ground", "", wall(-6, 6, 1, reach + length))
-                lead = Placed("lead", part.name, (line((self._surface(node, d), 0.0), (reach, 0.0)),))
+                lead = Placed("wire", part.name, (line((self._surface(node, d), 0.0), (reach, 0.0)),))
                 items = [i.rotated(*d).moved(x, y) for i in (symbol, base, lead)]
-                tried.append((items, (0.0, 0.0)))
-                if self._first_free(items, [(0.0, 0.0), (1.0, 1.0)]) == (0.0, 0.0):
-                    self._finish(part, items)
+                tried.append(items)
+                if self._is_free(items):
+                    self._add(*items)
+                    self._finish(part, symbol.rotated(*d).moved(x, y))
                     return
-        self._finish(part, self._near(tried[0][0], (x, y), (4.0, 4.0)))
+        self._near(tried[0], _about((x, y), 4.0, 4.0))
+        self._finish(part, self.items[-len(tried[0])])
 
-    def _finish(self, part: DrawnPart, items: Sequence[Placed]) -> None:
-        self._add(*(i if i.kind != "lead" else Placed("wire", i.name, i.strokes) for i in items))
-        texts = label_texts(part.label, part.name, part.lines)
-        box = items[0].box
-        middle = ((box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2)
-        self._add(
-            *self._near([Placed("label", part.name, (), texts)], middle, (box.width / 2, box.height / 2))
+    def _finish(self, part: DrawnPart, symbol: Placed) -> None:
+        """Write what belongs to a symbol beside it."""
+        self._near(
+            [Placed("label", part.name, (), label_texts(part.label, part.name, part.lines))], symbol.box
         )
         self._tags(part, part.nodes[0])
 
@@ -410,13 +392,10 @@ class _Plan:
                 ]
                 start, tip = ends if sign > 0 else ends[::-1]
                 shaft = Placed(kind, name, arrow(start, tip, BOLD)).moved(x, y)
-                if self._first_free([shaft], [(0.0, 0.0), (1.0, 1.0)]) == (0.0, 0.0):
+                if self._is_free([shaft]):
                     self._add(shaft)
-                    box = shaft.box
-                    middle = ((box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2)
                     if shown:
-                        own = [Placed("label", name, (), (shown,))]
-                        self._add(*self._near(own, middle, (box.width / 2, box.height / 2)))
+                        self._near([Placed("label", name, (), (shown,))], shaft.box)
                     for each, other, words in mark.labels[1:]:
                         if extra := text(words):
                             self._beside([Placed(each, other, (), (extra,))], mark.node)
@@ -428,8 +407,7 @@ class _Plan:
     def _draw_coordinate(self, part: DrawnPart) -> None:
         """Draw an arrow along x close to where a member begins, if there is room on one side."""
         (x, y), b = self._shortened(part)
-        size = hypot(b[0] - x, b[1] - y) or 1.0
-        d = ((b[0] - x) / size, (b[1] - y) / size)
+        _, d = _direction((x, y), b)
         shown = text("x", SMALL)
         assert shown is not None
         far = 18.5 + abs(d[0]) * shown.width / 2 + abs(d[1]) * shown.height / 2
@@ -442,15 +420,14 @@ class _Plan:
                 Placed("axis", "x", strokes).rotated(*d).moved(x, y),
                 Placed("label", "x", (), (written,)),
             ]
-            if self._first_free(items, [(0.0, 0.0), (1.0, 1.0)]) == (0.0, 0.0):
+            if self._is_free(items):
                 self._add(*items)
                 return
 
     def _label(self, part: DrawnPart) -> None:
         """Write the label of a member beside it, and mark outputs at its points."""
         a, b = self._shortened(part)
-        size = hypot(b[0] - a[0], b[1] - a[1]) or 1.0
-        d = ((b[0] - a[0]) / size, (b[1] - a[1]) / size)
+        size, d = _direction(a, b)
         n = (-d[1], d[0])
         for share, name, label in part.points:
             shown = text(label, SMALL)
@@ -475,11 +452,10 @@ class _Plan:
                     )
                     marker = Placed("output", name, (stem, head(tip, (-m[0], -m[1]), 3.0)))
                     options.append([marker, Placed("label", name, (), (place,))])
-            free = (o for o in options if self._first_free(o, [(0.0, 0.0), (1.0, 1.0)]) == (0.0, 0.0))
-            self._add(*next(free, options[-1]))
+            self._add(*next(filter(self._is_free, options), options[-1]))
         texts = label_texts(part.label, part.name, part.lines)
         block = union(t.box for t in texts)
-        centre = ((block.x0 + block.x1) / 2, (block.y0 + block.y1) / 2)
+        centre = block.centre
 
         def moves() -> Iterator[Point]:
             far = abs(n[0]) * block.width / 2 + abs(n[1]) * block.height / 2 + HALF + 2.5
@@ -494,13 +470,8 @@ class _Plan:
 
         own = Placed("label", part.name, (), texts)
         self._add(own.moved(*self._first_free([own], moves())))
-        for kind, name, label in part.tags:
-            shown = text(label, SMALL)
-            if shown:
-                level = shown.height / 2
-                pointer = Placed(kind, name, arrow((-10, level), (-2, level), THIN))
-                tag = [pointer, Placed("label", name, (), (shown,))]
-                self._add(*self._near(tag, (a[0] + 0.5 * size * d[0], a[1] + 0.5 * size * d[1]), (4.0, 4.0)))
+        for one in tags_of(part):
+            self._near(one.placed, _about((a[0] + 0.5 * size * d[0], a[1] + 0.5 * size * d[1]), 4.0, 4.0))
 
 
 def name_of(node: str) -> Mark:
@@ -508,11 +479,15 @@ def name_of(node: str) -> Mark:
     return Mark("probe", node, (("tag", node, name_latex(node)),))
 
 
-def _mark_of(part: DrawnPart) -> Mark:
-    """Return the arrow of a source at a node."""
-    end = part.ends[0]
-    style: Style = "torque" if end.domain == "rotation" else "force" if end.component == "x" else "push"
-    return Mark(style, end.node, (("element", part.name, part.label), *part.tags))
+def _about(centre: Point, wide: float, tall: float) -> Extent:
+    """Return a rectangle by its middle and half its width and height."""
+    return Extent(centre[0] - wide, centre[1] - tall, centre[0] + wide, centre[1] + tall)
+
+
+def _direction(a: Point, b: Point) -> tuple[float, Point]:
+    """Return how far one point is from another, and in which direction."""
+    size = hypot(b[0] - a[0], b[1] - a[1]) or 1.0
+    return size, ((b[0] - a[0]) / size, (b[1] - a[1]) / size)
 
 
 def _is_near(a: Point, b: Point) -> bool:

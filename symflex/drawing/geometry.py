@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Sequence
 
 Point = tuple[float, float]
 
@@ -37,6 +37,11 @@ class Extent:
         """Its extent along y."""
         return self.y1 - self.y0
 
+    @property
+    def centre(self) -> Point:
+        """Its middle."""
+        return (self.x0 + self.x1) / 2, (self.y0 + self.y1) / 2
+
     def moved(self, dx: float, dy: float) -> Extent:
         """Return the rectangle elsewhere."""
         return Extent(self.x0 + dx, self.y0 + dy, self.x1 + dx, self.y1 + dy)
@@ -63,8 +68,23 @@ def around(points: Iterable[Point]) -> Extent:
 
 
 def union(boxes: Iterable[Extent]) -> Extent:
-    """Return the smallest rectangle around rectangles."""
-    return around(p for b in boxes for p in ((b.x0, b.y0), (b.x1, b.y1)))
+    """Return the smallest rectangle around rectangles; around none an empty one at the origin."""
+    corners = [p for b in boxes for p in ((b.x0, b.y0), (b.x1, b.y1))]
+    return around(corners or [(0.0, 0.0)])
+
+
+def free_level(room: Extent, limit: float, occupied: Sequence[Extent], *, is_up: bool) -> float:
+    """Return how far a rectangle is moved up (or down) from a limit until nothing is in its way.
+
+    Examples
+    --------
+    >>> round(free_level(Extent(0, 0, 4, 2), 0.0, [Extent(3, 1, 5, 6)], is_up=True), 1)
+    6.1
+    """
+    y = limit - (room.y0 if is_up else room.y1)
+    while hit := [b for b in occupied if b.overlaps(room.moved(0, y))]:
+        y = max(b.y1 for b in hit) - room.y0 + 0.1 if is_up else min(b.y0 for b in hit) - room.y1 - 0.1
+    return y
 
 
 @dataclass(frozen=True, slots=True)

@@ -38,13 +38,15 @@ from symflex.drawing.columns import (
     hanging_reach,
     hanging_texts,
     hanging_width,
+    labels_width,
     mark_of_source,
     support_width,
     tags_below,
+    texts_of_mark,
     upright_mark,
     upright_width,
 )
-from symflex.drawing.geometry import BOLD, LINE, THIN, Extent, Placed, around, union
+from symflex.drawing.geometry import BOLD, LINE, THIN, Extent, Placed, around, free_level, union
 from symflex.drawing.lettering import text
 from symflex.drawing.order import ordered
 from symflex.drawing.scheme import Distance, Mark
@@ -170,7 +172,9 @@ class _Layout:
             elif is_single and self.columns[columns[0]].is_electrical:
                 self.columns[columns[0]].hanging.append(part)
             elif is_single:
-                self.columns[columns[0]].marks.append(mark_of_source(part, self.columns[columns[0]]))
+                self.columns[columns[0]].marks.append(
+                    mark_of_source(part, is_flat=self.columns[columns[0]].is_flat)
+                )
             elif len(columns) == 1 and len(part.ends) == 2 and role != "coupling":  # noqa: PLR2004
                 self._sort_grounded(part, columns[0])
             else:
@@ -276,8 +280,8 @@ class _Layout:
                 built = build(one, self.spacing)
                 above, below = built.above, built.below
             else:
-                labels = [t for _, _, label in one.mark.labels if (t := text(label))]
-                built, above, below = None, 5.0 + max([0.0, *(t.height + t.depth for t in labels)]), -4.0
+                labels = union(i.box for i in texts_of_mark(one.mark, 0.0, 0.0))
+                built, above, below = None, 5.0 + labels.height, -4.0
             y -= above + SPACE if i else 0.0
             found.append(_Level(one, built, y))
             y += below
@@ -322,8 +326,7 @@ class _Layout:
         if level.built:
             return level.built.width
         assert isinstance(level.what, _SideArrow)
-        texts = [t.width + 4 for _, _, label in level.what.mark.labels if (t := text(label))]
-        return max(SIDE_ARROW, sum(texts))
+        return max(SIDE_ARROW, labels_width(level.what.mark))
 
     # ------------------------------------------------------------------------------------------- drawing
 
@@ -336,12 +339,8 @@ class _Layout:
             self.items.append(Placed("wire", name, (line(*points, width=width),)))
 
     def _free(self, room: Extent, limit: float, *, is_up: bool, leads: Sequence[Extent] = ()) -> float:
-        """Return how far a rectangle is moved up (or down) from a limit until nothing is in its way."""
         occupied = [*self.occupied, *(b for b in leads if not room.x0 - 1 <= b.x0 <= room.x0 + 1)]
-        y = limit - (room.y0 if is_up else room.y1)
-        while hit := [b for b in occupied if b.overlaps(room.moved(0, y))]:
-            y = max(b.y1 for b in hit) - room.y0 + 0.1 if is_up else min(b.y0 for b in hit) - room.y1 - 0.1
-        return y
+        return free_level(room, limit, occupied, is_up=is_up)
 
     def _draw_column(self, column: Column) -> None:
         x, top, bottom = column.x, column.top, column.bottom
@@ -425,11 +424,9 @@ class _Layout:
             ends = (min(low, end - SIDE_ARROW), end)
         kind, name, _ = shown.mark.labels[0]
         self._add(Placed(kind, name, arrow((ends[0], y), (ends[1], y), BOLD)))
-        texts = [(k, n, t) for k, n, label in shown.mark.labels if (t := text(label))]
-        x = sum(ends) / 2 - (sum(t.width + 4 for *_, t in texts) - 4) / 2
-        for i, (each, own, t) in enumerate(texts):
-            self._add(Placed(each if i else "label", own, (), (t.moved(x, y + 3.5 + t.depth),)))
-            x += t.width + 4
+        texts = texts_of_mark(shown.mark, 0.0, 0.0)
+        box = union(i.box for i in texts)
+        self._add(*(i.moved(sum(ends) / 2 - box.centre[0], y + 3.5 - box.y0) for i in texts))
 
     # --------------------------------------------------------------------------------- below and above it
 
@@ -507,16 +504,7 @@ class _Layout:
         else:
             base = earth(x, end) if column.is_electrical else floor(x - 6, x + 6, end)
             self._add(Placed("ground", "", base))
-        blocks = [(*of, union(t.box for t in of[-1])) for of in hanging_texts(part) if of[-1]]
-        y = (top + end) / 2 + sum(b.height + 3 for *_, b in blocks) / 2
-        for i, (kind, name, block, box) in enumerate(blocks):
-            y -= box.height + 1.5
-            start = x + hanging_reach(part)[1] + SPACE
-            if i:
-                self._add(Placed(kind, name, arrow((start + 1, y + box.height), (start + 1, y - 0.5), THIN)))
-                start += 6
-            self._add(Placed("label", name, (), tuple(t.moved(start - box.x0, y - box.y0) for t in block)))
-            y -= 1.5
+        self._add(*hanging_texts(part, x + hanging_reach(part)[1] + SPACE, (top + end) / 2))
 
     def _draw_stub(self, part: DrawnPart, column: Column) -> None:
         """Draw what joins a node in the middle to the ground: down, then to the right."""
@@ -597,7 +585,7 @@ class _Layout:
         for span in sorted(self.spans, key=lambda s: not s.is_length):
             ends = (self._end_of(span, 0), self._end_of(span, 1))
             texts = label_texts(span.label, span.name, span.lines)
-            shown = union(t.box for t in texts) if texts else Extent(0, 0, 0, 0)
+            shown = union(t.box for t in texts)
             left, right = sorted(x for x, _ in ends)
             more = max(0.0, shown.width + 4 - (right - left)) / 2 + (0.0 if span.is_length else 1.0)
             room = Extent(left - more, -3.0, right + more, 5.0 + shown.height)

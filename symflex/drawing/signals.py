@@ -113,10 +113,13 @@ class SignalGraph:
         return [n.name for n in self.nodes if n.kind == "reading"]
 
     def _end(self, kind: Kind, name: str, label: str, value: Expression) -> None:
-        origin, is_minus = self._built(value)
-        if is_minus:
-            origin = self._box("gain", "", "-1", origin)
+        origin = self._positive(value)
         self._join(origin, self._new(kind, name, label), is_minus=False)
+
+    def _positive(self, value: Expression) -> int:
+        """Return the node whose signal an expression is, behind a gain of -1 where it is minus that."""
+        origin, is_minus = self._built(value)
+        return self._box("gain", "", "-1", origin) if is_minus else origin
 
     def _new(self, kind: Kind, name: str, label: str) -> int:
         self.nodes.append(SignalNode(kind, name, label))
@@ -144,10 +147,7 @@ class SignalGraph:
         if ("signal", name) in self.known:
             return self.known["signal", name]
         index = self._once("signal", name, self.labels.name(name))
-        origin, is_minus = self._built(self.signals[name])
-        if is_minus:
-            origin = self._box("gain", "", "-1", origin)
-        self._join(origin, index, is_minus=False)
+        self._join(self._positive(self.signals[name]), index, is_minus=False)
         return index
 
     def _built(self, expression: Expression) -> tuple[int, bool]:
@@ -162,9 +162,6 @@ class SignalGraph:
             case Attribute(owner=owner, name=name):
                 full = f"{owner}.{name}"
                 return self._once("reading", full, self.labels.name(full)), False
-            case Call():
-                label = self.labels.expression(expression)
-                return self._once("reading", label, label), False
             case Negative(operand=inner):
                 origin, is_minus = self._built(inner)
                 return origin, not is_minus
@@ -176,8 +173,12 @@ class SignalGraph:
                 above, below = expression.children
                 return self._product(list(above.children) if isinstance(above, Product) else [above], below)
             case _:
-                label = self.labels.expression(expression)
-                return self._once("reading", label, label), False
+                return self._whole(expression), False
+
+    def _whole(self, expression: Expression) -> int:
+        """Return what is read as it is written."""
+        label = self.labels.expression(expression)
+        return self._once("reading", label, label)
 
     def _sum(self, terms: list[Expression]) -> int:
         """Return a sum of what its terms lead to; one of many terms is made of several."""
@@ -196,9 +197,8 @@ class SignalGraph:
     def _product(self, factors: list[Expression], below: Expression | None) -> tuple[int, bool]:
         varying = [f for f in factors if not self._is_constant(f)]
         if len(varying) != 1 or (below is not None and not self._is_constant(below)):
-            whole = product_of(factors) if below is None else quotient(product_of(factors), below)
-            label = self.labels.expression(whole)
-            return self._once("reading", label, label), False
+            whole = product_of(factors)
+            return self._whole(whole if below is None else quotient(whole, below)), False
         origin, is_minus = self._built(varying[0])
         constant = [f for f in factors if self._is_constant(f)]
         own = [f for f in constant if isinstance(f, Name) and f.name in self.blocks]

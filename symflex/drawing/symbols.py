@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from math import cos, pi, sin
 from typing import TYPE_CHECKING, Final, Literal
 
-from symflex.drawing.geometry import BOLD, FILLED, LINE, MEMBER, PAPER, PLAIN, THIN, Point, Stroke, around
+from symflex.drawing.geometry import BOLD, FILLED, LINE, MEMBER, PAPER, PLAIN, THIN, Point, Stroke
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -202,11 +202,6 @@ def current_source(length: float) -> Strokes:
 def effort_between(length: float) -> Strokes:
     """Return two arrows, to the right into the second end and to the left into the first."""
     return (*arrow((0.42 * length, 0), (0, 0), BOLD), *arrow((0.58 * length, 0), (length, 0), BOLD))
-
-
-def pull_between(length: float) -> Strokes:
-    """Return two arrows that pull the ends together."""
-    return (*arrow((0, 0), (0.44 * length, 0), BOLD), *arrow((length, 0), (0.56 * length, 0), BOLD))
 
 
 def torque_between(length: float) -> Strokes:
@@ -441,11 +436,6 @@ def pin_support() -> Strokes:
     return (outline((0, -1.5), (-4.2, -8), (4.2, -8)), circle(0, -1.5, 1.5), *floor(-6.4, 6.4, -8))
 
 
-def roller_support() -> Strokes:
-    """Return a roller on the ground, below a point."""
-    return (circle(0, -2.6, 2.6), *floor(-5.4, 5.4, -5.2))
-
-
 def fixed_support() -> Strokes:
     """Return the ground, below a point."""
     return (line((0, 0), (0, -3)), *floor(-5.4, 5.4, -3))
@@ -470,11 +460,6 @@ class ElementSymbol:
     length: float = 24.0  # the least of it [points]
     hold: Callable[[], Strokes] = fixed_support  # of a support, about its node
     label: tuple[str, ...] = ()  # the parameters whose values are written; empty for all that are given
-
-    def extent(self) -> tuple[float, float]:
-        """Return how far a branch reaches below and above its line."""
-        box = around(p for s in self.draw(self.length) for p in s.points)
-        return -box.y0, box.y1
 
 
 SYMBOLS: Final[dict[str, ElementSymbol]] = {
@@ -526,9 +511,3 @@ TRANSFORMER_SYMBOLS: Final[dict[str, Callable[[float], Strokes]]] = {
 def symbol_of(type_name: str) -> ElementSymbol:
     """Return the symbol of a type of element, a plain box for one that has none."""
     return SYMBOLS.get(type_name, ElementSymbol("coupling"))
-
-
-def extremes(strokes: Sequence[Stroke]) -> tuple[float, float]:
-    """Return the lowest and highest y of strokes."""
-    box = around(p for s in strokes for p in s.points)
-    return box.y0, box.y1
