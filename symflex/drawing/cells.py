@@ -178,13 +178,13 @@ def _kept(middle: float, width: float, low: float, high: float) -> float:
     return max(low + width / 2, min(high - width / 2, middle)) if width <= high - low else (low + high) / 2
 
 
-def coordinate(x: float, y: float, sign: int = 1) -> list[Placed]:
-    """Draw an arrow along x, from where x is nought to the right, or to the left (-1)."""
-    strokes = (*arrow((x, y), (x + sign * 15, y), THIN), line((x, y - 2), (x, y + 2), width=THIN))
+def coordinate(y: float = 0.0) -> list[Placed]:
+    """Draw an arrow along x from the origin, or from above or below it."""
+    strokes = (*arrow((0, y), (15, y), THIN), line((0, y - 2), (0, y + 2), width=THIN))
     shown = text("x", SMALL)
     assert shown is not None
-    place = shown.moved(x + (17.5 if sign > 0 else -17.5 - shown.width), y - shown.height / 2)
-    return [Placed("axis", "x", strokes), Placed("label", "x", (), (place,))]
+    label = shown.moved(17.5, y - shown.height / 2)
+    return [Placed("axis", "x", strokes), Placed("label", "x", (), (label,))]
 
 
 def _points(cell: SymbolCell, start: float, length: float) -> list[Placed]:

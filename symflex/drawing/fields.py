@@ -312,7 +312,7 @@ class _Row:
         """Draw an arrow from where x is nought, below the member."""
         start = self._x(self.fields[0], self.fields[0].start)
         y = min(i.box.y0 for i in self.items if i.kind in ("field", "ground")) - 5
-        self.items += coordinate(start, y)
+        self.items += [i.moved(start, y) for i in coordinate()]
 
     def _draw_conditions(self) -> None:
         """Write conditions below the points that they hold at, and the equations below all."""

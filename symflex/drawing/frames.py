@@ -14,22 +14,12 @@ from itertools import combinations
 from math import cos, hypot, pi, sin
 from typing import TYPE_CHECKING, Final
 
-from symflex.drawing.cells import label_texts, tags_of
+from symflex.drawing.cells import coordinate, label_texts, tags_of
 from symflex.drawing.columns import flat_mark, mark_of_source, upright_mark
 from symflex.drawing.geometry import BOLD, FILLED, MEMBER, THIN, Extent, Placed, around, union
 from symflex.drawing.lettering import SMALL, name_latex, text
 from symflex.drawing.scheme import Mark, evaluate, values_of
-from symflex.drawing.symbols import (
-    DOT,
-    HALF,
-    arrow,
-    circle,
-    head,
-    line,
-    outline,
-    rectangle,
-    wall,
-)
+from symflex.drawing.symbols import DOT, HALF, arrow, circle, head, line, outline, rectangle, wall
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -406,20 +396,10 @@ class _Plan:
 
     def _draw_coordinate(self, part: DrawnPart) -> None:
         """Draw an arrow along x close to where a member begins, if there is room on one side."""
-        (x, y), b = self._shortened(part)
-        _, d = _direction((x, y), b)
-        shown = text("x", SMALL)
-        assert shown is not None
-        far = 18.5 + abs(d[0]) * shown.width / 2 + abs(d[1]) * shown.height / 2
+        a, b = self._shortened(part)
+        _, d = _direction(a, b)
         for off in (s * (HALF + more) for more in (3.5, 5.5) for s in (-1, 1)):
-            start = line((1.5, off - 2), (1.5, off + 2), width=THIN)
-            strokes = (*arrow((1.5, off), (16.5, off), THIN), start)
-            tip = (x + far * d[0] - off * d[1], y + far * d[1] + off * d[0])
-            written = shown.moved(tip[0] - shown.width / 2, tip[1] - (shown.height - shown.depth) / 2)
-            items = [
-                Placed("axis", "x", strokes).rotated(*d).moved(x, y),
-                Placed("label", "x", (), (written,)),
-            ]
+            items = [i.moved(1.5, 0).rotated(*d).moved(*a) for i in coordinate(off)]
             if self._is_free(items):
                 self._add(*items)
                 return

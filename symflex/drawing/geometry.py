@@ -185,17 +185,23 @@ class Placed:
         return tuple(found)
 
     def rotated(self, dx: float, dy: float) -> Placed:
-        """Return a part without text turned about the origin, so that x runs in a direction."""
-        turned = (
-            replace(s, points=tuple((dx * x - dy * y, dy * x + dx * y) for x, y in s.points))
-            for s in self.strokes
-        )
-        return replace(self, strokes=tuple(turned))
+        """Return a part turned about the origin, so that x runs in a direction; its texts stay upright.
 
-    def turned(self) -> Placed:
-        """Return a part without text turned so that what ran along x runs down."""
-        turned = (replace(s, points=tuple((y, -x) for x, y in s.points)) for s in self.strokes)
-        return replace(self, strokes=tuple(turned))
+        Examples
+        --------
+        >>> Placed("wire", "", (Stroke(((0, 0), (2, 1))),)).rotated(0, -1).strokes[0].points
+        ((0, 0), (1, -2))
+        """
+
+        def turned(x: float, y: float) -> Point:
+            return dx * x - dy * y, dy * x + dx * y
+
+        texts = []
+        for one in self.texts:
+            (x, y), (to_x, to_y) = one.box.centre, turned(*one.box.centre)
+            texts.append(one.moved(to_x - x, to_y - y))
+        strokes = (replace(s, points=tuple(turned(*p) for p in s.points)) for s in self.strokes)
+        return replace(self, strokes=tuple(strokes), texts=tuple(texts))
 
 
 MOST_CORNERS, LARGE = 6, 36.0

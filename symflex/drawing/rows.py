@@ -207,9 +207,7 @@ class _Layout:
             column.stubs.append(part)
 
     def _add_direct(self, part: DrawnPart, gap: int) -> None:
-        ground = next(e for e in part.ends if not e.node)
-        node = next(e for e in part.ends if e.node)
-        left, right = (node, ground) if gap else (ground, node)
+        left, right = sorted(part.ends, key=lambda e: bool(e.node), reverse=gap > 0)
         self.direct[gap].append(SymbolCell(part, gap, [left], [right], is_reversed=left is not part.ends[0]))
 
     def _sort_branch(self, part: DrawnPart, columns: Sequence[int]) -> None:
@@ -443,7 +441,8 @@ class _Layout:
         for cell, box in along:
             if (cell.part.ends[0].node, cell.is_reversed) in ends:
                 continue  # x of the member before runs on
-            items = coordinate(box.x1, 0.0, -1) if cell.is_reversed else coordinate(box.x0, 0.0)
+            sign, start = (-1, box.x1) if cell.is_reversed else (1, box.x0)
+            items = [i.rotated(sign, 0).moved(start, 0) for i in coordinate()]
             room = union(i.box for i in items).grown(2.0)
             self._add(*(i.moved(0, self._free(room, box.y0 - 1.0, is_up=False)) for i in items))
 
@@ -489,7 +488,7 @@ class _Layout:
     def _draw_hanging(self, part: DrawnPart, column: Column, x: float) -> None:
         """Draw a part from a node down to the ground, or to another component of the node."""
         length, top = hanging_length(part), column.bottom - 3
-        symbol = Placed(part.kind, part.name, part.symbol.draw(length)).turned()
+        symbol = Placed(part.kind, part.name, part.symbol.draw(length)).rotated(0, -1)
         is_upside_down = not part.ends[0].node
         if is_upside_down:
             flipped = tuple(
@@ -508,8 +507,7 @@ class _Layout:
 
     def _draw_stub(self, part: DrawnPart, column: Column) -> None:
         """Draw what joins a node in the middle to the ground: down, then to the right."""
-        ground = next(e for e in part.ends if not e.node)
-        node = next(e for e in part.ends if e.node)
+        node, ground = sorted(part.ends, key=lambda e: not e.node)
         cell = SymbolCell(part, 0, [node], [ground], is_reversed=part.ends[0] is ground, is_label_below=True)
         built = build(cell, self.spacing)
         drops = sum(map(support_width, column.supports)) + sum(map(hanging_width, column.hanging))

@@ -526,11 +526,7 @@ def evaluate(expression: Expression, known: Mapping[str, float]) -> float | None
 
     try:
         return fold(
-            expression,
-            number=float,
-            name=lambda n: {"pi": math.pi, **known}[n],
-            power=power,
-            call=call,
+            expression, number=float, name=lambda n: {"pi": math.pi, **known}[n], power=power, call=call
         )
     except (KeyError, ValueError, ZeroDivisionError, OverflowError, AttributeError):
         return None
