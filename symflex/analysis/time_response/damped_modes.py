@@ -57,6 +57,26 @@ class Damping:
         """Whether the beam is the one without loss, and on no foundation."""
         return not self.is_lossy and bool(self.inertial[0] == 0)
 
+    def fading(self, squared: arb, integrations: int, t: arb) -> arb:
+        """Return how much of what modes add undamped is left of them at a time, for all kappa from one on.
+
+        With b = c + eta kappa and p the slower pole, ``u = -Re(p) t``, a step leaves at most
+        ``(1 + u) exp(-u)``. An impulse leaves ``sqrt(2) exp(-u)`` where b^2 < 2 kappa, as the frequency is
+        no less than ``sqrt(kappa/2)``; up to b^2 = 8 kappa no more than ``t exp(-u)`` times sqrt(kappa),
+        which is ``sqrt(8) u/t`` at most; and beyond, the poles are 2 sqrt(kappa) apart.
+        """
+        c, k, eta = self.inertial[1], self.inertial[0], self.elastic[1]
+        b = c + eta * squared
+        if not (b > 0 and t > 0):
+            return arb(0) if t == 0 else arb(1)  # nothing moves at once
+        rate = (b / 2).min((squared + k) / b)
+        if eta > 0:
+            rate = rate.min(1 / eta)
+        u = (rate * t).lower()
+        if integrations:
+            return ((1 + u) * (-u).exp()).min(1).upper()
+        return (arb(2).sqrt() * (1 + 2 * u) * (-u).exp()).min(1).upper() if u > 1 else arb(1)
+
     def terms(self, weight: arb, squared: arb, integrations: int) -> list[ExponentialTerm] | None:
         """Return what ``w/(...)`` over ``s^integrations`` adds for one kappa, without the pole at 0.
 

@@ -121,11 +121,19 @@ def _of_proved_modes(
     largest = max((abs(y.mid()) for y in found.values), default=arb(0))
     goal = ENOUGH * float(largest) * 10.0 ** -min(digits, MOST_DIGITS)
     count = _needed((few, float(bounds[0])), (many, float(bounds[1])), goal)
-    if count > many:
+    if damping is not None and count > many:
+        count = _until_faded(damping, (many, second[1]), count, integrations, times, goal / float(bounds[1]))
+    for _ in range(ROUNDS):
+        if count <= many:
+            break
         turned = float(second[0][-1].im.mid()) * (count / many) ** 2 * float(times.seconds[-1])
         lost = max(0, int(log(turned + 1, 10)) - (DIGITS - 16))
         finer = lossless_modes(plain, DIGITS + lost) if lost else modes
         found = None if finer is None else _summed(bound, finer, damping, count, integrations, times)
+        if found is None or count == MOST_MODES or not goal > 0 or found.left <= goal:
+            break
+        # It fell off more slowly than it had begun to, so at least with the first power.
+        count = round(min(MOST_MODES, count * float(found.left) / goal + 1))
     return found
 
 
@@ -185,11 +193,19 @@ class PartialSum:
     terms: tuple[ExponentialTerm, ...]
     values: tuple[arb, ...]  # of the terms, at all times
     rest: arb
+    fading: tuple[arb, ...] = ()  # how much of the rest is left at all times; all of it if nothing is said
+
+    @property
+    def left(self) -> arb:
+        """The most that is left at any of the times."""
+        return (self.rest * max(self.fading, default=arb(1), key=arb.mid)).upper()
 
     @property
     def sampled(self) -> Sampled:
         """The response, with what is left out as part of its balls."""
-        return Sampled(tuple(y + arb(0, self.rest) for y in self.values))
+        shares = self.fading or (arb(1),) * len(self.values)
+        pairs = zip(self.values, shares, strict=True)
+        return Sampled(tuple(y + arb(0, (share * self.rest).upper()) for y, share in pairs))
 
 
 class PassiveModes:
@@ -340,7 +356,14 @@ def _summed(
         known = [term for term in terms if term is not None]
         if rest is None or len(known) < len(terms):
             return None
-        return PartialSum((*origin, *known), tuple(values_of([*origin, *known], times)), rest)
+        values = values_of([*origin, *known], times)
+        fading: list[arb] = []
+        if damping is not None:
+            squared = (2 * arb(reached)).exp()
+            fading = [damping.fading(squared, integrations, t) for t in times.enclosed()]
+            # Every mode begins at rest.
+            values = [y if share > 0 else arb(0) for y, share in zip(values, fading, strict=True)]
+        return PartialSum((*origin, *known), tuple(values), rest, tuple(fading))
 
 
 def _damped(
@@ -384,6 +407,30 @@ def _needed(few: tuple[int, float], many: tuple[int, float], goal: float, most: 
     # Logarithms, as a power of a small number may overflow.
     growth = log(many[1] / goal) / power
     return min(most, round(1.2 * many[0] * 2 ** min(growth / log(2), 20)))
+
+
+def _until_faded(
+    damping: Damping,
+    known: tuple[int, float],
+    most: int,
+    integrations: int,
+    times: SampleTimes,
+    share: float,
+) -> int:
+    """Return how many modes it takes until a share is left of all beyond at the first time after 0.
+
+    ``known`` are a count and ln of the frequency it reaches, which grows with its square.
+    """
+    first = next((t for t in times.enclosed() if t > 0), None)
+    count, reached = known
+    if first is None:
+        return most
+    while count < most:
+        squared = (2 * arb(reached)).exp() * arb(count / known[0]) ** 4
+        if damping.fading(squared, integrations, first) < share:
+            return count
+        count = min(most, count * 5 // 4)
+    return most
 
 
 def _at_origin(bound: AnyBoundFunction, integrations: int) -> list[ExponentialTerm] | None:
