@@ -168,6 +168,21 @@ class Factored:
         i = self.ring.index[name]
         return any(degree_in(f, i) for f, _ in self.factors)
 
+    def slope(self, name: str) -> Factored:
+        """Return the derivative with respect to a generator.
+
+        >>> ring = Ring(("x", "y"))
+        >>> x, y = Factored.generator(ring, "x"), Factored.generator(ring, "y")
+        >>> str((y / x).slope("x"))
+        '-1*x^-2*y'
+        """
+        i, total = self.ring.index[name], Factored.number(self.ring, 0)
+        for factor, exponent in self.factors:
+            if degree_in(factor, i):
+                own, rate = (Factored.polynomial(self.ring, f) for f in (factor, factor.derivative(i)))
+                total = total + self / own * rate * exponent
+        return total
+
     def map_factors(self, ring: Ring, image: Callable[[fmpz_mpoly], Factored]) -> Factored:
         """Return the value with every factor replaced by its image in ``ring``."""
         result = Factored.number(ring, self.unit)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from symflex.algebra import Factored, degree_in
+from symflex.algebra import Factored
 from symflex.algebra.ring import by_powers
 from symflex.expressions import substitute
 from symflex.model.along import COORDINATE
@@ -53,21 +53,8 @@ class AlongX:
 
     def slope(self, value: Factored) -> Factored:
         """Return the derivative of a value along x."""
-        total = value * 0
-        for factor, exponent in value.factors:
-            own = Factored.polynomial(value.ring, factor)
-            rate = self._slope_of(value, factor)
-            if not rate.is_zero:
-                total = total + value / own * rate * exponent
-        return total
-
-    def _slope_of(self, value: Factored, factor: fmpz_mpoly) -> Factored:
-        ring, total = value.ring, value * 0
-        for name, slope in self._slopes.items():
-            i = ring.index[name]
-            if degree_in(factor, i):
-                total = total + Factored.polynomial(ring, factor.derivative(i)) * slope
-        return total
+        rates = (value.slope(name) * slope for name, slope in self._slopes.items() if value.depends_on(name))
+        return sum(rates, value * 0)
 
     def at(self, value: Factored, point: Expression) -> Factored:
         """Return a value at a point, an expression without the coordinate."""

@@ -120,6 +120,7 @@ class _Opener:
     has_coordinate: bool
     is_condition: bool
     problems: list[Diagnostic] = field(default_factory=list)
+    coordinate: str = COORDINATE  # what is differentiated by
 
     def refuse(self, span: Span | None) -> None:
         """Note what grows too large."""
@@ -182,7 +183,7 @@ class _Opener:
         match expression:
             case Name(name) if name in self.unknowns:
                 return Derivative(name, 1, span=expression.span)
-            case Name(name) if name == COORDINATE and self.has_coordinate:
+            case Name(name) if name == self.coordinate and self.has_coordinate:
                 return number(1)
             case Derivative(name, order):
                 return Derivative(name, order + 1, span=expression.span)
@@ -229,9 +230,9 @@ class _Opener:
         return product_of([number(value), lower, slope])
 
 
-def slope_along_x(expression: Expression) -> Expression | None:
-    """Return the derivative of a coefficient along x, None where it is constant."""
-    return _Opener(frozenset(), has_coordinate=True, is_condition=False).slope(expression)
+def slope_along_x(expression: Expression, name: str = COORDINATE) -> Expression | None:
+    """Return the derivative of a coefficient along x, or in another name, None where it is constant."""
+    return _Opener(frozenset(), has_coordinate=True, is_condition=False, coordinate=name).slope(expression)
 
 
 def _at(

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
     from symflex.algebra import Dispersion
     from symflex.algebra.fundamental_matrix import Coefficients, Number, Place, PowerExpansion
-    from symflex.expressions import Call, Expression
+    from symflex.expressions import Expression
     from symflex.transfer.balls import Value
 
 ELSEWHERE = acb(0.7, 1.3)
@@ -75,7 +75,7 @@ class PartedLaw:
     """A law whose coefficients are sums of products of a function of x and one of s."""
 
     law: Dispersion
-    functions: Mapping[str, Call]  # generators that are functions of x
+    functions: Mapping[str, Expression]  # generators that are functions of x
 
     @cached_property
     def summands(self) -> Mapping[Place, tuple[Summand, ...]]:
@@ -270,9 +270,9 @@ class BoundLaw(PartedLaw):
 
     def along(self, x: Along) -> dict[str, Along]:
         """Return the coordinate and the functions of it."""
-        return {COORDINATE: x} | {name: self._function(call, x) for name, call in self.functions.items()}
+        return {COORDINATE: x} | {name: self._function(each, x) for name, each in self.functions.items()}
 
-    def _function(self, call: Call, x: Along) -> Along:
+    def _function(self, function: Expression, x: Along) -> Along:
         def number(value: arb) -> Along:
             return arb_series([value]) if isinstance(x, arb_series) else acb(value)
 
@@ -285,7 +285,7 @@ class BoundLaw(PartedLaw):
             return raised(base, integer_exponent(exponent) or 0)
 
         return fold(
-            call,
+            function,
             number=lambda value: number(ball(value)),
             name=named,
             power=power,

@@ -15,25 +15,32 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
-from flint import acb, acb_series, arb, arb_series, fmpz_mpoly
+from flint import acb, acb_mat, acb_series, arb, arb_series, fmpz_mpoly
 
-from symflex.algebra import FUNCTIONS, LAPLACE, Factored, Kernel, PolynomialMemo, square_free_factors
+from symflex.algebra import FUNCTIONS, LAPLACE, Factored, Kernel, PolynomialMemo, Ring, square_free_factors
+from symflex.algebra.minors import MinorSums
 from symflex.algebra.vanishing import OriginSeries
 from symflex.budget import spend
+from symflex.errors import Diagnostic, ModelError
 from symflex.expressions import Call, Expression, fold
 from symflex.loops import pick_gain
 from symflex.loops.stability_map import real_json
 from symflex.model import ExactValue, Model, ModelParameter, with_numbers
+from symflex.model.along import COORDINATE, varies_along_x
+from symflex.model.brackets import slope_along_x
 from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.root import GUARD_BITS, decimals, exact_fraction
-from symflex.transfer.balls import EvaluationPlan, ball, enclosure, plan
+from symflex.transfer.balls import EvaluationPlan, ball, enclosure, later, plan
 from symflex.transfer.enclose_kernels import fundamental_functions
+from symflex.transfer.enclose_varying import VaryingMatrices
 from symflex.transfer.of_model import derive_all
+from symflex.transfer.varying_law import BoundLaw
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
     from fractions import Fraction
 
+    from symflex.algebra import Dispersion
     from symflex.roots import PoleZeroMap, Root
     from symflex.transfer import BoundTransferFunction, TransferFunction
 
@@ -381,10 +388,12 @@ class Tangents:
         point = {LAPLACE: _series(s, acb(int(direction == LAPLACE))), "pi": _complex(first_order(arb.pi()))}
         point.update((name, _complex(value)) for name, value in real.items())
         for constant in self.tf.constants:
-            if constant.generator in self._used:
+            if constant.generator in self._used and constant.generator not in self._functions:
                 point[constant.generator] = _complex(constant_tangent(constant.expression, real))
-        self.tf.kernels.without_tapers("derivatives of roots are")
         for law in self.tf.kernels.dispersions:
+            if law.matrix:
+                point.update(self._entries(law, direction, point))
+                continue
             coefficients = [self.product(c, point) for c in law.characteristic]
             shift = self.product(law.shift, point)
             point.update(law.roots(coefficients, _root))
@@ -399,6 +408,99 @@ class Tangents:
                     rate = point[kernel.wavenumber] if kernel.wavenumber else -shift
                     point[kernel.generator] = _kernel(kernel, rate * length)
         return point
+
+    def _entries(self, law: Dispersion, direction: str, point: Point) -> Point:
+        """Return the entries of the fundamental matrices of a law that varies along x.
+
+        In s their series are known. In a parameter ``Z' = A Z`` is differentiated: what takes z and
+        dz/dp along has A on its diagonal and dA/dp below; and where x begins and ends may move.
+        """
+        s, kernels = point[LAPLACE], self.tf.kernels.kernels_of(law)
+        if direction == LAPLACE:
+            minors = self._varying.minors.entries
+            places = [minors[self.tf.ratio.ring.index[k.generator]] for k in kernels]
+            values = (self._varying.value(place, s) for place in places)
+            return {k.generator: _lifted(x) for k, x in zip(kernels, values, strict=True)}
+        if law.singular is not None:
+            message = f"derivatives of roots are not available yet where a member has a tip, as '{law.name}'"
+            raise ModelError(Diagnostic("SF910", message, law.span, "its poles and zeros are"))
+        n, found = law.order, Point()
+        own, start = self._tangent_law(law, direction), self.product(law.start[0], point)
+        known: dict[Factored, tuple[list[list[acb]], acb_mat]] = {}
+        for kernel in kernels:
+            if kernel.length not in known:
+                end = start + self.product(kernel.length, point)
+                matrix = own.matrix_at(s[0], (start[0].real, end[0].real))
+                slopes = acb_mat([row[:n] for row in matrix[n:]])
+                whole = acb_mat([row[:n] for row in matrix[:n]])
+                first, last = (_coefficients(own, n, x[0], s[0]) * x[1] for x in (start, end))
+                known[kernel.length] = matrix, slopes + last * whole - whole * first
+            matrix, slopes = known[kernel.length]
+            row, column = divmod(kernel.order, n)
+            found[kernel.generator] = _series(matrix[row][column], slopes[row, column])
+        return found
+
+    def _tangent_law(self, law: Dispersion, parameter: str) -> BoundLaw:
+        """Return the law of states, and after them of their derivatives with respect to a parameter."""
+        if (law, parameter) in self._laws:
+            return self._laws[law, parameter]
+        source, values = self.tf.ratio.ring, {n: enclosure(v) for n, v in self.values.items()}
+        moving, functions = [parameter], dict[str, Expression](self._functions)
+        constants = dict(self._constants)
+        for each in (c for c in self.tf.constants if c.generator in self._used):
+            slope, name = slope_along_x(each.expression, parameter), f"d[{each.generator}]"
+            if slope is None:
+                continue
+            moving.append(each.generator)
+            if each.generator in self._functions:
+                functions[name] = slope
+            else:
+                constants[name] = later(slope, values)
+        ring = Ring((*source.names, *(f"d[{name}]" for name in moving[1:])))
+
+        def taken_over(value: Factored) -> Factored:
+            return value.map_factors(ring, lambda f: Factored.polynomial(ring, ring.taken_over(f)))
+
+        def slope_of(value: Factored) -> Factored:
+            total = Factored.number(ring, 0)
+            for name in moving:
+                rate = taken_over(value.slope(name))
+                total = total + (rate if name == parameter else rate * Factored.generator(ring, f"d[{name}]"))
+            return total
+
+        zero = (Factored.number(ring, 0),) * law.order
+        upper = [(*map(taken_over, row), *zero) for row in law.matrix]
+        lower = [(*map(slope_of, row), *map(taken_over, row)) for row in law.matrix]
+        start = tuple(map(taken_over, law.start))
+        made = replace(law, matrix=(*upper, *lower), start=start, shift=start[0] * 0)
+        self._laws[law, parameter] = BoundLaw(made, functions, start[0], constants, values)
+        return self._laws[law, parameter]
+
+    @cached_property
+    def _functions(self) -> Mapping[str, Call]:
+        """The functions of the coordinate along x among the generators."""
+        if COORDINATE not in self.tf.ratio.ring.index:
+            return {}
+        used = (c for c in self.tf.constants if c.generator in self._used)
+        return {c.generator: c.expression for c in used if varies_along_x(c.expression)}
+
+    @property
+    def _constants(self) -> Mapping[str, Callable[[], arb]]:
+        """How to enclose every generator free of s and x."""
+        values: dict[str, Callable[[], arb]] = {n: enclosure(v) for n, v in self.values.items()}
+        used = (c for c in self.tf.constants if c.generator in self._used)
+        more = {c.generator: later(c.expression, values) for c in used if c.generator not in self._functions}
+        return {**values, "pi": arb.pi, **more}
+
+    @cached_property
+    def _varying(self) -> VaryingMatrices:
+        values = {n: enclosure(v) for n, v in self.values.items()}
+        minors = MinorSums(self.tf.ratio.ring, self.tf.kernels)
+        return VaryingMatrices(minors, self._constants, self._functions, values)
+
+    @cached_property
+    def _laws(self) -> dict[tuple[Dispersion, str], BoundLaw]:
+        return {}
 
     def polynomial(self, polynomial: fmpz_mpoly, point: Point) -> tuple[acb, acb]:
         """Return the value of a polynomial of the ring, and its derivative."""
@@ -426,6 +528,12 @@ class Tangents:
         """The generators that occur; constants that do not may have no value."""
         parts = (self.tf.num, self.tf.den, *self.tf.kernels.values)
         return self.tf.ratio.ring.used_in(factor for part in parts for factor, _ in part.factors)
+
+
+def _coefficients(law: BoundLaw, size: int, x: acb, s: acb) -> acb_mat:
+    """Return the coefficients of the first states at a place."""
+    along = law.along(x)
+    return acb_mat([[law.value(c, along, s) for c in row[:size]] for row in law.law.matrix[:size]])
 
 
 def _series(value: acb, slope: acb) -> acb_series:

@@ -1,0 +1,94 @@
+"""Derivatives of poles of members that taper against scaling laws and closed forms."""
+
+from __future__ import annotations
+
+import pytest
+from flint import acb
+from mpmath import diff, findroot, mp, mpf
+
+from symflex import pipeline
+from symflex.analysis.sensitivity.sensitivity import Tangents, sensitivities
+from symflex.errors import ModelError
+from symflex.roots.region import Modes
+
+HEAD = """
+symflex = 1
+[parameters]
+E = "2 Pa"
+rho = "3 kg/m^3"
+A_0 = "0.4 m^2"
+I_0 = "0.1 m^4"
+l = "1.5 m"
+c = 0.6
+a = "0.5 1/m"
+eta = "0.1 s"
+"""
+FORCE = 'F = { force = "tip" }'
+MOVED = 'u = { displacement = "base" }'
+BEAM = """
+[elements]
+arm = { type = "beam", between = ["ground", "tip"], E = "E", rho = "rho", l = "l", %s }
+"""
+ROD = """
+[elements]
+bar = { type = "rod", between = ["base", "tip"], E = "E", rho = "rho", l = "l", %s }
+"""
+
+
+def derivatives(text, *names):
+    given = MOVED if "base" in text else FORCE
+    model = pipeline.loads(f'{HEAD}{text}[inputs]\n{given}\n[outputs]\ny = "tip"\n')
+    (bound,) = pipeline.derive_bound(model, model.transfer_functions)
+    found = pipeline.roots(bound, Modes(1))
+    moved = sensitivities(model, bound, found, names)
+    assert all(each.status == "certified" for each in moved)
+    return {each.parameter.name: each for each in moved if each.kind == "pole" and each.root.im > 0}
+
+
+@pytest.mark.slow
+def test_frequencies_of_a_tapered_cantilever_scale_as_dimensions_say():
+    # omega is sqrt(E I_0/(rho A_0))/l^2 times a number that depends on c alone.
+    found = derivatives(BEAM % 'I = "I_0*(1 - c*x/l)^3", A = "A_0*(1 - c*x/l)"')
+    for name, power in (("E", 0.5), ("I_0", 0.5), ("rho", -0.5), ("A_0", -0.5), ("l", -2)):
+        assert abs(found[name].normalised - power) < 1e-14
+
+
+def test_the_pole_of_a_conical_rod_moves_with_its_cone_as_the_closed_form_does():
+    # u (1 - c x/l) = sin(q x/l), free at l: q cos(q) (1 - c) + c sin(q) = 0; omega = q sqrt(E/rho)/l.
+    found = derivatives(ROD % 'A = "A_0*(1 - c*x/l)^2"', "c")
+    with mp.workdps(30):
+
+        def frequency(c):
+            q = findroot(lambda q: q * mp.cos(q) * (1 - c) + c * mp.sin(q), 2)
+            return q * mp.sqrt(mpf(2) / 3) / mpf("1.5")
+
+        expected = diff(frequency, mpf("0.6"))
+        assert abs(found["c"].derivative.imag.mid() - float(expected)) < 1e-13 * abs(float(expected))
+
+
+@pytest.mark.slow
+def test_the_pole_of_a_lossy_exponential_rod_moves_as_the_closed_form_does():
+    # u = exp(a x) sin(p x), p^2 = -rho s^2/(E (1 + eta s)) - a^2 (Webster 1919); free: a sin + p cos = 0.
+    found = derivatives(ROD % 'A = "A_0*exp(-2*a*x)", eta = "eta"', "a", "eta")
+    with mp.workdps(40):
+        given = {"a": mpf("0.5"), "length": mpf("1.5"), "eta": mpf("0.1")}
+
+        def pole(**changed):
+            a, length, eta = {**given, **changed}.values()
+            p = findroot(lambda p: a * mp.sin(p * length) + p * mp.cos(p * length), 1.3)
+            # rho s^2 + (p^2 + a^2) E (1 + eta s) = 0.
+            b = (p**2 + a**2) * mpf(2) / 3
+            return (-b * eta + mp.sqrt((b * eta) ** 2 - 4 * b)) / 2
+
+        for name, value in (("a", given["a"]), ("eta", given["eta"])):
+            expected = complex(diff(lambda x, name=name: pole(**{name: x}), value))
+            assert abs(complex(found[name].derivative.mid()) - expected) < 1e-12 * abs(expected)
+
+
+def test_derivatives_are_refused_where_a_member_has_a_tip():
+    text = ROD % 'A = "A_0*(1 - x/l)^2"'
+    model = pipeline.loads(f'{HEAD}{text}[inputs]\n{MOVED}\n[outputs]\ny = "tip"\n')
+    (tf,) = pipeline.derive_all(model)
+    tangents = Tangents(tf, {p.name: p.value for p in model.parameters})
+    with pytest.raises(ModelError, match="where a member has a tip, as 'bar'"):
+        tangents.along("l", acb(0, 1))
