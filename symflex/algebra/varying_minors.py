@@ -93,6 +93,54 @@ def polynomials_along(
 
     None where waves are too many to be followed.
     """
+    cut = edges_along(along, start, length, places, limits, where)
+    if cut is None:
+        return None
+    edges, growth = cut
+    n = 1 + max(max(place[:2]) for place in places)
+    scales = [np.prod(limits ** np.array(place[2:])) for place in places]
+    points, _, integral = chebyshev_points(20)
+    widths = np.diff(edges)
+    values = parts_at(along, start, length, scales, where, edges[:-1, None] + widths[:, None] * points)
+    # Rows of Z by the powers of the bases they are times; each step of the iteration is one more factor A.
+    shape = len(widths), len(points), n, max(c.shape[-1] for c in values)
+    start_row = np.zeros(shape)
+    rows: Any = {(i, (0,) * len(limits)): start_row + np.eye(n)[i][:, None] for i in range(n)}
+    total = {key: row[:, -1] for key, row in rows.items()}
+    size, steps, last = 1.0, 0, 1e-18
+    while size > last or steps < 2 * n:
+        steps += 1
+        size *= growth / steps
+        following: Any = {}
+        for place, c in zip(places, values, strict=True):
+            for (i, before), row in rows.items():
+                if i == place[1]:
+                    key = place[0], tuple(p + q for p, q in zip(before, place[2:], strict=True))
+                    following[key] = following.get(key, 0.0) + c[:, :, None] * row
+        rows = {}
+        for key, slope in following.items():
+            grown = integral @ slope.reshape(*shape[:2], -1)
+            rows[key] = grown.reshape(shape) * widths[:, None, None, None]
+            total[key] = total.get(key, 0.0) + rows[key][:, -1]
+    powers = sorted({powers for _, powers in total})
+    coefficients = np.zeros((len(widths), len(powers), n, n, shape[-1]))
+    for (i, own), row in total.items():
+        coefficients[:, powers.index(own), i] = row
+    return powers, coefficients
+
+
+def edges_along(
+    along: Callable[[Values], Sequence[Values]],
+    start: Values,
+    length: Values,
+    places: Sequence[Sequence[int]],
+    limits: Values,
+    where: Values,
+) -> Values:
+    """Return shares of the length at which it is cut, and by which power of e waves grow between two.
+
+    None where waves are too many to be followed.
+    """
     n = 1 + max(max(place[:2]) for place in places)
     scales = [np.prod(limits ** np.array(place[2:])) for place in places]
     # Of a matrix without negative entries the largest eigenvalue is the norm, if states are scaled well.
@@ -111,7 +159,7 @@ def polynomials_along(
         return None
     shares = np.concatenate([[0.0], growth + 1e-9 * np.arange(1, count + 1)])
     edges = np.interp(shares[-1] * np.arange(number + 1) / number, shares, np.arange(count + 1) / count)
-    points, to_terms, integral = chebyshev_points(20)
+    points, to_terms, _ = chebyshev_points(20)
     widths = np.diff(edges)
     values = parts_at(along, start, length, scales, where, edges[:-1, None] + widths[:, None] * points)
     # Pieces are halved until functions of x are polynomials there to the last digits.
@@ -125,31 +173,7 @@ def polynomials_along(
         edges = np.sort(np.concatenate([edges, (edges[:-1] + widths / 2.0)[rough]]))
         widths = np.diff(edges)
         values = parts_at(along, start, length, scales, where, edges[:-1, None] + widths[:, None] * points)
-    # Rows of Z by the powers of the bases they are times; each step of the iteration is one more factor A.
-    shape = len(widths), len(points), n, max(c.shape[-1] for c in values)
-    start_row = np.zeros(shape)
-    rows: Any = {(i, (0,) * len(limits)): start_row + np.eye(n)[i][:, None] for i in range(n)}
-    total = {key: row[:, -1] for key, row in rows.items()}
-    size, steps, last = 1.0, 0, 1e-18
-    while size > last or steps < 2 * n:
-        steps += 1
-        size *= growth[-1] / number / steps
-        following: Any = {}
-        for place, c in zip(places, values, strict=True):
-            for (i, before), row in rows.items():
-                if i == place[1]:
-                    key = place[0], tuple(p + q for p, q in zip(before, place[2:], strict=True))
-                    following[key] = following.get(key, 0.0) + c[:, :, None] * row
-        rows = {}
-        for key, slope in following.items():
-            grown = integral @ slope.reshape(*shape[:2], -1)
-            rows[key] = grown.reshape(shape) * widths[:, None, None, None]
-            total[key] = total.get(key, 0.0) + rows[key][:, -1]
-    powers = sorted({powers for _, powers in total})
-    coefficients = np.zeros((len(widths), len(powers), n, n, shape[-1]))
-    for (i, own), row in total.items():
-        coefficients[:, powers.index(own), i] = row
-    return powers, coefficients
+    return edges, growth[-1] / number
 
 
 def parts_at(

@@ -10,7 +10,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field, replace
 from textwrap import TextWrapper
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from symflex.codegen.module_text import identifiers
 from symflex.codegen.program import nodes as tree
@@ -19,9 +19,6 @@ from symflex.codegen.program.evaluate import nearest_double
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
 
-
-Places = Any
-"""Tuples of positions, counted from 0, as :class:`nodes.FundamentalMinors` holds them."""
 
 _SUM, _PRODUCT, _SIGN, _POWER, LEAF = range(5)
 
@@ -111,9 +108,9 @@ class InfixPrinter(ABC):
     def frames(self, frames: tree.Frames) -> str:
         """Return the frames of a sum of exponentials."""
 
-    def positions(self, places: Places, wanted: Places) -> list[str]:
+    def positions(self, minors: tree.FundamentalMinors) -> list[str]:
         """Return where parts of a law along x stand, and which minors of its matrix are wanted."""
-        return [repr(places), repr(wanted)]
+        return [repr(minors.places), repr(minors.wanted)]
 
     # -------------------------------------------------------------------------------------------- the tree
 
@@ -164,9 +161,9 @@ class InfixPrinter(ABC):
                 return self.call("modal_value", [*lists, self.frames(frames)])
             case tree.ScaledSum(amplitudes, exponents):
                 return self.call("scaled_sum", [self._listed(x) for x in (amplitudes, exponents)])
-            case tree.FundamentalMinors(start, length, bases, along, places, wanted):
+            case tree.FundamentalMinors(start, length, bases, along):
                 ends = [self.print(start), self.print(length), self._listed(bases)]
-                everything = [self.follows[along], *ends, *self.positions(places, wanted)]
+                everything = [self.follows[along], *ends, *self.positions(node)]
                 return self.call("fundamental_minors", everything)
             case tree.Item(values, position):
                 return self.item(self.within(values, LEAF), position)

@@ -38,8 +38,14 @@ if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
     from symflex.codegen.export import Contents, Member
-    from symflex.codegen.infix import Places
-    from symflex.codegen.program.nodes import CodeNode, CodePiece, Frames, Piecewise, Straight
+    from symflex.codegen.program.nodes import (
+        CodeNode,
+        CodePiece,
+        Frames,
+        FundamentalMinors,
+        Piecewise,
+        Straight,
+    )
     from symflex.expressions import Expression
     from symflex.transfer import AnyTransferFunction
 
@@ -145,11 +151,11 @@ class MatlabPrinter(InfixPrinter):
         """Return a call of a run-time function."""
         return f"{function}({', '.join(arguments)})"
 
-    def positions(self, places: Places, wanted: Places) -> list[str]:
+    def positions(self, minors: FundamentalMinors) -> list[str]:
         """Return matrices of positions counted from 1."""
-        rows = [(row + 1, column + 1, *powers) for row, column, *powers in places]
-        minors = "; ".join(", ".join(_matrix([lines], 1) for lines in minor) for minor in wanted)
-        return [_matrix(rows, 0), f"{{{minors}}}"]
+        rows = [(row + 1, column + 1, *powers) for row, column, *powers in minors.places]
+        wanted = "; ".join(", ".join(_matrix([lines], 1) for lines in minor) for minor in minors.wanted)
+        return [_matrix(rows, 0), f"{{{wanted}}}"]
 
     def frames(self, frames: Frames) -> str:
         """Return a cell per frame: slots, orders and coefficients of terms, roots and divisors of keys."""

@@ -46,6 +46,12 @@ FOLLOWED = (
 )
 """What is said of functions of members that vary along x."""
 
+CUT = (
+    "Waves are followed along members whose coefficients vary, in pieces that were made for the model's "
+    "values and twice the band's end; beyond it, and where waves are much slower, there is no number."
+)
+"""The same where pieces do not depend on values."""
+
 COST = (
     "Exponents without a formula are found numerically, which costs some hundred times a complex exponential."
 )

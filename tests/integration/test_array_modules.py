@@ -21,6 +21,7 @@ from tests.house.repository import slow_ones, specifications, uniform
 from tests.unit.codegen.against_balls import axis_points, worst_errors
 from tests.unit.codegen.exportable import MASSLESS, PIPE
 from tests.unit.codegen.test_numpy_distributed import beam, clamped_end_compliance, specification
+from tests.unit.codegen.test_numpy_tapers import CONE, receptance
 
 ROOT = Path(__file__).parents[2]
 SPECS = {path.stem: path for path in uniform(specifications(ROOT / "derivations", "*/*.toml"))}
@@ -134,6 +135,33 @@ def error(computed, name, function, where=slice(None)):
     s, found = references(name)
     value, slope = (x[where] for x in found[function])
     return np.max(np.abs(np.asarray(computed) - value) / np.abs(value) / (1 + np.abs(s[where] * slope)))
+
+
+@pytest.mark.slow
+@needs_strict
+def test_a_conical_rod_is_its_formula_up_to_twice_its_band(over_any, strict):
+    function = over_any(CONE).y_over_F
+    s = np.array([30j, 400.0, 2000 + 9000j, -5000 + 20000j, 6e4j, 1e9j])
+    with np.errstate(invalid="ignore"):
+        found = np.asarray(function(strict.asarray(s)))
+    assert found[:5] == pytest.approx(receptance(s[:5]), rel=1e-11)
+    assert np.isnan(found[5])
+    c = np.array([0.0, 0.3, 0.8])
+    found = np.asarray(function(strict.asarray([[4000j], [9000 + 500j]]), c=strict.asarray(c)))
+    assert found == pytest.approx(receptance(np.array([[4000j], [9000 + 500j]]), c), rel=1e-11)
+    with np.errstate(invalid="ignore"):
+        assert np.isnan(complex(function(strict.asarray(30j), l=50.0)))  # more waves than pieces are for
+
+
+@pytest.mark.slow
+@needs_jax
+def test_jax_compiles_and_differentiates_a_conical_rod(over_jax, jax, jnp):
+    function = over_jax(CONE).y_over_F
+    s = np.array([30j, 400.0, 2000 + 9000j, -5000 + 20000j])
+    assert np.asarray(jax.jit(function)(s)) == pytest.approx(receptance(s), rel=1e-11)
+    slope = jax.jit(jax.grad(lambda c: jnp.real(function(4000j + 100, c=c))))(0.5)
+    above, below = (receptance(4000j + 100, 0.5 + h) for h in (1e-5, -1e-5))
+    assert float(slope) == pytest.approx(np.real(above - below) / 2e-5, rel=1e-8)
 
 
 FEW = ("sliding_free_beam", "six_mass", "timoshenko_cantilever")

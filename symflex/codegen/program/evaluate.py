@@ -7,7 +7,7 @@ numpy, each other and :func:`symflex.algebra.modal_sum.modal_amplitudes`, and no
 from __future__ import annotations
 
 from fractions import Fraction
-from functools import partial, reduce
+from functools import reduce
 from math import isfinite
 from operator import mul
 from sys import float_info
@@ -133,6 +133,17 @@ def value_of_piece(piece: tree.CodePiece, point: Values, given: Mapping[str, Val
     return num / den[0] if den else num
 
 
+def law_along(
+    code: tree.Straight, minors: tree.FundamentalMinors, s: Values, given: Mapping[str, Values]
+) -> tuple[Callable[[Values], list[Values]], Values, Values, list[Values]]:
+    """Return what a matrix is followed by: the parts of its law, start, length, and the bases at some s."""
+    run = _ProgramRun(s, given)
+    run.assign(code.constants)
+    run.assign(code.assignments)
+    bases = [np.broadcast_to(run.value(base), np.shape(s)) for base in minors.bases]
+    return run.along(minors.along), run.value(minors.start), run.value(minors.length), bases
+
+
 def number_of(node: tree.CodeNode, known: Mapping[str, Values]) -> Values:
     """Return the value of an expression that depends on no argument, ``None`` for one that does.
 
@@ -232,7 +243,7 @@ class _ProgramRun:
             case tree.FundamentalMinors(start, length, bases, along, places, wanted):
                 ends = self.value(start), self.value(length)
                 given = [np.atleast_1d(self.value(b)) for b in bases]
-                return fundamental_minors(partial(self._along, along), *ends, given, places, wanted)
+                return fundamental_minors(self.along(along), *ends, given, places, wanted)
             case tree.ScaledSum(amplitudes, exponents):
                 return scaled_sum([self.value(a) for a in amplitudes], [self.value(e) for e in exponents])
             case tree.Solve(entries, network, output, source):
@@ -242,12 +253,16 @@ class _ProgramRun:
         message = f"no value for {type(node).__name__}"
         raise TypeError(message)
 
-    def _along(self, code: tree.Straight, x: Values) -> list[Values]:
-        """Return values of functions of x."""
-        run = _ProgramRun(x, self._parameters)
-        run.assign(code.constants)
-        run.assign(code.assignments)
-        return [run.value(node) for node in code.values]
+    def along(self, code: tree.Straight) -> Callable[[Values], list[Values]]:
+        """Return functions of x."""
+
+        def values(x: Values) -> list[Values]:
+            run = _ProgramRun(x, self._parameters)
+            run.assign(code.constants)
+            run.assign(code.assignments)
+            return [run.value(node) for node in code.values]
+
+        return values
 
 
 Values = Any

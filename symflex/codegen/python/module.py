@@ -19,6 +19,7 @@ from symflex.algebra.modal_sum import modal_amplitudes, mode_values
 from symflex.codegen.export import Export, Language, called_parts, parts_of
 from symflex.codegen.module_text import (
     COST,
+    CUT,
     FOLLOWED,
     ITERATED,
     default_value,
@@ -53,6 +54,7 @@ COPIED = (
     varying_minors.fundamental_minors,
     varying_minors.minors_by_octaves,
     varying_minors.polynomials_along,
+    varying_minors.edges_along,
     varying_minors.parts_at,
     varying_minors.minors_through,
     varying_minors.lines_of,
@@ -233,7 +235,8 @@ def python_module(contents: Contents, dialect: Dialect) -> Export:
     for member in members:
         public = (responses if member.program.is_real else functions)[member.tf.name]
         made = TracedText if dialect.is_traced else BlockText
-        private = made(member.program, public, names, values, dialect)
+        low, high = (float(end) for end in member.verification.band)
+        private = made(member.program, public, names, values, dialect, (low, high))
         function = _Function(member, private, member.verification.text(contents.digits))
         own = "\n".join(private.functions())
         blocks.append(f"{function.head()}\n\n\n{own}\n")
@@ -309,7 +312,7 @@ class _Function:
         lines += ["", "    Notes", "    -----", *origin(tf.model, "    ")]
         notes = [self.sentence, *([MEASURED] if dialect.is_traced else [])]
         if program.minors:
-            notes.append(FOLLOWED)
+            notes.append(CUT if dialect.is_traced else FOLLOWED)
         elif program.solves:
             notes.append(ITERATED if dialect.is_traced and program.finds_roots else COST)
         for note in notes:
@@ -401,7 +404,11 @@ ARRAY_API = Language(
     ".py",
     "the same for numpy, torch, jax.numpy, cupy: whatever library the arguments are of",
     partial(python_module, dialect=ARRAY_API_DIALECT),
+    follows=True,
 )
 JAX = Language(
-    ".py", "the same for jax: jit, grad and vmap work through it", partial(python_module, dialect=JAX_DIALECT)
+    ".py",
+    "the same for jax: jit, grad and vmap work through it",
+    partial(python_module, dialect=JAX_DIALECT),
+    follows=True,
 )

@@ -16,10 +16,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from symflex.algebra.varying_minors import edges_along
 from symflex.codegen.infix import InfixPrinter, in_lines
 from symflex.codegen.module_text import identifiers
 from symflex.codegen.program import nodes as tree
-from symflex.codegen.program.evaluate import NUMPY_FUNCTIONS, number_of, numbers_of_pieces, value_of_piece
+from symflex.codegen.program.evaluate import (
+    NUMPY_FUNCTIONS,
+    law_along,
+    number_of,
+    numbers_of_pieces,
+    value_of_piece,
+)
 from symflex.codegen.program.nodes import ONE, CodePiece, Piecewise
 
 if TYPE_CHECKING:
@@ -42,6 +49,7 @@ class PrivateText(ABC):
     parameters: Mapping[str, str]  # identifiers of the parameters
     values: Mapping[str, float]  # values of the parameters that have one
     dialect: Dialect  # of Python
+    band: tuple[float, float]  # in which it is verified [Hz]
 
     @property
     def variable(self) -> str:
@@ -87,6 +95,26 @@ class PrivateText(ABC):
     @abstractmethod
     def _value(self, piece: tree.CodePiece, lines: list[str], printer: PythonPrinter) -> list[str]:
         """Return the last lines of a piece's function."""
+
+    @property
+    def _follows(self) -> Mapping[tree.Straight, str]:
+        """What calls the functions of x that members vary like."""
+        given = ", ".join(["_x", *self.arguments[1:]])
+        return {
+            minors.along: f"lambda _x: _along_{number}_of_{self.name}({self.leading}{given})"
+            for number, minors in enumerate(self.given.minors)
+        }
+
+    def _along(self) -> list[str]:
+        """Return the lines of the functions of x that members vary like."""
+        lines: list[str] = []
+        for number, minors in enumerate(self.given.minors):
+            variable = identifiers({"x": "x"}, {*self.dialect.reserved, *self.arguments})["x"]
+            own, printer = self._body(minors.along, variable)
+            values = ", ".join(printer.print(v) for v in minors.along.values)
+            head = self._head(f"_along_{number}_of_{self.name}", [variable, *self.arguments[1:]])
+            lines += [*head, *own, *statement("return", f"[{values}]", "    "), "", ""]
+        return lines
 
     def _piece(self, number: int, piece: tree.CodePiece) -> list[str]:
         name, parts = (f"_{word}_{number}_of_{self.name}" for word in ("piece", "parts"))
@@ -138,12 +166,7 @@ class BlockText(PrivateText):
         if program.is_lumped:
             return self._lumped(program)
         lines = [*(self._real_tests(program) if program.is_real else self._tests(program)), "", ""]
-        for number, minors in enumerate(program.minors):
-            variable = identifiers({"x": "x"}, {*self.dialect.reserved, *self.arguments})["x"]
-            own, printer = self._body(minors.along, variable)
-            values = ", ".join(printer.print(v) for v in minors.along.values)
-            head = self._head(f"_along_{number}_of_{self.name}", [variable, *self.arguments[1:]])
-            lines += [*head, *own, *statement("return", f"[{values}]", "    "), "", ""]
+        lines += self._along()
         for i, piece in enumerate(program.code):
             lines += [*self._piece(i, piece), "", ""]
         names = [f"_piece_{i}_of_{self.name}" for i in program.pieces]
@@ -196,12 +219,7 @@ class BlockText(PrivateText):
         assignments: list[tree.Assignment] = [*code.constants, *code.assignments]
         taken = {*self.dialect.reserved, *self.parameters.values(), self.variable, variable, "z"}
         names = identifiers({a.name: a.name for a in assignments}, taken)
-        given = ", ".join(["_x", *self.arguments[1:]])
-        follows = {
-            minors.along: f"lambda _x: _along_{number}_of_{self.name}({given})"
-            for number, minors in enumerate(self.given.minors)
-        }
-        printer = PythonPrinter(self.parameters, names, variable, "inverse", follows=follows)
+        printer = PythonPrinter(self.parameters, names, variable, "inverse", follows=self._follows)
         return [line for a in assignments for line in printer.assignment(a.name, a.value, "    ")], printer
 
     def _tests(self, program: tree.Piecewise) -> list[str]:
@@ -284,7 +302,7 @@ class TracedText(PrivateText):
         """Return the lines of all functions; no text of the model is in them."""
         program = self.program
         if not program.conditions:
-            return self._piece(0, program.code[0])
+            return [*self._along(), *self._piece(0, program.code[0])]
         lines = [*self._tests(program), "", ""]
         for i, piece in enumerate(program.code):
             lines += [*self._piece(i, piece), "", ""]
@@ -320,6 +338,8 @@ class TracedText(PrivateText):
             numbers,
             has_fixed_sizes,
             self.leading,
+            cuts_along(program, self.values, self.band) if (program := self.given).minors else {},
+            follows=self._follows,
         )
         lines = [line for a in assignments for line in printer.assignment(a.name, a.value, "    ")]
         if any(inverse in line for line in lines):
@@ -426,6 +446,12 @@ class ArrayPrinter(PythonPrinter):
     numbers: Mapping[str, Any] = field(default_factory=dict)
     has_fixed_sizes: bool = False  # true to print magnitudes as ``_size``, which has no derivative
     leading: str = ""  # first arguments of functions that look others up
+    # Where members that vary along x are cut, and up to which sizes of the bases that serves.
+    cuts: Mapping[tree.FundamentalMinors, tuple[Any, Any]] = field(default_factory=dict)
+
+    def positions(self, minors: tree.FundamentalMinors) -> list[str]:
+        """Return what a matrix is followed by, along cuts that no value changes."""
+        return [*super().positions(minors), *(repr(x) for x in self.cuts[minors])]
 
     def print(self, node: tree.CodeNode) -> str:
         """Return the text of an expression."""
@@ -473,6 +499,9 @@ DIRECTIONS = np.exp(1j * np.array([0.9, -0.9, 2.2, -2.2]))
 
 INWARDS = 1.5
 """Decades between a place and the lower end of the range that a piece serves, or its only end."""
+
+BEYOND = 2.0
+"""How far beyond the band waves are followed where pieces are made beforehand."""
 
 BESIDE = np.array([1.0, 0.999, 1.001])
 
@@ -532,6 +561,28 @@ def places_of(program: Piecewise, values: Mapping[str, float]) -> tuple[complex,
         changes = np.flatnonzero((served[1:] != served[:-1]).any(axis=1))
         last = float(np.log10(SIZES[changes[-1]])) if len(changes) else 0.0
         return tuple(_place(piece, points, served == k, last, given) for k, piece in enumerate(program.code))
+
+
+def cuts_along(
+    program: Piecewise, values: Mapping[str, float], band: tuple[float, float]
+) -> dict[tree.FundamentalMinors, tuple[tuple[float, ...], tuple[float, ...]]]:
+    """Return for every matrix followed along x the edges of pieces, and limits of the bases.
+
+    They serve up to twice the end of a band [Hz]. Parameters without a value count as 1.
+    """
+    given = {name: values.get(name, 1.0) for name in program.parameters}
+    top = BEYOND * 2.0 * np.pi * band[1]
+    s = 1j * np.array([0.0, *np.geomspace(1e-6 * top, top, 61)])
+    found = {}
+    for minors in program.minors:
+        along, start, length, bases = law_along(program.code[0].code, minors, s, given)
+        sizes = (np.max(np.abs(base[np.isfinite(base)])) for base in bases)
+        # Beside the imaginary axis what divides may be smaller than on it.
+        limits = np.array([BEYOND * size for size in sizes])
+        cut = edges_along(along, start, length, minors.places, limits, np.array([0]))
+        edges = np.linspace(0.0, 1.0, 2) if cut is None else cut[0]
+        found[minors] = tuple(map(float, edges)), tuple(map(float, limits))
+    return found
 
 
 def _place(

@@ -382,6 +382,231 @@ def _settled(xp, scaled, x):
     return x
 
 
+#: _fundamental_minors _parts_along _keys_along _growth_along _every_minor _choices _chebyshev
+def _fundamental_minors(xp, along, start, length, bases, places, wanted, edges, limits):
+    """Return minors of Z(start + length) over the scales of their sizes, then the logarithms of these.
+
+    Z' = A Z, and part k of A is along(x)[k] times powers of the bases: places[k] holds its row,
+    its column and these powers. The length is cut at edges, which are shares of it: between
+    them functions of x are polynomials to the last digits, and waves grow little for bases up to
+    their limits. Where bases are larger, or parameters make it otherwise, there is no number.
+    """
+    n = 1 + max(max(place[:2]) for place in places)
+    parts, known = _parts_along(xp, along, start, length, places, edges, limits)
+    keys, sources = _keys_along(places, n)
+    one = xp.ones_like(parts[0, ...])
+    first = xp.stack([one * float(i == k and not any(powers)) for i, k, powers in keys])
+    integral = _table(xp, _chebyshev()[2], [parts])
+    total = _iterated(xp, parts, sources, first, integral)
+    known = known & (_growth_along(xp, parts, places, n) < 6.0)
+    reduced = [base / limit for base, limit in zip(bases, limits)]
+    for base in reduced:
+        known = known & (xp.abs(base) <= 1.0)
+    reduced = [xp.where(known, base, xp.zeros_like(base)) for base in reduced]
+    unit = xp.broadcast_to(xp.ones_like(reduced[0]), _shape([known, *reduced]))
+    axes = len(unit.shape) + 1
+    z = [[None] * n for _ in range(n)]
+    powers = {}
+    for number, (i, k, exponents) in enumerate(keys):
+        if exponents not in powers:
+            powers[exponents] = unit
+            for base, exponent in zip(reduced, exponents):
+                for _ in range(exponent):
+                    powers[exponents] = powers[exponents] * base
+        own = total[number, ...]
+        own = xp.reshape(own, (own.shape[0], *(1,) * (axes - len(own.shape)), *own.shape[1:]))
+        z[i][k] = own * powers[exponents][None, ...] + (0.0 if z[i][k] is None else z[i][k])
+    found, scales = [None] * len(wanted), [xp.real(unit) * 0.0 for _ in range(n)]
+    for order in sorted({len(rows) for rows, _ in wanted}):
+        lines = _choices(n, order)
+        starts = sorted({columns for rows, columns in wanted if len(rows) == order})
+        minors = _every_minor(z, order)
+        zero = 0.0 * next(m for row in minors for m in row if m is not None)
+        minors = [xp.stack([zero if m is None else m for m in row], axis=1) for row in minors]
+        state = [xp.stack([unit * float(line == columns) for columns in starts]) for line in lines]
+        state, scales[order - 1] = _through(xp, xp.stack(minors, axis=1), xp.stack(state), scales[0])
+        for k, (rows, columns) in enumerate(wanted):
+            if len(rows) == order:
+                value = state[lines.index(rows), starts.index(columns), ...]
+                found[k] = xp.where(known, value, xp.full_like(value, cmath.nan))
+    return [*found, *scales]
+
+
+def _parts_along(xp, along, start, length, places, edges, limits):
+    """Return the parts of A times the widths of pieces, and whether they are polynomials there.
+
+    The first three axes are those of parts, points and pieces.
+    """
+    points, to_terms, _ = _chebyshev()
+    shares = [[a + (b - a) * p for a, b in zip(edges, edges[1:])] for p in points]
+    shares = _table(xp, shares, [start, length])
+    widths = _table(xp, [b - a for a, b in zip(edges, edges[1:])], [start, length])
+    # Axes of parameters come last, so those of points and pieces stand before as many as any has.
+    once = along(start + length * shares[0, 0])
+    axes = max((len(v.shape) for v in once if hasattr(v, "dtype")), default=0)
+    shares = xp.reshape(shares, (*shares.shape, *(1,) * axes))
+    widths = xp.reshape(widths, (*widths.shape, *(1,) * axes))
+    to_terms = _table(xp, to_terms, [shares])
+    to_terms = xp.reshape(to_terms, (*to_terms.shape, *(1,) * (axes + 1)))
+    values = along(start + length * shares)
+    parts, known = [], None
+    for value, (_, _, *powers) in zip(values, places):
+        scale = 1.0
+        for limit, power in zip(limits, powers):
+            scale *= limit**power
+        parts.append(value * length * scale * widths + 0.0 * shares)
+        spectrum = _size(xp, xp.sum(to_terms * parts[-1][None, ...], axis=1))
+        terms = [spectrum[m, ...] for m in range(len(points))]
+        own = _largest(xp, terms[-3:]) <= 1e-11 * _largest(xp, terms)
+        known = own if known is None else known & own
+    shape = _shape(parts)
+    return xp.stack([xp.broadcast_to(part, shape) for part in parts]), xp.all(known, axis=0)
+
+
+def _keys_along(places, n):
+    """Return row, column and powers of the entries of Z, and what each is made of by one more factor A.
+
+    That is a list of pairs: a part of A, and the entry before.
+    """
+    nothing = (0,) * (len(places[0]) - 2)
+    keys = reached = [(i, i, nothing) for i in range(n)]
+    sources = {}
+    for _ in range(_STEPS):
+        following = []
+        for part, (row, column, *powers) in enumerate(places):
+            for key in reached:
+                if key[0] == column:
+                    made = (row, key[1], tuple(p + q for p, q in zip(key[2], powers)))
+                    own = sources.setdefault(made, [])
+                    if (part, key) not in own:
+                        own.append((part, key))
+                    if made not in following:
+                        following.append(made)
+        reached = following
+        keys = keys + [key for key in reached if key not in keys]
+    return keys, [[(part, keys.index(key)) for part, key in sources.get(made, ())] for made in keys]
+
+
+def _growth_along(xp, parts, places, n):
+    """Return by which power of e waves grow on a piece at most.
+
+    Of a matrix without negative entries the largest eigenvalue is the norm, if states are
+    scaled well: the growth of its powers, found by squaring.
+    """
+    sizes = [xp.sum(_size(xp, parts[k, ...]), axis=0) / parts.shape[1] for k in range(len(places))]
+    rows = [[0.0 * sizes[0] for _ in range(n)] for _ in range(n)]
+    for size, (row, column, *_) in zip(sizes, places):
+        rows[row][column] = rows[row][column] + size
+    matrix = xp.stack([xp.stack(row) for row in rows])
+    grown, turns = 0.0, 10
+    for _ in range(turns):
+        most = xp.sum(xp.sum(matrix, axis=0), axis=0) + 1e-300
+        grown = 2.0 * grown + xp.log(most)
+        matrix = _matrix_product(xp, matrix / most, matrix / most)
+    growth = xp.exp(grown / 2.0 ** (turns - 1))
+    return _largest(xp, [growth[k, ...] for k in range(growth.shape[0])])
+
+
+def _every_minor(z, order):
+    """Return all minors of one size, expanded along their first rows; None stands for zero."""
+    if order == 1:
+        return z
+    lines, inner = _choices(len(z), order), _choices(len(z), order - 1)
+    smaller = _every_minor(z, order - 1)
+    found = [[None] * len(lines) for _ in lines]
+    for i, rows in enumerate(lines):
+        for j, columns in enumerate(lines):
+            for k, column in enumerate(columns):
+                left = z[rows[0]][column]
+                right = smaller[inner.index(rows[1:])][inner.index(columns[:k] + columns[k + 1 :])]
+                if left is not None and right is not None:
+                    term = left * right if k % 2 == 0 else -left * right
+                    found[i][j] = term if found[i][j] is None else found[i][j] + term
+    return found
+
+
+def _choices(n, order):
+    """Return all choices of so many of n lines."""
+    found = [(i,) for i in range(n)]
+    for _ in range(order - 1):
+        found = [(*chosen, i) for chosen in found for i in range(chosen[-1] + 1, n)]
+    return found
+
+
+def _chebyshev():
+    """Return points from 0 to 1, what makes Chebyshev's terms of values there, and their integrals."""
+    order = 20
+    cosine = [cmath.cos(cmath.pi * m / order).real for m in range(2 * order)]
+    angles = [order - j for j in range(order + 1)]
+    points = [0.5 + 0.5 * cosine[a] for a in angles]
+    ends = [1.0 if 0 < j < order else 0.5 for j in range(order + 1)]
+    to_terms = [
+        [2.0 / order * ends[k] * e * cosine[k * a % (2 * order)] for e, a in zip(ends, angles)]
+        for k in range(order + 1)
+    ]
+
+    def grown(m, a):
+        above = cosine[(m + 1) * a % (2 * order)] / (2.0 * m + 2.0)
+        if m < 2:
+            return above * (1.0 + (m == 0))
+        return above - cosine[(m - 1) * a % (2 * order)] / (2.0 * m - 2.0)
+
+    primitives = [[grown(m, a) - grown(m, order) for m in range(order + 1)] for a in angles]
+    integral = [
+        [0.5 * sum(p * row[i] for p, row in zip(own, to_terms)) for i in range(order + 1)]
+        for own in primitives
+    ]
+    return points, to_terms, integral
+
+
+_STEPS = 42
+"""Of Picard's iteration: terms are below 1e-18 where waves grow by e^6."""
+
+
+#: _table
+def _table(xp, values, beside):
+    """Return lists of numbers as an array where others are."""
+    place = _place(xp, [value for value in beside if hasattr(value, "dtype")])
+    return xp.asarray(values, dtype=xp.float64, **place)
+
+
+#: _next_factor
+def _next_factor(xp, parts, sources, state, integral):
+    """Return the integral from the start of every piece of A times a matrix."""
+    nothing = 0.0 * state[0, ...]
+    slopes = xp.stack(
+        [sum((parts[p, ...] * state[k, ...] for p, k in own), start=nothing) for own in sources]
+    )
+    weights = xp.reshape(integral, (*integral.shape, *(1,) * (len(slopes.shape) - 2)))
+    return xp.stack([xp.sum(weights * slopes[k, None, ...], axis=1) for k in range(len(sources))])
+
+
+#: _iterated
+def _iterated(xp, parts, sources, first, integral):
+    """Return what entries of Z have of the powers of the bases, at the end of every piece."""
+    state, total = first, first[:, -1, ...]
+    for _ in range(_STEPS):
+        state = _next_factor(xp, parts, sources, state, integral)
+        total = total + state[:, -1, ...]
+    return total
+
+
+#: _through
+def _through(xp, minors, state, scale):
+    """Return minors of the product of all pieces over their scale, and its logarithm."""
+    for piece in range(minors.shape[0]):
+        state, scale = _next_piece(xp, minors[piece, ...], state, scale)
+    return state, scale
+
+
+#: _next_piece
+def _next_piece(xp, minors, state, scale):
+    """Return minors and the logarithm of their scale after one more piece."""
+    state = xp.sum(minors[:, :, None, ...] * state[None, ...], axis=1)
+    size = xp.sum(xp.sum(_size(xp, state), axis=0), axis=0)
+    return state / size, scale + xp.log(size)
+
+
 #: copies
 
 
@@ -389,9 +614,15 @@ def _settled(xp, scaled, x):
 def _modal_value(xp, modes, coefficients, frames):
     """Return a sum of exponentials over the largest one, and the logarithm of that."""
     found = _modal_amplitudes(modes, coefficients, frames)
-    growth = _largest(xp, [xp.real(exponent) for _, exponent in found])
+    return _scaled_sum(xp, [amplitude for amplitude, _ in found], [exponent for _, exponent in found])
+
+
+#: _scaled_sum
+def _scaled_sum(xp, amplitudes, exponents):
+    """Return a sum of amplitudes times exponentials over the largest one, and the logarithm of that."""
+    growth = _largest(xp, [xp.real(exponent) for exponent in exponents])
     total = 0.0
-    for amplitude, exponent in found:
+    for amplitude, exponent in zip(amplitudes, exponents):
         total = total + amplitude * xp.exp(exponent - growth)
     return [total, growth]
 

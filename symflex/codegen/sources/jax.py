@@ -146,3 +146,30 @@ def _settled(scaled, x):
         return count + 1, moves & is_far, x
 
     return jax.lax.while_loop(is_on, moved, (0, jnp.ones(x.shape[1:], dtype=bool), x))[2]
+
+
+#: _table
+def _table(values, beside):
+    """Return lists of numbers as an array."""
+    return jnp.asarray(values, dtype=jnp.float64)
+
+
+#: _iterated
+def _iterated(parts, sources, first, integral):
+    """Return what entries of Z have of the powers of the bases, at the end of every piece."""
+
+    def following(state, _):
+        state = _next_factor(parts, sources, state, integral)
+        return state, state[:, -1, ...]
+
+    return first[:, -1, ...] + jnp.sum(jax.lax.scan(following, first, length=_STEPS)[1], axis=0)
+
+
+#: _through
+def _through(minors, state, scale):
+    """Return minors of the product of all pieces over their scale, and its logarithm."""
+
+    def following(before, own):
+        return _next_piece(own, *before), None
+
+    return jax.lax.scan(following, (state, scale), minors)[0]
