@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 
 from symflex.drawing.abbreviation import abbreviated
 from symflex.drawing.cells import SPACINGS
-from symflex.drawing.diagram import diagrams
+from symflex.drawing.diagram import diagrams, statements
 from symflex.drawing.fields import FieldRow, field_rows
 from symflex.drawing.frames import frame_plan, is_planar, name_of
 from symflex.drawing.geometry import Drawing, Extent, Placed
@@ -20,7 +20,6 @@ from symflex.drawing.page import MARGIN, POINTS, figure_of, render_drawing, stac
 from symflex.drawing.rows import lay_out, order_of
 from symflex.drawing.scheme import DrawnNetwork, scheme_of, with_readings
 from symflex.drawing.signals import SignalGraph
-from symflex.drawing.statements import statements
 from symflex.errors import Diagnostic, UsageError
 from symflex.expressions import Name, names
 from symflex.figures.save import MM_PER_INCH

@@ -16,6 +16,7 @@ from symflex.drawing.symbols import HATCH, arrow, earth, half_depth, head, line,
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from symflex.drawing.geometry import Stroke
     from symflex.drawing.scheme import DrawnPart, End
 
 SPACE: Final = 3.0
@@ -99,14 +100,28 @@ def label_texts(latex: str, name: str, lines: Sequence[str] = ()) -> tuple[Lette
 
 
 def tags_of(part: DrawnPart) -> list[Built]:
-    """Return what shows or reads what a part carries: each a text at the origin, and an arrow to it."""
+    """Return what shows or reads what a part carries: each a text at the origin, and an arrow to it.
+
+    What a support is called, if it is called something, stands before them without an arrow.
+    """
     found = []
+    if part.symbol.role == "support" and len(part.ends) == 1 and (called := text(part.label, SMALL)):
+        own = Placed("label", part.name, (), (called,))
+        found.append(Built(called.width + 10, (own.moved(-5, 0),), -called.depth, called.height))
     for kind, name, label in part.tags:
         if shown := text(label, SMALL):
             pointer = Placed(kind, name, arrow((-10, shown.height / 2), (-2, shown.height / 2), THIN))
             placed = (pointer, Placed("label", name, (), (shown,)))
             found.append(Built(shown.width + 10, placed, -shown.depth, shown.height))
     return found
+
+
+def strokes_of(part: DrawnPart, length: float, *, is_reversed: bool) -> tuple[Stroke, ...]:
+    """Return the symbol of a part from its first end at the origin, or (reversed) from its second."""
+    strokes = part.symbol.draw(length)
+    if not is_reversed:
+        return strokes
+    return tuple(replace(s, points=tuple((length - x, y) for x, y in s.points)) for s in strokes)
 
 
 def build(cell: SymbolCell, spacing: Spacing, width: float = 0.0) -> Built:
@@ -123,10 +138,8 @@ def build(cell: SymbolCell, spacing: Spacing, width: float = 0.0) -> Built:
     if is_member:
         length = end - begin
     start = begin + (end - begin - length) / 2
-    strokes = part.symbol.draw(length)
-    if cell.is_reversed:
-        strokes = tuple(replace(s, points=tuple((length - x, y) for x, y in s.points)) for s in strokes)
-    symbol = Placed(part.kind, part.name, tuple(s.moved(start, 0) for s in strokes))
+    strokes = strokes_of(part, length, is_reversed=cell.is_reversed)
+    symbol = Placed(part.kind, part.name, strokes).moved(start, 0)
     items = [*_wires(cell, (0.0, begin, start), (width, end, start + length)), symbol]
     if part.type_name == "dc_motor" and (letter := text(r"\mathrm{M}")):
         half = (letter.width / 2, letter.height / 2)

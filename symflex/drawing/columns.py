@@ -40,9 +40,8 @@ class Column:
     kind: str  # domain of the node
     bodies: list[DrawnPart] = field(default_factory=list)
     supports: list[DrawnPart] = field(default_factory=list)  # below the node
-    faces: dict[int, DrawnPart] = field(
-        default_factory=dict
-    )  # supports beside it, -1 to the left and 1 to the right
+    # Supports beside it, -1 to the left and 1 to the right.
+    faces: dict[int, DrawnPart] = field(default_factory=dict)
     hanging: list[DrawnPart] = field(default_factory=list)
     stubs: list[DrawnPart] = field(default_factory=list)  # join it to the ground, and stand lower
     marks: list[Mark] = field(default_factory=list)

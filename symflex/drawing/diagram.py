@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Final
 
 from symflex.drawing.cells import Built
 from symflex.drawing.geometry import LINE, Extent, Lettering, Placed, free_level, union
-from symflex.drawing.lettering import SIZE, SMALL, column_of, text
+from symflex.drawing.lettering import SIZE, SMALL, column_of, filled, text
 from symflex.drawing.signals import formula
 from symflex.drawing.symbols import DOT, Strokes, arrow, circle, line, rectangle
 
@@ -39,6 +39,8 @@ APART: Final = 6.0
 """Between rows."""
 WIDEST: Final = 66.0
 """Of a formula in a box; a longer one is not printed."""
+WIDEST_FORMULA, BETWEEN_FORMULAS = 200.0, 4.0
+"""Of a formula that is written out below the diagrams, and the space after it [points]."""
 MOST_PATHS: Final = 2000
 """Paths that are tried for the longest one."""
 NAMED: Final = ("input", "reading", "signal")
@@ -435,3 +437,24 @@ def _boxed(one: SignalNode, shown: Lettering | None, name: Lettering | None) -> 
         )
         above += name.height + name.depth + 2
     return Built(wide, tuple(items), -tall, above)
+
+
+def statements(graph: SignalGraph) -> list[Placed]:
+    """Return the formulas of blocks that stand in no diagram, one below the other."""
+    shown = {n.name for n in graph.nodes if n.kind == "block"}
+    y, found = 0.0, []
+    for block in graph.blocks.values():
+        if block.name in shown:
+            continue
+        value = formula(block)
+        name = graph.labels.name(block.name)
+        written = text(f"{name} = {graph.labels.fraction(value)}", SMALL) if value is not None else None
+        written = written if written and written.width <= WIDEST_FORMULA else text(name, SMALL)
+        values = filled(graph.labels.values([e for _, e in block.values]), WIDEST_FORMULA)
+        lines = []
+        for one in (written, *values) if written else ():
+            y -= one.height
+            lines.append(one.moved(0.0, y))
+            y -= one.depth + BETWEEN_FORMULAS
+        found.append(Placed("block", block.name, (), tuple(lines)))
+    return found

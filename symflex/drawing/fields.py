@@ -61,6 +61,8 @@ APART: Final = 14.0
 """Least distance of two columns of conditions [points]."""
 PUSHING: Final = ("push", "torque", "raise", "twist")
 """Marks of inputs, which stand before those of outputs."""
+OF_BEAMS: Final[dict[int, Style]] = {1: "twist", 2: "torque"}
+"""What is driven at an end of a beam, by the order in x of what it rules there: a slope, a moment."""
 BENDING: Final = 4
 """Order in x of a beam's equation."""
 
@@ -192,10 +194,8 @@ class _Row:
                     if not calls:
                         continue
                     at = max(calls, key=lambda c: c.order)
-                    is_moment = is_beam and at.order == BENDING // 2
-                    style: Style = "torque" if is_moment else "push" if at.order else "raise"
-                    if at.order == 1 and is_beam:
-                        style = "twist"
+                    style: Style = "push" if at.order else "raise"
+                    style = OF_BEAMS.get(at.order, style) if is_beam else style
                     x = self._x(self.unknowns[at.name], at.argument)
                     self.marks.setdefault((style, x), []).append(("input", name, self._label(name)))
                     found.append(name)
@@ -241,11 +241,8 @@ class _Row:
         inside = {n for c in calls for n in names(c.argument)}
         others = [n for n in names(expression) if n not in calls and n not in inside]
         is_alone = all(isinstance(n, Name) and n.name in constants for n in others)
-        return (
-            calls[0]
-            if len(calls) == 1 and is_alone and not isinstance(without_s(expression), Attribute)
-            else None
-        )
+        is_one = len(calls) == 1 and is_alone and not isinstance(without_s(expression), Attribute)
+        return calls[0] if is_one else None
 
     # ------------------------------------------------------------------------------------------- drawing
 

@@ -62,9 +62,8 @@ class _Plan:
     items: list[Placed] = field(default_factory=list)
     others: list[DrawnPart] = field(default_factory=list)
     solid: list[Extent] = field(default_factory=list)
-    radius: dict[str, tuple[float, float]] = field(
-        default_factory=dict
-    )  # half the width and height of bodies
+    # Half the width and height of bodies.
+    radius: dict[str, tuple[float, float]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.members = [p for p in self.network.parts if p.type_name in MEMBERS]
@@ -111,13 +110,8 @@ class _Plan:
     def joint(self, node: str) -> str:
         """Return the node in whose place another is, which a joint holds there."""
         for part in self.network.parts:
-            if (
-                part.symbol.role == "support"
-                and len(part.nodes) > 1
-                and part.nodes[1] == node
-                and part.nodes[0] != node
-            ):
-                return self.joint(part.nodes[0]) if part.nodes[0] != node else node
+            if part.symbol.role == "support" and part.nodes[1:] == (node,):
+                return self.joint(part.nodes[0])
         return node
 
     def _belongs(self, part: DrawnPart) -> bool:
@@ -419,17 +413,11 @@ class _Plan:
             for distance in (9.0, 14.0, 20.0, 30.0):
                 for sign in (1.0, -1.0):
                     m = (sign * n[0], sign * n[1])
-                    far = (
-                        abs(m[0]) * shown.width / 2
-                        + abs(m[1]) * (shown.height + shown.depth) / 2
-                        + distance
-                        + 2
-                    )
+                    far = _reach(shown.box, m) + distance + 2
                     tip = (x + 3.0 * m[0], y + 3.0 * m[1])
                     stem = line((x + distance * m[0], y + distance * m[1]), tip, width=THIN)
-                    place = shown.moved(
-                        x + far * m[0] - shown.width / 2, y + far * m[1] - (shown.height - shown.depth) / 2
-                    )
+                    cx, cy = shown.box.centre
+                    place = shown.moved(x + far * m[0] - cx, y + far * m[1] - cy)
                     marker = Placed("output", name, (stem, head(tip, (-m[0], -m[1]), 3.0)))
                     options.append([marker, Placed("label", name, (), (place,))])
             self._add(*next(filter(self._is_free, options), options[-1]))
@@ -438,7 +426,7 @@ class _Plan:
         centre = block.centre
 
         def moves() -> Iterator[Point]:
-            far = abs(n[0]) * block.width / 2 + abs(n[1]) * block.height / 2 + HALF + 2.5
+            far = _reach(block, n) + HALF + 2.5
             for more in (0.0, 6.0, 14.0, 26.0, 40.0):
                 for share in (0.5, 0.38, 0.62, 0.25, 0.75):
                     for sign in (1.0, -1.0):
@@ -457,6 +445,11 @@ class _Plan:
 def name_of(node: str) -> Mark:
     """Return the name of a node that stands in a frame and in a row beside it."""
     return Mark("probe", node, (("tag", node, name_latex(node)),))
+
+
+def _reach(box: Extent, direction: Point) -> float:
+    """Return how far a rectangle reaches from its middle in a direction, corners cut."""
+    return (abs(direction[0]) * box.width + abs(direction[1]) * box.height) / 2
 
 
 def _about(centre: Point, wide: float, tall: float) -> Extent:

@@ -142,14 +142,8 @@ class Labels:
         plain = replace_values(expression, dict(zip(brackets, map(Name, stands_for), strict=True)))
         places = [n for n in parts_of(plain) if isinstance(n, Call) and "." in n.name]
         plain = replace_values(plain, {c: Name(c.name) for c in places})
-        plain = substitute(
-            plain,
-            {
-                f"{n.owner}.{n.name}": Name(f"{n.owner}.{n.name}")
-                for n in parts_of(plain)
-                if isinstance(n, Attribute)
-            },
-        )
+        offered = [f"{n.owner}.{n.name}" for n in parts_of(plain) if isinstance(n, Attribute)]
+        plain = substitute(plain, {n: Name(n) for n in offered})
         names = {n.name for n in parts_of(plain) if isinstance(n, Name)} - {"s", "pi"}
         fields = {n.name for n in parts_of(plain) if isinstance(n, Call)}
         labels = {n: self.name(n) for n in names | fields if n not in ("sqrt", "exp", *stands_for)}

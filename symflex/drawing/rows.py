@@ -27,6 +27,7 @@ from symflex.drawing.cells import (
     build,
     coordinate,
     label_texts,
+    strokes_of,
 )
 from symflex.drawing.columns import (
     LANE,
@@ -46,7 +47,7 @@ from symflex.drawing.columns import (
     upright_mark,
     upright_width,
 )
-from symflex.drawing.geometry import BOLD, LINE, THIN, Extent, Placed, around, free_level, union
+from symflex.drawing.geometry import BOLD, LINE, THIN, Extent, Placed, free_level, union
 from symflex.drawing.lettering import text
 from symflex.drawing.order import ordered
 from symflex.drawing.scheme import Distance, Mark
@@ -101,27 +102,18 @@ def order_of(network: DrawnNetwork, domains: Mapping[str, str]) -> tuple[str, ..
         if len(part.ends) > 1 and any(not e.node for e in part.ends):
             for node in part.nodes:
                 pull[node] -= 0.7
-        if part.symbol.role == "source":
-            for node in part.nodes[:1]:
-                pull[node] -= 0.6
-        if part.symbol.role == "support":
-            for node in part.nodes[:1]:
-                pull[node] -= 0.1
+        for node in part.nodes[:1]:
+            pull[node] -= {"source": 0.6, "support": 0.1}.get(part.symbol.role, 0.0)
     for mark in network.marks:
         kinds = {kind for kind, *_ in mark.labels}
         moved = mark.style in ("motion", "raise", "twist")
         pull[mark.node] += (-2.0 if moved else -0.4) if "input" in kinds else 0.15
-    joints = [pair for p in network.parts for pair in _pairs(p)]
-    directed = {pair for p in network.parts if p.symbol.role == "member" for pair in _pairs(p)}
+    joints = [pair for p in network.parts for pair in pairwise(p.nodes)]
+    directed = {pair for p in network.parts if p.symbol.role == "member" for pair in pairwise(p.nodes)}
     lanes = {n: domains[n] for n in network.nodes}
     found = ordered(network.nodes, joints, pull, lanes, directed)
     wanted = iter(network.order)
     return tuple(next(wanted) if n in network.order else n for n in found)
-
-
-def _pairs(part: DrawnPart) -> list[tuple[str, str]]:
-    nodes = part.nodes
-    return [(nodes[i], nodes[i + 1]) for i in range(len(nodes) - 1)]
 
 
 @dataclass
@@ -163,18 +155,17 @@ class _Layout:
         for part in self.network.parts:
             role, is_single = part.symbol.role, len(part.ends) == 1
             columns = sorted({self.at[n] for n in part.nodes})
-            if not columns:
+            first = self.columns[columns[0]] if columns else None
+            if first is None:
                 self.direct[0].append(SymbolCell(part, 0, [part.ends[0]], list(part.ends[1:])))
             elif role == "body":
-                self.columns[columns[0]].bodies.append(part)
+                first.bodies.append(part)
             elif is_single and role == "support":
-                self.columns[columns[0]].supports.append(part)
-            elif is_single and self.columns[columns[0]].is_electrical:
-                self.columns[columns[0]].hanging.append(part)
+                first.supports.append(part)
+            elif is_single and first.is_electrical:
+                first.hanging.append(part)
             elif is_single:
-                self.columns[columns[0]].marks.append(
-                    mark_of_source(part, is_flat=self.columns[columns[0]].is_flat)
-                )
+                first.marks.append(mark_of_source(part, is_flat=first.is_flat))
             elif len(columns) == 1 and len(part.ends) == 2 and role != "coupling":  # noqa: PLR2004
                 self._sort_grounded(part, columns[0])
             else:
@@ -429,22 +420,31 @@ class _Layout:
     # --------------------------------------------------------------------------------- below and above it
 
     def _draw_below(self) -> None:
+        hanging: list[tuple[DrawnPart, Column, float]] = []
         for column in reversed(self.columns):
             for side, part in column.faces.items():
                 self._draw_face(part, column, side)
-            self._draw_drops(column)
+            hanging += self._draw_supports(column)
+        # x stands below a member, and what hangs there below x, where x misses the leads of what hangs.
+        leads = [Extent(x - 1, c.bottom - hanging_length(p) - 8, x + 1, c.bottom) for p, c, x in hanging]
+        self._draw_coordinates(leads)
+        for part, column, x in hanging:
+            self._draw_hanging(part, column, x)
         for column in reversed(self.columns):
             for part in column.stubs:
                 self._draw_stub(part, column)
+
+    def _draw_coordinates(self, leads: Sequence[Extent]) -> None:
+        """Draw x below members, but for those along which x of the member before runs on."""
         along = [(c, box) for c, box in self.members.values() if c.part.type_name in COORDINATES]
         ends = {(c.part.ends[1].node, c.is_reversed) for c, _ in along} - {("", False), ("", True)}
         for cell, box in along:
-            if (cell.part.ends[0].node, cell.is_reversed) in ends:
-                continue  # x of the member before runs on
-            sign, start = (-1, box.x1) if cell.is_reversed else (1, box.x0)
-            items = [i.rotated(sign, 0).moved(start, 0) for i in coordinate()]
-            room = union(i.box for i in items).grown(2.0)
-            self._add(*(i.moved(0, self._free(room, box.y0 - 1.0, is_up=False)) for i in items))
+            if (cell.part.ends[0].node, cell.is_reversed) not in ends:
+                sign, start = (-1, box.x1) if cell.is_reversed else (1, box.x0)
+                items = [i.rotated(sign, 0).moved(start, 0) for i in coordinate()]
+                room = union(i.box for i in items).grown(2.0)
+                y = free_level(room, box.y0 - 1.0, [*self.occupied, *leads], is_up=False)
+                self._add(*(i.moved(0, y) for i in items))
 
     def _draw_face(self, part: DrawnPart, column: Column, side: int) -> None:
         x = column.x + side * column.half
@@ -460,42 +460,33 @@ class _Layout:
         self._add(Placed(part.kind, part.name, strokes))
         self._add(*tags_below(part, x + side * 5, low - 5))
 
-    def _draw_drops(self, column: Column) -> None:
-        """Draw supports and what hangs, side by side."""
+    def _draw_supports(self, column: Column) -> list[tuple[DrawnPart, Column, float]]:
+        """Draw supports side by side with the leads to what hangs, and return where these lead to."""
         widths = [*map(support_width, column.supports), *map(hanging_width, column.hanging)]
         x, bottom = column.x - sum(widths) / 2 - (LANE if column.stubs and widths else 0.0), column.bottom
         feet = [column.x]
+        found = []
         for part, width in zip((*column.supports, *column.hanging), widths, strict=True):
             if part in column.supports:
                 foot = x + width / 2
-                self._add(
-                    Placed(part.kind, part.name, tuple(s.moved(foot, bottom) for s in part.symbol.hold()))
-                )
-                self._add(
-                    *tags_below(
-                        part, foot, around(p for s in part.symbol.hold() for p in s.points).y0 + bottom
-                    )
-                )
+                support = Placed(part.kind, part.name, part.symbol.hold()).moved(foot, bottom)
+                self._add(support, *tags_below(part, foot, support.box.y0))
             else:
                 foot = x + 2 + hanging_reach(part)[0]
-                self._draw_hanging(part, column, foot)
+                found.append((part, column, foot))
             feet.append(foot)
             x += width
         if max(feet) - min(feet) > 2 * column.half:
             width = LINE if column.is_electrical else 1.4
             self._wire(column.name, (min(feet), bottom), (max(feet), bottom), width=width)
+        return found
 
     def _draw_hanging(self, part: DrawnPart, column: Column, x: float) -> None:
         """Draw a part from a node down to the ground, or to another component of the node."""
-        length, top = hanging_length(part), column.bottom - 3
-        symbol = Placed(part.kind, part.name, part.symbol.draw(length)).rotated(0, -1)
-        is_upside_down = not part.ends[0].node
-        if is_upside_down:
-            flipped = tuple(
-                replace(s, points=tuple((a, -length - b) for a, b in s.points)) for s in symbol.strokes
-            )
-            symbol = replace(symbol, strokes=flipped)
-        self._add(symbol.moved(x, top))
+        length, (left, right) = hanging_length(part), hanging_reach(part)
+        top = self._free(Extent(x - left, -length, x + right, 0.0), column.bottom - 3, is_up=False)
+        strokes = strokes_of(part, length, is_reversed=not part.ends[0].node)
+        self._add(Placed(part.kind, part.name, strokes).rotated(0, -1).moved(x, top))
         self._wire(part.name, (x, column.bottom), (x, top))
         end = top - length
         if len(part.ends) > 1 and all(e.node for e in part.ends):
@@ -503,7 +494,7 @@ class _Layout:
         else:
             base = earth(x, end) if column.is_electrical else floor(x - 6, x + 6, end)
             self._add(Placed("ground", "", base))
-        self._add(*hanging_texts(part, x + hanging_reach(part)[1] + SPACE, (top + end) / 2))
+        self._add(*hanging_texts(part, x + right + SPACE, (top + end) / 2))
 
     def _draw_stub(self, part: DrawnPart, column: Column) -> None:
         """Draw what joins a node in the middle to the ground: down, then to the right."""

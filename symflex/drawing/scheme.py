@@ -256,6 +256,8 @@ def _part(use: PlacedElement, labels: Labels, domains: Domains) -> DrawnPart:
     if wanted := dict(labels.model.drawing.symbols).get(use.name):
         symbol = replace(symbol, draw=TRANSFORMER_SYMBOLS[wanted])
     label, lines = _label(use, labels)
+    if symbol.role == "support" and len(ends) == 1 and not use.latex:
+        label = ""
     if use.latex and label != (called := labels.end(use.name, use.latex)):
         lines = (called, *lines)
     sections = _sections(use, labels.model) if kind in TAPERS else ()
@@ -414,9 +416,7 @@ def without_s(expression: Expression) -> Expression:
 
 def _is_power_of_s(factor: Expression) -> bool:
     match factor:
-        case Name(name="s"):
-            return True
-        case Power(base=Name(name="s"), exponent=Number()):
+        case Name(name="s") | Power(base=Name(name="s"), exponent=Number()):
             return True
         case _:
             return False
@@ -445,15 +445,7 @@ def _difference(expression: Expression, domains: Domains) -> tuple[str, str] | N
     match expression:
         case Sum(terms=(first, Negative(operand=second))):
             a, b = _node(first, domains), _node(second, domains)
-            is_plane = a is not None and domains[a.node] == "plane"
-            if (
-                a
-                and b
-                and not is_plane
-                and a.domain == b.domain
-                and a.node != b.node
-                and a.component == b.component
-            ):
+            if a and b and a.node != b.node and domains[a.node] != "plane" and replace(a, node=b.node) == b:
                 return a.node, b.node
     return None
 

@@ -66,9 +66,8 @@ class SignalNode:
     name: str
     label: str = ""  # mathematics
     lines: tuple[str, ...] = ()  # values, where they are asked for
-    before: list[tuple[int, bool]] = field(
-        default_factory=list
-    )  # what leads to it, and whether it is subtracted
+    # What leads to it, and whether it is subtracted.
+    before: list[tuple[int, bool]] = field(default_factory=list)
     after: list[int] = field(default_factory=list)
 
 
