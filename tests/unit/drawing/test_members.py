@@ -186,6 +186,26 @@ def test_beams_in_line_share_one_coordinate_where_x_runs_on(second, arrows):
     assert count(drawing, "axis", "x") == arrows
 
 
+def test_what_hangs_where_a_beam_begins_leaves_room_for_its_coordinate():
+    drawing = sound(
+        'symflex = 1\n[elements]\nk = { type = "spring", between = ["p", "ground"], k = 1 }\n'
+        'a = { type = "beam", between = ["p", "q"], E = 1, I = 1, rho = 1, A = 1, l = 1 }\n'
+        '[inputs]\nF = { force = "p" }\n[outputs]\nY = "q"\n'
+    )
+    beam, axis, spring = (item(drawing, *n).box for n in (("element", "a"), ("axis", "x"), ("element", "k")))
+    assert spring.y0 < axis.y0 < axis.y1 < beam.y0
+    assert beam.y0 - axis.y1 < axis.height + 2
+    assert axis.x0 == pytest.approx(beam.x0)
+
+
+@pytest.mark.parametrize("kind", ["pin", "slider", "fixed"])
+def test_a_support_is_called_what_its_latex_says(kind):
+    text = TAPERED + 'I = "I_0"\nA = "A_0"\n[elements.held]\ntype = "' + kind + '"\nat = "end"\n'
+    text = text.replace('"ground", "tip"', '"end", "tip"')
+    assert r"${\text{bearing}}$" in markups(sound(text + "latex = '\\text{bearing}'\n"))
+    assert not [t for i in sound(text).of_kind("label") if i.name == "held" for t in i.texts]
+
+
 def test_an_element_is_called_what_its_latex_says_besides_its_parameters():
     text = FREE.replace('m = "1 kg" }\nb', "m = \"1 kg\", latex = '\\text{motor}' }\nb")
     box = item(sound(text), "label", "a")
