@@ -23,6 +23,7 @@ from benchmarks import (
     roots,
     startup,
     sweep,
+    tapers,
 )
 from benchmarks.measure import Claim, Measurement
 from symflex import __version__
@@ -48,6 +49,7 @@ def main(arguments: list[str] | None = None) -> int:
         in_time,
         lumped,
         roots,
+        tapers,
         sweep,
     ):
         measured, bounds = benchmark.measure(asked.limit)
