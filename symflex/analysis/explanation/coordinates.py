@@ -30,7 +30,7 @@ from symflex.expressions import (
 )
 from symflex.library.elements import COMPONENTS, Domain, LinearForm, LineElement, Variable
 from symflex.library.elements.lumped import CurrentSource, ForceSource, TorqueSource, VoltageSource
-from symflex.model.model import INPUT_KINDS
+from symflex.model.model import INPUT_KINDS, NetworkNode, NodeReference
 from symflex.model.network import variable_of
 from symflex.model.signs import Line
 
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from collections.abc import Hashable, Iterator, Mapping
 
     from symflex.equations import Equations
-    from symflex.model import Input, Model, NodeReference, PlacedElement
+    from symflex.model import Input, Model, PlacedElement
 
 
 Coordinates = tuple[tuple[Variable, int], ...]
@@ -242,6 +242,65 @@ def _ends(
             shown = Attribute(moved.owner, moved.component) if moved.component else Name(moved.owner)
             for name in called:
                 yield name, place, shown
+
+
+def parted_at(model: Model, output: str) -> Model:
+    """Return a model whose element is two where an output shows its motion, which is that of a node then.
+
+    Nothing is changed where the output shows no point, or more than one, or elements lie in the plane.
+
+    Examples
+    --------
+    >>> from symflex import pipeline
+    >>> model = pipeline.loads('''
+    ... symflex = 1
+    ... elements.bar = { type = "rod", between = ["ground", "x"], E = 1, A = 1, rho = 1, l = 2 }
+    ... inputs.F = { force = "x" }
+    ... outputs.V = "s*bar.u(0.5 m)"
+    ... ''')
+    >>> from symflex.expressions import format_expression
+    >>> parted = parted_at(model, "V")
+    >>> format_expression(parted.outputs[0].expression)
+    's*point of bar'
+    >>> [[reference.node for reference in dict(use.nodes)["between"]] for use in parted.elements]
+    [['ground', 'point of bar'], ['point of bar', 'x']]
+    """
+    (wanted,) = (o for o in model.outputs if o.name == output)
+    calls = {n for n in names(wanted.expression) if isinstance(n, Call)}
+    if len(calls) != 1:
+        return model
+    (call,) = calls
+    owner, _, quantity = call.name.partition(".")
+    use = next((u for u in model.elements if u.name == owner), None)
+    if use is None or not isinstance(use.element, LineElement) or call.order:
+        return model
+    element = use.element
+    ((port, (first, second)),) = use.nodes
+    domain = dict(use.domains)[port]
+    components = zip(element.ends, element.along, strict=False)
+    component = next((c for c, called in components if quantity in called), None)
+    if component is None or domain == "plane":
+        return model
+    point = f"point of {owner}"  # no name holds blanks
+    node = NetworkNode(point, domain)
+    length = dict(use.values)[element.length]
+    left = Sum((length, Negative(call.argument)))
+
+    def piece(name: str, ends: tuple[NodeReference, ...], long: Expression) -> PlacedElement:
+        values = tuple((n, long if n == element.length else v) for n, v in use.values)
+        return replace(use, name=name, nodes=((port, ends),), values=values)
+
+    between = NodeReference(point)
+    pieces = (
+        piece(owner, (first, between), call.argument),
+        piece(f"{owner} beyond", (between, second), left),
+    )
+    elements = tuple(p for u in model.elements for p in (pieces if u is use else (u,)))
+    shown: Expression = Attribute(point, component) if domain in COMPONENTS else Name(point)
+    changed = replace(wanted, expression=replace_values(wanted.expression, {call: shown}))
+    return replace(
+        model, nodes=(*model.nodes, node), elements=elements, outputs=(changed,), figures=(), published=()
+    )
 
 
 def joined_values(model: Model) -> list[list[Expression]]:

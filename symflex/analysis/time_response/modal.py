@@ -163,7 +163,8 @@ def _of_bounded(
     for _ in range(ROUNDS):
         wanted = _needed((counts[0], float(first.rest)), (counts[1], float(found.rest)), goal, most)
         wanted = min(SLOW_MODES, most) if wanted == most else wanted
-        more = modes.summed(wanted) if wanted > counts[1] else None
+        falls = bool(found.rest < first.rest)
+        more = modes.summed(wanted) if falls and wanted > counts[1] else None
         if more is None:
             break
         counts, first, found = (counts[1], wanted), found, more

@@ -35,7 +35,7 @@ from flint import acb, arb
 
 from symflex.algebra import Factored
 from symflex.algebra.exponential_sum import REAL, arguments_of, exponential_sum
-from symflex.analysis.explanation.coordinates import PAIR, acting, in_one_way, measured
+from symflex.analysis.explanation.coordinates import PAIR, acting, in_one_way, measured, parted_at
 from symflex.analysis.time_response.exponentials import ExponentialTerm
 from symflex.budget import spend
 from symflex.expressions import Attribute, Expression, Name, Negative, Sum
@@ -281,8 +281,14 @@ def passive_bound(bound: BoundTransferFunction) -> PassiveBound | None:
         return None
     model = in_one_way(model)
     here = acting(model, bound.source.input)
+    function = SizeOfFunction.of(bound)
+    if not here or function is None:
+        return None
     there = measured(assemble(model), bound.source.output.name)
-    if not here or there is None:
+    if there is None:
+        model = parted_at(model, bound.source.output.name)
+        there = measured(assemble(model), bound.source.output.name)
+    if there is None:
         return None
     order = there.factor.exponent_of(there.factor.ring.context.gen(0))
     s = Factored.generator(there.factor.ring, "s")

@@ -262,9 +262,9 @@ ESTIMATED = {
         'elements.k = { type = "spring", between = ["ground", "x"], k = "-1 N/m" }',
         "x",
     ),
-    "seen between its ends": (
+    "seen at two points": (
         'elements.d = { type = "damper", between = ["ground", "x"], b = 1 }',
-        "arm.y(l/2)",
+        "arm.y(0.5 m) - arm.y(0.3 m)",
     ),
 }
 
