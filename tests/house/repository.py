@@ -44,7 +44,7 @@ def specifications(folder: Path, pattern: str) -> list[Path]:
 def uniform(paths: Iterable[Path]) -> list[Path]:
     """Return the specifications without those of members that taper.
 
-    These have no JSON of kernels yet, not code in every language (SF910), and their sensitivities take long.
+    These have not code in every language (SF910), and their sensitivities take long.
     """
     return [path for path in paths if path.parent.name != "tapers"]
 

@@ -7,7 +7,7 @@ import pytest
 from symflex import pipeline
 from symflex.print.forms.printed import RATIONAL, forms_of
 from tests.contract.exact import read
-from tests.house.repository import in_turns, uniform
+from tests.house.repository import in_turns
 from tests.unit.cli.commands import DERIVATIONS, TWO_MASS
 from tests.unit.print.residues import point_for
 
@@ -88,7 +88,7 @@ def test_what_cancelled_is_named(shell):
 
 @pytest.mark.parametrize(
     "path",
-    in_turns([path for path in uniform(DERIVATIONS) if path.stem not in LONG])
+    in_turns([path for path in DERIVATIONS if path.stem not in LONG])
     + [pytest.param(path, marks=pytest.mark.slow, id=path.stem) for path in DERIVATIONS if path.stem in LONG],
 )
 def test_json_reads_back_to_the_same_function_exactly(shell, path):

@@ -3,7 +3,7 @@
 Parameters, s and the exponentials of the arguments are random residues; square roots are roots in the field,
 and of parameters, which are of odd order, ``sqrt(x*y) = sqrt(x)*sqrt(y)`` as of positive numbers; ``exp(a*q +
 b*j*q)`` is ``E^a*z^b``. Two rational functions of these that differ agree at a random point with odds of
-about their degree over the prime, 1e-16.
+about their degree over the prime, 1e-16. Entries of a fundamental matrix are random residues of their own.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from random import Random
 from sympy.ntheory import sqrt_mod
 
 from symflex.expressions import Call, Name, Negative, Number, Power, Product, Quotient, Sum
+from symflex.model.along import varies_along_x
 
 PRIME = 2**61 + 294569
 """One more than eight times an odd number; 2, 3, 5 and 7 are of odd order."""
@@ -63,7 +64,8 @@ class Point:
     def _of_kernels(self, tf):
         """Return the transfer function's value by the definitions of its kernels."""
         values = dict(self.values)
-        values |= {c.generator: self.read(c.expression, {}) for c in tf.constants}
+        constants = (c for c in tf.constants if not varies_along_x(c.expression))
+        values |= {c.generator: self.read(c.expression, {}) for c in constants}
         for d in tf.kernels.dispersions:
             c = [self._product(x, values) for x in d.characteristic]
             if d.kind == "bending":
@@ -82,6 +84,12 @@ class Point:
             length = self._product(kernel.length, values)
             if kernel.function == "fundamental":
                 values[kernel.generator] = self._solution(kernel.order, length)
+                continue
+            if kernel.function == "entry":
+                law = kernel.dispersion
+                row, column = divmod(kernel.order, law.order)
+                (start,) = (self._product(x, values) for x in law.start)
+                values[kernel.generator] = self._solution(f"Z_{row + 1}{column + 1}", start + length)
                 continue
             if kernel.function == "exp":
                 argument = -self._product(kernel.dispersion.shift, values) * length
@@ -103,6 +111,8 @@ class Point:
                 self._exponentials[key] = pow(e, a, PRIME) * pow(z, b, PRIME) % PRIME
 
     def _exp(self, argument):
+        if argument % PRIME not in self._exponentials:  # of a parameter
+            self._learn(argument, circular=False)
         return self._exponentials[argument % PRIME]
 
     def _function(self, name, argument):
@@ -164,6 +174,8 @@ class Point:
                 return pow(self.read(base, lines), value.numerator, PRIME)
             case Call(name, argument, order) if order or name.startswith("h"):
                 return self._solution(order, self.read(argument, lines))
+            case Call(name, argument) if name.startswith("Z_"):
+                return self._solution(name, self.read(argument, lines))
             case Call(name, argument):
                 return self._function(name, self.read(argument, lines))
         raise TypeError(type(expression).__name__)
