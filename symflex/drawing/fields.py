@@ -159,7 +159,8 @@ class _Row:
         ends = [evaluate(e, self.known) for e in (one.start, one.end)]
         a, b = (0.0 if ends[0] is None else ends[0]), (UNKNOWN if ends[1] is None else ends[1])
         for equation in one.equations:
-            found = [n for n in names(equation) if isinstance(n, Derivative)]
+            if not (found := [n for n in names(equation) if isinstance(n, Derivative)]):
+                continue  # an unknown that follows another
             highest = max(found, key=lambda d: d.order)
             others = {n: number(0) for n in (*found, *map(Name, one.unknowns))}
             stiff = _coefficient(equation, {**others, highest: number(1)})
@@ -230,7 +231,7 @@ class _Row:
     @staticmethod
     def _is_beam(one: FieldProblem) -> bool:
         orders = [n.order for e in one.equations for n in names(e) if isinstance(n, Derivative)]
-        return len(one.unknowns) == 1 and max(orders) >= BENDING
+        return max(orders, default=0) >= BENDING
 
     def _single(self, expression: Expression) -> Call | None:
         """Return the one value of a field that an expression is, but for constants."""
@@ -262,9 +263,8 @@ class _Row:
             is_zero = isinstance(right, Number) and right.value == 0 and isinstance(left, Call)
             if is_zero and len(calls) == 1 and calls[0].argument == point and calls[0].name in one.unknowns:
                 zero.add((one.unknowns.index(calls[0].name), calls[0].order))
-        if len(one.unknowns) > 1:
-            return (0, 0) in zero, (1, 0) in zero
-        return (0, 0) in zero, (0, 1 if self._is_beam(one) else 0) in zero
+        slope = (0, 1) if self._is_beam(one) else (len(one.unknowns) > 1, 0)
+        return (0, 0) in zero, slope in zero
 
     def _draw_marks(self) -> float:
         """Draw arrows above the member, side by side or above each other; return how high they reach."""

@@ -143,6 +143,14 @@ def test_a_field_is_drawn_by_its_radius_of_gyration():
     assert any("''" in t and "[1 - x/(2 l)]^{4}" in t for t in markups(drawing))  # as it is written
 
 
+def test_a_field_with_an_equation_without_derivatives_is_drawn():
+    follows = 'unknowns = ["w", "q"]\nequations = ["q = rhoA*(1 - x/l)*s^2*w", "EI*w\'\'\'\' + q = 0"]\n'
+    text = FIELD.replace("(EI*(1 - x/(2*l))^4*w'')'(l) = -F", "EI*w'''(l) = -F")
+    lines = [follows if line.startswith("equation") else f"{line}\n" for line in text.splitlines()]
+    thick, thin = depths(sound("".join(lines)), "field", "w")
+    assert thick == thin
+
+
 def test_the_length_of_a_link_runs_from_node_to_node():
     drawing = sound(LINKED)
     length, left, right = (

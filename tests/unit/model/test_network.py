@@ -28,6 +28,14 @@ def test_a_node_of_a_mass_translates():
     assert domains('M = { type = "mass", at = "x", m = "p" }') == {"x": "translation"}
 
 
+def test_the_label_of_an_element_is_kept_and_refused_where_it_is_no_mathematics():
+    mass = '[elements]\nM = {{ type = "mass", at = "x", m = 1, latex = \'{}\' }}\n'
+    (kept,) = pipeline.loads(HEADER + mass.format(r"\text{motor}") + MOVING).elements
+    assert kept.latex == r"\text{motor}"
+    with pytest.raises(SpecError, match="input"):
+        pipeline.loads(HEADER + mass.format(r"\input{x}") + MOVING)
+
+
 def test_a_node_a_planar_element_touches_is_planar():
     elements = 'M = { type = "mass", at = "x", m = "p" }\nB = { type = "rigid_body", at = "x", m = "p" }'
     assert domains(elements) == {"x": "planar"}
