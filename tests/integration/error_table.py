@@ -21,7 +21,7 @@ from symflex.errors import ModelError
 from symflex.transfer import bind
 from tests.integration.julia_in_python import functions_of
 from tests.integration.octave import Octave
-from tests.unit.codegen.against_balls import BITS, axis_points, worst_errors
+from tests.unit.codegen.against_balls import BITS, axis_points, balls_at, worst_beside
 from tests.unit.codegen.exportable import DERIVATIONS, derived, public_name
 from tests.unit.codegen.test_c_files import compiled, response, value_at
 
@@ -31,6 +31,12 @@ def model_of(name):
     """Return a model, its transfer functions, and points on the axis for each [rad/s]."""
     model, tfs = derived(name)
     return model, tfs, {tf.name: axis_points(tf) for tf in tfs}
+
+
+@cache
+def balls_of(name):
+    """Return what all targets are compared with, by the names of transfer functions."""
+    return {tf.name: balls_at(tf, 1j * w) for tf, w in _points(name)}
 
 
 def exported(name, target):
@@ -149,7 +155,8 @@ def worst(name, target):
             found = list(WAYS[target](name, Path(folder)))
         except ModelError:
             return None
-    return max(worst_errors(tf, 1j * w, values)[0] for tf, w, values in found), len(found)
+    balls = balls_of(name)
+    return max(worst_beside(balls[tf.name], values)[0] for tf, _, values in found), len(found)
 
 
 def printed(error):
