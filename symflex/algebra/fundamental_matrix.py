@@ -158,16 +158,19 @@ class PowerExpansion:
     # of the states, at the start and at the end
     weights: tuple[Weights, Weights]
     _minors: dict[tuple[Lines, Lines], Polynomial] = field(default_factory=dict, repr=False)
+    # The same with the sizes of coefficients.
+    _sizes: dict[tuple[Lines, Lines], arb_poly] = field(default_factory=dict, repr=False)
 
     def series(self, rows: Lines, columns: Lines, u: acb, terms: int = 1) -> list[acb]:
         """Return Taylor coefficients about ``u`` of a minor; of an entry, where there is one row."""
         middle, size = u.mid(), abs(u).upper()
         off = u - middle
         found = []
+        is_wide = bool(u.rad() > abs(middle) * WIDE)
         # Terms of an alternating series are larger than their sum: more bits, and the middle of the ball.
-        with ctx.workprec(self.bits):
+        with ctx.workprec(self._bits_about(rows, columns, middle) if is_wide else self.bits):
             polynomial = self._polynomial(rows, columns)
-            if u.rad() > abs(middle) * WIDE:
+            if is_wide:
                 polynomial, middle, off = acb_poly(polynomial)(acb_poly([middle, 1])), acb(0), acb(0)
                 at = u - u.mid()
             else:
@@ -180,6 +183,20 @@ class PowerExpansion:
                 rest = self._rest(rows, columns, size, k)
                 found.append(value + acb(arb(0, rest), arb(0, rest)))
         return [+x for x in found]
+
+    def _bits_about(self, rows: Lines, columns: Lines, middle: acb) -> int:
+        """Return the bits with which a minor keeps those of the current precision about a point."""
+        with ctx.workprec(self.bits):
+            own = self._polynomial(rows, columns)
+            value = abs(own(middle))
+        with ctx.workprec(FEWEST_BITS):
+            if (rows, columns) not in self._sizes:
+                self._sizes[rows, columns] = arb_poly([abs(c).upper() for c in own.coeffs()])
+            lost = self._sizes[rows, columns](abs(middle)) / value
+        if not 1 <= lost < arb(2) ** self.bits:
+            return self.bits
+        mantissa, exponent = lost.upper().man_exp()
+        return min(self.bits, ctx.prec + GUARD + int(mantissa).bit_length() + int(exponent))
 
     def _rest(self, rows: Lines, columns: Lines, size: arb, k: int) -> arb:
         """Return a bound on what a polynomial leaves out of the k-th Taylor coefficient, by Cauchy."""
