@@ -119,9 +119,9 @@ class Fit:
         return fit_text(self.found)
 
     def _repr_html_(self) -> str:
-        from symflex.print.html import text_html  # only notebooks ask
+        from symflex.data.fitting.text import fit_html
 
-        return text_html(str(self))
+        return fit_html(self.found)
 
     def __repr__(self) -> str:
         modes = ", ".join(f"{f:.3g}" for f in self.frequencies_hz)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from flint import arb
 
-from symflex.print.text import INDENT, aligned
+from symflex.print.text import INDENT, Block, blocks_text
 from symflex.roots import decimals, precision
 from symflex.transfer.balls import ball
 
@@ -299,29 +299,16 @@ class PoleCount:
 SHORT_DIGITS = 6
 
 
-Block = tuple[list[str], list[tuple[str, ...]]]
-"""Lines, and the rows of a table below them; the first one is its head, except of margins."""
-
-
 def stability_text(found: StabilityMap) -> str:
     """Return stable ranges, boundaries, counts and margins, in 80 columns for up to 20 digits."""
-    return "\n\n".join(
-        "\n".join([*lines, *(aligned(rows) if rows else ())]) for lines, rows in _blocks(found)
-    )
+    return blocks_text(_blocks(found))
 
 
 def stability_html(found: StabilityMap) -> str:
     """Return the same for a notebook: paragraphs and tables."""
-    from symflex.print.html import TEXT, escape_html, html_table  # only notebooks ask
+    from symflex.print.html import blocks_html  # only notebooks ask
 
-    parts = []
-    for lines, rows in _blocks(found):
-        said = "<br>".join(map(escape_html, lines))
-        head, *body = [[escape_html(cell).replace("-", "\u2212") for cell in row] for row in rows] or [[]]
-        if lines[0].startswith(f"{INDENT}margins"):
-            head, body = [""] * len(head), [head, *body]
-        parts.append(html_table(head, [TEXT] * len(head), body, said) if rows else f"<p>{said}</p>")
-    return "\n".join(parts)
+    return blocks_html(_blocks(found))
 
 
 def _blocks(found: StabilityMap) -> Iterator[Block]:
@@ -330,26 +317,26 @@ def _blocks(found: StabilityMap) -> Iterator[Block]:
     lines += [f"{INDENT}not proved: {reason}" for reason in found.reasons]
     if found.nominal is not None:
         lines.append(f"{INDENT}{found.gain} = {_number(found.nominal)}: {nominal_text(found)}")
-    yield lines, []
+    yield Block(lines)
     scope = "" if found.is_complete else ", as far as poles were counted"
     stable = [2 * INDENT + _between(interval, found) for interval in found.stable]
-    yield [f"{INDENT}stable for{scope}" + (":" if stable else ": no gain"), *stable], []
+    yield Block([f"{INDENT}stable for{scope}" + (":" if stable else ": no gain"), *stable])
     head = (found.gain, "radius", "omega [rad/s]", "f [Hz]", "unstable poles")
     rows = [head, *(_boundary_row(found, i) for i in range(len(found.boundaries)))]
-    yield [f"{INDENT}boundaries: {len(found.boundaries) or 'none'}"], rows if found.boundaries else []
+    yield Block([f"{INDENT}boundaries: {len(found.boundaries) or 'none'}"], rows if found.boundaries else ())
     counted = [
         (_end(i.low, "-inf"), _end(i.high, "inf"), str(i.poles.right), str(i.poles.axis))
         for i in found.intervals
     ]
     title = f"{INDENT}poles that are not in the left half plane"
-    yield [title], [("from", "to", "right of the axis", "on the axis"), *counted]
+    yield Block([title], [("from", "to", "right of the axis", "on the axis"), *counted])
     if found.gain_margins or found.phase_margins:
         yield _margins(found)
     if found.bandwidth is not None:
         said = 2 * INDENT + bandwidth_text(found.gain, found.bandwidth)
-        yield [f"{INDENT}bandwidth, where the gain may still double (6 dB)", said], []
+        yield Block([f"{INDENT}bandwidth, where the gain may still double (6 dB)", said])
     if found.boundaries:
-        yield [f"{INDENT}radius bounds the distance from the printed gain to the boundary"], []
+        yield Block([f"{INDENT}radius bounds the distance from the printed gain to the boundary"])
 
 
 def _status(found: StabilityMap) -> str:
@@ -437,7 +424,7 @@ def _margins(found: StabilityMap) -> Block:
         flag = ", the smallest" if each is worst and len(found.phase_margins) > 1 else ""
         shown = decimals(abs(angle), arb(0), SHORT_DIGITS).re
         rows.append(("phase", f"{shown} deg", direction, place + flag))
-    return lines, rows
+    return Block(lines, rows, has_head=False)
 
 
 def bandwidth_text(gain: str, found: AllowedBandwidth) -> str:

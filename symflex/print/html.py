@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import re
 from typing import TYPE_CHECKING, Final
 
 from symflex.print.forms import print_form
@@ -11,10 +12,11 @@ from symflex.print.latex.table import decimal_text
 from symflex.print.roots import PAGE_COLUMNS, one_of_each_pair, region_text, roots_of
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from symflex.model import Model, ModelParameter
     from symflex.print.roots import PrintedRoot
+    from symflex.print.text import Block
     from symflex.roots import PoleZeroMap
     from symflex.transfer import BoundTransferFunction
 
@@ -72,15 +74,43 @@ def _html_row(tag: str, cells: Sequence[str], columns: Sequence[str]) -> str:
     return f"<tr>{''.join(written)}</tr>"
 
 
-def text_html(text: str) -> str:
-    """Return lines made for a terminal as HTML that keeps them.
+NUMERIC: Final = re.compile(r"[-+]?[-+0-9.]|[-+]?inf|$")
+"""How a cell of numbers begins; an empty one is among them."""
+MINUS: Final = re.compile(r"(?<![\w.])-(?=[\d.i])|(?<=\de)-(?=\d)")
+
+
+def blocks_html(blocks: Iterable[Block]) -> str:
+    """Return what a command says as paragraphs and tables.
 
     Examples
     --------
-    >>> text_html("a < b")
-    '<pre>a &lt; b</pre>'
+    >>> from symflex.print.text import Block
+    >>> print(blocks_html([Block(["a <b>", "  of it"])]))
+    <p>a &lt;b&gt;<br>&emsp;of it</p>
     """
-    return f"<pre>{_alone(''.join(c for c in text if c.isprintable() or c == chr(10)))}</pre>"
+    parts = []
+    for block in blocks:
+        outer = min((_indent(line) for line in block.lines), default=0)
+        said = "<br>".join(
+            ("&emsp;" if _indent(line) > outer else "") + escape_html(line) for line in block.lines
+        )
+        if not block.rows:
+            parts.append(f"<p>{said}</p>")
+            continue
+        head, *body = block.rows if block.has_head else [("",) * len(block.rows[0]), *block.rows]
+        sides = [NUMBER if all(map(NUMERIC.match, cells)) else TEXT for cells in zip(*body, strict=True)]
+        cells = [[_typeset(cell) for cell in row] for row in (head, *body)]
+        parts.append(html_table(cells[0], sides or [TEXT] * len(head), cells[1:], said))
+    return "\n".join(parts)
+
+
+def _indent(line: str) -> int:
+    return len(line) - len(line.lstrip())
+
+
+def _typeset(cell: str) -> str:
+    signs = cell.replace("+-", "\u00b1").replace("-+", "\u2213")
+    return escape_html(MINUS.sub("\u2212", signs))
 
 
 def _alone(plain: str) -> str:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from itertools import chain, repeat
 from re import compile as compile_pattern
-from typing import TYPE_CHECKING
+from textwrap import wrap
+from typing import TYPE_CHECKING, NamedTuple
 
 from symflex.expressions import (
     Call,
@@ -20,7 +21,7 @@ from symflex.print.forms import PrintedForm, with_hidden
 from symflex.transfer import NestedTransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from symflex.transfer import AnyTransferFunction
 
@@ -196,6 +197,51 @@ def _split(text: str, breaks: Callable[[int], bool]) -> list[str]:
 
 _STOPS = compile_pattern(r"[()+\-/]|(?<=\*).")
 """Where a text may break, and what opens and closes a group."""
+
+
+class Block(NamedTuple):
+    """Lines, and a table below them: a paragraph of what a command says, in a terminal and on a page.
+
+    Lines that are indented further than the first belong to it. Minus signs and ``+-`` of cells are typeset
+    on a page.
+    """
+
+    lines: Sequence[str]
+    rows: Sequence[tuple[str, ...]] = ()
+    has_head: bool = True  # the first row names the columns
+
+
+def blocks_text(blocks: Iterable[Block], width: int | None = None) -> str:
+    r"""Return blocks for a terminal, an empty line between two; their lines broken at ``width`` if given.
+
+    Examples
+    --------
+    >>> print(blocks_text([Block(["two poles"], [("f [Hz]", "zeta"), ("9.5", "0.01")]), Block(["no zeros"])]))
+    two poles
+        f [Hz]  zeta
+           9.5  0.01
+    <BLANKLINE>
+    no zeros
+    """
+    return "\n\n".join("\n".join(_block_lines(block, width)) for block in blocks)
+
+
+def _block_lines(block: Block, width: int | None) -> Iterator[str]:
+    for line in block.lines:
+        yield from (_broken(line, width) if width else [line])
+    if block.rows:
+        yield from aligned(block.rows)
+
+
+def _broken(line: str, width: int) -> list[str]:
+    indent = line[: len(line) - len(line.lstrip())]
+    return wrap(
+        line.lstrip(),
+        width,
+        initial_indent=indent,
+        subsequent_indent=indent + INDENT,
+        break_on_hyphens=False,
+    )
 
 
 def aligned(rows: Sequence[tuple[str, ...]], indent: str = 2 * INDENT) -> list[str]:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from textwrap import wrap
 
 import numpy as np
 
 from symflex.errors.optional import installed
-from symflex.print.text import aligned
+from symflex.print.text import Block, blocks_text
 from symflex.sweep.design import Array, Design, Rows, Task, number
 from symflex.sweep.follow import Between, NameOrigin, follow, predecessors
 from symflex.sweep.points import MARGINS, PointStatus, RootStatus
@@ -252,27 +251,17 @@ STATES = {
 
 def sweep_text(sweep: Sweep, width: int = 80) -> str:
     """Return what was swept, how much of it is proved, and between which values each mode moves."""
-    lines = _said(sweep)
-    if sweep.of in ("poles", "zeros"):
-        lines += _root_table(sweep)
-    elif sweep.of == "margins":
-        lines += _margins(sweep)
-    return "\n".join(piece for line in lines for piece in _fitted(line, width))
+    return blocks_text(_blocks(sweep), width)
 
 
 def sweep_html(sweep: Sweep) -> str:
-    """Return the same for a notebook: modes as a table."""
-    from symflex.print.html import NUMBER, escape_html, html_table, text_html  # only notebooks ask
+    """Return the same for a notebook: paragraphs and tables."""
+    from symflex.print.html import blocks_html  # only notebooks ask
 
-    if sweep.of not in ("poles", "zeros"):
-        return text_html(sweep_text(sweep))
-    head, *rows = _mode_rows(sweep)
-    said = [line for line in (*_said(sweep), *_doubts(sweep), *_left_out(sweep)) if line]
-    return html_table(head, [NUMBER] * len(head), rows, "<br>".join(map(escape_html, said)))
+    return blocks_html(_blocks(sweep))
 
 
-def _said(sweep: Sweep) -> list[str]:
-    """Return what was swept, and how much of it is proved."""
+def _blocks(sweep: Sweep) -> Iterator[Block]:
     status = sweep["point_status"]
     shape = " x ".join(map(str, status.shape))
     points = counted(status.size, "point") + (f" ({shape})" if status.ndim > 1 else "")
@@ -282,18 +271,27 @@ def _said(sweep: Sweep) -> list[str]:
         drawn = each.dims == ("draw",)
         how = ", drawn" if drawn else f", {counted(each.values.size, 'value')}"
         lines.append(f"{INDENT}{each.name} = {_span(each.values)}{unit}{how}")
-    lines += ["", *(f"{INDENT}{count} {STATES[name]}" for name, count in sweep.counts.items() if count)]
+    yield Block(lines)
+    proved = [f"{INDENT}{count} {STATES[name]}" for name, count in sweep.counts.items() if count]
     codes = sorted({code for code in sweep["code"].reshape(-1).tolist() if code})
     if codes:
-        lines.append(f"{INDENT}codes: {', '.join(codes)}")
+        proved.append(f"{INDENT}codes: {', '.join(codes)}")
     if sweep.of == "poles":
         unstable = _unstable_points(sweep)
-        lines.append(
+        proved.append(
             f"{INDENT}unstable at {unstable} of {points}"
             if unstable
             else f"{INDENT}stability not known: no pole shown grows; others and hidden modes are not examined"
         )
-    return lines
+    if sweep.of in ("poles", "zeros"):
+        yield Block([*proved, *_doubts(sweep)])
+        more = sweep["status"].shape[-1] - MODES_SHOWN
+        shown = f"the lowest {MODES_SHOWN} modes, and {more} more" if more > 0 else "modes"
+        yield Block([INDENT + shown], _mode_rows(sweep))
+    else:
+        yield Block(proved)
+        if sweep.of == "margins":
+            yield Block(_margins(sweep))
 
 
 def _unstable_points(sweep: Sweep) -> int:
@@ -312,28 +310,12 @@ def counted(count: int, what: str) -> str:
     return f"{count} {what}" if count == 1 else f"{count} {what}s"
 
 
-def _fitted(line: str, width: int) -> list[str]:
-    if len(line) <= width:
-        return [line]
-    return wrap(line, width, subsequent_indent=2 * INDENT, drop_whitespace=True, replace_whitespace=False)
-
-
 def _doubts(sweep: Sweep) -> list[str]:
     """Return where roots, or the names of modes, are not told apart."""
     together = int(np.sum(sweep["status"] == RootStatus.TOGETHER))
     holding = f"{counted(together, 'enclosure')} {'holds' if together == 1 else 'hold'}"
     lines = [f"{INDENT}{holding} roots that cannot be told apart"] if together else []
     return lines + [f"{INDENT}{text}" for text in _links(sweep)]
-
-
-def _root_table(sweep: Sweep) -> list[str]:
-    return [*_doubts(sweep), "", *aligned(_mode_rows(sweep), INDENT), *_left_out(sweep)]
-
-
-def _left_out(sweep: Sweep) -> list[str]:
-    """Say how many modes are in no table."""
-    more = sweep["status"].shape[-1] - MODES_SHOWN
-    return [f"{INDENT}and {more} more"] if more > 0 else []
 
 
 def _mode_rows(sweep: Sweep) -> list[tuple[str, ...]]:
@@ -377,7 +359,7 @@ def _link_counts(sweep: Sweep) -> dict[str, int]:
 
 def _margins(sweep: Sweep) -> list[str]:
     stable = sweep["stable"]
-    lines = ["", f"{INDENT}stable at {int(np.sum(stable == 1))} of {counted(stable.size, 'point')}"]
+    lines = [f"{INDENT}stable at {int(np.sum(stable == 1))} of {counted(stable.size, 'point')}"]
     for name, unit in (
         ("gain_margin_up", ""),
         ("gain_margin_down", ""),

@@ -5,6 +5,8 @@ from __future__ import annotations
 import textwrap
 from typing import TYPE_CHECKING
 
+from symflex.print.text import Block
+
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
@@ -30,7 +32,7 @@ CONTEXT = {
 
 def explanation_text(explained: ZeroExplanation, width: int = WIDTH) -> str:
     """Return an explanation as lines of at most ``width`` columns; longer names stand over."""
-    lines = [f"zeros of {explained.tf} explained   {CONTEXT[explained.kind]}"]
+    lines = [_title(explained)]
     for paragraph in explanation_paragraphs(explained):
         lines.append("")
         for i, line in enumerate(paragraph):
@@ -45,6 +47,18 @@ def explanation_text(explained: ZeroExplanation, width: int = WIDTH) -> str:
                 break_on_hyphens=False,
             )
     return "\n".join(lines)
+
+
+def explanation_html(explained: ZeroExplanation) -> str:
+    """Return the same for a notebook: a paragraph for each."""
+    from symflex.print.html import blocks_html  # only notebooks ask
+
+    paragraphs = explanation_paragraphs(explained)
+    return blocks_html(Block(lines) for lines in ([_title(explained)], *paragraphs))
+
+
+def _title(explained: ZeroExplanation) -> str:
+    return f"zeros of {explained.tf} explained   {CONTEXT[explained.kind]}"
 
 
 def explanation_json(explained: ZeroExplanation) -> dict[str, object]:

@@ -40,7 +40,7 @@ from symflex.analysis.explanation.parts import (
     separate,
     varying,
 )
-from symflex.analysis.explanation.text import explanation_json, explanation_text
+from symflex.analysis.explanation.text import explanation_html, explanation_json, explanation_text
 from symflex.equations import Equations, assemble
 from symflex.equations.elimination import Determinants
 from symflex.errors import ModelError
@@ -161,9 +161,7 @@ class ZeroExplanation:
         return f"<ZeroExplanation {self.tf}: {self.kind}, {self.status}>"
 
     def _repr_html_(self) -> str:
-        from symflex.print.html import text_html  # only notebooks ask
-
-        return text_html(str(self))
+        return explanation_html(self)
 
     def __str__(self) -> str:
         return explanation_text(self)

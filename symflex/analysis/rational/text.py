@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 import mpmath
 
 from symflex.analysis.rational.toolboxes import PERCENTS
-from symflex.print.text import aligned
+from symflex.print.text import Block, blocks_text
 from symflex.roots.precision import to_complex_mpmath
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from symflex.analysis.rational import RationalApproximation
     from symflex.roots import Root
@@ -47,32 +47,27 @@ def rational_text(found: RationalApproximation) -> str:
     <BLANKLINE>
       zeros: none
     """
-    head, *said = _said(found)
-    lines = [head, "", *(INDENT + line for line in said)]
-    if found.residues:
-        lines += ["", _counted("poles and residues", found.poles), *_residue_table(found)]
-    else:
-        lines += ["", _counted("poles", found.poles), *_root_table(found.poles)]
-    lines += ["", _counted("zeros", found.zeros), *_root_table(found.zeros)]
-    if found.is_estimate:
-        lines += ["", f"{INDENT}{ESTIMATE}"]
-    return "\n".join(lines)
+    return blocks_text(_blocks(found))
 
 
 def rational_html(found: RationalApproximation) -> str:
-    """Return the same for a notebook: a table of poles and zeros, or what a terminal shows of residues."""
-    from symflex.print.html import NUMBER, TEXT, escape_html, html_table, text_html  # only notebooks ask
+    """Return the same for a notebook: paragraphs and tables."""
+    from symflex.print.html import blocks_html  # only notebooks ask
 
+    return blocks_html(_blocks(found))
+
+
+def _blocks(found: RationalApproximation) -> Iterator[Block]:
+    head, *said = _said(found)
+    yield Block([head])
+    yield Block([INDENT + line for line in said])
     if found.residues:
-        return text_html(rational_text(found))
-    rows = [
-        (kind, *(cell.replace("+-", "&pm;").replace("-", "\u2212") for cell in _root_cells(*root)))
-        for kind, roots in (("pole", found.poles), ("zero", found.zeros))
-        for root in _unique(roots)
-    ]
-    head = ("", "times", "Re [rad/s]", "Im [rad/s]", "f [Hz]", "&zeta;")
-    said = [*_said(found), *([ESTIMATE] if found.is_estimate else [])]
-    return html_table(head, (TEXT, *[NUMBER] * 5), rows, "<br>".join(map(escape_html, said)))
+        yield Block([_counted("poles and residues", found.poles)], _residue_rows(found))
+    else:
+        yield Block([_counted("poles", found.poles)], _root_rows(found.poles))
+    yield Block([_counted("zeros", found.zeros)], _root_rows(found.zeros))
+    if found.is_estimate:
+        yield Block([f"{INDENT}{ESTIMATE}"])
 
 
 def _said(found: RationalApproximation) -> list[str]:
@@ -131,12 +126,11 @@ def _unique(roots: Sequence[mpmath.mpc]) -> list[tuple[mpmath.mpc, int, bool]]:
     return [(root, n, root.imag != 0) for root, n in counts.items() if root.imag >= 0]
 
 
-def _root_table(roots: Sequence[mpmath.mpc]) -> list[str]:
+def _root_rows(roots: Sequence[mpmath.mpc]) -> list[Row]:
     if not roots:
         return []
-    rows = [("", "Re [rad/s]", "Im [rad/s]", "f [Hz]", "zeta")]
-    rows += [_root_cells(*root) for root in _unique(roots)]
-    return aligned(rows)
+    head = ("", "Re [rad/s]", "Im [rad/s]", "f [Hz]", "zeta")
+    return [head, *(_root_cells(*root) for root in _unique(roots))]
 
 
 def _root_cells(root: mpmath.mpc, count: int, paired: bool) -> tuple[str, str, str, str, str]:
@@ -147,7 +141,7 @@ def _root_cells(root: mpmath.mpc, count: int, paired: bool) -> tuple[str, str, s
     return times, _decimal(root.real), im, f"{size / (2 * pi):.6g}", zeta
 
 
-def _residue_table(found: RationalApproximation) -> list[str]:
+def _residue_rows(found: RationalApproximation) -> list[Row]:
     highest = max(len(residue.coefficients) for residue in found.residues)
     rows: list[Row] = [
         ("Re [rad/s]", "Im [rad/s]", "power" if highest > 1 else "", "Re residue", "Im residue")
@@ -164,7 +158,7 @@ def _residue_table(found: RationalApproximation) -> list[str]:
             imaginary = im if im == "0" else pair[1] + im.removeprefix("-") if pair[1] else im
             place = (_decimal(pole.real), pair[0] + _decimal(pole.imag)) if power == 1 else ("", "")
             rows.append((*place, f"{-power}" if highest > 1 else "", re, imaginary))
-    return aligned(rows)
+    return rows
 
 
 def _middle(root: Root) -> mpmath.mpc:

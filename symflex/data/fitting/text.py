@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-import textwrap
 from dataclasses import asdict
 from math import floor, isfinite, log10, pi, sqrt
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from symflex.print.text import INDENT, Block, blocks_text
+
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from symflex.data.fitting import FittedModeShapes, PhaseTest, ResonanceFit
 
 SCHEMA: Final = "symflex.fit/1"
@@ -23,75 +26,90 @@ STARTS: Final = {
 
 def fit_text(fit: ResonanceFit, width: int = 80, shapes: FittedModeShapes | None = None) -> str:
     """Return the report of a fit, and of mode shapes, for a terminal of so many columns."""
-    found = fit.resonances
-    lines = [line for reason in fit.poor for line in _wrapped(f"POOR FIT: {reason}", width, "")]
+    return blocks_text(_blocks(fit, shapes), width)
+
+
+def fit_html(fit: ResonanceFit) -> str:
+    """Return the report of a fit for a notebook: paragraphs and tables."""
+    from symflex.print.html import blocks_html  # only notebooks ask
+
+    return blocks_html(_blocks(fit, None))
+
+
+def _blocks(fit: ResonanceFit, shapes: FittedModeShapes | None) -> Iterator[Block]:
+    found, errors = fit.resonances, fit.standard_errors()
+    lines = [f"POOR FIT: {reason}" for reason in fit.poor]
     for r, measured in enumerate(fit.measured):
-        lines += _wrapped(f"{measured.name}   {_what(fit, r)}", width, "")
+        lines.append(f"{measured.name}   {_what(fit, r)}")
         if measured.is_synthetic:
-            lines += _wrapped("the data are SYNTHETIC: computed from a model, not measured", width)
-        lines += _wrapped(_data_line(fit, r), width)
-    lines += _wrapped(f"start: {STARTS[fit.candidate.start_kind]}", width)
-    errors = fit.standard_errors()
-    lines += ["", "  poles" + _heads()]
-    for i in range(found.count):
-        lines.append(_row(i, found.omega_p[i], errors.omega_p[i], found.zeta_p[i], errors.zeta_p[i]))
-    for r, measured in enumerate(fit.measured):
-        name = f" of {measured.name}" if found.responses > 1 else ""
-        lines += ["", *([f"  zeros{name}"] if name else []), ("       " if name else "  zeros") + _heads()]
-        for i in np.flatnonzero(found.has_zeros[r]).tolist():
-            z, e = found, errors
-            lines.append(_row(i, z.omega_z[r, i], e.omega_z[r, i], z.zeta_z[r, i], e.zeta_z[r, i]))
-        if not found.has_zeros[r].any():
-            lines.append("   none")
-        if fit.problem.free.gain:
-            lines.append(f"  gain {found.gain[r]:.6g}, standard error {errors.gain[r]:.2g}")
-        if fit.problem.free.lag:
-            lines.append(f"  lag of the sensor {found.lag[r]:.4g} s, standard error {errors.lag[r]:.2g} s")
-        if fit.problem.free.delay:
-            lines.append(f"  dead time {found.delay[r]:.4g} s, standard error {errors.delay[r]:.2g} s")
+            lines.append(f"{INDENT}the data are SYNTHETIC: computed from a model, not measured")
+        lines.append(INDENT + _data_line(fit, r))
+    yield Block([*lines, f"{INDENT}start: {STARTS[fit.candidate.start_kind]}"])
+    rows = [
+        _row(i, found.omega_p[i], errors.omega_p[i], found.zeta_p[i], errors.zeta_p[i])
+        for i in range(found.count)
+    ]
+    yield Block([f"{INDENT}poles"], [HEAD, *rows])
+    for r in range(found.responses):
+        yield _zeros(fit, r)
     if shapes is not None:
-        lines += ["", *_shape_lines(shapes, width)]
-    lines.append("")
-    for r, measured in enumerate(fit.measured):
-        name = f" of {measured.name}" if found.responses > 1 else ""
-        text = f"residual{name}: {fit.misfit_db(r):.2g} dB and {fit.misfit_degrees(r):.2g} degrees rms"
-        lines += _wrapped(text, width)
-    lines += _wrapped(_accuracy(fit), width)
+        yield _shapes(shapes)
+    named = [f" of {measured.name}" if found.responses > 1 else "" for measured in fit.measured]
+    residuals = [
+        f"{INDENT}residual{name}: {fit.misfit_db(r):.2g} dB and {fit.misfit_degrees(r):.2g} degrees rms"
+        for r, name in enumerate(named)
+    ]
+    yield Block([*residuals, INDENT + _accuracy(fit)])
     if fit.scores:
-        lines += ["", "  resonances   parameters          BIC         AICc   residual"]
-        for s in fit.scores:
-            mark = " <" if s.count == found.count else "" if s.is_usable else f" {s.status}"
-            numbers = f"{s.bic:10.1f}   {s.aicc:10.1f}   {sqrt(s.reduced):8.4g}"
-            lines.append(f"  {s.count:10d}   {s.parameters:10d}   {numbers}{mark}")
-        told = ["did not fail"] + ["are not weak (a resonance lost in noise)"] * any(
-            s.status == "weak" for s in fit.scores
-        )
-        words = f"chosen by {fit.criterion.upper()}, the lowest of those that {' and '.join(told)}"
-        lines += _wrapped(words, width)
-    lines.append("")
-    for r, test in enumerate(fit.phase_tests):
-        name = f" of {fit.measured[r].name}" if found.responses > 1 else ""
-        lines += _wrapped(f"phase test{name}: {_phase_words(test, fit, r)}", width)
-    for warning in fit.warnings:
-        lines += _wrapped(f"warning: {warning}", width)
-    return "\n".join(lines)
+        yield _orders(fit)
+    tests = [
+        f"{INDENT}phase test{named[r]}: {_phase_words(test, fit, r)}"
+        for r, test in enumerate(fit.phase_tests)
+    ]
+    yield Block([*tests, *(f"{INDENT}warning: {warning}" for warning in fit.warnings)])
 
 
-def _shape_lines(shapes: FittedModeShapes, width: int) -> list[str]:
-    """Return mode shapes, a block for each mode."""
+def _zeros(fit: ResonanceFit, r: int) -> Block:
+    """Return the zeros of a response, and what else of it is fitted."""
+    found, errors, free = fit.resonances, fit.standard_errors(), fit.problem.free
+    lines = [f"{INDENT}zeros" + (f" of {fit.measured[r].name}" if found.responses > 1 else "")]
+    if free.gain:
+        lines.append(f"{INDENT}gain {found.gain[r]:.6g}, standard error {errors.gain[r]:.2g}")
+    if free.lag:
+        lines.append(f"{INDENT}lag of the sensor {found.lag[r]:.4g} s, standard error {errors.lag[r]:.2g} s")
+    if free.delay:
+        lines.append(f"{INDENT}dead time {found.delay[r]:.4g} s, standard error {errors.delay[r]:.2g} s")
+    rows = [
+        _row(i, found.omega_z[r, i], errors.omega_z[r, i], found.zeta_z[r, i], errors.zeta_z[r, i])
+        for i in np.flatnonzero(found.has_zeros[r]).tolist()
+    ]
+    if not rows:
+        lines[0] += ": none"
+    return Block([*lines[1:], lines[0]], [HEAD, *rows] if rows else ())
+
+
+def _orders(fit: ResonanceFit) -> Block:
+    """Return the numbers of resonances that were tried."""
+    rows = [("resonances", "parameters", "BIC", "AICc", "residual", "")]
+    for s in fit.scores:
+        mark = "<" if s.count == fit.resonances.count else "" if s.is_usable else s.status
+        numbers = (f"{s.bic:.1f}", f"{s.aicc:.1f}", f"{sqrt(s.reduced):.4g}")
+        rows.append((str(s.count), str(s.parameters), *numbers, mark))
+    told = "did not fail"
+    if any(s.status == "weak" for s in fit.scores):
+        told += " and are not weak (a resonance lost in noise)"
+    return Block([f"{INDENT}chosen by {fit.criterion.upper()}, the lowest of those that {told}"], rows)
+
+
+def _shapes(shapes: FittedModeShapes) -> Block:
+    """Return mode shapes, some rows for each mode."""
     head = f"mass-normalised mode shapes [{shapes.unit}], driven at {shapes.names[shapes.driving]}"
-    lines = _wrapped(head, width)
-    wide = max(len(name) for name in shapes.names)
-    lines += _wrapped("from poles that suit all responses best", width)
-    lines.append(f"  mode  {'response':{wide}}        value   std. error   off real [deg]")
+    rows = [("mode", "response", "value", "std. error", "off real [deg]")]
     for i in range(shapes.shapes.shape[1]):
         for r, name in enumerate(shapes.names):
-            mode = str(i + 1) if r == 0 else ""
-            value, error = shapes.shapes[r, i], shapes.errors[r, i]
-            lines.append(
-                f"  {mode:>4}  {name:{wide}}   {value:10.5g}   {error:10.2g}   {shapes.turned[r, i]:14.1f}"
-            )
-    return lines
+            value, error, turned = shapes.shapes[r, i], shapes.errors[r, i], shapes.turned[r, i]
+            rows.append(("" if r else str(i + 1), name, f"{value:.5g}", f"{error:.2g}", f"{turned:.1f}"))
+    return Block([INDENT + head, f"{INDENT}from poles that suit all responses best"], rows)
 
 
 def _shapes_json(shapes: FittedModeShapes) -> dict[str, object]:
@@ -214,12 +232,6 @@ def _is_scaled(fit: ResonanceFit) -> bool:
     return fit.problem.has_deviations and all(bool(m.averages) for m in fit.measured)
 
 
-def _wrapped(text: str, width: int, indent: str = "  ") -> list[str]:
-    return textwrap.wrap(
-        text, width, initial_indent=indent, subsequent_indent=indent + "  ", break_on_hyphens=False
-    )
-
-
 def _what(fit: ResonanceFit, r: int) -> str:
     count, base = fit.resonances.count, fit.bases[r]
     word = "resonance" if count == 1 else "resonances"
@@ -245,15 +257,13 @@ def _data_line(fit: ResonanceFit, r: int) -> str:
     return ", ".join(parts)
 
 
-def _heads() -> str:
-    return f"{'frequency [Hz]':>18}{'std. error':>13}{'damping ratio':>17}{'std. error':>13}"
+HEAD: Final = ("", "frequency [Hz]", "std. error", "damping ratio", "std. error", "")
 
 
-def _row(i: int, omega: float, omega_error: float, zeta: float, zeta_error: float) -> str:
+def _row(i: int, omega: float, omega_error: float, zeta: float, zeta_error: float) -> tuple[str, ...]:
     hertz, hertz_error = abs(omega) / (2 * pi), omega_error / (2 * pi)
-    left = f"{_shown(hertz, hertz_error):>18}{_error(hertz_error):>13}"
-    mark = "" if omega > 0 else "  real, of opposite sign"
-    return f"  {i + 1:5d}{left}{_shown(zeta, zeta_error):>17}{_error(zeta_error):>13}{mark}"
+    numbers = (_shown(hertz, hertz_error), _error(hertz_error), _shown(zeta, zeta_error), _error(zeta_error))
+    return (str(i + 1), *numbers, "" if omega > 0 else "real, of opposite sign")
 
 
 def _places(error: float) -> int:
