@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from flint import arb
 
-from symflex.print.text import INDENT, Block, blocks_text
+from symflex.print.text import INDENT, Passage, passages_text
 from symflex.roots import decimals, precision
 from symflex.transfer.balls import ball
 
@@ -301,42 +301,44 @@ SHORT_DIGITS = 6
 
 def stability_text(found: StabilityMap) -> str:
     """Return stable ranges, boundaries, counts and margins, in 80 columns for up to 20 digits."""
-    return blocks_text(_blocks(found))
+    return passages_text(_passages(found))
 
 
 def stability_html(found: StabilityMap) -> str:
     """Return the same for a notebook: paragraphs and tables."""
-    from symflex.print.html import blocks_html  # only notebooks ask
+    from symflex.print.html import passages_html  # only notebooks ask
 
-    return blocks_html(_blocks(found))
+    return passages_html(_passages(found))
 
 
-def _blocks(found: StabilityMap) -> Iterator[Block]:
+def _passages(found: StabilityMap) -> Iterator[Passage]:
     unit = f" [{found.unit}]" if found.unit else ""
     lines = [f"{found.gain}{unit}   {_status(found)}", f"{INDENT}examined: {_examined(found)}"]
     lines += [f"{INDENT}not proved: {reason}" for reason in found.reasons]
     if found.nominal is not None:
         lines.append(f"{INDENT}{found.gain} = {_number(found.nominal)}: {nominal_text(found)}")
-    yield Block(lines)
+    yield Passage(lines)
     scope = "" if found.is_complete else ", as far as poles were counted"
     stable = [2 * INDENT + _between(interval, found) for interval in found.stable]
-    yield Block([f"{INDENT}stable for{scope}" + (":" if stable else ": no gain"), *stable])
+    yield Passage([f"{INDENT}stable for{scope}" + (":" if stable else ": no gain"), *stable])
     head = (found.gain, "radius", "omega [rad/s]", "f [Hz]", "unstable poles")
     rows = [head, *(_boundary_row(found, i) for i in range(len(found.boundaries)))]
-    yield Block([f"{INDENT}boundaries: {len(found.boundaries) or 'none'}"], rows if found.boundaries else ())
+    yield Passage(
+        [f"{INDENT}boundaries: {len(found.boundaries) or 'none'}"], rows if found.boundaries else ()
+    )
     counted = [
         (_end(i.low, "-inf"), _end(i.high, "inf"), str(i.poles.right), str(i.poles.axis))
         for i in found.intervals
     ]
     title = f"{INDENT}poles that are not in the left half plane"
-    yield Block([title], [("from", "to", "right of the axis", "on the axis"), *counted])
+    yield Passage([title], [("from", "to", "right of the axis", "on the axis"), *counted])
     if found.gain_margins or found.phase_margins:
         yield _margins(found)
     if found.bandwidth is not None:
         said = 2 * INDENT + bandwidth_text(found.gain, found.bandwidth)
-        yield Block([f"{INDENT}bandwidth, where the gain may still double (6 dB)", said])
+        yield Passage([f"{INDENT}bandwidth, where the gain may still double (6 dB)", said])
     if found.boundaries:
-        yield Block([f"{INDENT}radius bounds the distance from the printed gain to the boundary"])
+        yield Passage([f"{INDENT}radius bounds the distance from the printed gain to the boundary"])
 
 
 def _status(found: StabilityMap) -> str:
@@ -406,7 +408,7 @@ def _places(boundary: Boundary, digits: int) -> tuple[str, str]:
     return ", ".join(omegas), ", ".join(cycles)
 
 
-def _margins(found: StabilityMap) -> Block:
+def _margins(found: StabilityMap) -> Passage:
     lines = [f"{INDENT}margins of {found.gain} = {_number(found.nominal)}"]
     rows: list[tuple[str, ...]] = []
     for margin in found.gain_margins:
@@ -424,7 +426,7 @@ def _margins(found: StabilityMap) -> Block:
         flag = ", the smallest" if each is worst and len(found.phase_margins) > 1 else ""
         shown = decimals(abs(angle), arb(0), SHORT_DIGITS).re
         rows.append(("phase", f"{shown} deg", direction, place + flag))
-    return Block(lines, rows, has_head=False)
+    return Passage(lines, rows, has_head=False)
 
 
 def bandwidth_text(gain: str, found: AllowedBandwidth) -> str:

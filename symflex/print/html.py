@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from symflex.model import Model, ModelParameter
     from symflex.print.roots import PrintedRoot
-    from symflex.print.text import Block
+    from symflex.print.text import Passage
     from symflex.roots import PoleZeroMap
     from symflex.transfer import BoundTransferFunction
 
@@ -79,25 +79,25 @@ NUMERIC: Final = re.compile(r"[-+]?[-+0-9.]|[-+]?inf|$")
 MINUS: Final = re.compile(r"(?<![\w.])-(?=[\d.i])|(?<=\de)-(?=\d)")
 
 
-def blocks_html(blocks: Iterable[Block]) -> str:
+def passages_html(passages: Iterable[Passage]) -> str:
     """Return what a command says as paragraphs and tables.
 
     Examples
     --------
-    >>> from symflex.print.text import Block
-    >>> print(blocks_html([Block(["a <b>", "  of it"])]))
+    >>> from symflex.print.text import Passage
+    >>> print(passages_html([Passage(["a <b>", "  of it"])]))
     <p>a &lt;b&gt;<br>&emsp;of it</p>
     """
     parts = []
-    for block in blocks:
-        outer = min((_indent(line) for line in block.lines), default=0)
+    for passage in passages:
+        outer = min((_indent(line) for line in passage.lines), default=0)
         said = "<br>".join(
-            ("&emsp;" if _indent(line) > outer else "") + escape_html(line) for line in block.lines
+            ("&emsp;" if _indent(line) > outer else "") + escape_html(line) for line in passage.lines
         )
-        if not block.rows:
+        if not passage.rows:
             parts.append(f"<p>{said}</p>")
             continue
-        head, *body = block.rows if block.has_head else [("",) * len(block.rows[0]), *block.rows]
+        head, *body = passage.rows if passage.has_head else [("",) * len(passage.rows[0]), *passage.rows]
         sides = [NUMBER if all(map(NUMERIC.match, cells)) else TEXT for cells in zip(*body, strict=True)]
         cells = [[_typeset(cell) for cell in row] for row in (head, *body)]
         parts.append(html_table(cells[0], sides or [TEXT] * len(head), cells[1:], said))

@@ -199,7 +199,7 @@ _STOPS = compile_pattern(r"[()+\-/]|(?<=\*).")
 """Where a text may break, and what opens and closes a group."""
 
 
-class Block(NamedTuple):
+class Passage(NamedTuple):
     """Lines, and a table below them: a paragraph of what a command says, in a terminal and on a page.
 
     Lines that are indented further than the first belong to it. Minus signs and ``+-`` of cells are typeset
@@ -211,26 +211,27 @@ class Block(NamedTuple):
     has_head: bool = True  # the first row names the columns
 
 
-def blocks_text(blocks: Iterable[Block], width: int | None = None) -> str:
-    r"""Return blocks for a terminal, an empty line between two; their lines broken at ``width`` if given.
+def passages_text(passages: Iterable[Passage], width: int | None = None) -> str:
+    r"""Return passages for a terminal, an empty line between two; their lines broken at ``width`` if given.
 
     Examples
     --------
-    >>> print(blocks_text([Block(["two poles"], [("f [Hz]", "zeta"), ("9.5", "0.01")]), Block(["no zeros"])]))
+    >>> table = [("f [Hz]", "zeta"), ("9.5", "0.01")]
+    >>> print(passages_text([Passage(["two poles"], table), Passage(["no zeros"])]))
     two poles
         f [Hz]  zeta
            9.5  0.01
     <BLANKLINE>
     no zeros
     """
-    return "\n\n".join("\n".join(_block_lines(block, width)) for block in blocks)
+    return "\n\n".join("\n".join(_passage_lines(passage, width)) for passage in passages)
 
 
-def _block_lines(block: Block, width: int | None) -> Iterator[str]:
-    for line in block.lines:
+def _passage_lines(passage: Passage, width: int | None) -> Iterator[str]:
+    for line in passage.lines:
         yield from (_broken(line, width) if width else [line])
-    if block.rows:
-        yield from aligned(block.rows)
+    if passage.rows:
+        yield from aligned(passage.rows)
 
 
 def _broken(line: str, width: int) -> list[str]:

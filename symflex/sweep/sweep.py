@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from symflex.errors.optional import installed
-from symflex.print.text import Block, blocks_text
+from symflex.print.text import Passage, passages_text
 from symflex.sweep.design import Array, Design, Rows, Task, number
 from symflex.sweep.follow import Between, NameOrigin, follow, predecessors
 from symflex.sweep.points import MARGINS, PointStatus, RootStatus
@@ -251,17 +251,17 @@ STATES = {
 
 def sweep_text(sweep: Sweep, width: int = 80) -> str:
     """Return what was swept, how much of it is proved, and between which values each mode moves."""
-    return blocks_text(_blocks(sweep), width)
+    return passages_text(_passages(sweep), width)
 
 
 def sweep_html(sweep: Sweep) -> str:
     """Return the same for a notebook: paragraphs and tables."""
-    from symflex.print.html import blocks_html  # only notebooks ask
+    from symflex.print.html import passages_html  # only notebooks ask
 
-    return blocks_html(_blocks(sweep))
+    return passages_html(_passages(sweep))
 
 
-def _blocks(sweep: Sweep) -> Iterator[Block]:
+def _passages(sweep: Sweep) -> Iterator[Passage]:
     status = sweep["point_status"]
     shape = " x ".join(map(str, status.shape))
     points = counted(status.size, "point") + (f" ({shape})" if status.ndim > 1 else "")
@@ -271,7 +271,7 @@ def _blocks(sweep: Sweep) -> Iterator[Block]:
         drawn = each.dims == ("draw",)
         how = ", drawn" if drawn else f", {counted(each.values.size, 'value')}"
         lines.append(f"{INDENT}{each.name} = {_span(each.values)}{unit}{how}")
-    yield Block(lines)
+    yield Passage(lines)
     proved = [f"{INDENT}{count} {STATES[name]}" for name, count in sweep.counts.items() if count]
     codes = sorted({code for code in sweep["code"].reshape(-1).tolist() if code})
     if codes:
@@ -284,14 +284,14 @@ def _blocks(sweep: Sweep) -> Iterator[Block]:
             else f"{INDENT}stability not known: no pole shown grows; others and hidden modes are not examined"
         )
     if sweep.of in ("poles", "zeros"):
-        yield Block([*proved, *_doubts(sweep)])
+        yield Passage([*proved, *_doubts(sweep)])
         more = sweep["status"].shape[-1] - MODES_SHOWN
         shown = f"the lowest {MODES_SHOWN} modes, and {more} more" if more > 0 else "modes"
-        yield Block([INDENT + shown], _mode_rows(sweep))
+        yield Passage([INDENT + shown], _mode_rows(sweep))
     else:
-        yield Block(proved)
+        yield Passage(proved)
         if sweep.of == "margins":
-            yield Block(_margins(sweep))
+            yield Passage(_margins(sweep))
 
 
 def _unstable_points(sweep: Sweep) -> int:

@@ -234,6 +234,7 @@ def test_html_of_a_notebook_is_closed(everything):
         tags = re.findall(r"<(/?)(\w[\w:]*)[^>]*?(/?)>", page)
         assert sum(-1 if end else 1 for end, tag, alone in tags if not alone and tag != "br") == 0
         assert len(page) < LONGEST_PAGE
+        assert "<pre" not in page
 
 
 def test_a_root_is_typeset(actuator):
@@ -276,6 +277,15 @@ def test_a_nested_function_draws_the_curve_of_the_expanded_one():
     assert len(expanded.bode(nested).axes[0].lines) == 2
     assert len(nested.pole_zero_plot().axes) == 1
     assert nested.nyquist().legends[0].get_title().get_text() == "no pole in the right half plane"
+
+
+def test_a_notebook_shows_residues_as_a_table():
+    """1/(s^2 + 2 s + 5) has the residue -j/4 at -1 + 2j and its conjugate at the other pole."""
+    two = symflex.loads('symflex = 1\ninputs.u = {}\noutputs.y = "u/(s^2 + 2*s + 5)"')
+    shown = two.transfer_function("y", "u").bind().rational(form="modal")._repr_html_()
+    rows = re.findall(r"<tr>(.*?)</tr>", shown)
+    cells = re.sub("<[^>]*>", " ", rows[1]).split()
+    assert cells == ["\u22121", "\u00b12", "0", "\u22130.25"]
 
 
 def test_a_notebook_shows_stability_as_tables():

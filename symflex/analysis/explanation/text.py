@@ -5,7 +5,7 @@ from __future__ import annotations
 import textwrap
 from typing import TYPE_CHECKING
 
-from symflex.print.text import Block
+from symflex.print.text import Passage
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -51,10 +51,10 @@ def explanation_text(explained: ZeroExplanation, width: int = WIDTH) -> str:
 
 def explanation_html(explained: ZeroExplanation) -> str:
     """Return the same for a notebook: a paragraph for each."""
-    from symflex.print.html import blocks_html  # only notebooks ask
+    from symflex.print.html import passages_html  # only notebooks ask
 
     paragraphs = explanation_paragraphs(explained)
-    return blocks_html(Block(lines) for lines in ([_title(explained)], *paragraphs))
+    return passages_html(Passage(lines) for lines in ([_title(explained)], *paragraphs))
 
 
 def _title(explained: ZeroExplanation) -> str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import mpmath
 
 from symflex.analysis.rational.toolboxes import PERCENTS
-from symflex.print.text import Block, blocks_text
+from symflex.print.text import Passage, passages_text
 from symflex.roots.precision import to_complex_mpmath
 
 if TYPE_CHECKING:
@@ -47,27 +47,27 @@ def rational_text(found: RationalApproximation) -> str:
     <BLANKLINE>
       zeros: none
     """
-    return blocks_text(_blocks(found))
+    return passages_text(_passages(found))
 
 
 def rational_html(found: RationalApproximation) -> str:
     """Return the same for a notebook: paragraphs and tables."""
-    from symflex.print.html import blocks_html  # only notebooks ask
+    from symflex.print.html import passages_html  # only notebooks ask
 
-    return blocks_html(_blocks(found))
+    return passages_html(_passages(found))
 
 
-def _blocks(found: RationalApproximation) -> Iterator[Block]:
+def _passages(found: RationalApproximation) -> Iterator[Passage]:
     head, *said = _said(found)
-    yield Block([head])
-    yield Block([INDENT + line for line in said])
+    yield Passage([head])
+    yield Passage([INDENT + line for line in said])
     if found.residues:
-        yield Block([_counted("poles and residues", found.poles)], _residue_rows(found))
+        yield Passage([_counted("poles and residues", found.poles)], _residue_rows(found))
     else:
-        yield Block([_counted("poles", found.poles)], _root_rows(found.poles))
-    yield Block([_counted("zeros", found.zeros)], _root_rows(found.zeros))
+        yield Passage([_counted("poles", found.poles)], _root_rows(found.poles))
+    yield Passage([_counted("zeros", found.zeros)], _root_rows(found.zeros))
     if found.is_estimate:
-        yield Block([f"{INDENT}{ESTIMATE}"])
+        yield Passage([f"{INDENT}{ESTIMATE}"])
 
 
 def _said(found: RationalApproximation) -> list[str]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from symflex.print.text import INDENT, Block, blocks_text
+from symflex.print.text import INDENT, Passage, passages_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -26,17 +26,17 @@ STARTS: Final = {
 
 def fit_text(fit: ResonanceFit, width: int = 80, shapes: FittedModeShapes | None = None) -> str:
     """Return the report of a fit, and of mode shapes, for a terminal of so many columns."""
-    return blocks_text(_blocks(fit, shapes), width)
+    return passages_text(_passages(fit, shapes), width)
 
 
 def fit_html(fit: ResonanceFit) -> str:
     """Return the report of a fit for a notebook: paragraphs and tables."""
-    from symflex.print.html import blocks_html  # only notebooks ask
+    from symflex.print.html import passages_html  # only notebooks ask
 
-    return blocks_html(_blocks(fit, None))
+    return passages_html(_passages(fit, None))
 
 
-def _blocks(fit: ResonanceFit, shapes: FittedModeShapes | None) -> Iterator[Block]:
+def _passages(fit: ResonanceFit, shapes: FittedModeShapes | None) -> Iterator[Passage]:
     found, errors = fit.resonances, fit.standard_errors()
     lines = [f"POOR FIT: {reason}" for reason in fit.poor]
     for r, measured in enumerate(fit.measured):
@@ -44,12 +44,12 @@ def _blocks(fit: ResonanceFit, shapes: FittedModeShapes | None) -> Iterator[Bloc
         if measured.is_synthetic:
             lines.append(f"{INDENT}the data are SYNTHETIC: computed from a model, not measured")
         lines.append(INDENT + _data_line(fit, r))
-    yield Block([*lines, f"{INDENT}start: {STARTS[fit.candidate.start_kind]}"])
+    yield Passage([*lines, f"{INDENT}start: {STARTS[fit.candidate.start_kind]}"])
     rows = [
         _row(i, found.omega_p[i], errors.omega_p[i], found.zeta_p[i], errors.zeta_p[i])
         for i in range(found.count)
     ]
-    yield Block([f"{INDENT}poles"], [HEAD, *rows])
+    yield Passage([f"{INDENT}poles"], [HEAD, *rows])
     for r in range(found.responses):
         yield _zeros(fit, r)
     if shapes is not None:
@@ -59,17 +59,17 @@ def _blocks(fit: ResonanceFit, shapes: FittedModeShapes | None) -> Iterator[Bloc
         f"{INDENT}residual{name}: {fit.misfit_db(r):.2g} dB and {fit.misfit_degrees(r):.2g} degrees rms"
         for r, name in enumerate(named)
     ]
-    yield Block([*residuals, INDENT + _accuracy(fit)])
+    yield Passage([*residuals, INDENT + _accuracy(fit)])
     if fit.scores:
         yield _orders(fit)
     tests = [
         f"{INDENT}phase test{named[r]}: {_phase_words(test, fit, r)}"
         for r, test in enumerate(fit.phase_tests)
     ]
-    yield Block([*tests, *(f"{INDENT}warning: {warning}" for warning in fit.warnings)])
+    yield Passage([*tests, *(f"{INDENT}warning: {warning}" for warning in fit.warnings)])
 
 
-def _zeros(fit: ResonanceFit, r: int) -> Block:
+def _zeros(fit: ResonanceFit, r: int) -> Passage:
     """Return the zeros of a response, and what else of it is fitted."""
     found, errors, free = fit.resonances, fit.standard_errors(), fit.problem.free
     lines = [f"{INDENT}zeros" + (f" of {fit.measured[r].name}" if found.responses > 1 else "")]
@@ -85,10 +85,10 @@ def _zeros(fit: ResonanceFit, r: int) -> Block:
     ]
     if not rows:
         lines[0] += ": none"
-    return Block([*lines[1:], lines[0]], [HEAD, *rows] if rows else ())
+    return Passage([*lines[1:], lines[0]], [HEAD, *rows] if rows else ())
 
 
-def _orders(fit: ResonanceFit) -> Block:
+def _orders(fit: ResonanceFit) -> Passage:
     """Return the numbers of resonances that were tried."""
     rows = [("resonances", "parameters", "BIC", "AICc", "residual", "")]
     for s in fit.scores:
@@ -98,10 +98,10 @@ def _orders(fit: ResonanceFit) -> Block:
     told = "did not fail"
     if any(s.status == "weak" for s in fit.scores):
         told += " and are not weak (a resonance lost in noise)"
-    return Block([f"{INDENT}chosen by {fit.criterion.upper()}, the lowest of those that {told}"], rows)
+    return Passage([f"{INDENT}chosen by {fit.criterion.upper()}, the lowest of those that {told}"], rows)
 
 
-def _shapes(shapes: FittedModeShapes) -> Block:
+def _shapes(shapes: FittedModeShapes) -> Passage:
     """Return mode shapes, some rows for each mode."""
     head = f"mass-normalised mode shapes [{shapes.unit}], driven at {shapes.names[shapes.driving]}"
     rows = [("mode", "response", "value", "std. error", "off real [deg]")]
@@ -109,7 +109,7 @@ def _shapes(shapes: FittedModeShapes) -> Block:
         for r, name in enumerate(shapes.names):
             value, error, turned = shapes.shapes[r, i], shapes.errors[r, i], shapes.turned[r, i]
             rows.append(("" if r else str(i + 1), name, f"{value:.5g}", f"{error:.2g}", f"{turned:.1f}"))
-    return Block([INDENT + head, f"{INDENT}from poles that suit all responses best"], rows)
+    return Passage([INDENT + head, f"{INDENT}from poles that suit all responses best"], rows)
 
 
 def _shapes_json(shapes: FittedModeShapes) -> dict[str, object]:
