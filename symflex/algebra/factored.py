@@ -174,7 +174,7 @@ class Factored:
         >>> ring = Ring(("x", "y"))
         >>> x, y = Factored.generator(ring, "x"), Factored.generator(ring, "y")
         >>> str((y / x).slope("x"))
-        '-1*x^-2*y'
+        '-1*y*x^-2'
         """
         i, total = self.ring.index[name], Factored.number(self.ring, 0)
         for factor, exponent in self.factors:
