@@ -2,6 +2,7 @@
 
 A page asks with a comment on a line of its own: ``<!-- gallery -->``; or for one formula, which the page has
 in LaTeX for those who read it in a clone, ``<!-- formula: FILE OUT/IN -->`` to ``<!-- end of formula -->``.
+An equation as specifications write it, ``<!-- equation: y = x^2 -->``, is typeset likewise.
 """
 
 from __future__ import annotations
@@ -19,10 +20,11 @@ from mkdocs.structure.files import File, Files
 
 from symflex import pipeline
 from symflex.drawing import draw_model
-from symflex.errors import SymflexError
+from symflex.errors import Source, Span, SymflexError, Text
+from symflex.expressions import parse_equation
 from symflex.figures import draw, draw_loop, render
 from symflex.print.forms import print_form, with_hidden
-from symflex.print.mathml import EQUALS, math_element, transfer_function_mathml
+from symflex.print.mathml import EQUALS, math_element, mathml_expression, transfer_function_mathml
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -52,6 +54,9 @@ GAIN: Final = "K"
 """Closes the loops in ``derivations/``."""
 FORMULA: Final = re.compile(
     r"^<!-- formula: (\S+) (\S+) -->$.*?^<!-- end of formula -->$", re.MULTILINE | re.DOTALL
+)
+EQUATION: Final = re.compile(
+    r"^<!-- equation: (.+) -->$.*?^<!-- end of formula -->$", re.MULTILINE | re.DOTALL
 )
 
 
@@ -86,7 +91,16 @@ def on_page_markdown(markdown: str, **_: object) -> str:
     """Put the gallery and the formulas where a page asks for them."""
     if "<!-- gallery -->" in markdown:
         markdown = markdown.replace("<!-- gallery -->", "\n".join(_sections()))
+    markdown = EQUATION.sub(lambda match: equation_html(match[1]), markdown)
     return FORMULA.sub(lambda match: formula_html(function_of(match[1], match[2])), markdown)
+
+
+def equation_html(text: str) -> str:
+    """Return an equation in the notation of specifications, typeset."""
+    equation = parse_equation(Text(text, Span(Source("a page", text), 0, len(text))))
+    left, right = (mathml_expression(side, {}) for side in (equation.left, equation.right))
+    typeset = math_element(f"<mrow>{left}{EQUALS}{right}</mrow>", is_display=True)
+    return f'<div class="formula"><div class="row">{typeset}</div></div>'
 
 
 def function_of(path: str, pair: str) -> AnyTransferFunction:
