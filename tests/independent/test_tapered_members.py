@@ -186,11 +186,17 @@ def bar_slopes(kind, taper, loss):
     return slopes
 
 
-BARS = [
-    *(("rod", taper, loss) for taper, loss in zip(TAPERS, cycle(["none", "foundation", "eta"]))),
-    *(("shaft", taper, loss) for taper, loss in zip(TAPERS, cycle(["eta", "none"]))),
-    *(("string", taper, loss) for taper, loss in zip(TAPERS, cycle(["foundation", "none"]))),
-]
+BARS = list(
+    dict.fromkeys(
+        (kind, RATIONAL.get(taper, taper) if loss in MORE_AT_REST else taper, loss)
+        for kind, losses in (
+            ("rod", ["none", "foundation", "eta"]),
+            ("shaft", ["eta", "none"]),
+            ("string", ["foundation", "none"]),
+        )
+        for taper, loss in zip(TAPERS, cycle(losses))
+    )
+)
 
 
 def points(seed, fastest, count=20):
