@@ -17,7 +17,7 @@ from fractions import Fraction
 from math import inf, isfinite, isinf, nan
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
-from symflex.errors import Diagnostic, Source, Span, SpecError, Text, UsageError
+from symflex.errors import Diagnostic, SpecError, Text, UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -694,7 +694,7 @@ def _quantity(given: str, flag: str, wrong: UsageError) -> Quantity:
     from symflex.quantities import parse_quantity
 
     try:
-        return parse_quantity(Text(given, Span(Source(flag, given), 0, len(given))))
+        return parse_quantity(Text.alone(flag, given))
     except SpecError as error:
         (first, *_) = error.diagnostics
         if first.code == "SF103":

@@ -20,14 +20,14 @@ from mkdocs.structure.files import File, Files
 
 from symflex import pipeline
 from symflex.drawing import draw_model
-from symflex.errors import Source, Span, SymflexError, Text
+from symflex.errors import SymflexError, Text
 from symflex.expressions import parse_equation
 from symflex.figures import draw, draw_loop, render
 from symflex.print.forms import print_form, with_hidden
 from symflex.print.mathml import EQUALS, math_element, mathml_expression, transfer_function_mathml
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from matplotlib.figure import Figure
     from mkdocs.config.defaults import MkDocsConfig
@@ -53,10 +53,7 @@ LONG_NUMBER: Final = re.compile(r"\d{12}")
 GAIN: Final = "K"
 """Closes the loops in ``derivations/``."""
 FORMULA: Final = re.compile(
-    r"^<!-- formula: (\S+) (\S+) -->$.*?^<!-- end of formula -->$", re.MULTILINE | re.DOTALL
-)
-EQUATION: Final = re.compile(
-    r"^<!-- equation: (.+) -->$.*?^<!-- end of formula -->$", re.MULTILINE | re.DOTALL
+    r"^<!-- (formula|equation): (.+) -->$.*?^<!-- end of formula -->$", re.MULTILINE | re.DOTALL
 )
 
 
@@ -91,16 +88,21 @@ def on_page_markdown(markdown: str, **_: object) -> str:
     """Put the gallery and the formulas where a page asks for them."""
     if "<!-- gallery -->" in markdown:
         markdown = markdown.replace("<!-- gallery -->", "\n".join(_sections()))
-    markdown = EQUATION.sub(lambda match: equation_html(match[1]), markdown)
-    return FORMULA.sub(lambda match: formula_html(function_of(match[1], match[2])), markdown)
+    return FORMULA.sub(lambda match: TYPESET[match[1]](match[2]), markdown)
 
 
 def equation_html(text: str) -> str:
     """Return an equation in the notation of specifications, typeset."""
-    equation = parse_equation(Text(text, Span(Source("a page", text), 0, len(text))))
+    equation = parse_equation(Text.alone("a page", text))
     left, right = (mathml_expression(side, {}) for side in (equation.left, equation.right))
     typeset = math_element(f"<mrow>{left}{EQUALS}{right}</mrow>", is_display=True)
     return f'<div class="formula"><div class="row">{typeset}</div></div>'
+
+
+TYPESET: Final[Mapping[str, Callable[[str], str]]] = {
+    "formula": lambda asked: formula_html(function_of(*asked.split())),
+    "equation": equation_html,
+}
 
 
 def function_of(path: str, pair: str) -> AnyTransferFunction:

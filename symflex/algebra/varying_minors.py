@@ -96,12 +96,10 @@ def polynomials_along(
     cut = edges_along(along, start, length, places, limits, where)
     if cut is None:
         return None
-    edges, growth = cut
+    edges, growth, values = cut
     n = 1 + max(max(place[:2]) for place in places)
-    scales = [np.prod(limits ** np.array(place[2:])) for place in places]
     points, _, integral = chebyshev_points(20)
     widths = np.diff(edges)
-    values = parts_at(along, start, length, scales, where, edges[:-1, None] + widths[:, None] * points)
     # Rows of Z by the powers of the bases they are times; each step of the iteration is one more factor A.
     shape = len(widths), len(points), n, max(c.shape[-1] for c in values)
     start_row = np.zeros(shape)
@@ -139,6 +137,7 @@ def edges_along(
 ) -> Values:
     """Return shares of the length at which it is cut, and by which power of e waves grow between two.
 
+    After these come the parts of A at Chebyshev's points of every piece.
     None where waves are too many to be followed.
     """
     n = 1 + max(max(place[:2]) for place in places)
@@ -173,7 +172,7 @@ def edges_along(
         edges = np.sort(np.concatenate([edges, (edges[:-1] + widths / 2.0)[rough]]))
         widths = np.diff(edges)
         values = parts_at(along, start, length, scales, where, edges[:-1, None] + widths[:, None] * points)
-    return edges, growth[-1] / number
+    return edges, growth[-1] / number, values
 
 
 def parts_at(

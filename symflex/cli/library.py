@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import click
 
 from symflex.cli.reporting import emit_json, note, reporting, say, terminal_width
-from symflex.errors import Diagnostic, Source, Span, SpecError, Text, UsageError
+from symflex.errors import Diagnostic, SpecError, Text, UsageError
 from symflex.errors.diagnostic import nearest
 
 if TYPE_CHECKING:
@@ -283,7 +283,7 @@ def _checked_unit(text: str) -> Unit:
     from symflex.quantities import parse_unit
 
     try:
-        return parse_unit(Text(text, Span(Source("<unit>", text), 0, len(text))))
+        return parse_unit(Text.alone("<unit>", text))
     except SpecError as problem:
         (wrong, *_) = problem.diagnostics
         raise UsageError(Diagnostic("SF902", wrong.message, None, wrong.hint or "symflex units")) from None

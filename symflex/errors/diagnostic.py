@@ -73,6 +73,11 @@ class Text:
     # offset in the source; False when escapes were decoded.
     verbatim: bool = True
 
+    @classmethod
+    def alone(cls, source: str, value: str) -> Text:
+        """Return a text that is all there is in a source, such as an option."""
+        return cls(value, Span(Source(source, value), 0, len(value)))
+
     def at(self, start: int, end: int) -> Span:
         """Return the span of ``value[start:end]``, or of all of it when escapes were decoded."""
         if not self.verbatim:

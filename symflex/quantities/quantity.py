@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Final
 
-from symflex.errors import Diagnostic, Source, Span, SpecError, Text
+from symflex.errors import Diagnostic, SpecError, Text
 from symflex.quantities.grammar import (
     NUMBER,
     PI,
@@ -110,7 +110,7 @@ def unit_of(text: str) -> Unit:
     >>> str(unit_of("N*m/A").dimension), unit_of("N*m/rad").radians
     ('V*s', -1)
     """
-    return parse_unit(Text(text, Span(Source("<unit>", text), 0, len(text))))
+    return parse_unit(Text.alone("<unit>", text))
 
 
 def looks_like_quantity(text: str) -> bool:

@@ -25,7 +25,7 @@ from flint import acb, acb_poly, acb_series, arb, ctx
 from symflex.algebra import LAPLACE, NO_KERNELS, Factored, KernelTable, PolynomialMemo, Ring, degree_in
 from symflex.budget import spend
 from symflex.equations import assemble
-from symflex.errors import Diagnostic, ModelError, Source, Span, Text, UsageError
+from symflex.errors import Diagnostic, ModelError, Text, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.model import ExactValue, with_numbers
 from symflex.model.along import COORDINATE, varies_along_x
@@ -365,7 +365,7 @@ def _read_value(
     if isinstance(given, ExactValue):
         return given
     if isinstance(given, str):
-        quantity = parse_quantity(Text(given, Span(Source("<value>", given), 0, len(given))))
+        quantity = parse_quantity(Text.alone("<value>", given))
         wanted = unit_of(parameter.unit) if parameter.unit else None
         if quantity.unit and wanted is not None and quantity.dimension != wanted.dimension:
             message = f"'{parameter.name}' is in '{parameter.unit}', the value given in '{quantity.unit}'"

@@ -16,7 +16,7 @@ import click
 import symflex
 from symflex.cli import group
 from symflex.cli.library import in_si
-from symflex.errors import Source, Span, Text
+from symflex.errors import Text
 from symflex.expressions import parse_equation
 from symflex.library.blocks import BLOCKS
 from symflex.library.elements import ELEMENTS
@@ -35,30 +35,30 @@ PLACE = re.compile(rf"^(<!-- reference: (\w+) -->)$.*?^{END}$", re.MULTILINE | r
 
 
 FORMULA_END = "<!-- end of formula -->"
-FORMULA = re.compile(rf"^(<!-- formula: (\S+) (\S+) -->)$.*?^{FORMULA_END}$", re.MULTILINE | re.DOTALL)
-EQUATION = re.compile(rf"^(<!-- equation: (.+) -->)$.*?^{FORMULA_END}$", re.MULTILINE | re.DOTALL)
+FORMULA = re.compile(rf"^(<!-- (formula|equation): (.+) -->)$.*?^{FORMULA_END}$", re.MULTILINE | re.DOTALL)
 
 
 def with_tables(markdown: str) -> str:
     """Return a page with its tables and formulas as the program makes them now."""
     markdown = PLACE.sub(lambda match: f"{match[1]}\n\n{PARTS[match[2]]()}\n\n{END}", markdown)
-    markdown = EQUATION.sub(
-        lambda match: f"{match[1]}\n```math\n{_equation(match[2])}\n```\n{FORMULA_END}", markdown
-    )
     return FORMULA.sub(
-        lambda match: f"{match[1]}\n```math\n{_latex(match[2], match[3])}\n```\n{FORMULA_END}", markdown
+        lambda match: f"{match[1]}\n```math\n{LATEX[match[2]](match[3])}\n```\n{FORMULA_END}", markdown
     )
 
 
-def _latex(path: str, pair: str) -> str:
+def _formula(asked: str) -> str:
+    path, pair = asked.split()
     output, source = pair.split("/")
     return symflex.load(ROOT / path).transfer_function(output, source).latex()
 
 
 def _equation(text: str) -> str:
-    equation = parse_equation(Text(text, Span(Source("a page", text), 0, len(text))))
+    equation = parse_equation(Text.alone("a page", text))
     writer = Writer({})
     return f"{writer.piece(equation.left).markup} = {writer.piece(equation.right).markup}"
+
+
+LATEX = {"formula": _formula, "equation": _equation}
 
 
 def elements() -> str:

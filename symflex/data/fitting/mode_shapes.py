@@ -19,7 +19,7 @@ from scipy.optimize import least_squares
 
 from symflex.data.fitting.observation import Observation, observe
 from symflex.data.fitting.resonances import Complex, Real
-from symflex.errors import DataError, Diagnostic, FitError, Source, Span, Text, UsageError
+from symflex.errors import DataError, Diagnostic, FitError, Text, UsageError
 from symflex.quantities import parse_unit
 
 if TYPE_CHECKING:
@@ -229,7 +229,7 @@ def _motion_over_force(name: str, unit: str) -> _Motion:
     if not unit:
         message = f"{name} has no unit: is it a receptance, a mobility or an accelerance?"
         raise DataError(Diagnostic("SF602", message, None, "for example '# unit: m/N' in its first lines"))
-    read = parse_unit(Text(unit, Span(Source(name, unit), 0, len(unit))))
+    read = parse_unit(Text.alone(name, unit))
     dimension = read.dimension
     kind = KINDS.get((dimension.kg, dimension.m))
     others = (dimension.A, dimension.K, dimension.mol, dimension.cd)

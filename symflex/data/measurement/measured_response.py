@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from symflex.errors import DataError, Diagnostic, Source, Span, SpecError, Text
+from symflex.errors import DataError, Diagnostic, Span, SpecError, Text
 from symflex.quantities import parse_unit
 
 SMALLEST_NOISE = 1e-6
@@ -235,7 +235,7 @@ def unit_of(text: str, file: str, span: Span | None = None) -> str:
     if not unit:
         return ""
     try:
-        parse_unit(Text(unit, Span(Source(file, unit), 0, len(unit))))
+        parse_unit(Text.alone(file, unit))
     except SpecError as error:
         (reason, *_) = error.diagnostics
         place = "" if span else f"'{file}': "
