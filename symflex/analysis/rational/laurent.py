@@ -163,7 +163,7 @@ def _quotient(
         if known is None:
             if apart is None:
                 return "longer"
-            if any(c != 0 for c in coefficients[:apart]) and ctx.prec < DETECTION_BITS:
+            if not _all_zero(coefficients[:apart]) and ctx.prec < DETECTION_BITS:
                 return "finer"
             firsts.append(apart)
             continue
@@ -189,7 +189,16 @@ def _quotient(
     if total.prec < wanted:
         return "longer"
     found = tuple(total[branches * i] for i in range(count))
-    return LaurentSeries(order, tuple(acb(about_zero(c.real)) for c in found), any(o is None for o in orders))
+    # A factor is of the order found where the coefficients before it are nothing but zero.
+    is_estimate = any(
+        known is None and not _all_zero(coefficients[:first])
+        for coefficients, known, first in zip(series, orders, firsts, strict=True)
+    )
+    return LaurentSeries(order, tuple(acb(about_zero(c.real)) for c in found), is_estimate)
+
+
+def _all_zero(coefficients: Sequence[acb]) -> bool:
+    return all(c == 0 for c in coefficients)
 
 
 def expand_at_pole(

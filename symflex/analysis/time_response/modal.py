@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING
 from flint import acb, arb
 
 from symflex.algebra import Factored
-from symflex.analysis.rational.laurent import expand_at_zero, residues_at
+from symflex.analysis.rational.laurent import LaurentSeries, expand_at_zero, residues_at
 from symflex.analysis.time_response.damped_modes import Damping, damping_of
 from symflex.analysis.time_response.echoes import Sampled
 from symflex.analysis.time_response.exponentials import ExponentialTerm, values_of
@@ -234,7 +234,7 @@ class PassiveModes:
             if not side.prove(wanted).is_complete:
                 return None
             reached, roots = side.reached, side.roots
-        origin = _at_origin(self._bound, self._integrations)
+        origin = _proved_at_origin(self._bound, self._integrations)
         if origin is None:
             return None
         rest = self._bounding.rest(reached, self._integrations, last)
@@ -344,7 +344,7 @@ def _summed(
     times: SampleTimes,
 ) -> PartialSum | None:
     lowest = modes.lowest(count)
-    origin = _at_origin(bound, integrations)
+    origin = _proved_at_origin(bound, integrations)
     if lowest is None or origin is None:
         return None
     roots, reached = lowest
@@ -434,11 +434,13 @@ def _until_faded(
     return most
 
 
-def _at_origin(bound: AnyBoundFunction, integrations: int) -> list[ExponentialTerm] | None:
-    """Return what the pole at s = 0 adds, a polynomial in t; None where it is not proved."""
+def _proved_at_origin(bound: AnyBoundFunction, integrations: int) -> list[ExponentialTerm] | None:
     series = expand_at_zero(bound, integrations - 1, DIGITS)
-    if series.is_estimate:
-        return None
+    return None if series.is_estimate else _at_origin(series, integrations)
+
+
+def _at_origin(series: LaurentSeries, integrations: int) -> list[ExponentialTerm]:
+    """Return what the pole at s = 0 adds, a polynomial in t."""
     count = integrations - series.order
     if count <= 0:
         return []
@@ -456,7 +458,7 @@ def estimated(bound: AnyBoundFunction, integrations: int, times: SampleTimes) ->
     poles = [root for root in located.all_poles if not root.im < 0 and not root.is_zero]
     parts = residues_at(bound, poles, DIGITS)
     with precision(bits_for_digits(2 * DIGITS)):
-        origin = _at_origin(bound, integrations) or []
+        origin = _at_origin(expand_at_zero(bound, integrations - 1, DIGITS), integrations)
         terms = []
         for part in parts:
             share = 1 if part.root.is_real else 2

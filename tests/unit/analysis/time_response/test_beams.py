@@ -281,6 +281,23 @@ def test_what_is_only_estimated_is_not_certified(name):
     assert abs(found.values[0]) <= found.radius[0]
 
 
+CONE = 'E = "1 Pa", A = "A_0*(1 - x/(2*l))^2", rho = "1 kg/m^3", l = "l"'
+
+
+@pytest.mark.slow
+def test_an_estimate_of_a_tapered_rod_swings_about_where_it_would_rest():
+    text = 'symflex = 1\nparameters = { A_0 = "1 m^2", l = "1 m" }\n'
+    text += f'elements.horn = {{ type = "rod", between = ["ground", "x"], {CONE} }}\n'
+    bound = loads(f'{text}inputs.F = {{ force = "x" }}\noutputs.X = "x"').transfer_function("X", "F").bind()
+    found = time_response(bound.bound, "step", SampleTimes.of([0.0, 0.5, 2.0, 7.1]))
+    # (1 - x/2) u obeys the uniform rod's equation, so that X/F = 4 sinh(s)/(s cosh(s) + sinh(s)).
+    k = roots_of(lambda k: np.sin(k) / k + np.cos(k), (np.arange(MODES) + 0.6) * np.pi)
+    expected = [2 - np.sum(8 / (2 + k**2) * np.cos(k * t)) for t in found.times]
+    left = 8 / (np.pi**2 * MODES)
+    assert np.all(np.abs(found.values - expected) <= found.radius + left)
+    assert np.all(found.radius < 0.1)
+
+
 def test_an_acceleration_of_a_beam_is_refused_as_modes_do_not_fall_off():
     with pytest.raises(UncertifiedError, match="SF810"):
         time_response(beam(output="s^2*x"), "impulse", SampleTimes.of([0.5]))
