@@ -34,7 +34,7 @@ from symflex.figures.s_plane import (
     choose_view,
     first_run,
     inches_of,
-    point_outside,
+    write_notes,
 )
 from symflex.figures.style import (
     COLOURS,
@@ -152,7 +152,7 @@ def draw_locus(locus: RootLocus, canvas: Canvas) -> Figure:
         figure.draw_without_rendering()  # what is above takes its room
     if canvas.frame == FREE:
         named = [mark for mark in marks if mark.kind != ZERO or not locus.start.is_infinite]
-        point_outside(axes, named, Panel.of(view, *inches_of(axes), marks), COLOUR_OF)
+        write_notes(axes, named, Panel.of(view, *inches_of(axes), marks), COLOUR_OF)
     return figure
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 from math import ceil
 from typing import TYPE_CHECKING, Final
@@ -15,14 +14,12 @@ from symflex.figures.s_plane import (
     choose_view,
     inches_of,
     marks_of,
-    point_outside,
-    text_width,
+    write_notes,
 )
 from symflex.figures.style import (
     COLOURS,
     COLUMN_INCHES,
     LINE_INCHES,
-    NOTE_POINTS,
     PAGE_INCHES,
     label_of_tf,
     new_figure,
@@ -114,8 +111,8 @@ def draw_poles_zeros(
         _draw_panel(axes, marks, view, panel_width, panel_height)
         if is_asked:
             axes.set_aspect("auto")
-        else:
-            point_outside(axes, marks, Panel.of(view, panel_width, panel_height, marks), COLOUR_OF)
+        panel = Panel.of(view, panel_width, panel_height, marks)
+        write_notes(axes, () if is_asked else marks, panel, COLOUR_OF, marks)
         axes.set_title(label_of_tf(tf), pad=4)
         axes.set_xlabel(r"$\mathrm{Re}(s)$ [rad/s]", labelpad=2)
         if column == 0 or own:
@@ -151,10 +148,6 @@ def _draw_panel(axes: Axes, marks: Sequence[RootMark], view: View, width: float,
     inside = [mark for mark in marks if view.shows(mark)]
     for kind, look in LOOKS.items():
         draw_points(axes, [mark.s for mark in inside if mark.kind == kind], look, is_cut=False)
-    panel = Panel.of(view, width, height, marks)
-    for mark in inside:
-        if mark.multiplicity > 1:
-            _write_number(axes, mark, panel)
 
 
 def _said_of_rest(found: PoleZeroMap, view: View) -> str:
@@ -165,21 +158,3 @@ def _said_of_rest(found: PoleZeroMap, view: View) -> str:
     }
     said = [f"{n} {kind}{'s' if n > 1 else ''}" for kind, n in counts.items() if n]
     return f"{found.tf}: {' and '.join(said)} outside" if said else ""
-
-
-def _write_number(axes: Axes, mark: RootMark, panel: Panel) -> None:
-    """Write a multiplicity in the corner beside its mark where no other root stands."""
-    x, y = panel.at(mark.s)
-    width = text_width(str(mark.multiplicity), NOTE_POINTS)
-    corners = [(right, up) for up in (2.0, -2.0 - NOTE_POINTS) for right in (3.6, -3.6 - width)]
-    others = replace(panel, roots=tuple(s for s in panel.roots if s != mark.s))
-    boxes = [(x + dx, y + dy, x + dx + width, y + dy + NOTE_POINTS) for dx, dy in corners]
-    axes.annotate(
-        str(mark.multiplicity),
-        (mark.s.real, mark.s.imag),
-        corners[others.clearest(boxes)],
-        textcoords="offset points",
-        va="bottom",
-        color=COLOUR_OF[mark.kind],
-        fontsize=NOTE_POINTS,
-    )

@@ -9,7 +9,7 @@ left corner:
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import atan2, isclose, pi
 from typing import TYPE_CHECKING, Final, Literal
 
@@ -228,8 +228,14 @@ ARROW: Final = 0.13
 """Length of an arrow over the smaller side of its panel."""
 SHIFTS: Final = 8
 """How many heights of a note it may be moved from its arrow to where nothing stands."""
-NOTE_COST, SHAFT_COST, SHIFT_COST = 8.0, 2.0, 0.3
-"""What covers another note, or an arrow, weighs as much as so many roots; so does a shift."""
+SMALLER: Final = (1.0, 0.9, 0.8, 0.7)
+"""Shares of its type in which a note may be written where it has little room."""
+TEXT_COST, SHIFT_COST, SMALLER_COST, FAR_COST = 30.0, 0.1, 0.2, 1.0
+"""To cover another text, to be shifted, smaller by a step, or far away weighs as much as so many roots."""
+GRID: Final = 3.0
+"""Distance of places far from an arrow that are tried where nothing near is free [points]."""
+DIGIT_POINTS: Final = 7.5
+"""Height of the box of a number."""
 GLYPHS: Final[dict[Kind, str]] = {"pole": r"$\times$", "zero": r"$\circ$", "nominal": r"$\star$"}
 """Of roots that are named at an arrow; to poles at the last gain of a locus its curves lead."""
 
@@ -278,18 +284,20 @@ class Panel:
         re = self.view.re[0] + self.view.width * place.real / wide
         return complex(re, self.view.im[0] + self.view.height * place.imag / high)
 
-    def clearest(self, boxes: Sequence[Box], taken: Sequence[Box] = (), shaft: Box | None = None) -> int:
-        """Return which of several rectangles covers fewest roots, notes and the arrow; the first of equals.
+    def clearest(
+        self, boxes: Sequence[Box], texts: Sequence[Box] = (), arrows: Sequence[Box] = (), price: float = 0.0
+    ) -> int:
+        """Return which of several rectangles covers fewest texts, roots and arrows; the first of equals.
 
-        A later one in the list is further from where it belongs.
+        Each next one, which is further from where it belongs, costs so much more [roots].
         """
+        costs = [self.cost(box, texts, arrows) + price * i for i, box in enumerate(boxes)]
+        return costs.index(min(costs))
 
-        def cost(i: int) -> float:
-            notes = sum(_overlap(boxes[i], other) for other in taken)
-            arrow = shaft is not None and _overlap(boxes[i], shaft)
-            return self._covered(boxes[i]) + NOTE_COST * notes + SHAFT_COST * arrow + SHIFT_COST * (i // 3)
-
-        return min(range(len(boxes)), key=cost)
+    def cost(self, box: Box, texts: Sequence[Box], arrows: Sequence[Box]) -> float:
+        """Return what a rectangle covers, as a number of roots; what leaves the panel counts as a text."""
+        covered = sum(_overlap(box, other) for other in texts) + (box != self.held(*_sizes(box)))
+        return self._covered(box) + sum(_overlap(box, other) for other in arrows) + TEXT_COST * covered
 
     def _covered(self, box: Box) -> int:
         left, bottom, right, top = box
@@ -335,13 +343,39 @@ def text_width(text: str, size: float) -> float:
     return size_of_text(text, FontProperties(size=size))[0]
 
 
-def point_outside(axes: Axes, marks: Sequence[RootMark], panel: Panel, colours: Mapping[Kind, str]) -> None:
-    """Draw arrows to where roots outside the view lie, and name those of the upper half plane beside them."""
+def write_notes(
+    axes: Axes,
+    marks: Sequence[RootMark],
+    panel: Panel,
+    colours: Mapping[Kind, str],
+    numbered: Sequence[RootMark] = (),
+) -> None:
+    """Draw arrows to roots outside the view, name those of the upper half plane, number multiple roots.
+
+    Those of ``marks`` outside the view are named; those of ``numbered`` in it bear their multiplicity. No
+    text covers another one as long as there is room.
+    """
+    groups = leaving((mark for mark in marks if mark.kind in GLYPHS), panel.view)
+    shafts = [_draw_arrow(axes, group[0].s, panel) for group in groups]
+    arrows = [_around(*shaft) for shaft in shafts]
     taken: list[Box] = []
-    for group in leaving((mark for mark in marks if mark.kind in GLYPHS), panel.view):
-        shaft = _draw_arrow(axes, group[0].s, panel)
+    for mark in numbered:
+        if mark.multiplicity > 1 and panel.view.shows(mark):
+            taken.append(_write_number(axes, mark, panel, taken, arrows, colours))
+    for group, shaft in zip(groups, shafts, strict=True):
         if not group[0].s.imag < 0:
-            taken.append(_write_notes(axes, group, shaft, panel, taken, colours))
+            taken.append(_name_roots(axes, group, shaft, panel, taken, arrows, colours))
+
+
+def _around(tail: complex, tip: complex) -> Box:
+    """Return the rectangle around an arrow with its head."""
+    (left, right), (low, top) = sorted((tail.real, tip.real)), sorted((tail.imag, tip.imag))
+    return left - 2, low - 2, right + 2, top + 2
+
+
+def _sizes(box: Box) -> Box:
+    """Return left, bottom, width and height."""
+    return box[0], box[1], box[2] - box[0], box[3] - box[1]
 
 
 def _draw_arrow(axes: Axes, s: complex, panel: Panel) -> tuple[complex, complex]:
@@ -361,51 +395,96 @@ def _draw_arrow(axes: Axes, s: complex, panel: Panel) -> tuple[complex, complex]
     return start, end
 
 
-def _write_notes(
+def _write_number(
+    axes: Axes,
+    mark: RootMark,
+    panel: Panel,
+    taken: Sequence[Box],
+    arrows: Sequence[Box],
+    colours: Mapping[Kind, str],
+) -> Box:
+    """Write a multiplicity beside its mark, at a corner where it covers nothing if there is one."""
+    x, y = panel.at(mark.s)
+    wide, high = text_width(str(mark.multiplicity), NOTE_POINTS), DIGIT_POINTS
+    others = replace(panel, roots=tuple(s for s in panel.roots if s != mark.s))
+    boxes = [
+        (x + dx, y + dy, x + dx + wide, y + dy + high)
+        for away in (0.0, wide, 2 * wide)
+        for dy in (1.5 + away, -1.5 - high - away, -high / 2)
+        for dx in (3.6 + away, -3.6 - wide - away)
+    ]
+    chosen = boxes[others.clearest(boxes, taken, arrows, SHIFT_COST)]
+    _write(axes, str(mark.multiplicity), chosen, NOTE_POINTS, colours[mark.kind])
+    return chosen
+
+
+def _write(axes: Axes, text: str, box: Box, size: float, colour: str) -> None:
+    """Write a line below the upper left corner of a rectangle."""
+    place = (box[0], box[3])
+    written = axes.annotate(
+        text, place, xycoords="axes points", ha="left", va="top", fontsize=size, color=colour
+    )
+    written.set_in_layout(False)
+
+
+def _name_roots(
     axes: Axes,
     group: Sequence[RootMark],
     shaft: tuple[complex, complex],
     panel: Panel,
     taken: Sequence[Box],
+    arrows: Sequence[Box],
     colours: Mapping[Kind, str],
 ) -> Box:
-    """Write which roots lie where an arrow points, beside it and within the panel."""
+    """Write which roots lie where an arrow points: beside it if there is room, else where there is."""
     notes = [(f"{GLYPHS[m.kind]} {m.value}", colours[m.kind]) for m in group[:LISTED]]
     if len(group) > LISTED:
         notes.append((f"and {len(group) - LISTED} more", "black"))
     wide = max(text_width(text, NOTE_POINTS) for text, _ in notes)
-    size = max(LEAST_NOTE_POINTS, NOTE_POINTS * min(1.0, (panel.size[0] - 2 * PAD_POINTS) / wide))
-    wide, line = wide * size / NOTE_POINTS, NOTE_LINE_POINTS * size / NOTE_POINTS
-    high = line * len(notes)
+    largest = max(LEAST_NOTE_POINTS, NOTE_POINTS * min(1.0, (panel.size[0] - 2 * PAD_POINTS) / wide))
+    found: list[tuple[float, float, Box]] = []
+    for step, share in enumerate(SMALLER):
+        size = largest * share
+        scale = size / NOTE_POINTS
+        across, high = wide * scale, NOTE_LINE_POINTS * scale * len(notes)
+        near, price = _beside(shaft, across, high, panel), SMALLER_COST * step
+        best = near[panel.clearest(near, taken, arrows, SHIFT_COST)]
+        found.append((panel.cost(best, taken, arrows) + SHIFT_COST * near.index(best) + price, size, best))
+        if found[-1][0] >= 1 and size >= LEAST_NOTE_POINTS:
+            far = _anywhere(shaft[1], across, high, panel)
+            best = far[panel.clearest(far, taken, arrows)]
+            found.append((panel.cost(best, taken, arrows) + FAR_COST + price, size, best))
+        if found[0][0] < SMALLER_COST or size < LEAST_NOTE_POINTS:
+            break
+    _, size, chosen = min(found, key=lambda one: one[0])
+    for i, (text, colour) in enumerate(notes):
+        top = chosen[3] - NOTE_LINE_POINTS * size / NOTE_POINTS * i
+        _write(axes, text, (*chosen[:3], top), size, colour)
+    return chosen
+
+
+def _beside(shaft: tuple[complex, complex], wide: float, high: float, panel: Panel) -> list[Box]:
+    """Return places for a note beside an arrow, the first the best, and such further up or down."""
     tail, tip = shaft
-    is_sideways = abs((tip - tail).real) > abs((tip - tail).imag)
-    low, top = sorted((tail.imag, tip.imag))
-    left, right = sorted((tail.real, tip.real))
+    left, low, right, top = _around(tail, tip)
     inward = tip.real - wide if tip.real > panel.size[0] / 2 else tip.real
-    if is_sideways:
-        behind = tail.real - wide - 4 if tip.real > tail.real else tail.real + 4
-        places = [(inward, top + 4.0), (inward, low - 6.0 - high), (behind, tail.imag - high / 2)]
+    if abs((tip - tail).real) > abs((tip - tail).imag):
+        behind = left - wide - 1 if tip.real > tail.real else right + 1
+        places = [(inward, top + 1.0), (inward, low - 1.0 - high), (behind, tail.imag - high / 2)]
     else:
-        places = [
-            (right + 5.0, tip.imag - high),
-            (left - 5.0 - wide, tip.imag - high),
-            (inward, low - high - 2),
-        ]
-    boxes = [
+        places = [(right + 1.0, tip.imag - high), (left - 1.0 - wide, tip.imag - high), (inward, low - high)]
+    return [
         panel.held(x, y + sign * shift * high, wide, high)
         for shift in range(SHIFTS)
         for sign in ((1, -1) if shift else (1,))
         for x, y in places
     ]
-    chosen = boxes[panel.clearest(boxes, taken, (left - 2, low - 2, right + 2, top + 2))]
-    for i, (text, colour) in enumerate(notes):
-        axes.annotate(
-            text,
-            (chosen[0], chosen[3] - line * i),
-            xycoords="axes points",
-            ha="left",
-            va="top",
-            fontsize=size,
-            color=colour,
-        ).set_in_layout(False)
-    return chosen
+
+
+def _anywhere(tip: complex, wide: float, high: float, panel: Panel) -> list[Box]:
+    """Return places for a note all over a panel, the nearest to its arrow first."""
+    columns, rows = (
+        max(1, int((room - own) / GRID)) for room, own in zip(panel.size, (wide, high), strict=True)
+    )
+    boxes = {panel.held(GRID * i, GRID * j, wide, high) for i in range(columns + 1) for j in range(rows + 1)}
+    return sorted(boxes, key=lambda b: (abs(complex(b[0] + b[2], b[1] + b[3]) / 2 - tip), b))

@@ -32,6 +32,7 @@ CLOSED_FORMS = {
     ("base_flexure", "V_base", "F"): lambda: s * eppinger1988.base_flexure("base"),
     ("lumped_bending_beam", "X_act", "F"): lambda: eppinger1988.lumped_bending_beam("x_act"),
     ("lumped_bending_beam", "X_tip", "F"): lambda: eppinger1988.lumped_bending_beam("x_tip"),
+    ("lumped_bending_beam", "theta", "F"): lambda: eppinger1988.lumped_bending_beam("theta"),
 }
 
 

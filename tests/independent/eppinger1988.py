@@ -136,7 +136,7 @@ def base_flexure(output: str, friction_on: str = "base", force_on: str = "base")
 
 
 def lumped_bending_beam(output: str) -> sympy.Expr:
-    """Return ``x_act/F`` or ``x_tip/F`` of figure 12.
+    """Return ``x_act/F``, ``x_tip/F`` or ``theta/F``, the angle of the tip, of figure 12.
 
     The beam's energy is the integral of E I w''^2/2 over the cubic w that its end values fix.
     """
@@ -154,7 +154,7 @@ def lumped_bending_beam(output: str) -> sympy.Expr:
         kinetic=(m_1 * rate(x_act) ** 2 + m_2 * mass_centre**2 + J * rate(theta) ** 2) / 2,
         potential=sympy.expand(sympy.integrate(sympy.expand(EI * curvature**2 / 2), (x, 0, length))),
     )
-    return system.receptance({"x_act": x_act, "x_tip": y + h * theta}[output], {x_act: 1})
+    return system.receptance({"x_act": x_act, "x_tip": y + h * theta, "theta": theta}[output], {x_act: 1})
 
 
 def tip_bracket() -> sympy.Expr:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import random
+
 import pytest
 
 import symflex
@@ -65,6 +67,34 @@ def loop(expression, **parameters):
         inputs={"r": {}},
         outputs={"Y": "y"},
     )
+
+
+def scattered(seed):
+    """Return one to five functions whose roots, some multiple, reach over five decades."""
+    draws = random.Random(seed)
+    size = 10 ** draws.uniform(-1, 5)
+
+    def roots(most):
+        found = ["1"]
+        for _ in range(draws.randint(0, most)):
+            w = size * 10 ** draws.choice([0, 0, draws.uniform(-0.5, 0.5), draws.uniform(-2, 3)])
+            pair = f"(s^2 + {2 * draws.choice([0, 0, 0.02, 0.3]) * w:.4g}*s + {w * w:.6g})"
+            one = draws.choice([pair, pair, pair, f"(s {draws.choice('++-')} {w:.4g})", "s"])
+            found.append(f"{one}^{draws.choice([1, 1, 2, 3])}")
+        return "*".join(found)
+
+    below = roots(5)
+    return {f"y_{i}": f"u*{roots(4)}/({below})" for i in range(draws.randint(1, 5))}
+
+
+@pytest.mark.parametrize(
+    "seed", [n if n in (0, 1, 5) else pytest.param(n, marks=pytest.mark.slow) for n in range(20)]
+)
+def test_numbers_and_names_of_scattered_roots_keep_apart(seed):
+    model = symflex.Model(inputs={"u": {}}, outputs=scattered(seed)).resolved
+    bounds = [b for b in pipeline.derive_for_roots(model, model.transfer_functions) if not b.is_zero]
+    figure = draw("poles_zeros", [b.source for b in bounds], bounds)
+    assert not faults(figure)
 
 
 def test_one_far_pole_does_not_rule_a_locus():
