@@ -253,7 +253,8 @@ def without_sign(
         return None
     shown = "0" if magnitude == 0 else "negative"
     message = f"parameter '{name}' is {shown}, but a parameter is assumed {assume}"
-    hint = f'say assume = "{"nonnegative" if magnitude == 0 else "real"}" in the model'
+    weaker = "nonnegative" if magnitude == 0 else "real"
+    hint = f'write {name} = {{ value = ..., assume = "{weaker}" }} in the model'
     return Diagnostic("SF209", message, span, hint)
 
 

@@ -356,7 +356,8 @@ def _check_sign(parameter: ModelParameter, value: ExactValue | None) -> None:
     # Zero is let through: leaving an effect out is what binding is often for.
     if value.rational < 0:
         message = f"parameter '{parameter.name}' is negative, but is assumed {parameter.assume}"
-        raise UsageError(Diagnostic("SF209", message, None, 'say assume = "real" in the model'))
+        hint = f'write {parameter.name} = {{ value = ..., assume = "real" }} in the model'
+        raise UsageError(Diagnostic("SF209", message, None, hint))
 
 
 def _read_value(

@@ -249,7 +249,7 @@ def test_missing_values_are_told_in_one_line_of_forty_names(count, more):
 def test_a_negative_value_is_refused_where_the_model_excludes_it(name, assume):
     found = diagnostic(UsageError, "SF209", {name: Fraction(-1, 10**9)})
     assert found.message == f"parameter '{name}' is negative, but is assumed {assume}"
-    assert found.hint == 'say assume = "real" in the model'
+    assert found.hint == f'write {name} = {{ value = ..., assume = "real" }} in the model'
 
 
 def test_zero_and_real_values_are_taken():
