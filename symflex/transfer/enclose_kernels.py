@@ -205,13 +205,16 @@ class KernelValues:
 
 
 def power_of(base: Value, exponent: int) -> Value:
-    """Return an integer power."""
+    """Return an integer power, not finite where it divides by zero."""
     if isinstance(base, acb):
         return base**exponent
-    result: Value = base
+    result = base
     for _ in range(abs(exponent) - 1):
         result = result * base
-    return 1 / result if exponent < 0 else result
+    if exponent < 0:
+        # Balls are not finite then by themselves; series of them raise an error.
+        return acb_series([acb("nan")] * result.prec) if result[0].contains(0) else 1 / result
+    return result
 
 
 def _wavenumbers(law: Dispersion, c: Sequence[Value], near: Mapping[str, Value] | None) -> dict[str, Value]:

@@ -343,6 +343,14 @@ def test_laws_of_waves_have_poles_where_a_lossy_beam_no_longer_resists():
     assert not function.is_analytic_on(acb(arb(-240, 11), arb(0, 11)), BITS)
 
 
+def test_where_a_lossy_timoshenko_beam_no_longer_resists_nothing_is_finite():
+    text = 'symflex = 1\nelements.arm = { type = "beam", theory = "timoshenko", between = ["ground", "tip"], '
+    text += 'E = "2 Pa", I = "0.01 m^4", A = "1 m^2", rho = "1 kg/m^3", l = "1 m", G = "0.8 Pa", '
+    text += 'kappa = "5/6", eta = "0.02 s" }\ninputs.F = { force = "tip" }\noutputs.y = "tip"'
+    found = function_of(text).enclosed(acb(-50), BITS)
+    assert not all(value.is_finite() and slope.is_finite() for value, slope, _ in found)
+
+
 def test_a_root_has_no_logarithm():
     # cosh(s) of a rod without a tip, whose roots doubles do not know, and s of a loop without delay at 0.
     source = bound(DELAY_LOOP)
