@@ -68,7 +68,7 @@ class Sweep(sweep_room.Sweep):
         array([0.15915494, 0.31830989, 0.47746483])
         """
         from symflex.figures import DEFAULT_FONT, draw_sweep  # imports matplotlib
-        from symflex.figures.save import MM_PER_INCH
+        from symflex.figures.files import MM_PER_INCH
 
         mm = width_of(width)
         inches = None if mm is None else mm / MM_PER_INCH

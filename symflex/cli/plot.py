@@ -134,7 +134,7 @@ def _plot_sweep(spec: Specification, given: PlotOptions) -> int:
         message = "--set, --tf, --gain, --range, --band and ends of axes are not for a sweep"
         raise UsageError(Diagnostic("SF902", message))
     from symflex.figures import draw_sweep, save
-    from symflex.figures.save import MM_PER_INCH
+    from symflex.figures.files import MM_PER_INCH
     from symflex.print.latex import column_width
     from symflex.sweep.files import read_sweep
 

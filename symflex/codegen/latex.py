@@ -98,7 +98,7 @@ class LatexExporter:
     ) -> None:
         """Draw one figure, without its title, which stands below it."""
         from symflex.figures import render  # imports matplotlib
-        from symflex.figures.save import MM_PER_INCH
+        from symflex.figures.files import MM_PER_INCH
 
         name, kind = asked.name, asked.kind
         of = bounds[:1] if kind == "modes" else bounds  # all functions of a model have the same modes

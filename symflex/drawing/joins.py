@@ -11,14 +11,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from heapq import heappop, heappush
-from itertools import pairwise
+from itertools import combinations, pairwise
 from typing import TYPE_CHECKING, Final
 
 from symflex.drawing.geometry import THIN, Extent, Placed, Stroke, around, union
 from symflex.drawing.symbols import head
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from symflex.drawing.geometry import Drawing, Point
 
@@ -26,11 +26,13 @@ CELL: Final = 2.5
 """Of the grid on which ways are looked for [points]."""
 CLEAR: Final = 1.6
 """Between a wire and what it passes."""
-BEND, CROSSING, STRIKING = 8.0, 16.0, 40.0
+BEND, CROSSING, STRIKING = 8.0, 24.0, 60.0
 """What a corner, a dashed wire that is crossed, and another line that is, cost in cells of length."""
 LONGEST: Final = 300.0
 """Cost of a way that would rather confuse."""
 STEPS: Final = ((1, 0), (-1, 0), (0, 1), (0, -1))
+ROUNDS: Final = 3
+"""In which wires that meet look for other ways; the first ones do not know what comes after them."""
 Cell = tuple[int, int]
 
 
@@ -64,20 +66,62 @@ def joined(drawing: Drawing, joins: Sequence[Join]) -> tuple[Placed, ...]:
     right, top = int(drawing.width / CELL), int(drawing.height / CELL)
     blocked.update((x, y) for x in (0, right) for y in range(top + 1))
     blocked.update((x, y) for x in range(right + 1) for y in (0, top))
-    found = []
-    for one in joins:
-        points = _way(one.starts, one.ends, blocked, crossed)
-        points = points or _way(one.starts, one.otherwise, blocked, crossed)
-        # A symbol may reach into another one's place, where a way begins or ends.
-        if points and not any(_is_struck(pair, box) for pair in pairwise(points) for box in solid):
-            own = (c for pair in pairwise(points) for c in _covered(around(pair), 0.5 * CELL))
-            crossed = dict.fromkeys(own, CROSSING) | crossed
-            (ax, ay), tip = points[-2:]
-            size = abs(tip[0] - ax) + abs(tip[1] - ay)
-            d = ((tip[0] - ax) / size, (tip[1] - ay) / size)
-            dashes = Stroke((*points[:-1], (tip[0] - 2 * d[0], tip[1] - 2 * d[1])), THIN, is_dashed=True)
-            found.append(Placed("join", one.name, (dashes, head(tip, d, 3.0))))
-    return tuple(found)
+    tried = []
+    for first in range(len(joins)):
+        order = [first, *(i for i in range(len(joins)) if i != first)]
+        ways = _apart(order, lambda i, met: _best(joins[i], blocked, met, solid), crossed)
+        passed = [list(_passed(one)) for one in ways]
+        shared = sum(len({*a} & {*b}) for a, b in combinations(passed, 2))
+        struck = sum(crossed.get(c, 0.0) for cells in passed for c in cells)
+        bends = sum(len(one) if one else LONGEST / BEND for one in ways)
+        length = sum(map(len, passed))
+        tried.append((length + BEND * bends + struck + CROSSING * shared, first, ways))
+        if not shared:
+            break
+    found = min(tried)[2] if tried else []
+    return tuple(_drawn(one.name, points) for one, points in zip(joins, found, strict=True) if points)
+
+
+def _apart(
+    order: Sequence[int],
+    way: Callable[[int, Mapping[Cell, float]], list[Point]],
+    crossed: Mapping[Cell, float],
+) -> list[list[Point]]:
+    """Return ways that were found one after the other, those that meet others once more."""
+    ways: list[list[Point]] = [[] for _ in order]
+    for turn in range(ROUNDS):
+        before = list(ways)
+        for i in order:
+            others = {c for j, other in enumerate(ways) if j != i for c in _passed(other)}
+            if not turn or others & set(_passed(ways[i])):
+                ways[i] = way(i, {**dict.fromkeys(others, CROSSING), **crossed}) or ways[i]
+        if ways == before:
+            break
+    return ways
+
+
+def _best(
+    one: Join, blocked: set[Cell], crossed: Mapping[Cell, float], solid: Sequence[Extent]
+) -> list[Point]:
+    """Return the corners of the cheapest way of a wire, or nothing."""
+    points = _way(one.starts, one.ends, blocked, crossed) or _way(one.starts, one.otherwise, blocked, crossed)
+    # A symbol may reach into another one's place, where a way begins or ends.
+    is_struck = any(_is_struck(pair, box) for pair in pairwise(points) for box in solid)
+    return [] if is_struck else points
+
+
+def _passed(points: Sequence[Point]) -> Iterator[Cell]:
+    """Yield the cells that a way passes."""
+    yield from (c for pair in pairwise(points) for c in _covered(around(pair), 0.5 * CELL))
+
+
+def _drawn(name: str, points: Sequence[Point]) -> Placed:
+    """Return a way as a dashed wire with the head of an arrow."""
+    (ax, ay), tip = points[-2:]
+    size = abs(tip[0] - ax) + abs(tip[1] - ay)
+    d = ((tip[0] - ax) / size, (tip[1] - ay) / size)
+    dashes = Stroke((*points[:-1], (tip[0] - 2 * d[0], tip[1] - 2 * d[1])), THIN, is_dashed=True)
+    return Placed("join", name, (dashes, head(tip, d, 3.0)))
 
 
 def _is_struck(pair: tuple[Point, Point], box: Extent) -> bool:

@@ -9,7 +9,7 @@ from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 
 from symflex.drawing.geometry import BLACK, Drawing, Placed, union
-from symflex.figures.save import render
+from symflex.figures.files import render
 from symflex.figures.style import DEFAULT_FONT, new_figure, paper_style
 
 if TYPE_CHECKING:

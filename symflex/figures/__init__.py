@@ -5,62 +5,51 @@ A new kind is one file with a drawing function, and one line in :data:`FIGURES`.
 
 from __future__ import annotations
 
-from contextlib import nullcontext
-from typing import TYPE_CHECKING
-
-from matplotlib.text import Text
-
-from symflex.errors import Diagnostic, ModelError, UsageError
-from symflex.errors.diagnostic import nearest
-from symflex.figures.axes import FREE, AxesGiven, AxisLimits, Canvas, Drawing, axes_of
-from symflex.figures.bode import draw_bode, draw_fit, draw_measured, draw_response
-from symflex.figures.in_time import draw_impulse, draw_in_time, draw_step
-from symflex.figures.input_shaping import draw_residual
-from symflex.figures.loops import draw_locus, draw_loop_gain, draw_nyquist
-from symflex.figures.modes import draw_modes, draw_shapes
-from symflex.figures.poles_zeros import draw_poles_zeros
-from symflex.figures.runs import panels_of
-from symflex.figures.save import FORMATS, MM_PER_INCH, render, save
-from symflex.figures.style import (
-    DEFAULT_FONT,
-    FONTS,
-    Raster,
-    family_of,
-    paper_style,
-    raster_of,
-)
-from symflex.figures.sweep import draw_sweep
-from symflex.loops import require_arrival, trace_locus
-from symflex.options import PlotOptions, axis_ends, band_ends
-from symflex.print.latex.page import checked_width
+from importlib import import_module
+from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from contextlib import AbstractContextManager
-    from fractions import Fraction
+    from symflex.figures.axes import AxesGiven, AxisLimits, Drawing
+    from symflex.figures.bode import draw_fit, draw_measured, draw_response
+    from symflex.figures.files import FORMATS, render, save
+    from symflex.figures.in_time import draw_in_time
+    from symflex.figures.input_shaping import draw_residual
+    from symflex.figures.kinds import (
+        FIGURES,
+        LOOP_FIGURES,
+        draw,
+        draw_loop,
+        draw_shape,
+        part_shown,
+        picture_of_shape,
+    )
+    from symflex.figures.style import DEFAULT_FONT, FONTS
+    from symflex.figures.sweep import draw_sweep
 
-    from matplotlib.figure import Figure
-
-    from symflex.analysis.modes import EnclosedModeShape
-    from symflex.loops import AnyLoop
-    from symflex.model import Model
-    from symflex.transfer import AnyBoundFunction, AnyTransferFunction
-
-FIGURES: dict[str, Drawing] = {
-    "bode": draw_bode,
-    "impulse": draw_impulse,
-    "modes": draw_modes,
-    "nyquist": draw_nyquist,
-    "poles_zeros": draw_poles_zeros,
-    "step": draw_step,
+_HOME: Final = {
+    "AxesGiven": "axes",
+    "AxisLimits": "axes",
+    "Drawing": "axes",
+    "draw_fit": "bode",
+    "draw_measured": "bode",
+    "draw_response": "bode",
+    "FORMATS": "files",
+    "render": "files",
+    "save": "files",
+    "draw_in_time": "in_time",
+    "draw_residual": "input_shaping",
+    "FIGURES": "kinds",
+    "LOOP_FIGURES": "kinds",
+    "draw": "kinds",
+    "draw_loop": "kinds",
+    "draw_shape": "kinds",
+    "part_shown": "kinds",
+    "picture_of_shape": "kinds",
+    "DEFAULT_FONT": "style",
+    "FONTS": "style",
+    "draw_sweep": "sweep",
 }
-
-CURVES = ("bode", "nyquist")
-"""Kinds over the logarithm of the frequency, which has no 0."""
-S_PLANES = ("locus", "poles_zeros")
-
-LOOP_FIGURES: tuple[str, ...] = ("locus", "nyquist")
-"""Kinds that are drawn of a loop and its gain, by :func:`draw_loop`."""
+"""Where each name is found when it is first used: a drawing of a model takes a style and no roots."""
 
 __all__ = [
     "DEFAULT_FONT",
@@ -87,186 +76,8 @@ __all__ = [
 ]
 
 
-def draw(
-    kind: str,
-    tfs: Sequence[AnyTransferFunction],
-    bounds: Sequence[AnyBoundFunction],
-    *,
-    band_hz: tuple[float | Fraction, float | Fraction] | None = None,
-    frame: AxisLimits = FREE,
-    title: str | None = None,
-    width_mm: float | None = None,
-    font: str = DEFAULT_FONT,
-    ax: AxesGiven | None = None,
-) -> Figure:
-    """Draw a figure of one or several transfer functions.
-
-    ``kind`` is a key of :data:`FIGURES`, ``bounds`` are the functions ``tfs`` with numbers. Without
-    ``band_hz`` [Hz] a Bode plot takes the model's ``band``, or else one that shows all poles and zeros; a
-    pole-zero plot focuses on the resonances that belong together and marks the rest at its border, and with
-    it shows those up to its end; of modes, the lowest are shown, or those in it. ``frame`` takes the place of
-    limits that suit what is drawn; ``title`` is printed as it is, never read as mathematics. The figure is
-    3.5 inches wide by default, or 7.16 for what needs the width of a page. :func:`render` is to be told the
-    same ``font``, a key of :data:`FONTS`. On ``ax``, axes of the user's own, it is drawn in the user's style,
-    with as many of them as it has panels; of a Bode plot, the first alone shows magnitudes. Raises
-    UsageError: SF208 an unknown kind; SF227 an empty band; SF208 an
-    unknown font; SF902 the width is not between 80 and 1000 mm or too small for what is drawn, ``ax`` are too
-    many or too few, or limits are of axes that the figure has not; ModelError: SF402 a transfer function is
-    identically zero.
-    """
-    if kind not in FIGURES:
-        if kind in LOOP_FIGURES:
-            message = f"a figure of kind '{kind}' is drawn of a loop"
-            raise UsageError(
-                Diagnostic("SF902", message, None, "name its gain: --gain K, or gain in [figures]")
-            )
-        hint = nearest(kind, FIGURES) or "kinds: " + ", ".join(FIGURES)
-        raise UsageError(Diagnostic("SF208", f"there is no figure of kind '{kind[:64]}'", None, hint))
-    _check_frame(kind, frame)
-    if not tfs or len(tfs) != len(bounds):
-        message = (
-            f"a figure needs as many bound as symbolic transfer functions, not {len(bounds)} and {len(tfs)}"
-        )
-        raise ValueError(message)
-    for bound in bounds:
-        if bound.is_zero:
-            raise ModelError(Diagnostic("SF402", f"{bound.name} is identically zero: nothing to draw"))
-    canvas = _canvas(band_hz, frame, title, width_mm, ax)
-    with _style(font, canvas):
-        figure = FIGURES[kind](tfs, bounds, canvas)
-    return figure if canvas.axes else _with_every_letter(figure, font)
-
-
-def draw_shape(
-    model: Model,
-    shape: EnclosedModeShape,
-    *,
-    width_mm: float | None = None,
-    font: str = DEFAULT_FONT,
-    ax: AxesGiven | None = None,
-) -> Figure:
-    """Draw one mode shape of a model, as :func:`draw` draws several.
-
-    Raises ModelError: SF402 nothing moves that could be drawn.
-    """
-    canvas = _canvas(None, FREE, None, width_mm, ax)
-    if not panels_of(model, [shape]):
-        raise ModelError(Diagnostic("SF402", "nothing that moves in this mode could be drawn"))
-    with _style(font, canvas):
-        figure = draw_shapes(model, [shape], canvas)
-    return figure if canvas.axes else _with_every_letter(figure, font)
-
-
-def picture_of_shape(model: Model, shape: EnclosedModeShape) -> Raster | None:
-    """Return one mode shape as a notebook shows it; None where nothing moves that could be drawn."""
-    return raster_of(draw_shape(model, shape)) if panels_of(model, [shape]) else None
-
-
-def part_shown(kind: str, given: PlotOptions) -> tuple[tuple[Fraction, Fraction] | None, AxisLimits]:
-    """Return the band [Hz] and the limits of axes that options say.
-
-    Raises UsageError: SF902 for what are not limits, and for two of the frequencies of a Bode plot.
-
-    Examples
-    --------
-    >>> part_shown("bode", PlotOptions(band=("1", "1 kHz"), ylim=("-60 dB", "0")))[0]
-    (Fraction(1, 1), Fraction(1000, 1))
-    """
-    band, xlim = given.band, given.xlim
-    if xlim and kind == "bode":
-        if band:
-            raise UsageError(Diagnostic("SF902", "give only one of --band and --xlim"))
-        band, xlim = xlim, None
-    is_plane = kind in S_PLANES
-    frame = AxisLimits(
-        axis_ends(xlim, "--xlim", is_frequency=is_plane),
-        axis_ends(given.ylim, "--ylim", is_frequency=is_plane),
-        axis_ends(given.phase, "--phase"),
-    )
-    return None if band is None else band_ends(band, above_zero=kind in CURVES), frame
-
-
-def _canvas(
-    band_hz: tuple[float | Fraction, float | Fraction] | None,
-    frame: AxisLimits,
-    title: str | None,
-    width_mm: float | None,
-    ax: AxesGiven | None,
-) -> Canvas:
-    """Return what is asked of a figure, checked and in the units of matplotlib."""
-    band = None if band_hz is None else (float(band_hz[0]), float(band_hz[1]))
-    if band is not None and not 0 <= band[0] < band[1] < float("inf"):
-        message = f"a band runs from a lower to a higher frequency, not from {band[0]:g} to {band[1]:g} Hz"
-        raise UsageError(Diagnostic("SF227", message))
-    width = None if width_mm is None else checked_width(width_mm) / MM_PER_INCH
-    return Canvas(band, frame, title, width, axes_of(ax))
-
-
-def _style(font: str, canvas: Canvas) -> AbstractContextManager[None]:
-    return nullcontext() if canvas.axes else paper_style(font)
-
-
-def _check_frame(kind: str, frame: AxisLimits) -> None:
-    """Refuse limits of axes that a kind of figure has not."""
-    if frame.phase and kind != "bode":
-        raise UsageError(Diagnostic("SF902", "limits of a phase are for 'bode'"))
-    if frame.x and kind == "bode":
-        raise UsageError(Diagnostic("SF902", "the frequencies of a Bode plot are its band"))
-    if frame != FREE and kind == "modes":
-        raise UsageError(Diagnostic("SF902", "mode shapes have no limits: their largest displacement is 1"))
-
-
-def _with_every_letter(figure: Figure, font: str) -> Figure:
-    """Set texts with letters that a font lacks in one that has them."""
-    for text in figure.findobj(Text):
-        family = family_of(text.get_text(), font)
-        if family and not text.get_parse_math():
-            text.set_fontfamily(family)
-    return figure
-
-
-def draw_loop(
-    kind: str,
-    loop: AnyLoop,
-    *,
-    limits: tuple[Fraction | None, Fraction | None] | None = None,
-    modes: int | None = None,
-    band_hz: tuple[float | Fraction, float | Fraction] | None = None,
-    frame: AxisLimits = FREE,
-    title: str | None = None,
-    width_mm: float | None = None,
-    font: str = DEFAULT_FONT,
-    ax: AxesGiven | None = None,
-) -> Figure:
-    """Draw a root locus, or the Nyquist plot of a loop gain ``K B/A``.
-
-    ``kind`` is ``locus`` or ``nyquist``. ``limits`` are the first and last gain of a locus, by default from 0
-    to 10 times the nominal one; ``modes`` are traced in the locus of a loop with kernels, by default those in
-    the band, or the lowest five. ``band_hz`` are frequencies of a Nyquist plot [Hz]; a locus is shown up to
-    its end. The rest is as for :func:`draw`. Raises UsageError: SF208 an unknown kind, SF804 no range, SF806
-    no straight line in the gain; UncertifiedError: SF807 the curves do not end in proved poles.
-    """
-    if kind not in LOOP_FIGURES:
-        hint = "kinds: " + ", ".join(LOOP_FIGURES)
-        raise UsageError(
-            Diagnostic("SF208", f"no figure of kind '{kind[:64]}' is drawn of a loop", None, hint)
-        )
-    _check_frame(kind, frame)
-    canvas = _canvas(band_hz, frame, title, width_mm, ax)
-    with _style(font, canvas):
-        figure = _drawn_loop(kind, loop, limits, modes, canvas)
-    return figure if canvas.axes else _with_every_letter(figure, font)
-
-
-def _drawn_loop(
-    kind: str,
-    loop: AnyLoop,
-    limits: tuple[Fraction | None, Fraction | None] | None,
-    modes: int | None,
-    canvas: Canvas,
-) -> Figure:
-    if kind == "locus":
-        locus = trace_locus(loop, limits, modes, band_hz=canvas.band_hz)
-        require_arrival(locus)
-        return draw_locus(locus, canvas)
-    return draw_loop_gain(loop, canvas)
+def __getattr__(name: str) -> object:
+    if name not in _HOME:
+        message = f"module 'symflex.figures' has no attribute '{name}'"
+        raise AttributeError(message)
+    return getattr(import_module(f"symflex.figures.{_HOME[name]}"), name)

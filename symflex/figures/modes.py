@@ -14,8 +14,8 @@ from matplotlib.ticker import FixedLocator, MaxNLocator, NullFormatter
 from symflex.analysis.modes import lowest_modes
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.figures.axes import root_figure
+from symflex.figures.files import MM_PER_INCH
 from symflex.figures.runs import Plan, Run, Stems, panels_of
-from symflex.figures.save import MM_PER_INCH
 from symflex.figures.style import (
     COLOURS,
     COLUMN_INCHES,

@@ -61,6 +61,13 @@ def test_a_command_imports_the_libraries_it_needs_and_no_other(arguments, allowe
     assert modules_after(*arguments) & LIBRARIES == allowed
 
 
+@pytest.mark.slow
+def test_a_drawing_needs_a_style_and_no_roots(tmp_path):
+    found = modules_after("draw", LUMPED, "-o", str(tmp_path / "drawing.svg"))
+    assert found & LIBRARIES == {*READING, "matplotlib", "numpy"}
+    assert "symflex.roots" not in found
+
+
 ONLY_WITH_BEAMS = {
     "algebra.exponential_sum",
     "algebra.exponentials",
