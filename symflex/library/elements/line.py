@@ -112,7 +112,7 @@ class Rod(LineElement):
     """
 
     type_name = "rod"
-    summary = "Uniform rod in tension and compression"
+    summary = "Rod in tension and compression, uniform or tapered"
     ports = (Port("between", 2, "translation", "the two ends, the second one l further along x"),)
     parameters = (
         ParameterPort("E", "Pa", "a modulus of elasticity", sign="positive"),
@@ -139,7 +139,7 @@ class Shaft(LineElement):
     """
 
     type_name = "shaft"
-    summary = "Uniform shaft in torsion"
+    summary = "Shaft in torsion, uniform or tapered"
     ports = (Port("between", 2, "rotation", "the two ends, the second one l further along x"),)
     parameters = (
         ParameterPort("G", "Pa", "a shear modulus", sign="positive"),
@@ -165,7 +165,7 @@ class String(LineElement):
     """
 
     type_name = "string"
-    summary = "Stretched string, deflected across its length"
+    summary = "Stretched string, deflected across its length, uniform or not"
     ports = (Port("between", 2, "translation", "the two ends, the second one l further along x"),)
     parameters = (
         ParameterPort("N", "N", "a tension", sign="positive", varies=True),
@@ -196,7 +196,7 @@ class Beam(LineElement):
     """
 
     type_name = "beam"
-    summary = "Uniform beam in bending between two planar nodes"
+    summary = "Beam in bending between two planar nodes, uniform or tapered"
     ports = (Port("between", 2, "planar", "the two ends, the second one l further along x"),)
     parameters = (
         ParameterPort("E", "Pa", "a modulus of elasticity", sign="positive"),
