@@ -21,6 +21,7 @@ from symflex.analysis.time_response.enclosed_response import (
     JumpAt,
 )
 from symflex.analysis.time_response.exponentials import values_of
+from symflex.analysis.time_response.looped_modes import looped_modes
 from symflex.analysis.time_response.modal import estimated, proved_modes
 from symflex.analysis.time_response.partial_fractions import (
     EnclosedQuotient,
@@ -74,7 +75,8 @@ def time_response(
     UsageError
         SF902 for an unknown input, or a shaper with fewer digits.
     ModelError
-        SF813 for beams in loops with delays.
+        SF813 for large networks with delays, and impulses of beams in loops with delays that could only be
+        estimated.
     UncertifiedError
         SF810 when poles cannot be told apart and the time is too long for a power series.
 
@@ -191,13 +193,26 @@ def _found(
         late = _without_delay(bound) if quotient is None else None
         if late is not None:
             return _later(*late, integrations, times, digits)
-        if quotient is not None or waves is not None:
-            message = f"too many echoes of the delays of {bound.name} arrive by then"
-            raise UncertifiedError(Diagnostic("SF810", message, None, "ask for a shorter time"))
-        message = f"{bound.name} has delays and waves that spread: its response in time is not known"
-        raise ModelError(Diagnostic("SF813", message, None, "take 'symflex rational' of the beam first"))
+        if quotient is None and waves is None:
+            try:
+                looped = looped_modes(bound, integrations, times, digits)
+            except TooManyEchoesError:
+                raise _too_many(bound) from None
+            if looped is not None:
+                return looped
+        else:
+            raise _too_many(bound)
+        message = f"{bound.name} has waves that spread in a loop with a delay: this response is not known"
+        raise ModelError(
+            Diagnostic("SF813", message, None, "ask for a step, or take 'symflex rational' of the beam first")
+        )
     proved = proved_modes(bound, integrations, times, digits)
     return (proved.sampled, None) if proved is not None else estimated(bound, integrations, times)
+
+
+def _too_many(bound: BoundTransferFunction) -> UncertifiedError:
+    message = f"too many echoes of the delays of {bound.name} arrive by then"
+    return UncertifiedError(Diagnostic("SF810", message, None, "ask for a shorter time"))
 
 
 def _without_delay(bound: BoundTransferFunction) -> tuple[BoundTransferFunction, Callable[[], arb]] | None:

@@ -195,6 +195,7 @@ class PartialSum:
     values: tuple[arb, ...]  # of the terms, at all times
     rest: arb
     fading: tuple[arb, ...] = ()  # how much of the rest is left at all times; all of it if nothing is said
+    speed: arb | None = None  # how much the derivative of what is left out is at most, where that is known
 
     @property
     def left(self) -> arb:
@@ -349,6 +350,7 @@ def _summed(
         return None
     roots, reached = lowest
     rest = modes.rest(reached, integrations)
+    speed = modes.rest(reached, integrations - 1) if integrations else None
     with precision(modes.bits):
         if damping is None:
             terms = [modes.term(root, integrations) for root in roots]
@@ -364,7 +366,7 @@ def _summed(
             fading = [damping.fading(squared, integrations, t) for t in times.enclosed()]
             # Every mode begins at rest.
             values = [y if share > 0 else arb(0) for y, share in zip(values, fading, strict=True)]
-        return PartialSum((*origin, *known), tuple(values), rest, tuple(fading))
+        return PartialSum((*origin, *known), tuple(values), rest, tuple(fading), speed)
 
 
 def _damped(
@@ -453,6 +455,12 @@ def estimated(bound: AnyBoundFunction, integrations: int, times: SampleTimes) ->
 
     Raises UncertifiedError: SF810 where modes do not say what the response is.
     """
+    found = estimated_modes(bound, integrations, times)
+    return found.sampled, f"what the modes beyond the lowest {ESTIMATED_MODES} add is estimated"
+
+
+def estimated_modes(bound: AnyBoundFunction, integrations: int, times: SampleTimes) -> PartialSum:
+    """Return the sum over the lowest modes, whose rest is estimated; SF810 as :func:`estimated`."""
     count = ESTIMATED_MODES
     located = locate(bound, Modes(count), DIGITS).complete()
     poles = [root for root in located.all_poles if not root.im < 0 and not root.is_zero]
@@ -472,8 +480,7 @@ def estimated(bound: AnyBoundFunction, integrations: int, times: SampleTimes) ->
             message = f"the modes of {bound.name} fall off too slowly to say what it does in time"
             hint = "ask for a displacement, or a step in place of an impulse"
             raise UncertifiedError(Diagnostic("SF810", message, None, hint))
-        said = f"what the modes beyond the lowest {count} add is estimated"
-        return Sampled(tuple(y + arb(0, rest) for y in values)), said
+        return PartialSum((*origin, *terms), tuple(values), rest)
 
 
 def _over_powers(pole: acb, coefficients: tuple[acb, ...], integrations: int) -> list[acb]:

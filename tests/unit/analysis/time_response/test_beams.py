@@ -12,7 +12,7 @@ from flint import arb
 from symflex import loads
 from symflex.analysis.time_response import SampleTimes, time_response
 from symflex.analysis.time_response.lossless_modes import lossless_modes
-from symflex.errors import ModelError, UncertifiedError
+from symflex.errors import UncertifiedError
 from symflex.roots.precision import precision
 
 UNIT = 'E = "1 Pa", A = "1 m^2", I = "1 m^4", rho = "1 kg/m^3", l = "1 m"'
@@ -321,11 +321,3 @@ def test_a_beam_that_is_seen_late_does_the_same_later():
     assert alone.enclosures[1].overlaps(found.enclosures[2])
     assert np.all(np.abs(found.values[2:] - expected) <= found.radius[2:] + left + 1e-14)
     assert found.radius.max() <= 1e-9 * np.max(np.abs(expected))
-
-
-def test_a_beam_in_a_loop_with_a_delay_is_refused():
-    loop = with_delay(
-        'elements.push = { type = "force_source", at = "x", f = "F - k*D*x" }\nparameters.k = "1 N/m"'
-    )
-    with pytest.raises(ModelError, match="SF813"):
-        time_response(loop, "step", SampleTimes.of([0.5]))
