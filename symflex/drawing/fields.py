@@ -44,6 +44,7 @@ from symflex.expressions import (
     sum_of,
 )
 from symflex.model.along import COORDINATE, is_tapered
+from symflex.quantities import unit_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -65,6 +66,11 @@ OF_BEAMS: Final[dict[int, Style]] = {1: "twist", 2: "torque"}
 """What is driven at an end of a beam, by the order in x of what it rules there: a slope, a moment."""
 BENDING: Final = 4
 """Order in x of a beam's equation."""
+
+STRING: Final = (0.0,)
+"""Depths of a string, a line without any."""
+STIFF_SECTIONS: Final = {unit_of(unit).dimension for unit in ("Pa", "N*m^2")}
+"""Of a modulus, and of what resists bending or torsion."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +122,7 @@ class _Row:
         self.known = values_of(self.model)
         self.starts = self._starts()
         self.unknowns = {u: f for f in self.fields for u in f.unknowns}
-        self.depths = {f.name: self._depths(f) for f in self.fields}
+        self.depths = {f.name: STRING if self._is_string(f) else self._depths(f) for f in self.fields}
         inputs = self._collect_inputs()
         outputs = self._collect_outputs()
         for one in self.fields:
@@ -159,11 +165,10 @@ class _Row:
         ends = [evaluate(e, self.known) for e in (one.start, one.end)]
         a, b = (0.0 if ends[0] is None else ends[0]), (UNKNOWN if ends[1] is None else ends[1])
         for equation in one.equations:
-            if not (found := [n for n in names(equation) if isinstance(n, Derivative)]):
+            if not (found := _derivatives(equation)):
                 continue  # an unknown that follows another
-            highest = max(found, key=lambda d: d.order)
-            others = {n: number(0) for n in (*found, *map(Name, one.unknowns))}
-            stiff = _coefficient(equation, {**others, highest: number(1)})
+            highest = found[0]
+            stiff, others = _stiffness(equation, one.unknowns)
             moved = {**others, Name(highest.name): number(1)}
             inert, still = (_coefficient(equation, {**moved, Name("s"): number(n)}) for n in (1, 0))
             heavy = sum_of([inert, negative(still)])
@@ -230,8 +235,16 @@ class _Row:
 
     @staticmethod
     def _is_beam(one: FieldProblem) -> bool:
-        orders = [n.order for e in one.equations for n in names(e) if isinstance(n, Derivative)]
-        return max(orders, default=0) >= BENDING
+        return any(n.order >= BENDING for e in one.equations for n in _derivatives(e))
+
+    def _is_string(self, one: FieldProblem) -> bool:
+        """Whether a tension alone holds a field: neither a modulus nor what resists bending or torsion."""
+        if self._is_beam(one) or len(one.unknowns) > 1 or not _derivatives(one.equations[0]):
+            return False
+        stiff, _ = _stiffness(one.equations[0], one.unknowns)
+        held = {n.name for n in names(stiff) if isinstance(n, Name)}
+        found = {unit_of(p.unit).dimension for p in self.model.parameters if p.name in held and p.unit}
+        return bool(found) and not found & STIFF_SECTIONS
 
     def _single(self, expression: Expression) -> Call | None:
         """Return the one value of a field that an expression is, but for constants."""
@@ -249,7 +262,9 @@ class _Row:
 
     def _draw_member(self, one: FieldProblem) -> None:
         low, high = self.starts[one.name]
-        self.items.append(Placed("field", one.name, (slender(low, high, self.depths[one.name]),)))
+        depths = self.depths[one.name]
+        drawn = line((low, 0), (high, 0)) if depths == STRING else slender(low, high, depths)
+        self.items.append(Placed("field", one.name, (drawn,)))
         for x, point, side in ((low, one.start, -1), (high, one.end, 1)):
             support = tuple(_support(self._held(one, point), x, side, self._half(x)))
             if support:
@@ -349,6 +364,21 @@ class _Row:
     def _sides(self, equation: Equation) -> str:
         left, right = equation.children
         return f"{self.labels.expression(left)} = {self.labels.expression(right)}"
+
+
+def _derivatives(equation: Equation) -> list[Derivative]:
+    """Return the derivatives in an equation, the highest first."""
+    found = [n for n in names(equation) if isinstance(n, Derivative)]
+    return sorted(found, key=lambda d: -d.order)
+
+
+def _stiffness(
+    equation: Equation, unknowns: Sequence[str]
+) -> tuple[Expression, dict[Expression, Expression]]:
+    """Return the coefficient of the highest derivative, and noughts for all unknowns and derivatives."""
+    found = _derivatives(equation)
+    others: dict[Expression, Expression] = {n: number(0) for n in (*found, *map(Name, unknowns))}
+    return _coefficient(equation, {**others, found[0]: number(1)}), others
 
 
 def _coefficient(equation: Equation, values: Mapping[Expression, Expression]) -> Expression:

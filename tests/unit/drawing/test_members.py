@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+import symflex
 from symflex import pipeline
 from symflex.drawing import drawing_of
 from symflex.drawing.symbols import TRANSFORMER_SYMBOLS
@@ -120,10 +121,29 @@ def test_a_uniform_beam_is_drawn_uniform():
     assert thick == thin
 
 
-def test_a_string_whose_tension_varies_is_drawn_uniform():
+def test_a_string_whose_tension_varies_is_a_line():
     drawing = drawing_of(pipeline.load(ROOT / "derivations/tapers/hanging_string.toml"))
-    top, end = depths(drawing, "field", "w")
-    assert top == pytest.approx(end)
+    assert depths(drawing, "field", "w") == pytest.approx([0.0, 0.0])
+
+
+@pytest.mark.parametrize(("stiffness", "unit", "mass"), [("E*A", "GPa", "kg/m"), ("GJ", "N*m^2", "kg*m")])
+def test_a_field_of_second_order_with_a_modulus_or_torsion_is_as_thick_as_a_beam(stiffness, unit, mass):
+    name = stiffness.partition("*")[0]
+    drawing = drawing_of(
+        symflex.Model(
+            parameters={name: f"2 {unit}", "A": "1 cm^2", "l": "1 m", "mu": f"1 {mass}"},
+            fields={
+                "u": {
+                    "domain": ["0", "l"],
+                    "equation": f"{stiffness}*u'' = mu*s^2*u",
+                    "conditions": ["u(0) = 0", "u'(l) = p"],
+                }
+            },
+            inputs={"p": {}},
+            outputs={"tip": "u(l)"},
+        ).resolved
+    )
+    assert all(depth > 1.0 for depth in depths(drawing, "field", "u"))
 
 
 def test_a_cone_is_drawn_straight_to_its_tip_and_its_driven_root_in_a_guide():
