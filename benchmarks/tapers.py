@@ -3,10 +3,16 @@
 The beam is clamped, of square section, 40 mm wide at the clamp and 10 mm at the tip. Collocation is that of
 chebop (Driscoll, Bornemann & Trefethen 2008) by hand: displacement and moment at Chebyshev points. Shooting
 integrates both solutions that are clamped, and seeks where the free end's determinant changes sign.
+
+Exported C of the same beam is compared with that of the beam without taper, whose formula it has.
 """
 
 from __future__ import annotations
 
+import ctypes
+import re
+import shutil
+import sys
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -15,8 +21,10 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
+from benchmarks.generated import loaded, pointer
 from benchmarks.measure import Claim, Measurement, fastest
 from symflex import pipeline
+from symflex.codegen.c.module import C99
 from symflex.roots import Modes
 
 if TYPE_CHECKING:
@@ -58,6 +66,11 @@ TIMES_SHOOTING = 20.0
 """Most that they may take over shooting in doubles; six is usual."""
 TIMES_SERIES = 3.0
 """Speed over mpmath's Taylor series for one frequency, at least; ten is usual."""
+POINTS_OF_C = 10_000
+BAND_OF_C = 60.0, HIGHEST**2
+"""In rad/s: the five modes are in it."""
+TIMES_UNIFORM = 30.0
+"""Most that C may take over that of the uniform beam, whose formula is computed in vectors; 26 is usual."""
 
 
 def ours(modes: int, digits: int) -> NDArray[Any]:
@@ -165,7 +178,37 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
     )
     text = "the first frequency of a tapered beam: times as fast as mpmath's odefun"
     claims.append(Claim(text, TIMES_SERIES, found[-1].at_least / found[-2].at_least))
+    if shutil.which("cc") is None:
+        print("skipped, there is no C compiler `cc`: exported C of a tapered beam", file=sys.stderr)
+        return found, claims
+    for flag in ("-O2", "-O3"):
+        times = []
+        for name, text in (("tapered", MODEL), ("uniform", re.sub(r"\*\(1 - .*\)\^[24]", "", MODEL))):
+            task = f"exported C ({flag}) of a {name} beam at {POINTS_OF_C} frequencies"
+            best = fastest({name: responding(text, flag)}, limit, rounds=20, agreement=1e-7)
+            times += [Measurement(task, way, seconds, limit) for way, seconds in best.items()]
+        found += times
+        text = f"exported C ({flag}) of a tapered beam: times as long as that of a uniform one"
+        ratio = times[0].at_least / times[1].at_least
+        claims.append(Claim(text, TIMES_UNIFORM, ratio, larger_is_better=False))
     return found, claims
+
+
+def responding(text: str, flag: str) -> Callable[[], NDArray[Any]]:
+    """Return what computes a model's response, which is real, by exported C."""
+    model = pipeline.loads(text)
+    made = C99.export(model, pipeline.derive_all(model), stem="beam", is_alone=False)
+    library = loaded({"beam.c": made.text, "beam.h": made.companions[".h"]}, ("-std=c99", flag))
+    omega = np.geomspace(*BAND_OF_C, POINTS_OF_C)
+    real, imag = np.empty_like(omega), np.empty_like(omega)
+    defaults = ctypes.c_double.in_dll(library, "beam_defaults")
+    arguments = (*map(pointer, (omega, real, imag)), ctypes.c_size_t(omega.size), ctypes.byref(defaults))
+
+    def run() -> NDArray[Any]:
+        library.beam_y_over_F_freq(*arguments)
+        return real
+
+    return run
 
 
 def _compare(

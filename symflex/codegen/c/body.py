@@ -68,7 +68,7 @@ class Term:
     varies: bool = False  # true when it depends on s
     binding: int = _LEAF  # how tightly its outermost operator binds
     depth: int = 0  # how many calls are nested in it
-    # Of an array of complex numbers, the position of the one that is real; negative for none.
+    # Of an array of complex numbers, the position from which on they are real; negative for none.
     real_at: int = -1
 
     def within(self, tightest: int) -> str:
@@ -126,7 +126,7 @@ class CPrinter:
                 return self._apply(function, self.print(argument))
             case tree.Item(values, position):
                 held = self.listed(values)
-                part, kind = (".re", Kind.REAL) if position == held.real_at else ("", held.kind)
+                part, kind = (".re", Kind.REAL) if 0 <= held.real_at <= position else ("", held.kind)
                 return Term(f"{held.text}[{position}]{part}", kind, held.varies)
         message = f"no text for {type(node).__name__}"
         raise TypeError(message)
@@ -536,14 +536,10 @@ class Body:
                 found = self.name(wanted)
                 self.add(f"cx {found}[2];", f"cx_total({given}, {logarithms}, {number}, {found});")
                 return Term(found, Kind.COMPLEX, varies or grows, real_at=1)
-            case tree.FundamentalMinors(start, length, bases):
-                given, _, varies = self._given(bases)
-                ends = ", ".join(self.term(x).text for x in (start, length))
+            case tree.FundamentalMinors(wanted=minors):
                 found, own = self.name(wanted), self.followed[node]
-                self.add(f"cx {found}[{len(node.wanted) + node.size}];")
-                opening = f"cx_minors(along_{own}, plan_{own}, p, {ends},"
-                self.say(opening, f"{given}, kept + {own.partition('_')[0]}, {found})")
-                return Term(found, Kind.COMPLEX, varies)
+                self.say(f"const cx *const {found} =", f"kept[{own.partition('_')[0]}].now")
+                return Term(found, Kind.COMPLEX, varies=True, real_at=len(minors))
         message = f"no text for {type(node).__name__}"
         raise TypeError(message)
 

@@ -125,6 +125,7 @@ class Functions:
 
     def _following(self, program: tree.Piecewise) -> list[list[str]]:
         """Return the functions of a program that follows matrices along x."""
+        (piece,) = program.code
         blocks, followed = [], {node: f"{k}_of_{self.name}" for k, node in enumerate(program.minors)}
         for node, own in followed.items():
             table = f"{{{', '.join(map(str, minors_plan(node)))}}}"
@@ -135,44 +136,72 @@ class Functions:
                 scope.say(f"part[{k}] =", scope.term(value).text)
             head = [f"static void along_{own}(double x, const {self.structure} *p, double *part)", "{"]
             blocks.append(self._ends(scope, head, "x"))
+            scope = Body.of(self.members, S)
+            given = (node.start, node.length, *node.bases)
+            code = piece.code.needed(given)
+            scope.assign((*code.constants, *code.assignments))
+            for k, value in enumerate(given):
+                scope.say(f"given[{k}] =", complex_term(scope.term(value)).text)
+            head = [f"static void given_{own}(cx s, const {self.structure} *p, cx *given)", "{"]
+            blocks.append(self._ends(scope, head))
+        members = ", ".join(f"{{along_{own}, given_{own}, plan_{own}}}" for own in followed.values())
+        blocks.append(statement(f"static const cx_member members_of_{self.name}[] =", f"{{{members}}}", 0))
         scope = Body.of(self.members, S)
         scope.followed = followed
-        (piece,) = program.code
-        scope.assign((*piece.code.constants, *piece.code.assignments))
-        num, den = (scope.term(v) for v in piece.code.values)
+        code = piece.code.needed(piece.code.values, (tree.FundamentalMinors,))
+        scope.assign((*code.constants, *code.assignments))
+        num, den = (scope.term(v) for v in code.values)
         scope.say("return", complex_term(quotient(num, den)).text)
         count = len(followed)
-        head = [f"static cx value_at_{self.name}(cx s, const {self.structure} *p, cx_pieces *kept)", "{"]
-        begin = [f"{STEP}cx_pieces kept[{count}];", f"{STEP}cx_begin(kept, {count});"]
+        head = [
+            f"static cx value_at_{self.name}(cx s, const {self.structure} *p, const cx_pieces *kept)",
+            "{",
+        ]
+        begin = [
+            f"{STEP}cx_pieces kept[{count}];",
+            f"{STEP}cx_begin(kept, members_of_{self.name}, {count});",
+        ]
+        follow = f"cx_follow(kept, {count}, value_at_{self.name}, p,"
         end = [f"{STEP}cx_end(kept, {count});"]
         whole = [
             *self._head(f"value_of_{self.name}"),
             *begin,
-            f"{STEP}const cx value = value_at_{self.name}(s, p, kept);",
+            f"{STEP}{follow} &s, 1);",
             *end,
-            f"{STEP}return value;",
+            f"{STEP}return s;",
             "}",
         ]
-        call = f"value_at_{self.name}(cx_of(0.0, omega[i]), p, kept)"
-        return [
-            *blocks,
-            self._ends(scope, head),
-            self._wrapped_value(whole),
-            self._response(call, begin, end),
+        response = [
+            *self.freq_prototype.split("\n"),
+            "{",
+            *begin,
+            f"{STEP}for (size_t i = 0; i < n; i += cx_lanes) {{",
+            f"{STEP * 2}const int count = n - i < cx_lanes ? (int)(n - i) : cx_lanes;",
+            f"{STEP * 2}cx g[cx_lanes];",
+            f"{STEP * 2}for (int j = 0; j < count; j++) {{",
+            f"{STEP * 3}g[j] = cx_of(0.0, omega[i + j]);",
+            f"{STEP * 2}}}",
+            f"{STEP * 2}{follow} g, count);",
+            f"{STEP * 2}for (int j = 0; j < count; j++) {{",
+            f"{STEP * 3}real[i + j] = g[j].re;",
+            f"{STEP * 3}imag[i + j] = g[j].im;",
+            f"{STEP * 2}}}",
+            f"{STEP}}}",
+            *end,
+            "}",
         ]
+        return [*blocks, self._ends(scope, head), self._wrapped_value(whole), response]
 
-    def _response(self, value: str, begin: Sequence[str] = (), end: Sequence[str] = ()) -> list[str]:
+    def _response(self, value: str) -> list[str]:
         """Return the response whose values calls at ``omega[i]`` give."""
         return [
             *self.freq_prototype.split("\n"),
             "{",
-            *begin,
             f"{STEP}for (size_t i = 0; i < n; i++) {{",
             f"{STEP * 2}const cx g = {value};",
             f"{STEP * 2}real[i] = g.re;",
             f"{STEP * 2}imag[i] = g.im;",
             f"{STEP}}}",
-            *end,
             "}",
         ]
 
@@ -408,7 +437,7 @@ def minors_plan(node: tree.FundamentalMinors) -> list[int]:
     ends.append(len(node.wanted))
     for rows, columns in node.wanted:
         ends += [starts.index(columns), lines[len(rows)].index(rows)]
-    room = len(products) + sum(len(lines[q]) ** 2 for q in range(1, largest + 1))
+    room = len(products) + size**2 + sum(len(lines[q]) ** 2 for q in range(1, largest + 1))
     room += 2 * sum(len(lines[len(columns)]) for columns in starts)
     at = 7 + len(parts) + len(products) * bases
     head = [size, len(node.places), bases, len(products), room, at, at + len(choices)]

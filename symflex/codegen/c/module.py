@@ -7,6 +7,7 @@ Output: the texts of both files.
 from __future__ import annotations
 
 import re
+from math import comb
 from typing import TYPE_CHECKING
 
 from symflex.codegen.c.body import KEYWORDS, LANE_FUNCTIONS, PARTS, RESERVED, WIDTH
@@ -274,7 +275,9 @@ def helpers(code: str, parameters: str, order: int) -> str:
         always += ["ROUNDER", "OTHERWISE"] if own else ["LANES"]
         others = "".join(f"#define lane_{f} {f}\n" for f in own)
     text = "\n".join(called_parts(code, PARTS, always)).replace("OTHERWISE\n", others)
-    return text.replace("PARAMETERS", parameters).replace("CX_ORDER", str(max(order, 1)))
+    order = max(order, 1)
+    text = text.replace("CX_CHOICES", str(comb(order, order // 2)))
+    return text.replace("PARAMETERS", parameters).replace("CX_ORDER", str(order))
 
 
 C99 = Language(

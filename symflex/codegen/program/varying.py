@@ -80,8 +80,10 @@ class _Workshop:
                 growth.append(forge.multiply([forge.constant(exponent), logarithm]))
             halves.append((forge.multiply(values), forge.add(growth)))
         (num, up), (den, down) = halves
-        over = forge.apply("exp", forge.add([up, forge.negate(down)]))
-        num = forge.multiply([self.site.value(plain.numerator()), num, over])
+        above = [self.site.value(plain.numerator()), num]
+        if up != down:
+            above.append(forge.apply("exp", forge.add([up, forge.negate(down)])))
+        num = forge.multiply(above)
         den = forge.multiply([self.site.value(plain.denominator()), den])
         parameters = tuple(p.name for p in self.tf.parameters)
         nothing = straight(forge, [forge.constant(1)])
@@ -119,6 +121,8 @@ class _Workshop:
             made = [self._minors[m] for m in product]
             amplitudes.append(forge.multiply([self.site.polynomial(coefficient), *(v for v, _ in made)]))
             exponents.append(forge.add([scale for _, scale in made]))
+        if len(amplitudes) == 1:
+            return amplitudes[0], exponents[0]
         return forge.scaled_sum(amplitudes, exponents)
 
 

@@ -778,27 +778,37 @@ static cx cx_network(const cx *entry, const int *plan, int output, int source)
 }
 
 //: cx_pieces cx_begin cx_end
-/* What a fundamental matrix whose law varies along x is on pieces of its length: polynomials in
- * the bases over their limits, which frequencies within a factor of four share. Of every piece
- * there are so many coefficients; place has of each the power of the bases and the entry.
+/* So many frequencies are computed at a time, in loops that compilers turn into vector instructions. */
+enum { cx_lanes = 32 };
+
+/* A matrix whose law varies along x: the parts of the law at x, and at s the start, the length and the
+ * bases; the plan is told at cx_law.
  */
 typedef struct {
-    double octave[CX_ORDER];    /* of the bases */
+    void (*along)(double x, const PARAMETERS *p, double *part);
+    void (*at)(cx s, const PARAMETERS *p, cx *given);
+    const int *plan;
+} cx_member;
+
+/* What the fundamental matrix of a member is on pieces of its length: polynomials in the bases over
+ * their limits, which frequencies within a factor of four share. Of every piece there are so many
+ * coefficients, in order of the entries: place has where those of each begin, and then of each coefficient
+ * the product of bases. now points to the minors at the frequency whose value is wanted.
+ */
+typedef struct {
+    const cx_member *member;
+    int octave[CX_ORDER];    /* of the bases, in powers of 16 */
     int pieces, count, *place;
     size_t room;
-    double *coefficient;
-    cx *work;
+    double *coefficient, *work;
+    cx *minor, *now;
 } cx_pieces;
 
-static void cx_begin(cx_pieces *kept, int count)
+static void cx_begin(cx_pieces *kept, const cx_member *member, int count)
 {
     for (int k = 0; k < count; k++) {
-        kept[k].pieces = -1;
-        kept[k].count = 0;
-        kept[k].room = 0;
-        kept[k].place = NULL;
-        kept[k].coefficient = NULL;
-        kept[k].work = NULL;
+        const cx_pieces none = {.member = member + k, .pieces = -1};
+        kept[k] = none;
     }
 }
 
@@ -808,23 +818,25 @@ static void cx_end(cx_pieces *kept, int count)
         free(kept[k].place);
         free(kept[k].coefficient);
         free(kept[k].work);
+        free(kept[k].minor);
     }
 }
 
 //: cx_chebyshev
-/* The number of Chebyshev points on a piece, less one. */
-enum { cx_points = 20 };
+/* The number of Chebyshev points on a piece, less one, and of lanes for them. */
+enum { cx_points = 20, cx_room = 24 };
 
-/* Points from 0 to 1, what makes Chebyshev's terms of values there, and their integrals from 0. */
+/* Points from 0 to 1, what makes Chebyshev's terms of values there, and by value its integrals from 0. */
 typedef struct {
     double point[cx_points + 1];
-    double term[cx_points + 1][cx_points + 1], integral[cx_points + 1][cx_points + 1];
+    double term[cx_points + 1][cx_points + 1], integral[cx_points + 1][cx_room];
 } cx_table;
 
 static void cx_chebyshev(cx_table *table)
 {
     enum { N = cx_points };
     double cosine[2 * N];
+    memset(table, 0, sizeof *table);
     for (int m = 0; m < 2 * N; m++) {
         cosine[m] = cos(3.141592653589793 * m / N);
     }
@@ -847,10 +859,11 @@ static void cx_chebyshev(cx_table *table)
             }
         }
         for (int j = 0; j <= N; j++) {
-            table->integral[i][j] = 0.0;
+            double sum = 0.0;
             for (int m = 0; m <= N; m++) {
-                table->integral[i][j] += 0.5 * grown[m] * table->term[m][j];
+                sum += 0.5 * grown[m] * table->term[m][j];
             }
+            table->integral[j][i] = sum;
         }
     }
 }
@@ -870,6 +883,7 @@ typedef struct {
     const PARAMETERS *p;
     const int *plan;
     double start, length, *scale;
+    int *sum;    /* of the powers in two products, which product has them; -1 for none */
 } cx_law;
 
 static void cx_parts(const cx_law *law, double share, double *part)
@@ -903,11 +917,14 @@ static double cx_growth(const cx_law *law, const double *part)
             return 0.0;
         }
         grown = 2.0 * grown + log(most);
+        for (int i = 0; i < n * n; i++) {
+            a[i] /= most;
+            b[i] = 0.0;
+        }
         for (int i = 0; i < n; i++) {
-            for (int j = 0; j < n; j++) {
-                b[n * i + j] = 0.0;
-                for (int k = 0; k < n; k++) {
-                    b[n * i + j] += a[n * i + k] / most * (a[n * k + j] / most);
+            for (int k = 0; k < n; k++) {
+                for (int j = 0; j < n && a[n * i + k] > 0.0; j++) {
+                    b[n * i + j] += a[n * i + k] * a[n * k + j];
                 }
             }
         }
@@ -916,25 +933,114 @@ static double cx_growth(const cx_law *law, const double *part)
     return exp(ldexp(grown, -11));
 }
 
+//: cx_combined
+/* Lanes of a sum of numbers times the lanes at some places, or at the first ones. */
+static void cx_combined(int count, const double *factor, const double *lanes, int stride, const int *at,
+                        int width, double *c)
+{
+    for (int j = 0; j < width; j += 8) {
+        double s_0 = 0.0, s_1 = 0.0, s_2 = 0.0, s_3 = 0.0, s_4 = 0.0, s_5 = 0.0, s_6 = 0.0, s_7 = 0.0;
+        for (int k = 0; k < count; k++) {
+            const double *const p = lanes + stride * (at ? at[k] : k) + j, f = factor[k];
+            s_0 += f * p[0];
+            s_1 += f * p[1];
+            s_2 += f * p[2];
+            s_3 += f * p[3];
+            s_4 += f * p[4];
+            s_5 += f * p[5];
+            s_6 += f * p[6];
+            s_7 += f * p[7];
+        }
+        c[j] = s_0;
+        c[j + 1] = s_1;
+        c[j + 2] = s_2;
+        c[j + 3] = s_3;
+        c[j + 4] = s_4;
+        c[j + 5] = s_5;
+        c[j + 6] = s_6;
+        c[j + 7] = s_7;
+    }
+}
+
+//: cx_dot
+/* Lanes of a sum of products. */
+static void cx_dot(int count, const double *const *a, const double *const *b, double *c)
+{
+    for (int j = 0; j < cx_lanes; j += 8) {
+        double s_0 = 0.0, s_1 = 0.0, s_2 = 0.0, s_3 = 0.0, s_4 = 0.0, s_5 = 0.0, s_6 = 0.0, s_7 = 0.0;
+        for (int k = 0; k < count; k++) {
+            const double *const p = a[k] + j, *const q = b[k] + j;
+            s_0 += p[0] * q[0];
+            s_1 += p[1] * q[1];
+            s_2 += p[2] * q[2];
+            s_3 += p[3] * q[3];
+            s_4 += p[4] * q[4];
+            s_5 += p[5] * q[5];
+            s_6 += p[6] * q[6];
+            s_7 += p[7] * q[7];
+        }
+        c[j] = s_0;
+        c[j + 1] = s_1;
+        c[j + 2] = s_2;
+        c[j + 3] = s_3;
+        c[j + 4] = s_4;
+        c[j + 5] = s_5;
+        c[j + 6] = s_6;
+        c[j + 7] = s_7;
+    }
+}
+
+//: cx_joined
+/* Put the product of the last two pieces in their place, but for powers that are too high to matter:
+ * where a section changes quickly, waves may grow little from piece to piece.
+ */
+static void cx_joined(const cx_law *law, double *work, cx_pieces *kept)
+{
+    const int n = law->plan[0], products = law->plan[3], size = n * n;
+    const int *const place = kept->place, *const product = place + size + 1;
+    double *const first = kept->coefficient + (size_t)kept->count * (size_t)(kept->pieces - 2);
+    const double *const second = first + kept->count;
+    memset(work, 0, (size_t)(products * size) * sizeof *work);
+    for (int i = 0; i < size; i++) {
+        for (int k = place[i]; k < place[i + 1]; k++) {
+            const int *const sum = law->sum + products * product[k], column = i % n;
+            for (int j = 0; j < n; j++) {
+                for (int m = place[n * column + j]; m < place[n * column + j + 1]; m++) {
+                    if (sum[product[m]] >= 0) {
+                        work[size * sum[product[m]] + i - column + j] += second[k] * first[m];
+                    }
+                }
+            }
+        }
+    }
+    for (int i = 0; i < size; i++) {
+        for (int k = place[i]; k < place[i + 1]; k++) {
+            first[k] = work[size * product[k] + i];
+        }
+    }
+    kept->pieces--;
+}
+
 //: cx_followed
 /* Append the fundamental matrix of a piece, from one share of the length to another, by so many
- * steps of Picard's iteration; pieces are halved until the parts are polynomials there to the
+ * steps of Picard's iteration; it is made of halves until the parts are polynomials there to the
  * last digits. work holds values of the parts, and rows of the matrix at Chebyshev points, by
- * product of powers, row and column, each followed by whether there is any. 0 without memory.
+ * product of powers, row and column, of each at last whether there is any. 0 without memory.
  */
 static int cx_followed(const cx_law *law, const cx_table *table, double from, double to, int halvings,
                        int steps, double *work, cx_pieces *kept)
 {
-    enum { N = cx_points, STRIDE = cx_points + 2 };
+    enum { N = cx_points, STRIDE = cx_room, FLAG = cx_room - 1 };
     const int n = law->plan[0], parts = law->plan[1], bases = law->plan[2], products = law->plan[3];
     const int total = products * n * n;
-    double *const value = work, *const sum = value + (N + 1) * parts;
+    double *const value = work, *const sum = value + STRIDE * parts;
     double *row = sum + 2 * total, *next = row + STRIDE * total, *const part = next + STRIDE * total;
     int is_rough = 0;
+    memset(value, 0, (size_t)(STRIDE * parts) * sizeof *value);
     for (int i = 0; i <= N; i++) {
         cx_parts(law, from + (to - from) * table->point[i], part);
         for (int k = 0; k < parts; k++) {
-            value[(N + 1) * k + i] = part[k];
+            value[STRIDE * k + i] = (to - from) * part[k];
         }
     }
     for (int k = 0; k < parts && halvings < 12; k++) {
@@ -942,7 +1048,7 @@ static int cx_followed(const cx_law *law, const cx_table *table, double from, do
         for (int m = 0; m <= N; m++) {
             double own = 0.0;
             for (int i = 0; i <= N; i++) {
-                own += table->term[m][i] * value[(N + 1) * k + i];
+                own += table->term[m][i] * value[STRIDE * k + i];
             }
             most = fmax(most, fabs(own));
             last = m > N - 3 ? fmax(last, fabs(own)) : 0.0;
@@ -951,48 +1057,52 @@ static int cx_followed(const cx_law *law, const cx_table *table, double from, do
     }
     if (is_rough) {
         const double middle = 0.5 * (from + to);
-        return cx_followed(law, table, from, middle, halvings + 1, steps, work, kept)
-            && cx_followed(law, table, middle, to, halvings + 1, steps, work, kept);
+        if (!cx_followed(law, table, from, middle, halvings + 1, steps, work, kept)
+            || !cx_followed(law, table, middle, to, halvings + 1, steps, work, kept)) {
+            return 0;
+        }
+        cx_joined(law, work, kept);
+        return 1;
     }
     for (int k = 0; k < total; k++) {
-        row[STRIDE * k + N + 1] = sum[2 * k] = sum[2 * k + 1] = 0.0;
+        row[STRIDE * k + FLAG] = sum[2 * k] = sum[2 * k + 1] = 0.0;
     }
     for (int i = 0; i < n; i++) {
         const int at = (n + 1) * i;
         sum[2 * at] = sum[2 * at + 1] = 1.0;
-        for (int k = 0; k <= N + 1; k++) {
+        for (int k = 0; k < STRIDE; k++) {
             row[STRIDE * at + k] = 1.0;
         }
     }
     for (int step = 0; step < steps; step++) {
-        for (int k = 0; k < STRIDE * total; k++) {
-            next[k] = 0.0;
+        for (int k = 0; k < total; k++) {
+            next[STRIDE * k + FLAG] = 0.0;
         }
         for (int k = 0; k < parts; k++) {
             const int *const own = law->plan + 7 + k * (2 + bases + products), *const made = own + 2 + bases;
+            const double *const factor = value + STRIDE * k;
             for (int m = 0; m < n * products; m++) {
                 const double *const given = row + STRIDE * (n * (n * (m / n) + own[1]) + m % n);
-                if (given[N + 1] == 0.0 || made[m / n] < 0) {
+                if (given[FLAG] == 0.0 || made[m / n] < 0) {
                     continue;
                 }
                 double *const slope = next + STRIDE * (n * (n * made[m / n] + own[0]) + m % n);
-                for (int i = 0; i <= N; i++) {
-                    slope[i] += value[(N + 1) * k + i] * given[i];
+                for (int i = 0; i < STRIDE && slope[FLAG] == 0.0; i++) {
+                    slope[i] = 0.0;
                 }
-                slope[N + 1] = 1.0;
+                for (int i = 0; i < STRIDE; i++) {
+                    slope[i] += factor[i] * given[i];
+                }
+                slope[FLAG] = 1.0;
             }
         }
         for (int k = 0; k < total; k++) {
-            double *const grown = row + STRIDE * k, *const slope = next + STRIDE * k;
-            grown[N + 1] = slope[N + 1];
-            for (int i = 0; i <= N && slope[N + 1] != 0.0; i++) {
-                grown[i] = 0.0;
-                for (int j = 0; j <= N; j++) {
-                    grown[i] += table->integral[i][j] * slope[j];
-                }
-                grown[i] *= to - from;
-            }
-            if (slope[N + 1] != 0.0) {
+            const double *const slope = next + STRIDE * k;
+            double *const grown = row + STRIDE * k;
+            grown[FLAG] = slope[FLAG];
+            if (slope[FLAG] != 0.0) {
+                cx_combined(N + 1, slope, table->integral[0], STRIDE, NULL, STRIDE, grown);
+                grown[FLAG] = 1.0;
                 sum[2 * k] += grown[N];
                 sum[2 * k + 1] = 1.0;
             }
@@ -1000,10 +1110,14 @@ static int cx_followed(const cx_law *law, const cx_table *table, double from, do
     }
     if (kept->place == NULL) {
         /* The same for all pieces of one cut. */
-        kept->place = malloc((size_t)total * sizeof *kept->place);
+        kept->place = malloc((size_t)(n * n + 1 + total) * sizeof *kept->place);
         for (int k = 0; k < total && kept->place; k++) {
-            if (sum[2 * k + 1] != 0.0) {
-                kept->place[kept->count++] = k;
+            if (k % products == 0) {
+                kept->place[k / products] = kept->count;
+            }
+            if (sum[2 * (n * n * (k % products) + k / products) + 1] != 0.0) {
+                kept->place[n * n + 1 + kept->count++] = k % products;
+                kept->place[n * n] = kept->count;
             }
         }
     }
@@ -1016,8 +1130,10 @@ static int cx_followed(const cx_law *law, const cx_table *table, double from, do
     if (kept->place == NULL || more > kept->room) {
         return 0;
     }
-    for (int k = 0; k < kept->count; k++) {
-        kept->coefficient[used + k] = sum[2 * kept->place[k]];
+    for (int i = 0; i < n * n; i++) {
+        for (int k = kept->place[i]; k < kept->place[i + 1]; k++) {
+            kept->coefficient[used + (size_t)k] = sum[2 * (n * n * kept->place[n * n + 1 + k] + i)];
+        }
     }
     kept->pieces++;
     return 1;
@@ -1064,143 +1180,305 @@ static void cx_cut(const cx_law *law, double *work, cx_pieces *kept)
     kept->pieces = is_made ? kept->pieces : 0;
 }
 
-//: cx_through
-/* Minors of the product of all pieces, and the logarithms of the scales of their sizes. */
-static void cx_through(const int *plan, const cx *base, cx_pieces *kept, cx *minor)
+//: cx_negated
+static void cx_negated(const double *restrict a, double *restrict c)
 {
+    for (int j = 0; j < cx_lanes; j++) {
+        c[j] = -a[j];
+    }
+}
+
+//: cx_product
+/* A sum of products of numbers in lanes: of each there are the real parts, the imaginary parts, and
+ * these with the other sign.
+ */
+static void cx_product(int count, const double *const *a, const double *const *b, int is_complex, double *c)
+{
+    enum { L = cx_lanes, MOST = 2 * CX_CHOICES };
+    if (!is_complex) {
+        cx_dot(count, a, b, c);
+        return;
+    }
+    const double *p[MOST] = {NULL}, *q[MOST] = {NULL};
+    for (int part = 0; part < 2; part++) {
+        for (int k = 0; k < count; k++) {
+            p[2 * k] = a[k];
+            q[2 * k] = b[k] + L * part;
+            p[2 * k + 1] = a[k] + L * (2 - part);
+            q[2 * k + 1] = b[k] + L * (1 - part);
+        }
+        cx_dot(2 * count, p, q, c + L * part);
+    }
+    cx_negated(c + L, c + 2 * L);
+}
+
+//: cx_rescale
+/* Divide numbers by their largest part in each lane, and add its logarithm to growth. */
+static void cx_rescale(double *number, int count, int is_complex, double *growth)
+{
+    enum { L = cx_lanes };
+    double most[L] = {0.0};
+    for (int i = 0; i < 3 * count; i += is_complex ? 1 : 3) {
+        for (int j = 0; j < L; j++) {
+            const double size = fabs(number[L * i + j]);
+            most[j] = size > most[j] ? size : most[j];
+        }
+    }
+    for (int j = 0; j < L; j++) {
+        most[j] = most[j] > 0.0 ? most[j] : 1.0;
+        growth[j] += log(most[j]);
+    }
+    for (int i = 0; i < 3 * count; i += is_complex ? 1 : 3) {
+        for (int j = 0; j < L; j++) {
+            number[L * i + j] /= most[j];
+        }
+    }
+}
+
+//: cx_through
+/* Minors of the product of all pieces, and the logarithms of the scales of their sizes, in some lanes. */
+static void cx_through(cx_pieces *kept, const double *base, int is_complex, const int *is_wanted)
+{
+    enum { L = cx_lanes, W = 3 * cx_lanes };
+    const int *const plan = kept->member->plan;
     const int n = plan[0], bases = plan[2], products = plan[3], largest = plan[plan[5]];
     const int *const starts = plan + plan[6], *const wanted = starts + 1 + 2 * starts[0];
     const int *exponent = plan + 7 + plan[1] * (2 + bases + products), *choice[CX_ORDER + 1];
-    int count[CX_ORDER + 1] = {0, n};
-    double growth[CX_ORDER + 1] = {0.0};
-    cx *const power = kept->work, *level[CX_ORDER + 1] = {NULL, power + products}, *state, *grown;
+    int count[CX_ORDER + 1] = {0, n}, chosen[CX_ORDER + 1] = {0};
+    double growth[CX_ORDER + 1][L] = {{0.0}};
+    double *const power = kept->work, *level[CX_ORDER + 1] = {NULL, power + W * products};
+    /* Of the matrix there is one with the other sign, too. */
+    double *const negative = level[1] + W * n * n;
+    const double *a[CX_CHOICES], *b[CX_CHOICES];
+    double *state[CX_ORDER + 1], *spare[CX_ORDER + 1], *end;
     choice[1] = plan + plan[5] + 1;
     for (int q = 2, before = 0; q <= largest; q++) {
         choice[q] = choice[q - 1] + 2 * (q - 1) * before;
         before = count[q] = *choice[q]++;
-        level[q] = level[q - 1] + count[q - 1] * count[q - 1];
+        level[q] = q == 2 ? negative + W * n * n : level[q - 1] + W * count[q - 1] * count[q - 1];
     }
-    state = level[largest] + count[largest] * count[largest];
-    for (int k = 0; k < starts[0]; k++) {
-        for (int i = 0; i < count[starts[1 + 2 * k]]; i++) {
-            *state++ = cx_of(i == starts[2 + 2 * k] ? 1.0 : 0.0, 0.0);
+    /* Starts come in order of their sizes; after those of one size there is room for what they become. */
+    end = largest > 1 ? level[largest] + W * count[largest] * count[largest] : negative + W * n * n;
+    for (int q = 1; q <= largest; q++) {
+        state[q] = end;
+        for (int k = 0; k < starts[0]; k++) {
+            for (int i = 0; i < count[q] && starts[1 + 2 * k] == q; i++, end += W) {
+                for (int j = 0; j < W; j++) {
+                    end[j] = i == starts[2 + 2 * k] && j < L ? 1.0 : 0.0;
+                }
+                chosen[q]++;
+            }
         }
+        spare[q] = end;
+        end += W * chosen[q];
     }
-    grown = state;
     for (int m = 0; m < products; m++) {
-        power[m] = cx_of(1.0, 0.0);
-        for (int b = 0; b < bases; b++, exponent++) {
-            for (int k = 0; k < *exponent; k++) {
-                power[m] = cx_mul(power[m], base[b]);
+        /* A product before it, times bases. */
+        const int *const power_of = exponent + bases * m;
+        int from = 0, left = 0;
+        for (int i = 0; i < bases; i++) {
+            left += power_of[i];
+        }
+        for (int before = 1; before < m; before++) {
+            int more = 0, divides = 1;
+            for (int i = 0; i < bases; i++) {
+                const int own = power_of[i] - exponent[bases * before + i];
+                divides &= own >= 0;
+                more += own;
+            }
+            from = divides && more < left ? before : from;
+            left = divides && more < left ? more : left;
+        }
+        b[0] = power + W * from;
+        for (int j = 0; j < W && m == 0; j++) {
+            power[j] = j < L ? 1.0 : 0.0;
+        }
+        for (int i = 0; i < bases; i++) {
+            for (int k = exponent[bases * from + i]; k < power_of[i]; k++, left--) {
+                /* What comes behind the powers is not in use yet. */
+                double *const made = left % 2 ? power + W * m : level[1];
+                a[0] = base + W * i;
+                cx_product(1, a, b, is_complex, made);
+                b[0] = made;
             }
         }
     }
     for (int piece = 0; piece < kept->pieces; piece++) {
         const double *const coefficient = kept->coefficient + (size_t)kept->count * (size_t)piece;
-        double most[CX_ORDER + 1] = {0.0};
+        const int *const product = kept->place + n * n + 1;
         for (int i = 0; i < n * n; i++) {
-            level[1][i] = cx_of(0.0, 0.0);
-        }
-        for (int k = 0; k < kept->count; k++) {
-            cx *const entry = level[1] + kept->place[k] % (n * n);
-            *entry = cx_add(*entry, cx_scale(coefficient[k], power[kept->place[k] / (n * n)]));
+            const int begin = kept->place[i], number = kept->place[i + 1] - begin;
+            double *const entry = level[1] + W * i;
+            for (int part = 0; part <= 2 * is_complex; part++) {
+                cx_combined(number, coefficient + begin, power + L * part, W, product + begin, L,
+                            entry + L * part);
+                if (largest > 1) {
+                    cx_negated(entry + L * part, negative + W * i + L * part);
+                }
+            }
         }
         for (int q = 2; q <= largest; q++) {
             /* Expanded along the first rows. */
-            for (int i = 0; i < count[q] * count[q]; i++) {
-                const int *const rows = choice[q] + 2 * q * (i / count[q]);
-                const int *const columns = choice[q] + 2 * q * (i % count[q]);
-                const cx *const smaller = level[q - 1] + count[q - 1] * rows[q];
-                cx sum = cx_of(0.0, 0.0);
-                for (int k = 0; k < q; k++) {
-                    const cx term = cx_mul(level[1][n * rows[0] + columns[k]], smaller[columns[q + k]]);
-                    sum = k % 2 ? cx_sub(sum, term) : cx_add(sum, term);
+            for (int i = 0; i < count[q]; i++) {
+                const int *const rows = choice[q] + 2 * q * i;
+                for (int j = 0; j < count[q]; j++) {
+                    const int *const columns = choice[q] + 2 * q * j;
+                    for (int k = 0; k < q; k++) {
+                        a[k] = (k % 2 ? negative : level[1]) + W * (n * rows[0] + columns[k]);
+                        b[k] = level[q - 1] + W * (count[q - 1] * rows[q] + columns[q + k]);
+                    }
+                    cx_product(q, a, b, is_complex, level[q] + W * (count[q] * i + j));
                 }
-                level[q][i] = sum;
             }
-        }
-        cx *before = level[largest] + count[largest] * count[largest], *after = grown;
-        for (int k = 0; k < starts[0]; k++) {
-            const int q = starts[1 + 2 * k], size = count[q];
-            for (int i = 0; i < size; i++, after++) {
-                *after = cx_of(0.0, 0.0);
-                for (int j = 0; j < size; j++) {
-                    *after = cx_add(*after, cx_mul(level[q][size * i + j], before[j]));
-                }
-                most[q] = fmax(most[q], cx_abs(*after));
-            }
-            before += size;
         }
         for (int q = 1; q <= largest; q++) {
-            growth[q] += most[q] > 0.0 ? log(most[q]) : 0.0;
-        }
-        state = level[largest] + count[largest] * count[largest];
-        after = grown;
-        for (int k = 0; k < starts[0]; k++) {
-            const int q = starts[1 + 2 * k];
-            for (int i = 0; i < count[q]; i++) {
-                *state++ = cx_over(*after++, most[q]);
+            double *const grown = spare[q];
+            for (int i = 0; i < chosen[q]; i++) {
+                for (int k = 0; k < count[q]; k++) {
+                    a[k] = level[q] + W * (count[q] * (i % count[q]) + k);
+                    b[k] = state[q] + W * (i - i % count[q] + k);
+                }
+                cx_product(count[q], a, b, is_complex, grown + W * i);
+            }
+            spare[q] = state[q];
+            state[q] = grown;
+            /* Waves grow by e^3 on a piece. */
+            if (piece % 8 == 7 || piece == kept->pieces - 1) {
+                cx_rescale(grown, chosen[q], is_complex, growth[q]);
             }
         }
     }
-    for (int w = 0; w < wanted[0]; w++) {
-        const cx *own = level[largest] + count[largest] * count[largest];
-        for (int k = 0; k < wanted[1 + 2 * w]; k++) {
-            own += count[starts[1 + 2 * k]];
+    for (int j = 0; j < L; j++) {
+        cx *const minor = kept->minor + j * (wanted[0] + n);
+        for (int w = 0; w < wanted[0] && is_wanted[j]; w++) {
+            const int q = starts[1 + 2 * wanted[1 + 2 * w]];
+            const double *own = state[q] + W * wanted[2 + 2 * w] + j;
+            for (int k = 0; k < wanted[1 + 2 * w]; k++) {
+                own += starts[1 + 2 * k] == q ? W * count[q] : 0;
+            }
+            minor[w] = cx_of(own[0], is_complex ? own[L] : 0.0);
         }
-        minor[w] = own[wanted[2 + 2 * w]];
-    }
-    for (int q = 1; q <= n; q++) {
-        minor[wanted[0] + q - 1] = cx_of(q <= largest ? growth[q] : 0.0, 0.0);
+        for (int q = 1; q <= n && is_wanted[j]; q++) {
+            minor[wanted[0] + q - 1] = cx_of(q <= largest ? growth[q][j] : 0.0, 0.0);
+        }
     }
 }
 
 //: cx_minors
-/* Minors of the fundamental matrix of a law over the scales of their sizes, then the logarithms of
- * these. Its pieces are kept for frequencies alike.
- */
-static void cx_minors(void (*along)(double x, const PARAMETERS *p, double *part), const int *plan,
-                      const PARAMETERS *p, double start, double length, const cx *base,
-                      cx_pieces *kept, cx *minor)
+/* Make the minors of a member over the scales of their sizes, then the logarithms of these, at some s. */
+static void cx_minors(cx_pieces *kept, const PARAMETERS *p, const cx *s, int count)
 {
+    enum { L = cx_lanes };
+    const int *const plan = kept->member->plan;
     const int n = plan[0], parts = plan[1], bases = plan[2], products = plan[3];
+    const int width = plan[plan[6] + 1 + 2 * plan[plan[6]]] + n;
     const size_t total = (size_t)(products * n * n);
-    double octave[CX_ORDER];
-    cx reduced[CX_ORDER];
-    int is_new = kept->pieces < 0;
-    for (int k = 0; k < plan[plan[6] + 1 + 2 * plan[plan[6]]] + n; k++) {
-        minor[k] = cx_of(NAN, NAN);
-    }
-    for (int b = 0; b < bases; b++) {
-        const double size = cx_abs(base[b]);
-        if (!(size < HUGE_VAL)) {
-            return;
+    int octave[L][CX_ORDER];
+    double base[3 * L * CX_ORDER];
+    cx given[2 + CX_ORDER], reduced[L][CX_ORDER];
+    int is_left[L];
+    for (int j = 0; j < count; j++) {
+        for (int w = 0; w < width; w++) {
+            kept->minor[j * width + w] = cx_of(NAN, NAN);
         }
-        /* Frequencies within a factor of four share their pieces. */
-        octave[b] = size == 0.0 ? -250.0 : ceil(0.25 * log2(size));
-        reduced[b] = cx_over(base[b], pow(16.0, octave[b]));
-        is_new = is_new || octave[b] != kept->octave[b];
+        kept->member->at(s[j], p, given);
+        is_left[j] = 1;
+        for (int b = 0; b < bases; b++) {
+            const double size = cx_abs(given[2 + b]);
+            is_left[j] &= size < HUGE_VAL;
+            /* Frequencies within a factor of four share their pieces. */
+            int exponent = 0;
+            (void)frexp(is_left[j] && size > 0.0 ? size : 1e-300, &exponent);
+            octave[j][b] = (exponent + 4003) / 4 - 1000;
+            reduced[j][b] = cx_scale(ldexp(1.0, -4 * octave[j][b]), given[2 + b]);
+        }
     }
-    if (is_new) {
-        const size_t room = 2 * (cx_points + 3) * total + (cx_points + 3) * (size_t)parts;
-        double *const scale = malloc(room * sizeof *scale);
-        const cx_law law = {along, p, plan, start, length, scale};
-        kept->work = kept->work ? kept->work : malloc((size_t)plan[4] * sizeof *kept->work);
-        kept->pieces = 0;
-        for (int k = 0; k < parts && scale; k++) {
-            scale[k] = 1.0;
+    for (int first = 0; first < count; first++) {
+        int is_wanted[L] = {0}, is_complex = 0, is_new = kept->pieces < 0;
+        for (int b = 0; b < bases && is_left[first]; b++) {
+            is_new = is_new || octave[first][b] != kept->octave[b];
+            kept->octave[b] = octave[first][b];
+        }
+        if (!is_left[first]) {
+            continue;
+        }
+        if (is_new) {
+            const size_t room = 2 * (cx_room + 1) * total + (cx_room + 2) * (size_t)parts;
+            const int *const exponent = plan + 7 + parts * (2 + bases + products);
+            double *const scale = malloc(room * sizeof *scale);
+            int *const sum = malloc((size_t)(products * products) * sizeof *sum);
+            const cx_law law = {kept->member->along, p, plan, given[0].re, given[1].re, scale, sum};
+            kept->pieces = 0;
+            for (int k = 0; k < products * products && sum; k++) {
+                sum[k] = -1;
+                for (int m = 0; m < products; m++) {
+                    int is_same = 1;
+                    for (int b = 0; b < bases; b++) {
+                        const int other = exponent[bases * (k % products) + b];
+                        is_same &= exponent[bases * m + b] == exponent[bases * (k / products) + b] + other;
+                    }
+                    sum[k] = is_same ? m : sum[k];
+                }
+            }
+            for (int k = 0; k < parts && scale; k++) {
+                scale[k] = 1.0;
+                for (int b = 0; b < bases; b++) {
+                    scale[k] *= ldexp(1.0, 4 * kept->octave[b] * plan[9 + k * (2 + bases + products) + b]);
+                }
+            }
+            if (scale && sum) {
+                cx_cut(&law, scale + parts, kept);
+            }
+            free(scale);
+            free(sum);
+        }
+        for (int j = 0; j < L; j++) {
+            is_wanted[j] = j < count && is_left[j];
+            for (int b = 0; b < bases && is_wanted[j]; b++) {
+                is_wanted[j] &= octave[j][b] == kept->octave[b];
+            }
             for (int b = 0; b < bases; b++) {
-                kept->octave[b] = octave[b];
-                scale[k] *= pow(16.0, octave[b] * plan[9 + k * (2 + bases + products) + b]);
+                const cx own = reduced[is_wanted[j] ? j : first][b];
+                base[3 * L * b + j] = own.re;
+                base[3 * L * b + L + j] = own.im;
+                base[3 * L * b + 2 * L + j] = -own.im;
+                is_complex |= own.im != 0.0;
             }
         }
-        if (scale && kept->work) {
-            cx_cut(&law, scale + parts, kept);
+        if (kept->pieces > 0) {
+            cx_through(kept, base, is_complex, is_wanted);
         }
-        free(scale);
+        for (int j = 0; j < count; j++) {
+            is_left[j] &= !is_wanted[j];
+        }
     }
-    if (kept->pieces > 0) {
-        cx_through(plan, reduced, kept, minor);
+}
+
+//: cx_follow
+/* Put values in the place of some s, no more than there are lanes: functions of the minors of all members. */
+static void cx_follow(cx_pieces *kept, int members,
+                      cx (*value)(cx s, const PARAMETERS *p, const cx_pieces *kept),
+                      const PARAMETERS *p, cx *s, int count)
+{
+    int is_made = 1;
+    for (int k = 0; k < members && is_made; k++) {
+        const int *const plan = kept[k].member->plan;
+        const size_t width = (size_t)(plan[plan[6] + 1 + 2 * plan[plan[6]]] + plan[0]);
+        if (kept[k].minor == NULL) {
+            kept[k].minor = malloc(cx_lanes * width * sizeof *kept[k].minor);
+            kept[k].work = malloc(3 * cx_lanes * (size_t)plan[4] * sizeof *kept[k].work);
+        }
+        is_made = kept[k].minor && kept[k].work;
+        if (is_made) {
+            cx_minors(kept + k, p, s, count);
+        }
+    }
+    for (int j = 0; j < count; j++) {
+        for (int k = 0; k < members && is_made; k++) {
+            const int *const plan = kept[k].member->plan;
+            kept[k].now = kept[k].minor + j * (plan[plan[6] + 1 + 2 * plan[plan[6]]] + plan[0]);
+        }
+        s[j] = is_made ? value(s[j], p, kept) : cx_of(NAN, NAN);
     }
 }
 
