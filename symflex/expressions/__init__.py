@@ -4,6 +4,7 @@ from symflex.expressions.format import format_expression
 from symflex.expressions.limits import PROGRAM_LIMITS, USER_LIMITS, Limits
 from symflex.expressions.nodes import (
     Attribute,
+    Bessel,
     Call,
     Derivative,
     Differentiated,
@@ -41,6 +42,7 @@ __all__ = [
     "PROGRAM_LIMITS",
     "USER_LIMITS",
     "Attribute",
+    "Bessel",
     "Call",
     "Derivative",
     "Differentiated",

@@ -8,7 +8,7 @@ numbers stays what it is. Walks over a tree list its parts, replace them, and fo
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import reduce
 from operator import add, mul, neg, truediv
@@ -77,6 +77,20 @@ class Call(Expression):
     def children(self) -> tuple[Expression, ...]:
         """The operands, from left to right."""
         return (self.argument,)
+
+
+@dataclass(frozen=True, slots=True)
+class Bessel(Call):
+    """A Bessel function, as formulas that are derived have them: ``J_0(q)``; none is read."""
+
+    kind: str = field(kw_only=True)  # J, Y, I or K; the name may begin otherwise where that is taken
+    index: Fraction = field(kw_only=True)
+
+    @property
+    def latex(self) -> str:
+        """The function's label."""
+        letter = self.kind if self.name.startswith(f"{self.kind}_") else rf"\mathrm{{{self.kind}}}"
+        return f"{letter}_{{{self.index}}}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -494,8 +508,8 @@ def _rebuilt(node: Expression, children: Sequence[Expression]) -> Expression:
             return Sum(tuple(_flat(children, Sum)), span=span)
         case Product():
             return Product(tuple(_flat(children, Product)), span=span)
-        case Call(name=name, order=order):
-            return Call(name, children[0], order, span=span)
+        case Call():
+            return replace(node, argument=children[0])
         case Differentiated(order=order):
             return Differentiated(children[0], order, children[1] if len(children) > 1 else None, span=span)
         case Negative():

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import sympy
 
 from symflex.algebra import LAPLACE
-from symflex.expressions import FUNCTIONS, Call, Expression, Name, fold, substitute
+from symflex.expressions import FUNCTIONS, Bessel, Call, Expression, Name, fold, substitute
 from symflex.model.units import exact_expression
 from symflex.state_space import not_rational
 from symflex.transfer import BoundTransferFunction
@@ -44,6 +44,9 @@ def to_sympy(expression: Expression, symbols: Mapping[str, sympy.Symbol]) -> sym
     known = {**symbols, "pi": sympy.pi}
 
     def called(call: Call, argument: sympy.Expr) -> sympy.Expr:
+        if isinstance(call, Bessel):
+            index = sympy.Rational(call.index.numerator, call.index.denominator)
+            return getattr(sympy, f"bessel{call.kind.lower()}")(index, argument)
         if call.name in FUNCTIONS:
             return getattr(sympy, call.name)(argument)
         function, x = sympy.Function(call.name), sympy.Dummy("x")

@@ -40,6 +40,7 @@ def form_text(tf: AnyTransferFunction, form: PrintedForm) -> str:
     lines += [f"  {form.stability.headline}"] if form.stability else []
     lines += [f"  where {name} = {format_expression(e)}" for name, e in form.where]
     lines += [f"  where {line}" for law in form.laws for line in law_lines(*law)]
+    lines += [f"  so {format_expression(left)} = {format_expression(e)}" for left, e in form.closed]
     return "\n".join(lines)
 
 
@@ -69,6 +70,8 @@ def derive_text(tf: AnyTransferFunction, form: PrintedForm, width: int = WIDTH) 
         )
         first, *more = _lay_out(line, width - len(word) - 3, hanging=len(INDENT))
         lines += [f"{INDENT}{word} {first}", *(" " * (len(word) + 3) + text for text in more)]
+    for word, (left, expression) in zip(chain(["so   "], repeat("     ")), form.closed, strict=False):
+        lines += hanging(f"{INDENT}{word} {format_expression(left)} = ", expression, width)
     if form.where or form.laws:
         lines.append("")
     for factor, multiplicity in hidden:

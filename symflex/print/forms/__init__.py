@@ -139,7 +139,7 @@ def _drafted(tf: TransferFunction, arranged: Arranged) -> Iterator[PrintedForm]:
 def _explained(tf: TransferFunction, made: PrintedForm) -> PrintedForm:
     """Return a form with the definitions that occur in it."""
     explained = {name for name, _ in made.where}
-    parts = (made.num, made.den, *(e for _, e in made.where), *(law for _, law in made.laws))
+    parts = (made.num, made.den, *(e for _, e in made.where), *(law for _, law in (*made.laws, *made.closed)))
     known = ((d.name, d.expression) for d in tf.model.definitions if d.name not in explained)
     return replace(made, where=(*made.where, *reachable(parts, known)))
 

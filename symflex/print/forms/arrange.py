@@ -442,6 +442,19 @@ class ProductPrinter:
         return found
 
 
+def length_sides(printer: ProductPrinter, length: Factored) -> Sides:
+    """Return numerator and denominator of a length; ``-(x - l)`` is ``l - x``."""
+    above, below = printer.sides(length)
+    if isinstance(above, Negative):
+        factors = list(above.operand.factors if isinstance(above.operand, Product) else (above.operand,))
+        last = factors[-1]
+        if isinstance(last, Sum) and any(isinstance(t, Negative) for t in last.terms):
+            turned = [t.operand if isinstance(t, Negative) else Negative(t) for t in last.terms]
+            factors[-1] = Sum(tuple(sorted(turned, key=lambda t: isinstance(t, Negative))))
+            above = product_of(factors)
+    return above, below
+
+
 @dataclass(frozen=True, eq=False)
 class Arranged:
     """Printers of functions that are printed together; those of equal symbols are one, and arrange once."""

@@ -14,9 +14,6 @@ from symflex.expressions import (
     Equation,
     Expression,
     Name,
-    Negative,
-    Product,
-    Sum,
     names,
     negative,
     number,
@@ -25,7 +22,8 @@ from symflex.expressions import (
     quotient,
     sum_of,
 )
-from symflex.print.forms.arrange import Arranger, ProductPrinter, Sides
+from symflex.print.forms.arrange import Arranger, ProductPrinter, length_sides
+from symflex.print.forms.closed import closed_entries
 from symflex.print.forms.kept import KeptDefinitions
 
 if TYPE_CHECKING:
@@ -57,6 +55,7 @@ class Notation:
     symbols: Mapping[str, Expression]
     lines: tuple[Line, ...]
     laws: tuple[tuple[str, Equation], ...] = ()
+    closed: tuple[tuple[Expression, Expression], ...] = ()  # what functions that laws determine are
 
 
 class Naming:
@@ -131,20 +130,22 @@ def notation_of(
         else:
             lines.append((q, wave_times_length(printer, wave, angle.length)))
     decays, laws = other_kernels(tf, used, naming, printer)
-    entries, systems = entries_of_matrices(tf, used, naming, printer)
-    symbols |= {**waves.symbols, **decays, **entries}
-    return Notation(symbols, (*lines, *waves.lines), (*laws, *systems))
+    entries = entries_of_matrices(tf, used, naming, printer)
+    symbols |= {**waves.symbols, **decays, **entries.symbols}
+    return Notation(symbols, (*lines, *waves.lines), (*laws, *entries.laws), entries.closed)
 
 
 def entries_of_matrices(
     tf: TransferFunction, used: Collection[str], naming: Naming, printer: ProductPrinter
-) -> tuple[dict[str, Expression], tuple[tuple[str, Equation], ...]]:
+) -> Notation:
     """Return entries of fundamental matrices, ``Z_12(l)``, and what determines them.
 
-    That is how the states, row i, of any column j change along x, and where they start.
+    That is how the states, row i, of any column j change along x, and where they start; and what the entries
+    are, if they have a closed form.
     """
     symbols: dict[str, Expression] = {}
     lines: list[tuple[str, Equation]] = []
+    closed: list[tuple[Expression, Expression]] = []
     for d in tf.kernels.dispersions:
         kernels = [k for k in tf.kernels.kernels_of(d) if k.function == "entry" and k.generator in used]
         if not kernels:
@@ -154,10 +155,12 @@ def entries_of_matrices(
         apart = "" if n < 10 else "_"  # noqa: PLR2004  (indices of two digits need one between them)
         names_of_column = [f"{stem}_{i}{apart}j" for i in range(1, n + 1)]
         naming.keep([*names_of_column, f"{stem}_ij"])
+        places: dict[Factored, list[tuple[int, int, Expression]]] = {}
         for kernel in kernels:
             i, j = divmod(kernel.order, n)
             place = printer.quotient(start + kernel.length)
-            symbols[kernel.generator] = Call(f"{stem}_{i + 1}{apart}{j + 1}", place)
+            called = symbols[kernel.generator] = Call(f"{stem}_{i + 1}{apart}{j + 1}", place)
+            places.setdefault(kernel.length, []).append((i, j, called))
         for name, row in zip(names_of_column, d.matrix, strict=True):
             terms = [
                 product_of([printer.quotient(c), Name(other)])
@@ -173,7 +176,8 @@ def entries_of_matrices(
                 if i != j and not row[j].is_zero:
                     entry = Call(f"{stem}_{i + 1}{apart}{j + 1}", first)
                     lines.append((entry.name, Equation(entry, printer.quotient(row[j]))))
-    return symbols, tuple(lines)
+        closed += closed_entries(tf, d, places, naming, printer)
+    return Notation(symbols, (), tuple(lines), tuple(closed))
 
 
 def _stems() -> Iterator[str]:
@@ -188,26 +192,13 @@ def _occurs(dispersion: Dispersion, used: Collection[str], angles: Iterable[Angl
 
 def wave_times_length(printer: ProductPrinter, wave: Expression, length: Factored) -> Expression:
     """Return a wavenumber times a length."""
-    above, below = _length_sides(printer, length)
+    above, below = length_sides(printer, length)
     return quotient(product_of([wave, above]), below)
-
-
-def _length_sides(printer: ProductPrinter, length: Factored) -> Sides:
-    """Return numerator and denominator of a length; ``-(x - l)`` is ``l - x``."""
-    above, below = printer.sides(length)
-    if isinstance(above, Negative):
-        factors = list(above.operand.factors if isinstance(above.operand, Product) else (above.operand,))
-        last = factors[-1]
-        if isinstance(last, Sum):
-            turned = [t.operand if isinstance(t, Negative) else Negative(t) for t in last.terms]
-            factors[-1] = Sum(tuple(sorted(turned, key=lambda t: isinstance(t, Negative))))
-            above = product_of(factors)
-    return above, below
 
 
 def times_length(printer: ProductPrinter, root: Expression, length: Factored) -> Expression:
     """Return a length times what a wavenumber is, s in front."""
-    above, below = _length_sides(printer, length)
+    above, below = length_sides(printer, length)
     s = Name(LAPLACE)
     inner = root.children if root.children and root.children[0] == s else (root,)
     front = [s] if inner[0] == s else []

@@ -146,7 +146,7 @@ def in_kernels(
     notation = notation_of(tf, used, Naming.of(tf))
     printer = kernel_printer(tf, notation, arranged)
     sides = shortest_sides(printer, value, wavenumber_laws(tf))
-    return PrintedForm(name, *sides, notation.lines, notation.laws)
+    return PrintedForm(name, *sides, notation.lines, notation.laws, notation.closed)
 
 
 def kernel_printer(
@@ -171,4 +171,5 @@ def collected_form(tf: TransferFunction) -> PrintedForm:
         arranger.collected(tf.ratio.denominator().expand()),
         notation.lines,
         notation.laws,
+        notation.closed,
     )

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 from symflex.algebra import LAPLACE
 from symflex.errors import Diagnostic, UsageError
-from symflex.expressions import FUNCTIONS, Call, Expression, Name, format_expression, names
+from symflex.expressions import FUNCTIONS, Bessel, Call, Expression, Name, format_expression, names
 from symflex.transfer.transfer_function import degree
 
 if TYPE_CHECKING:
@@ -35,6 +35,8 @@ class PrintedForm:
     # its derivatives is one and those before it are zero. Only for field equations whose exponents have no
     # formula. Where coefficients vary along x, a line per state: ``Z_1j' = ...``, and ``Z_ij(0) = delta_ij``.
     laws: tuple[tuple[str, Equation], ...] = ()
+    # What the functions of laws are where a closed form is known, and the names in it: defined, and what by.
+    closed: tuple[tuple[Expression, Expression], ...] = ()
     argument: Expression = S  # of the transfer function: s, or the imaginary unit times the angular frequency
     # Of a form that lists poles: whether the model is stable, which hidden modes decide too.
     stability: StabilityVerdict | None = None
@@ -79,12 +81,11 @@ KERNELS_ONLY, RATIONAL_ONLY = ("hyperbolic", "krylov", "vaughan"), ("monic", "co
 FORMULA_ONLY = ("vaughan", "frequency")
 
 
-def functions_in(form: PrintedForm) -> frozenset[str]:
-    """Return the functions of x that occur, by the names they have in print."""
-    every = (form.num, form.den, *(e for _, e in form.where))
-    return frozenset(
-        n.name for e in every for n in names(e) if isinstance(n, Call) and n.name not in FUNCTIONS
-    )
+def functions_in(form: PrintedForm) -> dict[str, str]:
+    """Return labels of functions of x and of Bessel functions that occur, by name; empty if to be made."""
+    every = (form.num, form.den, *(e for _, e in (*form.where, *form.closed)))
+    calls = [n for e in every for n in names(e) if isinstance(n, Call) and n.name not in FUNCTIONS]
+    return {n.name: n.latex if isinstance(n, Bessel) else "" for n in calls}
 
 
 def forms_of(tf: TransferFunction) -> tuple[str, ...]:

@@ -177,7 +177,9 @@ def form_labels(tf: AnyTransferFunction, form: PrintedForm) -> dict[str, str]:
     """Return the labels of every name in a printed form: the model's, and those the form brings."""
     labels = model_labels(tf.model)
     own = [(name, "") for name, _ in (*form.where, *form.laws) if name not in labels]
-    own += [(name, "") for name in sorted(functions_in(form)) if name not in {*labels, *dict(own)}]
+    own += [(left.name, "") for left, _ in form.closed if isinstance(left, Name)]
+    known = {*labels, *dict(own)}
+    own += [(name, latex) for name, latex in sorted(functions_in(form).items()) if name not in known]
     return labels_of(own, labels)
 
 
@@ -298,7 +300,7 @@ def _laws(form: PrintedForm, writer: Writer) -> list[_Sides]:
 
 
 def laws_and_starts(form: PrintedForm) -> Iterator[tuple[Expression, Expression]]:
-    """Yield both sides of each differential equation, and of each value at x = 0."""
+    """Yield both sides of each differential equation, of each value at x = 0, and of closed forms."""
     for name, law in form.laws:
         if isinstance(law.left, Derivative | Call):
             yield law.left, law.right
@@ -306,6 +308,7 @@ def laws_and_starts(form: PrintedForm) -> Iterator[tuple[Expression, Expression]
         order = max(node.order for node in names(law) if isinstance(node, Derivative))
         yield law.left, law.right
         yield from ((Call(name, number(0), k), number(int(k == order - 1))) for k in range(order))
+    yield from form.closed
 
 
 def _broken_rows(equations: Sequence[_Sides], writer: Writer, width: float | None) -> list[_DisplayRow]:
