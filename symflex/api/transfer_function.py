@@ -77,6 +77,11 @@ class Form:
         """The closed names that occur, with what they stand for."""
         return tuple((self._sympy(Name(n)), self._sympy(e)) for n, e in self.printed.where)
 
+    @property
+    def closed(self) -> tuple[tuple[sympy.Expr, sympy.Expr], ...]:
+        """Closed forms of what tapers, ``Z_11(l)`` and ``besseli(0, q)``, and then the names in these."""
+        return tuple((self._sympy(left), self._sympy(e)) for left, e in self.printed.closed)
+
     def latex(self) -> str:
         """Return the equation in LaTeX."""
         from symflex.print.latex import inline_latex

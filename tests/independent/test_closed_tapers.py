@@ -29,6 +29,7 @@ l = "0.8 m"
 c = 0.4
 a = "1.3 1/m"
 d = "0.9 1/m"
+eta = "2 ms"
 m = "20 g"
 EI = "13 N*m^2"
 EA = "1.3 kN"
@@ -93,6 +94,12 @@ MODELS = {
         "(EA*(1 - x/l)^4*w')' = rhoA*(1 - x/l)^4*s^2*w", '"w(0) = u"'
     ),
     "a cubic rod to its edge": FIELD.format("(EA*(1 - x/l)^3*w')' = rhoA*(1 - x/l)^3*s^2*w", '"w(0) = u"'),
+    "a rod to its edge with losses": FIELD.format(
+        "(EA*(1 + eta*s)*(1 - x/l)*w')' = rhoA*(1 - x/l)*s^2*w", '"w(0) = u"'
+    ),
+    "a wedge to its edge with losses": FIELD.format(
+        "(EI*(1 + eta*s)*(1 - x/l)^3*w'')'' + rhoA*(1 - x/l)*s^2*w = 0", CLAMP
+    ),
     "a horn's equation of sound": FIELD.format("EA*w'' - 2*EA*c/(l - c*x)*w' = rhoA*s^2*w", ENDS),
     "an exponential horn's": FIELD.format("(EA*exp(d*x)*w')' = rhoA*exp(d*x)*s^2*w", ENDS),
 }

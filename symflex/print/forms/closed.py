@@ -83,13 +83,13 @@ def closed_entries(
         return ()
     functions = {c.generator: c.expression for c in tf.constants}
     try:
-        return tuple(lines(_Member(law, functions, printer, naming), places))
+        return tuple(lines(_Taper(law, functions, printer, naming), places))
     except _NoClosedFormError:
         return ()
 
 
 @dataclass(frozen=True, eq=False)
-class _Member:
+class _Taper:
     """A law whose coefficients are powers of one length, or exponentials of x."""
 
     law: Dispersion
@@ -187,23 +187,23 @@ class _Member:
         return Bessel(name if is_free else f"Bessel{name}", argument, kind=kind, index=order)
 
 
-def _wave(member: _Member, places: Places) -> Iterator[Line]:
-    wave = _Wave.at(member, member.start)
+def _wave(taper: _Taper, places: Places) -> Iterator[Line]:
+    wave = _Wave.at(taper, taper.start)
     if wave.rate.is_zero:
-        yield from _exponential(member, wave, places)
+        yield from _exponential(taper, wave, places)
     elif wave.orders[0].denominator == 2 and not wave.way.is_zero:  # noqa: PLR2004  (half an odd number)
-        yield from _hyperbolic(member, wave, places)
+        yield from _hyperbolic(taper, wave, places)
     else:
-        names = [Name(n) for n in member.naming.take("q", 1 + len(places))]
+        names = [Name(n) for n in taper.naming.take("q", 1 + len(places))]
         for z, (length, entries) in zip(names[1:], places.items(), strict=True):
             for i, j, called in entries:
                 orders = wave.orders[i], wave.orders[1 - j]
-                pair = _paired(member, "IK", orders, (z, names[0]), (1, (-1) ** (i - j)))
+                pair = _paired(taper, "IK", orders, (z, names[0]), (1, (-1) ** (i - j)))
                 front = wave.slope ** (i - j), _raised(names[0], 1 + i - j)
-                yield called, member.product(*front, *member.grown(wave.growths[i], length), pair)
-        yield names[0], member.printer.square_root(wave.square)
+                yield called, taper.product(*front, *taper.grown(wave.growths[i], length), pair)
+        yield names[0], taper.printer.square_root(wave.square)
         for z, length in zip(names[1:], places, strict=True):
-            yield z, member.product(names[0], *member.grown(wave.rate, length))
+            yield z, taper.product(names[0], *taper.grown(wave.rate, length))
 
 
 @dataclass(frozen=True, slots=True)
@@ -219,23 +219,23 @@ class _Wave:
     inner: Factored  # half the rate of a
 
     @staticmethod
-    def at(member: _Member, place: Factored) -> _Wave:
+    def at(taper: _Taper, place: Factored) -> _Wave:
         """Return it, with ``u' = c v`` and ``v' = b u + e v``, where v is the second state.
 
         Of a law in the form ``u'' = b u + e u'``, a is what makes it the other one: a'/a = -e.
         """
-        (zero, c), (b, e) = member.law.matrix
-        way = member.way(place)
+        (zero, c), (b, e) = taper.law.matrix
+        way = taper.way(place)
         if not zero.is_zero or c.is_zero or b.is_zero:
             raise _NoClosedFormError
-        here = member.at(e, place)
-        if not e.is_zero and not (member.rate(e, way) + way).is_zero:
+        here = taper.at(e, place)
+        if not e.is_zero and not (taper.rate(e, way) + way).is_zero:
             raise _NoClosedFormError
-        stiffness, mass = -member.rate(c, way) - here, member.rate(b, way) - here
+        stiffness, mass = -taper.rate(c, way) - here, taper.rate(b, way) - here
         rate = (mass - stiffness) / 2 + way
-        across, own = (way - stiffness) / 2, member.at(c, place)
-        square = own * member.at(b, place)
-        growths = across, across - member.rate(c, way) + rate - way
+        across, own = (way - stiffness) / 2, taper.at(c, place)
+        square = own * taper.at(b, place)
+        growths = across, across - taper.rate(c, way) + rate - way
         if rate.is_zero:
             if not way.is_zero:
                 raise _NoClosedFormError
@@ -245,34 +245,34 @@ class _Wave:
         return _Wave(way, rate, square / rate**2, rate / own, growths, orders, stiffness / 2)
 
 
-def _exponential(member: _Member, wave: _Wave, places: Places) -> Iterator[Line]:
+def _exponential(taper: _Taper, wave: _Wave, places: Places) -> Iterator[Line]:
     """Yield lines where stiffness and mass are the same exponential: the coefficients of u'' are constant."""
-    names = [Name(n) for n in member.naming.take("q", len(places))]
+    names = [Name(n) for n in taper.naming.take("q", len(places))]
     for q, (length, entries) in zip(names, places.items(), strict=True):
         cosh, sinh = Call("cosh", q), (Call("sinh", q), q)
         turn = wave.inner * length
         for i, j, called in entries:
-            grown = member.grown(wave.growths[i], length)
+            grown = taper.grown(wave.growths[i], length)
             if i == j:
-                own = sum_of([cosh, member.product(turn * (-1) ** i, sinh)])
-                yield called, member.product(*grown, own)
+                own = sum_of([cosh, taper.product(turn * (-1) ** i, sinh)])
+                yield called, taper.product(*grown, own)
             else:
                 factor = length / wave.slope if i == 0 else wave.square * wave.slope * length
-                yield called, member.product(factor, *grown, sinh)
+                yield called, taper.product(factor, *grown, sinh)
     for q, length in zip(names, places, strict=True):
-        yield q, member.printer.square_root((wave.square + wave.inner**2) * length**2)
+        yield q, taper.printer.square_root((wave.square + wave.inner**2) * length**2)
 
 
-def _hyperbolic(member: _Member, wave: _Wave, places: Places) -> Iterator[Line]:
+def _hyperbolic(taper: _Taper, wave: _Wave, places: Places) -> Iterator[Line]:
     """Yield lines in cosh and sinh of ``q = z - z_0``, where orders are half odd numbers.
 
     With y_m Bessel's polynomials, I_(m + 1/2) is ``(e^z y_m(-1/z) - (-1)^m e^-z y_m(1/z))/sqrt(2 pi z)``, and
     ``K_(m + 1/2)(z) = sqrt(pi/(2 z)) e^-z y_m(1/z)``; in products of both, e^(z + z_0) cancels.
     """
-    names = [Name(n) for n in member.naming.take("q", len(places))]
+    names = [Name(n) for n in taper.naming.take("q", len(places))]
     beta = int(_number(wave.rate / wave.way))
     for q, (length, entries) in zip(names, places.items(), strict=True):
-        ratio = member.ratio(length)
+        ratio = taper.ratio(length)
         far = ratio**beta - 1  # z = q*ratio^beta/far, and z_0 = q/far
         for i, j, called in entries:
             outer = _bessel_polynomial(wave.orders[i], -far / ratio**beta)
@@ -286,21 +286,21 @@ def _hyperbolic(member: _Member, wave: _Wave, places: Places) -> Iterator[Line]:
             yield (
                 called,
                 sum_of(
-                    member.product(front * c, _raised(q, i - j - k), Call(_even_or_odd(k + i + j), q))
+                    taper.product(front * c, _raised(q, i - j - k), Call(_even_or_odd(k + i + j), q))
                     for k, c in terms.items()
                     if not c.is_zero
                 ),
             )
     for q, length in zip(names, places, strict=True):
-        ratio = member.ratio(length)
-        yield q, member.printer.square_root(wave.square * (ratio**beta - 1) ** 2)
+        ratio = taper.ratio(length)
+        yield q, taper.printer.square_root(wave.square * (ratio**beta - 1) ** 2)
 
 
-def _wave_from_tip(member: _Member, places: Places) -> Iterator[Line]:
+def _wave_from_tip(taper: _Taper, places: Places) -> Iterator[Line]:
     """Yield lines where the stiffness vanishes at the start: ``u = Gamma(n + 1) (2/z)^n I_n(z)``."""
-    _check_tip(member, [0])
-    names = [Name(n) for n in member.naming.take("q", len(places))]
-    waves = [_Wave.at(member, member.start + length) for length in places]
+    _check_tip(taper, [0])
+    names = [Name(n) for n in taper.naming.take("q", len(places))]
+    waves = [_Wave.at(taper, taper.start + length) for length in places]
     for z, wave, entries in zip(names, waves, places.values(), strict=True):
         n, following = wave.orders
         m = int(n)
@@ -309,7 +309,7 @@ def _wave_from_tip(member: _Member, places: Places) -> Iterator[Line]:
         for i, _, called in entries:
             if n == m:
                 front = wave.slope**i * factorial(m) * 2**m
-                yield called, member.product(front, _raised(z, i - m), member.bessel("I", n + i, z))
+                yield called, taper.product(front, _raised(z, i - m), taper.bessel("I", n + i, z))
                 continue
             # Here n = m + 1/2, and Gamma(n + 1) is sqrt(pi) times (2 m + 1)!!/2^(m + 1).
             front = wave.slope**i * prod(range(1, 2 * m + 2, 2))
@@ -317,12 +317,12 @@ def _wave_from_tip(member: _Member, places: Places) -> Iterator[Line]:
             yield (
                 called,
                 sum_of(
-                    member.product(front * c, _raised(z, i - m - 1 - k), Call(_even_or_odd(m + i + k + 1), z))
+                    taper.product(front * c, _raised(z, i - m - 1 - k), Call(_even_or_odd(m + i + k + 1), z))
                     for k, c in enumerate(coefficients)
                 ),
             )
     for z, wave in zip(names, waves, strict=True):
-        yield z, member.printer.square_root(wave.square)
+        yield z, taper.printer.square_root(wave.square)
 
 
 @dataclass(frozen=True, slots=True)
@@ -336,19 +336,19 @@ class _Beam:
     fourth: Factored  # of z/2 the fourth power
 
     @staticmethod
-    def at(member: _Member, place: Factored) -> _Beam:
+    def at(taper: _Taper, place: Factored) -> _Beam:
         """Return it. Of the two states that could be the deflection it is the one with n positive."""
-        way = member.way(place)
+        way = taper.way(place)
         for states in ((0, 1, 2, 3), (0, 1, 3, 2), (0, 2, 1, 3), (0, 2, 3, 1), (0, 3, 1, 2), (0, 3, 2, 1)):
             for first in range(len(states)):
                 turned = (*states[first:], *states[:first])
-                own = [member.law.matrix[i][j] for i, j in zip(turned, (*turned[1:], turned[0]), strict=True)]
+                own = [taper.law.matrix[i][j] for i, j in zip(turned, (*turned[1:], turned[0]), strict=True)]
                 if way.is_zero or any(c.is_zero for c in own):
                     continue
-                powers = [_number(member.rate(c, way) / way) for c in own]
+                powers = [_number(taper.rate(c, way) / way) for c in own]
                 n = int(powers[-1])
                 if n >= 0 and powers == [0, -n - 2, 0, n]:
-                    c = [member.at(each, place) for each in own]
+                    c = [taper.at(each, place) for each in own]
                     scales = [way**0]
                     for each in c[:-1]:
                         scales.append(scales[-1] * way / 2 / each)
@@ -360,26 +360,26 @@ class _Beam:
         """Return the order of the Bessel functions of a state."""
         return Fraction(self.thickness + (0, 1, 2, 1)[state])
 
-    def argument(self, member: _Member, j: Expression) -> Expression:
+    def argument(self, taper: _Taper, j: Expression) -> Expression:
         """Return z."""
         if self.fourth.unit > 0:
-            return product_of([number(2), Call("sqrt", member.printer.square_root(self.fourth))])
-        root = member.printer.square_root(-self.fourth)
+            return product_of([number(2), Call("sqrt", taper.printer.square_root(self.fourth))])
+        root = taper.printer.square_root(-self.fourth)
         above, below = (root.numerator, root.denominator) if isinstance(root, Quotient) else (root, ONE)
         return product_of([number(2), Call("sqrt", negative(quotient(product_of([j, above]), below)))])
 
 
-def _checked_beam(member: _Member, place: Factored) -> _Beam:
+def _checked_beam(taper: _Taper, place: Factored) -> _Beam:
     """Return a beam whose law has no more than the four entries that one has."""
-    if sum(not c.is_zero for row in member.law.matrix for c in row) != len(member.law.matrix):
+    if sum(not c.is_zero for row in taper.law.matrix for c in row) != len(taper.law.matrix):
         raise _NoClosedFormError
-    return _Beam.at(member, place)
+    return _Beam.at(taper, place)
 
 
-def _beam(member: _Member, places: Places) -> Iterator[Line]:
-    beam = _checked_beam(member, member.start)
-    names = [Name(n) for n in member.naming.take("q", 1 + len(places))]
-    way = member.way(member.start)
+def _beam(taper: _Taper, places: Places) -> Iterator[Line]:
+    beam = _checked_beam(taper, taper.start)
+    names = [Name(n) for n in taper.naming.take("q", 1 + len(places))]
+    way = taper.way(taper.start)
     for z, (length, entries) in zip(names[1:], places.items(), strict=True):
         for row, column, called in entries:
             i, j = beam.states.index(row), beam.states.index(column)
@@ -387,48 +387,48 @@ def _beam(member: _Member, places: Places) -> Iterator[Line]:
             for (first, second), factor in (("JY", Name("pi")), ("IK", number(2))):
                 signs = SIGNS[first][i] * SIGNS[second][3 - j], -SIGNS[second][i] * SIGNS[first][3 - j]
                 orders = beam.orders(i), beam.orders(3 - j)
-                pair = _paired(member, first + second, orders, (z, names[0]), signs)
+                pair = _paired(taper, first + second, orders, (z, names[0]), signs)
                 sign, plain = (-1, pair.operand) if isinstance(pair, Negative) else (1, pair)
                 pairs.append((sign, product_of([factor, plain])))
             yield (
                 called,
-                member.product(
+                taper.product(
                     beam.scales[i] / beam.scales[j] * Fraction(-((-1) ** j), 4),
                     _raised(names[0], 1 + i - j),
-                    *member.grown(way * beam.rates[i], length),
+                    *taper.grown(way * beam.rates[i], length),
                     _sum(pairs),
                 ),
             )
-    j_name = Name(*member.naming.take("j"))
-    yield names[0], beam.argument(member, j_name)
+    j_name = Name(*taper.naming.take("j"))
+    yield names[0], beam.argument(taper, j_name)
     for z, length in zip(names[1:], places, strict=True):
-        yield z, member.product(names[0], *member.grown(way / 2, length))
+        yield z, taper.product(names[0], *taper.grown(way / 2, length))
     yield j_name, Call("sqrt", number(-1))
 
 
-def _beam_from_tip(member: _Member, places: Places) -> Iterator[Line]:
+def _beam_from_tip(taper: _Taper, places: Places) -> Iterator[Line]:
     """Yield lines where the beam ends in an edge or a point: solutions are sums of J and I alone."""
-    names = [Name(n) for n in member.naming.take("q", len(places))]
-    beams = [_checked_beam(member, member.start + length) for length in places]
-    _check_tip(member, beams[0].states[:2])
+    names = [Name(n) for n in taper.naming.take("q", len(places))]
+    beams = [_checked_beam(taper, taper.start + length) for length in places]
+    _check_tip(taper, beams[0].states[:2])
     for z, beam, entries in zip(names, beams, places.values(), strict=True):
         n = beam.thickness
         for row, column, called in entries:
             i, j = beam.states.index(row), beam.states.index(column)
-            first, second = (member.bessel(kind, beam.orders(i), z) for kind in "JI")
+            first, second = (taper.bessel(kind, beam.orders(i), z) for kind in "JI")
             total = _sum([(SIGNS["J"][i] * (-1) ** j, first), (1, second)])
             front = beam.scales[i] / beam.scales[j] * factorial(n + j) * Fraction(2) ** (n + j - 1)
-            yield called, member.product(front, _raised(z, i - n - 2 * j), total)
-    j_name = Name(*member.naming.take("j"))
+            yield called, taper.product(front, _raised(z, i - n - 2 * j), total)
+    j_name = Name(*taper.naming.take("j"))
     for z, beam in zip(names, beams, strict=True):
-        yield z, beam.argument(member, j_name)
+        yield z, beam.argument(taper, j_name)
     yield j_name, Call("sqrt", number(-1))
 
 
-def _check_tip(member: _Member, free: Sequence[int]) -> None:
+def _check_tip(taper: _Taper, free: Sequence[int]) -> None:
     """Let pass a start where the length vanishes and each of some states may be 1, others of them being 0."""
-    own, length = member.law.singular, member.length
-    if own is None or length is None or not _put(length, member.start).is_zero:
+    own, length = taper.law.singular, taper.length
+    if own is None or length is None or not _put(length, taper.start).is_zero:
         raise _NoClosedFormError
     if set(own.free) != set(free):
         raise _NoClosedFormError
@@ -438,7 +438,7 @@ def _check_tip(member: _Member, free: Sequence[int]) -> None:
 
 
 def _paired(
-    member: _Member,
+    taper: _Taper,
     kinds: str,
     orders: tuple[Fraction, Fraction],
     arguments: tuple[Expression, Expression],
@@ -448,9 +448,7 @@ def _paired(
     return _sum(
         (
             sign,
-            product_of(
-                [member.bessel(a, orders[0], arguments[0]), member.bessel(b, orders[1], arguments[1])]
-            ),
+            product_of([taper.bessel(a, orders[0], arguments[0]), taper.bessel(b, orders[1], arguments[1])]),
         )
         for sign, a, b in zip(signs, kinds, reversed(kinds), strict=True)
     )
