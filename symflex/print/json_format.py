@@ -23,6 +23,7 @@ SCHEMA = "symflex.derive/1"
 def derive_json(tf: AnyTransferFunction, form: PrintedForm) -> dict[str, object]:
     """Return one entry of ``transfer_functions``; ``hidden`` is None where that was not examined."""
     hidden = [{"factor": format_expression(e), "multiplicity": m} for e, m in hidden_expressions(tf)]
+    closed = [[format_expression(left), format_expression(e)] for left, e in form.closed]
     return {
         "tf": tf.name,
         "quantity": tf.quantity,
@@ -32,10 +33,10 @@ def derive_json(tf: AnyTransferFunction, form: PrintedForm) -> dict[str, object]
         "den": format_expression(form.den),
         "where": [[name, format_expression(e)] for name, e in _in_order_of_definition(form)],
         "laws": [[name, format_expression(law)] for name, law in form.laws],
-        "closed": [[format_expression(left), format_expression(e)] for left, e in form.closed],
         "latex": inline_latex(tf, form),
         "hidden": None if isinstance(tf, NestedTransferFunction) else hidden,
         "stability": form.stability.to_json_dict() if form.stability else None,
+        **({"closed": closed} if closed else {}),
     }
 
 

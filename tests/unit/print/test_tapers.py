@@ -104,7 +104,7 @@ def test_a_law_that_has_no_bessel_functions_stays_alone():
     tf, form = string(**TURNING)
     assert form.laws
     assert not form.closed
-    assert derive_json(tf, form)["closed"] == []
+    assert "closed" not in derive_json(tf, form)
 
 
 def test_sympy_has_the_bessel_functions_of_a_closed_form():
