@@ -51,7 +51,9 @@ if TYPE_CHECKING:
 MOST_ECHOES = 2000
 """Rational functions that one response is made of."""
 MOST_POWERS = 30_000
-"""Sum of the powers of their denominators, which grow from one to the next: 250 echoes take some seconds."""
+"""Sum of the powers of their denominators, which grow from one to the next: 250 echoes take a while."""
+FEW_POWERS = 3000
+"""The same, tried first where modes may say it as well: 50 echoes of a shaft between discs take a second."""
 TIE_BITS = 256
 """At which delays are put in order; equal ones are equal exactly."""
 
@@ -79,7 +81,7 @@ class Echo:
     power: int
 
 
-def echoes(quotient: DelayedQuotient, last: arb) -> list[Echo] | None:
+def echoes(quotient: DelayedQuotient, last: arb, most: int = MOST_POWERS) -> list[Echo] | None:
     """Return the expansion up to a time [s], in order, at the current precision.
 
     None where the output would come before the input; TooManyEchoesError where it is too long.
@@ -105,7 +107,7 @@ def echoes(quotient: DelayedQuotient, last: arb) -> list[Echo] | None:
     ):
         found.append(Echo(delay, numerator, power))
         powers += power if leading.degree() else 0
-        if powers > MOST_POWERS:
+        if powers > most:
             raise TooManyEchoesError
     return found
 
@@ -164,7 +166,9 @@ def earliest(below: Iterable[Delay], durations: Durations) -> Delay:
         return min(below, key=lambda delay: durations.seconds(delay).mid())
 
 
-def echoed(quotient: DelayedQuotient, integrations: int, times: SampleTimes, digits: int) -> Sampled | None:
+def echoed(
+    quotient: DelayedQuotient, integrations: int, times: SampleTimes, digits: int, most: int = MOST_POWERS
+) -> Sampled | None:
     """Return the response at one precision, from poles of so many digits; None where it cannot be told.
 
     Where only poles that are not told apart stand in the way, more digits may help.
@@ -176,7 +180,7 @@ def echoed(quotient: DelayedQuotient, integrations: int, times: SampleTimes, dig
     with precision(bits):
         seconds = times.enclosed()
         last = seconds[-1] if seconds else arb(0)
-        expansion = echoes(quotient, last)
+        expansion = echoes(quotient, last, most)
         if expansion is None:
             return None
         below = acb_poly(quotient.durations.polynomial(quotient.below[first]))

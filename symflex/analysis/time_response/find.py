@@ -13,7 +13,7 @@ from flint import acb, arb
 
 from symflex.algebra import Factored, KernelTable
 from symflex.analysis.time_response.delayed_terms import delayed_quotient
-from symflex.analysis.time_response.echoes import Sampled, TooManyEchoesError, echoed
+from symflex.analysis.time_response.echoes import FEW_POWERS, MOST_POWERS, Sampled, TooManyEchoesError, echoed
 from symflex.analysis.time_response.enclosed_response import (
     INTEGRATIONS,
     EnclosedResponse,
@@ -56,6 +56,8 @@ SHAPED_DIGITS = 2
 ATTEMPTS = 7
 """Doublings of the digits: poles that lie together to 10^-1000 are as good as a double one."""
 MOST_DIGITS = 20_000
+ENOUGH_DIGITS = 8
+"""Of modes, where many echoes would give more, but take longer."""
 
 
 def time_response(
@@ -179,10 +181,17 @@ def _found(
         return _of_lumped(bound, integrations, times, digits), None
     quotient = delayed_quotient(bound)
     if quotient is not None:
-        try:
-            return _of_delays(bound, partial(echoed, quotient), integrations, times, digits), None
-        except TooManyEchoesError:
-            spend()
+        has_delays = any(law.kind == "exponential" for law in bound.kernels.dispersions)
+        for most in (MOST_POWERS,) if has_delays else (FEW_POWERS, MOST_POWERS):
+            try:
+                few = partial(echoed, quotient, most=most)
+                return _of_delays(bound, few, integrations, times, digits), None
+            except TooManyEchoesError:
+                spend()
+            if most == FEW_POWERS:
+                modes = proved_modes(bound, integrations, times, digits)
+                if modes is not None and is_precise(modes.sampled.values, ENOUGH_DIGITS):
+                    return modes.sampled, None
     waves = None if quotient is not None else wave_quotient(bound)
     if waves is not None:
         try:

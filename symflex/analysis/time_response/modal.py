@@ -230,7 +230,7 @@ class PassiveModes:
         if continued is not None:
             reached, roots = continued
         else:
-            wanted = Modes(count if side.engine == LOSSLESS else min(count, MOST_SEARCHED))
+            wanted = Modes(min(count, MOST_MODES if side.engine == LOSSLESS else MOST_SEARCHED))
             side.search(wanted)
             if not side.prove(wanted).is_complete:
                 return None

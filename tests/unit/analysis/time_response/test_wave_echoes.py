@@ -12,6 +12,10 @@ from scipy.special import iv, jv
 
 from symflex import loads
 from symflex.analysis.time_response import SampleTimes, time_response
+from symflex.analysis.time_response.delayed_terms import delayed_quotient
+from symflex.analysis.time_response.echoes import echoed
+from symflex.analysis.time_response.find import is_precise
+from symflex.analysis.time_response.modal import proved_modes
 
 TIMES = [0.3, 1.0, 2.9, 7.7]
 ROD = 'E = "1 Pa", A = "1 m^2", rho = "1 kg/m^3", l = "1 m"'
@@ -136,3 +140,24 @@ def test_timoshenkos_beam_moves_as_one_without_another_end_until_its_first_echo(
             for t in times
         ]
     assert_holds(found, expected, off=1e-12)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("last", [0.01, 0.02])
+def test_modes_of_a_shaft_between_discs_say_what_its_echoes_say(last):
+    text = """
+symflex = 1
+elements.near = { type = "inertia", at = "a", J = "3e-4 kg*m^2" }
+elements.shaft = { type = "shaft", between = ["a", "b"], G = "79 GPa", J = "15708 mm^4", \
+    rho = "7850 kg/m^3", l = "1.2 m" }
+elements.far = { type = "inertia", at = "b", J = "1e-4 kg*m^2" }
+inputs.tau = { torque = "a" }
+outputs.phi = "b"
+"""
+    bound = loads(text).transfer_function("phi", "tau").bind().bound
+    times = SampleTimes.of([last / 3, last / 2, last])
+    modes = proved_modes(bound, 1, times, 12).sampled
+    echoes = echoed(delayed_quotient(bound), 1, times, 60)
+    assert all(y.overlaps(z) for y, z in zip(modes.values, echoes.values, strict=True))
+    assert is_precise(modes.values, 8)
+    assert is_precise(echoes.values, 12)
