@@ -31,7 +31,9 @@ BEND, CROSSING, STRIKING = 8.0, 24.0, 60.0
 LONGEST: Final = 300.0
 """Cost of a way that would rather confuse."""
 STEPS: Final = ((1, 0), (-1, 0), (0, 1), (0, -1))
-ROUNDS: Final = 3
+MOST_CELLS: Final = 12_000
+"""In which ways are looked for more than once: a drawing of a column's width has some 6000."""
+ROUNDS: Final = 2
 """In which wires that meet look for other ways; the first ones do not know what comes after them."""
 Cell = tuple[int, int]
 
@@ -67,9 +69,12 @@ def joined(drawing: Drawing, joins: Sequence[Join]) -> tuple[Placed, ...]:
     blocked.update((x, y) for x in (0, right) for y in range(top + 1))
     blocked.update((x, y) for x in range(right + 1) for y in (0, top))
     tried = []
-    for first in range(len(joins)):
+    tries = MOST_CELLS // max(1, right * top)
+    for first in range(min(len(joins), max(1, tries))):
         order = [first, *(i for i in range(len(joins)) if i != first)]
-        ways = _apart(order, lambda i, met: _best(joins[i], blocked, met, solid), crossed)
+        ways = _apart(
+            order, lambda i, met: _best(joins[i], blocked, met, solid), crossed, ROUNDS if tries else 1
+        )
         passed = [list(_passed(one)) for one in ways]
         shared = sum(len({*a} & {*b}) for a, b in combinations(passed, 2))
         struck = sum(crossed.get(c, 0.0) for cells in passed for c in cells)
@@ -86,10 +91,11 @@ def _apart(
     order: Sequence[int],
     way: Callable[[int, Mapping[Cell, float]], list[Point]],
     crossed: Mapping[Cell, float],
+    rounds: int,
 ) -> list[list[Point]]:
     """Return ways that were found one after the other, those that meet others once more."""
     ways: list[list[Point]] = [[] for _ in order]
-    for turn in range(ROUNDS):
+    for turn in range(rounds):
         before = list(ways)
         for i in order:
             others = {c for j, other in enumerate(ways) if j != i for c in _passed(other)}
