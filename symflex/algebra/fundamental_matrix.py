@@ -68,6 +68,8 @@ GUARD = 32
 """Bits beyond those asked for: products of a few dozen steps round a few hundred times."""
 BEYOND = 32
 """Polynomials in u are bounded on a disc so many times larger than what they are used on."""
+MORE_LOST = 1.25
+"""Over the bits by which solutions grow: minors of two rows lose no more than these, of three rows twice."""
 FEWEST_BITS = 30
 """Of orders in u that hardly matter."""
 BOUNDED = 4
@@ -81,6 +83,8 @@ MOST_HALVINGS = 40
 BOUND_BITS = 64
 """Of bounds, which are added up and rounded up."""
 BITS_OF_E = 1.4426950408889634
+ASIDE = 1 / 16
+"""Share of abs(u) by which what is cut off a polynomial is bounded beyond it, for its derivatives."""
 WIDE = 2.0**-30
 """Relative radius of balls about whose middle a polynomial is expanded before it is evaluated."""
 
@@ -158,8 +162,8 @@ class PowerExpansion:
     # of the states, at the start and at the end
     weights: tuple[Weights, Weights]
     _minors: dict[tuple[Lines, Lines], Polynomial] = field(default_factory=dict, repr=False)
-    # The same with the sizes of coefficients.
-    _sizes: dict[tuple[Lines, Lines], arb_poly] = field(default_factory=dict, repr=False)
+    # The sizes of coefficients, and their logarithms.
+    _sizes: dict[tuple[Lines, Lines], tuple[arb_poly, list[float]]] = field(default_factory=dict, repr=False)
 
     def series(self, rows: Lines, columns: Lines, u: acb, terms: int = 1) -> list[acb]:
         """Return Taylor coefficients about ``u`` of a minor; of an entry, where there is one row."""
@@ -169,7 +173,7 @@ class PowerExpansion:
         is_wide = bool(u.rad() > abs(middle) * WIDE)
         # Terms of an alternating series are larger than their sum: more bits, and the middle of the ball.
         with ctx.workprec(self._bits_about(rows, columns, middle) if is_wide else self.bits):
-            polynomial = self._polynomial(rows, columns)
+            polynomial, cut = self._cut(rows, columns, size)
             if is_wide:
                 polynomial, middle, off = acb_poly(polynomial)(acb_poly([middle, 1])), acb(0), acb(0)
                 at = u - u.mid()
@@ -181,18 +185,42 @@ class PowerExpansion:
                 if off != 0:
                     value += acb(polynomial.derivative()(u)) * off
                 rest = self._rest(rows, columns, size, k)
+                if cut > 0:
+                    rest = (rest + cut / (size * ASIDE) ** k).abs_upper()
                 found.append(value + acb(arb(0, rest), arb(0, rest)))
         return [+x for x in found]
+
+    def _cut(self, rows: Lines, columns: Lines, size: arb) -> tuple[Polynomial, arb]:
+        """Return what matters of a polynomial for abs(u) up to a size at the current precision.
+
+        The second bounds the rest for abs(u) up to ``1 + ASIDE`` times the size.
+        """
+        polynomial, upto = self._polynomial(rows, columns), size * (1 + ASIDE)
+        if not 0 < (way := float(upto)) < inf:
+            return polynomial, arb(0)
+        sizes, logarithms = self._sizes_of(rows, columns)
+        terms = [x + m * log2(way) for m, x in enumerate(logarithms)]
+        least = max(terms, default=0.0) - ctx.prec - GUARD
+        count = next((m + 1 for m in reversed(range(len(terms))) if terms[m] > least), 0)
+        with ctx.workprec(FEWEST_BITS):
+            left = sizes.right_shift(count)(upto) * upto**count
+        return polynomial.truncate(count), left.abs_upper()
+
+    def _sizes_of(self, rows: Lines, columns: Lines) -> tuple[arb_poly, list[float]]:
+        """Return the sizes of the coefficients of a polynomial, and about their logarithms to base 2."""
+        if (rows, columns) not in self._sizes:
+            with ctx.workprec(FEWEST_BITS):
+                sizes = [abs(c).upper() for c in self._polynomial(rows, columns).coeffs()]
+                logarithms = [float(x.log()) * BITS_OF_E if x > 0 else -inf for x in sizes]
+                self._sizes[rows, columns] = arb_poly(sizes), logarithms
+        return self._sizes[rows, columns]
 
     def _bits_about(self, rows: Lines, columns: Lines, middle: acb) -> int:
         """Return the bits with which a minor keeps those of the current precision about a point."""
         with ctx.workprec(self.bits):
-            own = self._polynomial(rows, columns)
-            value = abs(own(middle))
+            value = abs(self._cut(rows, columns, abs(middle).upper())[0](middle))
         with ctx.workprec(FEWEST_BITS):
-            if (rows, columns) not in self._sizes:
-                self._sizes[rows, columns] = arb_poly([abs(c).upper() for c in own.coeffs()])
-            lost = self._sizes[rows, columns](abs(middle)) / value
+            lost = self._sizes_of(rows, columns)[0](abs(middle)) / value
         if not 1 <= lost < arb(2) ** self.bits:
             return self.bits
         mantissa, exponent = lost.upper().man_exp()
@@ -264,7 +292,9 @@ def expand(system: VaryingSystem, largest: arb, bits: int, orders: int = 0) -> P
     doublings = float(growth.upper()) * BITS_OF_E
     terms = orders or max(2, ceil((bits + 2 * doublings) / log2(BEYOND / 2)))
     total: Matrix | None = None
-    with ctx.workprec(bits + GUARD + ceil(doublings)):
+    # A minor falls below the products it is the difference of by about what solutions grow where it is used.
+    lost = float(_growth(system, steps, largest)[0].upper()) * BITS_OF_E * MORE_LOST
+    with ctx.workprec(bits + GUARD + ceil(min(lost, doublings))):
         start, end = system.ends()
         steps[0] = replace(steps[0], start=start)
         steps[-1] = replace(steps[-1], end=end)
@@ -531,8 +561,8 @@ def _stepped(system: VaryingSystem, step: Leg, reach: arb, terms: int) -> Matrix
     share = abs(step.length) / step.radius
     doublings = -log2(float(share.upper()))
     # An order in u is used times a power of the largest u, and needs so many bits fewer.
-    needed = [max(FEWEST_BITS, bits - int(m * log2(BEYOND))) for m in range(terms)]
-    counts = [ceil((x + step.growth) / doublings) for x in needed]
+    below = [int(m * log2(BEYOND)) for m in range(terms)]
+    counts = [ceil((max(FEWEST_BITS, bits - x) + step.growth) / doublings) for x in below]
     parts = system.parts(step.start)
     series = system.series(step.start, counts[0]) if parts is None else []
     if parts is None and not _order(series[0], n):
@@ -543,9 +573,11 @@ def _stepped(system: VaryingSystem, step: Leg, reach: arb, terms: int) -> Matrix
             for place, coefficient in own.items()
         ]
     if parts is None:
+        needed = [_needed(step, x) for x in below]
         columns = _by_quadrature(series, n, step.length, needed, counts)
     else:
-        columns = _by_recurrence(parts, n, step.length, counts, doublings)
+        needed = [_needed(step, int(k * doublings)) for k in range(counts[0])]
+        columns = _by_recurrence(parts, n, step.length, counts, needed)
     made: Matrix = [[arb_poly([]) for _ in range(n)] for _ in range(n)]
     for j, values in enumerate(columns):
         for i in range(n):
@@ -559,12 +591,17 @@ def _stepped(system: VaryingSystem, step: Leg, reach: arb, terms: int) -> Matrix
     return made
 
 
+def _needed(step: Leg, below: int) -> int:
+    """Return the bits of coefficients that lie so many below what solutions grow to on the radius."""
+    return max(FEWEST_BITS, ctx.prec + min(0, ceil(step.growth) - below))
+
+
 Column = list[list[Number | None]]
 """Per state its orders in u; what no coefficient reaches is zero, and stays None."""
 
 
 def _by_recurrence(
-    parts: Sequence[RationalPart], n: int, length: arb, counts: Sequence[int], doublings: float
+    parts: Sequence[RationalPart], n: int, length: arb, counts: Sequence[int], needed: Sequence[int]
 ) -> list[Column]:
     """Return the fundamental matrix of a step whose coefficients are rational in x, or power series.
 
@@ -573,7 +610,7 @@ def _by_recurrence(
     their middles; (1 - x)^4 multiplied out has signs that alternate, and balls would grow like those of
     1/(1 - 4 x - 6 x^2 - ...).
     """
-    bits, scaled = ctx.prec, [_to_unit_length(part, length) for part in parts]
+    scaled = [_to_unit_length(part, length) for part in parts]
     # Order m of column j is coefficient n m + j: all columns at once.
     states: list[list[Polynomial]] = [[arb_poly([int(i == j) for j in range(n)])] for i in range(n)]
     divided = [[list[Polynomial]() for _ in divisors] for _, divisors in scaled]
@@ -583,7 +620,7 @@ def _by_recurrence(
         while counts[kept - 1] <= k + 1:
             kept -= 1
         slopes: list[Polynomial] = [arb_poly([])] * n
-        with ctx.workprec(max(FEWEST_BITS, bits - int(k * doublings))):
+        with ctx.workprec(needed[k]):
             for part, (taps, divisors), histories in zip(parts, scaled, divided, strict=True):
                 i, value = part.place[0], _convolved(taps, states[part.place[1]], k)
                 for divisor, history in zip(divisors, histories, strict=True):
