@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Protocol
 from flint import acb, arb
 
 from symflex.algebra import Factored
-from symflex.algebra.vanishing import OriginSeries
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic, SymflexError
 from symflex.roots import Budget, precision
@@ -263,7 +262,7 @@ def loop_at_origin(function: LoopFunction, budget: Budget) -> LoopAtOrigin | Non
         whole = Factored.polynomial(ring, polynomial)
         try:
             part = KernelFunction(function.bound, whole)
-            order = OriginSeries(ring, function.bound.kernels).order(part.part)
+            order = part.order()
             if order is None or part.power != 1:
                 return None
             lowest = Winding(part, budget).smallest(pi)

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING
 from flint import acb, arb
 
 from symflex.algebra import Factored
-from symflex.algebra.vanishing import OriginSeries
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.loops.axis import LoopAtOrigin, loop_at_origin
 from symflex.loops.axis_factors import AxisFactors
@@ -171,11 +170,11 @@ class DistributedFactors(AxisFactors[LoopFunction]):
     def _order_at_zero(self, gain: Fraction, function: KernelFunction) -> int:
         whole = self._product(gain)
         powers = whole.exponent_of(whole.ring.context.gen(0))
-        order = OriginSeries(function.part.ring, function.bound.kernels).order(function.part)
-        if order is None:
+        order = function.order()
+        if order is None or order % function.power:
             self.reasons.append("poles next to s = 0 are counted as poles at 0")
             return powers + self._turns(function)
-        return powers + order
+        return powers + order // function.power
 
     def _turns(self, function: KernelFunction) -> int:
         winding = CertifiedWinding(function, self.budget)
@@ -183,14 +182,13 @@ class DistributedFactors(AxisFactors[LoopFunction]):
 
     def _inner_radius(self, winding: CertifiedWinding, function: KernelFunction) -> float:
         """Return ln of a radius within which there is no pole but at s = 0, proved."""
-        order = OriginSeries(function.part.ring, function.bound.kernels).order(function.part)
-        lowest = Winding(function, self.budget).smallest(pi)
+        order, lowest = function.order(), Winding(function, self.budget).smallest(pi)
         for depth in DEPTHS:
             try:
                 turns = winding.count_within(lowest - depth, pi)
             except RootOnPathError:
                 continue
-            if order is None or turns == order * function.power:
+            if order is None or turns == order:
                 return lowest - depth
         message = "the poles next to s = 0 cannot be counted"
         raise UncertifiedError(Diagnostic("SF802", message))

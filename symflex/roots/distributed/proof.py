@@ -21,7 +21,6 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
-from symflex.algebra.vanishing import OriginSeries
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.winding import Cell, RootOnPathError
@@ -285,8 +284,6 @@ def _log(size: float) -> float:
     return log(size) if size > 0 else -inf
 
 
-SERIES_TERMS = (20, 80)
-"""Lengths of the series about 0 in which the first term is sought."""
 DEPTHS = (1.0, 4.0, 16.0, 64.0)
 """How far below the lowest root, in ln, circles about 0 are counted where the order is not known exactly."""
 
@@ -304,13 +301,7 @@ def roots_at_zero(
     function = winding.function
     power, zero = function.power, arb(0)
     powers = part.exponent_of(part.ring.context.gen(0))
-    exact = None
-    for terms in SERIES_TERMS:
-        exact = OriginSeries(part.ring, function.bound.kernels, terms=terms).order(function.part**power)
-        if exact is None and any(law.matrix for law in function.bound.kernels.dispersions):
-            exact = function.proved_order(terms)
-        if exact is not None:
-            break
+    exact = function.order()
     if exact is not None and (is_hidden or exact % power == 0):
         total = powers if is_hidden else powers + exact // power
         root = Root(zero, zero, total, on_imaginary_axis=True, is_real=True)

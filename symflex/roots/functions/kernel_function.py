@@ -27,6 +27,7 @@ from symflex.algebra.exponential_sum import (
     combination,
     exponential_sum,
 )
+from symflex.algebra.vanishing import OriginSeries
 from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError
 from symflex.roots.functions.exponential_values import DoubleSums, ExponentialValues, Place
@@ -49,6 +50,8 @@ SETTLED_BITS = 24
 """Accuracy asked of every factor before its sign, phase or slope is used."""
 ORIGIN = -140.0
 """ln(abs(s)) where the order of a root at 0 is read off."""
+SERIES_TERMS = (20, 80)
+"""Lengths of the series about 0 in which the first term is sought."""
 BRANCH_BITS = 256
 """Of one value that is compared on all branches."""
 ANYWHERE = (0.7, 1.3)
@@ -117,8 +120,19 @@ class KernelFunction:
         )
         return even and not shifted and all(_parity(f) is not None for f, _ in self.part.factors)
 
-    def proved_order(self, terms: int) -> int | None:
-        """Return how often s = 0 is a root, where the first of so many terms about it are exactly zero."""
+    def order(self) -> int | None:
+        """Return how often s = 0 is a root of F to the :attr:`power` that makes it one function, or None."""
+        table = self.bound.kernels
+        for terms in SERIES_TERMS:
+            found = OriginSeries(self.part.ring, table, terms=terms).order(self.part**self.power)
+            if found is None and any(law.matrix for law in table.dispersions):
+                found = self._leading(terms)
+            if found is not None:
+                return found
+        return None
+
+    def _leading(self, terms: int) -> int | None:
+        """Return the same, where the first of so many terms about 0 are exactly zero."""
         with precision(2 * FIRST_BITS):
             evaluator = self.bound.kernel_values()
             s = acb_series([0, 1], terms)
