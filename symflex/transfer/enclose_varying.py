@@ -139,7 +139,8 @@ class VaryingMatrices:
     @staticmethod
     def _lowest_octave(law: BoundLaw) -> int:
         """Return the logarithm of the least abs(s) that an expansion is made for."""
-        at_rest = law.growth(arb(0))
+        # Next to rest, as states in a chain have no scales of their own at s = 0.
+        at_rest = law.growth(arb(2) ** -HIGHEST_OCTAVE)
         low, high = -HIGHEST_OCTAVE, HIGHEST_OCTAVE
         while high - low > 1:
             middle = (low + high) // 2

@@ -75,6 +75,7 @@ MODELS = {
     "a rod that is a cone": MEMBER.format("rod", f'{STIFF}^2"'),
     "a rod of the third power": MEMBER.format("rod", f'{STIFF}^3"'),
     "a rod of the fourth power": MEMBER.format("rod", f'{STIFF}^4"'),
+    "a rod of the fourth power with losses": MEMBER.format("rod", f'{STIFF}^4", eta = "eta"'),
     "a rod that widens": MEMBER.format("rod", f'{STIFF}^(-2)"'),
     "an exponential rod": MEMBER.format("rod", WIRE),
     "a string whose tension grows": MEMBER.format("string", 'rho = "rho", A = "A", N = "E*A*(2 - x/l)"'),
