@@ -44,8 +44,7 @@ class Quantity:
 
         Examples
         --------
-        >>> source = Source("a.toml", "11 Hz")
-        >>> parse_quantity(Text("11 Hz", Span(source, 0, 5))).angular()
+        >>> parse_quantity(Text.alone("a.toml", "11 Hz")).angular()
         (Fraction(22, 1), 1)
         """
         if not self.magnitude:
@@ -67,8 +66,7 @@ def parse_quantity(text: Text) -> Quantity:
 
     Examples
     --------
-    >>> source = Source("a.toml", "35 kN/m")
-    >>> stiffness = parse_quantity(Text("35 kN/m", Span(source, 0, 7)))
+    >>> stiffness = parse_quantity(Text.alone("a.toml", "35 kN/m"))
     >>> stiffness.magnitude, str(stiffness.dimension), stiffness.unit
     (Fraction(35000, 1), 'N/m', 'kN/m')
     """
@@ -91,8 +89,7 @@ def parse_unit(text: Text) -> Unit:
 
     Examples
     --------
-    >>> source = Source("a.toml", "mm/rev")
-    >>> parse_unit(Text("mm/rev", Span(source, 0, 6))).scale
+    >>> parse_unit(Text.alone("a.toml", "mm/rev")).scale
     Fraction(1, 1000)
     """
     _, placed = _parsed(text, "unit")
