@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from benchmarks.distributed import AGREEMENT, BAND_HZ, POINTS, ROUNDS, SPECIFICATION, exported_module
-from benchmarks.generated import FLAGS, loaded, pointer
+from benchmarks.generated import FLAGS, loaded, pointer, responding
 from benchmarks.measure import Claim, Measurement, fastest
 from symflex import pipeline
 from symflex.codegen.c.module import C99
@@ -120,21 +120,11 @@ def _ways(omega: NDArray[Any]) -> dict[str, Callable[[], NDArray[Any]]]:
     values = [module.PARAMETERS[name]["value"] for name in ("E", "I", "rho", "A", "l")]
     for name, flags in FLAGS.items():
         library = loaded(files, flags)
-        ways[f"`--to c`, `V_act_over_F_freq`, {name}"] = _exported(library, omega)
+        ways[f"`--to c`, `V_act_over_F_freq`, {name}"] = responding(
+            library, "exported_beam", "V_act_over_F", omega, 1
+        )
         ways[f"C by hand, {name}"] = _by_hand(library, omega, values)
     return ways
-
-
-def _exported(library: ctypes.CDLL, omega: NDArray[Any]) -> Callable[[], NDArray[Any]]:
-    real, imag = np.empty_like(omega), np.empty_like(omega)
-    defaults = ctypes.c_double.in_dll(library, "exported_beam_defaults")
-    arguments = (*map(pointer, (omega, real, imag)), ctypes.c_size_t(omega.size), ctypes.byref(defaults))
-
-    def run() -> NDArray[Any]:
-        library.exported_beam_V_act_over_F_freq(*arguments)
-        return imag
-
-    return run
 
 
 def _by_hand(library: ctypes.CDLL, omega: NDArray[Any], values: list[float]) -> Callable[[], NDArray[Any]]:

@@ -10,8 +10,10 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -50,6 +52,23 @@ def loaded(files: Mapping[str, str], flags: Sequence[str]) -> ctypes.CDLL:
             ["cc", *flags, "-shared", "-fPIC", "-o", "library.so", *sources, "-lm"], cwd=folder, check=True
         )
         return ctypes.CDLL(str(Path(folder) / "library.so"))
+
+
+def responding(
+    library: ctypes.CDLL, stem: str, pair: str, omega: NDArray[Any], part: int
+) -> Callable[[], NDArray[Any]]:
+    """Return what computes the frequency response of a function in exported C: part 0 real, 1 imaginary."""
+    found = np.empty((2, omega.size))
+    defaults = ctypes.c_double.in_dll(library, f"{stem}_defaults")
+    compute = getattr(library, f"{stem}_{pair}_freq")
+    arguments = (*map(pointer, (omega, *found)), ctypes.c_size_t(omega.size), ctypes.byref(defaults))
+
+    def run() -> NDArray[Any]:
+        compute(*arguments)
+        values: NDArray[Any] = found[part]
+        return values
+
+    return run
 
 
 def pointer(array: NDArray[Any]) -> Any:  # noqa: ANN401

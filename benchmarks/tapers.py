@@ -9,7 +9,6 @@ Exported C of the same beam is compared with that of the beam without taper, who
 
 from __future__ import annotations
 
-import ctypes
 import re
 import shutil
 import sys
@@ -21,7 +20,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from benchmarks.generated import loaded, pointer
+from benchmarks.generated import loaded, responding
 from benchmarks.measure import Claim, Measurement, fastest
 from symflex import pipeline
 from symflex.codegen.c.module import C99
@@ -185,7 +184,7 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
         times = []
         for name, text in (("tapered", MODEL), ("uniform", re.sub(r"\*\(1 - .*\)\^[24]", "", MODEL))):
             task = f"exported C ({flag}) of a {name} beam at {POINTS_OF_C} frequencies"
-            best = fastest({name: responding(text, flag)}, limit, rounds=20, agreement=1e-7)
+            best = fastest({name: _in_c(text, flag)}, limit, rounds=20, agreement=1e-7)
             times += [Measurement(task, way, seconds, limit) for way, seconds in best.items()]
         found += times
         text = f"exported C ({flag}) of a tapered beam: times as long as that of a uniform one"
@@ -195,21 +194,12 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
     return found, claims
 
 
-def responding(text: str, flag: str) -> Callable[[], NDArray[Any]]:
+def _in_c(text: str, flag: str) -> Callable[[], NDArray[Any]]:
     """Return what computes a model's response, which is real, by exported C."""
     model = pipeline.loads(text)
     made = C99.export(model, pipeline.derive_all(model), stem="beam", is_alone=False)
     library = loaded({"beam.c": made.text, "beam.h": made.companions[".h"]}, ("-std=c99", flag))
-    omega = np.geomspace(*BAND_OF_C, POINTS_OF_C)
-    real, imag = np.empty_like(omega), np.empty_like(omega)
-    defaults = ctypes.c_double.in_dll(library, "beam_defaults")
-    arguments = (*map(pointer, (omega, real, imag)), ctypes.c_size_t(omega.size), ctypes.byref(defaults))
-
-    def run() -> NDArray[Any]:
-        library.beam_y_over_F_freq(*arguments)
-        return real
-
-    return run
+    return responding(library, "beam", "y_over_F", np.geomspace(*BAND_OF_C, POINTS_OF_C), 0)
 
 
 def _compare(

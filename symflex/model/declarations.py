@@ -253,9 +253,12 @@ def without_sign(
         return None
     shown = "0" if magnitude == 0 else "negative"
     message = f"parameter '{name}' is {shown}, but a parameter is assumed {assume}"
-    weaker = "nonnegative" if magnitude == 0 else "real"
-    hint = f'write {name} = {{ value = ..., assume = "{weaker}" }} in the model'
-    return Diagnostic("SF209", message, span, hint)
+    return Diagnostic("SF209", message, span, assuming(name, "nonnegative" if magnitude == 0 else "real"))
+
+
+def assuming(name: str, assume: Assumption) -> str:
+    """Return a hint: how a parameter is declared that may have other signs."""
+    return f'write {name} = {{ value = ..., assume = "{assume}" }} in the model'
 
 
 def read_definitions(reader: Reader, section: TableValue | None) -> tuple[Definition, ...]:

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
 from math import inf, isfinite, nan
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from flint import acb, acb_series, arb, ctx, fmpq
 
@@ -136,6 +136,28 @@ def _enclose(expression: Expression, values: Mapping[str, Callable[[], arb]]) ->
 
 Value = acb | acb_series
 """A number, or a power series in the displacement from one."""
+Arithmetic = Any
+"""A ball or a power series, real or complex. Their arithmetic is one."""
+
+
+def raised(base: Arithmetic, exponent: int) -> Arithmetic:
+    """Return an integer power of a ball or a series, not finite where it divides by zero.
+
+    Examples
+    --------
+    >>> raised(acb_series([2, 1], 2), -1), raised(acb_series([0, 1], 2), -1)[0].is_finite()
+    (0.500000000000000 + (-0.250000000000000)*x + O(x^2), False)
+    """
+    if isinstance(base, acb | arb):
+        return base**exponent
+    found: Arithmetic = base**0 if exponent == 0 else base
+    for _ in range(abs(exponent) - 1):
+        found = found * base
+    if exponent < 0:
+        # Balls are not finite then by themselves; series of them raise an error.
+        return found * arb("nan") if found[0].contains(0) else 1 / found
+    return found
+
 
 Step = tuple[int, tuple[int, ...], int]
 """How many factors of the last product stay, which powers follow, and the term's integer."""

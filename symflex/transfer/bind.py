@@ -29,6 +29,7 @@ from symflex.errors import Diagnostic, ModelError, Text, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.model import ExactValue, with_numbers
 from symflex.model.along import COORDINATE, varies_along_x
+from symflex.model.declarations import assuming
 from symflex.quantities import parse_quantity, unit_of
 from symflex.transfer.balls import (
     FIRST_BITS,
@@ -356,8 +357,7 @@ def _check_sign(parameter: ModelParameter, value: ExactValue | None) -> None:
     # Zero is let through: leaving an effect out is what binding is often for.
     if value.rational < 0:
         message = f"parameter '{parameter.name}' is negative, but is assumed {parameter.assume}"
-        hint = f'write {parameter.name} = {{ value = ..., assume = "real" }} in the model'
-        raise UsageError(Diagnostic("SF209", message, None, hint))
+        raise UsageError(Diagnostic("SF209", message, None, assuming(parameter.name, "real")))
 
 
 def _read_value(

@@ -22,7 +22,7 @@ from flint import acb, acb_mat, acb_poly, acb_series, arb, ctx
 
 from symflex.algebra.interval_newton import narrowed, stays_inside
 from symflex.algebra.modal_sum import ModalSums, modal_amplitudes, mode_values
-from symflex.transfer.balls import Value, at_centre, ball, expansion
+from symflex.transfer.balls import Value, at_centre, ball, expansion, raised
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -162,13 +162,13 @@ class KernelValues:
             moving = []
             for factor, exponent in value.factors:
                 if is_constant:
-                    total = total * power_of(self.polynomial(factor, values), exponent)
+                    total = total * raised(self.polynomial(factor, values), exponent)
                 else:
                     moving.append((factor, exponent))
             known = self._products[value] = (total, tuple(moving))
         total, moving_factors = known
         for factor, exponent in moving_factors:
-            total = total * power_of(self.polynomial(factor, values), exponent)
+            total = total * raised(self.polynomial(factor, values), exponent)
         return total
 
     @cached_property
@@ -201,20 +201,7 @@ class KernelValues:
 
     def _monomials(self, polynomial: fmpz_mpoly, values: Mapping[str, Value]) -> Value:
         plan = self.plans(polynomial)
-        return plan.value([power_of(values[self.names[i]], e) for i, e in plan.powers])
-
-
-def power_of(base: Value, exponent: int) -> Value:
-    """Return an integer power, not finite where it divides by zero."""
-    if isinstance(base, acb):
-        return base**exponent
-    result = base
-    for _ in range(abs(exponent) - 1):
-        result = result * base
-    if exponent < 0:
-        # Balls are not finite then by themselves; series of them raise an error.
-        return acb_series([acb("nan")] * result.prec) if result[0].contains(0) else 1 / result
-    return result
+        return plan.value([raised(values[self.names[i]], e) for i, e in plan.powers])
 
 
 def _wavenumbers(law: Dispersion, c: Sequence[Value], near: Mapping[str, Value] | None) -> dict[str, Value]:

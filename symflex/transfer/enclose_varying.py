@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING
 
 from flint import acb, acb_series, arb, ctx
 
-from symflex.transfer.balls import Value, at_centre
-from symflex.transfer.varying_law import LEAST, ROOM, BoundLaw, raised
+from symflex.transfer.balls import Value, at_centre, raised
+from symflex.transfer.varying_law import LEAST, ROOM, BoundLaw
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -68,17 +68,18 @@ class VaryingMatrices:
     def value(self, minor: Minor, s: Value) -> Value:
         """Return a minor at a point, on a ball, or as a series about either."""
         law, terms = self.laws[minor.matrix], s.prec if isinstance(s, acb_series) else 1
+        expansion = None
         if law.weights is not None:
             u: Value = law.rate(s)
             centre = at_centre(u)
-            expansion = self._in_powers(minor.matrix, abs(centre).upper())
+            if centre.is_finite():
+                expansion = self._in_powers(minor.matrix, abs(centre).upper())
         else:
             u, ball = s, at_centre(s)
             centre = ball - ball.mid()
-            about = self._about(minor.matrix, ball, terms)
-            if about is None:
-                return NOWHERE if isinstance(s, acb) else acb_series([NOWHERE] * terms, terms)
-            expansion = about
+            expansion = self._about(minor.matrix, ball, terms)
+        if expansion is None:
+            return NOWHERE if isinstance(s, acb) else acb_series([NOWHERE] * terms, terms)
         found = expansion.series(minor.rows, minor.columns, centre, terms)
         if isinstance(u, acb):
             total: Value = found[0]

@@ -34,7 +34,7 @@ from symflex.errors import Diagnostic, ModelError
 from symflex.expressions import fold
 from symflex.model.along import COORDINATE
 from symflex.model.linearity import integer_exponent
-from symflex.transfer.balls import at_centre, ball, series_terms
+from symflex.transfer.balls import at_centre, ball, raised, series_terms
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -197,7 +197,7 @@ class BoundLaw(PartedLaw):
 
     def rate(self, s: Value) -> Value:
         """Return u, of which A is a polynomial once states are scaled by their weights."""
-        found: Value = raised(s, self.step) / self.divisor(s)
+        found: Value = raised(s, self.step) * raised(self.divisor(s), -1)
         return found
 
     def divisor(self, s: Value) -> Value:
@@ -479,16 +479,6 @@ class _AboutMiddle:
                 own = own + raised(s, power) * self.law.value(Factored.polynomial(value.ring, part), {})
             total = total * raised(own, exponent)
         return total
-
-
-def raised(base: Along, exponent: int) -> Along:
-    """Return an integer power of a number or a series."""
-    if isinstance(base, acb | arb):
-        return base**exponent
-    found: Along = base**0 if exponent == 0 else base
-    for _ in range(abs(exponent) - 1):
-        found = found * base
-    return 1 / found if exponent < 0 else found
 
 
 def _called(name: str, x: Along) -> Along:

@@ -184,8 +184,8 @@ def _found(
         has_delays = any(law.kind == "exponential" for law in bound.kernels.dispersions)
         for most in (MOST_POWERS,) if has_delays else (FEW_POWERS, MOST_POWERS):
             try:
-                few = partial(echoed, quotient, most=most)
-                return _of_delays(bound, few, integrations, times, digits), None
+                expanded = partial(echoed, quotient, most=most)
+                return _of_delays(bound, expanded, integrations, times, digits), None
             except TooManyEchoesError:
                 spend()
             if most == FEW_POWERS:
@@ -202,15 +202,14 @@ def _found(
         late = _without_delay(bound) if quotient is None else None
         if late is not None:
             return _later(*late, integrations, times, digits)
-        if quotient is None and waves is None:
-            try:
-                looped = looped_modes(bound, integrations, times, digits)
-            except TooManyEchoesError:
-                raise _too_many(bound) from None
-            if looped is not None:
-                return looped
-        else:
+        if quotient is not None or waves is not None:
             raise _too_many(bound)
+        try:
+            looped = looped_modes(bound, integrations, times, digits)
+        except TooManyEchoesError:
+            raise _too_many(bound) from None
+        if looped is not None:
+            return looped
         message = f"{bound.name} has waves that spread in a loop with a delay: this response is not known"
         raise ModelError(
             Diagnostic("SF813", message, None, "ask for a step, or take 'symflex rational' of the beam first")

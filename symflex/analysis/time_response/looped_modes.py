@@ -85,22 +85,22 @@ class ModalPart:
 
 
 @dataclass(frozen=True)
-class Laurent:
+class SeriesAtPole:
     """A series at one pole, ``x^-order (coefficients[0] + coefficients[1] x + ...)``."""
 
     order: int
     series: acb_series
 
-    def __mul__(self, other: Laurent) -> Laurent:
-        return Laurent(self.order + other.order, self.series * other.series)
+    def __mul__(self, other: SeriesAtPole) -> SeriesAtPole:
+        return SeriesAtPole(self.order + other.order, self.series * other.series)
 
-    def __neg__(self) -> Laurent:
-        return Laurent(self.order, -self.series)
+    def __neg__(self) -> SeriesAtPole:
+        return SeriesAtPole(self.order, -self.series)
 
-    def __add__(self, other: Laurent) -> Laurent:
+    def __add__(self, other: SeriesAtPole) -> SeriesAtPole:
         order = max(self.order, other.order)
         moved = [acb_series([acb(0)] * (order - p.order) + p.series.coeffs()) for p in (self, other)]
-        return Laurent(order, moved[0] + moved[1])
+        return SeriesAtPole(order, moved[0] + moved[1])
 
     @property
     def principal_part(self) -> tuple[acb, ...]:
@@ -372,7 +372,7 @@ def _controlled(
     with series_length(length):
         own = ModalPart(found, arb(0), None, is_proved=True)
         product = {
-            i: (a * (b + Laurent(0, acb_series([through])))).principal_part
+            i: (a * (b + SeriesAtPole(0, acb_series([through])))).principal_part
             for i, (a, b) in enumerate(zip(*_at_poles((plant, own), poles, length), strict=True))
             if i in found or i in plant.poles
         }
@@ -404,7 +404,7 @@ def _length(
     return begun + integrations + turns * more
 
 
-def _at_poles(parts: Sequence[ModalPart], poles: Sequence[acb], length: int) -> list[list[Laurent]]:
+def _at_poles(parts: Sequence[ModalPart], poles: Sequence[acb], length: int) -> list[list[SeriesAtPole]]:
     """Return the Laurent series of some functions at every pole."""
     deepest = max(len(c) for part in parts for c in part.poles.values())
     rows = [
@@ -418,7 +418,7 @@ def _at_poles(parts: Sequence[ModalPart], poles: Sequence[acb], length: int) -> 
     mirrored = [i for i, p in enumerate(poles) if p.imag != 0]
     everywhere = [*poles, *(poles[i].conjugate() for i in mirrored)]
     weights = acb_mat([[*row, *(row[i].conjugate() for i in mirrored)] for row in rows])
-    found: list[list[Laurent]] = [[] for _ in parts]
+    found: list[list[SeriesAtPole]] = [[] for _ in parts]
     for number, centre in enumerate(poles):
         spend()
         powers = []
@@ -443,29 +443,29 @@ def _at_poles(parts: Sequence[ModalPart], poles: Sequence[acb], length: int) -> 
                 )
                 for m in range(length - len(own))
             ]
-            found[at].append(Laurent(len(own), acb_series([*own[::-1], *regular])))
+            found[at].append(SeriesAtPole(len(own), acb_series([*own[::-1], *regular])))
     return found
 
 
-def _integrated(at: Sequence[Laurent], poles: Sequence[acb], integrations: int) -> list[Laurent]:
+def _integrated(at: Sequence[SeriesAtPole], poles: Sequence[acb], integrations: int) -> list[SeriesAtPole]:
     found = []
     for own, p in zip(at, poles, strict=True):
         if p == 0:
-            found.append(Laurent(own.order + integrations, own.series))
+            found.append(SeriesAtPole(own.order + integrations, own.series))
         else:
             series = own.series
             for _ in range(integrations):
                 series = series / acb_series([p, acb(1)])
-            found.append(Laurent(own.order, series))
+            found.append(SeriesAtPole(own.order, series))
     return found
 
 
-def _total(parts: list[list[Laurent]]) -> list[Laurent]:
+def _total(parts: list[list[SeriesAtPole]]) -> list[SeriesAtPole]:
     total = parts[0]
     for more in parts[1:]:
         total = [a + b for a, b in zip(total, more, strict=True)]
     return total
 
 
-def _fed_back(at: list[Laurent], gain: list[Laurent]) -> list[Laurent]:
+def _fed_back(at: list[SeriesAtPole], gain: list[SeriesAtPole]) -> list[SeriesAtPole]:
     return [-(a * b) for a, b in zip(at, gain, strict=True)]

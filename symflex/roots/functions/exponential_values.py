@@ -26,8 +26,8 @@ from symflex.algebra.exponential_sum import (
     amplitude_of,
     parts,
 )
-from symflex.transfer.balls import Value, at_centre, ball
-from symflex.transfer.enclose_kernels import KernelValues, power_of
+from symflex.transfer.balls import Value, at_centre, ball, raised
+from symflex.transfer.enclose_kernels import KernelValues
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -116,7 +116,7 @@ class ExponentialValues:
     def _product(self, powers: tuple[tuple[str, int], ...], place: Place) -> Value:
         total: Value = acb(1)
         for name, e in powers:
-            total = total * power_of(place.values[name], e)
+            total = total * raised(place.values[name], e)
         return total
 
     def exponents(self, number: int, place: Place, less: Exponent = REAL) -> list[Value | None]:

@@ -343,11 +343,18 @@ def test_laws_of_waves_have_poles_where_a_lossy_beam_no_longer_resists():
     assert not function.is_analytic_on(acb(arb(-240, 11), arb(0, 11)), BITS)
 
 
-def test_where_a_lossy_timoshenko_beam_no_longer_resists_nothing_is_finite():
-    text = 'symflex = 1\nelements.arm = { type = "beam", theory = "timoshenko", between = ["ground", "tip"], '
-    text += 'E = "2 Pa", I = "0.01 m^4", A = "1 m^2", rho = "1 kg/m^3", l = "1 m", G = "0.8 Pa", '
-    text += 'kappa = "5/6", eta = "0.02 s" }\ninputs.F = { force = "tip" }\noutputs.y = "tip"'
-    found = function_of(text).enclosed(acb(-50), BITS)
+@pytest.mark.parametrize(
+    "section",
+    [
+        'type = "beam", theory = "timoshenko", I = "0.01 m^4", G = "0.8 Pa", kappa = "5/6", A = "1 m^2"',
+        'type = "rod", A = "A_0*(1 - x/(2*l))^4"',
+    ],
+    ids=["Timoshenko", "taper"],
+)
+def test_where_a_lossy_member_no_longer_resists_nothing_is_finite(section):
+    text = f'symflex = 1\nparameters = {{ A_0 = "1 m^2", l = "1 m" }}\nelements.arm = {{ {section}, l = "l", '
+    text += 'between = ["ground", "tip"], E = "2 Pa", rho = "1 kg/m^3", eta = "0.02 s" }\n'
+    found = function_of(f'{text}inputs.F = {{ force = "tip" }}\noutputs.y = "tip"').enclosed(acb(-50), BITS)
     assert not all(value.is_finite() and slope.is_finite() for value, slope, _ in found)
 
 
