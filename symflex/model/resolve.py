@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from symflex.errors import Diagnostic, Span, SpecError, UsageError
+from symflex.errors import Diagnostic, SpecError, UsageError
 from symflex.expressions import Equation, Expression, substitute
 from symflex.library.elements import COMPONENTS, Placing
 from symflex.model.analysis import (
@@ -40,6 +40,7 @@ from symflex.model.declarations import (
 )
 from symflex.model.dimensions import turned_name
 from symflex.model.fields import read_fields, with_brackets_opened
+from symflex.model.headings import CONSEQUENCES, SECTIONS, check_header, read_section, settled_problems
 from symflex.model.linearity import check_expression, without_signal
 from symflex.model.model import (
     Definition,
@@ -60,11 +61,11 @@ from symflex.model.network import (
     read_elements,
     read_inputs,
 )
-from symflex.model.reading import QuantityLiteral, Reader, describe
+from symflex.model.reading import QuantityLiteral, Reader
 from symflex.model.scope import COORDINATE, ModelScope, build_scope
 from symflex.model.settings import check_names, settled
 from symflex.model.signs import Line, check_ranges, ranged_values
-from symflex.model.spec import ArrayValue, TableValue, parse_with_recovery
+from symflex.model.spec import parse_with_recovery
 from symflex.model.units import (
     block_unit,
     check_units,
@@ -83,33 +84,15 @@ from symflex.model.unused import unused
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
 
-    from symflex.errors import Source
+    from symflex.errors import Source, Span
     from symflex.model.settings import Setting
     from symflex.model.spec import Spec
 
 Kind = Literal["constant", "varying", "signal"]
 """What an expression may be: constant, varying along x, or varying in time."""
-FORMAT_VERSION = 1
-SECTIONS = (
-    "parameters",
-    "definitions",
-    "elements",
-    "inputs",
-    "outputs",
-    "signals",
-    "blocks",
-    "fields",
-    "published",
-    "analysis",
-    "figures",
-    "drawing",
-)
 MAX_PAIRS = 10_000
 """Transfer functions of one model, as of 100 outputs and 100 inputs: every list of them is printed in full. A
 round number, not a measured one."""
-CONSEQUENCES = ("SF210", "SF218")
-"""What is noted of a name that was lost with a mistake elsewhere."""
-TOP_KEYS = ("symflex", "title", "source", "doc", *SECTIONS)
 
 
 def load_model(
@@ -164,8 +147,8 @@ def resolve(spec: Spec, origin: Origin) -> Model:
     Raises SpecError: SF2xx, with every problem found.
     """
     reader = Reader()
-    _check_header(reader, spec)
-    sections = {name: _section(reader, spec, name) for name in SECTIONS}
+    check_header(reader, spec)
+    sections = {name: read_section(reader, spec, name) for name in SECTIONS}
     declared = read_parameters(reader, sections["parameters"])
     declared = settled(reader, declared, origin.loads.settings)
     definitions = read_definitions(reader, sections["definitions"])
@@ -230,11 +213,7 @@ def resolve(spec: Spec, origin: Origin) -> Model:
     reader.take([p for p in later.problems if whole or p.code != "SF218"])
     # A node may be missing for the same reason.
     reader.take([p for p in hints.problems if not reader.problems or p.code != "SF210"])
-    problems = reader.problems
-    if _lost_sections(spec):
-        problems = [p for p in problems if p.code not in CONSEQUENCES]
-    else:
-        problems += _empty_sections(spec)
+    problems = settled_problems(spec, reader.problems)
     if problems:
         raise SpecError(*_in_order(problems, spec.source))
     inner = [w for b in model.blocks if b.submodel is not None for w in b.submodel.warnings]
@@ -253,26 +232,6 @@ def _check_count(reader: Reader, spec: Spec, outputs: Sequence[Output], inputs: 
         raise SpecError(*reader.problems, Diagnostic("SF103", message, entry.key_span, hint))
 
 
-def _lost_sections(spec: Spec) -> bool:
-    """Tell whether a section is misspelt or no table, so that its names are not known."""
-    return any(
-        isinstance(e.value, TableValue) != (e.key in SECTIONS)
-        for e in spec.root.entries
-        if e.key in SECTIONS or e.key not in TOP_KEYS
-    )
-
-
-def _empty_sections(spec: Spec) -> list[Diagnostic]:
-    found = []
-    for name, example in (("inputs", 'F = { force = "x_act" }'), ("outputs", 'X = "x_tip"')):
-        entry = spec.root.get(name)
-        if entry is None or (isinstance(entry.value, TableValue) and not entry.value.entries):
-            span = entry.key_span if entry else Span(spec.source, 0, 0)
-            message = f"the specification has no [{name}]"
-            found.append(Diagnostic("SF214", message, span, f"for instance: {example}"))
-    return found
-
-
 def _in_order(problems: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
     """Return the problems in the order of the text, each once; those of other files come last."""
     unique = list(dict.fromkeys(problems))
@@ -284,32 +243,6 @@ def _in_order(problems: Sequence[Diagnostic], source: Source) -> list[Diagnostic
         return (int(span.source is not source), span.source.name, span.start)
 
     return sorted(unique, key=place)
-
-
-def _check_header(reader: Reader, spec: Spec) -> None:
-    reader.keys(spec.root, TOP_KEYS, "the specification")
-    version = spec.root.get("symflex")
-    if version is None:
-        reader.note(
-            "SF200",
-            "the specification does not say its format version",
-            Span(spec.source, 0, 0),
-            "begin the file with: symflex = 1",
-        )
-        return
-    literal = getattr(version.value, "value", None)
-    if literal != FORMAT_VERSION or isinstance(literal, bool):
-        message = f"the format version is {describe(version.value)}; this program reads version 1"
-        reader.note("SF200", message, version.value.span, "write symflex = 1")
-
-
-def _section(reader: Reader, spec: Spec, name: str) -> TableValue | None:
-    entry = spec.root.get(name)
-    if entry is None:
-        return None
-    many = isinstance(entry.value, ArrayValue)
-    hint = f"write one [{name}] with a line 'name = ...' for each of them" if many else None
-    return reader.table(entry, f"[{name}]", hint)
 
 
 def _refuse_twins(
