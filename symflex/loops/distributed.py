@@ -19,11 +19,12 @@ from symflex.errors import Diagnostic, UncertifiedError
 from symflex.loops.axis import LoopAtOrigin, loop_at_origin
 from symflex.loops.axis_factors import AxisFactors
 from symflex.loops.loop import GainPolynomial, LoopFunction
+from symflex.loops.passive import PassiveLoop, passive_loop
 from symflex.loops.stability_map import PoleCount
 from symflex.roots import Band, Budget
 from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.winding import Cell, RootOnPathError, Winding
-from symflex.roots.distributed.right_half_plane import right_tail
+from symflex.roots.distributed.right_half_plane import Tail, right_tail
 from symflex.roots.distributed.side import Side
 from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.functions.simplified import without_squares
@@ -51,6 +52,7 @@ class DistributedFactors(AxisFactors[LoopFunction]):
     """
 
     bound: BoundTransferFunction  # carries ring and kernels
+    gain: str  # its name
     # Those with kernels or wavenumbers, and those with negative exponents.
     factors: tuple[GainPolynomial, ...]
     limits: tuple[Fraction, Fraction]  # range of the gain
@@ -68,31 +70,56 @@ class DistributedFactors(AxisFactors[LoopFunction]):
         )
 
     @cached_property
+    def _tails(self) -> list[Tail]:
+        low, high = (ball(x) for x in self.limits)
+        found = []
+        for factor in self.factors:
+            if factor.multiplicity > 0:
+                b = factor.coefficients[1] if factor.degree else Factored.number(self.bound.ratio.ring, 0)
+                function = LoopFunction.of(self.bound, factor.coefficients[0], b)
+                weights = (acb(1), acb(low.union(high)))
+                found.append(right_tail(self.bound, (function.a, function.b), weights, self.scale))
+        return found
+
+    @cached_property
     def radius(self) -> tuple[float, bool]:
         """How far poles are searched [rad/s], and whether it is proved that none lies beyond on the right.
 
         Where it is not, ``reasons`` says why.
         """
-        low, high = (ball(x) for x in self.limits)
-        proved: list[float] = []
-        for factor in self.factors:
-            if factor.multiplicity < 0:
-                continue
-            b = factor.coefficients[1] if factor.degree else Factored.number(self.bound.ratio.ring, 0)
-            function = LoopFunction.of(self.bound, factor.coefficients[0], b)
-            tail = right_tail(
-                self.bound, (function.a, function.b), (acb(1), acb(low.union(high))), self.scale
-            )
-            if tail.radius is None:
-                self.reasons.append(tail.reason)
-                return self._without_end, False
-            proved.append(tail.radius)
-        return max(proved), True
+        proved = [tail.radius for tail in self._tails if tail.radius is not None]
+        if not self.is_endless:
+            return max(proved), True
+        if self.passive is not None and self.passive.rests:
+            return self._without_end, True
+        reason = next(tail.reason for tail in self._tails if tail.radius is None)
+        passive = "; as the loop is passive, none lies right of it"
+        self.reasons.append(reason + passive if self.passive is not None else reason)
+        return self._without_end, False
+
+    @property
+    def is_endless(self) -> bool:
+        """Whether poles next to the axis have no end along it, or none that is known."""
+        return any(tail.radius is None for tail in self._tails)
+
+    @cached_property
+    def passive(self) -> PassiveLoop | None:
+        """How the loop is closed, where it is proved to be passive for every gain in the range."""
+        return (
+            passive_loop(self.bound.source.model, self.gain, self.bound.values)
+            if self.limits[0] >= 0
+            else None
+        )
 
     @property
     def axis_end(self) -> float:
-        """How far crossings of the axis are searched [rad/s]: to the largest circle on which is counted."""
+        """How far crossings of the axis are searched [rad/s]: to the largest circle on which is counted.
+
+        0 where a passive loop has none.
+        """
         end, is_proved = self.radius
+        if is_proved and self.is_endless:
+            return 0.0
         return end if is_proved else end * exp(NUDGES[-1])
 
     @cached_property
@@ -140,7 +167,7 @@ class DistributedFactors(AxisFactors[LoopFunction]):
         most = abs(gain).upper()
         disc = acb(arb(0, most), arb(0, most))
         tail = right_tail(function.bound, (function.a, function.b), (acb(1), disc), last)
-        if tail.radius is None:
+        if tail.radius is None and not self.is_endless:
             self.reasons.append("whether the loop gain is one at high frequencies is not proved")
         return tail.radius or last
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
+from math import pi
 from typing import TYPE_CHECKING, Any, Final
 
 from flint import acb, arb
@@ -101,18 +102,32 @@ def find_stable_gains(
     )
     loop_gain = _loop_gain(loop, along, digits + GUARD_DIGITS, budget)
     phase_margins: tuple[PhaseMargin, ...] = ()
-    bandwidth = None
+    bandwidth = beyond = None
     if loop_gain is not None:
         if found.is_stable and nominal:
             phase_margins = _phase_margins(loop_gain, nominal)
         bandwidth = allowed_bandwidth(intervals, high, loop_gain)
+        if is_complete and isinstance(along, DistributedFactors) and along.is_endless and along.passive:
+            beyond = along.passive.least_phase_margin(along.radius[0])
+            if not _holds_smallest(phase_margins, bandwidth, beyond):
+                reasons.append(f"phase margins above {along.radius[0] / (2 * pi):.4g} Hz are not known")
     return replace(
         found,
         gain_margins=_gain_margins(found),
         phase_margins=phase_margins,
         bandwidth=bandwidth,
+        margin_beyond=beyond,
         reasons=tuple(dict.fromkeys((*search.reasons, *reasons))),
     )
+
+
+def _holds_smallest(
+    phase_margins: Sequence[PhaseMargin], bandwidth: AllowedBandwidth | None, beyond: float
+) -> bool:
+    """Tell whether the smallest phase margins were found, as others are not below an angle [rad]."""
+    known = [[abs(margin.angle) for margin in phase_margins]] if phase_margins else []
+    known += [] if bandwidth is None or bandwidth.phase_margin is None else [[abs(bandwidth.phase_margin)]]
+    return all(any(angle < beyond for angle in angles) for angles in known)
 
 
 def _factors(
@@ -132,7 +147,11 @@ def _factors(
     if isinstance(loop, NetworkLoop):
         return [], NetworkFactors(loop, (low, high), up_to, digits + GUARD_DIGITS, budget), (low, high)
     lumped = [LumpedFactor.of(loop.bound, factor) for factor in plain]
-    return lumped, DistributedFactors(loop.bound, mixed, (low, high), up_to, budget), (low, high)
+    return (
+        lumped,
+        DistributedFactors(loop.bound, loop.gain.name, mixed, (low, high), up_to, budget),
+        (low, high),
+    )
 
 
 def _split(loop: Loop) -> tuple[tuple[GainPolynomial, ...], tuple[GainPolynomial, ...]]:

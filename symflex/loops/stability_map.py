@@ -110,6 +110,8 @@ class StabilityMap:
     bandwidth : AllowedBandwidth or None
         Which the stable gains next to 0 allow; ``None`` where there are none, or the loop is closed in
         several places.
+    margin_beyond : float or None
+        Which phase margins beyond the radius are not below [rad], where no more than that is known of them.
     """
 
     gain: str
@@ -125,6 +127,7 @@ class StabilityMap:
     reasons: tuple[str, ...]
     digits: int
     bandwidth: AllowedBandwidth | None
+    margin_beyond: float | None = None
 
     def __repr__(self) -> str:
         count = len(self.boundaries)
@@ -205,8 +208,23 @@ class StabilityMap:
                 }
                 for m in self.phase_margins
             ],
+            "margin_beyond": self._beyond(),
             "bandwidth": self._bandwidth(),
         }
+
+    def _beyond(self) -> dict[str, float] | None:
+        if self.margin_beyond is None or self.radius is None:
+            return None
+        return {
+            "omega": self.radius,
+            "frequency_hz": self.radius / (2 * pi),
+            "degrees": self.least_degrees_beyond,
+        }
+
+    @property
+    def least_degrees_beyond(self) -> float:
+        """:attr:`margin_beyond` in degrees, 0 without one."""
+        return (self.margin_beyond or 0.0) * 180 / pi
 
     def _bandwidth(self) -> dict[str, object] | None:
         found = self.bandwidth
@@ -343,6 +361,10 @@ def _passages(found: StabilityMap) -> Iterator[Passage]:
 
 def _status(found: StabilityMap) -> str:
     if found.certified:
+        if found.margin_beyond is not None:
+            return "certified: the loop is passive, K acts as a spring and a damper".replace(
+                "K", found.gain, 1
+            )
         return "certified: all poles right of the imaginary axis counted"
     if not found.is_complete and found.radius is not None:
         return f"NOT CERTIFIED beyond {found.radius / (2 * pi):.4g} Hz: poles are counted up to there"
@@ -426,6 +448,9 @@ def _margins(found: StabilityMap) -> Passage:
         flag = ", the smallest" if each is worst and len(found.phase_margins) > 1 else ""
         shown = decimals(abs(angle), arb(0), SHORT_DIGITS).re
         rows.append(("phase", f"{shown} deg", direction, place + flag))
+    if found.margin_beyond is not None and found.radius is not None:
+        place = f"all above {found.radius / (2 * pi):.{SHORT_DIGITS}g} Hz"
+        rows.append(("phase", f"{found.least_degrees_beyond:.4g} deg", "least", place))
     return Passage(lines, rows, has_head=False)
 
 

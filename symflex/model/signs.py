@@ -396,10 +396,20 @@ def _is_passive(use: PlacedElement, line: Line, inputs: set[str]) -> bool:
     law = element.passive
     if law is None or any(given[name] != given[law.equal[0]] for name in law.equal):
         return False
+    signs = parameter_signs(use, line)
+    return all(sign is not None and (sign >= 0 or name in law.of_any_sign) for name, sign in signs.items())
+
+
+def parameter_signs(use: PlacedElement, line: Line) -> dict[str, int | None]:
+    """Return the signs of an element's parameters, ``None`` where one cannot be told.
+
+    One that varies along a member has a sign where that is proved to be positive everywhere.
+    """
+    element, given = use.element, dict(use.values)
     signs = {name: line.sign(value) for name, value in given.items()}
     if isinstance(element, LineElement) and None in signs.values():
         length = line.value(given[element.length])
         along = {p.name for p in element.parameters if p.varies}
         for name in (n for n, sign in signs.items() if sign is None and n in along and length is not None):
             signs[name] = _sign_along(given[name], length or Fraction(0), line)
-    return all(sign is not None and (sign >= 0 or name in law.of_any_sign) for name, sign in signs.items())
+    return signs

@@ -1,0 +1,342 @@
+"""Loops that are closed as by a spring and a damper: no gain makes them unstable, whatever has no end.
+
+A force or torque that follows the motion it acts on, ``u = -K (alpha + beta s) q`` with alpha and beta not
+negative, is a spring and a damper. Added to a structure that nothing supplies with energy it makes another
+one: for every K > 0 no pole lies right of the imaginary axis (Anderson & Vongpanitlerd 1973, Network Analysis
+and Synthesis, chapter 2). One lies on the axis only where nothing that dissipates moves, and what rests
+with that is followed through the equations.
+
+Example: PD control of the joint of a flexible arm. At a pole on the axis the joint rests, and no moment is
+left on it: three of four states of the link vanish at its base. Then ``(EI y'')'' = rho A omega^2 y`` makes
+deflection, slope, moment and shear grow from there with one sign, and a mass at the tip would have to pull
+where it pushes. So the link rests too: no pole is on the axis, at any frequency.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import atan2, pi
+from typing import TYPE_CHECKING
+
+from flint import arb
+
+from symflex.algebra import LAPLACE, Factored
+from symflex.algebra.ring import terms_of
+from symflex.expressions import Name, names
+from symflex.library.elements.element import LinearForm, Variable
+from symflex.library.elements.line import Beam, LineElement
+from symflex.library.elements.lumped import ThroughSource
+from symflex.model import Signal
+from symflex.model.network import variable_of
+from symflex.model.signs import Line, is_passive, parameter_signs
+from symflex.roots import precision
+from symflex.transfer.balls import ball
+from symflex.transfer.of_model import assemble
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping, Sequence
+
+    from symflex.equations import Equations
+    from symflex.model import ExactValue, Model, PlacedElement
+
+BITS = 128
+SUPPLIED = "0"
+"""What the loop supplies, as a signal; no name of a specification begins so."""
+Form = dict[Variable, Factored]
+Powers = dict[tuple[int, int], arb]
+"""Coefficients of a polynomial, by the powers of s and of the gain."""
+Ends = tuple[Variable | None, ...]
+"""What moves, or acts, at the nodes of an element; ``None`` at the reference."""
+GROWING = ((1, 1, -1, 1), (1, 1, 1, -1))
+"""Signs of y, theta, f_a, tau_a at a beam's first end and of y, theta, f, tau at its second, if y, y', EI y''
+and EI y''' are positive: it delivers ``-EI y'''`` and ``EI y''`` at the first end, the opposite at the
+second."""
+FALLING = ((1, -1, 1, 1), (1, -1, -1, -1))
+"""The same if y, -y', EI y'' and -EI y''' are positive: seen from the second end."""
+
+
+@dataclass(frozen=True, slots=True)
+class PassiveLoop:
+    """A loop whose gain K is a spring and a damper, ``stiffness + damping s``, up to a positive factor.
+
+    ``rests`` tells that all of it rests where no energy is lost, so that for no K > 0 a pole is on the axis.
+    """
+
+    stiffness: float
+    damping: float
+    rests: bool
+
+    def least_phase_margin(self, omega: float) -> float:
+        """Return an angle [rad] that no phase margin at a frequency above omega [rad/s] is below.
+
+        The force on a passive structure and the velocity there differ by 90 degrees at most.
+        """
+        return min(atan2(self.damping * omega, self.stiffness), pi / 2)
+
+
+def passive_loop(model: Model, gain: str, values: Iterable[tuple[str, ExactValue]]) -> PassiveLoop | None:
+    """Return how a loop is closed, ``None`` where it is not proved to be passive for all K > 0.
+
+    ``values`` are those of the parameters, with any value of the gain.
+    """
+    known = dict(values)
+    inputs = {each.name for each in model.inputs}
+    following = [e for e in model.elements if e.element.is_source and _follows_more(e, inputs, known)]
+    if len(following) != 1 or not isinstance(following[0].element, ThroughSource) or model.blocks:
+        return None
+    (source,) = following
+    rest = tuple(e for e in model.elements if e is not source)
+    if not is_passive(replace(model, elements=rest, signals=()), known.items()):
+        return None
+    ((quantity, supplied),) = source.values
+    named = replace(source, values=((quantity, Name(SUPPLIED)),))
+    signals = (*model.signals, Signal(SUPPLIED, supplied))
+    equations = assemble(
+        replace(model, elements=(*rest, named), signals=signals, outputs=(), figures=(), published=())
+    )
+    line = Line.of_numbers(model.definitions, known.items())
+    return _Structure(equations, rest, gain, line, known).closed_at(_ends(source, equations.model))
+
+
+def _follows_more(use: PlacedElement, inputs: set[str], known: Mapping[str, ExactValue]) -> bool:
+    allowed = inputs | {"pi"} | known.keys()
+    return any(
+        not isinstance(each, Name) or each.name not in allowed
+        for _, value in use.values
+        for each in names(value)
+    )
+
+
+def _ends(use: PlacedElement, model: Model) -> Ends:
+    """Return what moves at the nodes of an element of one port."""
+    (port,) = (port for port, _ in use.nodes)
+    nodes, domain = {n.name: n for n in model.nodes}, dict(use.domains)[port]
+    return tuple(
+        None if r.is_ground else variable_of(r, nodes[r.node], domain) for r in dict(use.nodes)[port]
+    )
+
+
+@dataclass(frozen=True)
+class _Structure:
+    """The equations of a passive structure and of what closes a loop about it, with numbers."""
+
+    equations: Equations
+    rest: Sequence[PlacedElement]  # all elements but the loop's source
+    gain: str
+    line: Line
+    values: Mapping[str, ExactValue]
+
+    def closed_at(self, ends: Ends) -> PassiveLoop | None:
+        """Return how the loop is closed by what acts at one end, or between two."""
+        law = self._law(ends)
+        if law is None:
+            return None
+        # Signals are no part of the structure: none is left that moves by itself.
+        moving = {v for v in self.equations.unknowns if v.kind in ("node", "through")}
+        if not _followed(moving, [form for _, form in self._forms], self._is_constant).issuperset(
+            self.equations.unknowns
+        ):
+            return None
+        stiffness, damping = (float(sum(c.mid() for (i, _), c in law.items() if i == n)) for n in (0, 1))
+        return PassiveLoop(stiffness, damping, self._rests([ends] if damping else []))
+
+    @cached_property
+    def _forms(self) -> list[tuple[str, Form]]:
+        """What vanishes where inputs rest, each row with its role."""
+        return [(row.role, _form(row.form)) for row in self.equations.rows]
+
+    def _law(self, ends: Ends) -> Powers | None:
+        """Return the polynomial with which minus the motion is multiplied, where none of it is negative."""
+        effort = Variable("signal", SUPPLIED)
+        rows = [form for role, form in self._forms if role in ("signal", "constraint")]
+        for variable in {v for row in rows for v in row} - {effort, *ends}:
+            rows = _without(variable, rows)
+        found = next((row for row in rows if effort in row), {})
+        shares = [
+            found[v] / found[effort] * sign for v, sign in zip(ends, (1, -1), strict=False) if v in found
+        ]
+        if len(shares) != sum(v is not None for v in ends) or any(x != shares[0] for x in shares):
+            return None
+        law, below = self._powers(shares[0].numerator()), self._powers(shares[0].denominator())
+        if law is None or below is None or below.keys() != {(0, 0)}:
+            return None
+        with precision(BITS):
+            law = {at: c / below[0, 0] for at, c in law.items()}
+        return law if all(i <= 1 and j <= 1 and c > 0 for (i, j), c in law.items()) else None
+
+    def _rests(self, damped: Sequence[Ends]) -> bool:
+        """Tell whether everything rests where what is damped does, at any frequency of the axis."""
+        one = Factored.number(self.equations.ring, 1)
+        signs = {use.name: parameter_signs(use, self.line) for use in self.rest}
+        damped = list(damped)
+        resting: set[Variable] = set()
+        members = []
+        for use in self.rest:
+            given, law = signs[use.name], use.element.damping
+            if law and given[law] == 1:
+                damped.append(_ends(use, self.equations.model))
+            if isinstance(use.element, LineElement):
+                states = self._states(use, use.element)
+                members.append((states, _grows(use, given)))
+                if _loses(given):
+                    resting.update(v for state in states for v in state if v is not None)
+        forms = [form for _, form in self._forms]
+        forms += [_form(LinearForm.of(*zip(ends, (one, -one), strict=False))) for ends in damped]
+        known = -1
+        while len(resting) > known:
+            known = len(resting)
+            resting = _followed(resting, forms, self._turn)
+            for states, grows in members:
+                for here, there in (states, states[::-1]):
+                    if all(v is None or v in resting for v in here):
+                        resting.update(v for v in there if v is not None)
+                if grows:
+                    resting.update(self._unable_to_grow(states, resting, forms))
+        return resting.issuperset(self.equations.unknowns)
+
+    def _states(self, use: PlacedElement, element: LineElement) -> tuple[Ends, Ends]:
+        """Return what moves at both ends of a member, and what it delivers there."""
+        found = []
+        for end, through in zip(_ends(use, self.equations.model), ("_a", ""), strict=True):
+            across: Ends = (end,)
+            if len(element.ends) > 1:
+                across = tuple(end and Variable("node", end.owner, c) for c in element.ends)
+            found.append((*across, *(Variable("through", use.name, q + through) for q in element.through)))
+        return found[0], found[1]
+
+    def _unable_to_grow(
+        self, states: tuple[Ends, Ends], resting: set[Variable], forms: Sequence[Form]
+    ) -> set[Variable]:
+        """Return the one quantity at an end of a beam that does not rest, if it has to.
+
+        Else all at the other end have the signs of :data:`GROWING` or :data:`FALLING`, which is told to be
+        impossible by one of them that rests, or by a row of the equations whose terms have all one sign.
+        """
+        for (here, there), (first, second) in ((states, GROWING), (states[::-1], FALLING[::-1])):
+            moving = [
+                (v, sign) for v, sign in zip(here, first, strict=True) if v is not None and v not in resting
+            ]
+            if len(moving) != 1:
+                continue
+            if any(v is None or v in resting for v in there):
+                return {moving[0][0]}
+            signs = dict([*moving, *zip(there, second, strict=True)])
+            for form in forms:
+                left = [v for v in form if v not in resting]
+                if left and signs.keys() >= set(left):
+                    turns = {self._turn(form[v]) * signs[v] for v in left}
+                    if len(turns) == 1 and 0 not in turns:
+                        return {moving[0][0]}
+        return set()
+
+    @cached_property
+    def _numbers(self) -> dict[str, arb]:
+        """The ring's generators that have a number."""
+        with precision(BITS):
+            found = {"pi": arb.pi()} | {
+                name: ball(v.rational) * arb.pi() ** v.pi_power
+                for name, v in self.values.items()
+                if name != self.gain
+            }
+            for name, value in self.equations.definitions:
+                above, below = (
+                    self._powers(part, found) for part in (value.numerator(), value.denominator())
+                )
+                if above is not None and below is not None and above.keys() == below.keys() == {(0, 0)}:
+                    found[name] = above[0, 0] / below[0, 0]
+        return found
+
+    def _powers(self, value: Factored, numbers: Mapping[str, arb] | None = None) -> Powers | None:
+        """Return a polynomial's coefficients, ``None`` where one of its names has no number."""
+        numbers = self._numbers if numbers is None else numbers
+        names, found = value.ring.names, Powers()
+        with precision(BITS):
+            for monomial, coefficient in terms_of((value / value.unit).expand()):
+                total, powers = ball(value.unit) * coefficient, {LAPLACE: 0, self.gain: 0}
+                for name, exponent in ((names[i], e) for i, e in monomial):
+                    if name in powers:
+                        powers[name] = exponent
+                    elif name in numbers:
+                        total = total * numbers[name] ** exponent
+                    else:
+                        return None
+                at = (powers[LAPLACE], powers[self.gain])
+                found[at] = found.get(at, arb(0)) + total
+        return found
+
+    def _is_constant(self, coefficient: Factored) -> bool:
+        """Tell whether a coefficient vanishes for no s and no K > 0."""
+        powers = self._powers(coefficient)
+        return powers is not None and self._turn(coefficient) != 0 and all(i == 0 for i, _ in powers)
+
+    def _turn(self, coefficient: Factored) -> complex:
+        """Return 1, -1, 1j or -1j: the side of a coefficient in the complex plane; 0 where it has none.
+
+        It is there for every K > 0 and every s = j omega with omega > 0.
+        """
+        signs: dict[bool, set[int]] = {False: set(), True: set()}
+        for (of_s, _), c in (self._powers(coefficient) or {}).items():
+            sign = 1 if c > 0 else -1 if c < 0 else 0
+            signs[bool(of_s % 2)].add(sign * (1, 1, -1, -1)[of_s % 4])
+        sides = [
+            unit * signs[odd].pop() for odd, unit in ((False, 1), (True, 1j)) if signs[odd] in ({1}, {-1})
+        ]
+        return sides[0] if sides else 0
+
+
+def _grows(use: PlacedElement, signs: Mapping[str, int | None]) -> bool:
+    """Tell whether a member is a beam whose states all grow once they are positive."""
+    if not isinstance(use.element, Beam) or dict(use.choices).get("theory") != "euler-bernoulli":
+        return False
+    return all(signs[n] == 1 for n in ("E", "I", "rho", "A", "l")) and all(
+        signs[n] == 0 for n in ("eta", "c_f", "k_f", "N")
+    )
+
+
+def _loses(signs: Mapping[str, int | None]) -> bool:
+    """Tell whether a member rests where it loses no energy.
+
+    Without strain it moves as a rigid body, which its mass alone does not let it do by itself.
+    """
+    heavy = signs["rho"] == 1 and signs.get("A", signs.get("J")) == 1
+    return signs["c_f"] == 1 or (signs.get("eta") == 1 and signs["k_f"] == 0 and heavy)
+
+
+def _form(form: LinearForm) -> Form:
+    """Return a row's terms where inputs rest."""
+    return {v: c for v, c in LinearForm.total([form]).terms if v.kind != "input"}
+
+
+def _without(variable: Variable, rows: Sequence[Form]) -> list[Form]:
+    """Return what linear rows say without one of their variables."""
+    pivot = next((row for row in rows if variable in row), None)
+    if pivot is None:
+        return list(rows)
+    found = []
+    for row in rows:
+        if row is pivot:
+            continue
+        if variable in row:
+            share = row[variable] / pivot[variable]
+            zero = Factored.number(share.ring, 0)
+            others = (row.keys() | pivot.keys()) - {variable}
+            total = {v: row.get(v, zero) - pivot.get(v, zero) * share for v in others}
+            found.append({v: c for v, c in total.items() if not c.is_zero})
+        else:
+            found.append(row)
+    return found
+
+
+def _followed(
+    resting: set[Variable], forms: Sequence[Form], is_nonzero: Callable[[Factored], object]
+) -> set[Variable]:
+    """Return what rests with what does: in a row, what is multiplied by something and left alone."""
+    found, known = set(resting), -1
+    while len(found) > known:
+        known = len(found)
+        for form in forms:
+            left = [v for v in form if v not in found]
+            if len(left) == 1 and is_nonzero(form[left[0]]):
+                found.add(left[0])
+    return found

@@ -1,0 +1,151 @@
+"""Loops that are passive: what is proved of them, where it is not, and finite elements that agree."""
+
+from __future__ import annotations
+
+from math import cos, cosh, sin, sinh
+from string import Template
+
+import numpy as np
+import pytest
+from scipy.linalg import eigvals
+
+from symflex import pipeline
+from symflex.loops.of_model import stability
+from symflex.loops.passive import passive_loop
+from symflex.options import StabilityOptions
+
+ARM = Template("""
+symflex = 1
+parameters = { K = "3 N*m/rad", T = "0.2 s", n = 2, I_0 = "1 m^4", A_0 = "1 m^2", l = "1 m" }
+inputs.r = { unit = "rad" }
+outputs.y = "tip"
+signals.e = "r - hub.theta"
+[elements]
+bearing = { type = "pin", at = "hub" }
+rotor = { type = "inertia", at = "phi", J = "0.1 kg*m^2" }
+gears = { type = "transformer", from = "phi", to = "hub.theta", ratio = "1/n" }
+arm = { type = "beam", between = [$between], E = "2 Pa", rho = "1 kg/m^3", l = "l", $section }
+load = { type = "mass", at = "tip", m = "0.5 kg" }
+motor = { type = "torque_source", at = "phi", tau = "$tau" }
+$more
+""")
+PD = "K/n*(r - (1 + T*s)*hub.theta)"
+UNIFORM = 'I = "I_0", A = "A_0"'
+TAPERED = 'I = "I_0*(1 - x/(2*l))^3", A = "A_0*(1 - x/(2*l))"'
+TIMOSHENKO = UNIFORM + ', theory = "timoshenko", kappa = "1", G = "1 Pa"'
+
+
+def arm(tau=PD, section=UNIFORM, between='"hub", "tip"', more=""):
+    """Return a flexible arm on a geared motor: at the hub EI = 2 N m^2 and rho A = 1 kg/m, l = 1 m."""
+    return pipeline.loads(ARM.substitute(tau=tau, section=section, between=between, more=more))
+
+
+def closed(model):
+    return passive_loop(model, "K", [(p.name, p.value) for p in model.parameters])
+
+
+@pytest.mark.parametrize("between", ['"hub", "tip"', '"tip", "hub"'])
+def test_pd_control_of_a_geared_joint_is_a_spring_and_a_damper_at_the_rotor(between):
+    found = closed(arm(between=between))
+    assert found.rests
+    # A torque K/n (1 + T s) phi/n at the rotor's angle phi.
+    assert (found.stiffness, found.damping) == pytest.approx((1 / 4, 0.2 / 4))
+
+
+def test_a_loop_closed_by_signals_is_followed_through_them():
+    found = closed(arm("K*e - K*T*s*phi"))
+    # The rotor turns twice as far as the hub.
+    assert (found.stiffness, found.damping, found.rests) == pytest.approx((1 / 2, 0.2, True))
+
+
+@pytest.mark.parametrize(
+    "tau",
+    [
+        "K/n*(r - tip/l)",  # not where it acts
+        "K*(hub.theta - r)",  # of the wrong sign
+        "K*(r - (1 - T*s)*hub.theta)",
+        "K*(r - hub.theta)/(1 + T*s)",  # lags
+        "K*(r - (1 + 1/(T*s))*hub.theta)",
+        "K*(r - T^2*s^2*hub.theta)",
+        "K*(r - hub.theta) - arm.tau",
+    ],
+)
+def test_other_loops_are_not_taken_for_passive(tau):
+    assert closed(arm(tau)) is None
+
+
+def test_of_a_beam_with_rotatory_inertia_nothing_is_said_about_the_axis():
+    found = closed(arm(section=TIMOSHENKO))
+    assert found is not None
+    assert not found.rests
+
+
+def test_a_mode_that_the_joint_does_not_feel_is_not_overlooked():
+    """A spring and an inertia at the tip for which the clamped arm needs no moment at its base."""
+    x, ei, m = 2.0, 2.0, 0.5
+    square = ei * x**4
+    y, slope = (sinh(x) - sin(x)) / 2, x * (cosh(x) - cos(x)) / 2
+    bending, shear = ei * x**2 * (sinh(x) + sin(x)) / 2, ei * x**3 * (cosh(x) + cos(x)) / 2
+    # Balance of the tip: shear = (k - m omega^2) y, bending moment = J omega^2 slope.
+    k, J = shear / y + m * square, bending / (square * slope)
+    spring = f'spring = {{ type = "spring", between = ["tip", "ground"], k = "{k!r} N/m" }}'
+    gripper = f'gripper = {{ type = "inertia", at = "tip.theta", J = "{J!r} kg*m^2" }}'
+    assert not closed(arm(more=f"{spring}\n{gripper}")).rests
+    # With a mass alone it has to pull where it pushes.
+    assert closed(arm(more=gripper)).rests
+
+
+def beam_matrices(count, depth):
+    """Return mass and stiffness of a beam of length 1, EI = 2 depth^3, rho A = depth, in cubic elements."""
+    h, size = 1 / count, 2 * count + 2
+    mass, stiffness = np.zeros((size, size)), np.zeros((size, size))
+    m = np.array([[156, 22, 54, -13], [22, 4, 13, -3], [54, 13, 156, -22], [-13, -3, -22, 4]]) / 420
+    k = np.array([[12, 6, -12, 6], [6, 4, -6, 2], [-12, -6, 12, -6], [6, 2, -6, 4]])
+    lengths = np.array([1, h, 1, h])
+    for i in range(count):
+        at = slice(2 * i, 2 * i + 4)
+        d = depth((i + 0.5) * h)
+        mass[at, at] += m * np.outer(lengths, lengths) * h * d
+        stiffness[at, at] += 2 * d**3 * k * np.outer(lengths, lengths) / h**3
+    return mass, stiffness
+
+
+@pytest.mark.parametrize("taper", [0.0, 0.5])
+@pytest.mark.parametrize("gain", [0.01, 3.0, 250.0])
+def test_finite_elements_are_stable_too(taper, gain):
+    mass, stiffness = beam_matrices(12, lambda x: 1 - taper * x)
+    mass, stiffness = mass[1:, 1:], stiffness[1:, 1:]  # the hub is pinned
+    damping = np.zeros_like(mass)
+    mass[0, 0] += 0.1 * 2**2  # the rotor, n^2 times at the hub
+    mass[-2, -2] += 0.5
+    stiffness[0, 0] += gain
+    damping[0, 0] += 0.2 * gain
+    one, zero = np.eye(len(mass)), np.zeros_like(mass)
+    found = eigvals(
+        np.block([[zero, one], [-np.linalg.solve(mass, stiffness), -np.linalg.solve(mass, damping)]])
+    )
+    assert found.real.max() < 0
+
+
+@pytest.mark.parametrize("section", [UNIFORM, pytest.param(TAPERED, marks=pytest.mark.slow)])
+def test_every_gain_of_a_joint_loop_is_certified(section):
+    model = arm(section=section)
+    found = stability(model, StabilityOptions(gain="K", up_to="3 Hz"))
+    assert found.certified
+    (only,) = found.intervals
+    assert only.poles.is_stable
+    assert found.phase_margins
+    # At the rotor the velocity and the torque on it differ by 90 degrees at most.
+    for margin in found.phase_margins:
+        least = closed(model).least_phase_margin(float(margin.frequency.mid()))
+        assert abs(float(margin.angle.mid())) >= least
+
+
+def test_where_a_loop_has_no_damping_of_its_own_phase_margins_beyond_are_not_certified():
+    loss = 'loss = { type = "rotary_damper", between = ["phi", "ground"], b = "0.1 N*m*s/rad" }'
+    model = arm("K*(r - phi)", more=loss)
+    assert closed(model).rests
+    found = stability(model, StabilityOptions(gain="K", up_to="3 Hz"))
+    assert not found.certified
+    assert found.is_complete
+    assert found.reasons == ("phase margins above 3 Hz are not known",)
