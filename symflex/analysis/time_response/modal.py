@@ -28,12 +28,13 @@ from symflex.analysis.time_response.echoes import Sampled
 from symflex.analysis.time_response.exponentials import ExponentialTerm, values_of
 from symflex.analysis.time_response.filtered import filtered
 from symflex.analysis.time_response.lossless_modes import LosslessModes, lossless_modes
-from symflex.analysis.time_response.passive_modes import PassiveBound, passive_bound
+from symflex.analysis.time_response.passive_modes import PassiveBound, SizeOfFunction, passive_bound
 from symflex.budget import entered_budget
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.winding import RootOnPathError
-from symflex.roots.distributed.side import Side
+from symflex.roots.distributed.proof import holes_about
+from symflex.roots.distributed.side import Side, accumulation_points
 from symflex.roots.engines import LOSSLESS
 from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.locate import locate
@@ -41,12 +42,16 @@ from symflex.roots.plane.local_roots import prove_simple
 from symflex.roots.polynomial_roots import in_order
 from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.region import Modes
+from symflex.transfer import BoundNested
+from symflex.transfer.balls import at_centre
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from symflex.analysis.time_response.passive_modes import Ring
     from symflex.analysis.time_response.sample_times import SampleTimes
     from symflex.roots import Root
+    from symflex.roots.counting.winding import Cell
     from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 
 MOST_DIGITS = 9
@@ -79,6 +84,12 @@ ESTIMATED_MODES = 25
 """Where the rest is estimated."""
 LAST_MODES = 5
 """From whose residues the rest is estimated."""
+SLOWEST = 0.9
+"""Half of a sum over that of the quarter before: it falls off so slowly that nothing is said beyond."""
+FAR = 1e9
+"""Of the highest pole, where the transfer function shows how a response begins."""
+SURER = 2
+"""By what the lack at t = 0 is multiplied: terms that differ in sign may add up to more later."""
 TOO_MUCH = 0.3
 """Estimated rest over the largest value from which on the modes say nothing."""
 
@@ -217,6 +228,8 @@ class PassiveModes:
         self._bounding, self._integrations, self._times = bounding, integrations, times
         self._bound = bounding.function.bound
         self._side = Side(self._bound, self._bound.den, DIGITS, entered_budget())
+        self._rings: dict[Cell, Ring] = {}
+        self._known: dict[float, PartialSum] = {}
 
     def summed(self, count: int) -> PartialSum | None:
         """Return the sum over so many modes, None where it is not proved.
@@ -235,6 +248,8 @@ class PassiveModes:
             if not side.prove(wanted).is_complete:
                 return None
             reached, roots = side.reached, side.roots
+        if reached in self._known:
+            return self._known[reached]
         origin = _proved_at_origin(self._bound, self._integrations)
         if origin is None:
             return None
@@ -249,9 +264,13 @@ class PassiveModes:
             for hole in side.holes:
                 if hole.low > reached:
                     continue
-                found = self._bounding.around(hole, [p.enclosure() for p in poles], self._integrations)
+                found = self._rings.get(hole)
+                if found is None:
+                    enclosures = [p.enclosure() for p in poles]
+                    found = self._bounding.function.around(hole, enclosures, self._integrations)
                 if found is None or not found[0].reach < radius:
                     return None
+                self._rings[hole] = found
                 rings.append(found[0])
                 terms += found[1]
                 rest += found[2]
@@ -265,7 +284,8 @@ class PassiveModes:
                 if term is None:
                     return None
                 terms.append(term)
-            return PartialSum(tuple(terms), tuple(values_of(terms, self._times)), rest.upper())
+            total = PartialSum(tuple(terms), tuple(values_of(terms, self._times)), rest.upper())
+            return self._known.setdefault(reached, total)
 
     def _continued(self, count: int) -> tuple[float, list[Root]] | None:
         """Return ln of a radius and all roots within, those found so far continued; None where that fails.
@@ -461,10 +481,11 @@ def estimated(bound: AnyBoundFunction, integrations: int, times: SampleTimes) ->
 
 def estimated_modes(bound: AnyBoundFunction, integrations: int, times: SampleTimes) -> PartialSum:
     """Return the sum over the lowest modes, whose rest is estimated; SF810 as :func:`estimated`."""
-    count = ESTIMATED_MODES
-    located = locate(bound, Modes(count), DIGITS).complete()
+    located = locate(bound, Modes(ESTIMATED_MODES), DIGITS).complete()
     poles = [root for root in located.all_poles if not root.im < 0 and not root.is_zero]
-    parts = residues_at(bound, poles, DIGITS)
+    rings = _rings(bound, poles, integrations)
+    apart = [root for root in poles if not any(ring.holds(root.enclosure()) for ring, _, _ in rings)]
+    parts = residues_at(bound, apart, DIGITS)
     with precision(bits_for_digits(2 * DIGITS)):
         origin = _at_origin(expand_at_zero(bound, integrations - 1, DIGITS), integrations)
         terms = []
@@ -472,15 +493,55 @@ def estimated_modes(bound: AnyBoundFunction, integrations: int, times: SampleTim
             share = 1 if part.root.is_real else 2
             found = _over_powers(part.pole, part.coefficients, integrations)
             terms.append(ExponentialTerm(part.pole, tuple(share * c for c in found)))
+        sizes = [float(abs(term.coefficients[0]).upper()) for term in terms]
+        terms += [term for _, around, _ in rings for term in around]
         values = values_of([*origin, *terms], times)
-        sizes = [abs(term.coefficients[0]) for term in terms[-LAST_MODES:]]
-        rest = count * max((size.upper() for size in sizes), default=arb(0))
+        rest = arb(_estimated_rest(sizes)) + sum((missing for _, _, missing in rings), arb(0))
+        if terms:
+            # At t = 0 it is known what all modes add up to.
+            far = FAR * max(abs(term.rate).upper() for term in terms)
+            begun = at_centre(acb(bound.enclosed(bits_for_digits(2 * DIGITS))(acb(far)))) / far ** (
+                integrations - 1
+            )
+            at_once = sum((term.coefficients[0] for term in (*origin, *terms)), acb(0)).real
+            rest += SURER * abs(at_once - begun.real)
         largest = max((abs(y.mid()) for y in values), default=arb(0))
         if not rest < TOO_MUCH * largest:
             message = f"the modes of {bound.name} fall off too slowly to say what it does in time"
             hint = "ask for a displacement, or a step in place of an impulse"
             raise UncertifiedError(Diagnostic("SF810", message, None, hint))
         return PartialSum((*origin, *terms), tuple(values), rest)
+
+
+def _rings(bound: AnyBoundFunction, poles: Sequence[Root], integrations: int) -> list[Ring]:
+    """Return what poles add that accumulate, as about -1/eta, as far as all others on a ring are known."""
+    function = None if isinstance(bound, BoundNested) else SizeOfFunction.of(bound)
+    if function is None:
+        return []
+    reached = max((root.natural_frequency() for root in poles), default=arb(0), key=arb.mid)
+    enclosures = [root.enclosure() for root in poles]
+    holes = holes_about(accumulation_points(function.bound))
+    found = [function.around(hole, enclosures, integrations) for hole in holes]
+    rings = [ring for ring in found if ring is not None and ring[0].reach < reached]
+    return [ring for ring in rings if None not in map(ring[0].holds, enclosures)]
+
+
+def _estimated_rest(sizes: Sequence[float]) -> float:
+    """Return what terms beyond may add at most, if they go on to fall off as those between did.
+
+    They may all have one sign. Where their sizes fall with a power of their number, sums over one half, the
+    quarter before and all beyond are a geometric sequence.
+
+    Examples
+    --------
+    >>> round(_estimated_rest([1 / n**2 for n in range(1, 65)]), 3)  # all beyond are 0.0155
+    0.0155
+    """
+    count = len(sizes)
+    half, quarter = sum(sizes[count // 2 :]), sum(sizes[count // 4 : count // 2])
+    ratio = half / quarter if quarter else 0.0
+    beyond = half * ratio / (1 - ratio) if ratio < SLOWEST else half * SLOWEST / (1 - SLOWEST)
+    return max(beyond, count * max(sizes[-LAST_MODES:], default=0.0))
 
 
 def _over_powers(pole: acb, coefficients: tuple[acb, ...], integrations: int) -> list[acb]:

@@ -31,7 +31,7 @@ from itertools import pairwise
 from math import pi
 from typing import TYPE_CHECKING
 
-from flint import acb, arb
+from flint import acb, acb_series, arb
 
 from symflex.algebra import Factored
 from symflex.algebra.exponential_sum import REAL, arguments_of, exponential_sum
@@ -52,6 +52,7 @@ from symflex.transfer.of_model import assemble, derive_all
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from symflex.algebra.exponential_sum import Exponent
     from symflex.analysis.explanation.coordinates import Coordinates
     from symflex.library.elements import Variable
     from symflex.model import Model
@@ -65,6 +66,8 @@ FIRST_STEP = 0.1
 SMALLEST_STEP = 1e-9
 SHARP = 0.25
 """Radius of the balls of sums on a step, over their middle: sizes are that uncertain."""
+SERIES_TERMS = 4
+"""Of sums on a step: with more, they hardly become longer."""
 WIDEST = 2.0
 """How far from poles that accumulate a ring about them is sought, over the size of what they lie in."""
 RING_STEPS = 16
@@ -123,7 +126,9 @@ class SizeOfFunction:
                 own = self.values.amplitudes(i, place)[list(terms.terms).index(largest)]
                 scale = scale.max(abs(at_centre(own).mid()))
             if not value.rad() <= sharp * scale:
-                return None
+                value = self._expanded(i, s, largest)
+                if not value.rad() <= sharp * (scale if exponent > 0 else abs(value.mid())):
+                    return None
             size = abs(value)
             total = total * (size.upper() if exponent > 0 else size.lower()) ** exponent
             for k, real, imaginary in largest:
@@ -132,6 +137,22 @@ class SizeOfFunction:
         rest = place.combined(tuple((k, acb(c.real, c.imag)) for k, c in grown.items() if c))
         found = total if rest is None else total * at_centre(rest).real.exp()
         return found.upper() if found.is_finite() else None
+
+    def _expanded(self, number: int, s: acb, largest: Exponent) -> acb:
+        """Return one sum over an exponential from its series in a ball's middle, its last term on the ball.
+
+        Where terms cancel, their balls do not, and it would take a thousand times as many small ones.
+        """
+        middle, last = s.mid(), SERIES_TERMS - 1
+        near = self.values.at(acb_series([s, acb(1)], SERIES_TERMS))
+        at_middle = self.values.at(acb_series([middle, acb(1)], SERIES_TERMS), near)
+        wide, sharp = (self.values.value(number, place, largest) for place in (near, at_middle))
+        if not (isinstance(wide, acb_series) and isinstance(sharp, acb_series)):
+            return at_centre(wide)
+        total = wide[last]
+        for k in reversed(range(last)):
+            total = total * (s - middle) + sharp[k]
+        return total
 
     def on_arc(self, reached: float, start: float, end: float) -> arb | None:
         """Return the integral of abs(H) over the angle [rad] from one to another, at one ln(abs(s))."""
@@ -150,6 +171,47 @@ class SizeOfFunction:
                 middle = (low + high) / 2
                 pending += [(low, middle), (middle, high)]
         return total.upper()
+
+    def around(self, hole: Cell, poles: Sequence[acb], integrations: int) -> Ring | None:
+        """Return what all poles in a neighbourhood add where infinitely many accumulate, as about -1/eta.
+
+        It is an integral over a ring about them, as a sum over its points: what is summed is analytic on the
+        ring, so the error falls like a power of its width (Trefethen and Weideman 2014). First comes the
+        ring, with all ``poles`` that it holds besides; then the terms, and what they lack at most. That holds
+        if there is no pole on the ring itself, as there is none where all within its reach are given. Then
+        no value on it is larger than those on its two edges.
+        """
+        if not hole.right <= pi <= hole.left:
+            return None
+        with precision(2 * BITS):
+            ring = _ring_about(hole, poles)
+            if ring is None:
+                return None
+            largest = arb(0)
+            pending = [
+                (k / RING_STEPS, 1 / RING_STEPS, edge) for k in range(RING_STEPS) for edge in (-1.0, 1.0)
+            ]
+            while pending:
+                start, angle, edge = pending.pop()
+                s = ring.piece(start, angle, edge)
+                size = self.at(s)
+                if size is not None:
+                    largest = largest.max(size / s.abs_lower() ** integrations)
+                elif angle < SMALLEST_STEP:
+                    return None
+                else:
+                    pending += [(start + i * angle / 2, angle / 2, edge) for i in (0, 1)]
+            count = 2 * int(RING_POWER / float(ring.width.log().mid()) / 2 + 1)
+            terms = []
+            values = self.bound.enclosed(2 * BITS)
+            for k in range(count // 2):
+                # Points come in conjugate pairs.
+                off = ring.radius * acb(0, arb(2 * k + 1) * arb.pi() / count).exp()
+                s = ring.centre + off
+                terms.append(ExponentialTerm(s, (2 * values(s) * off / s**integrations / count,)))
+            # Left of the imaginary axis no exponential is larger than 1.
+            missing = largest * ring.radius * (ring.width + 1 / ring.width) / (ring.width**count - 1)
+            return ring, terms, missing.upper()
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,47 +247,6 @@ class PassiveBound:
             # Of exp(st) - 1 in place of exp(st), the 1 adds an integral over the whole circle.
             return (last * step + (left + right) / arb.pi() / radius ** (self.order + 1)).upper()
 
-    def around(
-        self, hole: Cell, poles: Sequence[acb], integrations: int
-    ) -> tuple[Annulus, list[ExponentialTerm], arb] | None:
-        """Return what all poles in a neighbourhood add where infinitely many accumulate, as about -1/eta.
-
-        It is an integral over a ring about them, as a sum over its points: what is summed is analytic on the
-        ring, so the error falls like a power of its width (Trefethen and Weideman 2014). First comes the
-        ring, with all ``poles`` that it holds besides; then the terms, and what they lack at most.
-        """
-        if not hole.right <= pi <= hole.left:
-            return None
-        with precision(2 * BITS):
-            ring = _ring_about(hole, poles)
-            if ring is None:
-                return None
-            largest = arb(0)
-            pending = [(k / RING_STEPS, 1 / RING_STEPS, -1.0, 2.0) for k in range(RING_STEPS)]
-            while pending:
-                start, angle, inner, depth = pending.pop()
-                s = ring.piece(start, angle, inner, depth)
-                size = self.function.at(s)
-                if size is not None:
-                    largest = largest.max(size / s.abs_lower() ** integrations)
-                elif angle < SMALLEST_STEP:
-                    return None
-                else:
-                    angle, depth = angle / 2, depth / 2
-                    halves = ((i, k) for i in (0, 1) for k in (0, 1))
-                    pending += [(start + i * angle, angle, inner + k * depth, depth) for i, k in halves]
-            count = 2 * int(RING_POWER / float(ring.width.log().mid()) / 2 + 1)
-            terms = []
-            values = self.function.bound.enclosed(2 * BITS)
-            for k in range(count // 2):
-                # Points come in conjugate pairs.
-                off = ring.radius * acb(0, arb(2 * k + 1) * arb.pi() / count).exp()
-                s = ring.centre + off
-                terms.append(ExponentialTerm(s, (2 * values(s) * off / s**integrations / count,)))
-            # Left of the imaginary axis no exponential is larger than 1.
-            missing = largest * ring.radius * (ring.width + 1 / ring.width) / (ring.width**count - 1)
-            return ring, terms, missing.upper()
-
 
 @dataclass(frozen=True, slots=True)
 class Annulus:
@@ -235,14 +256,13 @@ class Annulus:
     radius: arb
     width: arb
 
-    def piece(self, start: float, angle: float, inner: float, depth: float) -> acb:
-        """Return a ball around a part of the upper half.
+    def piece(self, start: float, angle: float, edge: float) -> acb:
+        """Return a ball around a part of the upper half of an edge, the inner one at -1, the outer one at 1.
 
-        From 0 to 1 the angle grows from the right end to the left one, from -1 to 1 the radius.
+        From 0 to 1 the angle grows from the right end to the left one.
         """
         turn = arb(start + angle / 2, angle / 2) * arb.pi()
-        grown = self.width.log() * arb(inner + depth / 2, depth / 2)
-        return self.centre + self.radius * acb(grown, turn).exp()
+        return self.centre + self.radius * acb(self.width.log() * edge, turn).exp()
 
     @property
     def reach(self) -> arb:
@@ -253,6 +273,10 @@ class Annulus:
         """Tell whether a point lies within; None on the ring."""
         distance = abs(point - self.centre)
         return True if distance < self.radius else False if distance > self.radius else None
+
+
+Ring = tuple[Annulus, list[ExponentialTerm], arb]
+"""With what all poles within add to a response, and what that lacks at most."""
 
 
 def _ring_about(hole: Cell, poles: Sequence[acb]) -> Annulus | None:
