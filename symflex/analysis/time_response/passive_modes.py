@@ -125,9 +125,10 @@ class SizeOfFunction:
                 # A numerator may vanish on the way.
                 own = self.values.amplitudes(i, place)[list(terms.terms).index(largest)]
                 scale = scale.max(abs(at_centre(own).mid()))
-            if not value.rad() <= sharp * scale:
+            if not value.rad() <= sharp * scale or (exponent < 0 and value.contains(0)):
                 value = self._expanded(i, s, largest)
-                if not value.rad() <= sharp * (scale if exponent > 0 else abs(value.mid())):
+                scale = scale if exponent > 0 else abs(value.mid())
+                if not value.rad() <= sharp * scale:
                     return None
             size = abs(value)
             total = total * (size.upper() if exponent > 0 else size.lower()) ** exponent

@@ -346,6 +346,50 @@ def test_the_bound_of_what_lies_beyond_a_circle_holds_for_a_thousand_modes():
     assert few.rest < arb("1e-4")
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(("eta", "b"), [("0.02", 8), ("0.3", 0.5)])
+def test_an_estimated_velocity_is_within_its_radius_from_the_first_instants_on(eta, b):
+    # Infinitely many poles lie next to -1/eta, and all of them matter at first.
+    times = [1e-8, 1e-6, 1e-4, 1e-2, 0.1, 1.0]
+    bound = clamped(damper(b), f', eta = "{eta} s"', "s*x")
+    found = time_response(bound, "step", SampleTimes.of(times))
+    expected = inverted(lambda s: tip_of_clamped(s, lambda s: b * s, eta), 0, times, degree=60)
+    assert not found.certified
+    assert np.all(np.abs(found.values - expected) <= found.radius)
+    assert found.radius.max() < 0.02 * np.abs(expected).max()
+
+
+@pytest.mark.slow
+def test_what_accumulates_about_a_loss_time_is_estimated_with_the_rest():
+    # From some damping time of the first mode on, what is left out is no more than the rounding of doubles.
+    bound = clamped(damper(0.5), ', eta = "0.3 s"', "s*x")
+    found = time_response(bound, "step", SampleTimes.of([0.1, 1.0]))
+    expected = inverted(lambda s: tip_of_clamped(s, lambda s: s / 2, "0.3"), 0, [0.1, 1.0], degree=60)
+    assert np.abs(found.values - expected).max() < 1e-14
+
+
+def tip_of_timoshenkos(s, load, eta):
+    """Return the same of a Timoshenko beam with kappa G = 1/2, of (w, psi, M, V) as a transfer matrix."""
+    stiff = 1 + mpmath.mpf(eta) * s
+    rows = [[0, 1, 0, 2 / stiff], [0, 0, 1 / stiff, 0], [0, s**2, 0, -1], [s**2, 0, 0, 0]]
+    whole = mpmath.expm(mpmath.matrix(rows))
+    # No moment at the tip, and V = 1 - load w.
+    ends = mpmath.matrix([[whole[2, j] for j in (2, 3)], [whole[3, j] + load * whole[0, j] for j in (2, 3)]])
+    moment, shear = mpmath.lu_solve(ends, mpmath.matrix([0, 1]))
+    return whole[0, 2] * moment + whole[0, 3] * shear
+
+
+@pytest.mark.parametrize("width", [1e-4, 1e-3, 1e-2])
+def test_the_size_of_a_function_whose_terms_cancel_holds_in_a_wide_ball(width):
+    kind = ', theory = "timoshenko", kappa = "1/2", G = "1 Pa", eta = "0.02 s"'
+    size = passive_bound(clamped(damper(0.5), kind)).function
+    ball = acb(arb(-50, width), arb(4, width))
+    corners = [mpmath.mpc(-50 + a * width, 4 + b * width) for a in (-1, 0, 1) for b in (-1, 0, 1)]
+    with mpmath.workdps(60):
+        least = max(abs(tip_of_timoshenkos(s, s / 2, "0.02")) for s in corners)
+    assert float(least) < float(size.at(ball)) < 3 * float(least)
+
+
 def test_what_an_active_model_leaves_out_is_not_bounded_by_its_energy():
     assert passive_bound(clamped(spring("-1"))) is None
     assert passive_bound(clamped(output="arm.y(0.5 m) - arm.y(0.2 m)")) is None
