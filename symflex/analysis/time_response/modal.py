@@ -43,7 +43,6 @@ from symflex.roots.polynomial_roots import in_order
 from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.region import Modes
 from symflex.transfer import BoundNested
-from symflex.transfer.balls import at_centre
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -86,7 +85,7 @@ LAST_MODES = 5
 """From whose residues the rest is estimated."""
 SLOWEST = 0.9
 """Half of a sum over that of the quarter before: it falls off so slowly that nothing is said beyond."""
-FAR = 1e9
+FAR = 100
 """Of the highest pole, where the transfer function shows how a response begins."""
 SURER = 2
 """By what the lack at t = 0 is multiplied: terms that differ in sign may add up to more later."""
@@ -500,9 +499,8 @@ def estimated_modes(bound: AnyBoundFunction, integrations: int, times: SampleTim
         if terms:
             # At t = 0 it is known what all modes add up to.
             far = FAR * max(abs(term.rate).upper() for term in terms)
-            begun = at_centre(acb(bound.enclosed(bits_for_digits(2 * DIGITS))(acb(far)))) / far ** (
-                integrations - 1
-            )
+            there = bound.enclosed(bits_for_digits(2 * DIGITS))(acb(far))
+            begun = there / far ** (integrations - 1)
             at_once = sum((term.coefficients[0] for term in (*origin, *terms)), acb(0)).real
             rest += SURER * abs(at_once - begun.real)
         largest = max((abs(y.mid()) for y in values), default=arb(0))
@@ -536,7 +534,7 @@ def _estimated_rest(sizes: Sequence[float]) -> float:
     Examples
     --------
     >>> round(_estimated_rest([1 / n**2 for n in range(1, 65)]), 3)  # all beyond are 0.0155
-    0.0155
+    0.018
     """
     count = len(sizes)
     falling = sorted(sizes, reverse=True)

@@ -125,7 +125,7 @@ class SizeOfFunction:
                 # A numerator may vanish on the way.
                 own = self.values.amplitudes(i, place)[list(terms.terms).index(largest)]
                 scale = scale.max(abs(at_centre(own).mid()))
-            if not value.rad() <= sharp * scale or (exponent < 0 and value.contains(0)):
+            if not value.rad() <= sharp * scale or (exponent < 0 and not abs(value) > 0):
                 value = self._expanded(i, s, largest)
                 scale = scale if exponent > 0 else abs(value.mid())
                 if not value.rad() <= sharp * scale:
