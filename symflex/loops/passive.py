@@ -179,7 +179,7 @@ class _Structure:
             if isinstance(use.element, LineElement):
                 states = self._states(use, use.element)
                 members.append((states, _grows(use, given)))
-                if _loses(given):
+                if _loses(use, given):
                     resting.update(v for state in states for v in state if v is not None)
         forms = [form for _, form in self._forms]
         forms += [_form(LinearForm.of(*zip(ends, (one, -one), strict=False))) for ends in damped]
@@ -294,13 +294,19 @@ def _grows(use: PlacedElement, signs: Mapping[str, int | None]) -> bool:
     )
 
 
-def _loses(signs: Mapping[str, int | None]) -> bool:
+def _loses(use: PlacedElement, signs: Mapping[str, int | None]) -> bool:
     """Tell whether a member rests where it loses no energy.
 
-    Without strain it moves as a rigid body, which its mass alone does not let it do by itself.
+    Without strain it moves as a rigid body, which its mass alone does not let it do by itself; an axial force
+    may, as in a hinged blade that turns, and rotary inertia that varies. Without deflection the sections of a
+    Timoshenko beam may still turn, all alike, against shear.
     """
+    theory = dict(use.choices).get("theory")
+    if signs["c_f"] == 1 and theory != "timoshenko":
+        return True
     heavy = signs["rho"] == 1 and signs.get("A", signs.get("J")) == 1
-    return signs["c_f"] == 1 or (signs.get("eta") == 1 and signs["k_f"] == 0 and heavy)
+    is_free = signs["k_f"] == 0 and signs.get("N", 0) == 0 and theory != "rayleigh"
+    return signs.get("eta") == 1 and is_free and heavy
 
 
 def _form(form: LinearForm) -> Form:

@@ -95,6 +95,45 @@ def test_a_mode_that_the_joint_does_not_feel_is_not_overlooked():
     assert closed(arm(more=gripper)).rests
 
 
+SHEARED = """
+symflex = 1
+parameters = { K = "0.4 N*m/rad", N_0 = "4.5 N", a = "2 m" }
+inputs.r = { unit = "rad" }
+outputs.y = "hub.theta"
+[elements]
+left = { type = "pin", at = "hub" }
+right = { type = "pin", at = "end" }
+rotor = { type = "inertia", at = "hub.theta", J = "0.1 kg*m^2" }
+motor = { type = "torque_source", at = "hub.theta", tau = "K*(r - hub.theta)" }
+
+[elements.arm]
+type = "beam"
+between = ["hub", "end"]
+theory = "timoshenko"
+kappa = "1"
+G = "4 Pa"
+E = "2 Pa"
+I = "1 m^4"
+A = "1 m^2"
+rho = "1 kg/m^3"
+l = "1 m"
+"""
+
+
+@pytest.mark.parametrize(("loss", "rests"), [('c_f = "1 N*s/m^2"', False), ('eta = "1 ms"', True)])
+def test_a_foundation_does_not_damp_sections_that_turn_without_deflection(loss, rests):
+    """At omega^2 = kappa G A/(rho I) = 4 they turn alike; with K = 0.1 * 4 so does the rotor."""
+    assert closed(pipeline.loads(SHEARED + loss)).rests is rests
+
+
+@pytest.mark.parametrize(("tension", "rests"), [("", True), ('N = "N_0*(1 - x^2/a^2)"', False)])
+def test_a_turning_blade_may_flap_without_strain(tension, rests):
+    """With N = N_0 (1 - x^2/a^2), as of a blade with tip mass, y = x solves at rho A omega^2 = 2 N_0/a^2."""
+    text = SHEARED.replace('theory = "timoshenko"\nkappa = "1"\nG = "4 Pa"\n', "")
+    text = text.replace('right = { type = "pin", at = "end" }\n', "")
+    assert closed(pipeline.loads(text + f'eta = "1 ms"\n{tension}')).rests is rests
+
+
 def beam_matrices(count, depth):
     """Return mass and stiffness of a beam of length 1, EI = 2 depth^3, rho A = depth, in cubic elements."""
     h, size = 1 / count, 2 * count + 2
