@@ -171,14 +171,17 @@ class _Structure:
         signs = {use.name: parameter_signs(use, self.line) for use in self.rest}
         damped = list(damped)
         resting: set[Variable] = set()
-        members = []
+        members: list[tuple[Ends, Ends]] = []
+        beams: list[tuple[Ends, Ends]] = []
         for use in self.rest:
             given, law = signs[use.name], use.element.damping
             if law and given[law] == 1:
                 damped.append(_ends(use, self.equations.model))
             if isinstance(use.element, LineElement):
                 states = self._states(use, use.element)
-                members.append((states, _grows(use, given)))
+                members.append(states)
+                if _grows(use, given):
+                    beams.append(states)
                 if _loses(use, given):
                     resting.update(v for state in states for v in state if v is not None)
         forms = [form for _, form in self._forms]
@@ -187,12 +190,11 @@ class _Structure:
         while len(resting) > known:
             known = len(resting)
             resting = _followed(resting, forms, self._turn)
-            for states, grows in members:
+            for states in members:
                 for here, there in (states, states[::-1]):
                     if all(v is None or v in resting for v in here):
                         resting.update(v for v in there if v is not None)
-                if grows:
-                    resting.update(self._unable_to_grow(states, resting, forms))
+            resting |= self._unable_to_grow(beams, resting, forms)
         return resting.issuperset(self.equations.unknowns)
 
     def _states(self, use: PlacedElement, element: LineElement) -> tuple[Ends, Ends]:
@@ -206,29 +208,54 @@ class _Structure:
         return found[0], found[1]
 
     def _unable_to_grow(
-        self, states: tuple[Ends, Ends], resting: set[Variable], forms: Sequence[Form]
+        self, beams: Sequence[tuple[Ends, Ends]], resting: set[Variable], forms: Sequence[Form]
     ) -> set[Variable]:
-        """Return the one quantity at an end of a beam that does not rest, if it has to.
+        """Return quantities at ends of beams that rest: nothing else there moves, and they cannot grow."""
+        found: set[Variable] = set()
+        for states in beams:
+            for here, signs in ((states[0], GROWING[0]), (states[1], FALLING[1])):
+                moving = {v: sign for v, sign in zip(here, signs, strict=True) if v and v not in resting}
+                if len(moving) == 1 and self._is_impossible(moving, beams, resting, forms):
+                    found.update(moving)
+        return found
 
-        Else all at the other end have the signs of :data:`GROWING` or :data:`FALLING`, which is told to be
-        impossible by one of them that rests, or by a row of the equations whose terms have all one sign.
+    def _is_impossible(
+        self,
+        signs: dict[Variable, int],
+        beams: Sequence[tuple[Ends, Ends]],
+        resting: set[Variable],
+        forms: Sequence[Form],
+    ) -> bool:
+        """Tell whether quantities cannot have these signs, and others none but those that follow from them.
+
+        Beams hand them from end to end. A row of the equations gives the last of its terms the sign opposite
+        to the others, and is broken where all have the same.
         """
-        for (here, there), (first, second) in ((states, GROWING), (states[::-1], FALLING[::-1])):
-            moving = [
-                (v, sign) for v, sign in zip(here, first, strict=True) if v is not None and v not in resting
-            ]
-            if len(moving) != 1:
-                continue
-            if any(v is None or v in resting for v in there):
-                return {moving[0][0]}
-            signs = dict([*moving, *zip(there, second, strict=True)])
+        known = -1
+        while len(signs) > known:
+            known = len(signs)
+            for states in beams:
+                for (here, there), (first, second) in ((states, GROWING), (states[::-1], FALLING[::-1])):
+                    at_rest = [v is None or v in resting for v in here]
+                    if all(at_rest) or not all(
+                        still or (v and signs.get(v) == sign)
+                        for v, sign, still in zip(here, first, at_rest, strict=True)
+                    ):
+                        continue
+                    for v, sign in zip(there, second, strict=True):
+                        if v is None or v in resting or signs.setdefault(v, sign) != sign:
+                            return True
             for form in forms:
                 left = [v for v in form if v not in resting]
-                if left and signs.keys() >= set(left):
-                    turns = {self._turn(form[v]) * signs[v] for v in left}
-                    if len(turns) == 1 and 0 not in turns:
-                        return {moving[0][0]}
-        return set()
+                unknown = [v for v in left if v not in signs]
+                turns = {self._turn(form[v]) * signs[v] for v in left if v in signs}
+                if len(turns) != 1 or 0 in turns or len(unknown) > 1:
+                    continue
+                if not unknown:
+                    return True
+                if all(self._is_real(form[v]) for v in left):
+                    signs[unknown[0]] = -1 if self._turn(form[unknown[0]]) in turns else 1
+        return False
 
     @cached_property
     def _numbers(self) -> dict[str, arb]:
@@ -283,6 +310,11 @@ class _Structure:
             unit * signs[odd].pop() for odd, unit in ((False, 1), (True, 1j)) if signs[odd] in ({1}, {-1})
         ]
         return sides[0] if sides else 0
+
+    def _is_real(self, coefficient: Factored) -> bool:
+        """Tell whether a coefficient is real on the axis, and has one sign there."""
+        powers = self._powers(coefficient)
+        return powers is not None and self._turn(coefficient) != 0 and all(i % 2 == 0 for i, _ in powers)
 
 
 def _grows(use: PlacedElement, signs: Mapping[str, int | None]) -> bool:

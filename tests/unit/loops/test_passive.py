@@ -134,6 +134,32 @@ def test_a_turning_blade_may_flap_without_strain(tension, rests):
     assert closed(pipeline.loads(text + f'eta = "1 ms"\n{tension}')).rests is rests
 
 
+SECOND = 'second = { type = "beam", between = [BETWEEN], E = "2 Pa", rho = "1 kg/m^3", l = "l", SECTION MORE}'
+
+
+@pytest.mark.parametrize(
+    ("between", "more", "rests"),
+    [
+        ('"tip", "end"', "", True),  # after the first, with a mass between them
+        ('"end", "tip"', "", False),  # folded back over the first
+        ('"hub", "end"', "", False),  # two alike may swing against each other, the hub at rest
+        ('"ground", "end"', "", False),  # nothing is felt of it
+        ('"hub", "end"', ', eta = "1 ms"', True),
+        ('"hub", "end"', ', c_f = "1 N*s/m^2"', True),
+    ],
+)
+def test_a_second_beam_rests_where_it_cannot_move_by_itself(between, more, rests):
+    second = SECOND.replace("BETWEEN", between).replace("MORE", more).replace("SECTION", UNIFORM)
+    assert closed(arm(more=second)).rests is rests
+
+
+def test_a_second_beam_behind_an_inertia_is_not_taken_to_rest():
+    """Its moment bends the second beam the other way, and both may swing with the hub at rest."""
+    second = SECOND.replace("BETWEEN", '"tip", "end"').replace("MORE", "").replace("SECTION", UNIFORM)
+    body = 'body = { type = "inertia", at = "tip.theta", J = "1 kg*m^2" }'
+    assert not closed(arm(more=f"{second}\n{body}")).rests
+
+
 def beam_matrices(count, depth):
     """Return mass and stiffness of a beam of length 1, EI = 2 depth^3, rho A = depth, in cubic elements."""
     h, size = 1 / count, 2 * count + 2
