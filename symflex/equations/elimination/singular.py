@@ -60,7 +60,8 @@ def explain_singular(equations: Equations) -> ModelError:
             if len(owners) > 1
             else f"the constraint of {names} repeats what is already imposed"
         )
-        problems.append(Diagnostic("SF302", message, _place(equations, owners[-1]), "remove one of them"))
+        last = next(r.about for r in constraints if r.about.owner == owners[-1])
+        problems.append(Diagnostic("SF302", message, _place(equations, last), "remove one of them"))
     elif conditions := [r for r in rows if r.role == "condition"]:
         problems += _dependent_conditions(equations, conditions)
     elif nodes:
@@ -71,7 +72,7 @@ def explain_singular(equations: Equations) -> ModelError:
             Diagnostic(
                 "SF301",
                 f"nothing determines {what} {names}: {verb}",
-                _place(equations, nodes[0].owner),
+                _place(equations, nodes[0]),
                 _meant(equations.model, nodes, f"connect {hold} to ground or give {hold} a mass"),
             )
         )
@@ -81,13 +82,13 @@ def explain_singular(equations: Equations) -> ModelError:
             Diagnostic(
                 "SF303",
                 f"the loop through {names} is algebraic and has no unique solution: its gain is exactly one",
-                _place(equations, loops[0].about.owner),
+                _place(equations, loops[0].about),
                 "put a dynamic element or another gain into the loop",
             )
         )
     if not problems:
         names = listed([f"'{v}'" for v in open_unknowns])
-        place = _place(equations, open_unknowns[0].owner) if open_unknowns else None
+        place = _place(equations, open_unknowns[0]) if open_unknowns else None
         problems.append(Diagnostic("SF304", f"nothing determines {names}", place))
     return ModelError(*problems)
 
@@ -216,13 +217,16 @@ def _support(matrix: nmod_mat, size: int) -> list[int]:
     return [i for i in range(size) if any(int(basis[i, j]) for j in range(dimension))]
 
 
-def _place(equations: Equations, owner: str) -> Span | None:
+def _place(equations: Equations, variable: Variable) -> Span | None:
+    """Return where what a variable belongs to is declared: an element may bear the name of a signal."""
     model = equations.model
-    for group in (model.elements, model.signals, model.nodes, model.inputs, model.outputs):
-        for item in group:
-            if item.name == owner and item.span is not None:
-                return item.span
-    return None
+    elements = {x.name: x.span for x in model.elements}
+    outside = {x.name: x.span for x in model.outputs} | {x.name: x.span for x in model.inputs}
+    named = {
+        "signal": {x.name: x.span for x in model.signals},
+        "node": {x.name: x.span for x in model.nodes},
+    }
+    return named.get(variable.kind, outside | elements).get(variable.owner)
 
 
 def is_singular(equations: Equations) -> bool:

@@ -278,3 +278,14 @@ def test_as_many_equations_as_unknowns_are_needed(kept):
     equations = pipeline.assemble(pipeline.loads(text))
     assert not is_singular(equations)
     assert is_singular(replace(equations, rows=equations.rows[:kept]))
+
+
+def test_an_algebraic_loop_is_pointed_at_where_an_element_bears_the_same_name():
+    text = (
+        'symflex = 1\nsignals = { a = "b", b = "a" }\ninputs.F = { force = "x" }\noutputs.X = "x"\n'
+        '[elements]\na = { type = "mass", at = "x", m = "1 kg" }\n'
+    )
+    with pytest.raises(ModelError) as raised:
+        pipeline.derive_all(pipeline.loads(text))
+    (found,) = raised.value.diagnostics
+    assert (found.code, found.span.line) == ("SF303", 2)
