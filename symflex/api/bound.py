@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from fractions import Fraction
 from math import inf
 from typing import TYPE_CHECKING
 
@@ -222,13 +221,12 @@ class BoundTransferFunction(Plotted):
     def _in_time(
         self, kind: str, times: ArrayLike | None, digits: int, shaper: InputShaper | None
     ) -> TimeResponse:
-        from symflex.analysis.time_response import SampleTimes, default_until
+        from symflex.analysis.time_response import SampleTimes, responses_by_default
 
         if times is None:
-            instants = SampleTimes.evenly(Fraction(default_until(self.bound)), POINTS)
+            (found,) = responses_by_default([self.bound], kind, POINTS, digits, shaper)
         else:
-            instants = SampleTimes.of(times)
-        found = pipeline.time_response(self.bound, kind, instants, digits, shaper)
+            found = pipeline.time_response(self.bound, kind, SampleTimes.of(times), digits, shaper)
         return TimeResponse(**{f.name: getattr(found, f.name) for f in fields(found)})
 
     def poles(

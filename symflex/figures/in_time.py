@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from symflex.analysis.time_response import INTEGRATIONS, SampleTimes, default_until, time_response
+from symflex.analysis.time_response import INTEGRATIONS, SampleTimes, responses_by_default, time_response
 from symflex.errors import BudgetError, Diagnostic
 from symflex.figures.axes import Canvas, add_legend_above, write_title
 from symflex.figures.style import (
@@ -65,9 +65,11 @@ def _drawn(
             message = f"the closed form of {bound.name} is too large for a response in time"
             raise BudgetError(Diagnostic("SF502", message, None, "split the model"))
         closed.append(bound)
-    until = canvas.frame.x[1] if canvas.frame.x else max(map(default_until, closed))
-    times = SampleTimes.evenly(Fraction(until), POINTS)
-    responses = [time_response(bound, kind, times, DIGITS) for bound in closed]
+    if canvas.frame.x:
+        times = SampleTimes.evenly(Fraction(canvas.frame.x[1]), POINTS)
+        responses = [time_response(bound, kind, times, DIGITS) for bound in closed]
+    else:
+        responses = responses_by_default(closed, kind, POINTS, DIGITS)
     width = canvas.width or COLUMN_INCHES
     lines = [*title_lines(canvas.title, width), *_said(responses, width)]
     units = {response.unit for response in responses}

@@ -1,9 +1,8 @@
 """Responses in time, enclosed: to a step, an impulse, a ramp, a file."""
 
 from symflex.analysis.time_response.enclosed_response import INTEGRATIONS, EnclosedResponse
-from symflex.analysis.time_response.find import time_response
+from symflex.analysis.time_response.find import responses_by_default, time_response
 from symflex.analysis.time_response.forced import exact_values, forced_response
-from symflex.analysis.time_response.horizon import default_until
 from symflex.analysis.time_response.sample_times import SampleTimes, evenly
 from symflex.analysis.time_response.step_info import StepInfo, find_step_info
 from symflex.analysis.time_response.text import response_text
@@ -13,11 +12,11 @@ __all__ = [
     "EnclosedResponse",
     "SampleTimes",
     "StepInfo",
-    "default_until",
     "evenly",
     "exact_values",
     "find_step_info",
     "forced_response",
     "response_text",
+    "responses_by_default",
     "time_response",
 ]

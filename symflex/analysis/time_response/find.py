@@ -6,6 +6,7 @@ Input: a bound transfer function, the name of an input, times. Output: a :class:
 from __future__ import annotations
 
 from dataclasses import replace
+from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -21,6 +22,7 @@ from symflex.analysis.time_response.enclosed_response import (
     JumpAt,
 )
 from symflex.analysis.time_response.exponentials import values_of
+from symflex.analysis.time_response.horizon import default_until, until_many_turns
 from symflex.analysis.time_response.looped_modes import looped_modes
 from symflex.analysis.time_response.modal import estimated, proved_modes
 from symflex.analysis.time_response.partial_fractions import (
@@ -115,6 +117,34 @@ def time_response(
         reason,
         digits,
     )
+
+
+def responses_by_default(
+    bounds: Sequence[BoundTransferFunction],
+    kind: str,
+    points: int,
+    digits: int = 12,
+    shaper: InputShaper | None = None,
+) -> list[EnclosedResponse]:
+    """Return responses at evenly spaced times, where nobody says up to which.
+
+    That is until the slowest motion has died away; where echoes in a loop are too many by then, for fifty
+    turns of it. Raises as :func:`time_response` does.
+    """
+
+    def over(until: float) -> list[EnclosedResponse]:
+        times = SampleTimes.evenly(Fraction(until), points)
+        return [time_response(bound, kind, times, digits, shaper) for bound in bounds]
+
+    until = max(map(default_until, bounds))
+    try:
+        return over(until)
+    except UncertifiedError as error:
+        shorter = min(map(until_many_turns, bounds))
+        if error.diagnostics[0].code != "SF810" or not shorter < until:
+            raise
+        spend()
+        return over(shorter)
 
 
 def _shaped(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import pi
+from math import inf, pi
 from typing import TYPE_CHECKING
 
 from flint import acb
@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 TIME_CONSTANTS = 5.0
 """After which 1 % of a motion is left."""
+TURNS = 50
+"""Of a loop, whose echoes are too many to be followed until its slowest motion has died away."""
 PERIODS, UNDAMPED_PERIODS = 12, 4
 """Of the slowest oscillation: more show nothing new."""
 
@@ -29,13 +31,7 @@ def default_until(bound: BoundTransferFunction) -> float:
     >>> default_until(lag.transfer_function("y", "u").bind().bound)
     2.5
     """
-    waits = [0.0]
-    evaluator = bound.kernel_values() if bound.is_distributed else None
-    for kernel in bound.kernels.kernels:
-        if kernel.function == "exp" and evaluator is not None:
-            values = {"s": acb(1), **{name: acb(c) for name, c in evaluator.constants.items()}}
-            delay = evaluator.value(kernel.dispersion.shift, values) * evaluator.value(kernel.length, values)
-            waits.append(TIME_CONSTANTS * abs(float(at_centre(delay).real)))
+    waits = [TIME_CONSTANTS * delay for delay in _delays(bound)]
     for root in roots_if_found(bound).all_poles:
         size = float(root.natural_frequency())
         if root.is_zero or not size > 0:
@@ -44,4 +40,21 @@ def default_until(bound: BoundTransferFunction) -> float:
         period = 2 * pi / size
         decay = TIME_CONSTANTS / damping if damping else UNDAMPED_PERIODS * period
         waits.append(decay if root.is_real else min(decay, PERIODS * period))
-    return max(waits) or 1.0
+    return max(waits, default=0.0) or 1.0
+
+
+def until_many_turns(bound: BoundTransferFunction) -> float:
+    """Return a time [s] by which a loop with delays has been run through often; infinite without delays."""
+    return max((TURNS * delay for delay in _delays(bound)), default=inf)
+
+
+def _delays(bound: BoundTransferFunction) -> list[float]:
+    if not bound.is_distributed:
+        return []
+    evaluator, found = bound.kernel_values(), []
+    values = {"s": acb(1), **{name: acb(c) for name, c in evaluator.constants.items()}}
+    for kernel in bound.kernels.kernels:
+        if kernel.function == "exp":
+            delay = evaluator.value(kernel.dispersion.shift, values) * evaluator.value(kernel.length, values)
+            found.append(abs(float(at_centre(delay).real)))
+    return found

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from itertools import product
-from math import comb, cos, factorial, pi, sin, sqrt
+from math import comb, cos, exp, factorial, pi, sin, sqrt
 
 import numpy as np
 import pytest
@@ -167,3 +167,18 @@ def test_even_and_single_times_agree():
     even = time_response(function, "step", SampleTimes.of(TIMES))
     single = time_response(function, "step", SampleTimes.of(TIMES).one_by_one())
     assert np.all(np.abs(even.values - single.values) <= even.radius + single.radius)
+
+
+def test_where_nobody_says_how_long_a_slow_loop_is_followed_for_fifty_turns():
+    text = 'symflex = 1\nparameters.T = "1 ms"\nblocks.D = { type = "delay", T = "T" }\ninputs.r = {}\n'
+    text += 'signals = { y = "u/(s*(s + 1))", u = "D*(r - y)/(1 + 0.03*s)" }\noutputs.y = "y"\n'
+    function = loads(text).transfer_function("y", "r").bind()
+    found = function.step_response()
+    assert found.certified
+    assert found.times[-1] == pytest.approx(0.05)
+    # Without the loop, through which little comes back by then: 1/(s^2 (s + 1)(1 + 0.03 s)).
+    late, fast = 0.05 - 0.001, 1 / 0.03
+    open_loop = late - (1 + 0.03) + (exp(-late) - 0.03**2 * exp(-late * fast)) / (1 - 0.03)
+    assert found.values[-1] == pytest.approx(open_loop, abs=0.05**4)
+    with pytest.raises(UncertifiedError, match="too many echoes"):
+        function.step_response([20.0])
