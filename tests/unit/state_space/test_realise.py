@@ -231,7 +231,7 @@ def test_what_grows_with_s_has_no_state_equations(expression):
 
 def test_a_beam_has_no_state_equations_but_its_approximation_has():
     H = symflex.load(DERIVATIONS / "sliding_free_beam.toml").transfer_function("V_tip", "F").bind()
-    with pytest.raises(ModelError, match=r"SF235(.|\n)*hint: H.rational\(modes=N\)"):
+    with pytest.raises(ModelError, match=r"SF235(.|\n)*hint: .*H.rational\(modes=N\)"):
         H.state_space()
     found = H.rational(modes=3).state_space()
     assert found.A.shape == (7, 7)
