@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import accumulate, pairwise
 from typing import TYPE_CHECKING, Final
 
 from symflex.drawing.cells import SPACE, label_texts, tags_of
@@ -46,6 +47,7 @@ class Column:
     stubs: list[DrawnPart] = field(default_factory=list)  # join it to the ground, and stand lower
     marks: list[Mark] = field(default_factory=list)
     has_lead_up: bool = False
+    outside: int = 0  # on which side of it the row ends: -1 on the left, 1 on the right, 0 on none or both
     levels: list[float] = field(default_factory=list)  # of wires that meet it
     # Where the node is, how far its body reaches to both sides, up (with labels) and down.
     x: float = 0.0
@@ -84,12 +86,32 @@ class Column:
         """Where a lead goes up from it: before what stands there."""
         return self.first_mark - LANE / 2 if self.upright else self.x
 
+    @property
+    def is_round(self) -> bool:
+        """Whether it is the end of a member, or a wheel there, and no box on which parts could stand."""
+        return self.is_flat and all(p.type_name == "inertia" for p in self.bodies)
+
+    @property
+    def below(self) -> list[tuple[float, float]]:
+        """Where supports and then parts that hang begin and end, as seen from the node.
+
+        They stand side by side below its middle; at the end of a row what hangs from a member stands outside.
+        """
+        holds, hangs = [*map(support_width, self.supports)], [*map(hanging_width, self.hanging)]
+        x = -sum(holds) / 2
+        is_outside = self.is_round and bool(holds)
+        if not (is_outside and self.outside):
+            x -= sum(hangs) / 2
+        at = x - sum(hangs) if is_outside and self.outside < 0 else x + sum(holds)
+        return [*_side_by_side(x, holds), *_side_by_side(at, hangs)]
+
     def resize(self, size: float) -> None:
         """Find how far it reaches; masses are at least so large."""
         low, high = min(self.levels, default=0.0), max(self.levels, default=0.0)
         sizes = [body_size(p, self.kind, size) for p in self.bodies]
-        below = sum(hanging_width(p) for p in self.hanging) + sum(support_width(p) for p in self.supports)
-        below += 2 * LANE if below and self.stubs else 0.0
+        start = min((x for x, _ in self.below), default=0.0)
+        end = max((x for _, x in self.below), default=0.0)
+        lane = LANE if self.below and self.stubs else 0.0
         if not sizes and self.is_flat:
             is_shoe = any(p.type_name == "slider" for p in self.faces.values())
             reach = SHOE if self.faces else FLAT
@@ -106,11 +128,16 @@ class Column:
         else:
             tall = max(sum(h for _, h in sizes), high - low + 2 * REACH)
             self.top, self.bottom = (high + low + tall) / 2, (high + low - tall) / 2
-            self.half = max(*(w for w, _ in sizes), below) / 2
+            self.half = max(*(w for w, _ in sizes), 0.0 if self.is_round else end - start + 2 * lane) / 2
         marks = sum(upright_width(m) for m in self.upright)
-        self.left = max(self.half, below / 2, ARROW / 2 if marks else 1.0)
         self.x = 0.0
-        self.right = max(self.left, self.first_mark + marks)
+        least = max(self.half, ARROW / 2 if marks else 1.0)
+        self.left = max(least, lane - start)
+        self.right = max(least, lane + end, self.first_mark + marks)
+
+
+def _side_by_side(start: float, widths: Sequence[float]) -> list[tuple[float, float]]:
+    return list(pairwise(accumulate(widths, initial=start)))
 
 
 def body_size(part: DrawnPart, kind: str, size: float) -> tuple[float, float]:

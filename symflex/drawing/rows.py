@@ -286,7 +286,8 @@ class _Layout:
                             self.columns[self.at[end.node]].levels.append(level.y + offset)
             else:
                 self.columns[level.what.column].levels.append(level.y)
-        for column in self.columns:
+        for index, column in enumerate(self.columns):
+            column.outside = (index == len(self.columns) - 1) - (index == 0)
             column.resize(self.spacing.body)
 
     def _place(self) -> list[tuple[float, float]]:
@@ -462,20 +463,18 @@ class _Layout:
 
     def _draw_supports(self, column: Column) -> list[tuple[DrawnPart, Column, float]]:
         """Draw supports side by side with the leads to what hangs, and return where these lead to."""
-        widths = [*map(support_width, column.supports), *map(hanging_width, column.hanging)]
-        x, bottom = column.x - sum(widths) / 2 - (LANE if column.stubs and widths else 0.0), column.bottom
+        middle, bottom = column.x - (LANE if column.stubs and column.below else 0.0), column.bottom
         feet = [column.x]
         found = []
-        for part, width in zip((*column.supports, *column.hanging), widths, strict=True):
+        for part, (start, end) in zip((*column.supports, *column.hanging), column.below, strict=True):
             if part in column.supports:
-                foot = x + width / 2
+                foot = middle + (start + end) / 2
                 support = Placed(part.kind, part.name, part.symbol.hold()).moved(foot, bottom)
                 self._add(support, *tags_below(part, foot, support.box.y0))
             else:
-                foot = x + 2 + hanging_reach(part)[0]
+                foot = middle + start + 2 + hanging_reach(part)[0]
                 found.append((part, column, foot))
             feet.append(foot)
-            x += width
         if max(feet) - min(feet) > 2 * column.half:
             width = LINE if column.is_electrical else 1.4
             self._wire(column.name, (min(feet), bottom), (max(feet), bottom), width=width)
