@@ -329,8 +329,8 @@ def check_damped(drawn):
     bound = symflex.loads(driven_point(elements, "x")).transfer_function("X", "F").bind()
     with mp.workdps(15):
         try:
-            poles = count_inside(characteristic(load=True), low, high, 12)
-            zeros = count_inside(characteristic(load=False), low, high, 12)
+            poles = count_inside(characteristic(load=True), low, high)
+            zeros = count_inside(characteristic(load=False), low, high)
         except OnTheContourError:
             assume(False)
     found = bound.pole_zero_map(digits=DIGITS, region=(low.real, high.real, low.imag, high.imag))
