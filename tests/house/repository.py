@@ -116,10 +116,10 @@ def slow_ones(values: Iterable[Any], is_slow: Callable[[Any], bool]) -> list[Any
     return [pytest.param(v, marks=pytest.mark.slow) if is_slow(v) else v for v in values]
 
 
-def in_turns(paths: Iterable[Path]) -> list[Any]:
-    """Return the paths as parameters; most classics and loops, which all go the same way, are marked slow."""
+def in_turns(paths: Iterable[Path], dear: Iterable[str] = ()) -> list[Any]:
+    """Return the paths as parameters; the dear, and most classics and loops, which go one way, are slow."""
     found: list[Any] = []
     for path in paths:
-        is_turn = path.parent.name == "eppinger1988" or path.stem in EACH_TIME
+        is_turn = (path.parent.name == "eppinger1988" or path.stem in EACH_TIME) and path.stem not in dear
         found.append(pytest.param(path, marks=[] if is_turn else [pytest.mark.slow], id=path.stem))
     return found

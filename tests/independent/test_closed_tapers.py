@@ -135,7 +135,13 @@ def printed_value(tf, form, values, s):
     return value(form.num) / value(form.den)
 
 
-SLOW = ("a beam that is a wedge", "a beam that is a cone", "an exponential horn's", "an exponential rod")
+SLOW = (
+    "a beam that is a wedge",
+    "a beam that is a cone",
+    "an exponential horn's",
+    "an exponential rod",
+    "a rod of the fourth power",
+)
 
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.slow] * (n in SLOW)) for n in MODELS])

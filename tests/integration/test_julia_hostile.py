@@ -12,7 +12,7 @@ from symflex import pipeline
 from symflex.codegen.julia import JULIA, module_name
 from tests.integration.julia import Julia
 from tests.integration.julia_in_python import functions_of
-from tests.unit.codegen.test_numpy_hostile import HOSTILE, NAMES, SPEC, model_of, renamed, ring_takes
+from tests.unit.codegen.test_numpy_hostile import HOSTILE, NAMES, SPEC, cut, model_of, renamed, ring_takes
 
 PHRASES = [
     "$(run(`ls`))",
@@ -86,7 +86,7 @@ def keywords_of(text):
 TAME = written(model_of())
 
 
-@pytest.mark.parametrize("text", TEXTS, ids=ascii)
+@pytest.mark.parametrize("text", TEXTS, ids=cut)
 def test_prose_changes_no_statement(text):
     made = written(with_prose(text))
     assert code_of(made) == code_of(TAME)
@@ -96,7 +96,7 @@ def test_prose_changes_no_statement(text):
     assert not any("`" in s or "~~~" in s for s in strings if s.startswith('"""'))
 
 
-@pytest.mark.parametrize("name", [n for n in CALLED if ring_takes(n)], ids=lambda n: ascii(n)[:40])
+@pytest.mark.parametrize("name", [n for n in CALLED if ring_takes(n)], ids=cut)
 def test_a_parameter_of_any_name_is_a_plain_identifier_and_nothing_else_changes(name):
     made = written(with_name(name))
     assert kinds_of(made) == kinds_of(TAME) or not fits(name)
@@ -108,7 +108,7 @@ def test_a_parameter_of_any_name_is_a_plain_identifier_and_nothing_else_changes(
     assert functions_of(made)["_value_of_X_over_F"](1.0, 2.0, 3.0, 5.0) == 0.1
 
 
-@pytest.mark.parametrize("name", CALLED, ids=lambda n: ascii(n)[:40])
+@pytest.mark.parametrize("name", CALLED, ids=cut)
 def test_an_output_or_a_file_of_any_name_gives_plain_names(name):
     model = model_of()
     tfs = tuple(replace(tf, output=replace(tf.output, name=name)) for tf in pipeline.derive_all(model)[:1])

@@ -201,7 +201,8 @@ def fake(name, chance):
     )
 
 
-@pytest.mark.parametrize("width", [88.0, pytest.param(160.0, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("width", [88.0, 160.0])
 def test_random_formulas_fit_whatever_their_names_and_numbers(width, tmp_path):
     chance = random.Random(1988)
     fragments = []

@@ -10,7 +10,7 @@ import pytest
 from symflex import pipeline
 from symflex.codegen.matlab import MATLAB, main_name
 from tests.integration.octave import Octave
-from tests.unit.codegen.test_numpy_hostile import HOSTILE, NAMES, SPEC, model_of, renamed, ring_takes
+from tests.unit.codegen.test_numpy_hostile import HOSTILE, NAMES, SPEC, cut, model_of, renamed, ring_takes
 
 PHRASES = [
     "%{",
@@ -76,7 +76,7 @@ def with_name(name):
 TAME = written(model_of())
 
 
-@pytest.mark.parametrize("text", TEXTS, ids=ascii)
+@pytest.mark.parametrize("text", TEXTS, ids=cut)
 def test_prose_changes_no_statement(text):
     made = written(with_prose(text))
     assert code_of(made) == code_of(TAME)
@@ -85,7 +85,7 @@ def test_prose_changes_no_statement(text):
     assert not any(re.match(r"%[{}!#]", c) or "-*-" in c or LINK.search(c) for c in comments)
 
 
-@pytest.mark.parametrize("name", [n for n in CALLED if ring_takes(n)], ids=lambda n: ascii(n)[:40])
+@pytest.mark.parametrize("name", [n for n in CALLED if ring_takes(n)], ids=cut)
 def test_a_parameter_of_any_name_is_a_plain_identifier_and_nothing_else_changes(name):
     made = written(with_name(name))
     assert kinds_of(made) == kinds_of(TAME)
@@ -95,7 +95,7 @@ def test_a_parameter_of_any_name_is_a_plain_identifier_and_nothing_else_changes(
     assert not {"i", "j", "pi", "exp", "end", "abs"} & set(fields)
 
 
-@pytest.mark.parametrize("name", CALLED, ids=lambda n: ascii(n)[:40])
+@pytest.mark.parametrize("name", CALLED, ids=cut)
 def test_an_output_or_a_file_of_any_name_gives_plain_names(name):
     model = model_of()
     tfs = tuple(replace(tf, output=replace(tf.output, name=name)) for tf in pipeline.derive_all(model)[:1])

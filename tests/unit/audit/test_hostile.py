@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from symflex.errors import SpecError
+from tests.house.repository import slow_ones
 from tests.unit.audit.beam import audited
 
 REFUSED = {
@@ -52,7 +53,10 @@ UNREAD = {
 }
 
 
-@pytest.mark.parametrize("name", UNREAD)
+DEAR = ("many roots", "a large product", "arguments without a common measure")
+
+
+@pytest.mark.parametrize("name", slow_ones(UNREAD, lambda name: name in DEAR))
 def test_a_formula_beyond_the_limits_is_still_proved_to_differ(name):
     found = audited("V_act", *UNREAD[name])
     assert found.unread

@@ -132,7 +132,7 @@ def test_the_version_is_the_packages(shell):
     assert shell("--version").out == f"symflex, version {__version__}\n"
 
 
-@pytest.mark.parametrize("path", in_turns(DERIVATIONS))
+@pytest.mark.parametrize("path", in_turns(DERIVATIONS, dear=("robot_axis", "fitted_resonances")))
 @pytest.mark.parametrize(
     "command", [("check",), ("derive",), ("roots",), ("roots", "--digits", "15")], ids=" ".join
 )

@@ -88,7 +88,9 @@ def test_what_cancelled_is_named(shell):
 
 @pytest.mark.parametrize(
     "path",
-    in_turns([path for path in DERIVATIONS if path.stem not in LONG])
+    in_turns(
+        [path for path in DERIVATIONS if path.stem not in LONG], dear=("robot_axis", "timoshenko_cantilever")
+    )
     + [pytest.param(path, marks=pytest.mark.slow, id=path.stem) for path in DERIVATIONS if path.stem in LONG],
 )
 def test_json_reads_back_to_the_same_function_exactly(shell, path):

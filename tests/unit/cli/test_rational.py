@@ -53,7 +53,12 @@ def test_text_of_a_lumped_system_says_that_it_is_exact(shell):
 
 @pytest.mark.parametrize("form", ["product", "modal"])
 @pytest.mark.parametrize(
-    "name", ["eppinger1988/robot_axis", "eppinger1988/six_mass", "classics/clamped_free"]
+    "name",
+    [
+        pytest.param("eppinger1988/robot_axis", marks=pytest.mark.slow),
+        "eppinger1988/six_mass",
+        "classics/clamped_free",
+    ],
 )
 def test_text_fits_eighty_columns(shell, name, form):
     out = shell("rational", ROOT / "derivations" / f"{name}.toml", "--form", form).out

@@ -129,6 +129,7 @@ def test_waves_that_are_too_many_have_no_value(tmp_path):
     assert np.isfinite(value_at(library, 0, 1e4j)[0])
 
 
+@pytest.mark.slow
 def test_two_members_with_losses_that_taper_agree_with_balls(tmp_path):
     text = """
 symflex = 1

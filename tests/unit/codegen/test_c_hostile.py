@@ -11,7 +11,7 @@ import pytest
 from symflex import pipeline
 from symflex.codegen.c.body import FUNCTIONS, KEYWORDS, LOCALS, MACROS, RESERVED
 from symflex.codegen.c.module import C99
-from tests.unit.codegen.test_numpy_hostile import HOSTILE, NAMES, SPEC, model_of, renamed, ring_takes
+from tests.unit.codegen.test_numpy_hostile import HOSTILE, NAMES, SPEC, cut, model_of, renamed, ring_takes
 
 IN_COMMENTS = [
     *HOSTILE,
@@ -90,7 +90,7 @@ def dressed(text):
 TAME = files_of(model_of())
 
 
-@pytest.mark.parametrize("text", IN_COMMENTS, ids=lambda t: ascii(t)[:40])
+@pytest.mark.parametrize("text", IN_COMMENTS, ids=cut)
 def test_prose_changes_no_token(text):
     files = files_of(dressed(text))
     assert skeleton(files) == skeleton(TAME)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import builtins
 import doctest
+import functools
 import importlib.util
 import keyword
 from dataclasses import replace
@@ -155,6 +156,12 @@ NAMES = [
 ]
 
 
+def cut(text):
+    """Return what a test with this text is called."""
+    return ascii(text)[:40]
+
+
+@functools.cache
 def model_of(text=SPEC):
     return pipeline.loads(text)
 
@@ -210,7 +217,7 @@ def test_there_are_at_least_sixty_hostile_texts():
     assert len(set(HOSTILE)) >= 60
 
 
-@pytest.mark.parametrize("text", HOSTILE, ids=ascii)
+@pytest.mark.parametrize("text", HOSTILE, ids=cut)
 def test_prose_changes_no_token_of_the_code(text):
     model = model_of()
     parameters = tuple(replace(p, doc=text, unit=text) for p in model.parameters)
@@ -218,14 +225,14 @@ def test_prose_changes_no_token_of_the_code(text):
     assert skeleton(export(hostile)) == TAME
 
 
-@pytest.mark.parametrize("text", HOSTILE, ids=ascii)
+@pytest.mark.parametrize("text", HOSTILE, ids=cut)
 def test_prose_survives_in_the_table_of_parameters(text, loaded):
     model = model_of()
     hostile = replace(model, parameters=tuple(replace(p, doc=text) for p in model.parameters))
     assert loaded(export(hostile))["PARAMETERS"]["m"]["doc"] == text
 
 
-@pytest.mark.parametrize("text", HOSTILE, ids=ascii)
+@pytest.mark.parametrize("text", HOSTILE, ids=cut)
 def test_the_text_prints_and_holds_no_doctest(text):
     model = model_of()
     parameters = tuple(replace(p, doc=text, unit=text) for p in model.parameters)
@@ -238,9 +245,7 @@ def test_the_text_prints_and_holds_no_doctest(text):
         assert doctest.DocTestParser().get_examples(ast.get_docstring(node) or "") == []
 
 
-@pytest.mark.parametrize(
-    "name", [n for n in (*NAMES, *HOSTILE) if ring_takes(n)], ids=lambda n: ascii(n)[:40]
-)
+@pytest.mark.parametrize("name", [n for n in (*NAMES, *HOSTILE) if ring_takes(n)], ids=cut)
 def test_a_parameter_of_any_name_keeps_the_codes_structure_and_value(name, loaded):
     model = renamed(model_of(), {"b": name if name not in ("s", "pi", "m", "k") else f"{name} "})
     text = export(model)
@@ -249,7 +254,7 @@ def test_a_parameter_of_any_name_keeps_the_codes_structure_and_value(name, loade
     assert space["TRANSFER_FUNCTIONS"]["X/F"](1.0, **{list(space["PARAMETERS"])[2]: 5.0}) == 0.1
 
 
-@pytest.mark.parametrize("name", [*NAMES, *HOSTILE], ids=lambda n: ascii(n)[:40])
+@pytest.mark.parametrize("name", [*NAMES, *HOSTILE], ids=cut)
 def test_an_output_of_any_name_gives_a_plain_function_name(name, loaded):
     model = model_of()
     tfs = tuple(replace(tf, output=replace(tf.output, name=name)) for tf in pipeline.derive_all(model)[:1])

@@ -15,7 +15,16 @@ from symflex import pipeline
 from symflex.codegen.exporters import EXPORTERS
 from symflex.codegen.state_space import StateEquations, StateSpaceExporter, state_space_module
 from symflex.errors import BudgetError, ModelError
-from tests.unit.codegen.test_numpy_hostile import HOSTILE, NAMES, SPEC, loaded, renamed, ring_takes, skeleton
+from tests.unit.codegen.test_numpy_hostile import (
+    HOSTILE,
+    NAMES,
+    SPEC,
+    cut,
+    loaded,
+    renamed,
+    ring_takes,
+    skeleton,
+)
 
 __all__ = ["loaded"]
 
@@ -166,7 +175,7 @@ TAME = skeleton(exported(pipeline.loads(SPEC)).text)
 KINDS = [type(node).__name__ for node in ast.walk(ast.parse(exported(pipeline.loads(SPEC)).text))]
 
 
-@pytest.mark.parametrize("text", HOSTILE, ids=ascii)
+@pytest.mark.parametrize("text", HOSTILE, ids=cut)
 def test_prose_changes_no_token_and_prints_without_a_doctest(text):
     model = pipeline.loads(SPEC)
     parameters = tuple(replace(p, doc=text, unit=text) for p in model.parameters)
@@ -180,7 +189,7 @@ def test_prose_changes_no_token_and_prints_without_a_doctest(text):
 
 
 @pytest.mark.parametrize(
-    "name", [n for n in (*NAMES, "A", "B", "C", "D", *HOSTILE) if ring_takes(n)], ids=lambda n: ascii(n)[:40]
+    "name", [n for n in (*NAMES, "A", "B", "C", "D", *HOSTILE) if ring_takes(n)], ids=cut
 )
 def test_a_parameter_of_any_name_keeps_the_code_s_structure_and_value(name, loaded):
     model = renamed(pipeline.loads(SPEC), {"b": name if name not in ("s", "pi", "m", "k") else f"{name} "})
@@ -190,7 +199,7 @@ def test_a_parameter_of_any_name_keeps_the_code_s_structure_and_value(name, load
     assert space["state_space"](**{list(space["PARAMETERS"])[2]: 8.0})[0].tolist() == [[0, 1], [-4, -1.5]]
 
 
-@pytest.mark.parametrize("text", [*NAMES, *HOSTILE], ids=lambda n: ascii(n)[:40])
+@pytest.mark.parametrize("text", [*NAMES, *HOSTILE], ids=cut)
 def test_names_and_units_of_ends_and_states_are_only_strings(text, loaded):
     model = pipeline.loads(SPEC)
     system = pipeline.state_space(model)

@@ -73,21 +73,16 @@ Y = "q.y"
     assert wrongly_counted(model, drawing) == []
 
 
-def check(first, count):
+@pytest.mark.parametrize(
+    ("first", "count"),
+    [(1, 3), *(pytest.param(*seeds, marks=pytest.mark.slow) for seeds in [(4, 9), (1000, 300)])],
+)
+def test_random_models_are_drawn_with_everything_in_its_place(first, count):
     for seed, model in models(first, count):
         drawing = drawing_of(model)
         wrong = (overlaps(drawing), struck_texts(drawing), outside(drawing), wrongly_counted(model, drawing))
         assert wrong == ([], [], [], []), seed
         assert drawing == drawing_of(model), seed
-
-
-def test_random_models_are_drawn_with_everything_in_its_place():
-    check(1, 12)
-
-
-@pytest.mark.slow
-def test_three_hundred_random_models_are_drawn_with_everything_in_its_place():
-    check(1000, 300)
 
 
 @pytest.mark.slow

@@ -109,8 +109,14 @@ def test_a_figure_of_one_function_is_a_column_wide(kind, tfs):
     assert drawn(kind, tfs[:1]).get_size_inches()[0] == 3.5
 
 
-@pytest.mark.parametrize("kind", FIGURES)
-@pytest.mark.parametrize("format", FORMATS)
+@pytest.mark.parametrize(
+    ("kind", "format"),
+    [
+        pytest.param(kind, format, marks=[] if kind == "bode" or format == "svg" else [pytest.mark.slow])
+        for kind in FIGURES
+        for format in FORMATS
+    ],
+)
 def test_two_drawings_have_the_same_bytes(kind, format, tfs):
     assert render(drawn(kind, tfs), format) == render(drawn(kind, tfs), format)
 

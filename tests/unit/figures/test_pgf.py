@@ -13,7 +13,7 @@ from symflex.errors import UsageError
 from symflex.figures import FIGURES, draw, render
 from symflex.figures.files import pgf_text
 from symflex.print.latex import DOCUMENT
-from tests.unit.codegen.test_numpy_hostile import HOSTILE
+from tests.unit.codegen.test_numpy_hostile import HOSTILE, cut
 from tests.unit.print.test_html import MARKUP
 from tests.unit.print.test_latex_document import MORE
 from tests.unit.print.test_latex_text import COMMANDS as OF_TEXT
@@ -81,7 +81,7 @@ def test_a_picture_is_as_wide_as_asked_for_and_holds_nothing_but_a_drawing(kind,
     assert max(places) < 280
 
 
-@pytest.mark.parametrize("text", [*HOSTILE, *MARKUP, *MORE], ids=ascii)
+@pytest.mark.parametrize("text", [*HOSTILE, *MARKUP, *MORE], ids=cut)
 def test_no_text_becomes_a_command_or_mathematics_that_a_label_may_not_hold(text):
     for written in (pgf_text(text), pgf_text(text, is_math=False), pgf_text(f"$X_{{{text}}}$ [${text}$]")):
         rest = OF_TEXT.sub("", written)

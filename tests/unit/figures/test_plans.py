@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+
 import pytest
 
 from symflex import pipeline
@@ -11,6 +13,7 @@ from symflex.figures.runs import Plan, panels_of
 STEEL = 'E = "210 GPa", I = "1e-8 m^4", A = "1e-4 m^2", rho = "7800 kg/m^3", l = "0.5 m"'
 
 
+@functools.cache
 def shapes(elements, count=2):
     text = f'symflex = 1\n[elements]\n{elements}\n[inputs]\nF = {{ force = "p.x" }}\n[outputs]\nX = "p.x"\n'
     model = pipeline.loads(text)

@@ -96,7 +96,7 @@ def unstable(count, gain, up_to):
     return int(np.sum((poles.real > 0) & (abs(poles) < up_to)))
 
 
-@pytest.mark.parametrize("up_to", ["150 Hz", "400 Hz"])
+@pytest.mark.parametrize("up_to", ["150 Hz", pytest.param("400 Hz", marks=pytest.mark.slow)])
 def test_a_chain_has_the_stable_gains_of_its_formula(monkeypatch, up_to):
     expected = found(chain(2), up_to)
     assert isinstance(of_model.characteristic_loop(pipeline.loads(chain(2)), "K"), Loop)

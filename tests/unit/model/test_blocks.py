@@ -8,6 +8,7 @@ import symflex
 from symflex import pipeline
 from symflex.cli import run
 from symflex.errors import SpecError
+from tests.house.repository import slow_ones
 
 INNER = 'symflex = 1\n[inputs]\nF = {}\n[outputs]\nX = "F/(s + 2)"\n'
 SECRET = "tresor"
@@ -113,11 +114,11 @@ def test_every_command_that_reads_a_specification_refuses_a_file_outside(place, 
     assert "SF258" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize(("command", "options"), COMMANDS.items(), ids=COMMANDS)
-def test_every_command_that_reads_a_specification_takes_a_folder_outside(place, command, options, capsys):
+@pytest.mark.parametrize("command", slow_ones(COMMANDS, lambda command: command in ("sweep", "report")))
+def test_every_command_that_reads_a_specification_takes_a_folder_outside(place, command, capsys):
     (place / "beside" / "inner.toml").write_text(INNER)
     (place / "work" / "outer.toml").write_text(outer("../beside/inner.toml"))
-    run([command, "outer.toml", "--allow-outside", "../beside", *options])
+    run([command, "outer.toml", "--allow-outside", "../beside", *COMMANDS[command]])
     assert "SF258" not in capsys.readouterr().err
 
 

@@ -38,7 +38,7 @@ from tests.unit.print.residues import PRIME, point_for
 CLASSICS = Path(__file__).parents[3] / "derivations" / "classics"
 EVERY_FORM = ("hyperbolic", "factored", "krylov", "vaughan", "frequency", "polynomial", "definitions", None)
 NO_FORMULA = {"third order"}
-LONG = {"two beams of pairs", "two beams", "robot_axis"}
+LONG = {"two beams of pairs", "two beams", "robot_axis", "timoshenko_cantilever"}
 
 of_case = cache(derived)
 

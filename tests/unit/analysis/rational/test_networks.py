@@ -38,7 +38,7 @@ def test_residues_are_those_of_the_formula():
         assert one.coefficients[0].rel_accuracy_bits() > 66
 
 
-@pytest.mark.parametrize("form", ["product", "modal"])
+@pytest.mark.parametrize("form", ["product", pytest.param("modal", marks=pytest.mark.slow)])
 def test_an_approximation_of_three_beams_is_close_to_them_below_its_modes(form):
     bound = bound_of(3, "nested")
     found = pipeline.rational(bound, 3, form)

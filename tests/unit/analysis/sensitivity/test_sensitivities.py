@@ -17,7 +17,7 @@ from symflex.errors import UsageError
 from symflex.quantities import unit_of
 from symflex.roots import Modes
 from symflex.roots.precision import to_complex_mpmath as to_complex
-from tests.house.repository import specifications, uniform
+from tests.house.repository import slow_ones, specifications, uniform
 from tests.unit.roots.distributed_models import DELAY_LOOP, FREE, KELVIN_VOIGT, ON_A_FOUNDATION
 
 MODELS = uniform(specifications(Path(__file__).parents[4], "derivations/*/*.toml"))
@@ -354,7 +354,10 @@ def test_a_lossy_beam_with_a_mass_and_a_dashpot_by_finite_differences():
 # ------------------------------------------------------------------------------------------ scaling laws
 
 
-@pytest.mark.parametrize("path", MODELS, ids=lambda p: p.stem)
+DEAR = ("two_link_arm", "robot_axis", "fitted_resonances", "pin_ended_cross", "polynomial_resonance")
+
+
+@pytest.mark.parametrize("path", slow_ones(MODELS, lambda p: p.stem in DEAR), ids=lambda p: p.stem)
 def test_units_scale_all_parameters_at_once(path):
     # A root is in 1/s. If every parameter is read in another unit of time, length or mass, so is the root:
     # the sum of exponents times (p/s) ds/dp is the exponent in s (Buckingham 1914, differentiated).
