@@ -32,7 +32,7 @@ from symflex.analysis.time_response.delayed_terms import NO_DELAY, Delay, Durati
 from symflex.analysis.time_response.echoes import Gathered, Sampled, TooManyEchoesError, arriving, earliest
 from symflex.analysis.time_response.exponentials import ExponentialTerm, values_of
 from symflex.analysis.time_response.loop_bound import PoleSum, loop_bound
-from symflex.analysis.time_response.modal import DIGITS, MOST_DIGITS, estimated_modes, proved_modes
+from symflex.analysis.time_response.modal import DIGITS, MOST_DIGITS, estimated_step, proved_modes
 from symflex.analysis.time_response.partial_fractions import EnclosedQuotient, at_infinity, partial_fractions
 from symflex.analysis.time_response.sample_times import SampleTimes
 from symflex.budget import spend
@@ -305,7 +305,7 @@ def _part(bound: BoundTransferFunction, times: SampleTimes, digits: int, poles: 
             whole = _controlled(plant, rational, poles, arb(float(times.seconds[-1])))
             if whole is not None:
                 return whole
-    return _of_step(estimated_modes(bound, 1, times), poles, is_proved=False)
+    return _of_step(estimated_step(bound, times), poles, is_proved=False)
 
 
 def _of_step(modes: PartialSum, poles: list[acb], *, is_proved: bool) -> ModalPart:

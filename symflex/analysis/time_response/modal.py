@@ -86,11 +86,11 @@ LAST_MODES = 5
 SLOWEST = 0.9
 """Half of a sum over that of the quarter before: it falls off so slowly that nothing is said beyond."""
 FAR = 100
-"""Of the highest pole, where the transfer function shows how a response begins."""
+"""Of the highest pole, where the transfer function shows how a response begins; 1 where members taper."""
 SURER = 2
 """By what the lack at t = 0 is multiplied: terms that differ in sign may add up to more later."""
 TOO_MUCH = 0.3
-"""Estimated rest over the largest value from which on the modes say nothing."""
+"""Estimated rest over the largest value from which on the modes say nothing at a time."""
 
 
 def proved_modes(
@@ -475,11 +475,33 @@ def estimated(bound: AnyBoundFunction, integrations: int, times: SampleTimes) ->
     Raises UncertifiedError: SF810 where modes do not say what the response is.
     """
     found = estimated_modes(bound, integrations, times)
-    return found.sampled, f"what the modes beyond the lowest {ESTIMATED_MODES} add is estimated"
+    sampled = found.sampled
+    largest = max((abs(y.mid()) for y in sampled.values), default=arb(0))
+    told = sum(bool(y.rad() < TOO_MUCH * largest) for y in sampled.values)
+    if 2 * told < len(sampled.values):
+        raise _said_nothing(bound)
+    return sampled, f"what the modes beyond the lowest {ESTIMATED_MODES} add is estimated"
+
+
+def estimated_step(bound: AnyBoundFunction, times: SampleTimes) -> PartialSum:
+    """Return a step response whose rest is estimated, as it is at first; SF810 where that is too much."""
+    found = estimated_modes(bound, 1, times)
+    if not found.rest < TOO_MUCH * max((abs(y.mid()) for y in found.values), default=arb(0)):
+        raise _said_nothing(bound)
+    return found
+
+
+def _said_nothing(bound: AnyBoundFunction) -> UncertifiedError:
+    message = f"the modes of {bound.name} fall off too slowly to say what it does in time"
+    hint = "ask for a displacement, or a step in place of an impulse"
+    return UncertifiedError(Diagnostic("SF810", message, None, hint))
 
 
 def estimated_modes(bound: AnyBoundFunction, integrations: int, times: SampleTimes) -> PartialSum:
-    """Return the sum over the lowest modes, whose rest is estimated; SF810 as :func:`estimated`."""
+    """Return the sum over the lowest modes, whose rest is estimated: how much it is, and how it fades.
+
+    Higher modes are taken to fade no more slowly than the slowest of the upper half of those found.
+    """
     located = locate(bound, Modes(ESTIMATED_MODES), DIGITS).complete()
     poles = [root for root in located.all_poles if not root.im < 0 and not root.is_zero]
     rings = _rings(bound, poles, integrations)
@@ -493,22 +515,34 @@ def estimated_modes(bound: AnyBoundFunction, integrations: int, times: SampleTim
             found = _over_powers(part.pole, part.coefficients, integrations)
             terms.append(ExponentialTerm(part.pole, tuple(share * c for c in found)))
         sizes = [float(abs(term.coefficients[0]).upper()) for term in terms]
+        upper = [term.rate.real for term in terms[len(terms) // 2 :]]
         terms += [term for _, around, _ in rings for term in around]
+        upper += [term.rate.real for _, around, _ in rings for term in around]
         values = values_of([*origin, *terms], times)
         rest = arb(_estimated_rest(sizes)) + sum((missing for _, _, missing in rings), arb(0))
+        fading: tuple[arb, ...] = ()
         if terms:
-            # At t = 0 it is known what all modes add up to.
-            far = FAR * max(abs(term.rate).upper() for term in terms)
-            there = bound.enclosed(bits_for_digits(2 * DIGITS))(acb(far))
-            begun = there / far ** (integrations - 1)
+            # At t = 0 it is known what all modes add up to. A taper so far beyond its modes takes gigabytes.
+            tapers = not isinstance(bound, BoundNested) and any(
+                kernel.function == "entry" for kernel in bound.kernels.kernels
+            )
+            far = (1 if tapers else FAR) * max(abs(term.rate).upper() for term in terms)
+            begun, sooner = (_begun(bound, integrations, s) for s in (far, far / 2))
             at_once = sum((term.coefficients[0] for term in (*origin, *terms)), acb(0)).real
-            rest += SURER * abs(at_once - begun.real)
-        largest = max((abs(y.mid()) for y in values), default=arb(0))
-        if not rest < TOO_MUCH * largest:
-            message = f"the modes of {bound.name} fall off too slowly to say what it does in time"
-            hint = "ask for a displacement, or a step in place of an impulse"
-            raise UncertifiedError(Diagnostic("SF810", message, None, hint))
-        return PartialSum((*origin, *terms), tuple(values), rest)
+            rest += SURER * abs(at_once - begun)
+            slowest = max(upper, key=arb.mid).min(0)
+            fading = tuple((slowest * t).exp() for t in times.enclosed())
+            if times.seconds[0] == 0 and slowest < 0 and abs(begun) <= abs(sooner):
+                # What fades begins smoothly: only at t = 0 itself do the modes not say more.
+                values[0] = begun + arb(0, SURER * abs(begun - sooner).upper())
+                fading = (arb(0), *fading[1:])
+        return PartialSum((*origin, *terms), tuple(values), rest, fading)
+
+
+def _begun(bound: AnyBoundFunction, integrations: int, far: arb) -> arb:
+    """Return what a response begins with, as far as the transfer function at a large s shows it."""
+    there = bound.enclosed(bits_for_digits(2 * DIGITS))(acb(far))
+    return (there / far ** (integrations - 1)).real
 
 
 def _rings(bound: AnyBoundFunction, poles: Sequence[Root], integrations: int) -> list[Ring]:

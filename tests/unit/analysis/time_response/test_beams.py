@@ -281,6 +281,28 @@ def test_what_is_only_estimated_is_not_certified(name):
     assert abs(found.values[0]) <= found.radius[0]
 
 
+def test_an_elevators_rope_is_started_at_once():
+    """The speed of the upper end steps; high modes add nothing any more once they have faded."""
+    rope = 'type = "rod", E = "4 Pa", A = "1 m^2", rho = "1 kg/m^3", l = "1 m", eta = "10 ms"'
+    text = f'symflex = 1\nelements.rope = {{ {rope}, between = ["drive", "car"] }}\n'
+    text += 'elements.car = { type = "mass", at = "car", m = "1 kg" }\ninputs.v = { velocity = "drive" }\n'
+    bound = loads(f'{text}outputs.F = "v.f"').transfer_function("F", "v").bind().bound
+    found = time_response(bound, "step", SampleTimes.of([0.1, 0.5, 1.0]))
+
+    def force(s):
+        stiffness = 4 * (1 + s / 100)
+        wavenumber = s / mpmath.sqrt(stiffness)
+        line, body = stiffness * wavenumber, s**2
+        tanh = mpmath.tanh(wavenumber)
+        return line * (line * tanh + body) / (line + body * tanh) / s**2
+
+    for t, value, radius in zip(found.times, found.values, found.radius, strict=True):
+        expected = mpmath.invertlaplace(force, t, method="dehoog", degree=60)
+        assert abs(value - expected) <= radius + 1e-9 * abs(expected)
+    assert not found.certified
+    assert np.all(found.radius[1:] < 1e-4 * np.abs(found.values[1:]))
+
+
 CONE = 'E = "1 Pa", A = "A_0*(1 - x/(2*l))^2", rho = "1 kg/m^3", l = "l"'
 
 
