@@ -227,11 +227,16 @@ def _references(
     if len(texts) != wanted:
         plural = "node" if wanted == 1 else "nodes"
         hint = f"two nodes are written {port.pair} = [...]" if port.pair else None
+        if len(texts) < wanted:
+            given = [text.value[:60] for text in texts] or ["..."]
+            ends = ", ".join(f'"{name}"' for name in (*given, *["ground"] * (wanted - len(given))))
+            rests = "a terminal at earth" if port.domain == "electrical" else "an end that does not move"
+            hint = f'{rests} is at "ground": [{ends}]'
         reader.note(
             "SF217",
             f"{what} takes {wanted} {plural}, found {len(texts)}",
             found.value.span,
-            'an end that does not move is at "ground"' if len(texts) < wanted else hint,
+            hint,
         )
         return None
     references = [_reference(reader, t, port.domain, what) for t in texts]

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from symflex import pipeline
 from symflex.analysis.modes import lowest_modes
@@ -58,6 +59,39 @@ def test_the_curve_is_the_displacement_along_the_beam():
     axes = drawn(pipeline.load(CLASSICS / "pinned_pinned.toml")).axes[1]
     x, y = axes.lines[1].get_data()
     assert y == pytest.approx(np.sin(2 * np.pi * np.asarray(x)), abs=1e-9)
+
+
+def test_the_curve_of_a_high_mode_has_no_corners():
+    axes = drawn(pipeline.load(CLASSICS / "pinned_pinned.toml"), modes=8).axes[7]
+    line = axes.lines[1]
+    inches = line.get_transform().transform(line.get_xydata()) / axes.figure.dpi
+    directions = np.unwrap(np.arctan2(*np.diff(inches, axis=0).T[::-1]))
+    assert np.degrees(np.abs(np.diff(directions))).max() < 10
+
+
+@pytest.mark.slow
+def test_the_curve_of_a_member_that_tapers_is_its_displacement():
+    model = pipeline.loads("""
+        symflex = 1
+        parameters = { A_0 = "1 m^2", l = "1 m" }
+        [elements.cone]
+        type = "rod"
+        between = ["ground", "x"]
+        E = "1 Pa"
+        rho = "1 kg/m^3"
+        l = "l"
+        A = "A_0*(2 - x/l)^2"
+        [inputs]
+        F = { force = "x" }
+        [outputs]
+        X = "x"
+        """)
+    x, y = map(np.asarray, drawn(model, modes=3).axes[2].lines[1].get_data())
+    # (2 - x) u obeys the equation of a uniform rod, and u' vanishes at the free end.
+    k = brentq(lambda k: np.sin(k) + k * np.cos(k), 7.9, 8.1)
+    expected = np.sin(k * x) / (2 - x)
+    largest = expected[np.argmax(np.abs(expected))]
+    assert y * np.sign(y[-1]) == pytest.approx(expected / largest * np.sign(expected[-1] / largest), abs=2e-4)
 
 
 @pytest.mark.slow
