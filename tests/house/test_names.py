@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import ast
+import re
 from collections import defaultdict
 
 from tests.house.repository import ROOT
 
+CLASS = re.compile(r"^ *class (\w+)[(:]", re.MULTILINE)
 ONE_IDEA = {
     "BoundTransferFunction",
     "Model",
@@ -23,9 +24,8 @@ ONE_IDEA = {
 def test_no_two_classes_have_the_same_name():
     places = defaultdict(list)
     for path in sorted((ROOT / "symflex").rglob("*.py")):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.ClassDef):
-                places[node.name].append(f"{path.relative_to(ROOT)}:{node.lineno}")
+        for name in CLASS.findall(path.read_text(encoding="utf-8")):
+            places[name].append(str(path.relative_to(ROOT)))
     wrapped = {name for name, found in places.items() if len(found) == 2 and "symflex/api/" in found[0]}
     assert wrapped == ONE_IDEA
     assert not {name: found for name, found in places.items() if len(found) > 1 and name not in wrapped}

@@ -217,26 +217,27 @@ def test_there_are_at_least_sixty_hostile_texts():
     assert len(set(HOSTILE)) >= 60
 
 
-@pytest.mark.parametrize("text", HOSTILE, ids=cut)
-def test_prose_changes_no_token_of_the_code(text):
+@functools.cache
+def with_prose(text):
+    """Return the module of a model all of whose prose is a text."""
     model = model_of()
     parameters = tuple(replace(p, doc=text, unit=text) for p in model.parameters)
-    hostile = replace(model, title=text, source=text, parameters=parameters)
-    assert skeleton(export(hostile)) == TAME
+    return export(replace(model, title=text, source=text, parameters=parameters))
+
+
+@pytest.mark.parametrize("text", HOSTILE, ids=cut)
+def test_prose_changes_no_token_of_the_code(text):
+    assert skeleton(with_prose(text)) == TAME
 
 
 @pytest.mark.parametrize("text", HOSTILE, ids=cut)
 def test_prose_survives_in_the_table_of_parameters(text, loaded):
-    model = model_of()
-    hostile = replace(model, parameters=tuple(replace(p, doc=text) for p in model.parameters))
-    assert loaded(export(hostile))["PARAMETERS"]["m"]["doc"] == text
+    assert loaded(with_prose(text))["PARAMETERS"]["m"]["doc"] == text
 
 
 @pytest.mark.parametrize("text", HOSTILE, ids=cut)
 def test_the_text_prints_and_holds_no_doctest(text):
-    model = model_of()
-    parameters = tuple(replace(p, doc=text, unit=text) for p in model.parameters)
-    generated = export(replace(model, title=text, source=text, parameters=parameters))
+    generated = with_prose(text)
     assert all(line.isprintable() for line in generated.split("\n"))
     generated.encode("utf-8")
     tree = ast.parse(generated)

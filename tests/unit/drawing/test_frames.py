@@ -75,7 +75,7 @@ Y = "q.y"
 
 @pytest.mark.parametrize(
     ("first", "count"),
-    [(1, 3), *(pytest.param(*seeds, marks=pytest.mark.slow) for seeds in [(4, 9), (1000, 300)])],
+    [(1, 3), *(pytest.param(*seeds, marks=pytest.mark.slow) for seeds in [(7, 9), (1000, 300)])],
 )
 def test_random_models_are_drawn_with_everything_in_its_place(first, count):
     for seed, model in models(first, count):
