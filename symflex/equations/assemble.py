@@ -65,6 +65,7 @@ def assemble(
     is_sparse: bool = False,
     is_joined: bool = False,
     is_cut: bool = False,
+    is_followed: bool = False,
 ) -> Equations:
     """Stamp every element and signal of a model into one linear system.
 
@@ -73,9 +74,11 @@ def assemble(
     With ``is_sparse`` the ring has any number of names, nothing is expanded, and rows are not cleared of
     denominators; a distributed model has to be nameless, too. With ``is_joined`` line elements of one law
     that meet are taken as one, see :mod:`symflex.equations.distributed`. With ``is_cut`` states at points
-    along x are unknowns, and what relates them, the laws of ``continua``, is not among the rows. Raises
-    ModelError: SF224 division by zero, SF910 a function of s; with positions, all at once; BudgetError: SF502
-    when there are more names or more unknowns than can be computed with exactly.
+    along x are unknowns, and what relates them, the laws of ``continua``, is not among the rows. With
+    ``is_followed`` uniform line elements and fields beside others that taper are followed along x as those
+    are, by fundamental matrices. Raises ModelError: SF224 division by zero, SF910 a function of s; with
+    positions, all at once; BudgetError: SF502 when there are more names or more unknowns than can be computed
+    with exactly.
     """
     constants = _constant_functions(model)
     count = len(model.parameters) + len(model.definitions) + len(constants)
@@ -95,7 +98,7 @@ def assemble(
         is_sparse,
     )
     distributed = _Assembly(model, ring, constants, nested).survey(
-        is_nameless=is_nameless, is_joined=is_joined, is_cut=is_cut
+        is_nameless=is_nameless, is_joined=is_joined, is_cut=is_cut, is_followed=is_followed
     )
     whole = ring if distributed is None else distributed.propagation.ring
     return _Assembly(model, whole, constants, nested, distributed, is_cut).run()
@@ -178,7 +181,9 @@ class _Assembly:
     # Per line element or field, the points within at which it is cut.
     cuts: dict[str, list[Cut]] = field(default_factory=dict)
 
-    def survey(self, *, is_nameless: bool, is_joined: bool, is_cut: bool) -> Distributed | None:
+    def survey(
+        self, *, is_nameless: bool, is_joined: bool, is_cut: bool, is_followed: bool
+    ) -> Distributed | None:
         """Return the model's distributed parts; this assembly is over the ring without kernels."""
         lines = any(isinstance(use.element, LineElement) for use in self.model.elements)
         delays = any(b.block is not None and b.block.kernel_time for b in self.model.blocks)
@@ -197,6 +202,7 @@ class _Assembly:
             is_nameless=is_nameless,
             is_joined=is_joined,
             is_cut=is_cut,
+            is_followed=is_followed,
             functions=self._along,
         )
 

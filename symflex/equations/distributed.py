@@ -271,8 +271,9 @@ class Distributed:
 class _Demands:
     """Collects dispersions, each once, with the lengths it is needed at."""
 
-    def __init__(self, along: AlongX | None) -> None:
+    def __init__(self, along: AlongX | None, *, is_followed: bool) -> None:
         self.along = along
+        self.is_followed = is_followed
         self.keys: dict[tuple[str, ...], int] = {}
         self.found: dict[tuple[str, ...], tuple[Component, ...]] = {}
         self.demands: list[tuple[Dispersion, list[Factored]]] = []
@@ -281,7 +282,8 @@ class _Demands:
         self, name: str, system: FieldSystem, span: Span | None, ends: tuple[Expression, Expression]
     ) -> Medium:
         """Return the system with the numbers of its dispersions; ``ends`` are those of x."""
-        if self.along is not None and varies(system, self.along.names):
+        followed = self.is_followed and system.axes is None
+        if self.along is not None and (followed or varies(system, self.along.names)):
             return self._varying(name, system, span, self.along, ends)
         parts = []
         key = tuple(text(x) for row in system.matrix for x in row)
@@ -359,6 +361,7 @@ def survey(
     is_nameless: bool = False,
     is_joined: bool = False,
     is_cut: bool = False,
+    is_followed: bool = False,
     functions: tuple[tuple[str, Call], ...] | None = None,
 ) -> Distributed | None:
     """Return the distributed parts of a model, ``None`` when it has none.
@@ -368,7 +371,8 @@ def survey(
     where nothing varies along it. For the flags see :func:`symflex.equations.assemble.assemble`. Raises
     ModelError: SF305 when the highest derivatives of a field are not determined, and what evaluation raises.
     """
-    demands = _Demands(None if functions is None else AlongX(evaluator.along_x(), functions))
+    moving = None if functions is None else AlongX(evaluator.along_x(), functions)
+    demands = _Demands(moving, is_followed=is_followed)
     problems: list[Diagnostic] = []
     lines: list[tuple[str, Medium, Factored]] = []
     delays: list[tuple[str, int, Factored]] = []

@@ -145,6 +145,13 @@ def _derive_expanded(model: Model, wanted: Sequence[tuple[str, str]]) -> tuple[T
     return tuple(again.get(i, tf) for i, tf in enumerate(found))
 
 
+def followed_along_x(tf: TransferFunction) -> TransferFunction:
+    """Return a function of a model with members that taper, its uniform ones followed along x too."""
+    equations = equations_room.assemble(tf.model, nested_transfer, is_followed=True)
+    (found,) = derive_from(equations, [(tf.output.name, tf.input.name)])
+    return found
+
+
 def assemble_sparse(model: Model, *, is_joined: bool = False) -> Equations:
     """Return the equations over a ring of any number of names, for the nested form.
 

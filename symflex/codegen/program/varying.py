@@ -20,6 +20,7 @@ from symflex.codegen.program.nodes import CodePiece, Piecewise
 from symflex.codegen.program.site import Site
 from symflex.errors import Diagnostic, ModelError
 from symflex.model.along import varies_along_x
+from symflex.transfer.of_model import followed_along_x
 from symflex.transfer.varying_law import PartedLaw
 
 if TYPE_CHECKING:
@@ -35,8 +36,11 @@ if TYPE_CHECKING:
 def build_varying(tf: TransferFunction) -> Piecewise:
     """Return the program for complex s.
 
-    Raises ModelError: SF910 where there are uniform members besides, losses that vary along x, or tips.
+    Uniform members beside those that taper are followed along x as well. Raises ModelError: SF910 where a
+    stiffness vanishes at an end, or beside members of frames.
     """
+    if _has_uniform(tf):
+        tf = followed_along_x(tf)
     tip = next((law.name for law in tf.kernels.dispersions if law.singular is not None), None)
     if tip is not None:
         message = (
@@ -44,12 +48,16 @@ def build_varying(tf: TransferFunction) -> Piecewise:
         )
         hint = "its poles, zeros and values at frequencies are there"
         raise ModelError(Diagnostic("SF910", message, None, hint))
-    if tf.kernels.wavenumbers:
-        message = f"{tf.name} has uniform members besides tapered ones, for which there is no code yet"
+    if _has_uniform(tf):
+        message = f"{tf.name} has members of frames besides tapered ones, for which there is no code yet"
         raise ModelError(
             Diagnostic("SF910", message, None, "its poles, zeros and values at frequencies are there")
         )
     return _Workshop(tf).program()
+
+
+def _has_uniform(tf: TransferFunction) -> bool:
+    return any(not law.matrix and law.kind != "exponential" for law in tf.kernels.dispersions)
 
 
 @dataclass

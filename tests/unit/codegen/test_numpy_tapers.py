@@ -43,11 +43,15 @@ def made():
     return EXPORTERS["numpy"].export(model, pipeline.derive_all(model), "cone")
 
 
-@pytest.fixture(scope="module")
-def cone(made):
+def function_of(made):
     module = types.ModuleType("cone")
     exec(compile(made.text, "cone.py", "exec"), module.__dict__)  # noqa: S102
     return module.y_over_F
+
+
+@pytest.fixture(scope="module")
+def cone(made):
+    return function_of(made)
 
 
 def test_the_module_states_an_accuracy_of_thirteen_digits(made):
@@ -69,6 +73,22 @@ def test_the_taper_may_be_an_array_and_none_is_the_uniform_rod(cone):
     c = np.array([0.0, 0.3, 0.8])
     s = np.array([[4000j], [9000 + 500j]])
     assert cone(s, c=c) == pytest.approx(receptance(s, c), rel=1e-11)
+
+
+def test_a_uniform_rod_before_the_cone_is_followed_too():
+    rod = """[elements]
+        root = { type = "rod", between = ["ground", "p"], E = "E", rho = "rho", l = "l", A = "A_0" }"""
+    text = CONE.replace("[elements]", rod).replace('["ground", "tip"]', '["p", "tip"]')
+    model = pipeline.loads(text)
+    made = EXPORTERS["numpy"].export(model, pipeline.derive_all(model), "cone")
+    s = np.array([30j, 2000 + 9000j, -5000 + 20000j, 400.0])
+    k, c = -1j * s * np.sqrt(7800 / 200e9), 0.5
+    # u = v/(1 - c x), where v'' = -k^2 v; at x = 0 both rods have u = sin(k) and u' = k cos(k).
+    u, slope = np.sin(k), k * np.cos(k) - c * np.sin(k)
+    tip = (u * np.cos(k) + slope * np.sin(k) / k) / (1 - c)
+    strain = (slope * np.cos(k) - u * k * np.sin(k) + c * tip) / (1 - c)
+    assert made.verified[0].error < 1e-12
+    assert function_of(made)(s) == pytest.approx(tip / (200e9 * 16e-4 * (1 - c) ** 2 * strain), rel=1e-11)
 
 
 def test_languages_without_code_for_it_refuse_and_name_one_that_has():
