@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from symflex import pipeline
-from symflex.api.bound import budget_of
+from symflex.api.analyses import budget_of
 from symflex.api.plots import plot_loop
 from symflex.api.stability import Stability
 from symflex.api.state_space import StateSpace
 from symflex.api.transfer_function import NestedTransferFunction, Number, TransferFunction
+from symflex.errors import BudgetError
 from symflex.model.spec import write
 from symflex.options import ColocationOptions, MeasureOptions, PlotOptions, StabilityOptions, SweepOptions
 
@@ -212,9 +213,10 @@ class Model:
             SF902 when there is no such output or input.
         ModelError
             SF30x when the equations are singular, with the reason.
+        BudgetError
+            SF501, SF502 when it is too large expanded, as of frames; :meth:`nested` has it then.
         """
-        (pair,) = pipeline.pick_pairs(self.resolved, [f"{output}/{input}"])
-        return TransferFunction(pipeline.derive_all(self.resolved, [pair])[0])
+        return self._derived(pipeline.pick_pairs(self.resolved, [f"{output}/{input}"]))[0]
 
     def nested(self, output: str, input: str) -> NestedTransferFunction:
         """Derive output over input as a straight-line program, for models too large to expand.
@@ -249,7 +251,17 @@ class Model:
 
     def transfer_functions(self) -> tuple[TransferFunction, ...]:
         """Derive every output over every input, sharing one elimination."""
-        return tuple(TransferFunction(tf) for tf in pipeline.derive_all(self.resolved))
+        return self._derived(self.resolved.transfer_functions)
+
+    def _derived(self, pairs: Sequence[tuple[str, str]]) -> tuple[TransferFunction, ...]:
+        try:
+            return tuple(map(TransferFunction, pipeline.derive_all(self.resolved, pairs)))
+        except BudgetError as error:
+            if error.diagnostics[0].code not in ("SF501", "SF502"):
+                raise
+            (output, source), hint = pairs[0], error.diagnostics[0].hint
+            way = f"model.nested({output!r}, {source!r}) has its values, poles and zeros; or {hint}"
+            raise BudgetError(replace(error.diagnostics[0], hint=way)) from None
 
     def state_space(
         self,

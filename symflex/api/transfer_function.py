@@ -9,8 +9,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from symflex import pipeline
+from symflex.api.analyses import Analyses
 from symflex.api.bound import BoundTransferFunction
-from symflex.api.plots import Plotted
 from symflex.api.state_space import StateSpace
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
@@ -325,8 +325,8 @@ class NestedTransferFunction(_Derived):
 
 
 @dataclass(frozen=True, repr=False)
-class BoundNestedTransferFunction(BoundNested, Plotted):
-    r"""A nested transfer function with numbers: ``H(s)``, ``H.at(s)``, and figures.
+class BoundNestedTransferFunction(BoundNested, Analyses):
+    r"""A nested transfer function with numbers: values, poles and zeros, responses, and figures.
 
     Examples
     --------
@@ -335,6 +335,8 @@ class BoundNestedTransferFunction(BoundNested, Plotted):
     >>> bound = model.nested("y", "u").bind()
     >>> round(abs(bound(1j)), 4), len(bound.bode(band=(0.01, 10)).axes)
     (0.2236, 2)
+    >>> [round(float(p.re)) for p in bound.poles()], bound.step_response([1.0]).values.round(6).tolist()
+    ([-1, -3], [0.157691])
     """
 
     @property

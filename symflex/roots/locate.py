@@ -90,6 +90,12 @@ def _with_values(bound: BoundNested) -> Model:
     return with_numbers(bound.source.model, (), dict(bound.values), in_kernels=True)
 
 
+def lumped(bound: BoundNested) -> BoundTransferFunction:
+    """Return a function in nested form without waves as a quotient of polynomials, of numbers and s."""
+    (found,) = derive_bound(_with_values(bound), [(bound.source.output.name, bound.source.input.name)])
+    return found
+
+
 def _locate_nested(bound: BoundNested, region: Region | None, digits: int, budget: Budget) -> PoleZeroMap:
     """Find poles and zeros of a function in nested form, from the equations it solves."""
     from symflex.roots.networks.poles_zeros import locate_in_network  # few models are so large
@@ -98,8 +104,7 @@ def _locate_nested(bound: BoundNested, region: Region | None, digits: int, budge
     model = _with_values(bound)
     pair = (source.output.name, source.input.name)
     if not model.is_distributed:
-        (lumped,) = derive_bound(model, [pair])
-        return locate(lumped, region, digits, budget)
+        return locate(lumped(bound), region, digits, budget)
     is_default = region is None or isinstance(region, Everything)
     where = default_region(bound) if region is None or isinstance(region, Everything) else region
     found = locate_in_network(

@@ -12,7 +12,7 @@ import pytest
 import sympy
 
 import symflex
-from symflex.api import bound as api_bound
+from symflex.api import analyses
 from symflex.errors import BudgetError, UsageError
 from symflex.print.forms.printed import RATIONAL
 from symflex.roots import Budget
@@ -360,7 +360,7 @@ def test_what_cannot_say_that_a_budget_was_exceeded_raises_with_the_map(colocate
 def test_what_was_proved_within_a_budget_is_not_lost(loop, monkeypatch):
     # out/r = 1/(s + 2 exp(-s/2)): s = 2 W_k(-1)
     times = iter([0.0] * 400 + [10.0] * 100_000)
-    monkeypatch.setattr(api_bound, "Budget", lambda seconds: Budget(seconds, clock=lambda: next(times)))
+    monkeypatch.setattr(analyses, "Budget", lambda seconds: Budget(seconds, clock=lambda: next(times)))
     with pytest.raises(BudgetError, match="modes were found up to") as caught:
         loop.poles(modes=30, budget=5)
     found = [symflex.Root(root) for root in caught.value.found.poles if root.im > 0]
@@ -489,3 +489,52 @@ def test_only_one_region_is_taken(beam):
 def test_the_gain_of_a_distributed_function_at_rest_is_its_limit():
     # A rod held at one end: E A/l = 1 N/m.
     assert symflex.loads(ROD).transfer_function("X", "F").bind().dcgain() == pytest.approx(1)
+
+
+BAR = 'type = "frame", E = "70 GPa", I = "2e-9 m^4", A = "5e-5 m^2", rho = "2700 kg/m^3"'
+TRIPOD = f"""
+symflex = 1
+elements.stem = {{ {BAR}, between = ["ground", "p"], angle = "90 deg", l = 0.4 }}
+elements.left = {{ {BAR}, between = ["p", "a"], angle = "180 deg", l = 0.2 }}
+elements.right = {{ {BAR}, between = ["p", "q"], angle = "30 deg", l = 0.25 }}
+inputs.F = {{ force = "q.x" }}
+outputs.Q = "q.y"
+"""
+
+
+@pytest.mark.slow
+def test_a_frame_without_a_closed_form_is_said_to_have_a_nested_one():
+    with pytest.raises(BudgetError, match=r"SF502(.|\n)*hint: model.nested\('Q', 'F'\)"):
+        symflex.loads(TRIPOD).transfer_function("Q", "F")
+
+
+def test_a_nested_function_has_the_poles_shapes_and_responses_of_the_expanded_one():
+    """A rod of two pieces: sin(w) = 0 where it is free."""
+    half = 'type = "rod", E = 1, A = 1, rho = 1, l = 0.5'
+    model = symflex.loads(f"""
+        symflex = 1
+        elements.a = {{ {half}, between = ["x", "y"] }}
+        elements.b = {{ {half}, between = ["y", "z"] }}
+        inputs.F = {{ force = "x" }}
+        outputs.X = "x"
+        """)
+    nested, expanded = model.nested("X", "F").bind(), model.transfer_function("X", "F").bind()
+    found = nested.pole_zero_map(modes=3)
+    assert found.certificate.certified
+    upper = [float(p.im) for p in found.poles if p.im > 0]
+    assert upper == pytest.approx([np.pi, 2 * np.pi, 3 * np.pi][: len(upper)], rel=1e-12)
+    assert nested.frequency_response([1.0, 2.0]).values == pytest.approx(
+        expanded.frequency_response([1.0, 2.0]).values, rel=1e-12
+    )
+    assert [complex(r) for r in nested.residues(modes=2)] == pytest.approx(
+        [complex(r) for r in expanded.residues(modes=2)], rel=1e-9
+    )
+    assert nested.mode_shape(1).pole.im == pytest.approx(np.pi)
+
+
+def test_a_nested_function_without_waves_answers_as_its_polynomials_do():
+    model = symflex.loads('symflex = 1\ninputs.u = {}\noutputs.y = "u/((s + 1)*(s + 3))"')
+    nested = model.nested("y", "u").bind()
+    assert nested.step_response([1.0]).values == pytest.approx([1 / 3 - np.exp(-1) / 2 + np.exp(-3) / 6])
+    assert nested.rational(2).poles == pytest.approx([-1, -3])
+    assert nested.step_response().certified

@@ -27,7 +27,7 @@ from symflex.analysis.response import check_band, default_band
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
 from symflex.roots import Band, Everything, Modes, PoleZeroMap, Position, Root, precision
 from symflex.roots.functions.simplified import without_lengths_of_zero
-from symflex.roots.locate import locate
+from symflex.roots.locate import locate, lumped
 from symflex.roots.pole_zero_map import is_right
 from symflex.roots.precision import to_complex_mpmath, to_mpmath
 from symflex.transfer import BoundNested
@@ -177,6 +177,8 @@ def approximate(
         check_band(*band)
     if not isinstance(bound, BoundNested):
         bound = without_lengths_of_zero(bound)
+    elif not bound.is_distributed:
+        bound = lumped(bound)
     if bound.is_zero:
         message = f"{bound.name} is identically zero"
         raise ModelError(Diagnostic("SF402", message, None, "the input does not reach the output"))

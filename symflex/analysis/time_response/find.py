@@ -38,7 +38,7 @@ from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.expressions.format import decimal_exponent
 from symflex.roots.functions.simplified import without_lengths_of_zero
-from symflex.roots.locate import equations_of
+from symflex.roots.locate import equations_of, lumped
 from symflex.roots.polynomial_roots import find_polynomial_roots
 from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.problem import problem_of
@@ -100,7 +100,7 @@ def time_response(
     if shaper is not None:
         return _shaped(bound, kind, times, digits, shaper)
     if isinstance(bound, BoundNested):
-        found, reason = _of_network(bound, INTEGRATIONS[kind], times)
+        found, reason = _of_network(bound, INTEGRATIONS[kind], times, digits)
     else:
         bound = without_lengths_of_zero(bound)
         found, reason = _found(bound, INTEGRATIONS[kind], times, digits)
@@ -120,7 +120,7 @@ def time_response(
 
 
 def responses_by_default(
-    bounds: Sequence[BoundTransferFunction],
+    bounds: Sequence[AnyBoundFunction],
     kind: str,
     points: int,
     digits: int = 12,
@@ -189,7 +189,9 @@ def _shaped(
     )
 
 
-def _of_network(bound: BoundNested, integrations: int, times: SampleTimes) -> tuple[Sampled, str | None]:
+def _of_network(
+    bound: BoundNested, integrations: int, times: SampleTimes, digits: int
+) -> tuple[Sampled, str | None]:
     """Return the response of a network that nobody writes out, and what is not proved of it."""
     if bound.is_zero or not len(times):
         return Sampled((arb(0),) * len(times)), None
@@ -198,6 +200,8 @@ def _of_network(bound: BoundNested, integrations: int, times: SampleTimes) -> tu
     if any(law.kind == "exponential" for law in laws):
         message = f"{bound.name} is of a large network with delays: its response in time is not known"
         raise ModelError(Diagnostic("SF813", message, None, "take 'symflex rational' of it first"))
+    if not bound.is_distributed:
+        return _found(lumped(bound), integrations, times, digits)
     return estimated(bound, integrations, times)
 
 

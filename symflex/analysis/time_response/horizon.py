@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 from flint import acb
 
 from symflex.analysis.response import roots_if_found
+from symflex.transfer import BoundNested
 from symflex.transfer.balls import at_centre
 
 if TYPE_CHECKING:
-    from symflex.transfer import BoundTransferFunction
+    from symflex.transfer import AnyBoundFunction
 
 TIME_CONSTANTS = 5.0
 """After which 1 % of a motion is left."""
@@ -21,7 +22,7 @@ PERIODS, UNDAMPED_PERIODS = 12, 4
 """Of the slowest oscillation: more show nothing new."""
 
 
-def default_until(bound: BoundTransferFunction) -> float:
+def default_until(bound: AnyBoundFunction) -> float:
     """Return a time [s] by which the slowest motion has died away, or has been seen often enough.
 
     Examples
@@ -43,13 +44,13 @@ def default_until(bound: BoundTransferFunction) -> float:
     return max(waits, default=0.0) or 1.0
 
 
-def until_many_turns(bound: BoundTransferFunction) -> float:
+def until_many_turns(bound: AnyBoundFunction) -> float:
     """Return a time [s] by which a loop with delays has been run through often; infinite without delays."""
     return max((TURNS * delay for delay in _delays(bound)), default=inf)
 
 
-def _delays(bound: BoundTransferFunction) -> list[float]:
-    if not bound.is_distributed:
+def _delays(bound: AnyBoundFunction) -> list[float]:
+    if isinstance(bound, BoundNested) or not bound.is_distributed:
         return []
     evaluator, found = bound.kernel_values(), []
     values = {"s": acb(1), **{name: acb(c) for name, c in evaluator.constants.items()}}

@@ -386,8 +386,8 @@ def _hadamard(rows: Sequence[Mapping[int, arb]], size: int) -> float:
     places = [
         (i, j, _log(x)) for i, row in enumerate(rows) for j, x in row.items() if j < size and not x == 0
     ]
-    i = np.array([p[0] for p in places])
-    j = np.array([p[1] for p in places])
+    i = np.array([p[0] for p in places], dtype=int)
+    j = np.array([p[1] for p in places], dtype=int)
     logs = np.array([p[2] for p in places])
     scale = np.zeros(size)
     for _ in range(BALANCING):

@@ -44,7 +44,7 @@ SERIES_BITS = 64
 LEAST_CIRCLES = (1.0, 0.5, 0.25, 0.1, 0.03)
 WIDENED = 1.07
 TRIES = 8
-SMALLEST = 1e-6
+SMALLEST, LARGEST = 1e-6, 1e12
 """Radius [rad/s] below which nothing is sought."""
 TOO_WIDE = 0.3
 """Part by which a disc may be larger than it need be."""
@@ -149,6 +149,8 @@ class DiscSearch:
         low = high
         while not self._holds(high, count):
             low, high = high, 4 * high
+            if high > LARGEST:
+                return high
             if not self._is_bounded(high):
                 high = self._last_bounded(low, high)
                 if not self._holds(high, count):
