@@ -34,6 +34,8 @@ if TYPE_CHECKING:
     from symflex.transfer import AnyBoundFunction, AnyTransferFunction
 
 HEIGHT_INCHES: Final = 2.2
+FARTHEST: Final = 0.5
+"""How far a band of radii is drawn beyond the curve, as a share of its height."""
 VISIBLE: Final = 1e-3
 """Radius over the largest value from which its band is drawn: about the width of a line."""
 PREFIXES: Final = ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns"))
@@ -124,7 +126,11 @@ def _draw_curve(axes: Axes, response: EnclosedResponse, look: tuple[str, object]
     across = response.times / scale
     colour, dash = look
     if np.max(radius, initial=0) > VISIBLE * np.max(np.abs(values), initial=0):
-        axes.fill_between(across, values - radius, values + radius, color=colour, alpha=0.2, linewidth=0)
+        # An instant of which nothing is known, as the first may be, does not rule the axis.
+        beyond = FARTHEST * np.ptp(values) or np.inf
+        low = np.maximum(values - radius, values.min() - beyond)
+        high = np.minimum(values + radius, values.max() + beyond)
+        axes.fill_between(across, low, high, color=colour, alpha=0.2, linewidth=0)
     axes.plot(across, values, color=colour, linestyle=dash, label=label)
 
 
