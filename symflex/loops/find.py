@@ -116,7 +116,7 @@ def find_stable_gains(
         gain_margins=_gain_margins(found),
         phase_margins=phase_margins,
         bandwidth=bandwidth,
-        margin_beyond=beyond,
+        margin_beyond=beyond or None,  # an angle of 0 bounds nothing
         reasons=tuple(dict.fromkeys((*search.reasons, *reasons))),
     )
 
