@@ -355,7 +355,7 @@ class _Layout:
             width = LINE if column.is_electrical else BOLD if column.kind == "rotation" else 1.4
             self._wire(column.name, (x, bottom), (x, top), width=width)
         joints = len(column.levels) + len(column.hanging) + column.has_lead_up
-        if column.is_flat or (column.is_electrical and joints > 2):  # noqa: PLR2004
+        if (column.is_flat and joints > 1) or (column.is_electrical and joints > 2):  # noqa: PLR2004
             levels = dict.fromkeys(column.levels or [0.0]) if column.is_electrical else [0.0]
             self._add(Placed("node", column.name, tuple(circle(x, y, DOT, fill="#000000") for y in levels)))
 

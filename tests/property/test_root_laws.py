@@ -227,7 +227,7 @@ def test_a_driving_point_of_beams_has_as_many_poles_and_zeros_as_wittrick_and_wi
 
 @pytest.mark.slow
 @given(beams(most=3))
-@quiet(40)
+@quiet(25)
 def test_driving_points_of_many_beams_have_as_many_poles_and_zeros_as_are_counted(model):
     check_beams(model, 400.0)
 
@@ -348,6 +348,6 @@ def test_a_damped_beam_has_as_many_poles_and_zeros_in_a_rectangle_as_its_determi
 
 @pytest.mark.slow
 @given(damped())
-@quiet(15)
+@quiet(10)
 def test_damped_beams_have_as_many_poles_and_zeros_as_their_determinants_turn(drawn):
     check_damped(drawn)

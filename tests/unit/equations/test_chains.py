@@ -53,8 +53,14 @@ def test_a_chain_taken_as_one_element_has_the_response_of_its_parts(kind):
     assert values(joined, pairs) == pytest.approx(values(apart, pairs), rel=1e-9)
 
 
-@pytest.mark.parametrize("kind", ["rod", pytest.param("beam", marks=pytest.mark.slow)])
-@pytest.mark.parametrize("lengths", [(0.2, 0.3, 0.1), (0.2, 0.3, 0.1, 0.15)])
+@pytest.mark.parametrize(
+    ("kind", "lengths"),
+    [
+        ("rod", (0.2, 0.3, 0.1)),
+        ("rod", (0.2, 0.3, 0.1, 0.15)),
+        pytest.param("beam", (0.2, 0.3, 0.1), marks=pytest.mark.slow),
+    ],
+)
 def test_elements_with_an_input_between_have_the_response_of_their_parts(kind, lengths):
     model = chain(kind, *lengths)
     pairs = model.transfer_functions
