@@ -21,9 +21,10 @@ WITH_TABLES = [p for p in pages() if any(found.search(p.read_text("utf-8")) for 
 FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
 
-def chooses_an_order(block):
-    """Tell whether a session fits every number of resonances to measured lines, which takes long."""
-    return block.text.startswith("$ symflex fit") and "BIC" in block.text
+def takes_long(block):
+    """Tell whether a session fits every number of resonances to measured lines, or sweeps models."""
+    chooses_an_order = block.text.startswith("$ symflex fit") and "BIC" in block.text
+    return chooses_an_order or block.text.startswith("$ symflex sweep")
 
 
 @pytest.fixture
@@ -79,7 +80,7 @@ def test_a_specification_shown_as_wrong_is_refused(block):
         symflex.loads(block.text)
 
 
-@pytest.mark.parametrize("block", slow_ones(SESSIONS, chooses_an_order), ids=str)
+@pytest.mark.parametrize("block", slow_ones(SESSIONS, takes_long), ids=str)
 def test_every_session_on_a_page_shows_what_the_program_prints(block, reader, symflex_output):
     reader(block.page)
     for session in re.split(r"^\$ ", block.text, flags=re.MULTILINE)[1:]:

@@ -107,7 +107,7 @@ HOSTILE = [
     " ",
     "\t",
     "x" * 5000,
-    "y " * 3000,
+    "y " * 300,
     "<script>alert(1)</script>",
     "\\begin{document}",
     "=cmd|' /C calc'!A0",

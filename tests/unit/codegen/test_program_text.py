@@ -21,6 +21,7 @@ def test_different_names_have_different_identifiers(names):
     assert len(set(found.values())) == len(names)
 
 
+@pytest.mark.slow
 @given(st.text(max_size=40))
 def test_whatever_the_name_its_identifier_is_a_plain_one(name):
     found = identifiers({name: name}, RESERVED)[name]
