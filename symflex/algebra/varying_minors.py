@@ -10,6 +10,13 @@ coefficients are found once for all s by Picard's iteration, where functions of 
 Chebyshev points. Minors of two rows are taken from piece to piece as such: differences of products of entries
 would lose as many digits as waves grow.
 
+Where a stiffness vanishes at the start, the first piece is that of a *tip*: ``h v' = B v`` with h the way
+from there and ``z_i = h^powers_i v_i``. A solution that is finite there has v of 1 in one free state; then
+
+    h v_i' = b_i v_i + g_i, b_i <= 0      v_i(h) = 1 or 0 + integral over t in [0, 1] of g_i(t h) t^(-b_i - 1)
+
+where g_i(0) is zero for b_i = 0, or what made a logarithm.
+
 Generated code gets copies of these functions: they use numpy and each other, and nothing else.
 """
 
@@ -33,15 +40,18 @@ def fundamental_minors(
     bases: Sequence[Values],
     places: Sequence[Sequence[int]],
     wanted: Sequence[Values],
+    tip: Sequence[Values] = (),
 ) -> list[Values]:
     """Return minors of Z(start + length) over the scale of their size, then the logarithms of all scales.
 
     Part k of A is along(x)[k] times powers of the bases: places[k] holds its row, its
     column and these powers. A minor is told by its rows and its columns; scales come in
     order of the number of these. Bases are arrays of one axis; parameters may be arrays of that shape.
+    Parts of B follow those of A where there is a tip: of each its row, column, the power of the way and
+    powers of the bases; then the powers of all states, their exponents b, and which are free.
     """
     return minors_by_octaves(
-        lambda limits, where: polynomials_along(along, start, length, places, limits, where),
+        lambda limits, where: polynomials_along(along, start, length, places, limits, where, tip),
         np.broadcast_arrays(*bases),
         1 + max(max(place[:2]) for place in places),
         wanted,
@@ -88,18 +98,19 @@ def polynomials_along(
     places: Sequence[Sequence[int]],
     limits: Values,
     where: Values,
+    tip: Sequence[Values] = (),
 ) -> Values:
     """Return powers of the bases over their limits, and what Z has of each on every piece.
 
     None where waves are too many to be followed.
     """
-    cut = edges_along(along, start, length, places, limits, where)
+    cut = edges_along(along, start, length, places, limits, where, tip)
     if cut is None:
         return None
-    edges, growth, values = cut
+    edges, growth, values, at_tip = cut
     n = 1 + max(max(place[:2]) for place in places)
     points, _, integral = chebyshev_points(20)
-    widths = np.diff(edges)
+    widths = np.diff(edges)[1 if tip else 0 :]
     # Rows of Z by the powers of the bases they are times; each step of the iteration is one more factor A.
     shape = len(widths), len(points), n, max(c.shape[-1] for c in values)
     start_row = np.zeros(shape)
@@ -117,14 +128,63 @@ def polynomials_along(
                     following[key] = following.get(key, 0.0) + c[:, :, None] * row
         rows = {}
         for key, slope in following.items():
-            grown = integral @ slope.reshape(*shape[:2], -1)
+            grown = integral @ slope.reshape(*shape[:2], n * shape[3])
             rows[key] = grown.reshape(shape) * widths[:, None, None, None]
             total[key] = total.get(key, 0.0) + rows[key][:, -1]
-    powers = sorted({powers for _, powers in total})
-    coefficients = np.zeros((len(widths), len(powers), n, n, shape[-1]))
+    begun = begun_along(at_tip, length * edges[1], tip, n, len(limits), where) if tip else {}
+    powers = sorted({powers for _, powers in [*total, *begun]})
+    elements = max([shape[-1], *(row.shape[-1] for row in begun.values())])
+    coefficients = np.zeros((len(edges) - 1, len(powers), n, n, elements))
     for (i, own), row in total.items():
-        coefficients[:, powers.index(own), i] = row
+        coefficients[len(edges) - 1 - len(widths) :, powers.index(own), i] = row
+    for (i, own), row in begun.items():
+        coefficients[0, powers.index(own), i] = row
     return powers, coefficients
+
+
+def begun_along(
+    values: Sequence[Values], way: Values, tip: Sequence[Values], n: int, bases: int, where: Values
+) -> Values:
+    """Return what states have of each power of the bases at the end of the piece that begins at a tip.
+
+    The values are parts of B at Chebyshev's points, and the way is that to the end.
+    """
+    places, powers, exponents, free = tip
+    points, to_terms, _ = chebyshev_points(20)
+    nodes, weights = np.polynomial.legendre.leggauss(48)
+    nodes, weights = (1.0 + nodes) / 2.0, weights / 2.0
+    angles = np.arccos(2.0 * np.outer(nodes, points) - 1.0)
+    # What makes values at shares of the way to each point, less that at the start where it has to vanish.
+    inside = np.cos(angles[:, :, None] * np.arange(len(points))) @ to_terms
+    start = np.eye(len(points))[0]
+    integrals = [
+        np.einsum("q,qij->ij", weights * nodes ** (-b - 1.0), inside - (start if b == 0 else 0.0))
+        for b in exponents
+    ]
+    way = np.atleast_1d(way)[where] if np.size(way) > 1 else np.reshape(way, 1)
+    shape = len(points), n, max([len(way), *(c.shape[-1] for c in values)])
+    factors = [c[0] * (points[:, None] * way) ** place[2] for place, c in zip(places, values, strict=True)]
+    rows: Any = {(i, (0,) * bases): np.zeros(shape) + np.eye(n)[i][:, None] for i in free}
+    total = {key: row[-1] for key, row in rows.items()}
+    largest, quiet = np.zeros((n, *shape[1:])), 0
+    for _ in range(200):
+        if quiet == n:
+            break
+        following: Any = {}
+        for place, c in zip(places, factors, strict=True):
+            for (i, before), row in rows.items():
+                if i == place[1]:
+                    key = place[0], tuple(p + q for p, q in zip(before, place[3:], strict=True))
+                    following[key] = following.get(key, 0.0) + c[:, None] * row
+        rows, sizes = {}, np.zeros(largest.shape)
+        for key, slope in following.items():
+            grown = integrals[key[0]] @ slope.reshape(len(points), -1)
+            rows[key] = grown.reshape(shape)
+            total[key] = total.get(key, 0.0) + rows[key][-1]
+            sizes[key[0]] = np.maximum(sizes[key[0]], np.max(np.abs(rows[key]), axis=0))
+        largest = np.maximum(largest, sizes)
+        quiet = quiet + 1 if np.all(sizes <= 1e-18 * largest) else 0
+    return {(i, own): row * way ** powers[i] for (i, own), row in total.items()}
 
 
 def edges_along(
@@ -134,19 +194,39 @@ def edges_along(
     places: Sequence[Sequence[int]],
     limits: Values,
     where: Values,
+    tip: Sequence[Values] = (),
 ) -> Values:
     """Return shares of the length at which it is cut, and by which power of e waves grow between two.
 
-    After these come the parts of A at Chebyshev's points of every piece.
+    After these come the parts of A at Chebyshev's points of every piece, and those of B on a tip's.
     None where waves are too many to be followed.
     """
     n = 1 + max(max(place[:2]) for place in places)
     scales = [np.prod(limits ** np.array(place[2:])) for place in places]
+
+    def slopes(x: Values) -> list[Values]:
+        return [c * length for c in along(x)[: len(places)]]
+
+    def beginning(x: Values) -> Sequence[Values]:
+        return along(x)[len(places) :]
+
+    at_tip = [np.prod(limits ** np.array(place[3:])) for place in tip[0]] if tip else []
+    first = 1 if tip else 0
+
+    def cut_at(edges: Values) -> tuple[list[Values], list[Values]]:
+        widths = np.diff(edges)[:, None]
+        shares = edges[:-1, None] + widths * points
+        with np.errstate(all="ignore"):
+            return (
+                parts_at(slopes, start, length, scales, where, shares[first:]),
+                parts_at(beginning, start, length, at_tip, where, shares[:first]),
+            )
+
     # Of a matrix without negative entries the largest eigenvalue is the norm, if states are scaled well.
     count, most, rounding = 64, 4000, 1e-13
     sizes = np.zeros((count, n, n))
     for place, c in zip(
-        places, parts_at(along, start, length, scales, where, (np.arange(count) + 0.5) / count), strict=True
+        places, parts_at(slopes, start, length, scales, where, (np.arange(count) + 0.5) / count), strict=True
     ):
         sizes[:, place[0], place[1]] += np.max(np.abs(c), axis=1)
     if not np.all(np.isfinite(sizes)):
@@ -159,20 +239,21 @@ def edges_along(
     shares = np.concatenate([[0.0], growth + 1e-9 * np.arange(1, count + 1)])
     edges = np.interp(shares[-1] * np.arange(number + 1) / number, shares, np.arange(count + 1) / count)
     points, to_terms, _ = chebyshev_points(20)
-    widths = np.diff(edges)
-    values = parts_at(along, start, length, scales, where, edges[:-1, None] + widths[:, None] * points)
+    values = cut_at(edges)
     # Pieces are halved until functions of x are polynomials there to the last digits.
     for _ in range(12):
-        rough = np.zeros(len(widths), dtype=bool)
-        for c in values:
-            spectrum = np.abs(to_terms @ c)
-            rough |= np.any(np.max(spectrum[:, -3:], axis=1) > rounding * np.max(spectrum, axis=1), axis=1)
+        rough = np.zeros(len(edges) - 1, dtype=bool)
+        for own, parts in zip((slice(first, None), slice(first)), values, strict=True):
+            for c in parts:
+                spectrum = np.abs(to_terms @ c)
+                rough[own] |= np.any(
+                    np.max(spectrum[:, -3:], axis=1) > rounding * np.max(spectrum, axis=1), axis=1
+                )
         if not np.any(rough):
             break
-        edges = np.sort(np.concatenate([edges, (edges[:-1] + widths / 2.0)[rough]]))
-        widths = np.diff(edges)
-        values = parts_at(along, start, length, scales, where, edges[:-1, None] + widths[:, None] * points)
-    return edges, growth[-1] / number, values
+        edges = np.sort(np.concatenate([edges, (edges[:-1] + np.diff(edges) / 2.0)[rough]]))
+        values = cut_at(edges)
+    return edges, growth[-1] / number, *values
 
 
 def parts_at(
@@ -183,11 +264,11 @@ def parts_at(
     where: Values,
     shares: Values,
 ) -> list[Values]:
-    """Return the parts of A, for bases at their limits, at shares of the length; elements come last."""
+    """Return parts for bases at their limits, at shares of the length; elements come last."""
     x = start + length * shares.reshape(-1, 1)
-    found = [np.broadcast_to(c * length, np.broadcast(c, x).shape) for c in along(x)]
+    found = [np.broadcast_to(c, np.broadcast(c, x).shape) for c in along(x)]
     found = [c[:, where] if c.shape[1] > 1 else c for c in found]
-    return [scale * c.reshape(*shares.shape, -1) for scale, c in zip(scales, found, strict=True)]
+    return [scale * c.reshape(*shares.shape, c.shape[1]) for scale, c in zip(scales, found, strict=True)]
 
 
 def minors_through(pieces: Values, bases: Sequence[Values], part: slice, wanted: Sequence[Values]) -> Values:

@@ -52,7 +52,7 @@ def uniform(paths: Iterable[Path]) -> list[Path]:
 def without_tips(paths: Iterable[Path]) -> list[Path]:
     """Return the specifications without those of members whose stiffness vanishes at an end.
 
-    These have no code yet (SF910).
+    These have code in numpy only (SF910).
     """
     return [path for path in paths if path.stem not in ("cone", "hanging_string", "wedge")]
 

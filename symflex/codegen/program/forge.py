@@ -212,12 +212,13 @@ class Forge:
         along: tree.Straight,
         places: tuple[tuple[int, ...], ...],
         wanted: tuple[tuple[tuple[int, ...], tuple[int, ...]], ...],
+        tip: tree.Tip | None = None,
     ) -> tuple[list[int], list[int]]:
         """Return minors, and the logarithms of their scales by numbers of rows.
 
         The ``ends`` are where x starts, and the length.
         """
-        row = self._make(tree.FundamentalMinors, *ends, tuple(bases), along, places, wanted)
+        row = self._make(tree.FundamentalMinors, *ends, tuple(bases), along, places, wanted, tip)
         size = 1 + max(max(place[:2]) for place in places)
         items = [self.item(self.label(row, "minors"), k) for k in range(len(wanted) + size)]
         return items[: len(wanted)], items[len(wanted) :]

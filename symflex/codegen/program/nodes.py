@@ -263,6 +263,19 @@ class Solve(CodeNode):
 
 
 @dataclass(frozen=True, slots=True)
+class Tip:
+    """How finite solutions begin where a stiffness vanishes: ``h v' = B v``, ``z_i = h^powers_i v_i``.
+
+    See :class:`symflex.algebra.dispersion.SingularStart`.
+    """
+
+    places: tuple[tuple[int, ...], ...]  # per part of B its row, column, and powers of h and of the bases
+    powers: tuple[int, ...]
+    exponents: tuple[int, ...]  # the diagonal of B at the start, that places leave out
+    free: tuple[int, ...]  # the states whose values at the start tell a solution
+
+
+@dataclass(frozen=True, slots=True)
 class FundamentalMinors(CodeNode):
     """Minors of a fundamental matrix whose law varies along x, as a list.
 
@@ -274,11 +287,12 @@ class FundamentalMinors(CodeNode):
     start: CodeNode  # of x
     length: CodeNode
     bases: tuple[CodeNode, ...]  # functions of s
-    along: (
-        Straight  # the parts of the coefficients: functions of x, for which the leaf :class:`Laplace` stands
-    )
+    # The parts of the coefficients, and after them those of a tip: functions of x, for which the leaf
+    # :class:`Laplace` stands.
+    along: Straight
     places: tuple[tuple[int, ...], ...]  # per part its row, its column, and its powers of the bases
     wanted: tuple[tuple[tuple[int, ...], tuple[int, ...]], ...]  # rows and columns of every minor
+    tip: Tip | None = None  # where a stiffness vanishes at the start
 
     @property
     def size(self) -> int:

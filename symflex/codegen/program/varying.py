@@ -9,14 +9,14 @@ each over its largest term; what follows the matrices along x is a function of t
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from symflex.algebra import Factored
 from symflex.algebra.minors import MinorSums
 from symflex.codegen.program.build import Generators
 from symflex.codegen.program.forge import Forge, straight
-from symflex.codegen.program.nodes import CodePiece, Piecewise
+from symflex.codegen.program.nodes import CodePiece, Piecewise, Tip
 from symflex.codegen.program.site import Site
 from symflex.errors import Diagnostic, ModelError
 from symflex.model.along import varies_along_x
@@ -28,26 +28,21 @@ if TYPE_CHECKING:
 
     from flint import fmpz_mpoly
 
+    from symflex.algebra.dispersion import SingularStart
     from symflex.algebra.minors import Minor
     from symflex.expressions import Call
     from symflex.transfer import TransferFunction
+    from symflex.transfer.varying_law import Summand
 
 
 def build_varying(tf: TransferFunction) -> Piecewise:
     """Return the program for complex s.
 
-    Uniform members beside those that taper are followed along x as well. Raises ModelError: SF910 where a
-    stiffness vanishes at an end, or beside members of frames.
+    Uniform members beside those that taper are followed along x as well. Raises ModelError: SF910 beside
+    members of frames.
     """
     if _has_uniform(tf):
         tf = followed_along_x(tf)
-    tip = next((law.name for law in tf.kernels.dispersions if law.singular is not None), None)
-    if tip is not None:
-        message = (
-            f"code that starts where a stiffness vanishes, as at an end of '{tip}', is not available yet"
-        )
-        hint = "its poles, zeros and values at frequencies are there"
-        raise ModelError(Diagnostic("SF910", message, None, hint))
     if _has_uniform(tf):
         message = f"{tf.name} has members of frames besides tapered ones, for which there is no code yet"
         raise ModelError(
@@ -107,15 +102,40 @@ class _Workshop:
             parted = PartedLaw(law, self._functions)
             inner = Forge()
             along = _Along(inner, self.tf, is_far=False)
-            parts = straight(inner, [along.value(t.along) for t in parted.every])
+            tip, beginning = (None, ()) if law.singular is None else self._tip(parted, law.singular)
+            parts = straight(inner, [along.value(t.along) for t in (*parted.every, *beginning)])
             s = self.ring.generator("s")
             bases = [Factored.polynomial(self.ring, s) ** parted.step, *(1 / d for d in parted.divisors)]
             ends = self.site.value(law.start[0]), self.site.length(length)
             wanted = tuple((m.rows, m.columns) for m in own)
             values, scales = self.forge.fundamental_minors(
-                ends, [self.site.value(b) for b in bases], parts, parted.places, wanted
+                ends, [self.site.value(b) for b in bases], parts, parted.places, wanted, tip
             )
             self._minors |= {m: (v, scales[len(m.rows) - 1]) for m, v in zip(own, values, strict=True)}
+
+    def _tip(self, parted: PartedLaw, singular: SingularStart) -> tuple[Tip, tuple[Summand, ...]]:
+        """Return how finite solutions begin at a singular start, and the parts of B that is told by."""
+        size = range(len(singular.powers))
+        exponents = [0 for _ in size]
+        matrix = [list(row) for row in singular.matrix]
+        for i in size:
+            if not singular.orders[i][i] and not matrix[i][i].is_zero:
+                if not matrix[i][i].is_constant or matrix[i][i].unit.denominator != 1:
+                    message = f"code that starts at the end of '{parted.law.name}' where a stiffness vanishes"
+                    hint = "its poles, zeros and values at frequencies are there"
+                    raise ModelError(Diagnostic("SF910", f"{message} is not available yet", None, hint))
+                exponents[i] = int(matrix[i][i].unit)
+                matrix[i][i] = matrix[i][i] * 0
+        own = PartedLaw(
+            replace(parted.law, matrix=tuple(map(tuple, matrix)), singular=None), parted.functions
+        )
+        known = [str(d) for d in parted.divisors]
+        places = tuple(
+            (i, j, singular.orders[i][j], t.power // parted.step, *(int(str(t.divisor) == d) for d in known))
+            for (i, j), summands in own.summands.items()
+            for t in summands
+        )
+        return Tip(places, singular.powers, tuple(exponents), singular.free), own.every
 
     @property
     def _functions(self) -> Mapping[str, Call]:

@@ -54,6 +54,7 @@ COPIED = (
     varying_minors.fundamental_minors,
     varying_minors.minors_by_octaves,
     varying_minors.polynomials_along,
+    varying_minors.begun_along,
     varying_minors.edges_along,
     varying_minors.parts_at,
     varying_minors.minors_through,
@@ -399,6 +400,7 @@ NUMPY = Language(
     partial(python_module, dialect=NUMPY_DIALECT),
     solves=True,
     follows=True,
+    begins=True,
 )
 ARRAY_API = Language(
     ".py",

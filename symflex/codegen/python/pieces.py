@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from cmath import isfinite
-from dataclasses import dataclass, field, replace
+from dataclasses import astuple, dataclass, field, replace
 from textwrap import TextWrapper
 from typing import TYPE_CHECKING, Any
 
@@ -408,6 +408,10 @@ class PythonPrinter(InfixPrinter):
         """The number pi."""
         return f"{self.space}.pi"
 
+    def positions(self, minors: tree.FundamentalMinors) -> list[str]:
+        """Return where parts of a law along x stand, also at a tip, and which minors are wanted."""
+        return [*super().positions(minors), repr(astuple(minors.tip) if minors.tip else ())]
+
     def applied(self, function: str, argument: tree.CodeNode) -> str:
         """Return the text of a function's value."""
         if function == "complex_exp":
@@ -451,7 +455,7 @@ class ArrayPrinter(PythonPrinter):
 
     def positions(self, minors: tree.FundamentalMinors) -> list[str]:
         """Return what a matrix is followed by, along cuts that no value changes."""
-        return [*super().positions(minors), *(repr(x) for x in self.cuts[minors])]
+        return [*super(PythonPrinter, self).positions(minors), *(repr(x) for x in self.cuts[minors])]
 
     def print(self, node: tree.CodeNode) -> str:
         """Return the text of an expression."""

@@ -1,4 +1,4 @@
-"""The module of a conical rod, which has a formula: u (1 - c x) is a uniform rod's motion (Rayleigh 1894)."""
+"""Modules of a cone, whose u (1 - c x) is a uniform rod's motion (Rayleigh 1894), and of what has a tip."""
 
 from __future__ import annotations
 
@@ -6,10 +6,12 @@ import types
 
 import numpy as np
 import pytest
+from scipy.special import iv, jv
 
 from symflex import pipeline
 from symflex.codegen.exporters import EXPORTERS
 from symflex.errors import ModelError
+from tests.house.repository import ROOT
 
 CONE = """
 symflex = 1
@@ -98,3 +100,50 @@ def test_languages_without_code_for_it_refuse_and_name_one_that_has():
     (problem,) = caught.value.diagnostics
     assert problem.code == "SF910"
     assert "numpy" in problem.hint
+
+
+# ---------------------------------------------------------------------------------------------------- tips
+
+TIPS = np.array([2j, 9j, 0.3 + 4j, -0.5 + 12j, 30j, 1.5])
+"""Frequencies [rad/s]: of the string up to its twelfth mode."""
+
+
+def functions(name):
+    model = pipeline.load(ROOT / "derivations" / "tapers" / f"{name}.toml")
+    made = EXPORTERS["numpy"].export(model, pipeline.derive_all(model), name)
+    assert not made.warnings
+    module = types.ModuleType(name)
+    exec(compile(made.text, f"{name}.py", "exec"), module.__dict__)  # noqa: S102
+    return module
+
+
+def hanging(s, above, length):
+    """Return w/w_0 of a string that hangs, at a height above its free end (D. Bernoulli 1733)."""
+    x = -2j * s / np.sqrt(9.81)
+    return jv(0, x * np.sqrt(above)) / jv(0, x * np.sqrt(length))
+
+
+def test_a_hanging_string_is_bessels_function():
+    string = functions("hanging_string")
+    assert string.tip_over_w_0(TIPS) == pytest.approx(hanging(TIPS, 0.0, 2.0), rel=2e-12)
+    assert string.mid_over_w_0(TIPS) == pytest.approx(hanging(TIPS, 1.0, 2.0), rel=2e-12)
+    lengths = np.array([[0.5], [3.0]])
+    assert string.tip_over_w_0(TIPS, l=lengths) == pytest.approx(hanging(TIPS, 0.0, lengths), rel=2e-12)
+
+
+def test_a_wedge_is_kirchhoffs():
+    """With h from the tip w = (a J_1(z) + b I_1(z))/sqrt(h), z = 2 beta sqrt(h) (Kirchhoff 1879)."""
+    s = 200 * TIPS  # up to 6000 rad/s, the sixth mode
+    beta = (-(s**2) * 0.8 / 200.0 + 0j) ** 0.25
+    z = 2 * beta
+    a = 1 / (jv(1, z) + iv(1, z) * jv(2, z) / iv(2, z))
+    expected = beta * a * (1 + jv(2, z) / iv(2, z))
+    assert functions("wedge").tip_over_w_0(s) == pytest.approx(expected, rel=1e-11)
+
+
+def test_code_without_a_beginning_at_tips_is_refused():
+    model = pipeline.load(ROOT / "derivations" / "tapers" / "wedge.toml")
+    with pytest.raises(
+        ModelError, match="a stiffness vanishes at an end of 'w', where code in this language"
+    ):
+        EXPORTERS["jax"].export(model, pipeline.derive_all(model), "wedge")
