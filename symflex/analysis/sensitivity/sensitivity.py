@@ -21,7 +21,6 @@ from symflex.algebra import FUNCTIONS, LAPLACE, Factored, Kernel, PolynomialMemo
 from symflex.algebra.minors import MinorSums
 from symflex.algebra.vanishing import OriginSeries
 from symflex.budget import spend
-from symflex.errors import Diagnostic, ModelError
 from symflex.expressions import Call, Expression, fold
 from symflex.loops import pick_gain
 from symflex.loops.stability_map import real_json
@@ -413,7 +412,8 @@ class Tangents:
         """Return the entries of the fundamental matrices of a law that varies along x.
 
         In s their series are known. In a parameter ``Z' = A Z`` is differentiated: what takes z and
-        dz/dp along has A on its diagonal and dA/dp below; and where x begins and ends may move.
+        dz/dp along has A on its diagonal and dA/dp below; and where x begins and ends may move. From a tip
+        the way is differentiated at, not x: solutions are power series in it.
         """
         s, kernels = point[LAPLACE], self.tf.kernels.kernels_of(law)
         if direction == LAPLACE:
@@ -421,9 +421,6 @@ class Tangents:
             places = [minors[self.tf.ratio.ring.index[k.generator]] for k in kernels]
             values = (self._varying.value(place, s) for place in places)
             return {k.generator: _lifted(x) for k, x in zip(kernels, values, strict=True)}
-        if law.singular is not None:
-            message = f"derivatives of roots are not available yet where a member has a tip, as '{law.name}'"
-            raise ModelError(Diagnostic("SF910", message, law.span, "its poles and zeros are"))
         n, found = law.order, Point()
         own, start = self._tangent_law(law, direction), self.product(law.start[0], point)
         known: dict[Factored, tuple[list[list[acb]], acb_mat]] = {}
@@ -433,15 +430,21 @@ class Tangents:
                 matrix = own.matrix_at(s[0], (start[0].real, end[0].real))
                 slopes = acb_mat([row[:n] for row in matrix[n:]])
                 whole = acb_mat([row[:n] for row in matrix[:n]])
-                first, last = (_coefficients(own, n, x[0], s[0]) * x[1] for x in (start, end))
-                known[kernel.length] = matrix, slopes + last * whole - whole * first
+                rate = end[1] if law.singular is None else end[1] - start[1]
+                slopes += _coefficients(own, n, end[0], s[0]) * rate * whole
+                if law.singular is None:
+                    slopes -= whole * _coefficients(own, n, start[0], s[0]) * start[1]
+                known[kernel.length] = matrix, slopes
             matrix, slopes = known[kernel.length]
             row, column = divmod(kernel.order, n)
             found[kernel.generator] = _series(matrix[row][column], slopes[row, column])
         return found
 
     def _tangent_law(self, law: Dispersion, parameter: str) -> BoundLaw:
-        """Return the law of states, and after them of their derivatives with respect to a parameter."""
+        """Return the law of states, and after them of their derivatives with respect to a parameter.
+
+        Derivatives are those at a place x, of a law that begins at a tip those at the same way from there.
+        """
         if (law, parameter) in self._laws:
             return self._laws[law, parameter]
         source, values = self.tf.ratio.ring, {n: enclosure(v) for n, v in self.values.items()}
@@ -456,7 +459,9 @@ class Tangents:
                 functions[name] = slope
             else:
                 constants[name] = later(slope, values)
-        ring = Ring((*source.names, *(f"d[{name}]" for name in moving[1:])))
+        along = {} if law.singular is None else {g: slope_along_x(f) for g, f in self._functions.items()}
+        functions |= {f"x[{g}]": slope for g, slope in along.items() if slope is not None}
+        ring = Ring((*source.names, *(f"d[{name}]" for name in moving[1:]), *(f"x[{g}]" for g in along)))
 
         def taken_over(value: Factored) -> Factored:
             return value.map_factors(ring, lambda f: Factored.polynomial(ring, ring.taken_over(f)))
@@ -466,13 +471,32 @@ class Tangents:
             for name in moving:
                 rate = taken_over(value.slope(name))
                 total = total + (rate if name == parameter else rate * Factored.generator(ring, f"d[{name}]"))
+            return total + (0 if origin.is_zero else origin * slope_along(value))
+
+        def slope_along(value: Factored) -> Factored:
+            total = taken_over(value.slope(COORDINATE))
+            for g in along:
+                total = total + taken_over(value.slope(g)) * Factored.generator(ring, f"x[{g}]")
             return total
 
+        def doubled(matrix: Sequence[Sequence[Factored]]) -> tuple[tuple[Factored, ...], ...]:
+            upper = [(*map(taken_over, row), *zero) for row in matrix]
+            return (*upper, *((*map(slope_of, row), *map(taken_over, row)) for row in matrix))
+
         zero = (Factored.number(ring, 0),) * law.order
-        upper = [(*map(taken_over, row), *zero) for row in law.matrix]
-        lower = [(*map(slope_of, row), *map(taken_over, row)) for row in law.matrix]
         start = tuple(map(taken_over, law.start))
-        made = replace(law, matrix=(*upper, *lower), start=start, shift=start[0] * 0)
+        origin, tip = zero[0], law.singular
+        if tip is not None:
+            origin = slope_of(law.start[0])
+            orders = [(*row, *(0 for _ in row)) for row in tip.orders]
+            tip = replace(
+                tip,
+                powers=2 * tip.powers,
+                orders=(*orders, *(2 * row for row in tip.orders)),
+                matrix=doubled(tip.matrix),
+                values=doubled(tip.values),
+            )
+        made = replace(law, matrix=doubled(law.matrix), start=start, shift=start[0] * 0, singular=tip)
         self._laws[law, parameter] = BoundLaw(made, functions, start[0], constants, values)
         return self._laws[law, parameter]
 
