@@ -25,6 +25,7 @@ from flint import acb, arb
 from symflex.analysis.joint_shaping import joint_impulses
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.errors.diagnostic import nearest
+from symflex.print.text import Passage, passages_text
 from symflex.roots import Everything, Modes
 from symflex.roots.locate import locate
 from symflex.roots.precision import bits_for_digits, precision
@@ -144,9 +145,22 @@ class InputShaper:
         of = {"tf": self.tf, "kind": self.kind, "joint": self.joint}
         return {"schema": SCHEMA, **of, "modes": modes, "impulses": impulses}
 
+    def __repr__(self) -> str:
+        least = min(pole.frequency_hz() for pole in self.poles)
+        many = f"{len(self.impulses)} impulses in {self.times[-1]:.4g} s"
+        return f"<InputShaper {self.tf}: {self.title} from {least:.4g} Hz, {many}>"
+
+    def _repr_html_(self) -> str:
+        from symflex.print.html import passages_html  # only notebooks ask
+
+        return passages_html(self._passages())
+
     def __str__(self) -> str:
+        return passages_text(self._passages())
+
+    def _passages(self) -> list[Passage]:
         zero, digits = arb(0), min(self.digits, TEXT_DIGITS)
-        lines = [f"{self.tf}   {self.title}, {len(self.impulses)} impulses", ""]
+        lines = []
         for pole in self.poles:
             left = self.residual(pole.enclosure())
             # A bound below the range of doubles is none of 0.
@@ -156,12 +170,8 @@ class InputShaper:
             lines.append(f"  mode at {pole.frequency_hz():.6g} Hz, zeta {damping}: residual vibration {said}")
         rows = [("t [s]", "amplitude")]
         rows += [(decimals(t, zero, digits).re, decimals(a, zero, digits).re) for t, a in self.impulses]
-        widths = [max(len(row[k]) for row in rows) for k in range(2)]
-        lines += [
-            "",
-            *("  " + "  ".join(c.rjust(w) for c, w in zip(row, widths, strict=True)) for row in rows),
-        ]
-        return "\n".join(lines)
+        heading = f"{self.tf}   {self.title}, {len(self.impulses)} impulses"
+        return [Passage([heading]), Passage(lines), Passage([], rows)]
 
 
 def input_shaper(

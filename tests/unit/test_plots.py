@@ -219,6 +219,13 @@ def everything():
         "array": sweep.parameters[0],
         "colocation": model.colocation("X_act", "X_act", "F", band=(1.0, 2.0)),
         "measurement": model.measure("V_tip", "F", (2, 40), 0.5),
+        "shaper": bound.input_shaper(1, "zvd"),
+        "in time": bound.step_response([0.0, 0.1]),
+        "sampled": bound.discretise(1e-3),
+        "step info": symflex.loads('symflex = 1\ninputs.u = {}\noutputs.y = "5*u/(s^2 + 2*s + 5)"')
+        .transfer_function("y", "u")
+        .bind()
+        .step_info(),
     }
 
 
@@ -229,7 +236,7 @@ def test_everything_prints_short(everything):
 
 def test_html_of_a_notebook_is_closed(everything):
     pages = {n: thing._repr_html_() for n, thing in everything.items() if hasattr(thing, "_repr_html_")}
-    assert {"rational", "sweep", "poles", "stability", "explanation"} < pages.keys()
+    assert {"rational", "sweep", "poles", "stability", "explanation", "shaper", "step info"} < pages.keys()
     for page in pages.values():
         tags = re.findall(r"<(/?)(\w[\w:]*)[^>]*?(/?)>", page)
         assert sum(-1 if end else 1 for end, tag, alone in tags if not alone and tag != "br") == 0

@@ -23,6 +23,7 @@ from symflex.analysis.time_response.modal import proved_modes
 from symflex.analysis.time_response.partial_fractions import EnclosedQuotient, partial_fractions
 from symflex.analysis.time_response.sample_times import SampleTimes
 from symflex.budget import spend
+from symflex.print.text import Passage
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.polynomial_roots import find_polynomial_roots
 from symflex.roots.precision import bits_for_digits, precision
@@ -39,7 +40,7 @@ RISE = (0.1, 0.9)
 """Of the final value, between which the rise time is counted."""
 SETTLED = 0.02
 """Of the final value, within which a response has settled."""
-TEXT_DIGITS = 10
+TEXT_DIGITS, SHORT_DIGITS = 10, 4
 CLOSE = 1e-6
 """Of the final value: a peak that is no higher above it is none."""
 MOST_INTERVALS = 20_000
@@ -81,8 +82,21 @@ class StepInfo:
         )
         return sum(each is None for each in wanted)
 
+    def __repr__(self) -> str:
+        shown = (f"{name.partition(',')[0]} {value}" for name, value in self._shown(SHORT_DIGITS))
+        return f"<StepInfo: {', '.join(shown)}>"
+
+    def _repr_html_(self) -> str:
+        from symflex.print.html import passages_html  # only notebooks ask
+
+        rows = self._shown(TEXT_DIGITS)
+        return passages_html([Passage(["step response"], rows, has_head=False)])
+
     def lines(self, unit: str) -> list[str]:
         """Return what is found as text, with ten digits at most."""
+        return [f"{name:24} {value}" for name, value in self._shown(TEXT_DIGITS, unit)]
+
+    def _shown(self, digits: int, unit: str = "") -> list[tuple[str, str]]:
         shown = [
             ("final value", self.final, unit),
             ("peak", self.peak, unit),
@@ -98,8 +112,8 @@ class StepInfo:
             if ball.contains(0) and ball != 0:
                 said = f"none above {float(ball.abs_upper()):.1g}"
             else:
-                said = decimals(ball, arb(0), TEXT_DIGITS).re
-            found.append(f"{name:24} {said} {of}".rstrip())
+                said = decimals(ball, arb(0), digits).re
+            found.append((name, f"{said} {of}".rstrip()))
         return found
 
     def to_json_dict(self, digits: int) -> dict[str, object]:
