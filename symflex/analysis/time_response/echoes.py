@@ -187,9 +187,9 @@ def echoed(
         total = Gathered(seconds)
         for echo in expansion:
             spend()
-            part = EnclosedQuotient(((acb_poly(echo.numerator), 1),), ((below, echo.power),), acb(1))
+            part = _part(echo, below)
             delay = quotient.durations.seconds(echo.delay)
-            terms = _terms(part, poles, echo.power, integrations, last, digits)
+            terms = terms_of_echo(echo, below, poles, integrations, last, digits)
             if terms is None:
                 return None
             start = total.start(delay)
@@ -234,11 +234,16 @@ class Gathered:
         )
 
 
-def _terms(
-    part: EnclosedQuotient, poles: Sequence[Root], power: int, integrations: int, last: arb, digits: int
+def _part(echo: Echo, leading: acb_poly) -> EnclosedQuotient:
+    return EnclosedQuotient(((acb_poly(echo.numerator), 1),), ((leading, echo.power),), acb(1))
+
+
+def terms_of_echo(
+    echo: Echo, leading: acb_poly, poles: Sequence[Root], integrations: int, last: arb, digits: int
 ) -> list[ExponentialTerm] | None:
-    """Return one rational function as exponentials in time."""
-    repeated = [replace(root, multiplicity=root.multiplicity * power) for root in poles]
+    """Return one rational function as exponentials of the time from its delay on; ``leading`` is D_0."""
+    part = _part(echo, leading)
+    repeated = [replace(root, multiplicity=root.multiplicity * echo.power) for root in poles]
     found = partial_fractions(part, repeated, integrations)
     if found is not None:
         return found

@@ -6,6 +6,9 @@ Over a whole interval of times the response lies in a ball, its value in the mid
 half the width; from some time on a sum of decaying exponentials bounds it. So an interval whose ball lies
 below the highest value found holds no peak, one whose ball leaves out a level no crossing of it, and what is
 found first, or last, is proved to be the first, or the last.
+
+With delays the response is made of pieces, each a sum of exponentials, until what residues of few poles leave
+out has faded (see :mod:`symflex.analysis.time_response.delayed_decay`).
 """
 
 from __future__ import annotations
@@ -17,6 +20,9 @@ from typing import TYPE_CHECKING, Final
 
 from flint import acb, arb
 
+from symflex.analysis.time_response.delayed_decay import decay_of, pieces_of
+from symflex.analysis.time_response.delayed_terms import delayed_quotient
+from symflex.analysis.time_response.echoes import TooManyEchoesError
 from symflex.analysis.time_response.exponentials import ExponentialTerm
 from symflex.analysis.time_response.horizon import default_until
 from symflex.analysis.time_response.modal import proved_modes
@@ -51,6 +57,10 @@ MORE_DIGITS = 10
 MODES_DIGITS = 8
 """Of responses of waves, of which few high modes are needed then."""
 MODES_BITS = 128
+DELAYS_DIGITS = 60
+"""Of poles of loops with delays: high powers of their differences lose some."""
+FADED = 1e-11
+"""Of the final value: what is left of a response with delays when residues take the place of its pieces."""
 SMOOTH_MODES = (40, 20, 10, 5, 3)
 """Terms of which the slope of such a response is made, tried in turn: few are smooth, many are sharp."""
 ZERO: Final = arb(0)
@@ -129,9 +139,9 @@ class StepInfo:
 def find_step_info(bound: AnyBoundFunction, digits: int = 12) -> StepInfo | None:
     """Return the properties of a step response, from poles of about so many digits.
 
-    None where it does not come to rest, or at 0, where poles cannot be told apart, with delays, and with
-    waves whose modes are not bounded, as those of large networks. With waves, numbers are as sharp as the
-    modes left out allow.
+    None where it does not come to rest, or at 0, where poles cannot be told apart, with waves in a loop with
+    a delay, and with those whose modes are not bounded, as of large networks. With waves, numbers are as
+    sharp as the modes left out allow.
     """
     if isinstance(bound, BoundNested):
         return None
@@ -153,7 +163,7 @@ def find_step_info(bound: AnyBoundFunction, digits: int = 12) -> StepInfo | None
 def _of_modes(bound: BoundTransferFunction) -> StepInfo | None:
     """Return the properties of a sum over modes; high ones, which make it rough, are a part of its rest."""
     if any(law.kind == "exponential" for law in bound.kernels.dispersions):
-        return None
+        return _of_delays(bound)
     found = proved_modes(bound, 1, SampleTimes.of([0.0, default_until(bound)]), MODES_DIGITS)
     if found is None:
         return None
@@ -170,6 +180,31 @@ def _of_modes(bound: BoundTransferFunction) -> StepInfo | None:
             if not best.missing:
                 break
         return best
+
+
+def _of_delays(bound: BoundTransferFunction) -> StepInfo | None:
+    """Return the properties of a loop whose delays are behind rational functions."""
+    quotient = delayed_quotient(bound)
+    if quotient is None:
+        return None
+    with precision(bits_for_digits(2 * DELAYS_DIGITS)):
+        decay = decay_of(bound, quotient, DELAYS_DIGITS)
+        if decay is None or decay.final.contains(0):
+            return None
+        final, terms = decay.final, tuple(_scaled(t, decay.final) for t in decay.terms)
+        until = ((decay.size / abs(final) / FADED).log() / decay.rate).max(arb(0)).upper()
+        try:
+            pieces = pieces_of(quotient, until, DELAYS_DIGITS)
+        except TooManyEchoesError:
+            pieces = None
+        if pieces is None:
+            return StepInfo(final, None, None, None, None, None)
+        early = [Piece(tuple(_scaled(t, final) for t in own), start, start) for start, own in pieces]
+        return _told(final, NormalisedResponse(terms, arb(FADED), early, until))
+
+
+def _scaled(term: ExponentialTerm, final: arb) -> ExponentialTerm:
+    return ExponentialTerm(term.rate, tuple(c / final for c in term.coefficients))
 
 
 def _size(term: ExponentialTerm) -> float:
@@ -199,9 +234,10 @@ def step_info(terms: Sequence[ExponentialTerm], rest: arb = ZERO) -> StepInfo | 
     left = (rest / abs(final)).upper()
     if not left < SETTLED / 4:
         return StepInfo(final, None, None, None, None, None)
-    motion = NormalisedResponse(
-        tuple(ExponentialTerm(t.rate, tuple(c / final for c in t.coefficients)) for t in moving), left
-    )
+    return _told(final, NormalisedResponse(tuple(_scaled(t, final) for t in moving), left))
+
+
+def _told(final: arb, motion: NormalisedResponse) -> StepInfo:
     until = motion.quiet(arb(SETTLED))
     peak = motion.peak()
     rises = [motion.first(arb(level), until) for level in RISE]
@@ -213,19 +249,22 @@ def step_info(terms: Sequence[ExponentialTerm], rest: arb = ZERO) -> StepInfo | 
     return StepInfo(final, height * final if height > 1 else None, when, height - 1, rise, settling)
 
 
-class NormalisedResponse:
-    """A response over its final value: 1 plus exponentials that decay, and at most ``rest`` besides."""
+class Piece:
+    """A sum of exponentials of the time from its origin on, besides a constant."""
 
-    def __init__(self, terms: tuple[ExponentialTerm, ...], rest: arb = ZERO) -> None:
+    def __init__(
+        self, terms: tuple[ExponentialTerm, ...], begins: arb, origin: arb = ZERO, constant: int = 0
+    ) -> None:
         self._orders = [terms]
-        self._rest = rest
-        self.is_lost = False  # something could not be told
+        self.begins = begins
+        self._origin = origin
+        self._constant = constant
 
     def at(self, t: arb, order: int = 0) -> arb:
-        """Return the value without the rest, or a derivative, on a ball of times."""
+        """Return the value, or a derivative, on a ball of times."""
         while len(self._orders) <= order:
             self._orders.append(tuple(_derivative(term) for term in self._orders[-1]))
-        total = arb(0 if order else 1)
+        total, t = arb(0 if order else self._constant), t - self._origin
         for term in self._orders[order]:
             power, own = arb(1), acb(0)
             for j, c in enumerate(term.coefficients):
@@ -240,10 +279,54 @@ class NormalisedResponse:
         between = middle + arb(0, half.abs_upper())
         return self.at(middle) + self.at(between, 1) * arb(0, half.abs_upper())
 
+    def passed(self, level: arb, low: arb, high: arb, order: int) -> arb:
+        """Return where the value, or a derivative, passes a level between two times; it is monotonic there.
+
+        Newton's steps in balls, and halves where these do not yet make it shorter.
+        """
+        rises = self.at(high, order) > level
+        for _ in range(HALVINGS):
+            middle = ((low + high) / 2).mid()
+            box = middle + arb(0, (high - middle).abs_upper())
+            off = self.at(middle, order) - level
+            step = middle - off / self.at(box, order + 1)
+            if step.is_finite() and step.rad() < box.rad() / 4:
+                low, high = step.lower().max(low), step.upper().min(high)
+            elif off < 0 or off > 0:
+                low, high = (middle, high) if (off < 0) == rises else (low, middle)
+            else:
+                break
+        return (low + high) / 2 + arb(0, ((high - low) / 2).abs_upper())
+
+
+class NormalisedResponse:
+    """A response over its final value: 1 plus exponentials that decay, and at most ``rest`` besides.
+
+    Up to a time other pieces may stand in its place.
+    """
+
+    def __init__(
+        self,
+        terms: tuple[ExponentialTerm, ...],
+        rest: arb = ZERO,
+        early: Sequence[Piece] = (),
+        begins: arb = ZERO,
+    ) -> None:
+        self.pieces = [*early, Piece(terms, begins, constant=1)]
+        self._terms = terms
+        self._rest = rest
+        self.is_lost = False  # something could not be told
+
+    def parts(self, until: arb) -> list[tuple[Piece, arb, arb]]:
+        """Return the pieces up to a time, each with when it begins and ends."""
+        starts = [piece.begins for piece in self.pieces[1:] if piece.begins < until]
+        ends = zip((arb(0), *starts), (*starts, until), strict=True)
+        return [(piece, *each) for piece, each in zip(self.pieces, ends, strict=False)]
+
     def beyond(self, t: arb) -> arb:
         """Return how far the response is from its end at most, from a time on."""
         total = self._rest
-        for term in self._orders[0]:
+        for term in self._terms:
             for j, c in enumerate(term.coefficients):
                 # t^j exp(-d t) falls from j/d on.
                 latest = t.max(-arb(j) / term.rate.real)
@@ -253,7 +336,8 @@ class NormalisedResponse:
 
     def quiet(self, level: arb) -> arb:
         """Return a time from which on the response is closer to its end than a level."""
-        t = min((-1 / term.rate.real for term in self._orders[0]), key=arb.mid, default=arb(1)).mid()
+        t = min((-1 / term.rate.real for term in self._terms), key=arb.mid, default=arb(1)).mid()
+        t = t.max(self.pieces[-1].begins).mid()
         while not self.beyond(t) < level:
             t = (2 * t).mid()
         return t
@@ -266,52 +350,58 @@ class NormalisedResponse:
         rest = self._rest
         until = self.quiet(CLOSE + 2 * rest)
         best = (1 + CLOSE + 2 * rest).upper()
-        start = self.at(arb(0))
-        found = [(arb(0), start)] if start > best else []
-        best = best.max(start.lower())
-        queue = [(-float(self.over(arb(0), until).upper()), 0, arb(0), until)]
+        parts = self.parts(until)
+        # Where a piece begins the slope may change its sign at once.
+        begins = [(piece, low, piece.at(low)) for piece, low, _ in parts]
+        found = [(piece, low, value) for piece, low, value in begins if value > best]
+        best = max([best, *(value.lower() for *_, value in begins)], key=float)
+        queue = [
+            (-float(piece.over(low, high).upper()), -k, piece, low, high)
+            for k, (piece, low, high) in enumerate(parts)
+        ]
+        heapq.heapify(queue)
         for count in range(1, MOST_INTERVALS):
             spend()
             if not queue or -queue[0][0] < float((best - 2 * rest).lower()):
                 break
-            _, _, low, high = heapq.heappop(queue)
+            _, _, piece, low, high = heapq.heappop(queue)
             middle = ((low + high) / 2).mid()
             box = middle + arb(0, (high - middle).abs_upper())
-            if not self.at(box, 1).contains(0):
-                continue  # the largest value is at an end: at the start, or next to where the slope vanishes
-            if self.at(box, 2) < 0:
+            if not piece.at(box, 1).contains(0):
+                continue  # the largest value is where a piece begins, or next to where the slope vanishes
+            if piece.at(box, 2) < 0:
                 # The slope falls all the time: there is one maximum at most.
-                ends = self.at(low, 1), self.at(high, 1)
+                ends = piece.at(low, 1), piece.at(high, 1)
                 if ends[0] > 0 > ends[1]:
-                    when = self._passed(arb(0), low, high, 1)
-                    found.append((when, self.at(when)))
-                    best = best.max(found[-1][1].lower())
+                    when = piece.passed(arb(0), low, high, 1)
+                    found.append((piece, when, piece.at(when)))
+                    best = best.max(found[-1][2].lower())
                 elif not (ends[0] < 0 or ends[1] > 0):
                     return None
                 continue
             if not high - low > until * arb(2) ** -HALVINGS:
                 return None
             for k, (a, b) in enumerate(((low, middle), (middle, high))):
-                heapq.heappush(queue, (-float(self.over(a, b).upper()), 2 * count + k, a, b))
+                heapq.heappush(queue, (-float(piece.over(a, b).upper()), 2 * count + k, piece, a, b))
         else:
             return None
-        highest = [(when, height) for when, height in found if not height < best - 2 * rest]
+        highest = [each for each in found if not each[2] < best - 2 * rest]
         if not highest:
             return None, arb(1).union(best + rest)
         if len(highest) > 1:
             return None
-        when, height = highest[0]
-        return self._about_peak(when), height + arb(0, rest)
+        piece, when, height = highest[0]
+        return self._about_peak(piece, when), height + arb(0, rest)
 
-    def _about_peak(self, when: arb) -> arb | None:
+    def _about_peak(self, piece: Piece, when: arb) -> arb | None:
         """Return when the response with its rest is highest, given when it is without."""
-        if self._rest == 0 or when == 0:
+        if self._rest == 0 or when == 0 or piece is not self.pieces[-1]:
             return when
         reach = when.rad()
         for _ in range(HALVINGS):
             # Within a box the response falls off from its peak as bent as it is the least.
             reach = 2 * reach.max(self._rest)
-            bent = -self.at(when.mid() + arb(0, reach), 2).upper()
+            bent = -piece.at(when.mid() + arb(0, reach), 2).upper()
             needed = (4 * self._rest / bent).sqrt() + 2 * when.rad() if bent > 0 else reach
             if bent > 0 and needed < reach:
                 return arb(when.mid(), needed.upper())
@@ -319,11 +409,12 @@ class NormalisedResponse:
 
     def first(self, level: arb, until: arb) -> arb | None:
         """Return when the response first reaches a level below 1; at once, if it begins above."""
-        if self.at(arb(0)) > level + self._rest:
+        start = self.pieces[0].at(arb(0))
+        if start > level + self._rest:
             return arb(0)
         # Without its rest it has not reached the lower of these before, and has reached the upper one after.
         ends = [self.crossing(level + sign * self._rest, until, is_last=False) for sign in (-1, 1)]
-        if not self.at(arb(0)) < level - self._rest:
+        if not start < level - self._rest:
             ends[0] = arb(0)
         return None if ends[0] is None or ends[1] is None else ends[0].union(ends[1])
 
@@ -344,44 +435,25 @@ class NormalisedResponse:
 
         None, and ``is_lost``, too, where that cannot be told.
         """
-        pending = [(arb(0), until)]
+        pending = self.parts(until)[:: 1 if is_last else -1]
         for _ in range(MOST_INTERVALS):
             spend()
             if not pending:
                 return None
-            low, high = pending.pop()
-            if not (self.over(low, high) - level).contains(0):
+            piece, low, high = pending.pop()
+            if not (piece.over(low, high) - level).contains(0):
                 continue
-            ends = self.at(low) - level, self.at(high) - level
+            ends = piece.at(low) - level, piece.at(high) - level
             middle = ((low + high) / 2).mid()
-            slope = self.at(middle + arb(0, (high - middle).abs_upper()), 1)
+            slope = piece.at(middle + arb(0, (high - middle).abs_upper()), 1)
             if ends[0] * ends[1] < 0 and not slope.contains(0):
-                return self._passed(level, low, high, 0)
+                return piece.passed(level, low, high, 0)
             if not high - low > until * arb(2) ** -HALVINGS:
                 break
-            halves = [(low, middle), (middle, high)]
+            halves = [(piece, low, middle), (piece, middle, high)]
             pending += halves if is_last else halves[::-1]
         self.is_lost = True
         return None
-
-    def _passed(self, level: arb, low: arb, high: arb, order: int) -> arb:
-        """Return where the value, or a derivative, passes a level between two times; it is monotonic there.
-
-        Newton's steps in balls, and halves where these do not yet make it shorter.
-        """
-        rises = self.at(high, order) > level
-        for _ in range(HALVINGS):
-            middle = ((low + high) / 2).mid()
-            box = middle + arb(0, (high - middle).abs_upper())
-            off = self.at(middle, order) - level
-            step = middle - off / self.at(box, order + 1)
-            if step.is_finite() and step.rad() < box.rad() / 4:
-                low, high = step.lower().max(low), step.upper().min(high)
-            elif off < 0 or off > 0:
-                low, high = (middle, high) if (off < 0) == rises else (low, middle)
-            else:
-                break
-        return (low + high) / 2 + arb(0, ((high - low) / 2).abs_upper())
 
 
 def _derivative(term: ExponentialTerm) -> ExponentialTerm:

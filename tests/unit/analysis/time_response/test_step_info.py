@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from math import acos, exp, log, pi, sin, sqrt
+from math import acos, exp, factorial, log, pi, sin, sqrt
 
 import numpy as np
 import pytest
 from flint import arb
 from scipy.optimize import brentq, minimize_scalar
+from scipy.special import gammainc
 
+import symflex
 from symflex.analysis.time_response import find_step_info
 from tests.unit.analysis.systems import rational
 from tests.unit.analysis.time_response.test_beams import UNIT, beam, cantilever, damped_step
@@ -111,3 +113,65 @@ def test_the_properties_of_a_beam_hold_those_of_its_modal_sum(kind, loss):
 
 def test_a_beam_that_loses_nothing_does_not_come_to_rest():
     assert find_step_info(beam()) is None
+
+
+# ----------------------------------------------------------------------------------------- loops with a delay
+
+
+def delayed(law):
+    text = f'signals.x = "{law}"\noutputs.y = "x"\nblocks.D = {{ type = "delay", T = "0.1 s" }}\n'
+    model = symflex.loads(f"symflex = 1\ninputs.r = {{}}\n{text}")
+    return model.transfer_function("y", "r").bind().step_info()
+
+
+@pytest.mark.parametrize(
+    ("law", "gain", "part"),
+    [
+        ("7/s*D*(r - x)", 7, lambda k, t: t**k / factorial(k)),
+        ("2/(1 + 0.5*s)*D*(r - x)", 2, lambda k, t: gammainc(k, 2 * t)),  # Erlang's distributions
+    ],
+)
+def test_a_loop_with_a_delay_rises_overshoots_and_settles_as_the_method_of_steps_says(law, gain, part):
+    # With G from r - x to x, x = G D r - (G D)^2 r + ... (Bellman & Cooke 1963).
+    found = delayed(law)
+    final = 1 if "7" in law else 2 / 3
+
+    def y(t):
+        parts = (
+            (-1) ** k * gain ** (k + 1) * part(k + 1, max(t - 0.1 * (k + 1), 0)) for k in range(int(10 * t))
+        )
+        return sum(parts) / final
+
+    times = np.arange(0, 2, 5e-4)
+    values = np.array([y(t) for t in times])
+
+    def passing(excess, which):
+        changes = np.flatnonzero(np.diff(np.sign([excess(v) for v in values])))[which]
+        return brentq(lambda t: excess(y(t)), times[changes], times[changes + 1], xtol=1e-13)
+
+    highest = times[np.argmax(values)]
+    peak = minimize_scalar(lambda t: -y(t), bounds=(highest - 1e-3, highest + 1e-3), options={"xatol": 1e-10})
+    rise = passing(lambda v: v - 0.9, 0) - passing(lambda v: v - 0.1, 0)
+    assert float(found.final) == pytest.approx(final, rel=1e-15)
+    assert float(found.rise_time) == pytest.approx(rise, rel=1e-9)
+    assert float(found.peak_time) == pytest.approx(peak.x, rel=1e-7)
+    assert float(found.overshoot) == pytest.approx(-peak.fun - 1, abs=1e-11)
+    assert float(found.settling_time) == pytest.approx(passing(lambda v: abs(v - 1) - 0.02, -1), rel=1e-9)
+    assert max(x.rad() for x in (found.peak, found.rise_time, found.settling_time)) < 1e-9
+
+
+def test_a_loop_whose_delay_makes_it_unstable_has_no_such_properties():
+    # x' = K (r - x) a delay T later is stable for K T < pi/2 (Hayes 1950).
+    assert delayed("15.8/s*D*(r - x)") is None
+    assert delayed("15.6/s*D*(r - x)").settling_time > 40
+
+
+def test_a_lag_that_is_late_rises_as_a_lag():
+    found = delayed("D/(1 + s)*r")
+    assert float(found.rise_time) == pytest.approx(log(9), rel=1e-9)
+    assert float(found.settling_time) == pytest.approx(0.1 + log(50), rel=1e-9)
+
+
+def test_of_a_loop_that_answers_at_once_nothing_is_said():
+    # A gain alone: the response jumps after every turn.
+    assert delayed("0.5*D*(r - x)") is None

@@ -1,0 +1,246 @@
+"""How responses of loops with delays die away, and the pieces they are made of.
+
+Input: a :class:`DelayedQuotient`, ``H = (N_0 + N_1 e^(-s n_1) + ...)/(D_0 + D_1 e^(-s d_1) + ...)``.
+Output: its step response as residues of few poles and a proved bound on the rest, which fades, and the
+pieces it is made of at first, as exponentials.
+
+    1/(s + 1 + e^(-s)/2)    y = 2/3 + residues + (1/2 pi j) integral of H e^(s t)/s along Re s = -c
+
+with the residues at poles right of that line. The integral is at most ``e^(-c t)`` times that of abs(H/s)
+over pi. The poles right of the line are counted by how often ``F = 1 + D_1/D_0 e^(-s d_1) + ...`` turns about
+zero on it (Nyquist): far out F is about 1, if the delayed terms fall off against D_0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING, Final
+
+from flint import acb, acb_poly, arb, arb_poly
+
+from symflex.analysis.time_response.delayed_terms import NO_DELAY, later
+from symflex.analysis.time_response.echoes import earliest, echoes, terms_of_echo
+from symflex.analysis.time_response.exponentials import ExponentialTerm
+from symflex.budget import spend
+from symflex.roots import Modes
+from symflex.roots.locate import locate
+from symflex.roots.polynomial_roots import find_polynomial_roots
+from symflex.roots.problem import RootProblem
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.analysis.time_response.delayed_terms import DelayedQuotient
+    from symflex.transfer import BoundTransferFunction
+
+SHARES: Final = (4.0, 3.0, 2.5, 2.0, 1.5, 1.0, 0.7, 0.5, 0.3, 0.2, 0.1)
+"""Lines that are tried: far from the axis there are many poles right of them, and a loop is soon beyond."""
+MORE_MODES: Final = 6
+"""Modes looked at besides those right of the line: some lie left of it, and lower."""
+MOST_PARTS: Final = 4000
+"""Of a line; a loop that rings at a thousand times its bandwidth takes some of them."""
+FIRST_PARTS: Final = 16
+
+
+@dataclass(frozen=True, slots=True)
+class Decay:
+    """A response within ``size * e^(-rate t)`` of its final value and some terms, at every time t [s]."""
+
+    final: arb
+    terms: tuple[ExponentialTerm, ...]  # that decay
+    size: arb
+    rate: arb
+
+
+@dataclass(frozen=True)
+class LatePolynomial:
+    """A polynomial that comes a time [s] later."""
+
+    polynomial: arb_poly
+    seconds: arb
+
+
+class _Loop:
+    """A quotient over its leading polynomial D_0, at the current precision."""
+
+    def __init__(self, quotient: DelayedQuotient, digits: int) -> None:
+        durations, self.first = quotient.durations, earliest(quotient.below, quotient.durations)
+        self.leading = durations.polynomial(quotient.below[self.first])
+        self.above = [
+            LatePolynomial(durations.polynomial(p), durations.seconds(later(d, self.first)))
+            for d, p in quotient.above.items()
+        ]
+        self.below = [
+            LatePolynomial(durations.polynomial(p), durations.seconds(later(d, self.first)))
+            for d, p in quotient.below.items()
+            if later(d, self.first) != NO_DELAY
+        ]
+        exact = durations.exact(quotient.below[self.first])
+        self.poles = find_polynomial_roots(RootProblem(((exact, 1),)), digits) if exact.degree else ()
+
+    def turned(self, s: acb) -> acb:
+        """Return F."""
+        return 1 + _at(self.below, s) / acb_poly(self.leading)(s)
+
+    def value(self, s: acb) -> acb:
+        """Return H."""
+        return _at(self.above, s) / (acb_poly(self.leading)(s) + _at(self.below, s))
+
+    def term(self, pole: acb) -> ExponentialTerm:
+        """Return what a simple pole leaves of the step response, together with its conjugate."""
+        slope = acb_poly(self.leading).derivative()(pole)
+        for p in self.below:
+            own = acb_poly(p.polynomial)
+            slope += (own.derivative()(pole) - own(pole) * p.seconds) * (-pole * p.seconds).exp()
+        residue = _at(self.above, pole) / (slope * pole)
+        return ExponentialTerm(pole, (residue if pole.imag == 0 else 2 * residue,))
+
+    def far(self, parts: Sequence[LatePolynomial], rate: arb, radius: arb) -> arb:
+        """Return what ``abs(s)`` times the size of a sum over D_0 is at most, right of a line and far out."""
+        n = self.leading.degree()
+        size = [abs(c) for c in self.leading.coeffs()]
+        least = size[n] - sum((c * radius ** (i - n) for i, c in enumerate(size[:n])), arb(0))
+        if not least > 0:
+            return arb("inf")
+        total = arb(0)
+        for part in parts:
+            own = sum(
+                (abs(c) * radius ** (i - n + 1) for i, c in enumerate(part.polynomial.coeffs())), arb(0)
+            )
+            total += own * (rate * part.seconds).exp()
+        return total / least
+
+
+def _at(parts: Sequence[LatePolynomial], s: acb) -> acb:
+    return sum((acb_poly(p.polynomial)(s) * (-s * p.seconds).exp() for p in parts), acb(0))
+
+
+def decay_of(bound: BoundTransferFunction, quotient: DelayedQuotient, digits: int) -> Decay | None:
+    """Return how a step response dies away, at the current precision, from poles of so many digits.
+
+    None where that is not proved: it does not come to rest, or numerators are not of a lower degree than D_0.
+    """
+    loop = _Loop(quotient, digits)
+    n = loop.leading.degree()
+    if any(p.polynomial.degree() >= n for p in (*loop.above, *loop.below)):
+        return None
+    final = loop.value(acb(0)).real
+    if any(not p.seconds >= 0 for p in loop.above) or not final.is_finite():
+        return None
+    # Lines lie in units of the inverse of the loop's delay, or where it has none of the largest pole.
+    longest = max((p.seconds.upper() for p in loop.below), key=float, default=arb(0))
+    fastest = max((abs(pole.enclosure()).upper() for pole in loop.poles), key=float, default=arb(0))
+    unit = 1 / longest if longest > 0 else fastest
+    for share in SHARES:
+        spend()
+        rate = (unit * share).mid()
+        on_line = _on_line(loop, rate) if rate > 0 else None
+        if on_line is None:
+            continue
+        size, count = on_line
+        found = locate(bound, Modes(count + MORE_MODES), digits) if count else None
+        poles = [p for p in found.all_poles if p.enclosure().real + rate > 0] if found else []
+        if len(poles) != count or any(p.multiplicity > 1 or not p.certified for p in poles):
+            continue
+        if any(not p.enclosure().real < 0 for p in poles):
+            return None
+        terms = (loop.term(p.enclosure()) for p in poles if not p.im < 0)
+        return Decay(final, tuple(terms), size, rate)
+    return None
+
+
+def _on_line(loop: _Loop, rate: arb) -> tuple[arb, int] | None:
+    """Return the integral of abs(H/s) along a line over pi, and how many poles lie right of the line.
+
+    None where one is too close to the line.
+    """
+    radius = (1 + rate).mid()
+    while not loop.far(loop.below, rate, radius) < radius / 2:
+        radius = radius * 2
+        if not radius < arb(10) ** 30:
+            return None
+    right = 0
+    for pole in loop.poles:
+        place = pole.enclosure().real + rate
+        if place.contains(0):
+            return None
+        right += pole.multiplicity if place > 0 else 0
+    # Beyond the radius F is at least 1/2, and H/s falls as one over s squared.
+    total = 2 * loop.far(loop.above, rate, radius) / radius
+    turned = arb(0)
+    ends = [radius * k / FIRST_PARTS for k in range(FIRST_PARTS + 1)]
+    pending = [(a.mid(), b.mid()) for a, b in pairwise(ends)][::-1]
+    for _ in range(MOST_PARTS):
+        if not pending:
+            break
+        low, high = pending.pop()
+        middle = ((low + high) / 2).mid()
+        part = acb(-rate, middle + arb(0, ((high - low) / 2).abs_upper()))
+        turns, value = loop.turned(part), loop.value(part) / part
+        if turns.contains(0) or not value.is_finite():
+            pending += [(middle, high), (low, middle)]
+            continue
+        turned += (loop.turned(acb(-rate, high)) / loop.turned(acb(-rate, low))).arg()
+        total += value.abs_upper() * (high - low)
+    else:
+        return None
+    # The rest of the way around is an arc on which F stays within 1/2 of 1.
+    count = right + (loop.turned(acb(-rate, radius)).arg() - turned) / arb.pi()
+    whole = count.unique_fmpz()
+    return None if whole is None else ((total / arb.pi()).upper(), int(whole))
+
+
+def pieces_of(
+    quotient: DelayedQuotient, until: arb, digits: int
+) -> list[tuple[arb, tuple[ExponentialTerm, ...]]] | None:
+    """Return a step response as pieces up to a time [s]: when each begins, and its terms from then on.
+
+    None where poles are not told apart. Raises TooManyEchoesError.
+    """
+    expansion = echoes(quotient, until)
+    loop = _Loop(quotient, digits)
+    below = acb_poly(loop.leading)
+    found: list[tuple[arb, tuple[ExponentialTerm, ...]]] = []
+    known: dict[tuple[tuple[int, ...], ...], ExponentialTerm] = {}
+    if expansion is None:
+        return None
+    before = arb(0)
+    for echo in expansion:
+        spend()
+        start = quotient.durations.seconds(echo.delay)
+        terms = terms_of_echo(echo, below, loop.poles, 1, until, digits)
+        if terms is None:
+            return None
+        if not found and start > 0:
+            found.append((arb(0), ()))
+        known = {key: _later(term, start - before) for key, term in known.items()}
+        for term in terms:
+            key = tuple(tuple(map(int, x.mid().man_exp())) for x in (term.rate.real, term.rate.imag))
+            known[key] = _sum(known.get(key), term)
+        found.append((start, tuple(known.values())))
+        before = start
+    return found
+
+
+def _later(term: ExponentialTerm, by: arb) -> ExponentialTerm:
+    """Return a term as one of the time from a later start on."""
+    factorial, powers = arb(1), []
+    for j, c in enumerate(term.coefficients):
+        factorial = factorial * j if j else factorial
+        powers.append(c / factorial)
+    shifted = acb_poly(powers)(acb_poly([by, 1])) * (term.rate * by).exp()
+    factorial, found = arb(1), []
+    for j, c in enumerate(shifted.coeffs()):
+        factorial = factorial * j if j else factorial
+        found.append(c * factorial)
+    return ExponentialTerm(term.rate, tuple(found))
+
+
+def _sum(one: ExponentialTerm | None, other: ExponentialTerm) -> ExponentialTerm:
+    """Return the sum of two terms of one rate."""
+    if one is None:
+        return other
+    longer, shorter = sorted((one.coefficients, other.coefficients), key=len, reverse=True)
+    padded = (*shorter, *[acb(0)] * (len(longer) - len(shorter)))
+    return ExponentialTerm(one.rate, tuple(a + b for a, b in zip(longer, padded, strict=True)))
