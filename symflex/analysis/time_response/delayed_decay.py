@@ -32,12 +32,13 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symflex.analysis.time_response.delayed_terms import DelayedQuotient
+    from symflex.roots import Root
     from symflex.transfer import BoundTransferFunction
 
 SHARES: Final = (4.0, 3.0, 2.5, 2.0, 1.5, 1.0, 0.7, 0.5, 0.3, 0.2, 0.1)
 """Lines that are tried: far from the axis there are many poles right of them, and a loop is soon beyond."""
 MORE_MODES: Final = 6
-"""Modes looked at besides those right of the line: some lie left of it, and lower."""
+"""Modes looked at besides, where the lowest are not those right of the line."""
 MOST_PARTS: Final = 4000
 """Of a line; a loop that rings at a thousand times its bandwidth takes some of them."""
 FIRST_PARTS: Final = 16
@@ -139,8 +140,7 @@ def decay_of(bound: BoundTransferFunction, quotient: DelayedQuotient, digits: in
         if on_line is None:
             continue
         size, count = on_line
-        found = locate(bound, Modes(count + MORE_MODES), digits) if count else None
-        poles = [p for p in found.all_poles if p.enclosure().real + rate > 0] if found else []
+        poles = _right_of(bound, rate, count, digits)
         if len(poles) != count or any(p.multiplicity > 1 or not p.certified for p in poles):
             continue
         if any(not p.enclosure().real < 0 for p in poles):
@@ -148,6 +148,17 @@ def decay_of(bound: BoundTransferFunction, quotient: DelayedQuotient, digits: in
         terms = (loop.term(p.enclosure()) for p in poles if not p.im < 0)
         return Decay(final, tuple(terms), size, rate)
     return None
+
+
+def _right_of(bound: BoundTransferFunction, rate: arb, count: int, digits: int) -> list[Root]:
+    """Return the poles right of a line, of which there are so many; fewer where these are not the lowest."""
+    poles: list[Root] = []
+    for more in (0, MORE_MODES) if count else ():
+        found = locate(bound, Modes(count + more), digits)
+        poles = [p for p in found.all_poles if p.enclosure().real + rate > 0]
+        if len(poles) == count:
+            break
+    return poles
 
 
 def _on_line(loop: _Loop, rate: arb) -> tuple[arb, int] | None:

@@ -119,7 +119,7 @@ class StepInfo:
         for name, ball, of in shown:
             if ball is None:
                 continue
-            if ball.contains(0) and ball != 0:
+            if ball.contains(0) and not ball.is_zero():
                 said = f"none above {float(ball.abs_upper()):.1g}"
             else:
                 said = decimals(ball, arb(0), digits).re
@@ -168,8 +168,8 @@ def _of_modes(bound: BoundTransferFunction) -> StepInfo | None:
     if found is None:
         return None
     with precision(MODES_BITS):
-        resting = [t for t in found.terms if t.rate == 0]
-        moving = sorted((t for t in found.terms if t.rate != 0), key=_size, reverse=True)
+        resting = [t for t in found.terms if t.rate.is_zero()]
+        moving = sorted((t for t in found.terms if not t.rate.is_zero()), key=_size, reverse=True)
         best: StepInfo | None = None
         for count in SMOOTH_MODES:
             left = sum((arb(_size(t)) for t in moving[count:]), found.rest)
@@ -224,8 +224,8 @@ def step_info(terms: Sequence[ExponentialTerm], rest: arb = ZERO) -> StepInfo | 
     >>> float(found.final), round(float(found.rise_time), 9), round(float(found.settling_time), 9)
     (2.0, 2.197224577, 3.912023005)
     """
-    resting = [t for t in terms if t.rate == 0]
-    moving = [t for t in terms if t.rate != 0]
+    resting = [t for t in terms if t.rate.is_zero()]
+    moving = [t for t in terms if not t.rate.is_zero()]
     final = sum((t.coefficients[0].real for t in resting if t.coefficients), arb(0))
     if any(c != 0 for t in resting for c in t.coefficients[1:]) or final.contains(0):
         return None

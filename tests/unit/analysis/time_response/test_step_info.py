@@ -44,6 +44,7 @@ def test_the_settling_time_is_the_last_crossing_of_two_percent():
 def test_a_lag_rises_in_ln_9_and_has_no_peak():
     found = find_step_info(rational("1/(s + 1)"))
     assert found.peak is None
+    assert "overshoot                none above 0.0001 %" in found.lines("m")
     assert 0 <= float(found.overshoot.upper()) < 2e-6
     assert float(found.rise_time) == pytest.approx(log(9), rel=1e-12)
     assert float(found.settling_time) == pytest.approx(log(50), rel=1e-12)
