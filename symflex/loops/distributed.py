@@ -24,7 +24,7 @@ from symflex.loops.stability_map import PoleCount
 from symflex.roots import Band, Budget
 from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.winding import Cell, RootOnPathError, Winding
-from symflex.roots.distributed.right_half_plane import Tail, right_tail
+from symflex.roots.distributed.far_out import Tail, right_tail
 from symflex.roots.distributed.side import Side
 from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.functions.simplified import without_squares

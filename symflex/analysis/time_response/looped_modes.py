@@ -290,7 +290,7 @@ def _part(bound: BoundTransferFunction, times: SampleTimes, digits: int, poles: 
     """Return a function as a sum over poles; those that are new are added to the list."""
     spend()
     found = proved_modes(bound, 1, times, digits)
-    if found is not None:
+    if found is not None and found.rest.is_finite():
         return _of_step(found, poles, is_proved=True)
     rational = _controller(bound)
     if rational is not None:
@@ -300,7 +300,7 @@ def _part(bound: BoundTransferFunction, times: SampleTimes, digits: int, poles: 
             parts=(bound.num / rational.num, bound.den / rational.den),
         )
         found = proved_modes(inner, 1, times, digits)
-        if found is not None:
+        if found is not None and found.rest.is_finite():
             plant = _of_step(found, poles, is_proved=True)
             whole = _controlled(plant, rational, poles, arb(float(times.seconds[-1])))
             if whole is not None:

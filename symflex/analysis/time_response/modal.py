@@ -6,9 +6,11 @@ Input: a bound transfer function with waves. Output: enclosed values, and whethe
 
 The first two are balls. What is left out is bounded for beams that lose nothing, see
 :mod:`~symflex.analysis.time_response.lossless_modes`, for those that lose energy along their length
-alone, see :mod:`~symflex.analysis.time_response.damped_modes`, and for all that a force moves where nothing
-else supplies energy, see :mod:`~symflex.analysis.time_response.passive_modes`. For others it is estimated
-from the last residues, and the response is not certified.
+alone, see :mod:`~symflex.analysis.time_response.damped_modes`, for all that a force moves where nothing else
+supplies energy, see :mod:`~symflex.analysis.time_response.passive_modes`, and for all that loses energy in
+the material of its beams and rods, loops about them too, see
+:mod:`~symflex.analysis.time_response.lossy_modes`. For others it is estimated from the last residues, and the
+response is not certified.
 """
 
 from __future__ import annotations
@@ -27,8 +29,10 @@ from symflex.analysis.time_response.damped_modes import Damping, damping_of
 from symflex.analysis.time_response.echoes import Sampled
 from symflex.analysis.time_response.exponentials import ExponentialTerm, values_of
 from symflex.analysis.time_response.filtered import filtered
+from symflex.analysis.time_response.function_size import SizeOfFunction
 from symflex.analysis.time_response.lossless_modes import LosslessModes, lossless_modes
-from symflex.analysis.time_response.passive_modes import PassiveBound, SizeOfFunction, passive_bound
+from symflex.analysis.time_response.lossy_modes import LossyBound, lossy_bound
+from symflex.analysis.time_response.passive_modes import PassiveBound, passive_bound
 from symflex.budget import entered_budget
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.roots.counting.argument_principle import CertifiedWinding
@@ -47,7 +51,7 @@ from symflex.transfer import BoundNested
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.analysis.time_response.passive_modes import Ring
+    from symflex.analysis.time_response.function_size import Annulus, Ring
     from symflex.analysis.time_response.sample_times import SampleTimes
     from symflex.roots import Root
     from symflex.roots.counting.winding import Cell
@@ -105,7 +109,17 @@ def proved_modes(
         s = Factored.generator(bound.ratio.ring, "s")
         over_s = replace(bound, ratio=bound.ratio / s, parts=(bound.num, bound.den * s))
         found = _of_proved_modes(over_s, integrations - 1, times, digits)
-    return _of_passive_modes(bound, integrations, times, digits) if found is None else found
+    for modes in (lossy_modes, _of_passive_modes):
+        found = modes(bound, integrations, times, digits) if found is None else found
+    return found
+
+
+def lossy_modes(
+    bound: BoundTransferFunction, integrations: int, times: SampleTimes, digits: int
+) -> PartialSum | None:
+    """Return the same where all waves lose energy in the material, of functions of any model."""
+    bounding = lossy_bound(bound)
+    return None if bounding is None else _of_bounded(bounding, integrations, times, digits)
 
 
 def _of_proved_modes(
@@ -158,22 +172,25 @@ def _of_passive_modes(
 
 
 def _of_bounded(
-    bounding: PassiveBound, integrations: int, times: SampleTimes, digits: int
+    bounding: PassiveBound | LossyBound, integrations: int, times: SampleTimes, digits: int
 ) -> PartialSum | None:
     """Return the sum over so many modes that what is left is within the digits, or as little as can be."""
-    modes = PassiveModes(bounding, integrations, times)
+    modes = BoundedModes(bounding, integrations, times)
     few, many = FIRST_MODES
-    first, found = modes.summed(few), modes.summed(many)
-    if first is None or found is None:
+    first = modes.summed(few)
+    if first is None:
         return None
-    largest = max((abs(y.mid()) for y in found.values), default=arb(0))
+    largest = max((abs(y.mid()) for y in first.values), default=arb(0))
     goal = float(largest) * 10.0 ** -min(digits, MOST_DIGITS)
+    found = first if first.left <= goal else modes.summed(many)
+    if found is None:
+        return None
     counts = few, many
     most = MOST_CONTINUED if bounding.function.length <= LONG else many
-    for _ in range(ROUNDS):
-        wanted = _needed((counts[0], float(first.rest)), (counts[1], float(found.rest)), goal, most)
+    for _ in range(ROUNDS if found is not first else 0):
+        wanted = _needed((counts[0], float(first.left)), (counts[1], float(found.left)), goal, most)
         wanted = min(SLOW_MODES, most) if wanted == most else wanted
-        falls = bool(found.rest < first.rest)
+        falls = bool(found.left < first.left)
         more = modes.summed(wanted) if falls and wanted > counts[1] else None
         if more is None:
             break
@@ -203,27 +220,27 @@ class PartialSum:
 
     terms: tuple[ExponentialTerm, ...]
     values: tuple[arb, ...]  # of the terms, at all times
-    rest: arb
-    fading: tuple[arb, ...] = ()  # how much of the rest is left at all times; all of it if nothing is said
+    rest: arb  # at any time
+    at_times: tuple[arb, ...] = ()  # at each of the times, where that is less
     speed: arb | None = None  # how much the derivative of what is left out is at most, where that is known
 
     @property
     def left(self) -> arb:
         """The most that is left at any of the times."""
-        return (self.rest * max(self.fading, default=arb(1), key=arb.mid)).upper()
+        return max(self.at_times, default=self.rest, key=arb.mid).upper()
 
     @property
     def sampled(self) -> Sampled:
         """The response, with what is left out as part of its balls."""
-        shares = self.fading or (arb(1),) * len(self.values)
-        pairs = zip(self.values, shares, strict=True)
-        return Sampled(tuple(y + arb(0, (share * self.rest).upper()) for y, share in pairs))
+        rests = self.at_times or (self.rest,) * len(self.values)
+        pairs = zip(self.values, rests, strict=True)
+        return Sampled(tuple(y + arb(0, rest.upper()) for y, rest in pairs))
 
 
-class PassiveModes:
-    """The lowest modes of a passive system, found as many as asked for."""
+class BoundedModes:
+    """The lowest modes of a system, found as many as asked for."""
 
-    def __init__(self, bounding: PassiveBound, integrations: int, times: SampleTimes) -> None:
+    def __init__(self, bounding: PassiveBound | LossyBound, integrations: int, times: SampleTimes) -> None:
         self._bounding, self._integrations, self._times = bounding, integrations, times
         self._bound = bounding.function.bound
         self._side = Side(self._bound, self._bound.den, DIGITS, entered_budget())
@@ -233,9 +250,9 @@ class PassiveModes:
     def summed(self, count: int) -> PartialSum | None:
         """Return the sum over so many modes, None where it is not proved.
 
-        Where they are hard to find, fewer are taken.
+        Where they are hard to find, fewer are taken; where the bound holds farther out only, more.
         """
-        side, last = self._side, arb(float(self._times.seconds[-1]))
+        side, least = self._side, self._bounding.least
         if side.is_finite:
             return None
         continued = self._continued(count) if count > max(FIRST_MODES) and side.engine != LOSSLESS else None
@@ -243,36 +260,25 @@ class PassiveModes:
             reached, roots = continued
         else:
             wanted = Modes(min(count, MOST_MODES if side.engine == LOSSLESS else MOST_SEARCHED))
-            side.search(wanted)
+            side.extend(wanted.count, least)
             if not side.prove(wanted).is_complete:
                 return None
             reached, roots = side.reached, side.roots
         if reached in self._known:
             return self._known[reached]
         origin = _proved_at_origin(self._bound, self._integrations)
-        if origin is None:
+        rest = self._bounding.rest(reached, self._integrations, self._times) if reached >= least else None
+        if origin is None or rest is None:
             return None
-        rest = self._bounding.rest(reached, self._integrations, last)
-        if rest is None:
-            return None
-        terms = list(origin)
+        smoother = self._bounding.rest(reached, self._integrations - 1, self._times)
         with precision(bits_for_digits(2 * DIGITS)):
             radius = arb(reached).exp()
             poles = [root for root in roots if self._may_be_pole(root, radius)]
-            rings = []
-            for hole in side.holes:
-                if hole.low > reached:
-                    continue
-                found = self._rings.get(hole)
-                if found is None:
-                    enclosures = [p.enclosure() for p in poles]
-                    found = self._bounding.function.around(hole, enclosures, self._integrations)
-                if found is None or not found[0].reach < radius:
-                    return None
-                self._rings[hole] = found
-                rings.append(found[0])
-                terms += found[1]
-                rest += found[2]
+            around = self._about_accumulations(reached, [p.enclosure() for p in poles])
+            if around is None:
+                return None
+            rings, terms, missing = around
+            terms = [*origin, *terms]
             for root in poles:
                 within = [ring.holds(root.enclosure()) for ring in rings]
                 if None in within or not (root.certified and root.natural_frequency() < radius):
@@ -283,8 +289,40 @@ class PassiveModes:
                 if term is None:
                     return None
                 terms.append(term)
-            total = PartialSum(tuple(terms), tuple(values_of(terms, self._times)), rest.upper())
+            values = values_of(terms, self._times)
+            left = [own + missing for own in rest.at_times]
+            if rest.start is not None and self._times.seconds[0] == 0:
+                values[0], left[0] = rest.start, arb(0)
+            speed = None
+            if smoother is not None and smoother.always.is_finite():
+                speed = smoother.always + missing * max((r.reach for r in rings), default=arb(0), key=arb.mid)
+            total = PartialSum(
+                tuple(terms),
+                tuple(values),
+                (rest.always + missing).upper(),
+                tuple(own.upper() for own in left),
+                speed,
+            )
             return self._known.setdefault(reached, total)
+
+    def _about_accumulations(
+        self, reached: float, poles: list[acb]
+    ) -> tuple[list[Annulus], list[ExponentialTerm], arb] | None:
+        """Return rings about what poles accumulate at within a radius, what they add, and what that lacks."""
+        rings, terms, missing = [], [], arb(0)
+        for hole in self._side.holes:
+            if hole.low > reached:
+                continue
+            found = self._rings.get(hole)
+            if found is None:
+                found = self._bounding.function.around(hole, poles, self._integrations)
+            if found is None or not found[0].reach < arb(reached).exp():
+                return None
+            self._rings[hole] = found
+            rings.append(found[0])
+            terms += found[1]
+            missing += found[2]
+        return rings, terms, missing
 
     def _continued(self, count: int) -> tuple[float, list[Root]] | None:
         """Return ln of a radius and all roots within, those found so far continued; None where that fails.
@@ -325,9 +363,11 @@ class PassiveModes:
     def _may_be_pole(self, root: Root, radius: arb) -> bool:
         """Tell whether a root of the denominator, in the upper half plane, may be a pole within a radius.
 
-        Right of the axis none is, as nothing supplies energy; without losses none is left of it either.
+        Where nothing supplies energy none is right of the axis; without losses none is left of it either.
         """
-        if root.is_zero or root.im < 0 or root.re > 0 or (root.re < 0 and self._is_lossless):
+        if root.is_zero or root.im < 0:
+            return False
+        if self._bounding.is_passive and (root.re > 0 or (root.re < 0 and self._is_lossless)):
             return False
         return not root.natural_frequency() > radius
 
@@ -379,13 +419,13 @@ def _summed(
         if rest is None or len(known) < len(terms):
             return None
         values = values_of([*origin, *known], times)
-        fading: list[arb] = []
+        at_times: tuple[arb, ...] = ()
         if damping is not None:
             squared = (2 * arb(reached)).exp()
-            fading = [damping.fading(squared, integrations, t) for t in times.enclosed()]
+            at_times = tuple(rest * damping.fading(squared, integrations, t) for t in times.enclosed())
             # Every mode begins at rest.
-            values = [y if share > 0 else arb(0) for y, share in zip(values, fading, strict=True)]
-        return PartialSum((*origin, *known), tuple(values), rest, tuple(fading), speed)
+            values = [y if left > 0 else arb(0) for y, left in zip(values, at_times, strict=True)]
+        return PartialSum((*origin, *known), tuple(values), rest, at_times, speed)
 
 
 def _damped(
@@ -520,7 +560,7 @@ def estimated_modes(bound: AnyBoundFunction, integrations: int, times: SampleTim
         upper += [term.rate.real for _, around, _ in rings for term in around]
         values = values_of([*origin, *terms], times)
         rest = arb(_estimated_rest(sizes)) + sum((missing for _, _, missing in rings), arb(0))
-        fading: tuple[arb, ...] = ()
+        at_times: tuple[arb, ...] = ()
         if terms:
             # At t = 0 it is known what all modes add up to. A taper so far beyond its modes takes gigabytes.
             tapers = not isinstance(bound, BoundNested) and any(
@@ -531,12 +571,12 @@ def estimated_modes(bound: AnyBoundFunction, integrations: int, times: SampleTim
             at_once = sum((term.coefficients[0] for term in (*origin, *terms)), acb(0)).real
             rest += SURER * abs(at_once - begun)
             slowest = max(upper, key=arb.mid).min(0)
-            fading = tuple((slowest * t).exp() for t in times.enclosed())
+            at_times = tuple(rest * (slowest * t).exp() for t in times.enclosed())
             if times.seconds[0] == 0 and slowest < 0 and abs(begun) <= abs(sooner):
                 # What fades begins smoothly: only at t = 0 itself do the modes not say more.
                 values[0] = begun + arb(0, SURER * abs(begun - sooner).upper())
-                fading = (arb(0), *fading[1:])
-        return PartialSum((*origin, *terms), tuple(values), rest, fading)
+                at_times = (arb(0), *at_times[1:])
+        return PartialSum((*origin, *terms), tuple(values), rest, at_times)
 
 
 def _begun(bound: AnyBoundFunction, integrations: int, far: arb) -> arb:

@@ -27,192 +27,34 @@ about how fast H falls off.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from itertools import pairwise
-from math import pi
-from typing import TYPE_CHECKING
+from math import inf, pi
+from typing import TYPE_CHECKING, ClassVar
 
-from flint import acb, acb_series, arb
+from flint import acb, arb
 
 from symflex.algebra import Factored
-from symflex.algebra.exponential_sum import REAL, arguments_of, exponential_sum
 from symflex.analysis.explanation.coordinates import PAIR, acting, in_one_way, measured, parted_at
-from symflex.analysis.time_response.exponentials import ExponentialTerm
-from symflex.budget import spend
+from symflex.analysis.time_response.function_size import BITS, Rest, SizeOfFunction
 from symflex.expressions import Attribute, Expression, Name, Negative, Sum
 from symflex.library.elements import COMPONENT_DOMAIN
 from symflex.model.model import INPUT_KINDS, Input, NodeReference, Output
 from symflex.model.signs import is_passive
-from symflex.roots.counting.argument_principle import LogarithmicLine
-from symflex.roots.functions.exponential_values import ExponentialValues
 from symflex.roots.precision import precision
-from symflex.transfer.balls import at_centre, ball
+from symflex.transfer.balls import ball
 from symflex.transfer.bind import bind
 from symflex.transfer.of_model import assemble, derive_all
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from symflex.algebra.exponential_sum import Exponent
     from symflex.analysis.explanation.coordinates import Coordinates
+    from symflex.analysis.time_response.sample_times import SampleTimes
     from symflex.library.elements import Variable
     from symflex.model import Model
-    from symflex.roots.counting.winding import Cell
     from symflex.transfer import BoundTransferFunction
 
-BITS = 128
-"""Of sizes: exponents of some 10^6 leave a phase of 30 digits."""
-FIRST_STEP = 0.1
-"""Of arcs [rad]; where values vary much on one, it is halved."""
-SMALLEST_STEP = 1e-9
-SHARP = 0.25
-"""Radius of the balls of sums on a step, over their middle: sizes are that uncertain."""
-SERIES_TERMS = 4
-"""Of sums on a step: with more, they hardly become longer."""
-WIDEST = 2.0
-"""How far from poles that accumulate a ring about them is sought, over the size of what they lie in."""
-RING_STEPS = 16
-"""Of half a ring, at first."""
-RING_POWER = 50
-"""A sum over a ring lacks about exp(-50), or 10^-21, of the largest value on it."""
+STEP, RAMP = 1, 2
+"""Impulses, integrated so often."""
 OUTPUT, INPUT = "displacement", "reaction"
 """Names in a model whose names begin differently."""
-
-
-@dataclass(frozen=True, eq=False)
-class SizeOfFunction:
-    """How large a transfer function is at most on a ball of s, as a sum of exponentials over another.
-
-    Of every sum the largest exponential is taken out, so that values far from the imaginary axis hardly vary.
-    """
-
-    bound: BoundTransferFunction
-    values: ExponentialValues
-
-    @classmethod
-    def of(cls, bound: BoundTransferFunction) -> SizeOfFunction | None:
-        """Return the evaluator of a function; None where a wavenumber has no formula, or for long sums."""
-        arguments = arguments_of(bound.kernels)
-        if arguments is None:
-            return None
-        found = []
-        for factor, exponent in bound.ratio.factors:
-            terms = exponential_sum(bound.ratio.ring, bound.kernels, arguments, factor)
-            if terms is None:
-                return None
-            found.append((terms, exponent))
-        with precision(BITS):
-            return cls(bound, ExponentialValues(bound.kernel_values(), arguments, tuple(found)))
-
-    @property
-    def length(self) -> int:
-        """How many exponentials it is made of."""
-        return sum(len(terms.terms) for terms, _ in self.values.sums)
-
-    def at(self, s: acb, sharp: float = 1.0) -> arb | None:
-        """Return the most that abs(H) is on a ball; None where it is not told, to about a share."""
-        spend()
-        place = self.values.at(s)
-        total = abs(acb(ball(self.bound.ratio.unit)))
-        grown: dict[int, complex] = {}
-        for i, (terms, exponent) in enumerate(self.values.sums):
-            only = next(iter(terms.terms), REAL)
-            largest = only if len(terms.terms) == 1 else self.values.largest([i], place)
-            value = at_centre(self.values.value(i, place, largest))
-            if not value.is_finite():
-                return None
-            scale = abs(value.mid())
-            if exponent > 0:
-                # A numerator may vanish on the way.
-                own = self.values.amplitudes(i, place)[list(terms.terms).index(largest)]
-                scale = scale.max(abs(at_centre(own).mid()))
-            if not value.rad() <= sharp * scale or (exponent < 0 and not abs(value) > 0):
-                value = self._expanded(i, s, largest)
-                scale = scale if exponent > 0 else abs(value.mid())
-                if not value.rad() <= sharp * scale:
-                    return None
-            size = abs(value)
-            total = total * (size.upper() if exponent > 0 else size.lower()) ** exponent
-            for k, real, imaginary in largest:
-                grown[k] = grown.get(k, 0j) + exponent * complex(real, imaginary)
-        # Added up first: the balls of what grows above and below would not cancel.
-        rest = place.combined(tuple((k, acb(c.real, c.imag)) for k, c in grown.items() if c))
-        found = total if rest is None else total * at_centre(rest).real.exp()
-        return found.upper() if found.is_finite() else None
-
-    def _expanded(self, number: int, s: acb, largest: Exponent) -> acb:
-        """Return one sum over an exponential from its series in a ball's middle, its last term on the ball.
-
-        Where terms cancel, their balls do not, and it would take a thousand times as many small ones.
-        """
-        middle, last = s.mid(), SERIES_TERMS - 1
-        near = self.values.at(acb_series([s, acb(1)], SERIES_TERMS))
-        at_middle = self.values.at(acb_series([middle, acb(1)], SERIES_TERMS), near)
-        wide, sharp = (self.values.value(number, place, largest) for place in (near, at_middle))
-        if not (isinstance(wide, acb_series) and isinstance(sharp, acb_series)):
-            return at_centre(wide)
-        total = wide[last]
-        for k in reversed(range(last)):
-            total = total * (s - middle) + sharp[k]
-        return total
-
-    def on_arc(self, reached: float, start: float, end: float) -> arb | None:
-        """Return the integral of abs(H) over the angle [rad] from one to another, at one ln(abs(s))."""
-        path = LogarithmicLine(complex(reached, start), complex(reached, end))
-        count = round((end - start) / FIRST_STEP) + 1
-        pending = [(i / count, (i + 1) / count) for i in range(count)]
-        total = arb(0)
-        while pending:
-            low, high = pending.pop()
-            size = self.at(path.step(low, high)[0], SHARP)
-            if size is not None:
-                total += size * (high - low) * (end - start)
-            elif (high - low) * (end - start) < SMALLEST_STEP:
-                return None
-            else:
-                middle = (low + high) / 2
-                pending += [(low, middle), (middle, high)]
-        return total.upper()
-
-    def around(self, hole: Cell, poles: Sequence[acb], integrations: int) -> Ring | None:
-        """Return what all poles in a neighbourhood add where infinitely many accumulate, as about -1/eta.
-
-        It is an integral over a ring about them, as a sum over its points: what is summed is analytic on the
-        ring, so the error falls like a power of its width (Trefethen and Weideman 2014). First comes the
-        ring, with all ``poles`` that it holds besides; then the terms, and what they lack at most. That holds
-        if there is no pole on the ring itself, as there is none where all within its reach are given. Then
-        no value on it is larger than those on its two edges.
-        """
-        if not hole.right <= pi <= hole.left:
-            return None
-        with precision(2 * BITS):
-            ring = _ring_about(hole, poles)
-            if ring is None:
-                return None
-            largest = arb(0)
-            pending = [
-                (k / RING_STEPS, 1 / RING_STEPS, edge) for k in range(RING_STEPS) for edge in (-1.0, 1.0)
-            ]
-            while pending:
-                start, angle, edge = pending.pop()
-                s = ring.piece(start, angle, edge)
-                size = self.at(s)
-                if size is not None:
-                    largest = largest.max(size / s.abs_lower() ** integrations)
-                elif angle < SMALLEST_STEP:
-                    return None
-                else:
-                    pending += [(start + i * angle / 2, angle / 2, edge) for i in (0, 1)]
-            count = 2 * int(RING_POWER / float(ring.width.log().mid()) / 2 + 1)
-            terms = []
-            values = self.bound.enclosed(2 * BITS)
-            for k in range(count // 2):
-                # Points come in conjugate pairs.
-                off = ring.radius * acb(0, arb(2 * k + 1) * arb.pi() / count).exp()
-                s = ring.centre + off
-                terms.append(ExponentialTerm(s, (2 * values(s) * off / s**integrations / count,)))
-            # Left of the imaginary axis no exponential is larger than 1.
-            missing = largest * ring.radius * (ring.width + 1 / ring.width) / (ring.width**count - 1)
-            return ring, terms, missing.upper()
 
 
 @dataclass(frozen=True, eq=False)
@@ -224,14 +66,17 @@ class PassiveBound:
     factor: arb  # its size
     colocated: tuple[SizeOfFunction, ...]  # what forces at either end move there; one where both are the same
 
-    def rest(self, reached: float, integrations: int, last: arb) -> arb | None:
+    is_passive: ClassVar = True
+    least: ClassVar = -inf  # ln of the radius from which on something is known
+
+    def rest(self, reached: float, integrations: int, times: SampleTimes) -> Rest | None:
         """Return how much a response differs at most from what the poles with ln(abs(s)) < ``reached`` add.
 
-        This holds up to a time ``last`` [s]. The input is an impulse, integrated so often. None where
-        nothing is proved: a step of a displacement, and what is smoother, is.
+        The input is an impulse, integrated so often. None where nothing is proved: a step of a displacement,
+        and what is smoother, is.
         """
         smooth = integrations - self.order
-        if smooth not in (1, 2):
+        if smooth not in (STEP, RAMP):
             return None
         with precision(BITS):
             radius = arb(reached).exp()
@@ -243,56 +88,11 @@ class PassiveBound:
             beyond = 4 * self.factor * (known[0] * known[-1]).sqrt()
             # Both arcs stand for their mirror images as well.
             step = beyond + (left + 3 * right) / arb.pi() / radius**self.order
-            if smooth == 1:
-                return step.upper()
-            # Of exp(st) - 1 in place of exp(st), the 1 adds an integral over the whole circle.
-            return (last * step + (left + right) / arb.pi() / radius ** (self.order + 1)).upper()
-
-
-@dataclass(frozen=True, slots=True)
-class Annulus:
-    """All s whose distance from a real centre is a radius times a number between 1/width and width."""
-
-    centre: arb
-    radius: arb
-    width: arb
-
-    def piece(self, start: float, angle: float, edge: float) -> acb:
-        """Return a ball around a part of the upper half of an edge, the inner one at -1, the outer one at 1.
-
-        From 0 to 1 the angle grows from the right end to the left one.
-        """
-        turn = arb(start + angle / 2, angle / 2) * arb.pi()
-        return self.centre + self.radius * acb(self.width.log() * edge, turn).exp()
-
-    @property
-    def reach(self) -> arb:
-        """Return the largest abs(s) on the ring."""
-        return abs(self.centre) + self.radius * self.width
-
-    def holds(self, point: acb) -> bool | None:
-        """Tell whether a point lies within; None on the ring."""
-        distance = abs(point - self.centre)
-        return True if distance < self.radius else False if distance > self.radius else None
-
-
-Ring = tuple[Annulus, list[ExponentialTerm], arb]
-"""With what all poles within add to a response, and what that lacks at most."""
-
-
-def _ring_about(hole: Cell, poles: Sequence[acb]) -> Annulus | None:
-    """Return a ring about a neighbourhood, left of the imaginary axis, as far as possible from all poles."""
-    centre = -arb((hole.low + hole.high) / 2).exp()
-    corner = acb(hole.high, hole.left).exp()
-    least = abs(corner - centre).upper()
-    most = least * WIDEST
-    if not most < -centre:
-        return None
-    off = sorted((d for p in poles if least < (d := abs(p - centre)) < most), key=arb.mid)
-    gaps = list(pairwise([least, *off, most]))
-    inner, outer = max(gaps, key=lambda gap: float(gap[1].mid() / gap[0].mid()))
-    width = (outer / inner).sqrt().sqrt().mid()
-    return Annulus(centre.mid(), (outer * inner).sqrt().mid(), width) if width > 1 else None
+            if smooth == RAMP:
+                # Of exp(st) - 1 in place of exp(st), the 1 adds an integral over the whole circle.
+                last = arb(float(times.seconds[-1]))
+                step = last * step + (left + right) / arb.pi() / radius ** (self.order + 1)
+            return Rest(step.upper(), (step.upper(),) * len(times))
 
 
 def passive_bound(bound: BoundTransferFunction) -> PassiveBound | None:

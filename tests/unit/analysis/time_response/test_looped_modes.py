@@ -13,7 +13,7 @@ from symflex.errors import ModelError, UncertifiedError
 BEAM = 'between = ["ground", "x"], E = "1 Pa", A = "1 m^2", I = "1 m^4", rho = "1 kg/m^3", l = "1 m"'
 
 
-def loop(force, eta="0.02 s", output="x"):
+def loop(force, eta="0.02 s", output="x", load=""):
     """Return x/r of a cantilever that a force pushes at its tip, behind a controller that is late."""
     text = f"""
 symflex = 1
@@ -24,6 +24,7 @@ outputs.X = "{output}"
 [elements]
 arm = {{ type = "beam", {BEAM}, eta = "{eta}" }}
 push = {{ type = "force_source", at = "x", f = "{force}" }}
+{load}
 """
     return loads(text).transfer_function("X", "r").bind().bound
 
@@ -87,6 +88,28 @@ def test_an_impulse_is_enclosed_too():
     assert found.certified
     assert np.all(np.abs(found.values - expected) <= found.radius)
     assert found.radius.max() < 0.3 * np.max(np.abs(expected))
+
+
+LOAD = """
+mass = { type = "mass", at = "x", m = "0.3 kg" }
+loss = { type = "damper", between = ["ground", "x"], b = "0.5 N*s/m" }
+"""
+
+
+def loaded(s):
+    """Return twice the tip's displacement over a force there, of the beam with a mass and a damper."""
+    return 2 / (1 / receptance(s, mpmath.mpf("0.02")) + mpmath.mpf("0.3") * s**2 + s / 2)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("kind", "share"), [("step", 1e-8), ("impulse", 1e-2)])
+def test_a_loop_about_a_beam_with_a_load_is_what_the_method_of_steps_says(kind, share):
+    times = [0.1, 0.5, 0.87]
+    found = time_response(loop("k*(r - D*x)", load=LOAD), kind, SampleTimes.of(times))
+    expected = [stepped(loaded, loaded, 0.3, t, 1 if kind == "step" else 0) for t in times]
+    assert found.certified
+    assert np.all(np.abs(found.values - expected) <= found.radius)
+    assert found.radius.max() < share * np.max(np.abs(expected))
 
 
 def convolved_twice(t):

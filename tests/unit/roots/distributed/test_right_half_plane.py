@@ -8,7 +8,7 @@ import pytest
 from symflex import pipeline
 from symflex.print.roots import roots_text
 from symflex.roots import Band, Everything, Mode, Modes, PoleZeroMap, Rectangle
-from symflex.roots.distributed.right_half_plane import Tail
+from symflex.roots.distributed.far_out import Tail
 from symflex.roots.pole_zero_map import StabilityVerdict
 
 HAYES = """

@@ -13,7 +13,7 @@ from flint import acb, arb
 from symflex import pipeline
 from symflex.algebra.exponential_sum import MOST_EXPONENTIALS
 from symflex.roots import precision
-from symflex.roots.distributed.right_half_plane import (
+from symflex.roots.distributed.far_out import (
     ADVANCED,
     EVERY_DELAYED,
     NARROW,
@@ -25,7 +25,7 @@ from symflex.roots.distributed.right_half_plane import (
     TWO_WAVENUMBERS,
     Tail,
     _at_infinity,
-    _is_dominated,
+    _dominant,
     _Power,
     _turned,
     right_tail,
@@ -139,7 +139,7 @@ def test_all_sectors_of_the_quadrant_are_asked(monkeypatch):
         asked.add(sector)
         return _turned(arguments, sector)
 
-    monkeypatch.setattr("symflex.roots.distributed.right_half_plane._turned", turned)
+    monkeypatch.setattr("symflex.roots.distributed.far_out._turned", turned)
     assert tail(delayed("s + 10*D"), 20.0).radius == 20
     assert asked == set(range(SECTORS))
 
@@ -430,9 +430,9 @@ def powers(**terms):
 )
 def test_one_term_outweighs_the_others_from_a_radius_on(terms, arguments, edge):
     with precision(64):
-        assert _is_dominated(terms, arguments, arb(edge * 1.001))
-        assert _is_dominated(terms, arguments, arb(edge * 30))
-        assert not _is_dominated(terms, arguments, arb(edge * 0.999))
+        assert _dominant(terms, arguments, arb(edge * 1.001))
+        assert _dominant(terms, arguments, arb(edge * 30))
+        assert not _dominant(terms, arguments, arb(edge * 0.999))
 
 
 @pytest.mark.parametrize(
@@ -444,8 +444,8 @@ def test_a_term_that_is_small_and_still_grows_against_the_largest_outweighs_it_l
     terms = {GROWING: powers(p0=1), LEVEL: {Fraction(over): acb("0.001")}}
     arguments = [_Power(Fraction(power), acb(unit))]
     with precision(64):
-        assert not _is_dominated(terms, arguments, arb(edge * 0.997))
-        assert _is_dominated(terms, arguments, arb(edge * 1.003))
+        assert not _dominant(terms, arguments, arb(edge * 0.997))
+        assert _dominant(terms, arguments, arb(edge * 1.003))
 
 
 def test_all_that_a_term_falls_by_makes_up_for_its_power():
@@ -453,8 +453,8 @@ def test_all_that_a_term_falls_by_makes_up_for_its_power():
     terms = {((0, 1, 0), (1, 1, 0)): powers(p0=1), LEVEL: powers(p3="0.001")}
     with precision(64):
         for arguments in permutations([_Power(Fraction(1), acb(2)), _Power(Fraction(1), acb(1))]):
-            assert not _is_dominated(terms, list(arguments), arb(0.997))
-            assert _is_dominated(terms, list(arguments), arb(1.003))
+            assert not _dominant(terms, list(arguments), arb(0.997))
+            assert _dominant(terms, list(arguments), arb(1.003))
 
 
 def test_what_falls_beside_a_delay_counts_too():
@@ -462,24 +462,24 @@ def test_what_falls_beside_a_delay_counts_too():
     terms = {((0, -1, 0), (1, 1, 0)): powers(p0=1), LEVEL: powers(p0=5)}
     arguments = [_Power(Fraction(1), acb("1e-6"), is_delay=True), _Power(Fraction(1), acb(2))]
     with precision(64):
-        assert _is_dominated(terms, arguments, arb(log(5) / 2 * 1.001))
-        assert not _is_dominated(terms, arguments, arb(log(5) / 2 * 0.999))
+        assert _dominant(terms, arguments, arb(log(5) / 2 * 1.001))
+        assert not _dominant(terms, arguments, arb(log(5) / 2 * 0.999))
 
 
 def test_what_grows_faster_than_the_largest_term_outweighs_it_later():
     slow = [_Power(Fraction(1), acb("0.001"))]
     terms = {LEVEL: powers(p1=1), GROWING: powers(p0=5)}
     with precision(64):
-        assert not _is_dominated(terms, slow, arb(10))
+        assert not _dominant(terms, slow, arb(10))
         # A delay's exponent never grows: a positive rate is rounding.
-        assert _is_dominated(terms, [_Power(Fraction(1), acb("0.001"), is_delay=True)], arb(10))
+        assert _dominant(terms, [_Power(Fraction(1), acb("0.001"), is_delay=True)], arb(10))
         # Not so of what a delay is divided by.
         shrinking = {LEVEL: powers(p1=1), DECAYING: powers(p0=5)}
-        assert not _is_dominated(shrinking, [_Power(Fraction(1), acb("-0.001"), is_delay=True)], arb(10))
+        assert not _dominant(shrinking, [_Power(Fraction(1), acb("-0.001"), is_delay=True)], arb(10))
 
 
 def test_a_term_that_may_be_zero_outweighs_nothing():
     with precision(64):
-        assert not _is_dominated({LEVEL: {Fraction(1): acb(arb(0, 1))}}, REAL, arb(10))
-        assert not _is_dominated({LEVEL: powers(p0=0)}, REAL, arb(10))
-        assert not _is_dominated({LEVEL: {Fraction(1): acb(arb(0, 1)), Fraction(0): acb(100)}}, REAL, arb(10))
+        assert not _dominant({LEVEL: {Fraction(1): acb(arb(0, 1))}}, REAL, arb(10))
+        assert not _dominant({LEVEL: powers(p0=0)}, REAL, arb(10))
+        assert not _dominant({LEVEL: {Fraction(1): acb(arb(0, 1)), Fraction(0): acb(100)}}, REAL, arb(10))

@@ -13,12 +13,12 @@ from symflex.budget import Budget
 from symflex.errors import BudgetError, Diagnostic
 from symflex.roots.counting.winding import RootOnPathError
 from symflex.roots.distributed import right_half_plane
+from symflex.roots.distributed.far_out import Tail
 from symflex.roots.distributed.proof import Proof
 from symflex.roots.distributed.right_half_plane import (
     ACCUMULATING,
     NOT_COUNTED,
     RightHalfPlane,
-    Tail,
     search_right,
 )
 from symflex.roots.pole_zero_map import NOT_EXAMINED, ON_AXIS, StabilityVerdict, judge

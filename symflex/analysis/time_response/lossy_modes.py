@@ -1,0 +1,113 @@
+"""Systems whose waves lose energy in the material: how much poles beyond a circle may add to a response.
+
+Input: a bound transfer function. Output: a bound of its response less the terms of all poles with abs(s)
+below a radius R. Nothing need be passive: loops, imposed motion, unstable systems and velocities are bounded
+alike.
+
+Example: the tip of a cantilever with loss, ``E I (1 + eta s) w'''' + rho A s^2 w = 0``. Far from 0 its
+wavenumber goes like s^(1/4), but for a factor that turns cosines into exponentials everywhere but next to the
+negative real axis, where high modes are overdamped. So H is about c s^(-7/4) there, within a share that
+:mod:`~symflex.roots.distributed.far_out` finds, and has no poles.
+
+A response is the integral of H e^(st)/s^n along a line right of all poles. It is moved to the left, to
+
+    a ray from infinity to R e^(-j 120 deg), the arc to R e^(-j 180 deg) = R e^(j 180 deg), and their mirror
+    images,
+
+and on the way meets all poles within R and no others, whose residues are summed. On the rays and arcs
+
+    abs(e^(st))  <=  e^(-R t/2)
+
+so what they add fades at once but at the first instants, and there H/s^n, which falls off, bounds it: on the
+arcs by an integral covered with balls, on the rays by c abs(s)^(-7/4 - n). Where poles lie beyond R at 120
+degrees and more, but not right of the imaginary axis, the rays are those of the axis, and nothing fades.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf, log, pi
+from typing import TYPE_CHECKING, ClassVar
+
+from flint import arb
+
+from symflex.analysis.time_response.function_size import BITS, Rest, SizeOfFunction
+from symflex.roots.distributed.far_out import SECTORS, TILTED, FunctionFarOut
+from symflex.roots.functions.kernel_function import KernelFunction
+from symflex.roots.precision import precision
+from symflex.transfer.balls import ball
+
+if TYPE_CHECKING:
+    from symflex.analysis.time_response.sample_times import SampleTimes
+    from symflex.transfer import BoundTransferFunction
+
+SLOPE = 0.4999
+"""Of the decay on a ray at 120 degrees, over abs(s): no more than one half."""
+FAR = 1e4
+"""Of the least radius, over the one at which a ray at 120 degrees is as good as the axis."""
+VAST = 1e60
+"""abs(s) [rad/s] at which the limit of a function is read off, with some 60 digits."""
+INWARD = 1 - 1e-12
+"""By what a radius is multiplied, so that rounding moves it to the inside."""
+
+
+@dataclass(frozen=True, eq=False)
+class LossyBound:
+    """A transfer function that is about a power of s in the right half plane, and beyond, far from 0."""
+
+    function: SizeOfFunction
+    far_out: FunctionFarOut
+    least: float  # ln of the radius from which on it is
+
+    is_passive: ClassVar = False
+
+    def rest(self, reached: float, integrations: int, times: SampleTimes) -> Rest | None:
+        """Return how much a response differs at most from what the poles with ln(abs(s)) < ``reached`` add.
+
+        The input is an impulse, integrated so often. None where nothing is proved.
+        """
+        with precision(BITS):
+            radius = arb(reached).exp()
+            size = self.far_out.size(float(radius.mid()) * INWARD)
+            if size is None:
+                return None
+            is_tilted = self.far_out.sectors > SECTORS
+            arc = self.function.on_arc(reached, 2 * pi / 3 if is_tilted else pi / 2, pi)
+            falls = integrations - size.power  # H/s^n is about s^-falls
+            if arc is None or not falls > 0:
+                return None
+            # Arc and ray stand for their mirror images as well: 2/(2 pi).
+            arc = arc * radius ** (1 - integrations) / arb.pi()
+            ray = size.most * radius ** (1 - ball(falls)) / arb.pi()
+            always = (arc + ray / ball(falls - 1)).upper() if falls > 1 else arb(inf)
+            start = arb(0) if falls > 1 else None
+            if falls == 1:
+                limit = self.far_out.size(VAST)
+                start = limit.lead.real if limit is not None and limit.power == size.power else None
+            found = []
+            for t in times.enclosed():
+                own = always
+                if is_tilted and t > 0:
+                    turned = SLOPE * radius * t
+                    own = (-turned).exp() * own.min(arc + ray / turned)
+                if not own.is_finite() and not (t == 0 and start is not None):
+                    return None
+                found.append(own.upper())
+            return Rest(always, tuple(found), start)
+
+
+def lossy_bound(bound: BoundTransferFunction) -> LossyBound | None:
+    """Return what bounds the modes of a function; None where poles have no end along the imaginary axis."""
+    function = SizeOfFunction.of(bound)
+    if function is None:
+        return None
+    start = KernelFunction(bound, bound.den).frequency_of(1.0)
+    found = []
+    for sectors in (TILTED, SECTORS):
+        far_out = FunctionFarOut.of(bound, sectors)
+        least = None if far_out is None else far_out.least(start)
+        if far_out is not None and least is not None:
+            found.append(LossyBound(function, far_out, log(least)))
+    if len(found) > 1 and found[0].least > found[1].least + log(FAR):
+        return found[1]
+    return found[0] if found else None

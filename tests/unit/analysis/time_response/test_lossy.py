@@ -1,0 +1,230 @@
+"""Servos about beams that lose energy in their material: responses are the inverses of closed forms."""
+
+from __future__ import annotations
+
+import mpmath
+import numpy as np
+import pytest
+
+from symflex.analysis.time_response import SampleTimes, time_response
+from symflex.analysis.time_response.lossy_modes import lossy_bound
+from symflex.analysis.time_response.modal import BoundedModes, lossy_modes
+from symflex.roots.distributed.far_out import SECTORS, TILTED, FunctionFarOut
+from tests.unit.analysis.time_response.test_passive import (
+    TIMES,
+    UNIT,
+    WHOLE,
+    assert_holds,
+    clamped_between,
+    inverted,
+    of,
+    tip_of_clamped,
+    tip_of_hub,
+    wave,
+)
+
+ETA = "0.02"
+GAINS = 'parameters = { k = "4 N/m", d = "1.5 N*s/m", i = "3 N/(m*s)", T = "20 ms" }'
+PD = "(k + d*s/(1 + T*s))"
+IDEAL = "(k + d*s)"
+PID = "(k + i/s + d*s/(1 + T*s))"
+
+
+def pd(s):
+    return 4 + mpmath.mpf("1.5") * s / (1 + s / 50)
+
+
+def ideal(s):
+    return 4 + mpmath.mpf("1.5") * s
+
+
+def pid(s):
+    return pd(s) + 3 / s
+
+
+def servo(controller, output="x", measured="x", eta=ETA):
+    """Return a cantilever whose tip follows r by a force."""
+    return of(
+        f"""
+{GAINS}
+elements.arm  = {{ type = "beam", between = ["ground", "x"], {UNIT}, {WHOLE}, eta = "{eta} s" }}
+elements.push = {{ type = "force_source", at = "x", f = "{controller}*(r - {measured})" }}
+inputs.r  = {{ unit = "m" }}
+outputs.X = "{output}"
+""",
+        source="r",
+    )
+
+
+def receptance(s, eta=ETA):
+    return tip_of_clamped(s, lambda _: 0, eta)
+
+
+def closed(control):
+    def follow(s):
+        gain = control(s) * receptance(s)
+        return gain / (1 + gain)
+
+    return follow
+
+
+def pushed(control):
+    return lambda s: control(s) / (1 + control(s) * receptance(s))
+
+
+SERVOS = {
+    "P": ("k", lambda s: 4),
+    "PD": (PD, pd),
+    "ideal PD": (IDEAL, ideal),
+    "PID": (PID, pid),
+    "unstable": ("-8*k", lambda s: -32),
+}
+
+
+@pytest.mark.parametrize(
+    "name", ["PD", *(pytest.param(n, marks=pytest.mark.slow) for n in SERVOS if n != "PD")]
+)
+def test_a_servo_at_the_tip_follows_as_its_inverse_transform(name):
+    controller, control = SERVOS[name]
+    found = time_response(servo(controller), "step", SampleTimes.of([0.0, *TIMES]))
+    assert found.enclosures[0] == 0
+    assert_holds(found, [0.0, *inverted(closed(control), 1, TIMES)], off=1e-14 * np.abs(found.values).max())
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "share"), [("PD", 1e-9), ("ideal PD", 1e-9)])
+def test_an_impulse_is_held_after_the_first_instant(name, share):
+    controller, control = SERVOS[name]
+    found = time_response(servo(controller), "impulse", SampleTimes.of(TIMES))
+    assert_holds(found, inverted(closed(control), 0, TIMES), share, off=1e-14)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["PD", "PID"])
+def test_what_a_servo_pushes_with_begins_at_its_limit(name):
+    controller, control = SERVOS[name]
+    found = time_response(servo(controller, "push.f"), "step", SampleTimes.of([0.0, *TIMES]))
+    # 4 + 1.5/0.02 at once, before anything moves.
+    assert found.enclosures[0].contains(79)
+    assert_holds(found, [79.0, *inverted(pushed(control), 1, TIMES)], off=1e-12)
+
+
+@pytest.mark.slow
+def test_a_speed_is_held_from_the_first_instants_on():
+    times = [1e-6, 1e-3, *TIMES]
+    found = time_response(servo(PD, "s*x"), "step", SampleTimes.of([0.0, *times]))
+    expected = inverted(closed(pd), 0, times)
+    assert found.enclosures[0] == 0
+    assert_holds(found, [0.0, *expected], share=1e-6, off=1e-12)
+
+
+@pytest.mark.slow
+def test_a_point_between_is_moved_from_the_tip():
+    found = time_response(servo(PD, "arm.y(0.4 m)"), "step", SampleTimes.of([0.0, *TIMES]))
+    place = mpmath.mpf("0.4")
+
+    def between(s):
+        force = pushed(pd)(s)
+        return force * clamped_between(s, place, lambda _: 0, ETA)
+
+    assert_holds(found, [0.0, *inverted(between, 1, TIMES)], off=1e-15)
+
+
+@pytest.mark.slow
+def test_a_sensor_away_from_the_motor_is_held_too():
+    found = time_response(servo("k", measured="arm.y(0.4 m)"), "step", SampleTimes.of(TIMES))
+    place = mpmath.mpf("0.4")
+
+    def follow(s):
+        return 4 * receptance(s) / (1 + 4 * clamped_between(s, place, lambda _: 0, ETA))
+
+    assert_holds(found, inverted(follow, 1, TIMES), off=1e-15)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["PD", "PID"])
+def test_an_arm_on_a_hub_is_turned_to_where_it_is_wanted(name):
+    text, control = {
+        "PD": ("k + d*s/(1 + T*s)", lambda s: 2 + s / 2 / (1 + s / 50)),
+        "PID": ("k + i/s + d*s/(1 + T*s)", lambda s: 2 + 1 / s + s / 2 / (1 + s / 50)),
+    }[name]
+    bound = of(
+        f"""
+parameters = {{ k = "2 N*m", d = "0.5 N*m*s", i = "1 N*m/s", T = "20 ms" }}
+elements.arm  = {{ type = "beam", between = ["hub", "tip"], {UNIT}, {WHOLE}, eta = "{ETA} s" }}
+elements.pin  = {{ type = "pin", at = "hub" }}
+elements.J    = {{ type = "inertia", at = "hub.theta", J = "0.1 kg*m^2" }}
+elements.loss = {{ type = "rotary_damper", between = ["hub.theta", "ground"], b = "0.2 N*m*s/rad" }}
+elements.m    = {{ type = "mass", at = "tip", m = "0.3 kg" }}
+elements.turn = {{ type = "torque_source", at = "hub.theta", tau = "({text})*(r - hub.theta)" }}
+inputs.r  = {{ unit = "rad" }}
+outputs.X = "tip"
+""",
+        source="r",
+    )
+    found = time_response(bound, "step", SampleTimes.of([0.0, *TIMES]))
+
+    def tip(s):
+        # The controller's torque on the hub is one of a spring to it, and one that r drives.
+        return control(s) * tip_of_hub(s, control, ETA)
+
+    assert_holds(found, [0.0, *inverted(tip, 1, TIMES)], off=1e-15)
+
+
+@pytest.mark.slow
+def test_a_support_that_is_moved_moves_the_tip():
+    bound = of(
+        f"""
+elements.arm = {{ type = "beam", between = ["base", "tip"], {UNIT}, {WHOLE}, eta = "{ETA} s" }}
+elements.hold = {{ type = "slider", at = "base" }}
+inputs.z  = {{ displacement = "base" }}
+outputs.X = "tip"
+""",
+        source="z",
+    )
+    found = time_response(bound, "step", SampleTimes.of(TIMES))
+
+    def follow(s):
+        q, _ = wave(s, ETA)
+        c, h = mpmath.cos(q), mpmath.cosh(q)
+        # w = a cos + b cosh + ..., moved at x = 0 without slope, free at the other end.
+        return (c + h) / (1 + c * h)
+
+    assert_holds(found, inverted(follow, 1, TIMES), off=1e-14)
+
+
+@pytest.mark.parametrize("sectors", [SECTORS, TILTED])
+@pytest.mark.parametrize(("controller", "control"), [(PD, pd), (IDEAL, ideal)])
+def test_the_size_far_out_holds_wherever_it_is_said_to(sectors, controller, control):
+    bound = servo(controller)
+    far_out = FunctionFarOut.of(bound, sectors)
+    radius = 10 * far_out.least(1.0)
+    size = far_out.size(radius)
+    share = 0.0
+    with mpmath.workdps(40):
+        for turned in np.linspace(0, sectors / SECTORS * np.pi / 2, 9):
+            for times in (1, 3, 100, 1e6):
+                s = radius * times * mpmath.expj(turned)
+                value = abs(closed(control)(s)) / abs(s) ** mpmath.mpf(float(size.power))
+                assert value <= float(size.most)
+                share = max(share, float(value) / float(size.most))
+    assert share > 0.02
+    # 4 + 75 (or 1.5 s) times s^(-7/4)/eta^(1/4): E I (1 + eta s) q^3 for large s.
+    assert size.power == (-0.75 if control is ideal else -1.75)
+    limit = (1.5 if control is ideal else 79) * 2**0.5 * 0.02**-0.25
+    assert float(far_out.size(1e60).lead.real) == pytest.approx(limit, rel=1e-12)
+
+
+@pytest.mark.slow
+def test_more_modes_move_a_response_by_no_more_than_what_was_left():
+    times = SampleTimes.of([0.0, 1e-4, 1e-2, 1.0])
+    modes = BoundedModes(lossy_bound(servo(PD)), 1, times)
+    few, many = modes.summed(10), modes.summed(32)
+    for a, b, left in zip(few.values, many.values, few.at_times, strict=True):
+        assert abs(a - b) <= left
+    assert max(many.at_times, key=float) < max(few.at_times, key=float)
+
+
+def test_a_beam_without_loss_has_no_such_bound():
+    assert lossy_bound(servo(PD, eta="0")) is None
+    assert lossy_modes(servo(PD, eta="0"), 1, SampleTimes.of([1.0]), 9) is None
