@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from itertools import pairwise
 from math import pi
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from flint import acb, acb_series, arb
 
@@ -33,6 +33,7 @@ BITS = 128
 FIRST_STEP = 0.1
 """Of arcs [rad]; where values vary much on one, it is halved."""
 SMALLEST_STEP = 1e-9
+ZERO: Final = arb(0)
 SHARP = 0.25
 """Radius of the balls of sums on a step, over their middle: sizes are that uncertain."""
 SERIES_TERMS = 4
@@ -189,6 +190,7 @@ class Rest:
     always: arb  # at any time up to the last one; infinite where only later times are bounded
     at_times: tuple[arb, ...]  # at each of the times asked for
     start: arb | None = None  # the response at t = 0, where it is known
+    fade: arb = ZERO  # at a time t [s] it is exp(-fade t) times what it is always, at most [1/s]
 
 
 @dataclass(frozen=True, slots=True)
@@ -211,6 +213,11 @@ class Annulus:
     def reach(self) -> arb:
         """Return the largest abs(s) on the ring."""
         return abs(self.centre) + self.radius * self.width
+
+    @property
+    def fade(self) -> arb:
+        """Return how fast the slowest exponential on the ring decays [1/s]."""
+        return -(self.centre + self.radius * self.width)
 
     def holds(self, point: acb) -> bool | None:
         """Tell whether a point lies within; None on the ring."""

@@ -93,7 +93,8 @@ class LossyBound:
                 if not own.is_finite() and not (t == 0 and start is not None):
                     return None
                 found.append(own.upper())
-            return Rest(always, tuple(found), start)
+            fade = SLOPE * radius if is_tilted else arb(0)
+            return Rest(always, tuple(found), start, fade)
 
 
 def lossy_bound(bound: BoundTransferFunction) -> LossyBound | None:

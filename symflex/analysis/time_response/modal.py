@@ -29,7 +29,7 @@ from symflex.analysis.time_response.damped_modes import Damping, damping_of
 from symflex.analysis.time_response.echoes import Sampled
 from symflex.analysis.time_response.exponentials import ExponentialTerm, values_of
 from symflex.analysis.time_response.filtered import filtered
-from symflex.analysis.time_response.function_size import SizeOfFunction
+from symflex.analysis.time_response.function_size import ZERO, SizeOfFunction
 from symflex.analysis.time_response.lossless_modes import LosslessModes, lossless_modes
 from symflex.analysis.time_response.lossy_modes import LossyBound, lossy_bound
 from symflex.analysis.time_response.passive_modes import PassiveBound, passive_bound
@@ -223,6 +223,7 @@ class PartialSum:
     rest: arb  # at any time
     at_times: tuple[arb, ...] = ()  # at each of the times, where that is less
     speed: arb | None = None  # how much the derivative of what is left out is at most, where that is known
+    fade: arb = ZERO  # at a time t [s] exp(-fade t) times the rest is left, at most [1/s]
 
     @property
     def left(self) -> arb:
@@ -302,6 +303,7 @@ class BoundedModes:
                 (rest.always + missing).upper(),
                 tuple(own.upper() for own in left),
                 speed,
+                min((rest.fade, *(ring.fade for ring in rings)), key=arb.mid).lower(),
             )
             return self._known.setdefault(reached, total)
 

@@ -8,14 +8,14 @@ below the highest value found holds no peak, one whose ball leaves out a level n
 found first, or last, is proved to be the first, or the last.
 
 With delays the response is made of pieces, each a sum of exponentials, until what residues of few poles leave
-out has faded (see :mod:`symflex.analysis.time_response.delayed_decay`).
+out has faded (see :mod:`symflex.analysis.time_response.delayed_decay`). With waves it is made of pieces too:
+the later one begins, the fewer modes are still alive, and the smoother it is.
 """
 
 from __future__ import annotations
 
 import heapq
 from dataclasses import dataclass
-from math import inf
 from typing import TYPE_CHECKING, Final
 
 from flint import acb, arb
@@ -61,8 +61,11 @@ DELAYS_DIGITS = 60
 """Of poles of loops with delays: high powers of their differences lose some."""
 FADED = 1e-11
 """Of the final value: what is left of a response with delays when residues take the place of its pieces."""
-SMOOTH_MODES = (40, 20, 10, 5, 3)
-"""Terms of which the slope of such a response is made, tried in turn: few are smooth, many are sharp."""
+SMOOTH_MODES = (400, 40, 20, 10, 5, 3)
+"""Terms of which a piece of a response of waves is made, tried in turn: few are smooth, many are sharp."""
+DEAD = 1e-14
+"""Of the final value: what a mode is worth when it is left out."""
+MOST_PIECES = 60
 ZERO: Final = arb(0)
 
 
@@ -168,18 +171,45 @@ def _of_modes(bound: BoundTransferFunction) -> StepInfo | None:
     if found is None:
         return None
     with precision(MODES_BITS):
-        resting = [t for t in found.terms if t.rate.is_zero()]
-        moving = sorted((t for t in found.terms if not t.rate.is_zero()), key=_size, reverse=True)
+        final = _resting(found.terms)
+        if final is None:
+            return None
+        moving = [_scaled(t, final) for t in found.terms if not t.rate.is_zero()]
+        rest = (found.rest / abs(final)).upper()
         best: StepInfo | None = None
         for count in SMOOTH_MODES:
-            left = sum((arb(_size(t)) for t in moving[count:]), found.rest)
-            info = step_info([*resting, *moving[:count]], left)
-            if info is None:
-                break
+            info = _told(final, NormalisedResponse(_pieces(moving, count, rest, found.fade)))
             best = info if best is None or info.missing < best.missing else best
             if not best.missing:
                 break
         return best
+
+
+def _resting(terms: Sequence[ExponentialTerm]) -> arb | None:
+    """Return where a response comes to rest; None where it does not, or at 0."""
+    resting = [t for t in terms if t.rate.is_zero()]
+    final = sum((t.coefficients[0].real for t in resting if t.coefficients), arb(0))
+    if any(c != 0 for t in resting for c in t.coefficients[1:]) or final.contains(0):
+        return None
+    return final if all(t.rate.real < 0 for t in terms if not t.rate.is_zero()) else None
+
+
+def _pieces(terms: Sequence[ExponentialTerm], count: int, rest: arb, fade: arb) -> list[Piece]:
+    """Return a response with so many terms at a time, those that are the largest then.
+
+    Each piece begins at twice the time of the one before; ``rest`` falls like ``exp(-fade t)``.
+    """
+    lasting = sorted((-1 / t.rate.real for t in terms), key=arb.mid)  # time constants
+    starts = [each.mid() for each in lasting[-1:]]
+    while starts and starts[-1] > lasting[0] and len(starts) < MOST_PIECES:
+        starts.append(starts[-1] / 2)
+    found = []
+    for begins in (arb(0), *reversed(starts)):
+        sizes = sorted(((_size(t, begins), t) for t in terms), key=lambda own: float(own[0]), reverse=True)
+        kept = [t for size, t in sizes[:count] if not size < DEAD]
+        left = sum((size for size, _ in sizes[len(kept) :]), rest * (-fade * begins).exp())
+        found.append(Piece(tuple(kept), begins, constant=1, rest=left.upper()))
+    return found
 
 
 def _of_delays(bound: BoundTransferFunction) -> StepInfo | None:
@@ -200,22 +230,27 @@ def _of_delays(bound: BoundTransferFunction) -> StepInfo | None:
         if pieces is None:
             return StepInfo(final, None, None, None, None, None)
         early = [Piece(tuple(_scaled(t, final) for t in own), start, start) for start, own in pieces]
-        return _told(final, NormalisedResponse(terms, arb(FADED), early, until))
+        late = Piece(terms, until, constant=1, rest=arb(FADED))
+        return _told(final, NormalisedResponse([*early, late]))
 
 
 def _scaled(term: ExponentialTerm, final: arb) -> ExponentialTerm:
     return ExponentialTerm(term.rate, tuple(c / final for c in term.coefficients))
 
 
-def _size(term: ExponentialTerm) -> float:
-    """Return a bound of a term that decays; what does not is the largest."""
-    return float(abs(term.coefficients[0]).upper()) if term.rate.real < 0 else inf
+def _size(term: ExponentialTerm, t: arb) -> arb:
+    """Return the most that a term which decays is from a time on."""
+    total = arb(0)
+    for j, c in enumerate(term.coefficients):
+        # t^j exp(-d t) falls from j/d on.
+        latest = t.max(-arb(j) / term.rate.real)
+        size = abs(c) * (term.rate.real * latest).exp()
+        total += size * latest**j / arb(j + 1).gamma() if j else size
+    return total.upper()
 
 
-def step_info(terms: Sequence[ExponentialTerm], rest: arb = ZERO) -> StepInfo | None:
+def step_info(terms: Sequence[ExponentialTerm]) -> StepInfo | None:
     """Return the properties of a step response; None where it does not come to rest, or at 0.
-
-    The response differs by no more than ``rest`` from the sum of its terms, at any time.
 
     Examples
     --------
@@ -224,25 +259,21 @@ def step_info(terms: Sequence[ExponentialTerm], rest: arb = ZERO) -> StepInfo | 
     >>> float(found.final), round(float(found.rise_time), 9), round(float(found.settling_time), 9)
     (2.0, 2.197224577, 3.912023005)
     """
-    resting = [t for t in terms if t.rate.is_zero()]
-    moving = [t for t in terms if not t.rate.is_zero()]
-    final = sum((t.coefficients[0].real for t in resting if t.coefficients), arb(0))
-    if any(c != 0 for t in resting for c in t.coefficients[1:]) or final.contains(0):
+    final = _resting(terms)
+    if final is None:
         return None
-    if not all(t.rate.real < 0 for t in moving):
-        return None
-    left = (rest / abs(final)).upper()
-    if not left < SETTLED / 4:
-        return StepInfo(final, None, None, None, None, None)
-    return _told(final, NormalisedResponse(tuple(_scaled(t, final) for t in moving), left))
+    moving = tuple(_scaled(t, final) for t in terms if not t.rate.is_zero())
+    return _told(final, NormalisedResponse([Piece(moving, arb(0), constant=1)]))
 
 
 def _told(final: arb, motion: NormalisedResponse) -> StepInfo:
-    until = motion.quiet(arb(SETTLED))
+    until = motion.quiet(SETTLED)
+    if until is None:
+        return StepInfo(final, None, None, None, None, None)
     peak = motion.peak()
-    rises = [motion.first(arb(level), until) for level in RISE]
+    rises = [motion.first(level, until) for level in RISE]
     rise = None if rises[0] is None or rises[1] is None else rises[1] - rises[0]
-    settling = motion.settling(arb(SETTLED), until)
+    settling = motion.settling(SETTLED, until)
     if peak is None:
         return StepInfo(final, None, None, None, rise, settling)
     when, height = peak
@@ -250,18 +281,29 @@ def _told(final: arb, motion: NormalisedResponse) -> StepInfo:
 
 
 class Piece:
-    """A sum of exponentials of the time from its origin on, besides a constant."""
+    """A sum of exponentials of the time from its origin on, besides a constant, and at most ``rest``."""
 
     def __init__(
-        self, terms: tuple[ExponentialTerm, ...], begins: arb, origin: arb = ZERO, constant: int = 0
+        self,
+        terms: tuple[ExponentialTerm, ...],
+        begins: arb,
+        origin: arb = ZERO,
+        constant: int = 0,
+        rest: arb = ZERO,
     ) -> None:
         self._orders = [terms]
         self.begins = begins
+        self.rest = rest
         self._origin = origin
         self._constant = constant
 
+    @property
+    def terms(self) -> tuple[ExponentialTerm, ...]:
+        """What is summed."""
+        return self._orders[0]
+
     def at(self, t: arb, order: int = 0) -> arb:
-        """Return the value, or a derivative, on a ball of times."""
+        """Return the value of the sum, or of a derivative, on a ball of times."""
         while len(self._orders) <= order:
             self._orders.append(tuple(_derivative(term) for term in self._orders[-1]))
         total, t = arb(0 if order else self._constant), t - self._origin
@@ -300,21 +342,10 @@ class Piece:
 
 
 class NormalisedResponse:
-    """A response over its final value: 1 plus exponentials that decay, and at most ``rest`` besides.
+    """A response over its final value: 1 plus exponentials that decay, after pieces of other ones."""
 
-    Up to a time other pieces may stand in its place.
-    """
-
-    def __init__(
-        self,
-        terms: tuple[ExponentialTerm, ...],
-        rest: arb = ZERO,
-        early: Sequence[Piece] = (),
-        begins: arb = ZERO,
-    ) -> None:
-        self.pieces = [*early, Piece(terms, begins, constant=1)]
-        self._terms = terms
-        self._rest = rest
+    def __init__(self, pieces: Sequence[Piece]) -> None:
+        self.pieces = pieces
         self.is_lost = False  # something could not be told
 
     def parts(self, until: arb) -> list[tuple[Piece, arb, arb]]:
@@ -323,22 +354,14 @@ class NormalisedResponse:
         ends = zip((arb(0), *starts), (*starts, until), strict=True)
         return [(piece, *each) for piece, each in zip(self.pieces, ends, strict=False)]
 
-    def beyond(self, t: arb) -> arb:
-        """Return how far the response is from its end at most, from a time on."""
-        total = self._rest
-        for term in self._terms:
-            for j, c in enumerate(term.coefficients):
-                # t^j exp(-d t) falls from j/d on.
-                latest = t.max(-arb(j) / term.rate.real)
-                size = abs(c) * (term.rate.real * latest).exp()
-                total += size * latest**j / arb(j + 1).gamma() if j else size
-        return total
-
-    def quiet(self, level: arb) -> arb:
-        """Return a time from which on the response is closer to its end than a level."""
-        t = min((-1 / term.rate.real for term in self._terms), key=arb.mid, default=arb(1)).mid()
-        t = t.max(self.pieces[-1].begins).mid()
-        while not self.beyond(t) < level:
+    def quiet(self, level: float) -> arb | None:
+        """Return a time from which on the response is closer to its end than a level; None without one."""
+        last = self.pieces[-1]
+        if not last.rest < level / 2:
+            return None
+        t = min((-1 / term.rate.real for term in last.terms), key=arb.mid, default=arb(1)).mid()
+        t = t.max(last.begins).mid()
+        while not sum((_size(term, t) for term in last.terms), last.rest) < level:
             t = (2 * t).mid()
         return t
 
@@ -347,22 +370,29 @@ class NormalisedResponse:
 
         None where it cannot be told.
         """
-        rest = self._rest
-        until = self.quiet(CLOSE + 2 * rest)
-        best = (1 + CLOSE + 2 * rest).upper()
+        close = CLOSE + 4 * float(self.pieces[-1].rest)
+        until = self.quiet(close)
+        if until is None:
+            return None
+        best = 1 + arb(close)
         parts = self.parts(until)
+        found: list[tuple[arb | None, arb]] = []
         # Where a piece begins the slope may change its sign at once.
-        begins = [(piece, low, piece.at(low)) for piece, low, _ in parts]
-        found = [(piece, low, value) for piece, low, value in begins if value > best]
-        best = max([best, *(value.lower() for *_, value in begins)], key=float)
-        queue = [
-            (-float(piece.over(low, high).upper()), -k, piece, low, high)
-            for k, (piece, low, high) in enumerate(parts)
-        ]
+        for (before, *_), (piece, low, _) in zip((parts[0], *parts), parts, strict=False):
+            rest = piece.rest + (2 * before.rest if low > 0 else 0)
+            begun = piece.at(low) + arb(0, rest.upper())
+            if begun.upper() > best:
+                found.append((low if rest == 0 or low == 0 else None, begun))
+            best = best.max(begun.lower())
+
+        def most(piece: Piece, low: arb, high: arb) -> float:
+            return float((piece.over(low, high) + piece.rest).upper())
+
+        queue = [(-most(*part), -k, *part) for k, part in enumerate(parts)]
         heapq.heapify(queue)
         for count in range(1, MOST_INTERVALS):
             spend()
-            if not queue or -queue[0][0] < float((best - 2 * rest).lower()):
+            if not queue or -queue[0][0] < float(best.lower()):
                 break
             _, _, piece, low, high = heapq.heappop(queue)
             middle = ((low + high) / 2).mid()
@@ -374,80 +404,87 @@ class NormalisedResponse:
                 ends = piece.at(low, 1), piece.at(high, 1)
                 if ends[0] > 0 > ends[1]:
                     when = piece.passed(arb(0), low, high, 1)
-                    found.append((piece, when, piece.at(when)))
-                    best = best.max(found[-1][2].lower())
+                    height = piece.at(when) + arb(0, piece.rest)
+                    found.append((self._about_peak(piece, when), height))
+                    best = best.max(height.lower())
                 elif not (ends[0] < 0 or ends[1] > 0):
                     return None
                 continue
             if not high - low > until * arb(2) ** -HALVINGS:
                 return None
             for k, (a, b) in enumerate(((low, middle), (middle, high))):
-                heapq.heappush(queue, (-float(piece.over(a, b).upper()), 2 * count + k, piece, a, b))
+                heapq.heappush(queue, (-most(piece, a, b), 2 * count + k, piece, a, b))
         else:
             return None
-        highest = [each for each in found if not each[2] < best - 2 * rest]
+        highest = [each for each in found if not each[1] < best]
         if not highest:
-            return None, arb(1).union(best + rest)
-        if len(highest) > 1:
-            return None
-        piece, when, height = highest[0]
-        return self._about_peak(piece, when), height + arb(0, rest)
+            return None, arb(1).union(best)
+        return highest[0] if len(highest) == 1 else None
 
     def _about_peak(self, piece: Piece, when: arb) -> arb | None:
         """Return when the response with its rest is highest, given when it is without."""
-        if self._rest == 0 or when == 0 or piece is not self.pieces[-1]:
+        if piece.rest == 0:
             return when
         reach = when.rad()
         for _ in range(HALVINGS):
             # Within a box the response falls off from its peak as bent as it is the least.
-            reach = 2 * reach.max(self._rest)
+            reach = 2 * reach.max(piece.rest)
             bent = -piece.at(when.mid() + arb(0, reach), 2).upper()
-            needed = (4 * self._rest / bent).sqrt() + 2 * when.rad() if bent > 0 else reach
+            needed = (4 * piece.rest / bent).sqrt() + 2 * when.rad() if bent > 0 else reach
             if bent > 0 and needed < reach:
                 return arb(when.mid(), needed.upper())
         return None
 
-    def first(self, level: arb, until: arb) -> arb | None:
+    def first(self, level: float, until: arb) -> arb | None:
         """Return when the response first reaches a level below 1; at once, if it begins above."""
-        start = self.pieces[0].at(arb(0))
-        if start > level + self._rest:
+        begun = self.pieces[0].at(arb(0)) + arb(0, self.pieces[0].rest)
+        if begun > level:
             return arb(0)
-        # Without its rest it has not reached the lower of these before, and has reached the upper one after.
-        ends = [self.crossing(level + sign * self._rest, until, is_last=False) for sign in (-1, 1)]
-        if not start < level - self._rest:
-            ends[0] = arb(0)
-        return None if ends[0] is None or ends[1] is None else ends[0].union(ends[1])
+        # It has not reached the level before the most that it may be does, and has when the least does.
+        most = self.crossing(level, 1, until, is_last=False) if begun < level else arb(0)
+        least = self.crossing(level, -1, until, is_last=False)
+        return None if most is None or least is None else most.union(least)
 
-    def settling(self, band: arb, until: arb) -> arb | None:
+    def settling(self, band: float, until: arb) -> arb | None:
         """Return after which time the response stays within a band about 1; None where that is not told."""
         self.is_lost = False
         earliest, latest = arb(0), arb(0)
         for sign in (1, -1):
             outer, inner = (
-                self.crossing(1 + sign * (band + side * self._rest), until, is_last=True) for side in (1, -1)
+                self.crossing(1 + sign * band, side * sign, until, is_last=True) for side in (-1, 1)
             )
             earliest = earliest if outer is None else earliest.max(outer)
             latest = latest if inner is None else latest.max(inner)
         return None if self.is_lost else earliest.union(latest)
 
-    def crossing(self, level: arb, until: arb, *, is_last: bool) -> arb | None:
-        """Return the first or last time at which the response passes a level; None if it does not.
+    def crossing(self, level: float, sign: int, until: arb, *, is_last: bool) -> arb | None:
+        """Return the first or last time at which the most, or least, that it may be passes a level.
 
-        None, and ``is_lost``, too, where that cannot be told.
+        None where it does not; None, and ``is_lost``, too, where that cannot be told.
         """
         pending = self.parts(until)[:: 1 if is_last else -1]
+        before: bool | None = None  # whether it is above the level next to what is looked at now
         for _ in range(MOST_INTERVALS):
             spend()
             if not pending:
                 return None
             piece, low, high = pending.pop()
-            if not (piece.over(low, high) - level).contains(0):
+            target = level - sign * piece.rest
+            next_to = high if is_last else low
+            span = piece.over(low, high) - target
+            if not span.contains(0):
+                # Where a piece begins, less may be left out than before.
+                if before is not None and before != (span > 0):
+                    return next_to
+                before = bool(span > 0)
                 continue
-            ends = piece.at(low) - level, piece.at(high) - level
+            ends = piece.at(low) - target, piece.at(high) - target
             middle = ((low + high) / 2).mid()
             slope = piece.at(middle + arb(0, (high - middle).abs_upper()), 1)
             if ends[0] * ends[1] < 0 and not slope.contains(0):
-                return piece.passed(level, low, high, 0)
+                if before is not None and before != (ends[1 if is_last else 0] > 0):
+                    return next_to
+                return piece.passed(target, low, high, 0)
             if not high - low > until * arb(2) ** -HALVINGS:
                 break
             halves = [(piece, low, middle), (piece, middle, high)]

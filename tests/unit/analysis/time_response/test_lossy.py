@@ -5,8 +5,10 @@ from __future__ import annotations
 import mpmath
 import numpy as np
 import pytest
+from flint import arb
+from scipy.optimize import brentq
 
-from symflex.analysis.time_response import SampleTimes, time_response
+from symflex.analysis.time_response import SampleTimes, find_step_info, time_response
 from symflex.analysis.time_response.lossy_modes import lossy_bound
 from symflex.analysis.time_response.modal import BoundedModes, lossy_modes
 from symflex.roots.distributed.far_out import SECTORS, TILTED, FunctionFarOut
@@ -89,6 +91,28 @@ def test_a_servo_at_the_tip_follows_as_its_inverse_transform(name):
     found = time_response(servo(controller), "step", SampleTimes.of([0.0, *TIMES]))
     assert found.enclosures[0] == 0
     assert_holds(found, [0.0, *inverted(closed(control), 1, TIMES)], off=1e-14 * np.abs(found.values).max())
+
+
+@pytest.mark.slow
+def test_what_is_told_of_a_servos_step_has_many_digits():
+    def at(t):
+        return inverted(closed(pd), 1, [t])[0] * 7 / 4
+
+    def crossed(level, low, high):
+        return brentq(lambda t: at(t) - level, low, high, xtol=1e-8)
+
+    found = find_step_info(servo(PD))
+    peak = float(found.peak_time)
+    assert (7 * found.final).contains(4)
+    assert (found.overshoot + 1 - float(at(peak))).overlaps(arb(0, 1e-10))
+    for off in (-1e-3, 1e-3):
+        assert at(peak + off) < at(peak)
+    rise = crossed(0.9, 0.01, peak) - crossed(0.1, 0.01, peak)
+    assert found.rise_time.overlaps(arb(rise, 2e-8)) and found.rise_time.rad() < 1e-5 * rise
+    settled = float(found.settling_time)
+    assert found.settling_time.rad() < 1e-9 * settled
+    assert abs(abs(at(settled) - 1) - 0.02) < 1e-9
+    assert all(abs(at(settled + t) - 1) < 0.02 for t in np.linspace(0.01, 3, 10))
 
 
 @pytest.mark.slow
