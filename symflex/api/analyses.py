@@ -78,7 +78,7 @@ class Analyses(Plotted):
         r"""Return final value, peak, overshoot, rise and settling time of the step response, each a ball.
 
         That no later peak is higher, and no later crossing of a level follows, is proved. None where the
-        response does not come to rest, or at 0, and of functions with waves or delays.
+        response does not come to rest, or at 0, jumps after delays, or is not proved.
 
         Examples
         --------

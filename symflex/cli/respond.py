@@ -78,7 +78,8 @@ def respond(spec: Specification, given: RespondOptions) -> int:
         save(draw_in_time(found), Path(given.output))
         note(f"wrote {given.output}")
     else:
-        info = find_step_info(bound, given.digits) if given.to == "step" and shaper is None else None
+        is_told = given.to == "step" and shaper is None and found.certified
+        info = find_step_info(bound, given.digits, found.modes) if is_told else None
         if given.as_json:
             told = {"step_info": info.to_json_dict(given.digits)} if info else {}
             emit_json({**found.to_json_dict(), **told})

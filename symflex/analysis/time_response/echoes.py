@@ -45,6 +45,7 @@ from symflex.roots.problem import RootProblem
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
+    from symflex.analysis.time_response.modal import PartialSum
     from symflex.analysis.time_response.sample_times import SampleTimes
     from symflex.roots import Root
 
@@ -70,6 +71,7 @@ class Sampled:
     impulses: tuple[ImpulseAt, ...] = ()
     jumps: tuple[JumpAt, ...] = ()
     at_jumps: frozenset[int] = frozenset()  # positions of values that hold both sides of a jump
+    modes: PartialSum | None = None  # of which it is a sum, at any time
 
 
 @dataclass(frozen=True)

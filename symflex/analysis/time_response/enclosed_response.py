@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -14,6 +14,8 @@ from symflex.roots.root import RootDecimals, decimals
 
 if TYPE_CHECKING:
     import numpy.typing as npt
+
+    from symflex.analysis.time_response.modal import PartialSum
 
 SCHEMA = "symflex.respond/1"
 INTEGRATIONS = {"impulse": 0, "step": 1, "ramp": 2}
@@ -71,6 +73,8 @@ class EnclosedResponse:
         Digits asked for, of the largest value.
     shaper : str or None
         The kind of shaper that the input went through.
+    modes : PartialSum or None
+        The proved sum over modes that it is, at any time, where it was found so.
     """
 
     tf: str
@@ -84,6 +88,7 @@ class EnclosedResponse:
     reason: str | None = None
     digits: int = 12
     shaper: str | None = None
+    modes: PartialSum | None = field(default=None, repr=False)
 
     @cached_property
     def _doubles(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:

@@ -116,6 +116,7 @@ def time_response(
         certified,
         reason,
         digits,
+        modes=found.modes if certified else None,
     )
 
 

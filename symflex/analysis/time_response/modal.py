@@ -235,7 +235,7 @@ class PartialSum:
         """The response, with what is left out as part of its balls."""
         rests = self.at_times or (self.rest,) * len(self.values)
         pairs = zip(self.values, rests, strict=True)
-        return Sampled(tuple(y + arb(0, rest.upper()) for y, rest in pairs))
+        return Sampled(tuple(y + arb(0, rest.upper()) for y, rest in pairs), modes=self)
 
 
 class BoundedModes:

@@ -40,6 +40,7 @@ from symflex.transfer import BoundNested
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from symflex.analysis.time_response.modal import PartialSum
     from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 
 RISE = (0.1, 0.9)
@@ -139,8 +140,10 @@ class StepInfo:
         return found
 
 
-def find_step_info(bound: AnyBoundFunction, digits: int = 12) -> StepInfo | None:
-    """Return the properties of a step response, from poles of about so many digits.
+def find_step_info(
+    bound: AnyBoundFunction, digits: int = 12, modes: PartialSum | None = None
+) -> StepInfo | None:
+    """Return the properties of a step response, from poles of about so many digits, or from a known sum.
 
     None where it does not come to rest, or at 0, where poles cannot be told apart, with waves in a loop with
     a delay, and with those whose modes are not bounded, as of large networks. With waves, numbers are as
@@ -152,7 +155,7 @@ def find_step_info(bound: AnyBoundFunction, digits: int = 12) -> StepInfo | None
     if bound.is_zero:
         return None
     if bound.is_distributed:
-        return _of_modes(bound)
+        return _of_modes(bound, modes)
     wanted = 2 * digits + MORE_DIGITS
     poles = find_polynomial_roots(
         problem_of(bound, [(f, -e) for f, e in bound.ratio.factors if e < 0]), wanted
@@ -163,11 +166,13 @@ def find_step_info(bound: AnyBoundFunction, digits: int = 12) -> StepInfo | None
         return None if terms is None else step_info(terms)
 
 
-def _of_modes(bound: BoundTransferFunction) -> StepInfo | None:
+def _of_modes(bound: BoundTransferFunction, known: PartialSum | None) -> StepInfo | None:
     """Return the properties of a sum over modes; high ones, which make it rough, are a part of its rest."""
     if any(law.kind == "exponential" for law in bound.kernels.dispersions):
         return _of_delays(bound)
-    found = proved_modes(bound, 1, SampleTimes.of([0.0, default_until(bound)]), MODES_DIGITS)
+    found = known
+    if found is None:
+        found = proved_modes(bound, 1, SampleTimes.of([0.0, default_until(bound)]), MODES_DIGITS)
     if found is None:
         return None
     with precision(MODES_BITS):
