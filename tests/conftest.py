@@ -7,9 +7,21 @@ import shutil
 from importlib.util import find_spec
 
 import pytest
+from hypothesis import HealthCheck, settings
 
 # Tests run side by side: threads that wait for each other in small matrices only double the work.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+# Neither how fast a machine is nor chance decides whether a test passes; new cases are what fuzzing is for.
+settings.register_profile(
+    "same",
+    deadline=None,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
+    derandomize=True,
+    database=None,
+    print_blob=False,
+)
+settings.load_profile("same")
 
 REQUIRE_TOOLS = "SYMFLEX_REQUIRE_TOOLS"
 REASON = "which is not installed"

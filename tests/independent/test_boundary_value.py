@@ -19,7 +19,7 @@ from tests.independent.spec_expressions import evaluate
 
 WORST_RELATIVE_ERROR = 1e-12
 POINTS = 20
-MANY_POINTS = 120
+MANY_POINTS = 50
 FEW = (0, 3, 10, 16)
 """Which of the 20 points every run takes; the slow run takes all of them, and 120 for exports."""
 

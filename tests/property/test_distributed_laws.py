@@ -91,10 +91,6 @@ def numbers(kind):
 def quiet(examples):
     return settings(
         max_examples=examples,
-        deadline=None,
-        database=None,
-        derandomize=True,
-        print_blob=False,
         suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture],
     )
 

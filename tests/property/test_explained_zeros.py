@@ -53,7 +53,7 @@ def held_frequencies(masses, springs, driven):
 
 
 @pytest.mark.slow
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(trees())
 def test_colocated_zeros_are_the_poles_of_the_held_network(tree):
     model = pipeline.loads(specification(*tree))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 
 from symflex import pipeline
 from symflex.algebra import degree_in
@@ -19,13 +19,7 @@ SHORT = 60
 
 
 def quiet(examples):
-    return settings(
-        max_examples=examples,
-        deadline=None,
-        database=None,
-        derandomize=True,
-        suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
-    )
+    return settings(max_examples=examples)
 
 
 def ratio_at(tf, point):

@@ -33,7 +33,7 @@ PATHS = slow_ones(
     specifications(FOLDER, "**/*.toml"),
     lambda path: path.stem in LARGE or (path.parent.name != "eppinger1988" and path.stem not in EACH_TIME),
 )
-QUIET = settings(max_examples=200, deadline=None, database=None, derandomize=True)
+QUIET = settings(max_examples=200)
 
 LEAVES = st.one_of(
     st.sampled_from(["s", "m_1", "k", "pi", "e", "E", "e5"]).map(Name),

@@ -7,7 +7,7 @@ import itertools
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import assume, given, settings
 
 import symflex
 from tests.property.networks import networks, passive_networks, reciprocal_networks, to_toml
@@ -20,14 +20,7 @@ FLOOR = 1e-4
 
 
 def quiet(examples):
-    return settings(
-        max_examples=examples,
-        deadline=None,
-        database=None,
-        derandomize=True,
-        print_blob=False,
-        suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
-    )
+    return settings(max_examples=examples)
 
 
 @pytest.fixture(scope="session")
@@ -67,7 +60,7 @@ def assert_close(found, expected):
 
 @pytest.mark.slow
 @given(network=networks())
-@quiet(800)
+@quiet(300)
 def test_the_exported_functions_agree_with_the_dense_tableau(numpy_functions, network):
     functions = numpy_functions(to_toml(network))
     for output, source in pairs(network):

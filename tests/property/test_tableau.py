@@ -8,7 +8,7 @@ import tomllib
 import numpy as np
 import pytest
 import sympy
-from hypothesis import HealthCheck, Phase, find, given, settings
+from hypothesis import Phase, find, given, settings
 
 from tests.independent import eppinger1988
 from tests.property.networks import (
@@ -28,13 +28,7 @@ from tests.property.networks import (
 from tests.property.tableau import respond
 
 POINTS = (0.4 + 1.3j, 1.7 - 0.6j, 0.05 + 2.9j)
-QUIET = settings(
-    max_examples=300,
-    deadline=None,
-    database=None,
-    derandomize=True,
-    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
-)
+QUIET = settings(max_examples=300)
 
 
 def parameters(**tenths):

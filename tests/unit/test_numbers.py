@@ -11,7 +11,9 @@ from symflex import pipeline
 from symflex.errors import ModelError, UsageError
 from tests.house.repository import specifications
 
-MODELS = specifications(Path(__file__).parents[2], "derivations/*/*.toml")
+LONG = "two_link_arm"
+"""Its determinant takes minutes with symbols."""
+MODELS = [p for p in specifications(Path(__file__).parents[2], "derivations/*/*.toml") if p.stem != LONG]
 
 
 def place(root):

@@ -267,7 +267,7 @@ def check(value: Value, source: Source) -> None:
 
 
 @pytest.mark.slow
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=400)
 @given(st.lists(st.sampled_from(FRAGMENTS), max_size=40).map("".join))
 def test_any_text_gives_a_spec_or_a_spec_error(text: str) -> None:
     source = Source("a.toml", text)

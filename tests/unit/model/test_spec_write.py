@@ -96,13 +96,13 @@ values = st.recursive(
 
 
 @pytest.mark.slow
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(mappings(values))
 def test_what_is_written_is_read_back(mapping: dict[str, object]) -> None:
     assert plain(parse(Source("<python>", write(mapping))).root) == exact(mapping)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(mappings(texts | mappings(texts)))
 def test_tomllib_reads_what_is_written(mapping: dict[str, object]) -> None:
     assert tomllib.loads(write(mapping)) == mapping

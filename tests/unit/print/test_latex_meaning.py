@@ -146,14 +146,14 @@ def is_finite(tree):
 
 
 @pytest.mark.slow
-@settings(deadline=None, max_examples=200)
+@settings(max_examples=200)
 @given(trees.filter(is_finite))
 def test_an_expression_means_what_its_tree_means(tree):
     assert meaning(latex_expression(tree, {})) == value_of(tree)
 
 
 @pytest.mark.slow
-@settings(deadline=None, max_examples=200)
+@settings(max_examples=200)
 @given(trees.filter(is_finite), st.sampled_from([6.0, 9.0, 15.0]))
 def test_a_broken_expression_means_what_its_tree_means(tree, width):
     # A number too long for a line goes on in the next.

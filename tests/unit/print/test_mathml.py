@@ -137,7 +137,7 @@ def close(a, b):
     return abs(a - b) <= mpmath.mpf("1e-9") * max(1, abs(b))
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=80)
 @given(expressions())
 def test_mathml_has_the_value_of_the_expression(expression):
     try:
@@ -148,7 +148,7 @@ def test_mathml_has_the_value_of_the_expression(expression):
     assert close(found, expected)
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=80)
 @given(expressions(), st.floats(1, 12))
 def test_pieces_side_by_side_have_the_value_of_the_expression(expression, width):
     pieces = MathmlWriter({}).pieces(expression, width)

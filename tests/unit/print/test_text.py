@@ -73,7 +73,7 @@ def test_a_nested_sum_keeps_to_the_width(width):
     assert max(map(len, wrapped(expression(CHAIN), width))) <= width
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     width=st.integers(12, 90),
     parts=st.lists(

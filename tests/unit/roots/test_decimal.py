@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import pytest
 from flint import arb, fmpz_poly
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from symflex.roots import Root, find_polynomial_roots, precision
@@ -83,7 +83,6 @@ def test_three_digits_of_a_dyadic_number(value, text):
     assert box(ball, arb(0)).decimal(3).re == text
 
 
-@settings(deadline=None)
 @given(
     st.fractions(min_value=-(10**6), max_value=10**6),
     st.fractions(min_value=-(10**6), max_value=10**6),
@@ -102,7 +101,6 @@ def test_the_print_is_rigorous_for_any_box(re, im, exponent, digits):
     assert farthest_square(root, decimals) <= reached
 
 
-@settings(deadline=None)
 @given(st.integers(min_value=-(10**9), max_value=10**9), st.integers(min_value=1, max_value=60))
 def test_the_radius_is_at_most_a_tenth_too_large(middle, exponent):
     root = box(arb(arb(middle), arb(2) ** -exponent), arb(0))

@@ -20,7 +20,6 @@ FACTORS = st.lists(
 )
 
 
-@settings(deadline=None)
 @given(COEFFICIENTS)
 def test_the_product_of_linear_factors_is_the_polynomial(coefficients):
     roots = find_polynomial_roots(problem_of(fmpz_poly(coefficients)), 15)
@@ -33,7 +32,6 @@ def test_the_product_of_linear_factors_is_the_polynomial(coefficients):
 
 
 @pytest.mark.slow
-@settings(deadline=None)
 @given(FACTORS)
 def test_multiplicities_of_a_product_add_up_to_its_degree(factors):
     product = fmpz_poly([1])
@@ -44,7 +42,6 @@ def test_multiplicities_of_a_product_add_up_to_its_degree(factors):
 
 
 @pytest.mark.slow
-@settings(deadline=None)
 @given(FACTORS)
 def test_multiplicities_are_those_of_the_square_free_factorisation(factors):
     product = fmpz_poly([1])
@@ -55,7 +52,6 @@ def test_multiplicities_are_those_of_the_square_free_factorisation(factors):
     assert sorted(root.multiplicity for root in roots) == expected
 
 
-@settings(deadline=None)
 @given(FACTORS)
 def test_enclosures_of_distinct_roots_are_disjoint(factors):
     product = fmpz_poly([1])
@@ -66,7 +62,6 @@ def test_enclosures_of_distinct_roots_are_disjoint(factors):
     assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])
 
 
-@settings(deadline=None)
 @given(COEFFICIENTS)
 def test_conjugates_come_together(coefficients):
     roots = find_polynomial_roots(problem_of(fmpz_poly(coefficients)), 10)
@@ -76,7 +71,7 @@ def test_conjugates_come_together(coefficients):
     assert points == mirrored
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(COEFFICIENTS)
 @pytest.mark.slow
 def test_enclosures_contain_the_roots_mpmath_finds_at_higher_precision(coefficients):
@@ -91,7 +86,6 @@ def test_enclosures_contain_the_roots_mpmath_finds_at_higher_precision(coefficie
         assert sum(bool(root.enclosure().overlaps(near)) for root in roots) == 1
 
 
-@settings(deadline=None)
 @given(COEFFICIENTS, st.integers(min_value=1, max_value=60))
 def test_digits_asked_for_are_digits_given(coefficients, digits):
     for root in find_polynomial_roots(problem_of(fmpz_poly(coefficients)), digits):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import sympy
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 
 import symflex
 from symflex import pipeline
@@ -97,13 +97,7 @@ def test_combinations_that_grow_too_large_are_refused(monkeypatch):
 
 @pytest.mark.slow
 @given(network=networks())
-@settings(
-    max_examples=40,
-    deadline=None,
-    database=None,
-    derandomize=True,
-    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
-)
+@settings(max_examples=40)
 def test_a_random_network_has_as_many_minimal_states_as_proved_poles(network):
     model = pipeline.loads(to_toml(network))
     for pair in model.transfer_functions:

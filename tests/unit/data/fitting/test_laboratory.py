@@ -67,11 +67,11 @@ def test_a_result_without_a_resonance_is_never_counted_as_right():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("modes_given", [True, False])
-def test_of_a_hundred_data_sets_nearly_all_are_right_or_poor(modes_given):
-    figures = summary(study(100, seed=12, modes_given=modes_given))
-    # Of 100 draws with a share of 97 % fewer than 92 are right once in 250 times.
-    assert figures["data sets right, jointly"] >= 0.92
+@pytest.mark.parametrize(("count", "modes_given"), [(100, True), (20, False)])
+def test_of_many_data_sets_nearly_all_are_right_or_poor(count, modes_given):
+    figures = summary(study(count, seed=12, modes_given=modes_given))
+    # With a share of 97 % fewer than 92 of 100 are right once in 300 times, than 17 of 20 once in 370.
+    assert figures["data sets right, jointly"] >= {100: 0.92, 20: 0.85}[count]
     assert figures["parameters within three standard errors"] >= 0.985
-    assert figures["wrong and not called poor"] <= 5
+    assert figures["wrong and not called poor"] <= count // 20
     assert 0.63 < figures["parameters within one"] < 0.75
