@@ -19,7 +19,6 @@ from tests.independent.spec_expressions import evaluate
 
 WORST_RELATIVE_ERROR = 1e-12
 POINTS = 20
-MANY_POINTS = 50
 FEW = (0, 3, 10, 16)
 """Which of the 20 points every run takes; the slow run takes all of them, and 120 for exports."""
 
@@ -149,13 +148,6 @@ def test_the_exact_evaluation_agrees_at_twenty_points(name):
 @pytest.mark.parametrize("name", NAMES)
 def test_the_exported_function_agrees_at_twenty_points(exported, name):
     points, expected = expected_of(name, POINTS)
-    assert relative_error(exported(name)(points), expected) < WORST_RELATIVE_ERROR
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", NAMES)
-def test_the_exported_function_agrees_at_many_more_points(exported, name):
-    points, expected = expected_of(name, MANY_POINTS)
     assert relative_error(exported(name)(points), expected) < WORST_RELATIVE_ERROR
 
 

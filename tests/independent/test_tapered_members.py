@@ -199,7 +199,7 @@ BARS = list(
 )
 
 
-def points(seed, fastest, count=8):
+def points(seed, fastest, count=20):
     """Return complex frequencies, of which most are far from the imaginary axis."""
     chance = random.Random(seed)
     return [

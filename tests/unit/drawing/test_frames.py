@@ -82,7 +82,7 @@ def test_random_models_are_drawn_with_everything_in_its_place(first, count):
         drawing = drawing_of(model)
         wrong = (overlaps(drawing), struck_texts(drawing), outside(drawing), wrongly_counted(model, drawing))
         assert wrong == ([], [], [], []), seed
-        assert seed % 5 or drawing == drawing_of(model), seed
+        assert drawing == drawing_of(model), seed
 
 
 @pytest.mark.slow
