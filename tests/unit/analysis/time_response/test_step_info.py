@@ -104,12 +104,12 @@ def test_the_properties_of_a_beam_hold_those_of_its_modal_sum(kind, loss):
         assert float(ball.rad()) < share * value
 
     holds(found.final, 1 / 3, 1e-12, 1e-9)
-    holds(found.peak, -peak.fun / 3, 1e-7, 1e-7)
-    holds(found.overshoot, -peak.fun - 1, 1e-7, 1e-7)
-    holds(found.rise_time, rises[1] - rises[0], 1e-6, 1e-5)
-    holds(found.settling_time, settled, 1e-6, 1e-5)
+    holds(found.peak, -peak.fun / 3, 1e-7, 1e-5)
+    holds(found.overshoot, -peak.fun - 1, 1e-7, 1e-5)
+    holds(found.rise_time, rises[1] - rises[0], 1e-6, 1e-4)
+    holds(found.settling_time, settled, 1e-6, 1e-4)
     if found.peak_time is not None:
-        holds(found.peak_time, peak.x, 1e-5, 1e-3)
+        holds(found.peak_time, peak.x, 1e-5, 1e-2)
 
 
 def test_a_beam_that_loses_nothing_does_not_come_to_rest():
