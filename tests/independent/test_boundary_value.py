@@ -20,7 +20,7 @@ from tests.independent.spec_expressions import evaluate
 WORST_RELATIVE_ERROR = 1e-12
 POINTS = 20
 FEW = (0, 3, 10, 16)
-"""Which of the 20 points every run takes; the slow run takes all of them, and 120 for exports."""
+"""Which of the 20 points every run takes; the slow run takes all of them."""
 
 NAMES = [case.name for case in CASES]
 
@@ -44,8 +44,6 @@ EACH_TIME = {
     "clamped-sliding under a distributed load, moment at the clamp",
 }
 """One of each theory and kind of end, compared in every run."""
-
-EXPORTED = slow_ones(NAMES, lambda name: name not in EACH_TIME)
 
 UNNAMED = {
     "pipe conveying fluid",
@@ -131,7 +129,7 @@ def test_the_exact_evaluation_agrees_with_the_boundary_value_problem(name):
     assert relative_error(bound(name)(points), expected) < WORST_RELATIVE_ERROR
 
 
-@pytest.mark.parametrize("name", EXPORTED)
+@pytest.mark.parametrize("name", sorted(EACH_TIME))
 def test_the_exported_function_agrees_with_the_boundary_value_problem(exported, name):
     points, expected = expected_of(name, POINTS, FEW)
     assert relative_error(exported(name)(points), expected) < WORST_RELATIVE_ERROR
@@ -139,15 +137,9 @@ def test_the_exported_function_agrees_with_the_boundary_value_problem(exported, 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
-def test_the_exact_evaluation_agrees_at_twenty_points(name):
+def test_the_exact_evaluation_and_the_exported_function_agree_at_twenty_points(exported, name):
     points, expected = expected_of(name, POINTS)
     assert relative_error(bound(name)(points), expected) < WORST_RELATIVE_ERROR
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", NAMES)
-def test_the_exported_function_agrees_at_twenty_points(exported, name):
-    points, expected = expected_of(name, POINTS)
     assert relative_error(exported(name)(points), expected) < WORST_RELATIVE_ERROR
 
 
@@ -216,7 +208,7 @@ def test_the_exact_evaluation_is_right_at_very_low_frequency(name):
     assert relative_error(found, expected_at(name, VERY_SLOW)) < WORST_RELATIVE_ERROR
 
 
-@pytest.mark.parametrize("name", EXPORTED)
+@pytest.mark.parametrize("name", slow_ones(NAMES, lambda name: name not in EACH_TIME))
 def test_the_exported_function_is_right_at_very_low_frequency(exported, name):
     found = exported(name)(np.array(VERY_SLOW))
     assert relative_error(found, expected_at(name, VERY_SLOW)) < WORST_RELATIVE_ERROR

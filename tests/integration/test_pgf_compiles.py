@@ -40,9 +40,9 @@ PAPER = r"""\documentclass[10pt,twocolumn]{article}
 SET = [
     (path, *way)
     for i, path in enumerate(specifications(DERIVATIONS, "**/*.toml"))
-    for way in [(WIDTH_MM, "pdflatex"), (PAGE_MM, "lualatex")][: 1 if i % 3 else 2]
+    for way in [(WIDTH_MM, "pdflatex"), (PAGE_MM, "lualatex")][: 1 if i % 6 else 2]
 ]
-"""Every model in a column; every third across a page, too, by another engine."""
+"""Every model in a column; every sixth across a page, too, by another engine."""
 PICTURES = (
     ("eppinger1988/rigid_body", "bode"),
     ("eppinger1988/six_mass", "modes"),
