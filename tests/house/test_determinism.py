@@ -12,9 +12,9 @@ from tests.house.repository import ROOT, slow_ones, specifications
 
 SPECIFICATIONS = specifications(ROOT / "derivations", "**/*.toml")
 EACH_TIME = {"two_mass_force", "sliding_free_beam", "rod_tip_mass"}
-"""A network, a loop and fields, of models that take seconds; every third of the others with -m slow."""
+"""A network, a loop and fields, of models that take seconds; every fifth of the others with -m slow."""
 OTHERS = [path for path in SPECIFICATIONS if path.stem not in EACH_TIME]
-COMPARED = [*(p for p in SPECIFICATIONS if p.stem in EACH_TIME), *OTHERS[::3]]
+COMPARED = [*(p for p in SPECIFICATIONS if p.stem in EACH_TIME), *OTHERS[::5]]
 COMMANDS = (
     ("derive", "--format", "text"),
     ("derive", "--format", "json"),

@@ -117,27 +117,25 @@ def beam_slopes(theory, taper, loss):
     return slopes
 
 
-def propagated(slopes, size, s):
-    """Return the state at x = 1 per state at x = 0, by Taylor steps."""
-    total = acb_mat(np.eye(size, dtype=int).tolist())
+def propagated(slopes, size, free, s):
+    """Return the state at x = 1 per state at x = 0, by Taylor steps; columns of what is not free are 0."""
+    total = acb_mat([[int(i == j and j in free) for j in range(size)] for i in range(size)])
     for step in range(STEPS):
         ctx.cap = TERMS
         made = slopes(acb_series([acb(step) / STEPS, 1]), s)
         ctx.cap = 10
-        parts = [acb_mat(size, size) for _ in range(TERMS)]
+        parts = [acb_mat(size, size) for _ in range(max(map(len, made.values())))]
         for place, series in made.items():
             for k, c in enumerate(series.coeffs()):
                 parts[k][place] = c
-        terms = [acb_mat(np.eye(size, dtype=int).tolist())]
+        terms = [total]
         for k in range(TERMS - 1):
             following = parts[0] * terms[k]
-            for p in range(1, k + 1):
+            for p in range(1, min(k + 1, len(parts))):
                 following += parts[p] * terms[k - p]
             terms.append(following * (acb(1) / (k + 1)))
-        grown = terms[0]
         for k, term in enumerate(terms[1:], 1):
-            grown += term * (acb(1) / STEPS) ** k
-        total = grown * total
+            total += term * (acb(1) / STEPS) ** k
     return total
 
 
@@ -215,12 +213,12 @@ def bound_of(text):
     return found, tf
 
 
-def check(text, slopes, size, response, fastest):
+def check(text, slopes, size, free, response, fastest):
     bound, tf = bound_of(text)
     places = points(text, fastest)
     enclosed = bound.enclosed(128)
     with ctx.workprec(BITS):
-        expected = [response(propagated(slopes, size, acb(s)), acb(s)) for s in places]
+        expected = [response(propagated(slopes, size, free, acb(s)), acb(s)) for s in places]
         for s, value in zip(places, expected, strict=True):
             ball = enclosed(acb(s))
             # Taylor steps are cut off, but far below the ball's digits.
@@ -235,9 +233,12 @@ def check(text, slopes, size, response, fastest):
 @pytest.mark.parametrize("case", BEAMS, ids="-".join)
 def test_tapered_beams_answer_as_taylor_steps_do(case):
     theory, taper, loss, ends = case
-    check(
-        beam_text(*case), beam_slopes(theory, taper, loss), 4, lambda z, s: beam_response(z, s, ends), 4000.0
-    )
+    free = (2, 3) if ends == "tip" else (1, 2, 3)
+
+    def response(z, s):
+        return beam_response(z, s, ends)
+
+    check(beam_text(*case), beam_slopes(theory, taper, loss), 4, free, response, 4000.0)
 
 
 @pytest.mark.parametrize(
@@ -246,7 +247,7 @@ def test_tapered_beams_answer_as_taylor_steps_do(case):
 def test_tapered_rods_shafts_and_strings_answer_as_taylor_steps_do(case):
     kind, _, _ = case
     fastest = 500.0 if kind == "string" else 4e4
-    check(bar_text(*case), bar_slopes(*case), 2, lambda z, _: z[0, 1] / z[1, 1], fastest)
+    check(bar_text(*case), bar_slopes(*case), 2, (1,), lambda z, _: z[0, 1] / z[1, 1], fastest)
 
 
 def stepped(s, count):

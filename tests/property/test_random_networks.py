@@ -60,7 +60,7 @@ def assert_close(found, expected):
 
 @pytest.mark.slow
 @given(network=networks())
-@quiet(300)
+@quiet(150)
 def test_the_exported_functions_agree_with_the_dense_tableau(numpy_functions, network):
     functions = numpy_functions(to_toml(network))
     for output, source in pairs(network):

@@ -223,7 +223,7 @@ def test_a_driving_point_of_beams_has_as_many_poles_and_zeros_as_wittrick_and_wi
 
 @pytest.mark.slow
 @given(beams(most=3))
-@quiet(12)
+@quiet(8)
 def test_driving_points_of_many_beams_have_as_many_poles_and_zeros_as_are_counted(model):
     check_beams(model, 400.0)
 

@@ -13,7 +13,8 @@ from tests.house.repository import specifications
 
 LONG = "two_link_arm"
 """Its determinant takes minutes with symbols."""
-MODELS = [p for p in specifications(Path(__file__).parents[2], "derivations/*/*.toml") if p.stem != LONG]
+ALL = [p for p in specifications(Path(__file__).parents[2], "derivations/*/*.toml") if p.stem != LONG]
+MODELS = [p for i, p in enumerate(ALL) if p.parent.name == "eppinger1988" or i % 2 == 0]
 
 
 def place(root):

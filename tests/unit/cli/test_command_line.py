@@ -133,9 +133,7 @@ def test_the_version_is_the_packages(shell):
 
 
 @pytest.mark.parametrize("path", in_turns(DERIVATIONS, dear=("robot_axis", "fitted_resonances")))
-@pytest.mark.parametrize(
-    "command", [("check",), ("derive",), ("roots",), ("roots", "--digits", "15")], ids=" ".join
-)
+@pytest.mark.parametrize("command", [("check",), ("derive",), ("roots", "--digits", "15")], ids=" ".join)
 def test_output_keeps_to_80_columns(shell, command, path, monkeypatch):
     # The path printed is the one given, and where the checkout lies is not the program's to shorten.
     monkeypatch.chdir(ROOT)

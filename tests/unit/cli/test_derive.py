@@ -11,8 +11,10 @@ from tests.house.repository import in_turns
 from tests.unit.cli.commands import DERIVATIONS, TWO_MASS
 from tests.unit.print.residues import point_for
 
-LONG = {"six_mass", "fitted_resonances", "polynomial_resonance"}
+LONG = {"six_mass", "fitted_resonances"}
 """Their forms take seconds to print and to read."""
+PATHS = [path for path in DERIVATIONS if path.stem not in (*LONG, "polynomial_resonance", "two_link_arm")]
+"""Without models that are like others here, but longer."""
 ENTRY_KEYS = {"tf", "quantity", "unit", "form", "num", "den", "where", "laws", "latex", "hidden", "stability"}
 
 
@@ -88,9 +90,7 @@ def test_what_cancelled_is_named(shell):
 
 @pytest.mark.parametrize(
     "path",
-    in_turns(
-        [path for path in DERIVATIONS if path.stem not in LONG], dear=("robot_axis", "timoshenko_cantilever")
-    )
+    in_turns(PATHS, dear=("robot_axis", "timoshenko_cantilever"))
     + [pytest.param(path, marks=pytest.mark.slow, id=path.stem) for path in DERIVATIONS if path.stem in LONG],
 )
 def test_json_reads_back_to_the_same_function_exactly(shell, path):

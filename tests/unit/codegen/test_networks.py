@@ -18,7 +18,7 @@ from tests.independent.members import random_members, response, specification
 from tests.unit.codegen.test_c_files import compiled, value_at
 from tests.unit.codegen.test_c_files import response as c_response
 
-SEEDS = [n if n in (1, 2) else pytest.param(n, marks=pytest.mark.slow) for n in range(12)]
+SEEDS = [n if n in (1, 2) else pytest.param(n, marks=pytest.mark.slow) for n in range(8)]
 POINTS = np.array([complex(20 * k - 150, 10 ** (k / 3)) for k in range(12)])
 """On both sides of the imaginary axis, up to where members of half a metre are some wavelengths long."""
 MODULE_BYTES = 40_000

@@ -14,9 +14,14 @@ from tests.unit.figures.texts import faults
 
 QUICK = ("two_mass", "quarter_car", "lumped_bending_beam_position")
 MODELS = sorted(path for path in (ROOT / "derivations").rglob("*.toml") if path.name != "claims.toml")
-ALL = [
-    pytest.param(path, id=path.stem, marks=[] if path.stem in QUICK else pytest.mark.slow) for path in MODELS
+KINDS = ("bode", "modes", "nyquist", "poles_zeros")
+IN_TURN = [
+    pytest.param(path, kind, id=f"{path.stem}-{kind}", marks=[] if path.stem in QUICK else pytest.mark.slow)
+    for i, path in enumerate(MODELS)
+    for j, kind in enumerate(KINDS)
+    if path.stem in QUICK or i % 2 == j % 2
 ]
+"""Two kinds of figures of each model; of the quick ones all."""
 LOOPS = [
     pytest.param(path, id=path.stem, marks=[] if path.stem in QUICK else pytest.mark.slow)
     for path in MODELS
@@ -39,8 +44,7 @@ def bound():
     return of
 
 
-@pytest.mark.parametrize("kind", ["bode", "modes", "nyquist", "poles_zeros"])
-@pytest.mark.parametrize("path", ALL)
+@pytest.mark.parametrize(("path", "kind"), IN_TURN)
 def test_texts_of_a_figure_keep_apart(path, kind, bound):
     bounds = bound(path)
     try:

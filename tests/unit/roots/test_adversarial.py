@@ -15,7 +15,6 @@ import pytest
 from mpmath import cos, cosh, findroot, mp, mpc, mpf, pi, sin, sqrt, tanh
 
 import symflex
-from symflex.errors import BudgetError
 from symflex.roots.root import exact_fraction
 from tests.house.repository import slow_ones
 from tests.independent.boundary_value import Problem, bending
@@ -430,40 +429,6 @@ def not_left_out(case, result, expected):
 
 
 LARGE = slow_ones(CASES, lambda case: case.name == "200 masses with losses")
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("case", LARGE, ids=IDS)
-def test_what_is_certified_is_right(case):
-    try:
-        result = case.solve()
-    except BudgetError:
-        return  # refused in so many words
-    if not result.certificate.certified:
-        return
-    poles, zeros = case.expected()
-    check_exactly(result.poles, not_left_out(case, result, poles))
-    check_exactly(result.zeros, not_left_out(case, result, zeros))
-
-
-# Roots that are nearer to each other than the search for them can tell today are refused after a long time.
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "case", [c for c in CASES if "00000000000001" not in c.name], ids=lambda case: case.name
-)
-def test_what_is_found_is_what_there_is(case):
-    # Located numerically or proved: the same roots, to half the digits asked for.
-    result = case.solve()
-    for found, expected in zip((result.poles, result.zeros), case.expected(), strict=True):
-        left = not_left_out(case, result, expected)
-        assert sum(root.multiplicity for root in found) == sum(multiplicity for _, multiplicity in left)
-        places = np.array([complex(s) for s, _ in left])
-        for root in found:
-            value, _ = numbers(root)
-            near = [left[i] for i in in_sight(value, 1e-9, places)]
-            nearest, multiplicity = min(near, key=lambda entry: abs(entry[0] - value))
-            assert abs(nearest - value) <= mpf(10) ** (-case.digits // 2) * (1 + abs(value))
-            assert multiplicity == root.multiplicity
 
 
 # ----------------------------------------------------------------- certified: what the engine has to reach
