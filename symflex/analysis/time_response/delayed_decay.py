@@ -1,14 +1,18 @@
 """How responses of loops with delays die away, and the pieces they are made of.
 
 Input: a :class:`DelayedQuotient`, ``H = (N_0 + N_1 e^(-s n_1) + ...)/(D_0 + D_1 e^(-s d_1) + ...)``.
-Output: its step response as residues of few poles and a proved bound on the rest, which fades, and the
-pieces it is made of at first, as exponentials.
+Output: its response to a step or another input as residues of few poles and a proved bound on the rest,
+which fades, and the pieces it is made of at first, as exponentials.
 
     1/(s + 1 + e^(-s)/2)    y = 2/3 + residues + (1/2 pi j) integral of H e^(s t)/s along Re s = -c
 
 with the residues at poles right of that line. The integral is at most ``e^(-c t)`` times that of abs(H/s)
 over pi. The poles right of the line are counted by how often ``F = 1 + D_1/D_0 e^(-s d_1) + ...`` turns about
-zero on it (Nyquist): far out F is about 1, if the delayed terms fall off against D_0.
+zero on it (Nyquist): far out F is about 1, if the delayed terms fall off against D_0. What passes straight
+through, such as e^(-s) in s e^(-s)/(s + 1), is no part of the integral: it has come and is over.
+
+Late values are those of the residues, early ones echoes (:mod:`~symflex.analysis.time_response.echoes`), so
+that a loop may be run through any number of times.
 """
 
 from __future__ import annotations
@@ -17,11 +21,12 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
-from flint import acb, acb_poly, arb, arb_poly
+from flint import acb, acb_poly, acb_series, arb, arb_poly
 
+from symflex.analysis.rational.laurent import series_length
 from symflex.analysis.time_response.delayed_terms import NO_DELAY, later
 from symflex.analysis.time_response.echoes import earliest, echoes, terms_of_echo
-from symflex.analysis.time_response.exponentials import ExponentialTerm
+from symflex.analysis.time_response.exponentials import ExponentialTerm, values_of
 from symflex.budget import spend
 from symflex.roots import Modes
 from symflex.roots.locate import locate
@@ -32,6 +37,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symflex.analysis.time_response.delayed_terms import DelayedQuotient
+    from symflex.analysis.time_response.sample_times import SampleTimes
     from symflex.roots import Root
     from symflex.transfer import BoundTransferFunction
 
@@ -45,13 +51,13 @@ FIRST_PARTS: Final = 16
 
 
 @dataclass(frozen=True, slots=True)
-class Decay:
-    """A response within ``size * e^(-rate t)`` of its final value and some terms, at every time t [s]."""
+class LateResponse:
+    """A response within ``size * e^(-rate t)`` of some terms, at every time t [s] after all ``through``."""
 
-    final: arb
-    terms: tuple[ExponentialTerm, ...]  # that decay
+    terms: tuple[ExponentialTerm, ...]
     size: arb
     rate: arb
+    through: tuple[LateGain, ...]  # by which the input passes straight through
 
 
 @dataclass(frozen=True)
@@ -59,6 +65,14 @@ class LatePolynomial:
     """A polynomial that comes a time [s] later."""
 
     polynomial: arb_poly
+    seconds: arb
+
+
+@dataclass(frozen=True)
+class LateGain:
+    """A number that comes a time [s] later."""
+
+    gain: arb
     seconds: arb
 
 
@@ -80,25 +94,50 @@ class _Loop:
         exact = durations.exact(quotient.below[self.first])
         self.poles = find_polynomial_roots(RootProblem(((exact, 1),)), digits) if exact.degree else ()
 
+    def taken_apart(self) -> tuple[list[LatePolynomial], list[LateGain]] | None:
+        """Return the numerator without what passes straight through, and that.
+
+        With ``N_i = q D_0 + R`` it is q e^(-s n_i), and leaves R e^(-s n_i) less q times all later D_k. None
+        where the numerator is of a higher degree than D_0.
+        """
+        n = self.leading.degree()
+        falling, through = [], []
+        for part in self.above:
+            if part.polynomial.degree() < n:
+                falling.append(part)
+                continue
+            if part.polynomial.degree() > n:
+                return None
+            q, remainder = divmod(part.polynomial, self.leading)
+            falling.append(LatePolynomial(remainder, part.seconds))
+            falling += [LatePolynomial(-q * p.polynomial, part.seconds + p.seconds) for p in self.below]
+            through.append(LateGain(q[0], part.seconds))
+        return falling, through
+
     def turned(self, s: acb) -> acb:
         """Return F."""
         return 1 + _at(self.below, s) / acb_poly(self.leading)(s)
 
-    def value(self, s: acb) -> acb:
-        """Return H."""
-        return _at(self.above, s) / (acb_poly(self.leading)(s) + _at(self.below, s))
+    def over_all(self, above: Sequence[LatePolynomial], s: acb) -> acb:
+        """Return a numerator over the whole denominator."""
+        return _at(above, s) / (acb_poly(self.leading)(s) + _at(self.below, s))
 
-    def term(self, pole: acb) -> ExponentialTerm:
-        """Return what a simple pole leaves of the step response, together with its conjugate."""
-        slope = acb_poly(self.leading).derivative()(pole)
-        for p in self.below:
-            own = acb_poly(p.polynomial)
-            slope += (own.derivative()(pole) - own(pole) * p.seconds) * (-pole * p.seconds).exp()
-        residue = _at(self.above, pole) / (slope * pole)
-        return ExponentialTerm(pole, (residue if pole.imag == 0 else 2 * residue,))
+    def term(self, pole: acb, multiplicity: int, integrations: int) -> ExponentialTerm:
+        """Return what a pole of H leaves of the response to 1/s^integrations, together with its conjugate."""
+        order = multiplicity + (integrations if pole.is_zero() else 0)
+        with series_length(order + multiplicity):
+            above = _about(self.above, pole)
+            below = _about([LatePolynomial(self.leading, arb(0)), *self.below], pole)
+            # At its pole the denominator is zero so often, whatever the balls say.
+            below = acb_series([below[k] for k in range(multiplicity, order + multiplicity)])
+            for _ in range(0 if pole.is_zero() else integrations):
+                below = below * acb_series([pole, 1])
+            series = above / below
+            both = 1 if pole.imag == 0 else 2
+            return ExponentialTerm(pole, tuple(both * series[order - 1 - j] for j in range(order)))
 
-    def far(self, parts: Sequence[LatePolynomial], rate: arb, radius: arb) -> arb:
-        """Return what ``abs(s)`` times the size of a sum over D_0 is at most, right of a line and far out."""
+    def far(self, parts: Sequence[LatePolynomial], rate: arb, radius: arb, falls: int = 1) -> arb:
+        """Return what ``abs(s)^falls`` times the size of a sum over D_0 is at most, far out."""
         n = self.leading.degree()
         size = [abs(c) for c in self.leading.coeffs()]
         least = size[n] - sum((c * radius ** (i - n) for i, c in enumerate(size[:n])), arb(0))
@@ -107,27 +146,41 @@ class _Loop:
         total = arb(0)
         for part in parts:
             own = sum(
-                (abs(c) * radius ** (i - n + 1) for i, c in enumerate(part.polynomial.coeffs())), arb(0)
+                (abs(c) * radius ** (i - n + falls) for i, c in enumerate(part.polynomial.coeffs())), arb(0)
             )
             total += own * (rate * part.seconds).exp()
         return total / least
+
+
+def _about(parts: Sequence[LatePolynomial], place: acb) -> acb_series:
+    """Return a sum of polynomials that come later as a series about a place."""
+    total = acb_series([0])
+    for p in parts:
+        own = acb_poly(p.polynomial)(acb_poly([place, 1]))
+        total += acb_series(own.coeffs()) * acb_series([-place * p.seconds, -p.seconds]).exp()
+    return total
 
 
 def _at(parts: Sequence[LatePolynomial], s: acb) -> acb:
     return sum((acb_poly(p.polynomial)(s) * (-s * p.seconds).exp() for p in parts), acb(0))
 
 
-def decay_of(bound: BoundTransferFunction, quotient: DelayedQuotient, digits: int) -> Decay | None:
-    """Return how a step response dies away, at the current precision, from poles of so many digits.
+def late_response(
+    bound: BoundTransferFunction, quotient: DelayedQuotient, integrations: int, digits: int
+) -> LateResponse | None:
+    """Return what a response settles into, at the current precision, from poles of so many digits.
 
-    None where that is not proved: it does not come to rest, or numerators are not of a lower degree than D_0.
+    None where that is not proved: delayed terms do not fall off against D_0, or H grows with s, or, for an
+    impulse, does not fall off faster than 1/s.
     """
     loop = _Loop(quotient, digits)
     n = loop.leading.degree()
-    if any(p.polynomial.degree() >= n for p in (*loop.above, *loop.below)):
+    apart = loop.taken_apart()
+    if apart is None or any(p.polynomial.degree() >= n for p in loop.below):
         return None
-    final = loop.value(acb(0)).real
-    if any(not p.seconds >= 0 for p in loop.above) or not final.is_finite():
+    falling, through = apart
+    falls = 1 if integrations else 2
+    if any(p.polynomial.degree() > n - falls for p in falling) or any(not p.seconds >= 0 for p in loop.above):
         return None
     # Lines lie in units of the inverse of the loop's delay, or where it has none of the largest pole.
     longest = max((p.seconds.upper() for p in loop.below), key=float, default=arb(0))
@@ -136,17 +189,32 @@ def decay_of(bound: BoundTransferFunction, quotient: DelayedQuotient, digits: in
     for share in SHARES:
         spend()
         rate = (unit * share).mid()
-        on_line = _on_line(loop, rate) if rate > 0 else None
+        on_line = _on_line(loop, falling, integrations, rate) if rate > 0 else None
         if on_line is None:
             continue
         size, count = on_line
         poles = _right_of(bound, rate, count, digits)
-        if len(poles) != count or any(p.multiplicity > 1 or not p.certified for p in poles):
+        if sum(p.multiplicity for p in poles) != count or not all(p.certified for p in poles):
             continue
-        if any(not p.enclosure().real < 0 for p in poles):
-            return None
-        terms = (loop.term(p.enclosure()) for p in poles if not p.im < 0)
-        return Decay(final, tuple(terms), size, rate)
+        places = [(p.enclosure(), p.multiplicity) for p in poles if not p.im < 0]
+        if integrations and not any(place.is_zero() for place, _ in places):
+            places.append((acb(0), 0))
+        terms = tuple(loop.term(place, order, integrations) for place, order in places)
+        return LateResponse(terms, size, rate, tuple(through))
+    return None
+
+
+def settled(late: LateResponse, times: SampleTimes, digits: int) -> tuple[int, list[arb]] | None:
+    """Return from which number on a response has settled, and its values then, at the current precision.
+
+    None where it does not by the last time.
+    """
+    values = values_of(late.terms, times)
+    allowed = max((abs(y.mid()) for y in values), default=arb(0)) * arb(10) ** -digits
+    for start, t in enumerate(times.enclosed()):
+        left = late.size * (-late.rate * t).exp()
+        if left < allowed and all(t > g.seconds for g in late.through):
+            return start, [y + arb(0, left.upper()) for y in values[start:]]
     return None
 
 
@@ -156,13 +224,15 @@ def _right_of(bound: BoundTransferFunction, rate: arb, count: int, digits: int) 
     for more in (0, MORE_MODES) if count else ():
         found = locate(bound, Modes(count + more), digits)
         poles = [p for p in found.all_poles if p.enclosure().real + rate > 0]
-        if len(poles) == count:
+        if sum(p.multiplicity for p in poles) == count:
             break
     return poles
 
 
-def _on_line(loop: _Loop, rate: arb) -> tuple[arb, int] | None:
-    """Return the integral of abs(H/s) along a line over pi, and how many poles lie right of the line.
+def _on_line(
+    loop: _Loop, falling: Sequence[LatePolynomial], integrations: int, rate: arb
+) -> tuple[arb, int] | None:
+    """Return the integral of abs(H/s^integrations) along a line over pi, and how many poles are right of it.
 
     None where one is too close to the line.
     """
@@ -177,8 +247,9 @@ def _on_line(loop: _Loop, rate: arb) -> tuple[arb, int] | None:
         if place.contains(0):
             return None
         right += pole.multiplicity if place > 0 else 0
-    # Beyond the radius F is at least 1/2, and H/s falls as one over s squared.
-    total = 2 * loop.far(loop.above, rate, radius) / radius
+    # Beyond the radius F is at least 1/2, and H/s^integrations falls as one over s squared, or faster.
+    power = max(integrations, 1)
+    total = 2 * loop.far(falling, rate, radius, 1 if integrations else 2) / (power * radius**power)
     turned = arb(0)
     ends = [radius * k / FIRST_PARTS for k in range(FIRST_PARTS + 1)]
     pending = [(a.mid(), b.mid()) for a, b in pairwise(ends)][::-1]
@@ -188,7 +259,7 @@ def _on_line(loop: _Loop, rate: arb) -> tuple[arb, int] | None:
         low, high = pending.pop()
         middle = ((low + high) / 2).mid()
         part = acb(-rate, middle + arb(0, ((high - low) / 2).abs_upper()))
-        turns, value = loop.turned(part), loop.value(part) / part
+        turns, value = loop.turned(part), loop.over_all(falling, part) / part**integrations
         if turns.contains(0) or not value.is_finite():
             pending += [(middle, high), (low, middle)]
             continue

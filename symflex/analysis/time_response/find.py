@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 from flint import acb, arb
 
 from symflex.algebra import Factored, KernelTable
-from symflex.analysis.time_response.delayed_terms import delayed_quotient
+from symflex.analysis.time_response.delayed_decay import late_response, settled
+from symflex.analysis.time_response.delayed_terms import DelayedQuotient, delayed_quotient
 from symflex.analysis.time_response.echoes import FEW_POWERS, MOST_POWERS, Sampled, TooManyEchoesError, echoed
 from symflex.analysis.time_response.enclosed_response import (
     INTEGRATIONS,
@@ -216,17 +217,9 @@ def _found(
         return _of_lumped(bound, integrations, times, digits), None
     quotient = delayed_quotient(bound)
     if quotient is not None:
-        has_delays = any(law.kind == "exponential" for law in bound.kernels.dispersions)
-        for most in (MOST_POWERS,) if has_delays else (FEW_POWERS, MOST_POWERS):
-            try:
-                expanded = partial(echoed, quotient, most=most)
-                return _of_delays(bound, expanded, integrations, times, digits), None
-            except TooManyEchoesError:
-                spend()
-            if most == FEW_POWERS:
-                modes = proved_modes(bound, integrations, times, digits)
-                if modes is not None and is_precise(modes.sampled.values, ENOUGH_DIGITS):
-                    return modes.sampled, None
+        known = _of_quotient(bound, quotient, integrations, times, digits)
+        if known is not None:
+            return known, None
     waves = None if quotient is not None else wave_quotient(bound)
     if waves is not None:
         try:
@@ -251,6 +244,31 @@ def _found(
         )
     proved = proved_modes(bound, integrations, times, digits)
     return (proved.sampled, None) if proved is not None else estimated(bound, integrations, times)
+
+
+def _of_quotient(
+    bound: BoundTransferFunction,
+    quotient: DelayedQuotient,
+    integrations: int,
+    times: SampleTimes,
+    digits: int,
+) -> Sampled | None:
+    """Return a response as echoes, or as few terms or modes; None where all of these are many."""
+    has_delays = any(law.kind == "exponential" for law in bound.kernels.dispersions)
+    for most in (FEW_POWERS, MOST_POWERS):
+        try:
+            return _of_delays(bound, partial(echoed, quotient, most=most), integrations, times, digits)
+        except TooManyEchoesError:
+            spend()
+        if most == FEW_POWERS and has_delays:
+            late = _settling(bound, quotient, integrations, times, digits)
+            if late is not None:
+                return late
+        elif most == FEW_POWERS:
+            modes = proved_modes(bound, integrations, times, digits)
+            if modes is not None and is_precise(modes.sampled.values, ENOUGH_DIGITS):
+                return modes.sampled
+    return None
 
 
 def _too_many(bound: BoundTransferFunction) -> UncertifiedError:
@@ -352,6 +370,40 @@ def _of_delays(
         wanted *= 2
     message = f"the poles between the delays of {bound.name} lie too close together"
     raise UncertifiedError(Diagnostic("SF810", message, None, "ask for a shorter time"))
+
+
+def _settling(
+    bound: BoundTransferFunction,
+    quotient: DelayedQuotient,
+    integrations: int,
+    times: SampleTimes,
+    digits: int,
+) -> Sampled | None:
+    """Return echoes as long as they are few, and then the few terms that a response settles into."""
+    wanted = digits + GUARD_DIGITS
+    for _ in range(ATTEMPTS):
+        with precision(bits_for_digits(2 * wanted)):
+            late = late_response(bound, quotient, integrations, wanted)
+            found = None if late is None else settled(late, times, wanted)
+        if late is None or found is None:
+            return None
+        start, values = found
+        try:
+            early = _of_delays(bound, partial(echoed, quotient), integrations, times.until(start), digits)
+        except (TooManyEchoesError, UncertifiedError):
+            return None
+        if is_precise((*early.values, *values), digits):
+            through = sorted(late.through, key=lambda g: float(g.seconds))
+            return replace(
+                early,
+                values=(*early.values, *values),
+                impulses=tuple(ImpulseAt(g.seconds, 0, g.gain) for g in through if not integrations),
+                jumps=tuple(
+                    JumpAt(g.seconds, g.gain) for g in through if integrations == 1 and g.seconds > 0
+                ),
+            )
+        times, wanted = times.one_by_one(), 2 * wanted
+    return None
 
 
 def _unknown(bound: BoundTransferFunction, digits: int) -> UncertifiedError:

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Final
 
 from flint import acb, arb
 
-from symflex.analysis.time_response.delayed_decay import decay_of, pieces_of
+from symflex.analysis.time_response.delayed_decay import late_response, pieces_of
 from symflex.analysis.time_response.delayed_terms import delayed_quotient
 from symflex.analysis.time_response.echoes import TooManyEchoesError
 from symflex.analysis.time_response.exponentials import ExponentialTerm
@@ -127,7 +127,7 @@ class StepInfo:
                 said = f"none above {float(ball.abs_upper()):.1g}"
             else:
                 said = decimals(ball, arb(0), digits).re
-            found.append((name, f"{said} {of}".rstrip()))
+            found.append((name, said if of in ("", "1") else f"{said} {of}"))
         return found
 
     def to_json_dict(self, digits: int) -> dict[str, object]:
@@ -223,11 +223,12 @@ def _of_delays(bound: BoundTransferFunction) -> StepInfo | None:
     if quotient is None:
         return None
     with precision(bits_for_digits(2 * DELAYS_DIGITS)):
-        decay = decay_of(bound, quotient, DELAYS_DIGITS)
-        if decay is None or decay.final.contains(0):
+        late = late_response(bound, quotient, 1, DELAYS_DIGITS)
+        final = None if late is None or late.through else _resting(late.terms)
+        if late is None or final is None:
             return None
-        final, terms = decay.final, tuple(_scaled(t, decay.final) for t in decay.terms)
-        until = ((decay.size / abs(final) / FADED).log() / decay.rate).max(arb(0)).upper()
+        terms = tuple(_scaled(t, final) for t in late.terms if not t.rate.is_zero())
+        until = ((late.size / abs(final) / FADED).log() / late.rate).max(arb(0)).upper()
         try:
             pieces = pieces_of(quotient, until, DELAYS_DIGITS)
         except TooManyEchoesError:
@@ -235,8 +236,8 @@ def _of_delays(bound: BoundTransferFunction) -> StepInfo | None:
         if pieces is None:
             return StepInfo(final, None, None, None, None, None)
         early = [Piece(tuple(_scaled(t, final) for t in own), start, start) for start, own in pieces]
-        late = Piece(terms, until, constant=1, rest=arb(FADED))
-        return _told(final, NormalisedResponse([*early, late]))
+        last = Piece(terms, until, constant=1, rest=arb(FADED))
+        return _told(final, NormalisedResponse([*early, last]))
 
 
 def _scaled(term: ExponentialTerm, final: arb) -> ExponentialTerm:
