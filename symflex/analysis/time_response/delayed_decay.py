@@ -26,6 +26,7 @@ from flint import acb, acb_poly, acb_series, arb, arb_poly
 from symflex.analysis.rational.laurent import series_length
 from symflex.analysis.time_response.delayed_terms import NO_DELAY, later
 from symflex.analysis.time_response.echoes import earliest, echoes, terms_of_echo
+from symflex.analysis.time_response.enclosed_response import JumpAt
 from symflex.analysis.time_response.exponentials import ExponentialTerm, values_of
 from symflex.budget import spend
 from symflex.roots import Modes
@@ -57,7 +58,7 @@ class LateResponse:
     terms: tuple[ExponentialTerm, ...]
     size: arb
     rate: arb
-    through: tuple[LateGain, ...]  # by which the input passes straight through
+    through: tuple[JumpAt, ...]  # by which the input passes straight through, as a step would show it
 
 
 @dataclass(frozen=True)
@@ -65,14 +66,6 @@ class LatePolynomial:
     """A polynomial that comes a time [s] later."""
 
     polynomial: arb_poly
-    seconds: arb
-
-
-@dataclass(frozen=True)
-class LateGain:
-    """A number that comes a time [s] later."""
-
-    gain: arb
     seconds: arb
 
 
@@ -94,7 +87,7 @@ class _Loop:
         exact = durations.exact(quotient.below[self.first])
         self.poles = find_polynomial_roots(RootProblem(((exact, 1),)), digits) if exact.degree else ()
 
-    def taken_apart(self) -> tuple[list[LatePolynomial], list[LateGain]] | None:
+    def taken_apart(self) -> tuple[list[LatePolynomial], list[JumpAt]] | None:
         """Return the numerator without what passes straight through, and that.
 
         With ``N_i = q D_0 + R`` it is q e^(-s n_i), and leaves R e^(-s n_i) less q times all later D_k. None
@@ -111,7 +104,7 @@ class _Loop:
             q, remainder = divmod(part.polynomial, self.leading)
             falling.append(LatePolynomial(remainder, part.seconds))
             falling += [LatePolynomial(-q * p.polynomial, part.seconds + p.seconds) for p in self.below]
-            through.append(LateGain(q[0], part.seconds))
+            through.append(JumpAt(part.seconds, q[0]))
         return falling, through
 
     def turned(self, s: acb) -> acb:
@@ -189,7 +182,7 @@ def late_response(
     for share in SHARES:
         spend()
         rate = (unit * share).mid()
-        on_line = _on_line(loop, falling, integrations, rate) if rate > 0 else None
+        on_line = _on_line(loop, falling, falls, integrations, rate) if rate > 0 else None
         if on_line is None:
             continue
         size, count = on_line
@@ -213,7 +206,7 @@ def settled(late: LateResponse, times: SampleTimes, digits: int) -> tuple[int, l
     allowed = max((abs(y.mid()) for y in values), default=arb(0)) * arb(10) ** -digits
     for start, t in enumerate(times.enclosed()):
         left = late.size * (-late.rate * t).exp()
-        if left < allowed and all(t > g.seconds for g in late.through):
+        if left < allowed and all(t > each.time for each in late.through):
             return start, [y + arb(0, left.upper()) for y in values[start:]]
     return None
 
@@ -230,11 +223,11 @@ def _right_of(bound: BoundTransferFunction, rate: arb, count: int, digits: int) 
 
 
 def _on_line(
-    loop: _Loop, falling: Sequence[LatePolynomial], integrations: int, rate: arb
+    loop: _Loop, falling: Sequence[LatePolynomial], falls: int, integrations: int, rate: arb
 ) -> tuple[arb, int] | None:
     """Return the integral of abs(H/s^integrations) along a line over pi, and how many poles are right of it.
 
-    None where one is too close to the line.
+    Far out H falls at least as ``1/s^falls``. None where a pole is too close to the line.
     """
     radius = (1 + rate).mid()
     while not loop.far(loop.below, rate, radius) < radius / 2:
@@ -248,8 +241,8 @@ def _on_line(
             return None
         right += pole.multiplicity if place > 0 else 0
     # Beyond the radius F is at least 1/2, and H/s^integrations falls as one over s squared, or faster.
-    power = max(integrations, 1)
-    total = 2 * loop.far(falling, rate, radius, 1 if integrations else 2) / (power * radius**power)
+    power = integrations + falls - 1
+    total = 2 * loop.far(falling, rate, radius, falls) / (power * radius**power)
     turned = arb(0)
     ends = [radius * k / FIRST_PARTS for k in range(FIRST_PARTS + 1)]
     pending = [(a.mid(), b.mid()) for a, b in pairwise(ends)][::-1]

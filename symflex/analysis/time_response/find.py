@@ -255,20 +255,24 @@ def _of_quotient(
 ) -> Sampled | None:
     """Return a response as echoes, or as few terms or modes; None where all of these are many."""
     has_delays = any(law.kind == "exponential" for law in bound.kernels.dispersions)
-    for most in (FEW_POWERS, MOST_POWERS):
-        try:
-            return _of_delays(bound, partial(echoed, quotient, most=most), integrations, times, digits)
-        except TooManyEchoesError:
-            spend()
-        if most == FEW_POWERS and has_delays:
-            late = _settling(bound, quotient, integrations, times, digits)
-            if late is not None:
-                return late
-        elif most == FEW_POWERS:
-            modes = proved_modes(bound, integrations, times, digits)
-            if modes is not None and is_precise(modes.sampled.values, ENOUGH_DIGITS):
-                return modes.sampled
-    return None
+    few, many = (partial(echoed, quotient, most=most) for most in (FEW_POWERS, MOST_POWERS))
+    try:
+        return _of_delays(bound, few, integrations, times, digits)
+    except TooManyEchoesError:
+        spend()
+    if has_delays:
+        shorter = _settling(bound, quotient, integrations, times, digits)
+    else:
+        modes = proved_modes(bound, integrations, times, digits)
+        shorter = None if modes is None else modes.sampled
+        if shorter is not None and not is_precise(shorter.values, ENOUGH_DIGITS):
+            shorter = None
+    if shorter is not None:
+        return shorter
+    try:
+        return _of_delays(bound, many, integrations, times, digits)
+    except TooManyEchoesError:
+        return None
 
 
 def _too_many(bound: BoundTransferFunction) -> UncertifiedError:
@@ -393,14 +397,12 @@ def _settling(
         except (TooManyEchoesError, UncertifiedError):
             return None
         if is_precise((*early.values, *values), digits):
-            through = sorted(late.through, key=lambda g: float(g.seconds))
+            through = sorted(late.through, key=lambda each: float(each.time))
             return replace(
                 early,
                 values=(*early.values, *values),
-                impulses=tuple(ImpulseAt(g.seconds, 0, g.gain) for g in through if not integrations),
-                jumps=tuple(
-                    JumpAt(g.seconds, g.gain) for g in through if integrations == 1 and g.seconds > 0
-                ),
+                impulses=tuple(ImpulseAt(each.time, 0, each.height) for each in through if not integrations),
+                jumps=tuple(each for each in through if integrations == 1 and each.time > 0),
             )
         times, wanted = times.one_by_one(), 2 * wanted
     return None

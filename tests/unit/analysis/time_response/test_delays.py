@@ -207,7 +207,7 @@ SETTLING_TIMES = np.array([0.4, 7.3, 55.0, 80.5, 300.0, 2000.0])
 
 def roots_of_a_delayed_integrator(gain):
     """Return 60 pairs of roots of s + gain e^-s = 0: s = W_n(-gain), Corless et al. 1996."""
-    return np.array([complex(lambertw(-gain, n)) for n in (*range(-60, 60),)])
+    return np.array([complex(lambertw(-gain, n)) for n in range(-60, 60)])
 
 
 # K/(s + K e^-s): at a root its residue is K/(1 + s), and about s = 0 it is 1 - (1 - K) s/K + ...
