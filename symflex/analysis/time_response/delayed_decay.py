@@ -17,7 +17,7 @@ that a loop may be run through any number of times.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
@@ -25,19 +25,21 @@ from flint import acb, acb_poly, acb_series, arb, arb_poly
 
 from symflex.analysis.rational.laurent import series_length
 from symflex.analysis.time_response.delayed_terms import NO_DELAY, later
-from symflex.analysis.time_response.echoes import earliest, echoes, terms_of_echo
-from symflex.analysis.time_response.enclosed_response import JumpAt
+from symflex.analysis.time_response.echoes import TooManyEchoesError, earliest, echoed, echoes, terms_of_echo
+from symflex.analysis.time_response.enclosed_response import ImpulseAt, JumpAt
 from symflex.analysis.time_response.exponentials import ExponentialTerm, values_of
 from symflex.budget import spend
 from symflex.roots import Modes
 from symflex.roots.locate import locate
 from symflex.roots.polynomial_roots import find_polynomial_roots
+from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.problem import RootProblem
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symflex.analysis.time_response.delayed_terms import DelayedQuotient
+    from symflex.analysis.time_response.echoes import Sampled
     from symflex.analysis.time_response.sample_times import SampleTimes
     from symflex.roots import Root
     from symflex.transfer import BoundTransferFunction
@@ -197,7 +199,36 @@ def late_response(
     return None
 
 
-def settled(late: LateResponse, times: SampleTimes, digits: int) -> tuple[int, list[arb]] | None:
+def settling_echoes(
+    bound: BoundTransferFunction,
+    quotient: DelayedQuotient,
+    integrations: int,
+    times: SampleTimes,
+    digits: int,
+) -> Sampled | None:
+    """Return echoes at first, then the few terms that a response settles into; poles have so many digits.
+
+    None where more digits may help. TooManyEchoesError where it does not settle, or only after too many.
+    """
+    with precision(bits_for_digits(2 * digits)):
+        late = late_response(bound, quotient, integrations, digits)
+        settled = None if late is None else _settled(late, times, digits)
+    if late is None or settled is None:
+        raise TooManyEchoesError
+    start, values = settled
+    early = echoed(quotient, integrations, times.until(start), digits)
+    if early is None:
+        return None
+    through = sorted(late.through, key=lambda each: float(each.time))
+    return replace(
+        early,
+        values=(*early.values, *values),
+        impulses=tuple(ImpulseAt(each.time, 0, each.height) for each in through if not integrations),
+        jumps=tuple(each for each in through if integrations == 1 and each.time > 0),
+    )
+
+
+def _settled(late: LateResponse, times: SampleTimes, digits: int) -> tuple[int, list[arb]] | None:
     """Return from which number on a response has settled, and its values then, at the current precision.
 
     None where it does not by the last time.

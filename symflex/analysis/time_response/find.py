@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from flint import acb, arb
 
 from symflex.algebra import Factored, KernelTable
-from symflex.analysis.time_response.delayed_decay import late_response, settled
+from symflex.analysis.time_response.delayed_decay import settling_echoes
 from symflex.analysis.time_response.delayed_terms import DelayedQuotient, delayed_quotient
 from symflex.analysis.time_response.echoes import FEW_POWERS, MOST_POWERS, Sampled, TooManyEchoesError, echoed
 from symflex.analysis.time_response.enclosed_response import (
@@ -256,23 +256,20 @@ def _of_quotient(
     """Return a response as echoes, or as few terms or modes; None where all of these are many."""
     has_delays = any(law.kind == "exponential" for law in bound.kernels.dispersions)
     few, many = (partial(echoed, quotient, most=most) for most in (FEW_POWERS, MOST_POWERS))
-    try:
-        return _of_delays(bound, few, integrations, times, digits)
-    except TooManyEchoesError:
-        spend()
-    if has_delays:
-        shorter = _settling(bound, quotient, integrations, times, digits)
-    else:
-        modes = proved_modes(bound, integrations, times, digits)
-        shorter = None if modes is None else modes.sampled
-        if shorter is not None and not is_precise(shorter.values, ENOUGH_DIGITS):
-            shorter = None
-    if shorter is not None:
-        return shorter
-    try:
-        return _of_delays(bound, many, integrations, times, digits)
-    except TooManyEchoesError:
-        return None
+    late = partial(settling_echoes, bound, quotient)
+    for expanded in (few, late, many) if has_delays else (few, many):
+        try:
+            return _of_delays(bound, expanded, integrations, times, digits)
+        except TooManyEchoesError:
+            spend()
+        except UncertifiedError:
+            if expanded is not late:
+                raise
+        if expanded is few and not has_delays:
+            modes = proved_modes(bound, integrations, times, digits)
+            if modes is not None and is_precise(modes.sampled.values, ENOUGH_DIGITS):
+                return modes.sampled
+    return None
 
 
 def _too_many(bound: BoundTransferFunction) -> UncertifiedError:
@@ -374,38 +371,6 @@ def _of_delays(
         wanted *= 2
     message = f"the poles between the delays of {bound.name} lie too close together"
     raise UncertifiedError(Diagnostic("SF810", message, None, "ask for a shorter time"))
-
-
-def _settling(
-    bound: BoundTransferFunction,
-    quotient: DelayedQuotient,
-    integrations: int,
-    times: SampleTimes,
-    digits: int,
-) -> Sampled | None:
-    """Return echoes as long as they are few, and then the few terms that a response settles into."""
-    wanted = digits + GUARD_DIGITS
-    for _ in range(ATTEMPTS):
-        with precision(bits_for_digits(2 * wanted)):
-            late = late_response(bound, quotient, integrations, wanted)
-            found = None if late is None else settled(late, times, wanted)
-        if late is None or found is None:
-            return None
-        start, values = found
-        try:
-            early = _of_delays(bound, partial(echoed, quotient), integrations, times.until(start), digits)
-        except (TooManyEchoesError, UncertifiedError):
-            return None
-        if is_precise((*early.values, *values), digits):
-            through = sorted(late.through, key=lambda each: float(each.time))
-            return replace(
-                early,
-                values=(*early.values, *values),
-                impulses=tuple(ImpulseAt(each.time, 0, each.height) for each in through if not integrations),
-                jumps=tuple(each for each in through if integrations == 1 and each.time > 0),
-            )
-        times, wanted = times.one_by_one(), 2 * wanted
-    return None
 
 
 def _unknown(bound: BoundTransferFunction, digits: int) -> UncertifiedError:

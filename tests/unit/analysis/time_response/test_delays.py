@@ -236,3 +236,31 @@ def test_a_loop_run_through_many_times_settles_into_its_residues(gain, law, kind
     assert found.values[0] == pytest.approx(first, abs=1e-12 + found.radius[0])
     assert found.values[1:] == pytest.approx(expected, rel=1e-11, abs=1e-12)
     assert found.radius.max() <= 1e-12 * np.abs(found.values).max()
+
+
+def test_only_the_first_of_the_times_may_come_before_a_loop_has_settled():
+    # At t = 0 the response is 0 within a radius, which no digits of itself could be smaller than.
+    text = (
+        'parameters = { m = "2 kg", k = "20 kN/m", b = "60 N*s/m", T = "3 ms", K = "4 1/s", P = "0.6" }\n'
+        'blocks.D = { type = "delay", T = "T" }\ninputs.r = {}\n'
+        'signals = { f = "k*u/(m*s^2 + b*s + k)", u = "(P + K/s)*(r - D*f)" }\noutputs.y = "f"\n'
+    )
+    found = time_response(bound(text, input="r"), "step", SampleTimes.of([0.0, 0.3, 0.6]))
+    # Heun's method with 3 ms as 600 steps of 5 us: force, its rate, and the integral of what it lacks.
+    h, late = 5e-6, 600
+    state, past = np.zeros(3), [0.0] * (late + 1)
+
+    def slopes(z, seen):
+        force = 0.6 * (1 - seen) + 4 * z[2]
+        return np.array([z[1], 1e4 * (force - z[0]) - 30 * z[1], 1 - seen])
+
+    expected = [0.0]
+    for n in range(1, 120_001):
+        first = slopes(state, past[-1 - late])
+        state = state + h / 2 * (first + slopes(state + h * first, past[-late]))
+        past.append(state[0])
+        if n % 60_000 == 0:
+            expected.append(state[0])
+    assert found.certified
+    assert found.values == pytest.approx(expected, abs=2e-6)
+    assert found.radius.max() <= 1e-12 * np.abs(found.values).max()
