@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
+from operator import sub
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -92,14 +93,14 @@ class EnclosedResponse:
 
     @cached_property
     def _doubles(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-        values = np.array([float(y.mid()) for y in self.enclosures], dtype=np.float64)
+        values = np.array(list(map(float, self.enclosures)), dtype=np.float64)  # of midpoints
         if (huge := np.flatnonzero(~np.isfinite(values))).size:
             message = (
                 f"the response of {self.tf} is beyond the range of doubles from {self.times[huge[0]]:g} s on"
             )
             raise UsageError(Diagnostic("SF812", message, None, "ask for a shorter time"))
-        pairs = zip(self.enclosures, values.tolist(), strict=True)
-        radius = np.array([float((y - v).abs_upper()) * UP for y, v in pairs], dtype=np.float64)
+        off = map(arb.abs_upper, map(sub, self.enclosures, values.tolist()))
+        radius = np.array(list(map(float, off)), dtype=np.float64) * UP
         for array in (values, radius):
             array.setflags(write=False)
         return values, radius

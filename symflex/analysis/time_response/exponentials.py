@@ -9,9 +9,10 @@ of which the real part is meant. Values at all times are one product of matrices
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import factorial
 from typing import TYPE_CHECKING
 
-from flint import acb, arb, arb_mat
+from flint import acb, acb_poly, arb, arb_mat
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -42,33 +43,27 @@ def values_of(
     [0.0, 0.735759]
     """
     count = len(times) - start
-    found = [arb(0)] * count
-    highest = max((len(term.coefficients) for term in terms), default=0)
     outer, inner = times.spread(start, delay)
-    grown = [([(t.rate * a).exp() for a in outer], [(t.rate * b).exp() for b in inner]) for t in terms]
-    power, instants = [arb(1)] * count, times.enclosed(start, delay) if highest > 1 else []
-    for j in range(highest):
-        if j:
-            power = [p * t / j for p, t in zip(power, instants, strict=True)]
-        pairs = [
-            (t.coefficients[j], *g) for t, g in zip(terms, grown, strict=True) if len(t.coefficients) > j
-        ]
-        sums = _real_part(pairs, count)
-        found = [y + p * v for y, p, v in zip(found, power, sums, strict=True)] if j else sums
-    return found
-
-
-def _real_part(pairs: Sequence[tuple[acb, list[acb], list[acb]]], count: int) -> list[arb]:
-    """Return the real part of ``sum(c*a*b)`` for all a of the first lists and b of the second, in order."""
-    if not pairs or not count:
+    left: list[list[arb]] = [[] for _ in outer]
+    right: list[list[arb]] = []
+    for term in terms:
+        # What P(a + b) exp(rate (a + b)) is, sorted by powers of b: products of a's factor and b's.
+        polynomial = acb_poly([c / factorial(j) for j, c in enumerate(term.coefficients)])
+        powers = len(term.coefficients) if len(inner) > 1 else 1
+        for row, a in zip(left, outer, strict=True):
+            grown = (term.rate * a).exp()
+            if powers == 1:
+                factors = [polynomial(a) * grown]
+            else:
+                moved = polynomial(acb_poly([a, acb(1)]))
+                factors = [moved[i] * grown for i in range(powers)]
+            row += [part for w in factors for part in (w.real, -w.imag)]
+        column = [(term.rate * b).exp() for b in inner]
+        for i in range(powers):
+            if i:
+                column = [b * w for b, w in zip(inner, column, strict=True)]
+            right += [[w.real for w in column], [w.imag for w in column]]
+    if not right or not count:
         return [arb(0)] * count
-    rows, columns = len(pairs[0][1]), len(pairs[0][2])
-    weighted = [[c * a for a in outer] for c, outer, _ in pairs]
-    left = arb_mat(
-        [[part for w in weighted for part in (w[i].real, -w[i].imag)] for i in range(rows)],
-    )
-    right = arb_mat(
-        [part for _, _, inner in pairs for part in ([b.real for b in inner], [b.imag for b in inner])]
-    )
-    product = left * right
-    return [product[i, j] for i in range(rows) for j in range(columns)][:count]
+    found: list[arb] = (arb_mat(left) * arb_mat(right)).entries()
+    return found[:count]

@@ -341,7 +341,9 @@ def _of_lumped(bound: BoundTransferFunction, integrations: int, times: SampleTim
             if terms is not None:
                 weights, _ = at_infinity(quotient, integrations)
                 impulses = tuple(ImpulseAt(arb(0), k, w) for k, w in enumerate(weights) if w != 0)
-                found = Sampled(tuple(values_of(terms, times)), impulses)
+                # Residues may need all bits that poles have; sums of exponentials need those of their result.
+                with precision(bits_for_digits(wanted + decimal_exponent(exact_fraction(turned + 1)) + 1)):
+                    found = Sampled(tuple(values_of(terms, times)), impulses)
                 if is_precise(found.values, digits):
                     return found
                 if not times.is_exact:
@@ -386,6 +388,7 @@ def is_precise(values: Sequence[arb], digits: int) -> bool:
     >>> is_precise([arb(0, 1e-13), arb(1)], 12), is_precise([arb(0, 1e-3), arb(1)], 12)
     (True, False)
     """
-    largest = max((abs(y.mid()) for y in values), default=arb(0))
-    allowed = largest * arb(10) ** -digits
-    return all(y.is_finite() and y.rad() <= allowed for y in values)
+    if not all(map(arb.is_finite, values)):
+        return False
+    largest = max(map(abs, map(arb.mid, values)), default=arb(0))
+    return bool(max(map(arb.rad, values), default=arb(0)) <= largest * arb(10) ** -digits)
