@@ -23,7 +23,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
-from math import ceil, factorial, inf, isfinite, log2
+from math import ceil, factorial, floor, inf, isfinite, log2
 from typing import TYPE_CHECKING, Protocol
 
 from flint import acb, acb_poly, arb, arb_poly, ctx
@@ -85,6 +85,10 @@ BOUND_BITS = 64
 BITS_OF_E = 1.4426950408889634
 ASIDE = 1 / 16
 """Share of abs(u) by which what is cut off a polynomial is bounded beyond it, for its derivatives."""
+CUTS = 4
+"""Parts of an octave: a quarter more in abs(u) costs some two bits, far fewer than are kept to spare."""
+HIGHEST_CUT = 1000
+"""Power of two of abs(u) beyond which bounds come near the end of doubles."""
 WIDE = 2.0**-30
 """Relative radius of balls about whose middle a polynomial is expanded before it is evaluated."""
 
@@ -162,6 +166,9 @@ class PowerExpansion:
     # of the states, at the start and at the end
     weights: tuple[Weights, Weights]
     _minors: dict[tuple[Lines, Lines], Polynomial] = field(default_factory=dict, repr=False)
+    _cuts: dict[tuple[Lines, Lines, int, int], tuple[Polynomial, arb]] = field(
+        default_factory=dict, repr=False
+    )
     # The sizes of coefficients, and their logarithms.
     _sizes: dict[tuple[Lines, Lines], tuple[arb_poly, list[float]]] = field(default_factory=dict, repr=False)
 
@@ -195,9 +202,18 @@ class PowerExpansion:
 
         The second bounds the rest for abs(u) up to ``1 + ASIDE`` times the size.
         """
-        polynomial, upto = self._polynomial(rows, columns), size * (1 + ASIDE)
-        if not 0 < (way := float(upto)) < inf:
+        polynomial, way = self._polynomial(rows, columns), float(size)
+        if not 0 < way < 2.0**HIGHEST_CUT:
             return polynomial, arb(0)
+        # Sizes up to the same part of an octave are cut alike, once. A millionth more makes up for rounding.
+        part = floor(CUTS * log2(way) + 1e-6) + 1
+        key = rows, columns, part, ctx.prec
+        if key not in self._cuts:
+            self._cuts[key] = self._cut_for(rows, columns, 2.0 ** (part / CUTS) * (1 + ASIDE))
+        return self._cuts[key]
+
+    def _cut_for(self, rows: Lines, columns: Lines, way: float) -> tuple[Polynomial, arb]:
+        polynomial, upto = self._polynomial(rows, columns), arb(way)
         sizes, logarithms = self._sizes_of(rows, columns)
         terms = [x + m * log2(way) for m, x in enumerate(logarithms)]
         least = max(terms, default=0.0) - ctx.prec - GUARD

@@ -51,6 +51,8 @@ def locate(
     region: Region | None = None,
     digits: int = 30,
     budget: Budget | None = None,
+    *,
+    with_zeros: bool = True,
 ) -> PoleZeroMap:
     """Find the poles and zeros of a transfer function, with its hidden modes, proved.
 
@@ -58,13 +60,14 @@ def locate(
     poles nor zeros; all its modes are hidden. Those of a distributed system, of which there are infinitely
     many, are searched in :func:`default_region` when everything is asked for, and the search is limited by
     its work where no budget is given. Of one in nested form, a network of beams, roots are counted
-    without expanding anything.
+    without expanding anything. Where zeros are not wanted those of a distributed system may be left out, and
+    poles that coincide with one stay among the others.
     """
     if isinstance(bound, BoundNested):
         return _locate_nested(bound, region, digits, budget or entered_budget())
     bound = without_lengths_of_zero(bound)
     if bound.is_distributed:
-        return locate_distributed(bound, region, digits, budget or entered_budget())
+        return locate_distributed(bound, region, digits, budget or entered_budget(), with_zeros=with_zeros)
     above = [(f, e) for f, e in bound.ratio.factors if e > 0]
     below = [(f, -e) for f, e in bound.ratio.factors if e < 0]
     hidden = [(f.polynomial, f.multiplicity) for f in bound.hidden]
@@ -141,7 +144,12 @@ def default_region(bound: AnyBoundFunction) -> Region:
 
 
 def locate_distributed(
-    bound: BoundTransferFunction, region: Region | None, digits: int, budget: Budget
+    bound: BoundTransferFunction,
+    region: Region | None,
+    digits: int,
+    budget: Budget,
+    *,
+    with_zeros: bool = True,
 ) -> PoleZeroMap:
     """Find the poles and zeros of a transfer function with kernels, to so many significant digits, proved.
 
@@ -152,7 +160,7 @@ def locate_distributed(
     """
     is_default = region is None or isinstance(region, Everything)
     where = default_region(bound) if region is None or isinstance(region, Everything) else region
-    searched = _Searched(bound, where, digits, budget)
+    searched = _Searched(bound, where, digits, budget, with_zeros=with_zeros)
     reason, code = None, None
     try:
         searched.find()
@@ -214,8 +222,17 @@ def locate_distributed(
 class _Searched:
     """Numerator, denominator and what cancelled between them, searched in a region."""
 
-    def __init__(self, bound: BoundTransferFunction, region: Region, digits: int, budget: Budget) -> None:
+    def __init__(
+        self,
+        bound: BoundTransferFunction,
+        region: Region,
+        digits: int,
+        budget: Budget,
+        *,
+        with_zeros: bool = True,
+    ) -> None:
         self.bound, self.region, self.digits, self.budget = bound, region, digits, budget
+        self._above = bound.num if with_zeros else Factored.number(bound.ratio.ring, 1)
         match region:
             case Modes(count) | Mode(count):
                 bound.expect(count)
@@ -230,7 +247,7 @@ class _Searched:
         bound, digits, where = self.bound, self.digits, self.region
         if not bound.ratio.is_zero:
             self.sides.append(Side(bound, bound.den, digits, self.budget))
-            self.sides.append(Side(bound, bound.num, digits, self.budget))
+            self.sides.append(Side(bound, self._above, digits, self.budget))
         if isinstance(where, Mode):
             for side in self.sides:
                 side.numbered(where.number)

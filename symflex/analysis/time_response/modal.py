@@ -544,7 +544,8 @@ def estimated_modes(bound: AnyBoundFunction, integrations: int, times: SampleTim
 
     Higher modes are taken to fade no more slowly than the slowest of the upper half of those found.
     """
-    located = locate(bound, Modes(ESTIMATED_MODES), DIGITS).complete()
+    # Zeros matter in residues alone; to find them takes as long as to find the poles.
+    located = locate(bound, Modes(ESTIMATED_MODES), DIGITS, with_zeros=False).complete()
     poles = [root for root in located.all_poles if not root.im < 0 and not root.is_zero]
     rings = _rings(bound, poles, integrations)
     apart = [root for root in poles if not any(ring.holds(root.enclosure()) for ring, _, _ in rings)]

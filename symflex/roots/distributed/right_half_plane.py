@@ -66,10 +66,10 @@ def search_right(
     if any(hole.right < pi / 2 for hole in side.holes):
         return RightHalfPlane(tuple(known), ACCUMULATING)
     radius, unproved = _end(side, reached)
+    if radius <= reached:
+        return RightHalfPlane(tuple(known), unproved and _up_to(unproved, reached))
     # Roots mirror each other in the axis, and a path along it would meet them.
     is_mirrored = bool(unproved) and side.function.is_even
-    if is_mirrored and radius <= reached:
-        return RightHalfPlane(tuple(known), _up_to(unproved, reached))
     count: int | None = None
     try:
         count = None if is_mirrored else side.count_right(log(radius * MARGIN))

@@ -55,6 +55,15 @@ def test_a_region_and_a_budget_are_passed_on():
     assert (certificate.is_exceeded, certificate.code) == (True, "SF506")
 
 
+def test_without_zeros_the_poles_are_those_of_the_textbook():
+    # x tan x = 2, see ROD, by scipy's brentq.
+    found = locate(bound(ROD), Modes(2), with_zeros=False)
+    assert found.zeros == () and found.certificate.certified
+    omega = sorted(float(r.im) for r in found.all_poles if r.im > 0)
+    assert omega == pytest.approx([1.076873986311771, 3.6435971674254], rel=1e-8)
+    assert locate(bound(ROD), Modes(2)).zeros
+
+
 def test_an_engine_heeds_its_budget():
     clock = iter(range(10**6)).__next__
     source = bound(DELAY_LOOP)

@@ -217,12 +217,19 @@ def test_the_count_goes_as_far_as_the_last_factors_tail(searching):
     assert side.counted_to == [pytest.approx(9 * 1.01)]
 
 
-@pytest.mark.parametrize(("reached", "radius"), [(0.0, 30.0), (40.0, 40.0)])
-def test_without_an_end_poles_are_counted_as_far_as_kernels_have_few_waves(searching, reached, radius):
+@pytest.mark.parametrize("reached", [0.0, 29.0])
+def test_without_an_end_poles_are_counted_as_far_as_kernels_have_few_waves(searching, reached):
     side = Half(0)
     found = searching(side, reached=reached, tails=ENDLESS)
-    assert found == RightHalfPlane((), up_to(radius, "poles have no end"))
-    assert side.counted_to == [pytest.approx(radius * 1.01)]
+    assert found == RightHalfPlane((), up_to(30.0, "poles have no end"))
+    assert side.counted_to == [pytest.approx(30 * 1.01)]
+
+
+@pytest.mark.parametrize(("tails", "unproved"), [(ENDLESS, up_to(40.0, "poles have no end")), (ENDING, "")])
+def test_where_all_roots_are_known_none_is_counted_again(searching, tails, unproved):
+    side = Half(0)
+    assert searching(side, [RIGHT], reached=40.0, tails=tails) == RightHalfPlane((RIGHT,), unproved)
+    assert side.counted_to == []
 
 
 def test_where_some_are_missing_the_half_disc_is_searched(searching):
@@ -242,7 +249,7 @@ def test_where_they_are_not_found_it_is_said_why(searching, proof, unproved):
 
 
 @pytest.mark.parametrize(
-    ("reached", "said"), [(0.0, "poles have no end"), (40.0, up_to(40.0, "poles have no end"))]
+    ("reached", "said"), [(0.0, "poles have no end"), (20.0, up_to(20.0, "poles have no end"))]
 )
 def test_where_they_have_no_end_either_all_are_known_as_far_as_before(searching, reached, said):
     again = Half(0, roots=(RIGHT,), proof=Proof(3, 1))
@@ -258,8 +265,8 @@ def test_with_a_root_on_the_path_the_search_is_proved_by_itself(searching, proof
 
 def test_a_budget_spent_by_the_count_is_said(searching):
     assert searching(Half(SPENT), [RIGHT]) == RightHalfPlane((RIGHT,), "the budget is spent")
-    found = searching(Half(SPENT), [RIGHT], reached=50.0, tails=ENDLESS)
-    assert found == RightHalfPlane((RIGHT,), up_to(50.0, "poles have no end"))
+    found = searching(Half(SPENT), [RIGHT], reached=20.0, tails=ENDLESS)
+    assert found == RightHalfPlane((RIGHT,), up_to(20.0, "poles have no end"))
 
 
 @pytest.mark.parametrize(
