@@ -68,9 +68,10 @@ class MinorSums:
             if k.function == "entry"
         }
 
-    def has_entries(self, polynomial: fmpz_mpoly) -> bool:
+    @cached_property
+    def has_entries(self) -> PolynomialMemo[bool]:
         """Tell whether a polynomial has entries in it."""
-        return any(degree_in(polynomial, i) for i in self.entries)
+        return PolynomialMemo(lambda polynomial: any(degree_in(polynomial, i) for i in self.entries))
 
     @cached_property
     def of(self) -> PolynomialMemo[MinorSum]:

@@ -38,7 +38,12 @@ BESIDE_MODES = 1
 BEYOND_MODES = 1.2
 """How far beyond the last root circles are drawn on which roots are counted [in s]."""
 FURTHER = 1.5
-"""How much further than asked for an expansion reaches [in s], so that not every mode needs another."""
+"""How much further than asked for an expansion reaches [in s], so that not every mode needs another.
+
+Each one that is made after others goes further by this once more, up to ``FURTHEST`` times: a path that
+nobody announced is followed with few of them.
+"""
+FURTHEST = 3
 HIGHEST_OCTAVE = 400
 """Nobody asks for a frequency [rad/s] beyond this power of two, or below its inverse."""
 PARTS = 4
@@ -130,7 +135,7 @@ class VaryingMatrices:
                 self._lowest[matrix] = self._lowest_octave(law)
             wanted = abs(at_centre(law.rate(acb(0, self._expected.get(0, 0.0))))).upper()
             if not size <= wanted:
-                wanted = (size * FURTHER**law.step).upper()
+                wanted = (size * FURTHER ** (law.step * min(max(len(known), 1), FURTHEST))).upper()
             largest = max(wanted, arb(2) ** (law.step * self._lowest[matrix]), *(r for r, _, _ in known))
             bits = max(FEWEST_BITS, ceil(ctx.prec / BUCKET) * BUCKET, *(b for _, b, _ in known))
             fitting = [law.expanded(largest, bits)]
