@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 
 from symflex.drawing.abbreviation import abbreviated
 from symflex.drawing.cells import SPACINGS
-from symflex.drawing.diagram import diagrams, statements
+from symflex.drawing.diagram import diagrams, is_cut, statements
 from symflex.drawing.fields import FieldRow, field_rows
 from symflex.drawing.frames import frame_plan, is_planar, name_of
 from symflex.drawing.geometry import Drawing, Extent, Placed
@@ -19,7 +19,7 @@ from symflex.drawing.lettering import Labels, column_of, filled
 from symflex.drawing.page import MARGIN, POINTS, figure_of, render_drawing, stacked
 from symflex.drawing.rows import lay_out, order_of
 from symflex.drawing.scheme import DrawnNetwork, scheme_of, with_readings
-from symflex.drawing.signals import SignalGraph
+from symflex.drawing.signals import SignalGraph, whole
 from symflex.errors import Diagnostic, UsageError
 from symflex.expressions import Name, names
 from symflex.figures.files import MM_PER_INCH
@@ -28,18 +28,20 @@ from symflex.library.elements import LineElement
 from symflex.print.latex.page import COLUMNS_MM, WIDEST_MM, checked_width
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from matplotlib.figure import Figure
 
     from symflex.drawing.cells import Spacing
-    from symflex.drawing.scheme import Scheme
+    from symflex.drawing.scheme import DrawnPart, Scheme
     from symflex.model import Model
 
 __all__ = ["Drawing", "Extent", "Placed", "draw_model", "drawing_of", "render_drawing"]
 
 LEGEND: Final = 230.0
 """Width of the lines of values below a drawing [points]."""
+ROUND: Final = 0.3
+"""How far from its axes wires leave a round body, as a share of its radius: it is still as wide there."""
 SMALLEST: Final = 0.8
 """Share of their size to which symbols and type are made smaller before the page is made wider."""
 SMALLEST_ASKED: Final = 0.6
@@ -68,7 +70,11 @@ def drawing_of(
     with paper_style(font):
         content = _content_of(model, Labels(model, values))
         asked = [] if width_mm is None else [checked_width(width_mm)]
-        for width in asked or sorted(COLUMNS_MM.values()):
+        usual = sorted(COLUMNS_MM.values())
+        rooms = [w / MM_PER_INCH * POINTS - 2 * MARGIN for w in usual]
+        if is_cut(content.graph, rooms[0]) and not is_cut(content.graph, rooms[-1]):
+            usual = usual[1:]  # a loop is closed there
+        for width in asked or usual:
             points = width / MM_PER_INCH * POINTS
             for spacing in SPACINGS:
                 drawing = _laid_out(content, spacing, points)
@@ -115,6 +121,7 @@ class _Content:
     scheme: Scheme
     graph: SignalGraph
     fields: tuple[FieldRow, ...]
+    at_sources: Mapping[str, str]  # inputs that are all there is to an element, by its name
 
 
 def _content_of(model: Model, labels: Labels) -> _Content:
@@ -124,8 +131,11 @@ def _content_of(model: Model, labels: Labels) -> _Content:
     graph = SignalGraph(model, labels)
     used = {i for f in fields for i in f.inputs}
     free = [i.name for i in model.inputs if i.kind == "signal" and i.name not in used]
-    graph.add_all([o for o in scheme.others if o not in shown], free)
-    return _Content(model, with_readings(scheme, graph.readings(), labels), graph, fields)
+    alone = [(whole(e.values[0][1]), e.name) for e in model.elements if e.element.is_source]
+    sources = {value.name: name for value, name in alone if isinstance(value, Name) and value.name in free}
+    graph.add_all([o for o in scheme.others if o not in shown], [n for n in free if n not in sources])
+    written = {e: n for n, e in sources.items() if ("input", n) not in graph.known}
+    return _Content(model, with_readings(scheme, graph.readings(), labels), graph, fields, written)
 
 
 def _legend(model: Model, labels: Labels) -> list[Placed]:
@@ -143,7 +153,13 @@ def _laid_out(content: _Content, spacing: Spacing, width: float) -> Drawing:
     rows = [*(items for items, _ in found), *(f.items for f in content.fields)]
     rows += [*diagrams(graph, width - 2 * MARGIN), statements(graph), _legend(model, graph.labels)]
     gone = tuple(name for _, left_out in found for name in left_out)
-    return stacked([r for r in rows if r], width, gone)
+    at = content.at_sources
+    named = [
+        [replace(i, kind="input", name=at[i.name]) if i.kind == "label" and i.name in at else i for i in row]
+        for row in rows
+        if row
+    ]
+    return stacked(named, width, gone)
 
 
 def _with_joins(content: _Content, drawing: Drawing) -> Drawing:
@@ -153,7 +169,8 @@ def _with_joins(content: _Content, drawing: Drawing) -> Drawing:
         boxes.setdefault((item.kind, item.name), []).append(item.box)
     bodies: dict[str, list[Extent]] = {}
     for part in (p for net in content.scheme.networks for p in net.parts if p.symbol.role == "body"):
-        bodies.setdefault(part.nodes[0], []).extend(boxes.get(("element", part.name), ()))
+        found = boxes.get(("element", part.name), ())
+        bodies.setdefault(part.nodes[0], []).extend(c for b in found for c in _faces(part, b))
     joins = []
     for name in content.graph.readings():
         node = name.partition(".")[0]
@@ -165,6 +182,14 @@ def _with_joins(content: _Content, drawing: Drawing) -> Drawing:
         ends = tuple(boxes.get(("element", use.name), ()))
         joins.append(Join(use.name, tuple(starts), tuple(map(_tail, ends)), ends))
     return replace(drawing, items=(*drawing.items, *joined(drawing, joins)))
+
+
+def _faces(part: DrawnPart, box: Extent) -> tuple[Extent, ...]:
+    """Return where wires may leave a body: all around it, of a round one near its four utmost points."""
+    if part.type_name != "inertia" or abs(box.width - box.height) > 1:
+        return (box,)
+    (x, y), near = box.centre, ROUND * box.width / 2
+    return Extent(x - near, box.y0, x + near, box.y1), Extent(box.x0, y - near, box.x1, y + near)
 
 
 def _tail(box: Extent) -> Extent:

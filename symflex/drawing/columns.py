@@ -99,7 +99,7 @@ class Column:
         """
         holds, hangs = [*map(support_width, self.supports)], [*map(hanging_width, self.hanging)]
         x = -sum(holds) / 2
-        is_outside = self.is_round and bool(holds)
+        is_outside = self.is_round and (bool(holds) or len(hangs) > 1)
         if not (is_outside and self.outside):
             x -= sum(hangs) / 2
         at = x - sum(hangs) if is_outside and self.outside < 0 else x + sum(holds)

@@ -58,7 +58,13 @@ class _Branch:
     is_tag: bool = False  # the last node is drawn elsewhere, and here its name
 
 
-def diagrams(graph: SignalGraph, widest: float = 1e9) -> list[list[Placed]]:
+def is_cut(graph: SignalGraph, widest: float) -> bool:
+    """Tell whether a loop is not closed, because its diagram goes on below its beginning."""
+    closed = (sum(i.kind == "tag" for band in diagrams(graph, w) for i in band) for w in (widest, 1e9))
+    return next(closed) > next(closed)
+
+
+def diagrams(graph: SignalGraph, widest: float) -> list[list[Placed]]:
     """Return the block diagrams of a graph, one band each; a wider one goes on below its beginning."""
     drawn: set[int] = set()
     joined: set[tuple[int, int]] = set()
@@ -124,7 +130,7 @@ def _longest(graph: SignalGraph, drawn: set[int], joined: set[tuple[int, int]]) 
         if (i not in drawn or n.kind in NAMED) and (ahead(i) or i not in drawn)
     ]
     best: list[int] = []
-    best_rank = (False, 0)
+    best_rank = (False, 0, 0)
     for start in starts:
         pending, tries = [[start]], 0
         while pending and tries < MOST_PATHS:
@@ -134,11 +140,17 @@ def _longest(graph: SignalGraph, drawn: set[int], joined: set[tuple[int, int]]) 
             while len(path) > 1 and not onward and _leads_back(graph, path):
                 path = path[:-1]
                 onward = []
-            rank = (graph.nodes[start].kind == "input", len(path))
+            rank = (graph.nodes[start].kind == "input", _forward(graph, path), len(path))
             if not onward and rank > best_rank:
                 best, best_rank = path, rank
             pending += [[*path, n] for n in reversed(onward)]
     return best
+
+
+def _forward(graph: SignalGraph, path: list[int]) -> int:
+    """Return how much of a path comes before what it is subtracted from: that is fed back."""
+    enters = (any(b == one and m for b, m in graph.nodes[node].before) for one, node in pairwise(path))
+    return next((i for i, is_minus in enumerate(enters, 1) if is_minus), len(path))
 
 
 def _leads_back(graph: SignalGraph, path: list[int]) -> bool:

@@ -6,6 +6,7 @@ the metrics of the fonts that come with matplotlib.
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Final
@@ -15,14 +16,17 @@ from matplotlib.font_manager import FontProperties
 from matplotlib.mathtext import MathTextParser
 
 from symflex.drawing.geometry import Lettering
+from symflex.errors import Text
 from symflex.expressions import Attribute, Call, Differentiated, Name, replace_values, substitute
 from symflex.expressions import nodes as parts_of
-from symflex.figures.style import label_of_name, label_of_unit
+from symflex.figures.style import PRIMES, label_of_name, label_of_unit
+from symflex.model import ExactValue
 from symflex.print.label import read_label
 from symflex.print.latex.equation import model_labels
 from symflex.print.latex.expression import latex_expression
 from symflex.print.latex.table import decimal_text
 from symflex.print.writer import Style
+from symflex.quantities import looks_like_quantity, parse_quantity, unit_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -38,6 +42,7 @@ LEADING: Final = 2.5
 _FINE: Final = 20
 """Matplotlib rounds the size of a text up to whole dots: as many are measured to a point."""
 _PARSER: Final = MathTextParser("path")
+_PRIMES: Final = re.compile("'{1,3}")
 LONGEST_NAME: Final = 14
 """Letters of a name that has no other label."""
 
@@ -55,8 +60,10 @@ def _measured(markup: str, size: float, family: str) -> tuple[float, float, floa
 
 def text(latex: str, size: float = SIZE) -> Lettering | None:
     """Return a text at the origin, None where matplotlib cannot typeset it."""
-    found = _measured(f"${latex}$", size, str(rcParams["mathtext.fontset"])) if latex else None
-    return None if found is None else Lettering(f"${latex}$", 0.0, 0.0, *found, size)
+    # Matplotlib makes small raised marks of apostrophes; fonts have primes of their own.
+    markup = f"${_PRIMES.sub(lambda m: PRIMES[m[0]], latex)}$"
+    found = _measured(markup, size, str(rcParams["mathtext.fontset"])) if latex else None
+    return None if found is None else Lettering(markup, 0.0, 0.0, *found, size)
 
 
 def column_of(lines: Sequence[Lettering]) -> tuple[Lettering, ...]:
@@ -159,6 +166,12 @@ class Labels:
 
     def quantity(self, expression: Expression, unit: str) -> str:
         """Return the value of an element: as it is written, a number with its unit."""
+        if expression.span and looks_like_quantity(shown := expression.span.text):
+            found = parse_quantity(Text(shown, expression.span))
+            if found.unit:
+                one = unit_of(found.unit)
+                value = ExactValue(found.magnitude / one.scale, found.pi_power - one.pi_power)
+                return with_unit(number_latex(decimal_text(value)), found.unit)
         written = self.expression(expression)
         written = written.removeprefix(r"1 \cdot ")  # of a power of ten
         is_named = any(isinstance(n, Name | Attribute | Call) for n in parts_of(expression))

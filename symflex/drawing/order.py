@@ -12,11 +12,15 @@ from typing import TYPE_CHECKING, Final
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
+BRIDGE: Final = 0.5
+"""What it costs that a part joins no neighbours, besides what it spans."""
+MEMBER: Final = 3.0
+"""How much more that is of a member, which is long and looks stiff at corners."""
 MOST_MOVES: Final = 40
 """Rounds of moving single nodes; small networks need three or four."""
 LARGEST: Final = 40
 """Nodes of a network whose order is improved; longer ones are chains."""
-LANES: Final = {"electrical": 0, "rotation": 1, "translation": 2, "planar": 3, "plane": 3}
+LANES: Final = {"electrical": 0, "rotation": 1, "translation": 2, "planar": 2, "plane": 2}
 """Which domain stands to the left of which, where a part joins both."""
 
 
@@ -39,12 +43,16 @@ def ordered(
     if len(nodes) > LARGEST:
         return tuple(found)
 
+    members = {*directed}
+
     def cost(order: Sequence[str]) -> float:
         at = {n: i for i, n in enumerate(order)}
         total = 0.0
         for a, b in joints:
             apart = at[b] - at[a]
-            total += abs(apart) - 1 + (0.3 if apart < 0 and (a, b) in directed else 0.0)
+            bridged = abs(apart) - 1 + BRIDGE if abs(apart) > 1 else 0.0
+            total += bridged * (MEMBER if {(a, b), (b, a)} & members else 1.0)
+            total += 0.3 if apart < 0 and (a, b) in directed else 0.0
             if LANES[lanes[a]] != LANES[lanes[b]] and (LANES[lanes[a]] - LANES[lanes[b]]) * apart > 0:
                 total += 0.6
         return total - sum(p * at[n] / len(order) for n, p in pull.items() if n in at)
@@ -88,8 +96,10 @@ def _walked(nodes: Sequence[str], joints: Sequence[tuple[str, str]], start: str)
             continue
         seen.add(node)
         found.append(node)
-        # The one that is reached last leads farthest: it is put at the bottom of the pile.
-        pending += sorted((n for n in beside[node] if n not in seen), key=lambda n: -_reach(beside, n, far))
+        # The one that is reached last leads farthest: it is put at the bottom of the pile. Of those that lead
+        # as far the one that is written first stands on top.
+        ahead = [n for n in reversed(beside[node]) if n not in seen]
+        pending += sorted(ahead, key=lambda n: -_reach(beside, n, far))
     return [*found, *(n for n in nodes if n not in seen)]
 
 

@@ -190,12 +190,19 @@ class _Layout:
         hangs = column.is_electrical or (column.is_flat and part.symbol.role != "member")
         if hangs or all(e.node for e in part.ends):
             column.hanging.append(part)
-        elif index == 0 and not (last == 0 and len(self.direct[0]) > len(self.direct[1]) + 2):
+        elif index == 0 and not (last == 0 and self._is_better_right(part)):
             self._add_direct(part, 0)
         elif index == last:
             self._add_direct(part, last + 1)
         else:
             column.stubs.append(part)
+
+    def _is_better_right(self, part: DrawnPart) -> bool:
+        """Tell whether the only node has the ground to its right: for a member that goes on, or for room."""
+        left, right = ([c for c in side if isinstance(c, SymbolCell)] for side in self.direct[:2])
+        if part.symbol.role == "member":
+            return any(c.is_member for c in left) and not any(c.is_member for c in right)
+        return len(left) > len(right) + 2
 
     def _add_direct(self, part: DrawnPart, gap: int) -> None:
         left, right = sorted(part.ends, key=lambda e: bool(e.node), reverse=gap > 0)

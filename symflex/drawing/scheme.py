@@ -15,6 +15,7 @@ from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING, Final, Literal
 
+from symflex.drawing.signals import whole
 from symflex.drawing.symbols import (
     SYMBOLS,
     TRANSFORMER_SYMBOLS,
@@ -135,7 +136,7 @@ class Scheme:
 
 def scheme_of(model: Model, labels: Labels) -> Scheme:
     """Return what is drawn of a model's elements, nodes, inputs and outputs."""
-    domains = {n.name: n.domain for n in model.nodes}
+    domains = _domains(model)
     found = _Collected([_part(use, labels, domains) for use in model.elements])
     for one in model.inputs:
         if len(one.nodes) > 1 or (one.nodes and INPUT_KINDS[one.kind].domain == "electrical"):
@@ -151,6 +152,16 @@ def scheme_of(model: Model, labels: Labels) -> Scheme:
     apart = [s.name for s in found.spans if together[s.nodes[0]] != together[s.nodes[1]]]
     networks = tuple(_as_wanted(net, domains, model.drawing) for net in networks)
     return Scheme(networks, domains, (*found.others, *apart))
+
+
+def _domains(model: Model) -> dict[str, str]:
+    """Return how nodes move: what holds a string moves across it, as the end of a beam does."""
+    held: dict[str, set[str]] = {"string": set(), "rod": set()}
+    for use in model.elements:
+        ends = (r.node for _, found in use.nodes for r in found if not r.is_ground)
+        held.get(use.element.type_name, set()).update(ends)
+    across = held["string"] - held["rod"]
+    return {n.name: "planar" if n.name in across else n.domain for n in model.nodes}
 
 
 def _as_wanted(net: DrawnNetwork, domains: Domains, hints: DrawingHints) -> DrawnNetwork:
@@ -354,8 +365,7 @@ def _label(use: PlacedElement, labels: Labels) -> tuple[str, tuple[str, ...]]:
     ]
     if use.element.is_source:
         value = use.values[0][1]
-        whole = value.operand if isinstance(value, Negative) else value
-        return labels.expression(value) if isinstance(whole, Name) else labels.name(use.name), ()
+        return labels.expression(value) if isinstance(whole(value), Name) else labels.name(use.name), ()
     if isinstance(use.element, LineElement):
         by_name = dict(given)
         first, second = STIFF.get(use.element.type_name, ((), ""))

@@ -104,8 +104,7 @@ class SignalGraph:
 
     def _is_diagram(self, value: Expression) -> bool:
         """Tell whether the value of a source is more than a name, which is written at the source."""
-        whole = value.operand if isinstance(value, Negative) else value
-        return not isinstance(whole, Name) and not self._is_constant(value)
+        return not isinstance(whole(value), Name) and not self._is_constant(value)
 
     def readings(self) -> list[str]:
         """Return the names of nodes and quantities that are read."""
@@ -196,8 +195,8 @@ class SignalGraph:
     def _product(self, factors: list[Expression], below: Expression | None) -> tuple[int, bool]:
         varying = [f for f in factors if not self._is_constant(f)]
         if len(varying) != 1 or (below is not None and not self._is_constant(below)):
-            whole = product_of(factors)
-            return self._whole(whole if below is None else quotient(whole, below)), False
+            product = product_of(factors)
+            return self._whole(product if below is None else quotient(product, below)), False
         origin, is_minus = self._built(varying[0])
         constant = [f for f in factors if self._is_constant(f)]
         own = [f for f in constant if isinstance(f, Name) and f.name in self.blocks]
@@ -211,6 +210,11 @@ class SignalGraph:
             origin = self._box("block", one.name, self.labels.name(one.name), origin)
             self.nodes[origin].lines = tuple(self.labels.values([e for _, e in self.blocks[one.name].values]))
         return origin, is_minus
+
+
+def whole(value: Expression) -> Expression:
+    """Return what is driven with, but for its sign."""
+    return value.operand if isinstance(value, Negative) else value
 
 
 def formula(block: PlacedBlock) -> Expression | None:

@@ -23,7 +23,7 @@ from matplotlib.path import Path as Outline
 
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
-from symflex.figures.style import DEFAULT_FONT, paper_style
+from symflex.figures.style import DEFAULT_FONT, PRIMES, paper_style
 from symflex.files.write import write_atomically
 from symflex.print.label import read_label
 from symflex.print.latex.text import escape_text
@@ -163,6 +163,8 @@ def _prose(text: str) -> str:
 def _mathematics(latex: str) -> str:
     # A number on an axis says that it is set in the font of texts, which is TeX's own choice of digits.
     plain = _DEFAULT_FONT.sub(r"{\1}", latex).replace("\N{MINUS SIGN}", "-")
+    for written, sign in PRIMES.items():
+        plain = plain.replace(sign, written)
     return escape_text(latex) if read_label(plain) is None else f"${plain}$"
 
 

@@ -65,6 +65,8 @@ FONTS: Final[dict[str, dict[str, object]]] = {
 }
 """Fonts of texts: STIX, at home next to Times; Computer Modern, that of LaTeX; one for slides."""
 DEFAULT_FONT: Final = "times"
+PRIMES: Final = {"'": "\N{PRIME}", "''": "\N{DOUBLE PRIME}", "'''": "\N{TRIPLE PRIME}"}
+"""Signs that these fonts have for primes, by how LaTeX writes them."""
 
 # Where Computer Modern has what ASCII and Latin-1 say; elsewhere its glyphs are others.
 _COMPUTER_MODERN: Final = frozenset(
@@ -259,13 +261,19 @@ def size_of_text(text: str, font: FontProperties) -> tuple[float, float]:
     return float(width), float(height)
 
 
+def _unit_symbol(name: str) -> str:
+    """Return a unit in mathematics: ohms and micro with their Greek letters."""
+    prefix = rf"\mu {name[1:]}" if name[0] == "u" and name[1:] else name
+    return rf"{prefix[:-3]}\Omega " if name.endswith(("Ohm", "ohm")) else prefix
+
+
 def label_of_unit(unit: str) -> str:
     r"""Return a unit in upright mathematics, empty for a pure or unknown one.
 
     Examples
     --------
-    >>> print(label_of_unit("m/(N*s^2)"))
-    $\mathrm{m/(N\,s^{2})}$
+    >>> print(label_of_unit("m/(N*s^2)"), label_of_unit("uA/kOhm"))
+    $\mathrm{m/(N\,s^{2})}$ $\mathrm{\mu A/k\Omega }$
     """
     if unit in ("", "1"):
         return ""
@@ -275,7 +283,7 @@ def label_of_unit(unit: str) -> str:
         if power:
             parts.append(f"^{{{power}}}")
         elif token["name"]:
-            parts.append(r"\Omega" if token["name"] == "Ohm" else token["name"])
+            parts.append(_unit_symbol(token["name"]))
         else:
             parts.append(r"\," if token["other"] == "*" else token["other"])
     return rf"$\mathrm{{{''.join(parts)}}}$"

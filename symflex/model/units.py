@@ -256,12 +256,12 @@ def block_unit(block: PlacedBlock, name: str) -> str:
 
 
 def lower(expression: Expression, unit: str = "") -> Expression:
-    """Replace a quantity by the number it is in SI units."""
+    """Replace a quantity by the number it is in SI units, which remembers where it was written."""
     if not isinstance(expression, QuantityLiteral):
         return expression
     angular = not unit or bool(unit_of(unit).radians) or expression.quantity.cycles > 0
     value = ExactValue(*(expression.quantity.angular() if angular else expression.quantity.cyclic()))
-    return exact_expression(value)
+    return replace(exact_expression(value), span=expression.span)
 
 
 def exact_expression(value: ExactValue) -> Expression:

@@ -188,3 +188,32 @@ def test_a_notebook_shows_the_drawing_of_a_model():
     shown = Model.of(pipeline.loads(LOOP))._repr_html_()
     assert "<title>element car</title>" in shown
     assert "<style" not in shown
+
+
+DISTURBED = """
+symflex = 1
+[signals]
+e = "r - H*y"
+u = "C*e"
+y = "G*D*(u + d)"
+[blocks]
+C = { type = "pid", k_p = 3, k_i = "2 1/s" }
+G = { type = "lag", T = "0.1 s" }
+D = { type = "delay", T = "1 s" }
+H = { type = "lag", T = "20 ms" }
+[inputs]
+d = {}
+r = {}
+[outputs]
+Y = "y"
+"""
+
+
+def test_a_loop_of_signals_begins_at_its_command_and_is_closed_on_a_page():
+    model = pipeline.loads(DISTURBED)
+    drawing = drawing_of(model)
+    assert sound(model, drawing)
+    boxes = [place(drawing, *n) for n in (("input", "r"), ("block", "C"), ("block", "G"), ("block", "D"))]
+    assert all(a.x1 < b.x0 for a, b in pairwise(boxes))
+    assert count(drawing, "tag", "y") == 0  # no name stands for a wire
+    assert place(drawing, "block", "H").y1 < boxes[1].y0

@@ -160,7 +160,9 @@ def test_a_field_is_drawn_by_its_radius_of_gyration():
     drawing = sound(FIELD)
     thick, thin = depths(drawing, "field", "w")
     assert thin / thick == pytest.approx(0.5)
-    assert any("''" in t and "[1 - x/(2 l)]^{4}" in t for t in markups(drawing))  # as it is written
+    assert any(
+        "\N{DOUBLE PRIME}" in t and "[1 - x/(2 l)]^{4}" in t for t in markups(drawing)
+    )  # as it is written
 
 
 def test_a_field_with_an_equation_without_derivatives_is_drawn():
@@ -316,3 +318,69 @@ type = "force_source"
 at = "x"
 f = "f"
 [inputs]"""
+
+
+STRING = """
+symflex = 1
+[elements]
+left  = { type = "string", between = ["ground", "p"], N = "9 N", rho = 7800, A = 1e-6, l = "0.4 m" }
+right = { type = "string", between = ["p", "ground"], N = "9 N", rho = 7800, A = 1e-6, l = "0.6 m" }
+bead  = { type = "mass", at = "p", m = "1 g" }
+[inputs]
+F = { force = "p" }
+[outputs]
+Y = "p"
+"""
+
+
+def test_a_bead_on_a_string_moves_across_it_between_two_walls():
+    drawing = sound(STRING)
+    left, bead, right = (item(drawing, "element", n).box for n in ("left", "bead", "right"))
+    assert left.x1 <= bead.x0 < bead.x1 <= right.x0
+    for arrow in (item(drawing, "input", "F").box, item(drawing, "output", "Y").box):
+        assert arrow.height > arrow.width
+
+
+def test_members_are_drawn_in_line_and_what_hangs_on_them_bridges():
+    beam = 'type = "beam", E = "70 GPa", I = 1e-9, rho = 2700, A = 1e-4, l = 1'
+    drawing = sound(
+        f"""
+symflex = 1
+[elements]
+a = {{ {beam}, between = ["p", "q"] }}
+b = {{ {beam}, between = ["q", "r"] }}
+k = {{ type = "spring", between = ["q", "z"], k = 1 }}
+m = {{ type = "mass", at = "z", m = 1 }}
+[inputs]
+F = {{ force = "q" }}
+[outputs]
+Y = "q"
+"""
+    )
+    a, b, spring = (item(drawing, "element", n).box for n in "abk")
+    assert a.centre[1] == pytest.approx(b.centre[1])
+    assert spring.y0 > a.y1
+
+
+def test_a_value_written_in_place_keeps_the_unit_it_was_written_in():
+    drawing = sound(TURNING.replace("3 mm/rad", "5 mm/rev").replace('m = "1 kg"', 'm = "2 t"'))
+    assert {r"$5\,\mathrm{mm/rev}$", r"$2\,\mathrm{t}$"} <= set(markups(drawing))
+
+
+def test_an_input_that_is_all_of_a_source_is_named_there():
+    push = 'push = { type = "force_source", at = "x", f = "u" }\n[inputs]\nu = {}'
+    drawing = sound(TURNING.replace("[inputs]", push))
+    name, arrow = (item(drawing, *n).box for n in (("input", "u"), ("element", "push")))
+    assert abs(name.centre[0] - arrow.centre[0]) < 30  # points
+
+
+def test_a_ring_is_a_chain_with_one_spring_above_it():
+    lines = [
+        f'm_{i} = {{ type = "mass", at = "x_{i}", m = 1 }}\n'
+        f'k_{i} = {{ type = "spring", between = ["x_{i}", "x_{(i + 1) % 6}"], k = 1 }}'
+        for i in range(6)
+    ]
+    ends = '[inputs]\nF = { force = "x_0" }\n[outputs]\nX = "x_3"\n'
+    drawing = sound("\n".join(("symflex = 1\n[elements]", *lines, ends)))
+    springs = [item(drawing, "element", f"k_{i}").box.centre[1] for i in range(6)]
+    assert sum(y > item(drawing, "element", "m_0").box.y1 for y in springs) == 1
