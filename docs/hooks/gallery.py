@@ -2,7 +2,9 @@
 
 A page asks with a comment on a line of its own: ``<!-- gallery -->``; or for one formula, which the page has
 in LaTeX for those who read it in a clone, ``<!-- formula: FILE OUT/IN -->`` to ``<!-- end of formula -->``.
-An equation as specifications write it, ``<!-- equation: y = x^2 -->``, is typeset likewise.
+An equation as specifications write it, ``<!-- equation: y = x^2 -->``, is typeset likewise, and within a
+sentence what stands between backticks after ``<!-- math -->``. On a page with ``<!-- drawings -->`` every
+specification is followed by its drawing.
 """
 
 from __future__ import annotations
@@ -10,6 +12,7 @@ from __future__ import annotations
 import html
 import re
 import tomllib
+from base64 import b64encode
 from dataclasses import dataclass
 from functools import cache
 from math import inf
@@ -21,7 +24,7 @@ from mkdocs.structure.files import File, Files
 from symflex import pipeline
 from symflex.drawing import draw_model
 from symflex.errors import SymflexError, Text
-from symflex.expressions import parse_equation
+from symflex.expressions import parse, parse_equation
 from symflex.figures import draw, draw_loop, render
 from symflex.print.forms import print_form, with_hidden
 from symflex.print.mathml import EQUALS, math_element, mathml_expression, transfer_function_mathml
@@ -54,6 +57,10 @@ GAIN: Final = "K"
 """Closes the loops in ``derivations/``."""
 FORMULA: Final = re.compile(
     r"^<!-- (formula|equation): (.+) -->$.*?^<!-- end of formula -->$", re.MULTILINE | re.DOTALL
+)
+INLINE: Final = re.compile(r"<!-- math -->`([^`]+)`")
+SPECIFICATION: Final = re.compile(
+    r'^```toml title="([\w.]+)"\n(symflex = 1\n.*?)^```$', re.MULTILINE | re.DOTALL
 )
 
 
@@ -88,15 +95,36 @@ def on_page_markdown(markdown: str, **_: object) -> str:
     """Put the gallery and the formulas where a page asks for them."""
     if "<!-- gallery -->" in markdown:
         markdown = markdown.replace("<!-- gallery -->", "\n".join(_sections()))
+    if "<!-- drawings -->" in markdown:
+        markdown = SPECIFICATION.sub(
+            lambda match: f"{match[0]}\n\n{drawing_html(match[1], match[2])}\n", markdown
+        )
+    markdown = INLINE.sub(lambda match: typeset(match[1], is_display=False), markdown)
     return FORMULA.sub(lambda match: TYPESET[match[1]](match[2]), markdown)
 
 
+def drawing_html(name: str, text: str) -> str:
+    """Return the drawing of a specification as a picture."""
+    model = pipeline.loads(text)
+    content = b64encode(render(draw_model(model), "svg")).decode("ascii")
+    alt = html.escape(f"{model.title or name}, drawn", quote=True)
+    return f'<img class="drawing" src="data:image/svg+xml;base64,{content}" alt="{alt}">'
+
+
+def typeset(text: str, *, is_display: bool) -> str:
+    """Return an expression or equation in the notation of specifications as MathML."""
+    whole = Text.alone("a page", text)
+    if "=" in text:
+        equation = parse_equation(whole)
+        written = EQUALS.join(mathml_expression(side, {}) for side in (equation.left, equation.right))
+    else:
+        written = mathml_expression(parse(whole), {})
+    return math_element(f"<mrow>{written}</mrow>", is_display=is_display)
+
+
 def equation_html(text: str) -> str:
-    """Return an equation in the notation of specifications, typeset."""
-    equation = parse_equation(Text.alone("a page", text))
-    left, right = (mathml_expression(side, {}) for side in (equation.left, equation.right))
-    typeset = math_element(f"<mrow>{left}{EQUALS}{right}</mrow>", is_display=True)
-    return f'<div class="formula"><div class="row">{typeset}</div></div>'
+    """Return an equation in the notation of specifications, typeset on a line of its own."""
+    return f'<div class="formula"><div class="row">{typeset(text, is_display=True)}</div></div>'
 
 
 TYPESET: Final[Mapping[str, Callable[[str], str]]] = {
