@@ -264,7 +264,7 @@ def size_of_text(text: str, font: FontProperties) -> tuple[float, float]:
 def _unit_symbol(name: str) -> str:
     """Return a unit in mathematics: ohms and micro with their Greek letters."""
     prefix = rf"\mu {name[1:]}" if name[0] == "u" and name[1:] else name
-    return rf"{prefix[:-3]}\Omega " if name.endswith(("Ohm", "ohm")) else prefix
+    return rf"{prefix[:-3]}\Omega" if name.endswith(("Ohm", "ohm")) else prefix
 
 
 def label_of_unit(unit: str) -> str:
@@ -273,7 +273,7 @@ def label_of_unit(unit: str) -> str:
     Examples
     --------
     >>> print(label_of_unit("m/(N*s^2)"), label_of_unit("uA/kOhm"))
-    $\mathrm{m/(N\,s^{2})}$ $\mathrm{\mu A/k\Omega }$
+    $\mathrm{m/(N\,s^{2})}$ $\mathrm{\mu A/k\Omega}$
     """
     if unit in ("", "1"):
         return ""
