@@ -22,9 +22,10 @@ FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
 
 def takes_long(block):
-    """Tell whether a session fits every number of resonances to measured lines, or sweeps models."""
+    """Tell whether a session fits every order, sweeps models or proves what beams do in loops or in time."""
     chooses_an_order = block.text.startswith("$ symflex fit") and "BIC" in block.text
-    return chooses_an_order or block.text.startswith("$ symflex sweep")
+    proves = block.text.startswith(("$ symflex stability derivations", "$ symflex respond"))
+    return chooses_an_order or proves or block.text.startswith("$ symflex sweep")
 
 
 @pytest.fixture
@@ -92,7 +93,12 @@ def test_every_session_on_a_page_shows_what_the_program_prints(block, reader, sy
 
 
 @pytest.mark.parametrize(
-    "page", [page for page in pages() if any(b.page == page for b in PYTHON)], ids=lambda p: p.name
+    "page",
+    slow_ones(
+        (page for page in pages() if any(b.page == page for b in PYTHON)),
+        lambda page: page.name.startswith("tutorial"),
+    ),
+    ids=lambda p: p.name,
 )
 def test_the_python_examples_of_a_page_run_in_order(page, reader):
     reader(page)

@@ -96,6 +96,7 @@ def test_frequencies_of_wedges_and_hanging_strings_scale_as_dimensions_say():
         assert abs(found[name].normalised - power) < 1e-14
 
 
+@pytest.mark.slow
 def test_the_pole_of_a_full_cone_on_a_mass_moves_as_the_closed_form_does():
     # With h from the tip u = sin(k h)/h: E A_0 u'(l) = m omega^2 u(l), omega = k sqrt(E/rho).
     text = ROD % 'A = "A_0*(1 - x/l)^2"' + 'load = { type = "mass", at = "base", m = "c*rho*A_0/(2*a)" }\n'

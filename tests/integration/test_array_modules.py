@@ -499,6 +499,7 @@ def test_the_derivative_by_a_parameter_is_that_of_the_formula(over_jax, jax, jnp
 ROD = {"E": "200e9", "A": "0.00048", "rho": "7850", "l": "1", "m": "3"}
 
 
+@pytest.mark.slow
 @needs_jax
 @pytest.mark.parametrize("omega", [1e-3, 50.0, 3e4, 2e6])
 def test_the_derivative_of_a_rod_by_its_parameters_is_that_of_the_formula(omega, over_jax, jax, jnp):

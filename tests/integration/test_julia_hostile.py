@@ -14,6 +14,8 @@ from tests.integration.julia import Julia
 from tests.integration.julia_in_python import functions_of
 from tests.unit.codegen.test_numpy_hostile import HOSTILE, NAMES, SPEC, cut, model_of, renamed, ring_takes
 
+pytestmark = pytest.mark.slow  # the same names are tried in Python's text each time
+
 PHRASES = [
     "$(run(`ls`))",
     "$x",
@@ -137,7 +139,6 @@ def test_a_definition_cannot_hide_a_name_of_the_code():
     assert functions_of(made)["_value_of_V_over_F"](s, m, b, k) == pytest.approx(expected, rel=1e-15)
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("julia") is None, reason="julia is not installed")
 def test_every_hostile_model_computes_in_julia_what_the_tame_one_does(tmp_path):
     julia = Julia(tmp_path)

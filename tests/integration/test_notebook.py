@@ -78,6 +78,7 @@ def test_each_object_shows_in_its_own_way(outputs):
     assert kinds == [html, latex, html, html, svg, png, set()]
 
 
+@pytest.mark.slow
 def test_a_model_shows_its_parameters(outputs):
     assert "<code>rho</code>" in text(outputs[0]["text/html"])
 

@@ -12,6 +12,8 @@ from symflex.codegen.matlab import MATLAB, main_name
 from tests.integration.octave import Octave
 from tests.unit.codegen.test_numpy_hostile import HOSTILE, NAMES, SPEC, cut, model_of, renamed, ring_takes
 
+pytestmark = pytest.mark.slow  # the same names are tried in Python's text each time
+
 PHRASES = [
     "%{",
     "%}",
@@ -131,7 +133,6 @@ def test_a_definition_cannot_hide_a_name_of_the_code(tmp_path):
 
 
 @pytest.mark.needs_tool("octave")
-@pytest.mark.slow
 def test_every_hostile_model_computes_in_octave_what_the_tame_one_does(tmp_path):
     octave = Octave(tmp_path)
     models = [with_prose(t) for t in TEXTS] + [with_name(n) for n in CALLED if ring_takes(n)]

@@ -425,6 +425,7 @@ def written(tmp_path):
     return tmp_path
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("flags", [[], ["-ffast-math"], ["-D__STDC_NO_COMPLEX__", "-Wno-unused-function"]])
 def test_no_compiler_warns_whatever_it_supports(written, flags):
     sources = [f"{name}.c" for name in MIXED]

@@ -163,6 +163,7 @@ def test_parameters_and_frequencies_are_broadcast():
     assert found[0, 1] == functions(chain(4))["Y_over_F"](900j)
 
 
+@pytest.mark.slow
 @pytest.mark.needs_tool("gcc")
 def test_c_computes_what_numpy_computes(tmp_path):
     text = chain(4, last=', eta = "1e-6 s"')
@@ -178,6 +179,7 @@ def test_c_computes_what_numpy_computes(tmp_path):
 # ------------------------------------------------------------------------------------------ text
 
 
+@pytest.mark.slow
 def test_a_module_of_many_members_is_small():
     assert len(exported(chain(20)).text) < MODULE_BYTES
 

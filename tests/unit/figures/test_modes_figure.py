@@ -61,6 +61,7 @@ def test_the_curve_is_the_displacement_along_the_beam():
     assert y == pytest.approx(np.sin(2 * np.pi * np.asarray(x)), abs=1e-9)
 
 
+@pytest.mark.slow
 def test_the_curve_of_a_high_mode_has_no_corners():
     axes = drawn(pipeline.load(CLASSICS / "pinned_pinned.toml"), modes=8).axes[7]
     line = axes.lines[1]

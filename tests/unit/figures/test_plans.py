@@ -30,6 +30,7 @@ def member(name, first, second, angle=0):
 PORTAL = member("left", "ground", "p", 90) + member("right", "ground", "q", 90) + member("beam", "p", "q")
 
 
+@pytest.mark.slow
 def test_members_are_placed_by_their_lengths_and_directions():
     (plan,) = panels_of(*shapes(PORTAL))
     assert isinstance(plan, Plan)

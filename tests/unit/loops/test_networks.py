@@ -140,6 +140,7 @@ def test_a_nyquist_plot_says_that_poles_of_a_network_are_known_in_a_disc():
     assert figure.legends[0].get_title().get_text().startswith("open loop: an unknown number of poles")
 
 
+@pytest.mark.slow
 def test_six_beams_lose_their_poles_where_finite_elements_do():
     network = found(chain(6))
     gains = [float(b.gain.mid()) for b in network.boundaries]

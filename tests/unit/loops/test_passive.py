@@ -206,6 +206,7 @@ def test_every_gain_of_a_joint_loop_is_certified(section):
         assert abs(float(margin.angle.mid())) >= least
 
 
+@pytest.mark.slow
 def test_where_a_loop_has_no_damping_of_its_own_phase_margins_beyond_are_not_certified():
     loss = 'loss = { type = "rotary_damper", between = ["phi", "ground"], b = "0.1 N*m*s/rad" }'
     model = arm("K*(r - phi)", more=loss)

@@ -27,6 +27,7 @@ def bound_of(count, representation):
     return bound
 
 
+@pytest.mark.slow
 def test_residues_are_those_of_the_formula():
     written, network = (bound_of(1, kind) for kind in ("expanded", "nested"))
     assert isinstance(network, BoundNested)

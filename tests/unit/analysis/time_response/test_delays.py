@@ -148,6 +148,7 @@ def test_too_many_echoes_are_said():
         time_response(bound(f'{DELAY}"u/(1 + D/2)"'), "step", SampleTimes.of([5000.0]))
 
 
+@pytest.mark.slow
 def test_a_rod_with_more_echoes_than_can_be_followed_is_a_sum_of_modes():
     mass = 'elements.m = { type = "mass", at = "x", m = "1 kg" }'
     found = time_response(rod(mass), "step", SampleTimes.of([400.0, 500.5]))

@@ -337,6 +337,7 @@ def test_timoshenkos_beam_is_held_too_with_a_wider_radius():
     assert_holds(found, expected, share=1e-2)
 
 
+@pytest.mark.slow
 def test_the_bound_of_what_lies_beyond_a_circle_holds_for_a_thousand_modes():
     bounding = passive_bound(clamped())
     modes = BoundedModes(bounding, 1, SampleTimes.of([0.0, 0.37, 1.0]))

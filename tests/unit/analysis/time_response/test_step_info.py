@@ -161,6 +161,7 @@ def test_a_loop_with_a_delay_rises_overshoots_and_settles_as_the_method_of_steps
     assert max(x.rad() for x in (found.peak, found.rise_time, found.settling_time)) < 1e-9
 
 
+@pytest.mark.slow
 def test_a_loop_whose_delay_makes_it_unstable_has_no_such_properties():
     # x' = K (r - x) a delay T later is stable for K T < pi/2 (Hayes 1950).
     assert delayed("15.8/s*D*(r - x)") is None
