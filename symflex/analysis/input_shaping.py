@@ -73,9 +73,6 @@ def _ei(k: arb, tolerance: arb) -> tuple[arb, ...]:
 SHAPERS: Mapping[str, Callable[[arb, arb], tuple[arb, ...]]] = {"zv": _zv, "zvd": _zvd, "ei": _ei}
 """The amplitudes of each kind, from K and V; half a period lies between two."""
 
-ORDERS: Mapping[str, int] = {"zv": 1, "zvd": 2}
-"""Conditions at every pole, of the kinds that can be joint."""
-
 
 @dataclass(frozen=True, eq=False)
 class InputShaper:
@@ -195,7 +192,7 @@ def input_shaper(
     Raises
     ------
     UsageError
-        SF902 for an unknown kind, more modes than there are, or a joint ``ei``.
+        SF902 for an unknown kind, or more modes than there are.
     ModelError
         SF814 where a mode cannot be told from another, or is damped too much for the kind, and where no joint
         shaper that is worth it was found.
@@ -211,9 +208,6 @@ def input_shaper(
     if kind not in SHAPERS:
         hint = nearest(kind, SHAPERS) or "kinds: " + ", ".join(SHAPERS)
         raise UsageError(Diagnostic("SF902", f"there is no shaper '{kind[:64]}'", None, hint))
-    if joint and kind not in ORDERS:
-        message = f"there is no joint '{kind}' shaper; kinds: {', '.join(ORDERS)}"
-        raise UsageError(Diagnostic("SF902", message))
     region = Modes(modes + MORE_MODES) if bound.is_distributed else Everything()
     located = locate(bound, region, digits + MORE_DIGITS).complete()
     ringing = [root for root in located.poles if root.im > 0]
@@ -248,7 +242,7 @@ def _jointly(
     bound: AnyBoundFunction, chosen: Sequence[Root], kind: str, longest: float, bits: int
 ) -> list[tuple[arb, arb]]:
     poles = [root.enclosure() for root in chosen]
-    found = joint_impulses(poles, ORDERS[kind], longest, bits)
+    found = joint_impulses(poles, kind, longest, bits, arb(TOLERANCE))
     if found is None or not found[-1][0] < longest:
         message = (
             f"no joint {kind} shaper for {len(chosen)} modes of {bound.name} is shorter than theirs in a row"

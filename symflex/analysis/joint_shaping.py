@@ -1,11 +1,16 @@
 """One input shaper for several modes at once: fewer impulses, and sooner over, than their shapers in a row.
 
-Input: proved poles p of m modes. Output: impulses a at times t, enclosed, that leave none of them ringing,
+Input: proved poles p of m modes. Output: impulses a at times t, enclosed. With g(p) = sum a exp(-p t), and T
+the last of the times,
 
-    sum a = 1,    sum a exp(-p t) = 0    and for zvd    sum a t exp(-p t) = 0    for every p,
+    sum a = 1  and  zv    g(p) = 0                          for every p
+                    zvd   g(p) = 0, g'(p) = 0
+                    ei    g(p (1 - x)) = 0, g(p (1 + y)) = 0,
+                          abs(g(p (1 + z))) exp(Re p (1 + z) T) = V and stationary at z = 0
 
-with m + 1 impulses, 2 m + 1 for zvd: as many unknowns as equations, as the first impulse stands at 0. Two
-modes at 1 and 2.3 Hz take 3 impulses in 0.61 s where their own shapers in a row take 4 in 0.72 s.
+with m + 1 impulses, 2 m + 1 for zvd and ei: as many unknowns as equations, as the first impulse stands at 0,
+and x and y of every mode are found as well. Two modes at 1 and 2.3 Hz take 3 impulses in 0.61 s where their
+own zv shapers in a row take 4 in 0.72 s.
 
 Where the impulses stand is guessed on a fine grid: the shortest one that holds positive amplitudes with these
 sums, a linear program. An impulse takes two points of the grid, which are merged. Newton's method then finds
@@ -14,18 +19,23 @@ the solution beside it, and Krawczyk's operator proves that there is one; that n
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from math import acos, pi
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
-from flint import acb, arb, arb_mat
+from flint import acb, acb_series, arb, arb_mat
 
 from symflex.budget import spend
+from symflex.roots.precision import precision
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     import numpy.typing as npt
+
+T = TypeVar("T")
 
 FINENESS = 24
 """Points of the grid in half a period of the quickest mode."""
@@ -33,35 +43,114 @@ FEWEST, MOST = 300, 6000
 """Points of the grid."""
 SMALL = 1e-9
 """Amplitude that a linear program means as zero: its tolerances are 1e-7 of rows that are of order 1."""
+HUMPS, CHANGE = 4, 4.0
+"""Corrections of where an ei shaper leaves nothing, each for at most so many times as much left between."""
+ROUGH = 64
+"""Bits of the guess."""
 STEPS = 60
 """Of Newton's method: the guess is off by a point of the grid, and digits double in the end."""
 
 
 def joint_impulses(
-    poles: Sequence[acb], orders: int, longest: float, bits: int
+    poles: Sequence[acb], kind: str, longest: float, bits: int, tolerance: arb
 ) -> list[tuple[arb, arb]] | None:
     """Return times [s] and amplitudes that are proved; None where none was found that is short enough.
 
-    ``orders`` is 1 for zv and 2 for zvd, ``longest`` [s] a duration in which it is known to be possible, and
-    ``bits`` the precision at hand.
+    ``longest`` [s] is a duration in which it is known to be possible, ``bits`` the precision at hand, and
+    ``tolerance`` the V of an ei shaper.
 
     Examples
     --------
-    >>> found = joint_impulses([acb(0, 3)], 1, 2.0, 53)
+    >>> found = joint_impulses([acb(0, 3)], "zv", 2.0, 53, arb(0))
     >>> [(round(float(t), 6), round(float(a), 6)) for t, a in found]
     [(0.0, 0.5), (1.047198, 0.5)]
     """
-    guess = _guess(np.array([complex(p.mid()) for p in poles]), orders, longest)
-    if guess is None or len(guess) != orders * len(poles) + 1:
-        return None
-    unknowns = [arb(x) for x in (*(a for _, a in guess), *(t for t, _ in guess[1:]))]
-    for _ in range(STEPS):
-        spend()
-        step = _newton_step(poles, orders, unknowns)
-        if step is None:
+    conditions = _Conditions(tuple(poles), kind, tolerance)
+    with precision(ROUGH):
+        unknowns = _begun(conditions, longest)
+    solved = None if unknowns is None else _solved(conditions, unknowns, bits)
+    return None if solved is None else _proved(conditions, solved, bits)
+
+
+@dataclass(frozen=True)
+class _Conditions:
+    """What a shaper has to fulfil, in as many unknowns: amplitudes, times but the first, and x, y of ei."""
+
+    poles: tuple[acb, ...]
+    kind: str
+    tolerance: arb
+
+    @property
+    def count(self) -> int:
+        """How many impulses it takes."""
+        return len(self.poles) * (1 if self.kind == "zv" else 2) + 1
+
+    def impulses(self, unknowns: Sequence[T], first: T) -> tuple[Sequence[T], Sequence[T]]:
+        """Return times, the first of which is given, and amplitudes."""
+        return [first, *unknowns[self.count : 2 * self.count - 1]], unknowns[: self.count]
+
+    def lacks(self, unknowns: Sequence[acb_series]) -> list[acb_series]:
+        """Return what has to vanish: a real one, and then both parts of complex ones."""
+        times, sizes = self.impulses(unknowns, acb_series([acb(0)]))
+        nothing = acb_series([acb(0)])
+
+        def swing(pole: acb, order: int = 0, moved: acb_series = nothing) -> acb_series:
+            # exp(w) is the motion that an impulse leaves at the time of the last one.
+            exponents = [pole.real * times[-1] - (1 + moved) * t * pole for t in times]
+            return sum((a * w.exp() * w**order for a, w in zip(sizes, exponents, strict=True)), nothing)
+
+        found = [sum(sizes, acb_series([acb(-1)]))]
+        shifts = iter(unknowns[2 * self.count - 1 :])
+        for pole in self.poles:
+            if self.kind == "ei":
+                other = pole.conjugate()
+                level = swing(pole) * swing(other) - self.tolerance**2
+                slope = (swing(pole) * swing(other, 1) + swing(other) * swing(pole, 1)) / 2
+                found += [swing(pole, 0, -next(shifts)), swing(pole, 0, next(shifts))]
+                found.append(level + slope * acb(0, 1))
+            else:
+                found += [swing(pole, order) for order in range(2 if self.kind == "zvd" else 1)]
+        return found
+
+    def evaluated(self, unknowns: Sequence[arb]) -> tuple[list[arb], list[list[arb]]]:
+        """Return what has to vanish, and its derivatives."""
+        columns = []
+        for k in range(len(unknowns)):
+            duals = [acb_series([acb(x), acb(int(i == k))], prec=2) for i, x in enumerate(unknowns)]
+            whole, *rest = self.lacks(duals)
+            parts = [[whole[i].real, *(p for c in rest for p in (c[i].real, c[i].imag))] for i in (0, 1)]
+            columns.append(parts[1])
+        return parts[0], [list(row) for row in zip(*columns, strict=True)]
+
+
+def _begun(conditions: _Conditions, longest: float) -> list[arb] | None:
+    """Return unknowns near the solution; None where the grid has none."""
+    if conditions.kind != "ei":
+        poles = np.array([complex(p.mid()) for p in conditions.poles])
+        guess = _guess(poles, 2 if conditions.kind == "zvd" else 1, longest)
+        if guess is None or len(guess) != conditions.count:
             return None
-        unknowns = [(x - d).mid() for x, d in zip(unknowns, step, strict=True)]
-    return _proved(poles, orders, unknowns, bits)
+        return [arb(x) for x in (*(a for _, a in guess), *(t for t, _ in guess[1:]))]
+    # Of one mode without damping the zeros beside it are where cos(pi (1 +- x)) is (V - 1)/(V + 1).
+    tolerance = float(conditions.tolerance)
+    found: list[arb] = []
+    shifts = [acos((1 - tolerance) / (1 + tolerance)) / pi] * len(conditions.poles)
+    for _ in range(HUMPS):
+        pairs = list(zip(conditions.poles, shifts, strict=True))
+        beside = (p * (1 + sign * x) for p, x in pairs for sign in (-1, 1))
+        plain = _Conditions(tuple(beside), "zv", conditions.tolerance)
+        begun = _begun(plain, longest)
+        solved = None if begun is None else _solved(plain, begun, ROUGH)
+        if solved is None or not _is_shaper(*plain.impulses(solved, arb(0))):
+            return None
+        found = solved
+        times, sizes = plain.impulses(found, arb(0))
+        for k, p in enumerate(conditions.poles):
+            swings = ((p.real * times[-1] - p * t).exp() * a for t, a in zip(times, sizes, strict=True))
+            # Between two zeros what is left grows with the square of their distance.
+            left = float(abs(sum(swings, acb(0))).mid())
+            shifts[k] *= (tolerance / min(max(left, tolerance / CHANGE), tolerance * CHANGE)) ** 0.5
+    return [*found, *(arb(x) for x in shifts for _ in range(2))]
 
 
 def _guess(
@@ -107,30 +196,22 @@ def _guess(
     return held
 
 
-def _equations(
-    poles: Sequence[acb], orders: int, unknowns: Sequence[arb]
-) -> tuple[list[arb], list[list[arb]]]:
-    """Return what has to vanish, and its derivatives, at amplitudes and then times but the first."""
-    count = (len(unknowns) + 1) // 2
-    sizes, times = unknowns[:count], [arb(0), *unknowns[count:]]
-    values = [sum(sizes, arb(0)) - 1]
-    slopes = [[arb(1)] * count + [arb(0)] * (count - 1)]
-    for pole in poles:
-        turned = [(-pole * t).exp() for t in times]
-        for order in range(orders):
-            powers = [e * t if order else e for e, t in zip(turned, times, strict=True)]
-            value = sum((a * w for a, w in zip(sizes, powers, strict=True)), acb(0))
-            later = [
-                a * ((e if order else acb(0)) - pole * w)
-                for a, e, w in zip(sizes, turned, powers, strict=True)
-            ][1:]
-            values += [value.real, value.imag]
-            slopes += [[x.real for x in (*powers, *later)], [x.imag for x in (*powers, *later)]]
-    return values, slopes
+def _solved(conditions: _Conditions, unknowns: Sequence[arb], bits: int) -> list[arb] | None:
+    """Return the middle of a solution, by Newton's method; None where it does not end at one."""
+    for _ in range(STEPS):
+        spend()
+        step = _newton_step(conditions, unknowns)
+        if step is None:
+            return None
+        unknowns = [(x - d).mid() for x, d in zip(unknowns, step, strict=True)]
+        # Digits double, so this step was the last.
+        if all(abs(d) <= abs(x) * arb(2) ** -(bits // 2) for x, d in zip(unknowns, step, strict=True)):
+            return unknowns
+    return None
 
 
-def _newton_step(poles: Sequence[acb], orders: int, unknowns: Sequence[arb]) -> list[arb] | None:
-    values, slopes = _equations(poles, orders, unknowns)
+def _newton_step(conditions: _Conditions, unknowns: Sequence[arb]) -> list[arb] | None:
+    values, slopes = conditions.evaluated(unknowns)
     middle = arb_mat([[x.mid() for x in row] for row in slopes])
     try:
         step = middle.solve(arb_mat([[x.mid()] for x in values]))
@@ -140,12 +221,10 @@ def _newton_step(poles: Sequence[acb], orders: int, unknowns: Sequence[arb]) -> 
     return found if all(x.is_finite() for x in found) else None
 
 
-def _proved(
-    poles: Sequence[acb], orders: int, middle: Sequence[arb], bits: int
-) -> list[tuple[arb, arb]] | None:
+def _proved(conditions: _Conditions, middle: Sequence[arb], bits: int) -> list[tuple[arb, arb]] | None:
     """Return the solution near a point with what Krawczyk's operator proves of it."""
     size = len(middle)
-    values, slopes = _equations(poles, orders, middle)
+    values, slopes = conditions.evaluated(middle)
     try:
         inverse = arb_mat([[x.mid() for x in row] for row in slopes]).inv()
     except ZeroDivisionError:
@@ -154,7 +233,7 @@ def _proved(
     moved = inverse * arb_mat([[x] for x in values])
     widths = [2 * moved[i, 0].abs_upper() + abs(x) * arb(2) ** -(bits // 2) for i, x in enumerate(middle)]
     box = [x + arb(0, w.upper()) for x, w in zip(middle, widths, strict=True)]
-    _, spread = _equations(poles, orders, box)
+    _, spread = conditions.evaluated(box)
     product = inverse * arb_mat(spread)
     found = []
     for i in range(size):
@@ -163,7 +242,10 @@ def _proved(
         if not box[i].contains_interior(image):
             return None
         found.append(image)
-    count = (size + 1) // 2
-    sizes, times = found[:count], [arb(0), *found[count:]]
-    in_order = all(t < u for t, u in pairwise(times))
-    return list(zip(times, sizes, strict=True)) if in_order and all(a > 0 for a in sizes) else None
+    times, sizes = conditions.impulses(found, arb(0))
+    are_beside = all(x > 0 for x in found[2 * conditions.count - 1 :])
+    return list(zip(times, sizes, strict=True)) if are_beside and _is_shaper(times, sizes) else None
+
+
+def _is_shaper(times: Sequence[arb], sizes: Sequence[arb]) -> bool:
+    return all(t < u for t, u in pairwise(times)) and all(a > 0 for a in sizes)
