@@ -15,13 +15,13 @@ own zv shapers in a row take 4 in 0.72 s.
 Where the impulses stand is guessed on a fine grid: the shortest one that holds positive amplitudes with these
 sums, a linear program. An impulse takes two points of the grid, which are merged. Newton's method then finds
 the solution beside it, and Krawczyk's operator proves that there is one; that none is shorter is not proved.
+An ei shaper begins as a zvd shaper, whose double zeros are moved apart.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import acos, pi
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
@@ -43,8 +43,8 @@ FEWEST, MOST = 300, 6000
 """Points of the grid."""
 SMALL = 1e-9
 """Amplitude that a linear program means as zero: its tolerances are 1e-7 of rows that are of order 1."""
-HUMPS, CHANGE = 4, 4.0
-"""Corrections of where an ei shaper leaves nothing, each for at most so many times as much left between."""
+START, PARTS = 0.01, 5
+"""Of a frequency, by which zeros of an ei shaper are first moved apart, and how often they are."""
 ROUGH = 64
 """Bits of the guess."""
 STEPS = 60
@@ -131,26 +131,23 @@ def _begun(conditions: _Conditions, longest: float) -> list[arb] | None:
         if guess is None or len(guess) != conditions.count:
             return None
         return [arb(x) for x in (*(a for _, a in guess), *(t for t, _ in guess[1:]))]
-    # Of one mode without damping the zeros beside it are where cos(pi (1 +- x)) is (V - 1)/(V + 1).
-    tolerance = float(conditions.tolerance)
-    found: list[arb] = []
-    shifts = [acos((1 - tolerance) / (1 + tolerance)) / pi] * len(conditions.poles)
-    for _ in range(HUMPS):
+    # Zeros that coincide in a zvd shaper part; what is left between grows with the square of their distance.
+    double = replace(conditions, kind="zvd")
+    begun = _begun(double, longest)
+    found = None if begun is None else _solved(double, begun, ROUGH)
+    shifts = [START] * len(conditions.poles)
+    for part in range(1, PARTS + 1):
         pairs = list(zip(conditions.poles, shifts, strict=True))
-        beside = (p * (1 + sign * x) for p, x in pairs for sign in (-1, 1))
-        plain = _Conditions(tuple(beside), "zv", conditions.tolerance)
-        begun = _begun(plain, longest)
-        solved = None if begun is None else _solved(plain, begun, ROUGH)
-        if solved is None or not _is_shaper(*plain.impulses(solved, arb(0))):
+        beside = tuple(p * (1 + sign * x) for p, x in pairs for sign in (-1, 1))
+        found = None if found is None else _solved(replace(conditions, poles=beside, kind="zv"), found, ROUGH)
+        if found is None:
             return None
-        found = solved
-        times, sizes = plain.impulses(found, arb(0))
+        times, sizes = double.impulses(found, arb(0))
         for k, p in enumerate(conditions.poles):
             swings = ((p.real * times[-1] - p * t).exp() * a for t, a in zip(times, sizes, strict=True))
-            # Between two zeros what is left grows with the square of their distance.
-            left = float(abs(sum(swings, acb(0))).mid())
-            shifts[k] *= (tolerance / min(max(left, tolerance / CHANGE), tolerance * CHANGE)) ** 0.5
-    return [*found, *(arb(x) for x in shifts for _ in range(2))]
+            wanted = conditions.tolerance * min(part / (PARTS - 1), 1) ** 2
+            shifts[k] *= float((wanted / abs(sum(swings, acb(0)))).sqrt().mid())
+    return None if found is None else [*found, *(arb(x) for x in shifts for _ in range(2))]
 
 
 def _guess(
