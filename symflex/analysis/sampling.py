@@ -192,10 +192,8 @@ def _continuous(bound: BoundTransferFunction, digits: int, bits: int) -> _Contin
     if quotient is None:
         raise not_rational(bound.name)
     if len(quotient.below) > 1:
-        message = (
-            f"{bound.name} has a delay in a loop, or waves: infinitely many states from sample to sample"
-        )
-        hint = "open the loop, and sample what stands before and after the delay"
+        message = f"{bound.name} has a delay in a loop, or waves: infinitely many states between samples"
+        hint = "open the loop where it is held, sample both parts, and close it in z"
         raise ModelError(Diagnostic("SF235", message, None, hint))
     durations = quotient.durations
     ((first, below),) = quotient.below.items()

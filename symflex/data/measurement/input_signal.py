@@ -71,7 +71,7 @@ def signal_of(name: str, text: str) -> InputSignal:
     if len(lines) > MAX_LINES + 1:
         raise DataError(Diagnostic("SF607", f"'{name}' has more than {MAX_LINES} lines"))
     split = cell_splitter(text[lines[0][0] : lines[0][1]]) if lines else cell_splitter("")
-    unit = Fraction(1)
+    unit, width = Fraction(1), len(split(source, *lines[0])) if lines else 0
     if lines and _decimal(split(source, *lines[0])[0].text) is None:
         unit = _unit_of(split(source, *lines[0]), Span(source, *lines[0]))
         lines = lines[1:]
@@ -85,6 +85,10 @@ def signal_of(name: str, text: str) -> InputSignal:
         line = Span(source, start, end)
         if len(cells) < 2:  # noqa: PLR2004 (time and value)
             problems.append(Diagnostic("SF602", "a line has a time and no value", line, HINT))
+            continue
+        if len(cells) > width:
+            said = f"a line has {len(cells)} columns, and the first has {width}"
+            problems.append(Diagnostic("SF602", said, line, "a decimal comma, or a line that was cut off?"))
             continue
         numbers = [_decimal(cell.text) for cell in cells[:2]]
         for cell, number in zip(cells, numbers, strict=False):

@@ -119,6 +119,7 @@ def test_without_an_end_a_file_is_followed_at_its_own_times(oscillator, tmp_path
         ("time_s,u\n0,1\n1,\n2,3\n", "SF603"),
         ("time_s,u\n0,1\n1,nan\n2,3\n", "SF603"),
         ("time_s,u\n0,1\n1\n2,3\n", "SF602"),
+        ("time_s,u\n0,1\n1,0,5\n2,3\n", "SF602"),
         ("time_s,u\n0,1\n2,1\n1,3\n", "SF604"),
         ("frequency,u\n0,1\n1,1\n", "SF602"),
         ("time_h,u\n0,1\n1,1\n", "SF602"),
