@@ -104,6 +104,19 @@ def test_a_dead_time_is_found_and_written_as_a_delay_block(folder):
     assert function(S[40]) == pytest.approx(fit.values()[40], rel=1e-6)
 
 
+def test_a_fit_has_an_input_shaper_for_the_resonance_that_was_measured(folder):
+    fit = symflex.fit(noisy(2.5 * resonance()), modes=1, slope=0)
+    shaper = fit.input_shaper()
+    # Half a damped period, and exp(-zeta pi/sqrt(1 - zeta^2)) between both (Singer and Seering 1990).
+    zeta, omega = 0.02, 2 * np.pi * 20
+    late = np.pi / (omega * np.sqrt(1 - zeta**2))
+    assert shaper.times[1] == pytest.approx(late, rel=4 * fit.standard_errors.omega_p[0] / omega)
+    ratio = np.exp(-zeta * omega * late)
+    assert shaper.amplitudes[1] / shaper.amplitudes[0] == pytest.approx(
+        ratio, rel=4 * np.pi * fit.standard_errors.zeta_p[0]
+    )
+
+
 @pytest.mark.slow
 def test_a_dead_time_and_a_lag_are_not_negative_unless_asked(folder):
     lead = noisy(2.5 * resonance() * np.exp(S * 1e-3))
