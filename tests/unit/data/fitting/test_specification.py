@@ -104,6 +104,7 @@ def test_a_dead_time_is_found_and_written_as_a_delay_block(folder):
     assert function(S[40]) == pytest.approx(fit.values()[40], rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_fit_has_an_input_shaper_for_the_resonance_that_was_measured(folder):
     fit = symflex.fit(noisy(2.5 * resonance()), modes=1, slope=0)
     shaper = fit.input_shaper()
