@@ -47,7 +47,7 @@ START, PARTS = 0.01, 5
 """Of a frequency, by which zeros of an ei shaper are first moved apart, and how often they are."""
 ROUGH = 64
 """Bits of the guess."""
-STEPS = 60
+STEPS = 25
 """Of Newton's method: the guess is off by a point of the grid, and digits double in the end."""
 
 
