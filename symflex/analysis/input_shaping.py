@@ -243,7 +243,7 @@ def _jointly(
 ) -> list[tuple[arb, arb]]:
     poles = [root.enclosure() for root in chosen]
     found = joint_impulses(poles, kind, longest, bits, arb(TOLERANCE))
-    if found is None or not found[-1][0] < longest:
+    if found is None:
         message = (
             f"no joint {kind} shaper for {len(chosen)} modes of {bound.name} is shorter than theirs in a row"
         )

@@ -170,6 +170,16 @@ def test_a_joint_shaper_of_three_damped_modes_stills_all_and_is_shorter(kind, co
         assert kind == "zv" or abs(slope) < 1e-11
 
 
+@pytest.mark.parametrize("kind", ["zv", "zvd"])
+def test_a_joint_shaper_of_modes_far_apart_takes_more_impulses_and_is_shorter_too(kind):
+    bound = rational("1/((s^2 + 1)*(s^2 + 16))")
+    shaper = input_shaper(bound, 2, kind, joint=True)
+    assert len(shaper.times) > {"zv": 3, "zvd": 5}[kind]
+    assert shaper.times[-1] < 0.95 * input_shaper(bound, 2, kind).times[-1]
+    assert max(left_of(shaper, omega) for omega in (1.0, 4.0)) < 1e-12
+    assert min(shaper.amplitudes) > 0
+
+
 @pytest.mark.parametrize(
     ("text", "kind"),
     [
