@@ -180,6 +180,16 @@ def test_a_joint_shaper_of_modes_far_apart_takes_more_impulses_and_is_shorter_to
     assert min(shaper.amplitudes) > 0
 
 
+def test_a_joint_shaper_of_quick_modes_is_that_of_slow_ones_in_another_unit_of_time():
+    longest = 2 * pi * (1 + 1 / 6.27)
+    with precision(100):
+        slow, quick = (
+            joint_impulses([acb(0, x), acb(0, 6.27 * x)], "ei", longest / x, 100, arb(0.05))
+            for x in (1.0, 1024.0)
+        )
+    assert [float(t) / 1024 for t, _ in slow] == pytest.approx([float(t) for t, _ in quick], rel=1e-12)
+
+
 @pytest.mark.parametrize(
     ("text", "kind"),
     [
