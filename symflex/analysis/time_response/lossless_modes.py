@@ -212,25 +212,36 @@ class LosslessModes:
     def rest(self, reached: float, integrations: int) -> arb | None:
         """Return a bound of all modes with ln(abs(s)) beyond a radius together; None if none is found."""
         with precision(self.bits):
-            least = (arb(reached).exp() / 2).sqrt()
             power = sum(f.degree * f.exponent for f in self.factors) + 1 - 2 * integrations
             if power >= -1 or not all(f.has_corner for f in self.poles):
                 return None
-            if not self._has_paths(least):
-                return None
-            largest, places, most = arb(0), 0, 0
-            for factor in self.poles:
-                found = self._largest(factor, least)
-                if found is None or factor.exponent != -1:
-                    return None
-                largest, places, most = largest.max(found[0]), places + found[1], most + 2 * factor.turns
-            if places != most:
-                return None
-            scale = abs(self.constant) * (self.growth * least).exp() * 8 / arb(2) ** integrations
+            least = (arb(reached).exp() / 2).sqrt()
+            if reached not in self._sizes:
+                self._sizes[reached] = self._size_beyond(least)
+            size = self._sizes[reached]
             turn = 2 * arb.pi() / self.rate
             # One turn may begin and end in the middle of a place.
             total = least**power + least ** (power + 1) / (turn * (-power - 1))
-            return (scale * largest * (places + 1) * total).upper()
+            return None if size is None else (size / arb(2) ** integrations * total).upper()
+
+    @cached_property
+    def _sizes(self) -> dict[float, arb | None]:
+        """What was found of the modes beyond some radii: a step and its speed ask for the same."""
+        return {}
+
+    def _size_beyond(self, least: arb) -> arb | None:
+        """Return how large all residues in a turn are together over a power of t, for all t beyond one."""
+        if not self._has_paths(least):
+            return None
+        largest, places, most = arb(0), 0, 0
+        for factor in self.poles:
+            found = self._largest(factor, least)
+            if found is None or factor.exponent != -1:
+                return None
+            largest, places, most = largest.max(found[0]), places + found[1], most + 2 * factor.turns
+        if places != most:
+            return None
+        return abs(self.constant) * (self.growth * least).exp() * 8 * largest * (places + 1)
 
     def _has_paths(self, least: arb) -> bool:
         """Tell whether paths pass between the poles on which no denominator comes close to 0."""
