@@ -69,7 +69,7 @@ POINTS_OF_C = 10_000
 BAND_OF_C = 60.0, HIGHEST**2
 """In rad/s: the five modes are in it."""
 TIMES_UNIFORM = 30.0
-"""Most that C may take over that of the uniform beam, whose formula is computed in vectors; 26 is usual."""
+"""Most that C may take over that of the uniform beam, whose formula is computed in vectors; 24 is usual."""
 
 
 def ours(modes: int, digits: int) -> NDArray[Any]:
@@ -189,7 +189,7 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
         found += times
         text = f"exported C ({flag}) of a tapered beam: times as long as that of a uniform one"
         ratio = times[0].at_least / times[1].at_least
-        # Too near the bound to enforce it.
+        # What else shares a processor slows one of them more than the other.
         claims.append(Claim(text, TIMES_UNIFORM, ratio, larger_is_better=False, is_ratio=False))
     return found, claims
 

@@ -792,8 +792,9 @@ typedef struct {
 
 /* What the fundamental matrix of a member is on pieces of its length: polynomials in the bases over
  * their limits, which frequencies within a factor of four share. Of every piece there are so many
- * coefficients, in order of the entries: place has where those of each begin, and then of each coefficient
- * the product of bases. now points to the minors at the frequency whose value is wanted.
+ * coefficients, in order of the entries: place has where those of each begin, then of each coefficient
+ * the product of bases, and then where the lanes of that begin. now points to the minors at the frequency
+ * whose value is wanted.
  */
 typedef struct {
     const cx_member *member;
@@ -830,6 +831,7 @@ enum { cx_points = 20, cx_room = 24 };
 typedef struct {
     double point[cx_points + 1];
     double term[cx_points + 1][cx_points + 1], integral[cx_points + 1][cx_room];
+    int at[cx_points + 1];    /* where the integrals of a value begin */
 } cx_table;
 
 static void cx_chebyshev(cx_table *table)
@@ -842,6 +844,7 @@ static void cx_chebyshev(cx_table *table)
     }
     for (int j = 0; j <= N; j++) {
         table->point[j] = 0.5 + 0.5 * cosine[N - j];
+        table->at[j] = cx_room * j;
         for (int k = 0; k <= N; k++) {
             const double ends = (j % N ? 1.0 : 0.5) * (k % N ? 1.0 : 0.5);
             table->term[k][j] = 2.0 / N * ends * cosine[k * (N - j) % (2 * N)];
@@ -899,19 +902,20 @@ static void cx_parts(const cx_law *law, double share, double *part)
  */
 static double cx_growth(const cx_law *law, const double *part)
 {
+    enum { TURNS = 7 };    /* to a hundredth, for matrices of four rows */
     const int n = law->plan[0], stride = 2 + law->plan[2] + law->plan[3];
     double a[CX_ORDER * CX_ORDER] = {0.0}, b[CX_ORDER * CX_ORDER], grown = 0.0;
     for (int k = 0; k < law->plan[1]; k++) {
         const int *const own = law->plan + 7 + stride * k;
         a[n * own[0] + own[1]] += fabs(part[k]);
     }
-    for (int turn = 0; turn < 12; turn++) {
+    for (int turn = 0; turn <= TURNS; turn++) {
         double most = 0.0;
         for (int i = 0; i < n * n; i++) {
             if (!(a[i] < HUGE_VAL)) {
                 return NAN;
             }
-            most = fmax(most, a[i]);
+            most = a[i] > most ? a[i] : most;
         }
         if (most == 0.0) {
             return 0.0;
@@ -930,18 +934,18 @@ static double cx_growth(const cx_law *law, const double *part)
         }
         memcpy(a, b, sizeof a);
     }
-    return exp(ldexp(grown, -11));
+    return exp(ldexp(grown, -TURNS));
 }
 
 //: cx_combined
-/* Lanes of a sum of numbers times the lanes at some places, or at the first ones. */
-static void cx_combined(int count, const double *factor, const double *lanes, int stride, const int *at,
-                        int width, double *c)
+/* Lanes of a sum of numbers times the lanes that begin at some places. */
+static void cx_combined(int count, const double *factor, const double *lanes, const int *at, int width,
+                        double *c)
 {
     for (int j = 0; j < width; j += 8) {
         double s_0 = 0.0, s_1 = 0.0, s_2 = 0.0, s_3 = 0.0, s_4 = 0.0, s_5 = 0.0, s_6 = 0.0, s_7 = 0.0;
         for (int k = 0; k < count; k++) {
-            const double *const p = lanes + stride * (at ? at[k] : k) + j, f = factor[k];
+            const double *const p = lanes + at[k] + j, f = factor[k];
             s_0 += f * p[0];
             s_1 += f * p[1];
             s_2 += f * p[2];
@@ -1101,7 +1105,7 @@ static int cx_followed(const cx_law *law, const cx_table *table, double from, do
             double *const grown = row + STRIDE * k;
             grown[FLAG] = slope[FLAG];
             if (slope[FLAG] != 0.0) {
-                cx_combined(N + 1, slope, table->integral[0], STRIDE, NULL, STRIDE, grown);
+                cx_combined(N + 1, slope, table->integral[0], table->at, STRIDE, grown);
                 grown[FLAG] = 1.0;
                 sum[2 * k] += grown[N];
                 sum[2 * k + 1] = 1.0;
@@ -1110,7 +1114,7 @@ static int cx_followed(const cx_law *law, const cx_table *table, double from, do
     }
     if (kept->place == NULL) {
         /* The same for all pieces of one cut. */
-        kept->place = malloc((size_t)(n * n + 1 + total) * sizeof *kept->place);
+        kept->place = malloc((size_t)(n * n + 1 + 2 * total) * sizeof *kept->place);
         for (int k = 0; k < total && kept->place; k++) {
             if (k % products == 0) {
                 kept->place[k / products] = kept->count;
@@ -1119,6 +1123,9 @@ static int cx_followed(const cx_law *law, const cx_table *table, double from, do
                 kept->place[n * n + 1 + kept->count++] = k % products;
                 kept->place[n * n] = kept->count;
             }
+        }
+        for (int k = 0; k < kept->count && kept->place; k++) {
+            kept->place[n * n + 1 + kept->count + k] = 3 * cx_lanes * kept->place[n * n + 1 + k];
         }
     }
     const size_t used = (size_t)kept->count * (size_t)kept->pieces, more = used + (size_t)kept->count;
@@ -1235,6 +1242,46 @@ static void cx_rescale(double *number, int count, int is_complex, double *growth
     }
 }
 
+//: cx_bordered
+/* Minors of two rows of z y, from those of y: the upper half of z p z', where p holds these and is
+ * antisymmetric. work has room for n^2 numbers, of which those of z p are made.
+ */
+static void cx_bordered(int n, const int *choice, const double *z, const double *minor, int is_complex,
+                        double *work, double *grown)
+{
+    enum { W = 3 * cx_lanes };
+    const double *a[CX_ORDER], *b[CX_ORDER];
+    double turned[CX_CHOICES * W];
+    for (int c = 0; c < n * (n - 1) / 2; c++) {
+        for (int part = 0; part <= 2 * is_complex; part++) {
+            cx_negated(minor + W * c + cx_lanes * part, turned + W * c + cx_lanes * part);
+        }
+    }
+    for (int j = 0; j < n; j++) {
+        int count = 0;
+        for (int c = 0; c < n * (n - 1) / 2; c++) {
+            const int *const rows = choice + 4 * c;
+            if (rows[0] == j || rows[1] == j) {
+                a[count] = z + W * rows[rows[0] == j];
+                b[count++] = (rows[0] == j ? turned : minor) + W * c;
+            }
+        }
+        for (int i = 0; i < n; i++) {
+            cx_product(count, a, b, is_complex, work + W * (n * i + j));
+            for (int k = 0; k < count; k++) {
+                a[k] += W * n;
+            }
+        }
+    }
+    for (int c = 0; c < n * (n - 1) / 2; c++) {
+        for (int k = 0; k < n; k++) {
+            a[k] = work + W * (n * choice[4 * c] + k);
+            b[k] = z + W * (n * choice[4 * c + 1] + k);
+        }
+        cx_product(n, a, b, is_complex, grown + W * c);
+    }
+}
+
 //: cx_through
 /* Minors of the product of all pieces, and the logarithms of the scales of their sizes, in some lanes. */
 static void cx_through(cx_pieces *kept, const double *base, int is_complex, const int *is_wanted)
@@ -1272,6 +1319,8 @@ static void cx_through(cx_pieces *kept, const double *base, int is_complex, cons
         spare[q] = end;
         end += W * chosen[q];
     }
+    /* Two sets of minors are sooner multiplied by the matrix twice than by its minors. */
+    const int is_bordered = largest == 2 && n > 2 && chosen[2] <= 2 * count[2];
     for (int m = 0; m < products; m++) {
         /* A product before it, times bases. */
         const int *const power_of = exponent + bases * m;
@@ -1305,19 +1354,18 @@ static void cx_through(cx_pieces *kept, const double *base, int is_complex, cons
     }
     for (int piece = 0; piece < kept->pieces; piece++) {
         const double *const coefficient = kept->coefficient + (size_t)kept->count * (size_t)piece;
-        const int *const product = kept->place + n * n + 1;
+        const int *const at = kept->place + n * n + 1 + kept->count;
         for (int i = 0; i < n * n; i++) {
             const int begin = kept->place[i], number = kept->place[i + 1] - begin;
             double *const entry = level[1] + W * i;
             for (int part = 0; part <= 2 * is_complex; part++) {
-                cx_combined(number, coefficient + begin, power + L * part, W, product + begin, L,
-                            entry + L * part);
-                if (largest > 1) {
+                cx_combined(number, coefficient + begin, power + L * part, at + begin, L, entry + L * part);
+                if (largest > 1 && !is_bordered) {
                     cx_negated(entry + L * part, negative + W * i + L * part);
                 }
             }
         }
-        for (int q = 2; q <= largest; q++) {
+        for (int q = 2; q <= largest && !is_bordered; q++) {
             /* Expanded along the first rows. */
             for (int i = 0; i < count[q]; i++) {
                 const int *const rows = choice[q] + 2 * q * i;
@@ -1334,6 +1382,13 @@ static void cx_through(cx_pieces *kept, const double *base, int is_complex, cons
         for (int q = 1; q <= largest; q++) {
             double *const grown = spare[q];
             for (int i = 0; i < chosen[q]; i++) {
+                if (q == 2 && is_bordered) {
+                    if (i % count[q] == 0) {
+                        cx_bordered(n, choice[q], level[1], state[q] + W * i, is_complex, negative,
+                                    grown + W * i);
+                    }
+                    continue;
+                }
                 for (int k = 0; k < count[q]; k++) {
                     a[k] = level[q] + W * (count[q] * (i % count[q]) + k);
                     b[k] = state[q] + W * (i - i % count[q] + k);
