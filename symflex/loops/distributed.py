@@ -19,7 +19,6 @@ from symflex.errors import Diagnostic, UncertifiedError
 from symflex.loops.axis import LoopAtOrigin, loop_at_origin
 from symflex.loops.axis_factors import AxisFactors
 from symflex.loops.loop import GainPolynomial, LoopFunction
-from symflex.loops.passive import PassiveLoop, passive_loop
 from symflex.loops.stability_map import PoleCount
 from symflex.roots import Band, Budget
 from symflex.roots.counting.argument_principle import CertifiedWinding
@@ -28,6 +27,7 @@ from symflex.roots.distributed.far_out import Tail, right_tail
 from symflex.roots.distributed.side import Side
 from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.functions.simplified import without_squares
+from symflex.roots.passive import PassiveLoop, passive_loop
 from symflex.roots.root import exact_fraction
 from symflex.transfer.balls import ball
 

@@ -14,10 +14,11 @@ from symflex.errors import BudgetError, Diagnostic, SymflexError
 from symflex.model import with_numbers
 from symflex.model.signs import is_passive
 from symflex.roots.distributed.proof import limits
-from symflex.roots.distributed.right_half_plane import DEGENERATE, PASSIVE, search_right
+from symflex.roots.distributed.right_half_plane import DEGENERATE, PASSIVE, PASSIVE_LOOP, search_right
 from symflex.roots.distributed.side import ACCUMULATION_DIGITS, Side, groups, polynomial_roots
 from symflex.roots.engines import LOSSLESS, POLYNOMIAL
 from symflex.roots.functions.simplified import without_lengths_of_zero
+from symflex.roots.passive import passive_loop
 from symflex.roots.plane.search import HIGHEST
 from symflex.roots.pole_zero_map import (
     Certificate,
@@ -359,7 +360,7 @@ class _Searched:
         poles = [] if bound.ratio.is_zero else [(0, bound.den)]
         coincident = [h.root for h in self.hidden if h.cause == "coincident"]
         degenerate = _degenerate_points(bound)
-        proof = PASSIVE if bound.is_of_model and is_passive(bound.source.model, bound.values) else ""
+        proof, rests = _passivity(bound)
         found: list[tuple[Root, ...]] = []
         reasons: list[str] = []
         for place, part in (*poles, (2 * len(poles), product)):
@@ -372,6 +373,7 @@ class _Searched:
                 )
                 known = [*side.roots, *(() if is_hidden else coincident)]
                 if proof or is_over:
+                    known += [r for r in side.at_origin if rests and r not in known]
                     found.append(tuple(known))
                     reasons += [unproved] if is_over and unproved else []
                     continue
@@ -391,7 +393,7 @@ class _Searched:
             reasons += [whole.unproved] if whole.unproved else []
         roots = [root for each in found for root in each]
         if proof:
-            reasons = ["none of those found lies on the imaginary axis"]
+            reasons = [] if rests else ["none of those found lies on the imaginary axis"]
         verdict = judge(roots, "; ".join(dict.fromkeys(reasons)), proof)
         return verdict, found[0] if poles else (), found[-1]
 
@@ -503,6 +505,16 @@ def _lowest(ordered: Sequence[Root], count: int) -> list[Root]:
         result.extend(group)
         modes += group[0].multiplicity
     return result
+
+
+def _passivity(bound: BoundTransferFunction) -> tuple[str, bool]:
+    """Return why no pole lies right of the imaginary axis, and whether none lies on it but at 0."""
+    if not bound.is_of_model:
+        return "", False
+    if is_passive(bound.source.model, bound.values):
+        return PASSIVE, False
+    loop = passive_loop(bound.source.model, None, bound.values)
+    return ("", False) if loop is None else (PASSIVE_LOOP, loop.rests)
 
 
 def _degenerate_points(bound: BoundTransferFunction) -> list[Root]:

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from symflex.transfer import BoundTransferFunction
 
 PASSIVE = "passive, energy is nowhere supplied"
+PASSIVE_LOOP = "the loop is a spring and a damper on a passive structure"
 ACCUMULATING = "poles accumulate in the right half plane"
 DEGENERATE = "a root where wavenumbers meet may be no pole"
 NOT_COUNTED = "the poles right of the imaginary axis could not be counted"

@@ -115,6 +115,11 @@ class Side:
         return self._search is None
 
     @property
+    def at_origin(self) -> list[Root]:
+        """The root at 0, wherever else roots were sought; empty where there is none."""
+        return [root for root in (*self._origin, *self._exact) if root.is_zero]
+
+    @property
     def reached(self) -> float:
         """Up to which ln(abs(s)) all roots are known."""
         return -inf if self._search is None else self._search.reached

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from math import cos, cosh, sin, sinh
 from string import Template
 
@@ -11,8 +12,9 @@ from scipy.linalg import eigvals
 
 from symflex import pipeline
 from symflex.loops.of_model import stability
-from symflex.loops.passive import passive_loop
 from symflex.options import StabilityOptions
+from symflex.roots import Band, Modes
+from symflex.roots.passive import passive_loop
 
 ARM = Template("""
 symflex = 1
@@ -215,3 +217,27 @@ def test_where_a_loop_has_no_damping_of_its_own_phase_margins_beyond_are_not_cer
     assert not found.certified
     assert found.is_complete
     assert found.reasons == ("phase margins above 3 Hz are not known",)
+
+
+def judged(tau, region):
+    model = arm(tau)
+    (bound,) = pipeline.derive_bound(model, model.transfer_functions)
+    return pipeline.roots(bound, region).verdict
+
+
+def test_poles_of_a_passive_loop_are_left_of_the_axis_however_many_there_are():
+    found = judged(PD, Modes(1))
+    assert found.word == "stable"
+    assert found.sentence == "stable: the loop is a spring and a damper on a passive structure"
+
+
+def test_a_loop_without_a_spring_leaves_a_pole_at_0_wherever_others_are_sought():
+    # A torque -K T s phi alone: the arm turns freely.
+    for region in (Modes(1), Band(Fraction(2), Fraction(3))):
+        found = judged("K*T*s*(r - phi)", region)
+        assert found.word == "marginal"
+        assert "a pole at 0" in found.sentence
+
+
+def test_a_loop_that_pushes_is_not_said_to_be_stable():
+    assert judged("K*(r + phi)", Modes(1)).word == "unstable"
