@@ -1244,14 +1244,13 @@ static void cx_rescale(double *number, int count, int is_complex, double *growth
 
 //: cx_bordered
 /* Minors of two rows of z y, from those of y: the upper half of z p z', where p holds these and is
- * antisymmetric. work has room for n^2 numbers, of which those of z p are made.
+ * antisymmetric. work has room for the n^2 of z p, turned for the minors with the other sign.
  */
 static void cx_bordered(int n, const int *choice, const double *z, const double *minor, int is_complex,
-                        double *work, double *grown)
+                        double *work, double *turned, double *grown)
 {
     enum { W = 3 * cx_lanes };
     const double *a[CX_ORDER], *b[CX_ORDER];
-    double turned[CX_CHOICES * W];
     for (int c = 0; c < n * (n - 1) / 2; c++) {
         for (int part = 0; part <= 2 * is_complex; part++) {
             cx_negated(minor + W * c + cx_lanes * part, turned + W * c + cx_lanes * part);
@@ -1385,7 +1384,7 @@ static void cx_through(cx_pieces *kept, const double *base, int is_complex, cons
                 if (q == 2 && is_bordered) {
                     if (i % count[q] == 0) {
                         cx_bordered(n, choice[q], level[1], state[q] + W * i, is_complex, negative,
-                                    grown + W * i);
+                                    level[2], grown + W * i);
                     }
                     continue;
                 }
