@@ -6,11 +6,12 @@ Model --scheme--> Scheme --rows--> parts in their places --page--> Drawing --> f
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cache, partial
 from typing import TYPE_CHECKING, Final
 
 from symflex.drawing.abbreviation import abbreviated
 from symflex.drawing.cells import SPACINGS
-from symflex.drawing.diagram import diagrams, is_cut, statements
+from symflex.drawing.diagram import diagrams, loose_ends, statements
 from symflex.drawing.fields import FieldRow, field_rows
 from symflex.drawing.frames import frame_plan, is_planar, name_of
 from symflex.drawing.geometry import Drawing, Extent, Placed
@@ -72,12 +73,14 @@ def drawing_of(
         asked = [] if width_mm is None else [checked_width(width_mm)]
         usual = sorted(COLUMNS_MM.values())
         rooms = [w / MM_PER_INCH * POINTS - 2 * MARGIN for w in usual]
-        if is_cut(content.graph, rooms[0]) and not is_cut(content.graph, rooms[-1]):
+        bands = cache(partial(diagrams, content.graph))  # by how wide they may be
+        ends = [loose_ends(bands(room)) for room in (*rooms, 1e9)]
+        if ends[0] > ends[-1] >= ends[1]:
             usual = usual[1:]  # a loop is closed there
         for width in asked or usual:
             points = width / MM_PER_INCH * POINTS
             for spacing in SPACINGS:
-                drawing = _laid_out(content, spacing, points)
+                drawing = _laid_out(content, spacing, points, bands(points - 2 * MARGIN))
                 if drawing.width <= points:
                     return _with_joins(content, drawing)
             if points >= (SMALLEST_ASKED if asked else SMALLEST) * drawing.width:
@@ -128,12 +131,12 @@ def _content_of(model: Model, labels: Labels) -> _Content:
     scheme = scheme_of(model, labels)
     fields = tuple(field_rows(model, labels, scheme.others))
     shown = {o for f in fields for o in f.outputs}
-    graph = SignalGraph(model, labels)
     used = {i for f in fields for i in f.inputs}
     free = [i.name for i in model.inputs if i.kind == "signal" and i.name not in used]
+    graph = SignalGraph(model, labels, free)
     alone = [(whole(e.values[0][1]), e.name) for e in model.elements if e.element.is_source]
     sources = {value.name: name for value, name in alone if isinstance(value, Name) and value.name in free}
-    graph.add_all([o for o in scheme.others if o not in shown], [n for n in free if n not in sources])
+    graph.add_all([o for o in scheme.others if o not in shown], sources)
     written = {e: n for n, e in sources.items() if ("input", n) not in graph.known}
     return _Content(model, with_readings(scheme, graph.readings(), labels), graph, fields, written)
 
@@ -147,11 +150,11 @@ def _legend(model: Model, labels: Labels) -> list[Placed]:
     return [Placed("values", "", (), lines)] if lines else []
 
 
-def _laid_out(content: _Content, spacing: Spacing, width: float) -> Drawing:
+def _laid_out(content: _Content, spacing: Spacing, width: float, bands: list[list[Placed]]) -> Drawing:
     model, scheme, graph = content.model, content.scheme, content.graph
     found = [row for network in scheme.networks for row in _network(network, scheme, model, spacing)]
     rows = [*(items for items, _ in found), *(f.items for f in content.fields)]
-    rows += [*diagrams(graph, width - 2 * MARGIN), statements(graph), _legend(model, graph.labels)]
+    rows += [*bands, statements(graph), _legend(model, graph.labels)]
     gone = tuple(name for _, left_out in found for name in left_out)
     at = content.at_sources
     named = [

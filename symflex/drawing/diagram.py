@@ -20,10 +20,12 @@ from typing import TYPE_CHECKING, Final
 from symflex.drawing.cells import Built
 from symflex.drawing.geometry import LINE, Extent, Lettering, Placed, free_level, union
 from symflex.drawing.lettering import SIZE, SMALL, column_of, filled, text
-from symflex.drawing.signals import formula
+from symflex.drawing.signals import MOST_AT_SUM, formula
 from symflex.drawing.symbols import DOT, Strokes, arrow, circle, line, rectangle
 
 if TYPE_CHECKING:
+    from collections.abc import Collection, Sequence
+
     from symflex.drawing.geometry import Point
     from symflex.drawing.signals import SignalGraph, SignalNode
 
@@ -58,10 +60,9 @@ class _Branch:
     is_tag: bool = False  # the last node is drawn elsewhere, and here its name
 
 
-def is_cut(graph: SignalGraph, widest: float) -> bool:
-    """Tell whether a loop is not closed, because its diagram goes on below its beginning."""
-    closed = (sum(i.kind == "tag" for band in diagrams(graph, w) for i in band) for w in (widest, 1e9))
-    return next(closed) > next(closed)
+def loose_ends(bands: list[list[Placed]]) -> int:
+    """Return how many names stand for wires: more than need be where a loop goes on below its beginning."""
+    return sum(i.kind == "tag" for band in bands for i in band)
 
 
 def diagrams(graph: SignalGraph, widest: float) -> list[list[Placed]]:
@@ -129,6 +130,7 @@ def _longest(graph: SignalGraph, drawn: set[int], joined: set[tuple[int, int]]) 
         for i, n in enumerate(graph.nodes)
         if (i not in drawn or n.kind in NAMED) and (ahead(i) or i not in drawn)
     ]
+    minus = {(before, i) for i, n in enumerate(graph.nodes) for before, is_minus in n.before if is_minus}
     best: list[int] = []
     best_rank = (False, 0, 0)
     for start in starts:
@@ -140,17 +142,16 @@ def _longest(graph: SignalGraph, drawn: set[int], joined: set[tuple[int, int]]) 
             while len(path) > 1 and not onward and _leads_back(graph, path):
                 path = path[:-1]
                 onward = []
-            rank = (graph.nodes[start].kind == "input", _forward(graph, path), len(path))
+            rank = (graph.nodes[start].kind == "input", _forward(path, minus), len(path))
             if not onward and rank > best_rank:
                 best, best_rank = path, rank
             pending += [[*path, n] for n in reversed(onward)]
     return best
 
 
-def _forward(graph: SignalGraph, path: list[int]) -> int:
+def _forward(path: list[int], minus: Collection[tuple[int, int]]) -> int:
     """Return how much of a path comes before what it is subtracted from: that is fed back."""
-    enters = (any(b == one and m for b, m in graph.nodes[node].before) for one, node in pairwise(path))
-    return next((i for i, is_minus in enumerate(enters, 1) if is_minus), len(path))
+    return next((i for i, pair in enumerate(pairwise(path), 1) if pair in minus), len(path))
 
 
 def _leads_back(graph: SignalGraph, path: list[int]) -> bool:
@@ -170,6 +171,7 @@ class _Band:
     items: list[Placed] = field(default_factory=list)
     occupied: list[Extent] = field(default_factory=list)  # rows of chains among it
     solid: list[Extent] = field(default_factory=list)  # symbols and texts
+    risers: list[float] = field(default_factory=list)  # where wires go up and down
     x: dict[int, tuple[float, float]] = field(default_factory=dict)  # left and right end of what is drawn
     y: dict[int, float] = field(default_factory=dict)
     sides: dict[int, list[str]] = field(default_factory=dict)  # of sums, those that arrows come from
@@ -180,6 +182,11 @@ class _Band:
         self.joined.update(pairwise(self.path))
         branches = self._branches(self.path)
         self._draw_path(branches)
+        for branch in branches:
+            centre = self.x[branch.target][0] + RADIUS
+            self.risers += (
+                [centre] if branch.origin is None else [centre, self._left_at(branch.origin, centre)]
+            )
         waiting = sorted(branches, key=lambda b: -self.x[b.target][0])
         while waiting:
             branch = waiting.pop(0)
@@ -294,10 +301,7 @@ class _Band:
         target, shown = branch.target, self._all_shown(branch)
         centre, level = self.x[target][0] + RADIUS, self.y[target]
         length = sum(s.width + WIRE for s in shown)
-        other = centre + length
-        if branch.origin is not None:
-            left, right = self.x[branch.origin]
-            other = right if left > centre else left
+        other = centre + length if branch.origin is None else self._left_at(branch.origin, centre)
         is_read = branch.origin is None and self._kind(branch.nodes[-1]) == "reading"
         if is_read:  # from beyond the end of the path, where a wire finds it without crossing that
             other = max(other, self.box.x1)
@@ -311,7 +315,7 @@ class _Band:
         y, is_up = self._height(branch, room, [centre] if branch.origin is None else [centre, other])
         self._sign(target, "above" if is_up else "below", is_minus=branch.is_minus)
         spare = max(0.0, high - low - length)
-        slack = 0.0 if branch.origin is None else spare / 2
+        slack = self._slack(branch, shown, (centre, y), sign * spare)
         x = before = centre + sign * slack
         if slack:
             self.items.append(Placed("wire", "", (line((centre, y), (x, y)),)))
@@ -327,6 +331,34 @@ class _Band:
         if branch.origin is not None:
             self._close(branch, other, before, y)
         self.occupied += [room.moved(0, y), Extent(centre - 1, min(y, edge), centre + 1, max(y, edge))]
+
+    def _left_at(self, origin: int, centre: float) -> float:
+        """Return where a wire leaves a signal of the path for a branch to a sum."""
+        left, right = self.x[origin]
+        return right if left > centre else left
+
+    def _slack(self, branch: _Branch, shown: Sequence[Built], place: Point, spare: float) -> float:
+        """Return how far from its sum a branch bends: such that wires up and down meet little on it."""
+        is_loose, sign = branch.origin is None, 1.0 if spare >= 0 else -1.0
+
+        def met(slack: float) -> int:
+            x, found = place[0] + sign * (slack + WIRE), 0
+            for node, one in zip(branch.nodes, shown, strict=True):
+                low, high = sorted((x, x + sign * one.width))
+                box = Extent(low, place[1] + one.below, high, place[1] + one.above)
+                if len(self.graph.nodes[node].before) == MOST_AT_SUM:  # a sum with wires up and down
+                    line_up = Extent(low + RADIUS - 1, -1e4, high - RADIUS + 1, 1e4)
+                    found += sum(b.overlaps(line_up) for b in self.solid)
+                elif self._kind(node) != "sum":
+                    found += sum(low - 1 < riser < high + 1 for riser in self.risers)
+                found += is_loose and slack > 0 and any(b.overlaps(box) for b in self.occupied)
+                x += sign * (one.width + WIRE)
+            return found
+
+        offered = (
+            [6.0 * i for i in range(8)] if is_loose else [abs(spare) * s for s in (0.5, 0.3, 0.7, 0.1, 0.9)]
+        )
+        return min(offered, key=met)
 
     def _height(self, branch: _Branch, room: Extent, risers: list[float]) -> tuple[float, bool]:
         """Return where a branch runs, and whether that is above its sum."""

@@ -35,6 +35,8 @@ LONGEST: Final = 500.0
 """Of a member beside one of the least length; other frames are drawn in a row."""
 JOINT: Final = 2.4
 """Radius of a joint of members."""
+CLAMP: Final = 8.0
+"""Half the width of a wall that holds a member [points]."""
 CLEAR: Final = 1.2
 SAME: Final = 1e-6
 DIRECTIONS: Final = ((0.0, -1.0), (1.0, 0.0), (-1.0, 0.0), (0.0, 1.0))
@@ -183,7 +185,10 @@ class _Plan:
             pieces = [list(_pieces(*pair, skip=9.0)) for pair in (one, other)]
             if any(a.overlaps(b) for a in pieces[0] for b in pieces[1]):
                 return False
-        return True
+        clamps = [
+            xy for p in self.members for e, xy in zip(p.ends, self.ends[p.name], strict=True) if not e.node
+        ]
+        return all(hypot(a[0] - b[0], a[1] - b[1]) > 2 * CLAMP for a, b in combinations(clamps, 2))
 
     # ------------------------------------------------------------------------------------------- drawing
 
@@ -257,7 +262,7 @@ class _Plan:
         )
         for end, at, sign in ((part.ends[0], a, -1.0), (part.ends[1], b, 1.0)):
             if not end.node:
-                clamp = Placed("ground", "", wall(-8, 8, 1)).rotated(sign * dx, sign * dy)
+                clamp = Placed("ground", "", wall(-CLAMP, CLAMP, 1)).rotated(sign * dx, sign * dy)
                 self._add(clamp.moved(*at))
 
     def _free_directions(self, node: str) -> list[Point]:

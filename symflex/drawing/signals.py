@@ -29,7 +29,7 @@ from symflex.expressions import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
 
     from symflex.drawing.lettering import Labels
     from symflex.model import Model, PlacedBlock
@@ -45,6 +45,11 @@ def _lag(time: Expression) -> Expression:
     return sum_of([number(1), product_of([time, _S])])
 
 
+def _without_ones(polynomial: Expression) -> Expression:
+    terms = polynomial.terms if isinstance(polynomial, Sum) else [polynomial]
+    return sum_of([product_of([t]) for t in terms])
+
+
 FORMULAS: Final[dict[str, Callable[[Values], Expression]]] = {
     "integrator": lambda v: quotient(v["k"], _S),
     "lag": lambda v: quotient(v["k"], _lag(v["T"])),
@@ -53,7 +58,7 @@ FORMULAS: Final[dict[str, Callable[[Values], Expression]]] = {
         [v["k_p"], quotient(v["k_i"], _S), quotient(product_of([v["k_d"], _S]), _lag(v["T_f"]))]
     ),
     "delay": lambda v: Call("exp", negative(product_of([_S, v["T"]]))),
-    "tf": lambda v: quotient(v["num"], v["den"]),
+    "tf": lambda v: quotient(_without_ones(v["num"]), _without_ones(v["den"])),
 }
 """Transfer functions of blocks that are short enough to be printed in them."""
 
@@ -77,6 +82,7 @@ class SignalGraph:
 
     model: Model
     labels: Labels
+    free: Sequence[str]  # inputs that stand nowhere else
     nodes: list[SignalNode] = field(default_factory=list)
 
     def __post_init__(self) -> None:
@@ -87,8 +93,8 @@ class SignalGraph:
         self.constants = {*constants, *self.blocks, "s", "pi"}
         self.known: dict[tuple[str, str], int] = {}
 
-    def add_all(self, outputs: Sequence[str], free: Sequence[str]) -> None:
-        """Add every signal, what signals drive, and some outputs and inputs."""
+    def add_all(self, outputs: Sequence[str], alone: Collection[str]) -> None:
+        """Add every signal, what signals drive, some outputs, and inputs but for some."""
         for name in self.signals:
             self._signal(name)
         for use in self.model.elements:
@@ -96,7 +102,7 @@ class SignalGraph:
                 value = dict(use.values).get(parameter.name)
                 if parameter.signal and value is not None and self._is_diagram(value):
                     self._end("drive", use.name, self.labels.name(use.name), value)
-        for name in free:
+        for name in (n for n in self.free if n not in alone):
             self._once("input", name, self.labels.end(name, self.inputs[name]))
         for out in self.model.outputs:
             if out.name in outputs:
@@ -153,7 +159,7 @@ class SignalGraph:
         match expression:
             case Name(name=name) if name in self.signals:
                 return self._signal(name), False
-            case Name(name=name) if name in self.inputs:
+            case Name(name=name) if name in self.free:
                 return self._once("input", name, self.labels.end(name, self.inputs[name])), False
             case Name(name=name):
                 return self._once("reading", name, self.labels.name(name)), False

@@ -10,7 +10,17 @@ from typing import TYPE_CHECKING
 from symflex.algebra import LAPLACE
 from symflex.budget import spend
 from symflex.errors import SymflexError, nearest
-from symflex.expressions import Expression, Name, Number, power, product_of, sum_of
+from symflex.expressions import (
+    Expression,
+    Name,
+    Negative,
+    Number,
+    Product,
+    negative,
+    power,
+    product_of,
+    sum_of,
+)
 from symflex.library.blocks import BLOCKS, MODEL_BLOCK
 from symflex.model.analysis import named_pairs, pick_tf
 from symflex.model.linearity import EXPONENT_LIMIT
@@ -155,11 +165,21 @@ def _value(reader: Reader, value: Value, where: str, *, coefficients: bool) -> E
     found = [reader.expression(item, where) for item in value.items]
     parts = [None if part is None else lower(part) for part in found]
     terms = [
-        product_of([part, power(Name(LAPLACE), Number(Fraction(degree)))])
+        _term(part, degree)
         for degree, part in zip(range(len(parts) - 1, -1, -1), parts, strict=True)
         if part is not None
     ]
     return sum_of(terms) if len(terms) == len(parts) else None
+
+
+def _term(coefficient: Expression, degree: int) -> Expression:
+    """Return a coefficient times a power of s; a 1 stays, as its unit is open and that of s^2 is not."""
+    factor = power(Name(LAPLACE), Number(Fraction(degree)))
+    term = product_of([coefficient, factor])
+    if not degree or term not in (factor, negative(factor)):
+        return term
+    one = Product((Number(Fraction(1)), factor))
+    return one if term == factor else Negative(one)
 
 
 def _read_model_block(

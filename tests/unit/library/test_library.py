@@ -17,6 +17,7 @@ BLOCKS = {
     / (s**2 + 2 * u * p * s + p**2),
     'type = "tf", num = "p*s + 1", den = "q*s^2 + u"': (p * s + 1) / (q * s**2 + u),
     'type = "tf", num = ["p", 0, 1], den = ["q", "u"]': (p * s**2 + 1) / (q * s + u),
+    'type = "tf", num = [1, 1], den = [1, -1, 1, 0]': (s + 1) / (s**3 - s**2 + s),
     'type = "tf", num = "p"': p,
     'type = "integrator"': 1 / s,
     'type = "integrator", k = "p"': p / s,
