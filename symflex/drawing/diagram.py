@@ -349,7 +349,7 @@ class _Band:
                 if len(self.graph.nodes[node].before) == MOST_AT_SUM:  # a sum with wires up and down
                     line_up = Extent(low + RADIUS - 1, -1e4, high - RADIUS + 1, 1e4)
                     found += sum(b.overlaps(line_up) for b in self.solid)
-                elif self._kind(node) != "sum":
+                elif not is_loose:
                     found += sum(low - 1 < riser < high + 1 for riser in self.risers)
                 found += is_loose and slack > 0 and any(b.overlaps(box) for b in self.occupied)
                 x += sign * (one.width + WIRE)
