@@ -46,7 +46,7 @@ WIDEST_FORMULA, BETWEEN_FORMULAS = 200.0, 4.0
 MOST_PATHS: Final = 2000
 """Paths that are tried for the longest one."""
 NAMED: Final = ("input", "reading", "signal")
-SOURCES: Final = ("input", "reading")
+BOXES: Final = ("gain", "block")
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,7 +128,7 @@ def _longest(graph: SignalGraph, drawn: set[int], joined: set[tuple[int, int]]) 
     starts = [
         i
         for i, n in enumerate(graph.nodes)
-        if (i not in drawn or n.kind in NAMED) and (ahead(i) or i not in drawn)
+        if not _is_fed_back(graph, i) and (i not in drawn or n.kind in NAMED) and (ahead(i) or i not in drawn)
     ]
     minus = {(before, i) for i, n in enumerate(graph.nodes) for before, is_minus in n.before if is_minus}
     best: list[int] = []
@@ -154,10 +154,19 @@ def _forward(path: list[int], minus: Collection[tuple[int, int]]) -> int:
     return next((i for i, pair in enumerate(pairwise(path), 1) if pair in minus), len(path))
 
 
+def _is_fed_back(graph: SignalGraph, node: int) -> bool:
+    """Tell whether a node is a box before a sum: what leads to it comes first, or is drawn from there."""
+    while graph.nodes[node].kind in BOXES:
+        node = graph.nodes[node].after[0]
+        if graph.nodes[node].kind == "sum":
+            return True
+    return False
+
+
 def _leads_back(graph: SignalGraph, path: list[int]) -> bool:
     """Tell whether a path ends in a box that feeds what is on it: that is drawn from there."""
     last = graph.nodes[path[-1]]
-    return last.kind in ("gain", "block", "sum") and any(n in path for n in last.after)
+    return last.kind in (*BOXES, "sum") and any(n in path for n in last.after)
 
 
 @dataclass
@@ -174,6 +183,7 @@ class _Band:
     risers: list[float] = field(default_factory=list)  # where wires go up and down
     x: dict[int, tuple[float, float]] = field(default_factory=dict)  # left and right end of what is drawn
     y: dict[int, float] = field(default_factory=dict)
+    reach: dict[int, tuple[float, float]] = field(default_factory=dict)  # down and up from there
     sides: dict[int, list[str]] = field(default_factory=dict)  # of sums, those that arrows come from
     shown_at: dict[int, list[int]] = field(default_factory=dict)  # outputs that are named signals
 
@@ -295,6 +305,7 @@ class _Band:
     def _place(self, node: int, shown: Built, x: float, y: float) -> None:
         self._add(*(i.moved(x, y) for i in shown.placed))
         self.x[node], self.y[node] = (x, x + shown.width), y
+        self.reach[node] = shown.below, shown.above
 
     def _draw_branch(self, branch: _Branch) -> None:
         """Draw a branch below or above the sum that it leads to."""
@@ -326,7 +337,7 @@ class _Band:
             self._wire_back(branch.nodes[i - 1] if i else None, node, (x, before), y, sign)
             x += sign * one.width
             before = x
-        edge = level + (RADIUS if is_up else -RADIUS)
+        edge = level + self.reach[target][is_up]
         self.items.append(Placed("wire", "", arrow((centre, y), (centre, edge))))
         if branch.origin is not None:
             self._close(branch, other, before, y)
@@ -402,7 +413,7 @@ class _Band:
             case "sum":
                 ring = Placed("sum", "", (circle(RADIUS, 0.0, RADIUS),))
                 return Built(2 * RADIUS, (ring,), -RADIUS, RADIUS)
-            case "gain" | "block":
+            case kind if kind in BOXES:
                 return self._box(one)
             case "signal" if not is_tag:
                 return self._signal(one)

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from itertools import combinations
-from math import cos, hypot, pi, sin
+from math import acos, cos, hypot, pi, sin, tan
 from typing import TYPE_CHECKING, Final
 
 from symflex.drawing.cells import coordinate, label_texts, tags_of
@@ -35,8 +35,12 @@ LONGEST: Final = 500.0
 """Of a member beside one of the least length; other frames are drawn in a row."""
 JOINT: Final = 2.4
 """Radius of a joint of members."""
+APART: Final = 0.3
+"""Between members that no node joins, as a share of the length of one."""
 CLAMP: Final = 8.0
 """Half the width of a wall that holds a member [points]."""
+SHARP: Final = pi / 3
+"""Members at a smaller angle would overlap where they meet."""
 CLEAR: Final = 1.2
 SAME: Final = 1e-6
 DIRECTIONS: Final = ((0.0, -1.0), (1.0, 0.0), (-1.0, 0.0), (0.0, 1.0))
@@ -151,7 +155,8 @@ class _Plan:
             waiting.remove(part)
             a, b = (self.joint(e.node) if e.node else "" for e in part.ends)
             dx, dy = vectors[part.name]
-            right = 1.2 * max((x for x, _ in places.values()), default=0.0)
+            far = max((x for pair in ends.values() for x, _ in pair), default=0.0)
+            right = far + bool(ends) * APART * hypot(dx, dy) - min(dx, 0.0)
             start = places.get(a) or ((places[b][0] - dx, places[b][1] - dy) if b in places else (right, 0.0))
             end = places.get(b) or (start[0] + dx, start[1] + dy)
             ends[part.name] = (start, end)
@@ -239,17 +244,25 @@ class _Plan:
     def _shortened(self, part: DrawnPart) -> tuple[Point, Point]:
         """Return the ends of a member at the surfaces of bodies."""
         a, b = self.ends[part.name]
-        _, d = _direction(a, b)
+        size, d = _direction(a, b)
         cuts = []
-        for end in part.ends:
+        for end, place, sign in ((part.ends[0], a, 1.0), (part.ends[1], b, -1.0)):
             wide, tall = self.radius.get(end.node, (0.0, 0.0)) if end.node else (0.0, 0.0)
             for other in self.radius if end.node else ():
                 if self.at[other] == self.at[end.node]:
                     wide, tall = self.radius[other]
             reach = [h / abs(c) for h, c in ((wide, d[0]), (tall, d[1])) if abs(c) > SAME]
             meets = end.node and self._meeting(self.at[end.node]) > 1
-            cuts.append(min(reach) if wide else JOINT + 0.6 if meets else 0.0)
+            cut = min(reach) if wide else JOINT + 0.6 if meets else 0.0
+            narrow = self._narrowest(part, place, (sign * d[0], sign * d[1]))
+            cuts.append(max(cut, min(HALF / tan(narrow / 2), size / 3)) if narrow < SHARP else cut)
         return (a[0] + cuts[0] * d[0], a[1] + cuts[0] * d[1]), (b[0] - cuts[1] * d[0], b[1] - cuts[1] * d[1])
+
+    def _narrowest(self, part: DrawnPart, place: Point, d: Point) -> float:
+        """Return the angle between a member and the nearest other one where they meet."""
+        pairs = [pair for name, (a, b) in self.ends.items() if name != part.name for pair in ((a, b), (b, a))]
+        others = [_direction(*pair)[1] for pair in pairs if _is_near(pair[0], place)]
+        return min((acos(max(-1.0, min(1.0, d[0] * e[0] + d[1] * e[1]))) for e in others), default=pi)
 
     def _draw_member(self, part: DrawnPart) -> None:
         a, b = self._shortened(part)
@@ -260,7 +273,13 @@ class _Plan:
         self._add(
             Placed(part.kind, part.name, (shape if part.type_name == "frame" else line(a, b, width=MEMBER),))
         )
-        for end, at, sign in ((part.ends[0], a, -1.0), (part.ends[1], b, 1.0)):
+        ends = zip(part.ends, (a, b), self.ends[part.name], (-1.0, 1.0), strict=True)
+        for end, at, joint, sign in ends:
+            is_bare = not any(_is_near(self.at[n], joint) for n in self.radius)
+            if (
+                is_bare and hypot(at[0] - joint[0], at[1] - joint[1]) > JOINT + 1
+            ):  # at a sharp angle to another one only its axis reaches the joint
+                self.items.append(Placed("wire", part.name, (line(joint, at, width=MEMBER),)))
             if not end.node:
                 clamp = Placed("ground", "", wall(-CLAMP, CLAMP, 1)).rotated(sign * dx, sign * dy)
                 self._add(clamp.moved(*at))

@@ -10,6 +10,7 @@ Input: a drawing, and what is to be joined. Output: the wires that find a way, e
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from heapq import heappop, heappush
 from itertools import combinations, pairwise
 from typing import TYPE_CHECKING, Final
@@ -165,6 +166,7 @@ def _way(
         return []
     goal = union(Extent(x, y, x, y) for x, y in ends)
 
+    @cache
     def left(cell: Cell) -> float:
         """Return a number of cells that the rest of a way takes at least."""
         across = max(goal.x0 - cell[0], 0.0, cell[0] - goal.x1)
@@ -188,11 +190,12 @@ def _way(
         seen.add((cell, d))
         if cell in ends and _leads_to(cell, d, ends[cell]):
             return _corners(cell, d, before, starts, ends)
+        paid = best[cell, d] + 1
         for turn, (dx, dy) in enumerate(STEPS):
             other = (cell[0] + dx, cell[1] + dy)
             if other in blocked or turn == d ^ 1:
                 continue
-            price = best[cell, d] + 1 + BEND * (turn != d) + crossed.get(other, 0.0)
+            price = paid + BEND * (turn != d) + crossed.get(other, 0.0)
             if price + left(other) < LONGEST and price < best.get((other, turn), LONGEST):
                 best[other, turn], before[other, turn] = price, (cell, d)
                 heappush(pending, (price + left(other), other, turn))

@@ -451,7 +451,8 @@ class _Layout:
                 sign, start = (-1, box.x1) if cell.is_reversed else (1, box.x0)
                 items = [i.rotated(sign, 0).moved(start, 0) for i in coordinate()]
                 room = union(i.box for i in items).grown(2.0)
-                y = free_level(room, box.y0 - 1.0, [*self.occupied, *leads], is_up=False)
+                wires = [i.box.grown(0.5) for i in self.items if i.kind == "wire" and not i.box.height]
+                y = free_level(room, box.y0 - 1.0, [*self.occupied, *leads, *wires], is_up=False)
                 self._add(*(i.moved(0, y) for i in items))
 
     def _draw_face(self, part: DrawnPart, column: Column, side: int) -> None:

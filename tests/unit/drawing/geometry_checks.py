@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import combinations
 
 from symflex.drawing.geometry import Extent
@@ -10,7 +11,6 @@ TOUCH = 0.4
 """How far boxes may reach into each other [points]: lines have widths, and symbols meet at their ends."""
 SLANTED = 1.3
 """The same of slanted members, which are covered by small rectangles and meet at sharp angles."""
-FEW = 20
 PASSIVE = ("wire", "node", "join")
 
 
@@ -27,13 +27,17 @@ def _is_label_of(a, b):
     return a.name == b.name and "label" in (a.kind, b.kind)
 
 
+def _is_slanted(item):
+    return any(len(replace(item, strokes=(s,), texts=()).extents) > 1 for s in item.strokes)
+
+
 def overlaps(drawing):
     """Return the pairs of symbols and texts that share room; a label may stand in its own symbol."""
     solid = [i for i in drawing.items if i.kind not in PASSIVE]
     found = []
     for a, b in combinations(solid, 2):
         if not _is_label_of(a, b) and a.box.overlaps(b.box):
-            touch = SLANTED if len(a.extents) + len(b.extents) > FEW else TOUCH
+            touch = SLANTED if _is_slanted(a) or _is_slanted(b) else TOUCH
             if any(_share(p, q, touch) for p in a.extents for q in b.extents):
                 found.append((f"{a.kind} {a.name}", f"{b.kind} {b.name}"))
     return found

@@ -15,6 +15,7 @@ I = "1e-9 m^4"
 rho = "2700 kg/m^3"
 A = "1e-4 m^2"
 l = "0.8 m"
+N_w = "9 N"
 k_1 = { value = "95 kN/m", latex = 'k_{\\mathrm{long,one}}' }
 """
 
@@ -74,6 +75,69 @@ def _elements(rng, t, r, v, p):
     ]
 
 
+ENDS = {  # of a beam, at 0 or l
+    "clamped": ("w({x}) = 0", "w'({x}) = 0"),
+    "hinged": ("w({x}) = 0", "w''({x}) = 0"),
+    "free": ("w''({x}) = 0", "w'''({x}) = 0"),
+    "guided": ("w'({x}) = 0", "w'''({x}) = 0"),
+    "pushed": ("w''({x}) = 0", "E*I*w'''({x}) = F_w"),
+    "moved": ("w({x}) = F_w", "w'({x}) = 0"),
+}
+BARS = ("w({x}) = 0", "w'({x}) = 0", "E*A*w'({x}) = F_w", "w({x}) = F_w")
+BLOCKS = (
+    'type = "lag", T = "3 ms"',
+    'type = "integrator"',
+    'type = "lead_lag", T_1 = "2 s", T_2 = "50 ms"',
+    'type = "pid", k_p = 3, k_i = 2, k_d = 1, T_f = "1 ms"',
+    'type = "delay", T = "7 ms"',
+    'type = "tf", num = [1, 2], den = [1, 1, 3]',
+    'type = "resonance", omega_p = "3 rad/s", zeta_p = 0.1, omega_z = "5 rad/s", zeta_z = 0.2',
+)
+INPUTS = {
+    "x": ["force", "displacement", "velocity", "acceleration"],
+    "r": ["torque", "angle", "angular_velocity", "angular_acceleration"],
+    "v": ["voltage", "current"],
+    "p": ["force", "torque", "displacement", "velocity", "angle", "angular_velocity"],
+    "q": ["torque", "angle"],
+}
+
+
+def _field(rng):
+    """Return a field and outputs that show it: a beam, a bar, a string, or one that tapers."""
+    taper = rng.choice(["", "", "*(1 - x/(2*l))"])
+    if rng.random() < 0.6:
+        equation = f"(E*I{taper}*w'')'' + rho*A*s^2*w"
+        conditions = [c.format(x=x) for x in ("0", "l") for c in ENDS[rng.choice([*ENDS])]]
+    else:
+        equation = f"({rng.choice(['E*A', 'N_w'])}{taper}*w')' - rho*A*s^2*w"
+        conditions = [rng.choice(BARS).format(x=x) for x in ("0", "l")]
+    load = rng.choice(["0", "0", "F_w"])
+    text = f'[fields.w]\ndomain = ["0", "l"]\nequation = "{equation} = {load}"\nconditions = {conditions}\n'
+    return text, rng.sample(["w(l)", "w'(0)", "s*w(l/3)", "w(0.1 m)", "E*I*w''(0)", "2*w(0) + u"], 2)
+
+
+def _signals(rng, nodes):
+    """Return blocks and signals that read inputs, nodes and each other, and outputs that show them."""
+    names = [f"sig_{i}" for i in range(rng.randint(1, 4))]
+    own = [f"G_{i}" for i in range(rng.randint(0, 3))]
+    read, unused = [*names, "u", *nodes], list(own)
+
+    def term():
+        factors = rng.sample(["3", "k_1", "s"], rng.randint(0, 1))
+        if unused and rng.random() < 0.6:
+            factors.append(unused.pop())
+        return "*".join([*factors, rng.choice(read)])
+
+    def value():
+        terms = [term() for _ in range(rng.randint(1, 3))]
+        return rng.choice(["", "-"]) + rng.choice([" + ", " - "]).join(terms)
+
+    lines = [f'{n} = "{value()}"' for n in names]
+    blocks = [f"{n} = {{ {rng.choice(BLOCKS)} }}" for n in own]
+    shown = [rng.choice(names), f"{rng.choice(names)} - 2*u"]
+    return "\n".join(("[blocks]", *blocks, "[signals]", *lines, "")), shown
+
+
 def text_of(seed):
     """Return the text of a model."""
     rng = random.Random(seed)
@@ -81,48 +145,36 @@ def text_of(seed):
     ways = _elements(rng, t, r, v, p)
     liked = rng.sample(range(len(ways)), rng.randint(3, 12))
     lines = []
-    names = []
     for i in range(rng.randint(1, 15)):
         try:
-            line = ways[rng.choice(liked)]()
-        except IndexError:
+            lines.append(f"part_{i} = {{ {ways[rng.choice(liked)]()} }}")
+        except IndexError:  # a pair of a single node
             continue
-        if '["' in line and line.split('["')[1].split('"')[0] == "":
-            continue
-        names.append(f"part_{i}")
-        lines.append(f"part_{i} = {{ {line} }}")
     body = "\n".join(lines)
     used = [n for n in (*t, *r, *v, *p, "q_0", "q_1", "q_2") if f'"{n}"' in body or f'"{n}.' in body]
     if not used:
         return None
-    inputs, outputs = [], []
+    inputs, outputs, more = ["u = {}"], [], ""
     for i in range(rng.randint(1, 3)):
         node = rng.choice(used)
-        kind = {
-            "x": ["force", "displacement", "velocity"],
-            "r": ["torque", "angle"],
-            "v": ["voltage", "current"],
-            "p": ["force", "torque", "displacement"],
-            "q": ["torque"],
-        }[node[0]]
         others = [n for n in used if n[0] == node[0] and n != node]
         place = f'["{node}", "{rng.choice(others)}"]' if others and rng.random() < 0.3 else f'"{node}"'
-        inputs.append(f"in_{i} = {{ {rng.choice(kind)} = {place} }}")
-    inputs.append("u = {}")
-    for i in range(rng.randint(1, 4)):
+        inputs.append(f"in_{i} = {{ {rng.choice(INPUTS[node[0]])} = {place} }}")
+    for _ in range(rng.randint(1, 4)):
         node = rng.choice(used)
         if node[0] == "q":
             node = f"{node}.{rng.choice(['x', 'y', 'theta'])}"
         others = [n for n in used if n[0] == node[0] and n != node and n[0] != "q"]
         ways_out = [node, f"s*{node}", f"s^2*{node}", f"2*{node} + u", *(f"{node} - {o}" for o in others[:1])]
-        outputs.append(f'out_{i} = "{rng.choice(ways_out)}"')
-    signals = ""
+        outputs.append(rng.choice(ways_out))
     if rng.random() < 0.4:
-        node = rng.choice([n for n in used if n[0] != "q"] or ["u"])
-        signals = f'[signals]\nsig_1 = "3*(u - 2*s*sig_2)"\nsig_2 = "sig_1 + 4*{node}"\n'
-        outputs.append('out_s = "sig_2"')
-    inputs, outputs = "\n".join(inputs), "\n".join(outputs)
-    return f"{HEAD}{signals}[elements]\n{body}\n[inputs]\n{inputs}\n[outputs]\n{outputs}\n"
+        text, shown = _signals(rng, [n for n in used if n[0] != "q"])
+        more, outputs, body = more + text, outputs + shown, body.replace('"3*u"', '"sig_0"')
+    if rng.random() < 0.3:
+        text, shown = _field(rng)
+        more, outputs, inputs = more + text, outputs + shown, [*inputs, "F_w = {}"]
+    outputs = "\n".join(f'out_{i} = "{one}"' for i, one in enumerate(outputs))
+    return f"{HEAD}{more}[elements]\n{body}\n[inputs]\n{chr(10).join(inputs)}\n[outputs]\n{outputs}\n"
 
 
 def models(first, count):
