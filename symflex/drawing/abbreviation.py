@@ -33,11 +33,13 @@ def abbreviated(
     hidden: set[str] = set()
     extra: list[DrawnPart] = []
     for run in _runs(network, order):
-        inside = run[KEPT:-KEPT]
-        hidden.update(inside)
+        alike = _alike(network, order, run)
+        # What is marked before or behind it is one of those that are kept.
+        first, last = (KEPT - (end in alike[1:-1]) for end in (run[0], run[-1]))
+        hidden.update(run[first:-last])
         acting = "translation" if domains[run[0]] in ("planar", "plane") else domains[run[0]]
-        ends = tuple(End(node, acting) for node in (run[KEPT - 1], run[-KEPT]))
-        extra.append(DrawnPart("dots", "", "dots", DOTS, ends, f"n = {_alike(network, order, run)}"))
+        ends = tuple(End(node, acting) for node in (run[first - 1], run[-last]))
+        extra.append(DrawnPart("dots", "", "dots", DOTS, ends, f"n = {len(alike)}"))
     if not hidden:
         return network, ()
     gone = tuple(p.name for p in network.parts if hidden & set(p.nodes))
@@ -45,8 +47,8 @@ def abbreviated(
     return replace(network, nodes=tuple(n for n in network.nodes if n not in hidden), parts=parts), gone
 
 
-def _alike(network: DrawnNetwork, order: Sequence[str], run: Sequence[str]) -> int:
-    """Return how many nodes in a row bear the same bodies, a run and its neighbours together."""
+def _alike(network: DrawnNetwork, order: Sequence[str], run: Sequence[str]) -> Sequence[str]:
+    """Return the nodes in a row that bear the same bodies, a run and its neighbours together."""
     bodies: dict[str, list[str]] = {n: [] for n in order}
     for part in network.parts:
         if part.symbol.role == "body":
@@ -56,7 +58,7 @@ def _alike(network: DrawnNetwork, order: Sequence[str], run: Sequence[str]) -> i
         first -= 1
     while last + 1 < len(order) and bodies[order[last + 1]] == bodies[run[0]]:
         last += 1
-    return last - first + 1
+    return order[first : last + 1]
 
 
 def _runs(network: DrawnNetwork, order: Sequence[str]) -> list[list[str]]:

@@ -156,7 +156,9 @@ def build(cell: SymbolCell, spacing: Spacing, width: float = 0.0) -> Built:
         above, below = max(above, y + block.y1), min(below, y + block.y0)
     for one in tags:
         y = below - SPACE - one.above
-        x = _kept(middle, one.width, 1.0, width - 1.0) - one.width / 2
+        # A member says what it delivers at its second end.
+        at = middle if not is_member else start if cell.is_reversed else start + length
+        x = _kept(at, one.width, 1.0, width - 1.0) - one.width / 2
         items += [i.moved(x + 10, y) for i in one.placed]
         below = y + one.below
     return Built(width, tuple(items), below, above)

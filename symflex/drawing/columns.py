@@ -79,7 +79,9 @@ class Column:
         """Where its first upright mark begins."""
         start = self.x - max(self.half, ARROW / 2)
         is_crowded = self.has_lead_up or len(self.upright) < len(self.marks)
-        return start + (LANE if is_crowded and self.upright else 0.0)
+        if not (is_crowded and self.upright):
+            return start
+        return max(start + LANE, self.x + LANE / 2 if self.half < ARROW / 2 else start)
 
     @property
     def lead_x(self) -> float:

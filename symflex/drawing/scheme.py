@@ -246,6 +246,9 @@ class _Collected:
     def _tag(self, owner: str, name: str, label: str) -> bool:
         """Write an output at the element or input whose force, torque or current it is."""
         for i, mark in enumerate(self.marks):
+            if mark.labels[0][1] == owner and mark.style == "motion":  # what that takes
+                self.marks.append(Mark("force", mark.node, (("output", name, label),)))
+                return True
             if mark.labels[0][1] == owner:
                 self.marks[i] = replace(mark, labels=(*mark.labels, ("output", name, label)))
                 return True

@@ -233,8 +233,8 @@ def massless_beam(length: float) -> Strokes:
 
 HALF: Final = 2.2
 """Half the width of a slender member [points]."""
-DEEPEST, THINNEST = 4.2, 0.8
-"""The same of one that tapers, where it is deepest, and at least."""
+DEEPEST: Final = 4.2
+"""The same of one that tapers, where it is deepest."""
 
 
 def half_depth(depths: Sequence[float], share: float) -> float:
@@ -247,7 +247,7 @@ def half_depth(depths: Sequence[float], share: float) -> float:
     """
     if not depths:
         return HALF
-    return max(THINNEST, DEEPEST * depths[round(share * (len(depths) - 1))])
+    return DEEPEST * depths[round(share * (len(depths) - 1))]
 
 
 def slender(start: float, end: float, depths: Sequence[float] = ()) -> Stroke:

@@ -217,3 +217,37 @@ def test_a_loop_of_signals_begins_at_its_command_and_is_closed_on_a_page():
     assert all(a.x1 < b.x0 for a, b in pairwise(boxes))
     assert count(drawing, "tag", "y") == 0  # no name stands for a wire
     assert place(drawing, "block", "H").y1 < boxes[1].y0
+
+
+def test_the_force_that_an_imposed_motion_takes_is_an_arrow_of_its_own():
+    drawing = drawing_of(pipeline.load(ROOT / "derivations/classics/quarter_car.toml"))
+    force, tyre = place(drawing, "output", "F_road"), place(drawing, "element", "tyre")
+    assert force.x1 <= tyre.x0
+    assert force.y0 < (tyre.y0 + tyre.y1) / 2 < force.y1
+    assert not force.overlaps(place(drawing, "input", "z_road"))
+
+
+def test_a_wedge_ends_in_a_point():
+    drawing = drawing_of(pipeline.load(ROOT / "derivations/tapers/wedge.toml"))
+    (outline,) = next(i.strokes for i in drawing.of_kind("field"))
+    tip = max(x for x, _ in outline.points)
+    assert len({round(y, 6) for x, y in outline.points if x == tip}) == 1
+
+
+def test_a_force_at_a_wall_is_written_there():
+    drawing = drawing_of(pipeline.load(ROOT / "derivations/classics/rod_tip_mass.toml"))
+    bar, force = place(drawing, "element", "bar"), place(drawing, "output", "F_wall")
+    assert abs(force.centre[0] - bar.x0) < bar.width / 8  # the wall is to the left
+
+
+def test_the_distance_of_two_shaft_ends_is_measured_from_these():
+    member = 'G = "1 GPa", J = "1 m^4", rho = "1 kg/m^3", l = "1 m"'
+    text = f"""
+symflex = 1
+elements.shaft = {{ type = "shaft", between = ["p", "q"], {member} }}
+inputs.T = {{ torque = "p" }}
+outputs = {{ D = "q - p", P = "p" }}
+"""
+    drawing = drawing_of(pipeline.loads(text))
+    leads = [i.strokes[0].points for i in drawing.of_kind("wire") if i.name == "D"]
+    assert all(len({round(x, 6) for x, _ in points}) == 1 for points in leads)
