@@ -21,8 +21,8 @@ from symflex.drawing.symbols import (
     HALF,
     Strokes,
     arrow,
-    circle,
     floor,
+    guide,
     half_depth,
     line,
     outline,
@@ -397,5 +397,4 @@ def _support(held: tuple[bool, bool], x: float, side: int, half: float) -> Itera
         yield from (outline((x, y), (x - 4.2, y - 7), (x + 4.2, y - 7)), *floor(x - 6.4, x + 6.4, y - 7))
     elif is_level:
         yield rectangle(min(x, x + side * 4.0), -8, max(x, x + side * 4.0), 8)
-        yield from (circle(x + side * 6.0, y, 2.0) for y in (-4.0, 4.0))
-        yield from wall(-8, 8, side, x + side * 8.0)
+        yield from guide(-8, 8, side, x + side * 4.0)

@@ -51,7 +51,7 @@ from symflex.drawing.geometry import BOLD, LINE, THIN, Extent, Placed, free_leve
 from symflex.drawing.lettering import text
 from symflex.drawing.order import ordered
 from symflex.drawing.scheme import Distance, Mark
-from symflex.drawing.symbols import DOT, HATCH, arrow, circle, earth, floor, line, rectangle, wall
+from symflex.drawing.symbols import DOT, HATCH, arrow, circle, earth, floor, guide, line, rectangle, wall
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -458,14 +458,11 @@ class _Layout:
     def _draw_face(self, part: DrawnPart, column: Column, side: int) -> None:
         x = column.x + side * column.half
         low, high = column.bottom, column.top - column.crown
-        if part.type_name == "slider":
-            rollers = (circle(x + side * 2.0, low + 4, 2.0), circle(x + side * 2.0, high - 4, 2.0))
-            if not column.bodies and side == next(iter(column.faces)):
-                shoe = rectangle(column.x - column.half, low, column.x + column.half, high)
-                self._add(Placed("node", column.name, (shoe,)))
-            strokes = (*rollers, *wall(low, high, side, x + side * 4.0))
-        else:
-            strokes = wall(low, high, side, x)
+        is_guide = part.type_name == "slider"
+        if is_guide and not column.bodies and side == next(iter(column.faces)):
+            shoe = rectangle(column.x - column.half, low, column.x + column.half, high)
+            self._add(Placed("node", column.name, (shoe,)))
+        strokes = (guide if is_guide else wall)(low, high, side, x)
         self._add(Placed(part.kind, part.name, strokes))
         self._add(*tags_below(part, x + side * 5, low - 5))
 

@@ -102,6 +102,12 @@ def floor(x0: float, x1: float, y: float = 0.0) -> Strokes:
     return (line((x0, y), (x1, y), width=1.0), *lines)
 
 
+def guide(y0: float, y1: float, side: int, x: float) -> Strokes:
+    """Return a wall on one side of a surface along y, with rollers between."""
+    rollers = (circle(x + side * 2.0, y, 2.0) for y in (y0 + 4.0, y1 - 4.0))
+    return (*rollers, *wall(y0, y1, side, x + side * 4.0))
+
+
 def earth(x: float = 0.0, y: float = 0.0) -> Strokes:
     """Return the sign of an electrical reference, hanging from a point."""
     bars = tuple(line((x - w, y - 3 - 2 * i), (x + w, y - 3 - 2 * i)) for i, w in enumerate((4.5, 2.8, 1.2)))
