@@ -465,7 +465,6 @@ class ElementSymbol:
     draw: Callable[[float], Strokes] = box  # of a branch, by its length
     length: float = 24.0  # the least of it [points]
     hold: Callable[[], Strokes] = fixed_support  # of a support, about its node
-    label: tuple[str, ...] = ()  # the parameters whose values are written; empty for all that are given
 
 
 SYMBOLS: Final[dict[str, ElementSymbol]] = {
