@@ -9,14 +9,14 @@ Input: a drawing, and what is to be joined. Output: the wires that find a way, e
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from heapq import heappop, heappush
 from itertools import combinations, pairwise
 from typing import TYPE_CHECKING, Final
 
-from symflex.drawing.geometry import THIN, Extent, Placed, Stroke, around, union
-from symflex.drawing.symbols import head
+from symflex.drawing.geometry import BLACK, THIN, Extent, Placed, Stroke, around, union
+from symflex.drawing.symbols import circle, head
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -85,7 +85,20 @@ def joined(drawing: Drawing, joins: Sequence[Join]) -> tuple[Placed, ...]:
         if not shared:
             break
     found = min(tried)[2] if tried else []
-    return tuple(_drawn(one.name, points) for one, points in zip(joins, found, strict=True) if points)
+    branches = set()  # of a wire that begins in the same place
+    for i, one in enumerate(joins):
+        stem = next((found[j] for j in range(i) if joins[j].starts == one.starts and found[j]), [])
+        stems = tuple(around(pair) for pair in pairwise(stem[:-1]))
+        others = {c for way in found if way not in (stem, found[i]) for c in _passed(way)}
+        met = {**dict.fromkeys(others, CROSSING), **crossed}
+        if stems and (branch := _best(replace(one, starts=stems), blocked, met, solid)):
+            found[i] = branch
+            branches.add(i)
+    return tuple(
+        _drawn(one.name, points, is_branch=i in branches)
+        for i, (one, points) in enumerate(zip(joins, found, strict=True))
+        if points
+    )
 
 
 def _apart(
@@ -122,13 +135,14 @@ def _passed(points: Sequence[Point]) -> Iterator[Cell]:
     yield from (c for pair in pairwise(points) for c in _covered(around(pair), 0.5 * CELL))
 
 
-def _drawn(name: str, points: Sequence[Point]) -> Placed:
-    """Return a way as a dashed wire with the head of an arrow."""
+def _drawn(name: str, points: Sequence[Point], *, is_branch: bool) -> Placed:
+    """Return a way as a dashed wire with the head of an arrow, and a dot where it leaves another one."""
     (ax, ay), tip = points[-2:]
     size = abs(tip[0] - ax) + abs(tip[1] - ay)
     d = ((tip[0] - ax) / size, (tip[1] - ay) / size)
     dashes = Stroke((*points[:-1], (tip[0] - 2 * d[0], tip[1] - 2 * d[1])), THIN, is_dashed=True)
-    return Placed("join", name, (dashes, head(tip, d, 3.0)))
+    dot = (circle(*points[0], 0.9, fill=BLACK),) if is_branch else ()
+    return Placed("join", name, (dashes, head(tip, d, 3.0), *dot))
 
 
 def _is_struck(pair: tuple[Point, Point], box: Extent) -> bool:

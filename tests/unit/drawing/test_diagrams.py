@@ -251,3 +251,16 @@ outputs = {{ D = "q - p", P = "p" }}
     drawing = drawing_of(pipeline.loads(text))
     leads = [i.strokes[0].points for i in drawing.of_kind("wire") if i.name == "D"]
     assert all(len({round(x, 6) for x, _ in points}) == 1 for points in leads)
+
+
+def test_what_is_read_twice_has_one_wire_that_branches():
+    text = f'{LOOP}Other = "n + 3*x"\n'
+    drawing = drawing_of(pipeline.loads(text))
+    stem, *branches = (i.strokes for i in drawing.of_kind("join") if i.name == "x")
+    assert len(branches) == count(drawing, "tag", "x") - 1 == 2
+    for x, y in (strokes[0].points[0] for strokes in branches):
+        sides = pairwise(stem[0].points)
+        assert any(
+            min(a[0], b[0]) <= x <= max(a[0], b[0]) and min(a[1], b[1]) <= y <= max(a[1], b[1])
+            for a, b in sides
+        )
