@@ -373,7 +373,8 @@ class _Searched:
                 )
                 known = [*side.roots, *(() if is_hidden else coincident)]
                 if proof or is_over:
-                    known += [r for r in side.at_origin if rests and r not in known]
+                    if rests:
+                        known += [r for r in side.at_origin if r not in known]
                     found.append(tuple(known))
                     reasons += [unproved] if is_over and unproved else []
                     continue
