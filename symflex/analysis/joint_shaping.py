@@ -10,8 +10,8 @@ the last of the times,
 
 with m + 1 impulses, 2 m + 1 for zvd and ei: as many unknowns as equations, as the first impulse stands at 0,
 and x and y of every mode are found as well. Where these are no shorter, with more of them: some unknowns are
-kept then. Two modes at 1 and 2.3 Hz take 3 impulses in 0.61 s where their
-own zv shapers in a row take 4 in 0.72 s.
+kept then. Two modes at 1 and 2.3 Hz take 3 impulses in 0.61 s where their own zv shapers in a row take 4 in
+0.72 s.
 
 Where the impulses stand is guessed on a fine grid: the shortest one that holds positive amplitudes with these
 sums, a linear program. An impulse takes two points of the grid, which are merged. Newton's method then finds
@@ -71,9 +71,14 @@ def joint_impulses(
     """
     # In its own unit of time what is found does not depend on how quick the modes are.
     scaled = tuple(p * longest for p in poles)
-    for gap in (inf, NEXT):
+    orders = 1 if kind == "zv" else 2
+    guess, step = _guess(np.array([complex(p.mid()) for p in scaled]), orders)
+    if not guess:
+        return None
+    merged = (_merged(guess, orders * len(scaled) + 1, gap * step) for gap in (inf, NEXT))
+    for impulses in dict.fromkeys(merged):
         with precision(ROUGH):
-            begun = _begun(scaled, kind, 1.0, tolerance, gap)
+            begun = _begun(scaled, kind, tolerance, impulses)
         solved = None if begun is None else _solved(*begun, bits)
         found = None if begun is None or solved is None else _proved(begun[0], solved, bits)
         if found is not None and found[-1][0] < 1:
@@ -130,12 +135,9 @@ class _Conditions:
 
 
 def _begun(
-    poles: tuple[acb, ...], kind: str, longest: float, tolerance: arb, gap: float
+    poles: tuple[acb, ...], kind: str, tolerance: arb, guess: Sequence[tuple[float, float]]
 ) -> tuple[_Conditions, list[arb]] | None:
-    """Return conditions for so many impulses as it takes, and unknowns near a solution; None without one."""
-    guess = _guess(np.array([complex(p.mid()) for p in poles]), 1 if kind == "zv" else 2, longest, gap)
-    if guess is None:
-        return None
+    """Return conditions for the impulses of a guess, and unknowns near a solution; None without one."""
     conditions = _Conditions(poles, kind, tolerance, len(guess))
     begun = [arb(x) for x in (*(a for _, a in guess), *(t for t, _ in guess[1:]))]
     if kind != "ei":
@@ -158,18 +160,13 @@ def _begun(
     return None if found is None else (conditions, [*found, *(arb(x) for x in shifts for _ in range(2))])
 
 
-def _guess(
-    poles: npt.NDArray[np.complex128], orders: int, longest: float, gap: float
-) -> list[tuple[float, float]] | None:
-    """Return times and amplitudes of about the shortest shaper on a grid.
-
-    Impulses that are closer than a gap are merged, as long as there are more than unknowns ask for.
-    """
+def _guess(poles: npt.NDArray[np.complex128], orders: int) -> tuple[list[tuple[float, float]], float]:
+    """Return times and amplitudes of about the shortest shaper on a grid, and its step; empty without one."""
     from scipy.optimize import linprog  # takes 0.2 s, and few shapers are joint
 
     quickest = float(np.max(poles.imag))
-    count = int(np.clip(FINENESS * longest * quickest / np.pi, FEWEST, MOST))
-    times = np.linspace(0, longest * (1 + 1 / FINENESS), count)
+    count = int(np.clip(FINENESS * quickest / np.pi, FEWEST, MOST))
+    times = np.linspace(0, 1 + 1 / FINENESS, count)
 
     def amplitudes(points: int) -> npt.NDArray[np.float64] | None:
         spend()
@@ -187,7 +184,7 @@ def _guess(
     low, high = 1, count
     best = amplitudes(high)
     if best is None:
-        return None
+        return [], 0.0
     while high - low > 1:
         middle = (low + high) // 2
         found = amplitudes(middle) if middle > 1 else None
@@ -196,14 +193,20 @@ def _guess(
         else:
             high, best = middle, found
     held = [(float(times[i]), float(best[i])) for i in np.flatnonzero(best > SMALL).tolist()]
-    while len(held) > orders * len(poles) + 1:
+    return held, float(times[1])
+
+
+def _merged(guess: Sequence[tuple[float, float]], fewest: int, gap: float) -> tuple[tuple[float, float], ...]:
+    """Return impulses of which those that are closer than a gap are one, as long as they are not too few."""
+    held = list(guess)
+    while len(held) > fewest:
         # A grid that is a little too long has room to part an impulse in two.
         i = min(range(len(held) - 1), key=lambda i: held[i + 1][0] - held[i][0])
         (t, a), (u, b) = held[i], held[i + 1]
-        if u - t > gap * times[1]:
+        if u - t > gap:
             break
         held[i : i + 2] = [((a * t + b * u) / (a + b), a + b)]
-    return held
+    return tuple(held)
 
 
 def _solved(conditions: _Conditions, unknowns: Sequence[arb], bits: int) -> list[arb] | None:

@@ -514,7 +514,7 @@ def _passivity(bound: BoundTransferFunction) -> tuple[str, bool]:
         return "", False
     if is_passive(bound.source.model, bound.values):
         return PASSIVE, False
-    loop = passive_loop(bound.source.model, None, bound.values)
+    loop = passive_loop(bound.source.model, "", bound.values)
     return ("", False) if loop is None else (PASSIVE_LOOP, loop.rests)
 
 

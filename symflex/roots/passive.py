@@ -75,12 +75,11 @@ class PassiveLoop:
         return min(atan2(self.damping * omega, self.stiffness), pi / 2)
 
 
-def passive_loop(
-    model: Model, gain: str | None, values: Iterable[tuple[str, ExactValue]]
-) -> PassiveLoop | None:
+def passive_loop(model: Model, gain: str, values: Iterable[tuple[str, ExactValue]]) -> PassiveLoop | None:
     """Return how a loop is closed, ``None`` where it is not proved to be passive for all K > 0.
 
-    ``values`` are those of the parameters, with any value of the gain. Without one the loop is as they say.
+    ``values`` are those of the parameters, with any value of the gain. Without the name of one, which is
+    empty then, the loop is as they say.
     """
     known = dict(values)
     inputs = {each.name for each in model.inputs}
@@ -125,7 +124,7 @@ class _Structure:
 
     equations: Equations
     rest: Sequence[PlacedElement]  # all elements but the loop's source
-    gain: str | None
+    gain: str
     line: Line
     values: Mapping[str, ExactValue]
 
@@ -282,7 +281,7 @@ class _Structure:
         names, found = value.ring.names, Powers()
         with precision(BITS):
             for monomial, coefficient in terms_of((value / value.unit).expand()):
-                total, powers = ball(value.unit) * coefficient, {LAPLACE: 0, self.gain or "": 0}
+                total, powers = ball(value.unit) * coefficient, {LAPLACE: 0, self.gain: 0}
                 for name, exponent in ((names[i], e) for i, e in monomial):
                     if name in powers:
                         powers[name] = exponent
@@ -290,7 +289,7 @@ class _Structure:
                         total = total * numbers[name] ** exponent
                     else:
                         return None
-                at = (powers[LAPLACE], powers[self.gain or ""])
+                at = (powers[LAPLACE], powers[self.gain])
                 found[at] = found.get(at, arb(0)) + total
         return found
 
