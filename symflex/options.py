@@ -67,9 +67,7 @@ SHAPED_MODES: Final = {
     **SHOWN,
     "help": "For how many modes a shaper is made, the lowest ones.",
 }
-JOINT: Final = {
-    "help": "One shaper for all modes together, shorter than those of each one after another; zv and zvd."
-}
+JOINT: Final = {"help": "One shaper for all modes together, shorter than those of each one after another."}
 REPRESENTATIONS: Final = ("auto", "expanded", "nested")
 WIDTHS: Final = "ieee|a4|MM"
 
