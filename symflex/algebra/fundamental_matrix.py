@@ -629,24 +629,25 @@ def _by_recurrence(
     scaled = [_to_unit_length(part, length) for part in parts]
     # Order m of column j is coefficient n m + j: all columns at once.
     states: list[list[Polynomial]] = [[arb_poly([int(i == j) for j in range(n)])] for i in range(n)]
-    divided = [[list[Polynomial]() for _ in divisors] for _, divisors in scaled]
+    divided = [[list[Polynomial]() for _ in divisors] for _, divisors, _ in scaled]
     kept = len(counts)
     for k in range(counts[0] - 1):
         # Counts fall with the order in u.
         while counts[kept - 1] <= k + 1:
             kept -= 1
-        slopes: list[Polynomial] = [arb_poly([])] * n
+        new: list[Polynomial | None] = [None] * n
         with ctx.workprec(needed[k]):
-            for part, (taps, divisors), histories in zip(parts, scaled, divided, strict=True):
-                i, value = part.place[0], _convolved(taps, states[part.place[1]], k)
+            for part, (taps, divisors, common), histories in zip(parts, scaled, divided, strict=True):
+                value = _convolved(taps, states[part.place[1]], k)
                 for divisor, history in zip(divisors, histories, strict=True):
                     history.append(value)
-                    history[k] = value = value + _convolved(divisor, history, k)
+                    history[k] = value = _convolved(divisor, history, k)
                 for order, rate in part.rates:
-                    moved = value if order and rate == 1 else value * rate
-                    slopes[i] = slopes[i] + (moved.left_shift(n * order) if order else moved)
-            for i in range(n):
-                states[i].append(slopes[i].truncate(n * kept) * (1 / arb(k + 1)))
+                    moved = value.truncate(n * max(0, kept - order)) * (common * rate / (k + 1))
+                    moved, before = moved.left_shift(n * order) if order else moved, new[part.place[0]]
+                    new[part.place[0]] = moved if before is None else before + moved
+        for state, following in zip(states, new, strict=True):
+            state.append(arb_poly([]) if following is None else following)
     edges = [(*part.place, q) for part in parts for q, _ in part.rates]
     reached = [_reached(edges, [(j, 0)], len(counts)) for j in range(n)]
     columns: list[Column] = [[] for _ in range(n)]
@@ -658,8 +659,11 @@ def _by_recurrence(
     return columns
 
 
-def _to_unit_length(part: RationalPart, length: arb) -> tuple[list[Number], list[list[Number]]]:
-    """Return the coefficients of numerator and divisors, as a recurrence on a step of length 1 takes them."""
+def _to_unit_length(part: RationalPart, length: arb) -> tuple[list[Number], list[list[Number]], Number]:
+    """Return a quotient on a step of length 1: numerator, divisors less those of their start, and a factor.
+
+    Divisors have the signs with which a recurrence takes them; what they divide comes first.
+    """
 
     def coefficients(polynomial: Polynomial) -> list[Number]:
         own: Sequence[Number] = polynomial.coeffs()
@@ -670,17 +674,21 @@ def _to_unit_length(part: RationalPart, length: arb) -> tuple[list[Number], list
     for divisor in part.divisors:
         first, *others = coefficients(divisor)
         common = common / first
-        divisors.append([arb(0), *(-c / first for c in others)])
-    return [c * common for c in coefficients(part.numerator)], divisors
+        divisors.append([arb(1), *(-c / first for c in others)])
+    taps = coefficients(part.numerator)
+    if len(taps) == 1:
+        return [arb(1)], divisors, common * taps[0]
+    return taps, divisors, common
 
 
 def _convolved(taps: Sequence[Number], source: Sequence[Polynomial], k: int) -> Polynomial:
-    """Return coefficient k of a product of series."""
-    total: Polynomial = arb_poly([])
+    """Return coefficient k of a product of series; a pass over all orders in u is what takes time."""
+    total: Polynomial | None = None
     for p, tap in enumerate(taps[: k + 1]):
         if tap != 0:
-            total = total + source[k - p] * tap
-    return total
+            moved = source[k - p] if tap == 1 else source[k - p] * tap
+            total = moved if total is None else total + moved
+    return arb_poly([]) if total is None else total
 
 
 def _reached(
