@@ -1,8 +1,8 @@
-"""Fundamental matrices of linear differential equations whose coefficients vary along x, in balls.
+"""Minors of fundamental matrices of equations whose coefficients vary along x, in balls.
 
 Input: ``dz/dx = A(x, u) z`` with ``A = sum_q u^q A_q(x)``, as a :class:`VaryingSystem`.
-Output: a :class:`PowerExpansion`: Z(end), where Z(start) is the unit matrix, as polynomials in u with bounds
-on what they leave out. Once it is made, a value at another u costs the evaluation of polynomials.
+Output: a :class:`PowerExpansion`: minors of Z(end), where Z(start) is the unit matrix, as polynomials in u
+with bounds on what they leave out. Once one is made, a value at another u costs that of a polynomial.
 
     y'' = u (1 + x) y, z = (y, y')      A_0 = ((0, 1), (0, 0)), A_1 = ((0, 0), (1 + x, 0))
     order 0 in u: ((1, x), (0, 1))      order 1: A_1 times that, integrated: y' first, y after it
@@ -13,6 +13,10 @@ together, Cauchy's estimate bounds what these leave out: a coefficient of ``x^k 
 ``exp(rho K)/(rho^k R^m)``, if the norm of A is at most K for abs(x) <= rho and abs(u) <= R. States are scaled
 so that this norm is about a wavenumber.
 
+Minors of p rows solve equations of their own, whose coefficients are entries of A (Schwarz 1970). They are
+taken from step to step as such: as differences of products of entries they would lose the digits by which the
+products are larger.
+
 Where A has a pole at the start, the first step is that of a :class:`SingularBeginning`, whose finite
 solutions are power series: ``h v' = B v`` makes ``(k - B_0) v_k = B_1 v_(k-1) + ... + B_k v_0``. The same
 with sizes in place of numbers bounds as many terms as one likes. If B is at most M on abs(h) <= rho and
@@ -22,67 +26,51 @@ with sizes in place of numbers bounds as many terms as one likes. If B is at mos
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from itertools import pairwise
-from math import ceil, factorial, floor, inf, isfinite, log2
-from typing import TYPE_CHECKING, Protocol
+from functools import cached_property
+from math import ceil, floor, inf, log2
+from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, arb, arb_poly, ctx
 
+from symflex.algebra.varying_growth import (
+    BITS_OF_E,
+    bits_of,
+    growth_begun,
+    growth_of,
+    growth_on,
+    least_growth,
+    legs_along,
+)
+from symflex.algebra.varying_system import (
+    MinorsAlong,
+    Number,
+    Polynomial,
+    RationalPart,
+    polynomial_of,
+    sequence_of,
+)
 from symflex.budget import spend
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
-Place = tuple[int, int]
-"""Row and column."""
-Polynomial = arb_poly | acb_poly
-Number = arb | acb
-Coefficients = dict[Place, Polynomial]
-"""Entries of a matrix that are not zero, as polynomials in x less the point of expansion."""
+    from symflex.algebra.varying_growth import Growth, Leg
+    from symflex.algebra.varying_system import (
+        Coefficients,
+        Lines,
+        SingularBeginning,
+        VaryingSystem,
+    )
+
 Matrix = list[list[Polynomial]]
 """Entries as polynomials in u."""
-Weights = tuple[arb, ...]
-"""Powers of two by which states are scaled."""
-Lines = tuple[int, ...]
-"""Rows or columns of a minor."""
 
-BALANCINGS = 60
-"""Rounds of balancing the states: of four in a circle each leaves half of what is out of balance."""
-BALANCED = 0.1
-"""Bits by which rows and columns may differ."""
-SHARE = 3
-"""The radius on which coefficients are bounded, over the length of a step."""
-SHORTEST = 1e-5
-"""Share of the whole below which the radius of a step means that there is a singularity."""
-ROUNDING = 2.0**-50
-"""Of a place in doubles: that of a singularity at an end is met then, too."""
-MOST_STEPS = 1000
-"""Ten times those of a thousand modes, and more than coefficients need that anyone means."""
-HALVINGS = 40
-"""Of an interval in which a singularity lies: it is told to six digits."""
-LAST = 1.2
-"""A step may be so much longer than others if it is the last."""
-RADII = tuple(4.0 * 0.8**k for k in range(80))
-"""Radii that are tried about a point, in lengths of the whole; the least is 1e-7 of it."""
 GUARD = 32
 """Bits beyond those asked for: products of a few dozen steps round a few hundred times."""
 BEYOND = 32
 """Polynomials in u are bounded on a disc so many times larger than what they are used on."""
-MORE_LOST = 1.25
-"""Over the bits by which solutions grow: minors of two rows lose no more than these, of three rows twice."""
 FEWEST_BITS = 30
 """Of orders in u that hardly matter."""
-BOUNDED = 4
-"""Parts of a step on each of which coefficients are bounded: on the whole they would be a quarter larger."""
-SAMPLES = 8
-"""Points at which the growth along x is sampled where about what it is suffices."""
-MOST_TERMS = 1500
-"""Of the power series about a singular start: three times what the tenth mode of a hanging string takes."""
-MOST_HALVINGS = 40
-"""Of the first step from a singular start."""
-BOUND_BITS = 64
-"""Of bounds, which are added up and rounded up."""
-BITS_OF_E = 1.4426950408889634
 ASIDE = 1 / 16
 """Share of abs(u) by which what is cut off a polynomial is bounded beyond it, for its derivatives."""
 CUTS = 4
@@ -93,79 +81,19 @@ WIDE = 2.0**-30
 """Relative radius of balls about whose middle a polynomial is expanded before it is evaluated."""
 
 
-class SingularCoefficientError(ValueError):
-    """A coefficient is not analytic about a point of the interval, or so steep that none could tell."""
-
-    def __init__(self, place: float, *, is_steep: bool = False) -> None:
-        super().__init__(place)
-        self.place = place
-        self.is_steep = is_steep  # analytic as far as is known
-
-
-@dataclass(frozen=True, slots=True)
-class RationalPart:
-    """A part of an entry: a quotient of polynomials in x, times powers of u."""
-
-    place: Place
-    numerator: Polynomial  # in x less the point of expansion
-    divisors: tuple[Polynomial, ...]  # of the same; a factor of the denominator stands as often as it occurs
-    rates: tuple[tuple[int, Number], ...]  # the powers of u, and what each is multiplied by
-
-
-class VaryingSystem(Protocol):
-    """The coefficients of a system, evaluated at the current precision."""
-
-    @property
-    def size(self) -> int:
-        """The number of states."""
-        ...
-
-    @property
-    def beginning(self) -> SingularBeginning | None:
-        """What stands in place of the coefficients at a start where these have poles."""
-        ...
-
-    def ends(self) -> tuple[arb, arb]:
-        """Return where x begins and ends."""
-        ...
-
-    def series(self, x: arb, terms: int) -> Sequence[Coefficients]:
-        """Return, per power of u, the entries' Taylor polynomials about a point."""
-        ...
-
-    def parts(self, x: arb) -> Sequence[RationalPart] | None:
-        """Return what entries are sums of about a point, ``None`` where some are not rational in x."""
-        ...
-
-    def bounds(self, x: acb, largest: arb) -> Mapping[Place, arb]:
-        """Return the sizes of entries on a ball of x for abs(u) <= ``largest``; not finite near a pole."""
-        ...
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class SingularBeginning:
-    """Solutions that are finite at a start where coefficients have poles: ``z_i = h^powers_i v_i``.
-
-    See :class:`symflex.algebra.dispersion.SingularStart`, of which these are the matrices.
-    """
-
-    powers: tuple[int, ...]
-    matrix: VaryingSystem  # B, with series and bounds about the start; what vanishes there is exactly zero
-    values: VaryingSystem  # v at the start
-
-
 @dataclass(frozen=True, eq=False)
 class PowerExpansion:
-    """A fundamental matrix as polynomials in u."""
+    """Minors of a fundamental matrix as polynomials in u, each made when it is first asked for."""
 
-    entries: Matrix
-    terms: int  # of each polynomial
-    bits: int  # the precision of the polynomials
-    reach: arb  # up to which abs(u) the growth holds; values are for abs(u) well below it
-    growth: arb  # bounds every entry, over the weight of its row, times that of its column
-    # of the states, at the start and at the end
-    weights: tuple[Weights, Weights]
-    _minors: dict[tuple[Lines, Lines], Polynomial] = field(default_factory=dict, repr=False)
+    system: VaryingSystem
+    legs: Sequence[Leg]
+    # How solutions grow about the start of every leg, up to the reach and up to the largest abs(u).
+    discs: Sequence[Sequence[Growth]]
+    largest: arb  # values are for abs(u) up to this, or not much more
+    bits: int  # to which they are exact, relative to minors that grow
+    orders: int  # in u that are kept; 0 where they follow from the bits
+    _sized: dict[int, Minors] = field(default_factory=dict, repr=False)
+    _made: dict[tuple[Lines, Lines], Polynomial] = field(default_factory=dict, repr=False)
     _cuts: dict[tuple[Lines, Lines, int, int], tuple[Polynomial, arb]] = field(
         default_factory=dict, repr=False
     )
@@ -179,7 +107,7 @@ class PowerExpansion:
         found = []
         is_wide = bool(u.rad() > abs(middle) * WIDE)
         # Terms of an alternating series are larger than their sum: more bits, and the middle of the ball.
-        with ctx.workprec(self._bits_about(rows, columns, middle) if is_wide else self.bits):
+        with ctx.workprec(self._bits_about(rows, columns, middle) if is_wide else self.precision):
             polynomial, cut = self._cut(rows, columns, size)
             if is_wide:
                 polynomial, middle, off = acb_poly(polynomial)(acb_poly([middle, 1])), acb(0), acb(0)
@@ -233,278 +161,141 @@ class PowerExpansion:
 
     def _bits_about(self, rows: Lines, columns: Lines, middle: acb) -> int:
         """Return the bits with which a minor keeps those of the current precision about a point."""
-        with ctx.workprec(self.bits):
+        most = self.precision
+        with ctx.workprec(most):
             value = abs(self._cut(rows, columns, abs(middle).upper())[0](middle))
         with ctx.workprec(FEWEST_BITS):
             lost = self._sizes_of(rows, columns)[0](abs(middle)) / value
-        if not 1 <= lost < arb(2) ** self.bits:
-            return self.bits
+        if not 1 <= lost < arb(2) ** most:
+            return most
         mantissa, exponent = lost.upper().man_exp()
-        return min(self.bits, ctx.prec + GUARD + int(mantissa).bit_length() + int(exponent))
+        return min(most, ctx.prec + GUARD + int(mantissa).bit_length() + int(exponent))
 
     def _rest(self, rows: Lines, columns: Lines, size: arb, k: int) -> arb:
         """Return a bound on what a polynomial leaves out of the k-th Taylor coefficient, by Cauchy."""
-        if size == 0 and k < self.terms:
+        own = self._minors(len(rows))
+        if size == 0 and k < own.terms:
             return arb(0)
-        whole = self.growth ** len(rows) * factorial(len(rows))
-        for i, j in zip(rows, columns, strict=True):
-            whole = whole * self.weights[1][i] / self.weights[0][j]
-        apart = max(size, self.reach / BEYOND) if k else arb(0)
-        room = (size + apart) / self.reach
-        if not room < 1:
-            return arb("inf")
-        return (whole * room**self.terms / (1 - room) / apart**k).abs_upper()
+        (starts, ends), reach, found = own.growth.weights, own.growth.reach, arb("inf")
+        whole = own.growth.size * ends[own.lines.index(rows)] / starts[own.lines.index(columns)]
+        # Of circles about a point a small one is better for the first derivatives.
+        for share in (ASIDE, 1) if k else (0,):
+            apart = max(size, self.largest) * share
+            room = (size + apart) / reach
+            if room < 1:
+                found = min(found, (whole * room**own.terms / (1 - room) / apart**k).abs_upper())
+        return found
 
     def _polynomial(self, rows: Lines, columns: Lines) -> Polynomial:
-        if len(rows) == 1:
-            return self.entries[rows[0]][columns[0]]
-        if (rows, columns) not in self._minors:
-            total: Polynomial = arb_poly([])
-            for n, column in enumerate(columns):
-                rest = self._polynomial(rows[1:], columns[:n] + columns[n + 1 :])
-                total += self.entries[rows[0]][column] * rest * (-1) ** n
-            self._minors[rows, columns] = total.truncate(self.terms)
-        return self._minors[rows, columns]
+        if (rows, columns) not in self._made:
+            own = self._minors(len(rows))
+            found: dict[Lines, Polynomial] = {line: arb_poly([int(line == columns)]) for line in own.lines}
+            with ctx.workprec(self.precision):
+                for step in self._steps:
+                    spend()
+                    found = {line: _combined(step, line, found, own.terms) for line in own.lines}
+            self._made.update(((line, columns), x) for line, x in found.items())
+        return self._made[rows, columns]
+
+    def _minors(self, order: int) -> Minors:
+        if order not in self._sized:
+            system = MinorsAlong(self.system, order)
+            with ctx.workprec(self.bits):
+                far, near = (growth_of(system, self.legs, x) for x in (self.reach, self.largest))
+            terms = ceil((self.precision + far.bits_over(near)) / log2(BEYOND / (1 + ASIDE)))
+            self._sized[order] = Minors(system.lines, far, self.orders or max(2, terms))
+        return self._sized[order]
+
+    @cached_property
+    def precision(self) -> int:
+        """The bits of polynomials: where they are used, minors are smaller than their terms."""
+        half = max(1, self.system.size // 2)
+        with ctx.workprec(self.bits):
+            near = growth_of(MinorsAlong(self.system, half), self.legs, self.largest)
+            lost = bits_of(near.size) - least_growth(self.system, half, self.largest)
+        return self.bits + GUARD + ceil(max(0.0, lost))
+
+    @cached_property
+    def _steps(self) -> Sequence[dict[tuple[Lines, Lines], Polynomial]]:
+        """The fundamental matrix of every step, by rows and columns."""
+        found: list[dict[tuple[Lines, Lines], Polynomial]] = []
+        last, terms = len(self.legs) - 1, self._minors(1).terms
+        with ctx.workprec(self.precision):
+            start, end = self.system.ends()
+            for k, (leg, discs) in enumerate(zip(self.legs, self.discs, strict=True)):
+                spend()
+                exact = replace(leg, start=start if k == 0 else leg.start, end=end if k == last else leg.end)
+                if leg.is_first and self.system.beginning is not None:
+                    made = _begun(self.system.beginning, exact, self.reach, terms)
+                else:
+                    made = _stepped(self.system, exact, discs, terms)
+                rows = enumerate(made)
+                found.append({((i,), (j,)): x for i, row in rows for j, x in enumerate(row)})
+        return found
+
+    @property
+    def reach(self) -> arb:
+        """The size of u up to which solutions are bounded."""
+        return (self.largest * BEYOND).abs_upper()
 
 
 @dataclass(frozen=True, slots=True)
-class Leg:
-    """A part of the interval."""
+class Minors:
+    """What is common to the minors of one size."""
 
-    start: arb
-    end: arb
-    radius: arb  # about the start, in which coefficients are bounded
-    growth: float  # bits by which solutions grow on the radius at most
-    weights: Weights  # with which they do
-    # Of a first step from a start where coefficients have poles: bits by which solutions grow up to its end.
-    reached: float | None = None
-
-    @property
-    def length(self) -> arb:
-        """Its length, negative where x falls."""
-        return self.end - self.start
-
-
-def growth_along(system: VaryingSystem, largest: arb) -> float:
-    """Return about by which power of e solutions grow from end to end at most, for abs(u) <= ``largest``."""
-    start, end = system.ends()
-    share, total = (end - start) / SAMPLES, 0.0
-    for k in range(SAMPLES):
-        x = (start + share * (k + 0.5)).mid()
-        norm = _norm(system, acb(x), largest, _weights(system, acb(x), largest))
-        total += float((norm * abs(share)).mid())
-    return total
+    lines: Sequence[Lines]  # the rows of every one
+    growth: Growth  # on the disc of u on which polynomials are bounded
+    terms: int  # of each polynomial
 
 
 def expand(system: VaryingSystem, largest: arb, bits: int, orders: int = 0) -> PowerExpansion:
-    """Return the fundamental matrix from the start of x to its end, for abs(u) <= ``largest``.
+    """Return minors of the fundamental matrix from the start of x to its end, for abs(u) <= ``largest``.
 
-    It is exact to about so many bits relative to the minors that grow, or has ``orders`` in u where these
+    They are exact to about so many bits relative to those that grow, or have ``orders`` in u where these
     are given. Raises SingularCoefficientError where a coefficient has a singularity on the interval.
     """
+    largest = largest.abs_upper()
     reach = (largest * BEYOND).abs_upper()
-    steps = steps_along(system, reach, bits)
-    growth, weights = _growth(system, steps, reach)
-    doublings = float(growth.upper()) * BITS_OF_E
-    terms = orders or max(2, ceil((bits + 2 * doublings) / log2(BEYOND / 2)))
-    total: Matrix | None = None
-    # A minor falls below the products it is the difference of by about what solutions grow where it is used.
-    lost = float(_growth(system, steps, largest)[0].upper()) * BITS_OF_E * MORE_LOST
-    with ctx.workprec(bits + GUARD + ceil(min(lost, doublings))):
-        start, end = system.ends()
-        steps[0] = replace(steps[0], start=start)
-        steps[-1] = replace(steps[-1], end=end)
-        for step in steps:
-            spend()
-            beginning = None if step.reached is None else system.beginning
-            made = (
-                _stepped(system, step, reach, terms)
-                if beginning is None
-                else _begun(beginning, step, reach, terms)
-            )
-            total = made if total is None else _product(made, total, terms)
-        return PowerExpansion(total or [], terms, ctx.prec, reach, growth.exp().abs_upper(), weights)
+    legs = legs_along(system, largest, reach, bits + GUARD)
+    discs = [
+        () if leg.is_first else (growth_on(system, leg, reach), growth_on(system, leg, largest))
+        for leg in legs
+    ]
+    return PowerExpansion(system, legs, discs, largest, bits, orders)
 
 
-def steps_along(system: VaryingSystem, reach: arb, bits: int) -> list[Leg]:
-    """Return the parts of the interval on each of which solutions are expanded, for abs(u) <= ``reach``.
-
-    Raises SingularCoefficientError where a coefficient has a singularity on the interval.
-    """
-    begin, end = system.ends()
-    first = [] if system.beginning is None else [_first_step(system.beginning, begin, end, reach, bits)]
-    return first + _steps(system, first[0].end if first else begin, end, reach, bits)
-
-
-def _growth(system: VaryingSystem, steps: Sequence[Leg], reach: arb) -> tuple[arb, tuple[Weights, Weights]]:
-    """Return by which power of e solutions grow at most for abs(u) up to a reach, and states at the ends.
-
-    States are scaled anew on every part of a step.
-    """
-    growth, found = arb(0), list[Weights]()
-    for step in steps:
-        if step.reached is not None:
-            growth += step.reached * arb(2).log()
-            found.append(step.weights)
-            continue
-        part = step.length / BOUNDED
-        for k in range(BOUNDED):
-            middle = step.start + part * (k + 0.5)
-            found.append(_weights(system, acb(middle.mid()), reach))
-            hull = acb(middle + arb(0, (part / 2).abs_upper()))
-            growth += _norm(system, hull, reach, found[-1]) * abs(part)
-    for before, after in pairwise(found):
-        growth += max(x / y for x, y in zip(before, after, strict=True)).log()
-    return growth, (found[0], found[-1])
+def _combined(
+    step: dict[tuple[Lines, Lines], Polynomial], rows: Lines, states: Mapping[Lines, Polynomial], terms: int
+) -> Polynomial:
+    """Return a minor at the end of a step, given those at its start."""
+    total: Polynomial = arb_poly([])
+    for line, state in states.items():
+        if state.degree() >= 0:
+            total += _minor(step, rows, line, terms) * state
+    return total.truncate(terms)
 
 
-def _weights(system: VaryingSystem, middle: acb, reach: arb) -> Weights:
-    """Return powers of two that make rows and columns of the coefficients alike (Osborne 1960)."""
-    sizes = {
-        place: log2(size)
-        for place, x in system.bounds(middle, reach).items()
-        if place[0] != place[1] and 0 < (size := float(x.upper())) < inf
-    }
-    found = [0.0] * system.size
-    for _ in range(BALANCINGS):
-        before = list(found)
-        for i in range(system.size):
-            row = [x + found[k] for (j, k), x in sizes.items() if j == i]
-            column = [x - found[j] for (j, k), x in sizes.items() if k == i]
-            if row and column:
-                found[i] = (max(row) - max(column)) / 2
-        if max(abs(x - y) for x, y in zip(found, before, strict=True)) < BALANCED:
-            break
-    return tuple(arb(2.0**x) for x in found)
-
-
-def _norm(system: VaryingSystem, x: acb, reach: arb, weights: Sequence[arb]) -> arb:
-    """Return a bound on the norm of the scaled coefficients on a ball of x; not finite near a singularity."""
-    rows = [arb(0)] * system.size
-    for (i, j), size in system.bounds(x, reach).items():
-        rows[i] += size * weights[j] / weights[i]
-    return max((row.abs_upper() if row.is_finite() else arb("inf") for row in rows), key=float)
-
-
-def _steps(system: VaryingSystem, start: arb, end: arb, reach: arb, bits: int) -> list[Leg]:
-    """Return steps of which each costs few terms over its length."""
-    whole, at, found = end - start, start, list[Leg]()
-    while at is not end:
-        if len(found) == MOST_STEPS:
-            raise SingularCoefficientError(float(at.mid()), is_steep=True)
-        best: tuple[float, arb, float] | None = None
-        weights = _weights(system, acb(at), reach)
-        for share in RADII:
-            radius = (abs(whole) * share).upper()
-            square = arb(0, radius)
-            norm = _norm(system, acb(at + square, square), reach, weights)
-            # One more, as this is rounded.
-            growth = float((norm * radius).upper()) * BITS_OF_E + 1
-            if not isfinite(growth):
-                continue
-            cost = (bits + growth) / min(float(radius), SHARE * float(abs(end - at).upper()))
-            if best is not None and cost > best[0]:
-                break
-            best = (cost, radius, growth)
-        if best is None or best[1] < abs(whole) * SHORTEST:
-            raise _no_step(system, at, end, reach, weights)
-        _, radius, growth = best
-        length, left = (radius / SHARE).mid(), end - at
-        following = end if abs(left) <= length * LAST else (at + (length if left > 0 else -length)).mid()
-        found.append(Leg(at, following, radius, growth, weights))
-        at = following
-    return found
-
-
-def _first_step(beginning: SingularBeginning, start: arb, end: arb, reach: arb, bits: int) -> Leg:
-    """Return the longest step from a start where coefficients have poles that costs not too many terms.
-
-    It is a sixth of the radius on which coefficients are bounded, and a third of that on which solutions are.
-    """
-    whole = abs(end - start)
-    for k in range(MOST_HALVINGS):
-        radius = (whole * 2 * SHARE / 2**k).upper()
-        square = arb(0, radius)
-        hull = acb(start + square, square)
-        weights = _weights(beginning.matrix, hull, reach)
-        norm = _norm(beginning.matrix, hull, reach, weights)
-        if not norm < MOST_TERMS:
-            continue
-        length = (radius / (2 * SHARE)).mid()
-        following = end if k == 0 else (start + (length if end > start else -length)).mid()
-        growth = _bounded(beginning, start, reach, weights, (norm, radius / 2, abs(following - start)), bits)
-        if growth is not None:
-            way = abs(following - start)
-            scaled = tuple((w * way**d).mid() for w, d in zip(weights, beginning.powers, strict=True))
-            return Leg(start, following, radius / 2, growth[0], scaled, growth[1])
-    raise SingularCoefficientError(float(start.mid()))
-
-
-def _bounded(
-    beginning: SingularBeginning,
-    start: arb,
-    reach: arb,
-    weights: Weights,
-    sizes: tuple[arb, arb, arb],
-    bits: int,
-) -> tuple[float, float] | None:
-    """Return by how many bits solutions grow on a radius at most, and up to the step's end.
-
-    Sizes are the norm of B on twice the radius, the radius, and the step. None where too many terms of v have
-    to be bounded before those that follow fall.
-    """
-    norm, radius, way = sizes
-    with ctx.workprec(BOUND_BITS):
-        parts = [
-            [(i, j, x * weights[j] / weights[i]) for i, j, x in rates]
-            for rates in _by_powers(beginning.matrix, start, MOST_TERMS, reach)
-        ]
-        inside = [(i, j, x) for i, j, x in parts[0] if i != j]
-        # Nowhere positive itself, so its size is what k is increased by.
-        diagonal = {i: x for i, j, x in parts[0] if i == j}
-        sequence = _order({(i, j): acb_poly([1]) for i, j, _ in inside}, len(weights))
-        across = sum((x for _, _, x in inside), arb(0))
-        first = [arb(0)] * len(weights)
-        for i, j, x in _by_powers(beginning.values, start, 1, reach)[0]:
-            first[i] += x * weights[j] / weights[i]
-        column, largest, total = [first], arb(0), arb(0)
-        for k in range(MOST_TERMS):
-            size = sum(column[k], arb(0)).abs_upper()
-            if not size.is_finite():
-                return None
-            largest = max(largest, size * radius**k)
-            total += size * way**k
-            resolvent = sum(((across / (k + 1)) ** j for j in range(len(weights))), arb(0))
-            left = largest * (way / radius) ** (k + 1)
-            if norm * resolvent < k + 1 and left * arb(2) ** bits < 1:
-                most, reached = (float(x.log().upper()) * BITS_OF_E for x in (largest, total + 2 * left))
-                return most, reached
-            new = [arb(0)] * len(weights)
-            for p in range(1, k + 2):
-                for i, j, x in parts[p] if p < MOST_TERMS else ():
-                    new[i] += x * column[k + 1 - p][j]
-            for i in sequence:
-                new[i] += sum((x * new[j] for row, j, x in inside if row == i), arb(0))
-                new[i] = (new[i] / (k + 1 + diagonal.get(i, 0))).abs_upper()
-            column.append(new)
-    return None
-
-
-def _by_powers(system: VaryingSystem, start: arb, count: int, reach: arb) -> list[list[tuple[int, int, arb]]]:
-    """Return bounds on the coefficients of every power of the way from a start, for abs(u) up to a reach."""
-    found: list[dict[Place, arb]] = [{} for _ in range(count)]
-    for order, coefficients in enumerate(system.series(start, count)):
-        for place, polynomial in coefficients.items():
-            for p, x in enumerate(acb_poly(polynomial).coeffs()):
-                if (size := abs(x).upper()) > 0:
-                    found[p][place] = found[p].get(place, arb(0)) + size * reach**order
-    return [[(*place, x) for place, x in each.items()] for each in found]
+def _minor(
+    step: dict[tuple[Lines, Lines], Polynomial], rows: Lines, columns: Lines, terms: int
+) -> Polynomial:
+    """Return a minor of a step by its first row, and keep it."""
+    if (rows, columns) not in step:
+        total: Polynomial = arb_poly([])
+        for n, column in enumerate(columns):
+            rest = _minor(step, rows[1:], columns[:n] + columns[n + 1 :], terms)
+            total += step[rows[:1], (column,)] * rest * (-1) ** n
+        step[rows, columns] = total.truncate(terms)
+    return step[rows, columns]
 
 
 def _begun(beginning: SingularBeginning, step: Leg, reach: arb, terms: int) -> Matrix:
     """Return the solutions that are finite at a singular start, at the end of the first step."""
-    n, share = beginning.matrix.size, abs(step.length) / step.radius
-    count = ceil((ctx.prec + step.growth) / -log2(float(share.upper())))
+    n, share, growth = (
+        beginning.matrix.size,
+        abs(step.length) / step.radius,
+        growth_begun(beginning, step, reach),
+    )
+    count = ceil((ctx.prec + bits_of(growth.size)) / -log2(float(share.upper())))
     orders = beginning.matrix.series(step.start, count)
     rates: list[list[tuple[int, int, Polynomial]]] = []
     for p in range(count):
@@ -516,7 +307,7 @@ def _begun(beginning: SingularBeginning, step: Leg, reach: arb, terms: int) -> M
         if i == j:
             diagonal[i] = x[0]
     inside = [(i, j, x) for i, j, x in rates[0] if i != j]
-    sequence = _order({(i, j): x for i, j, x in inside}, n)
+    sequence = sequence_of({(i, j): x for i, j, x in inside}, n)
     given = beginning.values.series(step.start, 1)
     edges = {(*place, q) for q, c in enumerate(orders) for place in c}
     made: Matrix = [[arb_poly([]) for _ in range(n)] for _ in range(n)]
@@ -543,7 +334,7 @@ def _begun(beginning: SingularBeginning, step: Leg, reach: arb, terms: int) -> M
             power = power * step.length
             sums = [total + x * power for total, x in zip(sums, new, strict=True)]
         for i in range(n):
-            scale = arb(2) ** step.growth / (1 - share) * step.weights[i] / step.weights[j] * share**count
+            scale = growth.size / (1 - share) * growth.weights[1][i] / growth.weights[0][j] * share**count
             values = (sums[i] * step.length ** beginning.powers[i]).coeffs()
             made[i][j] = polynomial_of(
                 [
@@ -554,34 +345,21 @@ def _begun(beginning: SingularBeginning, step: Leg, reach: arb, terms: int) -> M
     return made
 
 
-def _no_step(
-    system: VaryingSystem, at: arb, end: arb, reach: arb, weights: Sequence[arb]
-) -> SingularCoefficientError:
-    """Return about where the first singularity behind a point is, which steps do not come closer to."""
-    low, high = at.mid(), end.mid()
-    for _ in range(HALVINGS):
-        middle = ((low + high) / 2).mid()
-        between = acb((low + middle) / 2 + arb(0, abs(middle - low) / 2))
-        finite = _norm(system, between, reach, weights).is_finite()
-        low, high = (middle, high) if finite else (low, middle)
-    # Balls in which a steep function is far from its middle are not finite either, but small ones are.
-    closest = abs(end - at).upper() / 2 ** (HALVINGS - 2) + abs(low).upper() * ROUNDING
-    around = acb(low + arb(0, closest), arb(0, closest))
-    is_steep = _norm(system, around, reach, weights).is_finite()
-    return SingularCoefficientError(float(low), is_steep=bool(is_steep))
+def _stepped(system: VaryingSystem, step: Leg, discs: Sequence[Growth], terms: int) -> Matrix:
+    """Return the fundamental matrix of a step, given how solutions grow for some sizes of u.
 
-
-def _stepped(system: VaryingSystem, step: Leg, reach: arb, terms: int) -> Matrix:
-    """Return the fundamental matrix of a step."""
+    It is exact where abs(u) is at most the last of them.
+    """
     n, bits = system.size, ctx.prec
     share = abs(step.length) / step.radius
     doublings = -log2(float(share.upper()))
-    # An order in u is used times a power of the largest u, and needs so many bits fewer.
-    below = [int(m * log2(BEYOND)) for m in range(terms)]
-    counts = [ceil((max(FEWEST_BITS, bits - x) + step.growth) / doublings) for x in below]
+    # An order in u is used times a power of the last size.
+    sizes = [(bits + bits_of(d.size), log2(float((d.reach / discs[-1].reach).mid()))) for d in discs]
+    places = [[size - m * apart for size, apart in sizes] for m in range(terms)]
+    counts = [max(0, ceil(min(place) / doublings)) for place in places]
     parts = system.parts(step.start)
-    series = system.series(step.start, counts[0]) if parts is None else []
-    if parts is None and not _order(series[0], n):
+    series = system.series(step.start, max(1, counts[0])) if parts is None else []
+    if parts is None and not sequence_of(series[0], n):
         # No quadratures: each slope needs what it is a slope of.
         parts = [
             RationalPart(place, coefficient, (), ((q, arb(1)),))
@@ -589,27 +367,29 @@ def _stepped(system: VaryingSystem, step: Leg, reach: arb, terms: int) -> Matrix
             for place, coefficient in own.items()
         ]
     if parts is None:
-        needed = [_needed(step, x) for x in below]
-        columns = _by_quadrature(series, n, step.length, needed, counts)
+        columns = _by_quadrature(series, n, step.length, [_needed(bits, min(x)) for x in places], counts)
     else:
-        needed = [_needed(step, int(k * doublings)) for k in range(counts[0])]
+        needed = [_needed(bits, min(places[0]) - k * doublings) for k in range(counts[0])]
         columns = _by_recurrence(parts, n, step.length, counts, needed)
+    left = []
+    for m, (place, count) in enumerate(zip(places, counts, strict=True)):
+        closest = discs[place.index(min(place))]
+        left.append((closest, (closest.size * share**count / (1 - share) / closest.reach**m).abs_upper()))
     made: Matrix = [[arb_poly([]) for _ in range(n)] for _ in range(n)]
     for j, values in enumerate(columns):
         for i in range(n):
-            scale = arb(2) ** step.growth / (1 - share) * step.weights[i] / step.weights[j]
             made[i][j] = polynomial_of(
                 [
-                    arb(0) if v is None else v + around((scale * share**count / reach**m).abs_upper(), v)
-                    for m, (v, count) in enumerate(zip(values[i], counts, strict=True))
+                    arb(0) if v is None else v + around(rest * disc.weights[1][i] / disc.weights[0][j], v)
+                    for v, (disc, rest) in zip(values[i], left, strict=True)
                 ]
             )
     return made
 
 
-def _needed(step: Leg, below: int) -> int:
-    """Return the bits of coefficients that lie so many below what solutions grow to on the radius."""
-    return max(FEWEST_BITS, ctx.prec + min(0, ceil(step.growth) - below))
+def _needed(bits: int, left: float) -> int:
+    """Return the bits of coefficients that lie so many above what matters."""
+    return min(bits, max(FEWEST_BITS, ceil(left)))
 
 
 Column = list[list[Number | None]]
@@ -630,7 +410,7 @@ def _by_recurrence(
     # Order m of column j is coefficient n m + j: all columns at once.
     states: list[list[Polynomial]] = [[arb_poly([int(i == j) for j in range(n)])] for i in range(n)]
     divided = [[list[Polynomial]() for _ in divisors] for _, divisors, _ in scaled]
-    kept = len(counts)
+    kept = sum(count > 0 for count in counts)
     for k in range(counts[0] - 1):
         # Counts fall with the order in u.
         while counts[kept - 1] <= k + 1:
@@ -714,7 +494,7 @@ def _by_quadrature(
 
     At order 0 slopes follow from one another.
     """
-    order = _order(series[0], n)
+    order = sequence_of(series[0], n)
     rows = [
         [[(q, k, a) for (row, k), a in c.items() if row == i] for q, c in enumerate(series)] for i in range(n)
     ]
@@ -725,6 +505,8 @@ def _by_quadrature(
         for m, (precision, count) in enumerate(zip(needed, counts, strict=True)):
             here: dict[int, Polynomial] = {}
             orders.append(here)
+            if count == 0:
+                continue
             with ctx.workprec(precision):
                 for i in order:
                     parts = [
@@ -743,39 +525,6 @@ def _by_quadrature(
     return columns
 
 
-def polynomial_of(coefficients: Sequence[Number]) -> Polynomial:
-    """Return a polynomial, a real one where all coefficients are real."""
-    real = [c for c in coefficients if isinstance(c, arb)]
-    return arb_poly(real) if len(real) == len(coefficients) else acb_poly(list(coefficients))
-
-
 def around(radius: arb, value: Number) -> Number:
     """Return a ball about 0, a real one for a real value."""
     return arb(0, radius) if isinstance(value, arb) else acb(arb(0, radius), arb(0, radius))
-
-
-def _product(left: Matrix, right: Matrix, terms: int) -> Matrix:
-    n = len(left)
-    return [
-        [sum((left[i][k] * right[k][j] for k in range(n)), arb_poly([])).truncate(terms) for j in range(n)]
-        for i in range(n)
-    ]
-
-
-def _order(coefficients: Coefficients, n: int) -> list[int]:
-    """Return the states so that the slope of each follows from those before it; empty if they go in circles.
-
-    Examples
-    --------
-    >>> _order({(0, 1): acb_poly([1]), (1, 2): acb_poly([1])}, 3)
-    [2, 1, 0]
-    """
-    found: list[int] = []
-    while len(found) < n:
-        ready = [
-            i for i in range(n) if i not in found and all(k in found for (row, k) in coefficients if row == i)
-        ]
-        if not ready:
-            return []
-        found += ready
-    return found

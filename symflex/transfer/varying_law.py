@@ -21,15 +21,10 @@ import numpy as np
 from flint import acb, acb_poly, acb_series, arb, arb_poly, arb_series, ctx
 
 from symflex.algebra import FUNCTIONS, LAPLACE, Factored, by_powers, degree_in
-from symflex.algebra.fundamental_matrix import (
-    RationalPart,
-    SingularBeginning,
-    SingularCoefficientError,
-    expand,
-    growth_along,
-    steps_along,
-)
+from symflex.algebra.fundamental_matrix import expand
 from symflex.algebra.ring import terms_of
+from symflex.algebra.varying_growth import SingularCoefficientError, growth_along, legs_along
+from symflex.algebra.varying_system import RationalPart, SingularBeginning
 from symflex.errors import Diagnostic, ModelError
 from symflex.expressions import fold
 from symflex.model.along import COORDINATE
@@ -42,7 +37,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from symflex.algebra import Dispersion
-    from symflex.algebra.fundamental_matrix import Coefficients, Number, Place, PowerExpansion
+    from symflex.algebra.fundamental_matrix import PowerExpansion
+    from symflex.algebra.varying_system import Coefficients, Number, Place
     from symflex.expressions import Expression
     from symflex.transfer.balls import Value
 
@@ -219,7 +215,7 @@ class BoundLaw(PartedLaw):
     def check(self) -> None:
         """Raise ModelError: SF250 where a coefficient is not analytic on the whole member."""
         try:
-            steps_along(_InPowers(self, self.step), arb(TINY), FEW_BITS)
+            legs_along(_InPowers(self, self.step), arb(TINY), arb(TINY), FEW_BITS)
         except SingularCoefficientError as error:
             raise self._singular(error) from None
 

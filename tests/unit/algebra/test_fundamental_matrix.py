@@ -7,12 +7,9 @@ from dataclasses import dataclass, field
 import pytest
 from flint import acb, arb, arb_poly, ctx
 
-from symflex.algebra.fundamental_matrix import (
-    RationalPart,
-    SingularBeginning,
-    SingularCoefficientError,
-    expand,
-)
+from symflex.algebra.fundamental_matrix import expand
+from symflex.algebra.varying_growth import SingularCoefficientError
+from symflex.algebra.varying_system import RationalPart, SingularBeginning
 
 
 @dataclass

@@ -1,0 +1,393 @@
+"""How far solutions of equations whose coefficients vary along x grow, and the steps they are followed in.
+
+Input: a :class:`~symflex.algebra.varying_system.VaryingSystem`, and a disc of u.
+Output: the :class:`Leg`s that x is cut into, and the :class:`Growth` of all solutions along them, as bounds.
+
+    y'' = u y on [0, 1] and abs(u) <= 100      states y and y'/10: each slope is at most 10 times the other
+    one step, on which nothing grows by more than e^10
+
+States are scaled so that the norm of A is about a wavenumber. As Z is analytic in x and u together, Cauchy's
+estimate bounds its Taylor coefficients by how it grows on discs.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from math import factorial, inf, isfinite, log2, prod
+from typing import TYPE_CHECKING
+
+import numpy as np
+from flint import acb, acb_poly, arb, ctx
+
+from symflex.algebra.varying_system import sequence_of
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from symflex.algebra.varying_system import MinorsAlong, Place, SingularBeginning, VaryingSystem
+
+Weights = tuple[arb, ...]
+"""Powers of two by which states are scaled."""
+
+BALANCINGS = 60
+"""Rounds of balancing the states: of four in a circle each leaves half of what is out of balance."""
+BALANCED = 0.1
+"""Bits by which rows and columns may differ."""
+SHARE = 4
+"""The radius on which coefficients are bounded, over the length of a step."""
+FIRST_SHARE = 6
+"""The same of a first step from a start where they have poles; solutions are bounded on half of it."""
+SHORTEST = 1e-5
+"""Share of the whole below which the radius of a step means that there is a singularity."""
+ROUNDING = 2.0**-50
+"""Of a place in doubles: that of a singularity at an end is met then, too."""
+MOST_STEPS = 1000
+"""Ten times those of a thousand modes, and more than coefficients need that anyone means."""
+HALVINGS = 40
+"""Of an interval in which a singularity lies: it is told to six digits."""
+LAST = 1.2
+"""A step may be so much longer than others if it is the last."""
+RADII = tuple(4.0 * 0.8**k for k in range(80))
+"""Radii that are tried about a point, in lengths of the whole; the least is 1e-7 of it."""
+BOUNDED = 4
+"""Parts of a step on each of which coefficients are bounded: on the whole they would be a quarter larger."""
+SAMPLES = 8
+"""Points at which the growth along x is sampled where about what it is suffices."""
+MOST_TERMS = 1500
+"""Of the power series about a singular start: three times what the tenth mode of a hanging string takes."""
+MOST_HALVINGS = 40
+"""Of the first step from a singular start."""
+BOUND_BITS = 64
+"""Of bounds, which are added up and rounded up."""
+BITS_OF_E = 1.4426950408889634
+DIRECTIONS = (-1, 1, 1j)
+"""Of u, in which solutions may grow least: as waves, decaying, and between."""
+HIGHEST = 1000.0
+"""Power of two near the end of doubles."""
+APART = 300.0
+"""Bits by which weights differ at most: states that do not act on each other have none in common."""
+
+
+class SingularCoefficientError(ValueError):
+    """A coefficient is not analytic about a point of the interval, or so steep that none could tell."""
+
+    def __init__(self, place: float, *, is_steep: bool = False) -> None:
+        super().__init__(place)
+        self.place = place
+        self.is_steep = is_steep  # analytic as far as is known
+
+
+@dataclass(frozen=True, slots=True)
+class Leg:
+    """A part of the interval."""
+
+    start: arb
+    end: arb
+    radius: arb  # about the start, in which coefficients are bounded
+    is_first: bool = False  # from a start where they have poles
+
+    @property
+    def length(self) -> arb:
+        """Its length, negative where x falls."""
+        return self.end - self.start
+
+
+@dataclass(frozen=True, slots=True)
+class Growth:
+    """How large solutions are that start with 1 over the weight of a state, for abs(u) up to a reach."""
+
+    reach: arb
+    size: arb  # over the weight of a state, at most
+    weights: tuple[Weights, Weights]  # at the start, and where it is
+    end: arb | None = None  # a size closer by, if solutions are followed from a pole
+
+    def bits_over(self, other: Growth) -> float:
+        """Return by how many bits bounds are larger than others."""
+        starts, ends = zip(self.weights, other.weights, strict=True)
+        rows = max(x / y for x, y in zip(*ends, strict=True))
+        columns = max(y / x for x, y in zip(*starts, strict=True))
+        return bits_of(self.size / other.size * rows * columns)
+
+
+def bits_of(size: arb) -> float:
+    """Return the logarithm of a size to base 2."""
+    return float(size.log().upper()) * BITS_OF_E
+
+
+def growth_along(system: VaryingSystem, largest: arb) -> float:
+    """Return about by which power of e solutions grow from end to end at most, for abs(u) <= ``largest``."""
+    start, end = system.ends()
+    share, total = (end - start) / SAMPLES, 0.0
+    for k in range(SAMPLES):
+        x = (start + share * (k + 0.5)).mid()
+        norm = _norm(system, acb(x), largest, _weights(system, acb(x), largest))
+        total += float((norm * abs(share)).mid())
+    return total
+
+
+def growth_on(system: VaryingSystem, leg: Leg, reach: arb) -> Growth:
+    """Return how solutions grow from the start of a leg, all around it up to its radius.
+
+    Raises SingularCoefficientError where they have no bound.
+    """
+    square = arb(0, leg.radius)
+    bounds = system.bounds(acb(leg.start + square, square), reach)
+    weights = _levelled(bounds, leg.radius, system.size, ())
+    size = (_norm_of(bounds, weights) * leg.radius).exp()
+    if not size.is_finite():
+        raise SingularCoefficientError(float(leg.start.mid()))
+    return Growth(reach, size.abs_upper(), (weights, weights))
+
+
+def growth_of(system: MinorsAlong, legs: Sequence[Leg], reach: arb) -> Growth:
+    """Return how minors grow along all legs. States are scaled anew on every part of a leg."""
+    found, size = list[Weights](), arb(1)
+    for leg in legs:
+        if leg.is_first and system.whole.beginning is not None:
+            begun = growth_begun(system.whole.beginning, leg, reach)
+            size *= (begun.end or begun.size) ** system.order * factorial(system.order)
+            states = begun.weights[1]
+            found.append(tuple(prod((states[i] for i in rows), start=arb(1)) for rows in system.lines))
+            continue
+        part = leg.length / BOUNDED
+        for j in range(BOUNDED):
+            middle = leg.start + part * (j + 0.5)
+            bounds = system.bounds(acb(middle + arb(0, (part / 2).abs_upper())), reach)
+            found.append(_levelled(bounds, abs(part), len(system.lines), found[-1] if found else ()))
+            size *= (_norm_of(bounds, found[-1]) * abs(part)).exp()
+    for before, after in pairwise(found):
+        size *= max(x / y for x, y in zip(before, after, strict=True))
+    return Growth(reach, size.abs_upper(), (found[0], found[-1]))
+
+
+def least_growth(system: VaryingSystem, order: int, largest: arb) -> float:
+    """Return by about how many bits minors of so many rows grow at least, of all u of a size."""
+    start, end = system.ends()
+    way, totals = float((end - start).mid()), [0.0] * len(DIRECTIONS)
+    for k in range(SAMPLES):
+        entries = system.series((start + (end - start) * ((k + 0.5) / SAMPLES)).mid(), 1)
+        for n, direction in enumerate(DIRECTIONS):
+            matrix = np.zeros((system.size, system.size), dtype=complex)
+            for q, coefficients in enumerate(entries):
+                for place, value in coefficients.items():
+                    matrix[place] += complex(acb(value[0] * largest**q).mid()) * direction**q
+            if not np.all(np.isfinite(matrix)):
+                return inf
+            rates = np.sort(np.real(np.linalg.eigvals(matrix * way)))
+            totals[n] += float(np.sum(rates[len(rates) - order :])) / SAMPLES
+    return min(totals) * BITS_OF_E
+
+
+def _levelled(sizes: Mapping[Place, arb], way: arb, count: int, start: Sequence[arb]) -> Weights:
+    """Return weights with which the rows of sizes have sums that are alike.
+
+    The largest sum is then hardly larger than the largest eigenvalue, which none is below (Perron 1907).
+    """
+    rows: dict[int, list[tuple[int, float]]] = {}
+    for (i, j), x in sizes.items():
+        if 0 < (size := float((x * way).upper())) < inf:
+            rows.setdefault(i, []).append((j, log2(size)))
+    found = [log2(float(x)) for x in start] or [0.0] * count
+    for _ in range(BALANCINGS if rows else 0):
+        sums = {
+            i: log2(sum(2.0 ** max(-HIGHEST, min(x + found[j] - found[i], HIGHEST)) for j, x in row))
+            for i, row in rows.items()
+        }
+        found = [x + sums.get(i, 0.0) / 2 for i, x in enumerate(found)]
+        highest = max(found)
+        found = [max(x - highest, -APART) for x in found]
+        if max(sums.values()) - min(sums.values()) < BALANCED:
+            break
+    return tuple(arb(2.0**x) for x in found)
+
+
+def legs_along(system: VaryingSystem, largest: arb, reach: arb, bits: int) -> list[Leg]:
+    """Return the parts of the interval on each of which solutions are expanded, for abs(u) <= ``largest``.
+
+    Solutions are bounded for abs(u) up to a reach. Raises SingularCoefficientError where a coefficient has a
+    singularity on the interval.
+    """
+    begin, end = system.ends()
+    first = [] if system.beginning is None else [_first_step(system.beginning, begin, end, reach, bits)]
+    return first + _steps(system, first[0].end if first else begin, end, largest, bits)
+
+
+def _weights(system: VaryingSystem, middle: acb, reach: arb) -> Weights:
+    """Return powers of two that make rows and columns of the coefficients alike (Osborne 1960)."""
+    sizes = {
+        place: log2(size)
+        for place, x in system.bounds(middle, reach).items()
+        if place[0] != place[1] and 0 < (size := float(x.upper())) < inf
+    }
+    found = [0.0] * system.size
+    for _ in range(BALANCINGS):
+        before = list(found)
+        for i in range(system.size):
+            row = [x + found[k] for (j, k), x in sizes.items() if j == i]
+            column = [x - found[j] for (j, k), x in sizes.items() if k == i]
+            if row and column:
+                found[i] = (max(row) - max(column)) / 2
+        if max(abs(x - y) for x, y in zip(found, before, strict=True)) < BALANCED:
+            break
+    return tuple(arb(2.0**x) for x in found)
+
+
+def _norm(system: VaryingSystem, x: acb, reach: arb, weights: Sequence[arb]) -> arb:
+    """Return a bound on the norm of the scaled coefficients on a ball of x; not finite near a singularity."""
+    return _norm_of(system.bounds(x, reach), weights)
+
+
+def _norm_of(sizes: Mapping[Place, arb], weights: Sequence[arb]) -> arb:
+    rows = [arb(0)] * len(weights)
+    for (i, j), size in sizes.items():
+        rows[i] += size * weights[j] / weights[i]
+    return max((row.abs_upper() if row.is_finite() else arb("inf") for row in rows), key=float)
+
+
+def _steps(system: VaryingSystem, start: arb, end: arb, largest: arb, bits: int) -> list[Leg]:
+    """Return steps of which each costs few terms over its length."""
+    whole, at, found = end - start, start, list[Leg]()
+    while at is not end:
+        if len(found) == MOST_STEPS:
+            raise SingularCoefficientError(float(at.mid()), is_steep=True)
+        best: tuple[float, arb] | None = None
+        weights = _weights(system, acb(at), largest)
+        for share in RADII:
+            radius = (abs(whole) * share).upper()
+            square = arb(0, radius)
+            norm = _norm(system, acb(at + square, square), largest, weights)
+            growth = float((norm * radius).upper()) * BITS_OF_E
+            if not isfinite(growth):
+                continue
+            cost = (bits + growth) / min(float(radius), SHARE * float(abs(end - at).upper()))
+            if best is not None and cost > best[0]:
+                break
+            best = (cost, radius)
+        if best is None or best[1] < abs(whole) * SHORTEST:
+            raise _no_step(system, at, end, largest, weights)
+        _, radius = best
+        length, left = (radius / SHARE).mid(), end - at
+        following = end if abs(left) <= length * LAST else (at + (length if left > 0 else -length)).mid()
+        found.append(Leg(at, following, radius))
+        at = following
+    return found
+
+
+def _first_step(beginning: SingularBeginning, start: arb, end: arb, reach: arb, bits: int) -> Leg:
+    """Return the longest step from a start where coefficients have poles that costs not too many terms.
+
+    It is a sixth of the radius on which coefficients are bounded, and a third of that on which solutions are.
+    """
+    whole = abs(end - start)
+    for k in range(MOST_HALVINGS):
+        radius = (whole * FIRST_SHARE / 2**k).upper()
+        length = (radius / FIRST_SHARE).mid()
+        following = end if k == 0 else (start + (length if end > start else -length)).mid()
+        step = Leg(start, following, radius / 2, is_first=True)
+        if _begun_along(beginning, step, reach, bits) is not None:
+            return step
+    raise SingularCoefficientError(float(start.mid()))
+
+
+def growth_begun(beginning: SingularBeginning, leg: Leg, reach: arb) -> Growth:
+    """Return how solutions grow that are finite at a start where coefficients have poles.
+
+    The size is that on the radius of the first step, the end that at its end.
+    Raises SingularCoefficientError where that takes too many terms.
+    """
+    found = _begun_along(beginning, leg, reach, BOUND_BITS)
+    if found is None:
+        raise SingularCoefficientError(float(leg.start.mid()))
+    return found
+
+
+def _begun_along(beginning: SingularBeginning, leg: Leg, reach: arb, bits: int) -> Growth | None:
+    square = arb(0, leg.radius * 2)
+    hull = acb(leg.start + square, square)
+    weights = _weights(beginning.matrix, hull, reach)
+    norm, way = _norm(beginning.matrix, hull, reach, weights), abs(leg.length)
+    found = None
+    if norm < MOST_TERMS:
+        found = _bounded(beginning, leg.start, reach, weights, (norm, leg.radius, way), bits)
+    if found is None:
+        return None
+    scaled = tuple((w * way**d).mid() for w, d in zip(weights, beginning.powers, strict=True))
+    return Growth(reach, found[0], (scaled, scaled), found[1])
+
+
+def _bounded(
+    beginning: SingularBeginning,
+    start: arb,
+    reach: arb,
+    weights: Weights,
+    sizes: tuple[arb, arb, arb],
+    bits: int,
+) -> tuple[arb, arb] | None:
+    """Return how large solutions are on a radius at most, and up to the step's end.
+
+    Sizes are the norm of B on twice the radius, the radius, and the step. None where too many terms of v have
+    to be bounded before those that follow fall.
+    """
+    norm, radius, way = sizes
+    with ctx.workprec(BOUND_BITS):
+        parts = [
+            [(i, j, x * weights[j] / weights[i]) for i, j, x in rates]
+            for rates in _by_powers(beginning.matrix, start, MOST_TERMS, reach)
+        ]
+        inside = [(i, j, x) for i, j, x in parts[0] if i != j]
+        # Nowhere positive itself, so its size is what k is increased by.
+        diagonal = {i: x for i, j, x in parts[0] if i == j}
+        sequence = sequence_of({(i, j): acb_poly([1]) for i, j, _ in inside}, len(weights))
+        across = sum((x for _, _, x in inside), arb(0))
+        first = [arb(0)] * len(weights)
+        for i, j, x in _by_powers(beginning.values, start, 1, reach)[0]:
+            first[i] += x * weights[j] / weights[i]
+        column, largest, total = [first], arb(0), arb(0)
+        for k in range(MOST_TERMS):
+            size = sum(column[k], arb(0)).abs_upper()
+            if not size.is_finite():
+                return None
+            largest = max(largest, size * radius**k)
+            total += size * way**k
+            resolvent = sum(((across / (k + 1)) ** j for j in range(len(weights))), arb(0))
+            left = largest * (way / radius) ** (k + 1)
+            if norm * resolvent < k + 1 and left * arb(2) ** bits < 1:
+                return largest.abs_upper(), (total + 2 * left).abs_upper()
+            new = [arb(0)] * len(weights)
+            for p in range(1, k + 2):
+                for i, j, x in parts[p] if p < MOST_TERMS else ():
+                    new[i] += x * column[k + 1 - p][j]
+            for i in sequence:
+                new[i] += sum((x * new[j] for row, j, x in inside if row == i), arb(0))
+                new[i] = (new[i] / (k + 1 + diagonal.get(i, 0))).abs_upper()
+            column.append(new)
+    return None
+
+
+def _by_powers(system: VaryingSystem, start: arb, count: int, reach: arb) -> list[list[tuple[int, int, arb]]]:
+    """Return bounds on the coefficients of every power of the way from a start, for abs(u) up to a reach."""
+    found: list[dict[Place, arb]] = [{} for _ in range(count)]
+    for order, coefficients in enumerate(system.series(start, count)):
+        for place, polynomial in coefficients.items():
+            for p, x in enumerate(acb_poly(polynomial).coeffs()):
+                if (size := abs(x).upper()) > 0:
+                    found[p][place] = found[p].get(place, arb(0)) + size * reach**order
+    return [[(*place, x) for place, x in each.items()] for each in found]
+
+
+def _no_step(
+    system: VaryingSystem, at: arb, end: arb, reach: arb, weights: Sequence[arb]
+) -> SingularCoefficientError:
+    """Return about where the first singularity behind a point is, which steps do not come closer to."""
+    low, high = at.mid(), end.mid()
+    for _ in range(HALVINGS):
+        middle = ((low + high) / 2).mid()
+        between = acb((low + middle) / 2 + arb(0, abs(middle - low) / 2))
+        finite = _norm(system, between, reach, weights).is_finite()
+        low, high = (middle, high) if finite else (low, middle)
+    # Balls in which a steep function is far from its middle are not finite either, but small ones are.
+    closest = abs(end - at).upper() / 2 ** (HALVINGS - 2) + abs(low).upper() * ROUNDING
+    around = acb(low + arb(0, closest), arb(0, closest))
+    is_steep = _norm(system, around, reach, weights).is_finite()
+    return SingularCoefficientError(float(low), is_steep=bool(is_steep))
