@@ -27,13 +27,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from math import ceil, floor, inf, log2
+from math import ceil, comb, floor, inf, log2
 from typing import TYPE_CHECKING
 
-from flint import acb, acb_poly, arb, arb_poly, ctx
+from flint import acb, arb, arb_poly, ctx
 
 from symflex.algebra.varying_growth import (
-    BITS_OF_E,
     bits_of,
     growth_begun,
     growth_of,
@@ -79,6 +78,10 @@ HIGHEST_CUT = 1000
 """Power of two of abs(u) beyond which bounds come near the end of doubles."""
 WIDE = 2.0**-30
 """Relative radius of balls about whose middle a polynomial is expanded before it is evaluated."""
+TINY = 2.0**-200
+"""Share of the largest abs(u), of which a smaller one is not told apart where much is left to spare."""
+SMALL = 2.0**-10
+"""Share of what a value moves by on a ball, that may be left out of its series."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,47 +95,32 @@ class PowerExpansion:
     largest: arb  # values are for abs(u) up to this, or not much more
     bits: int  # to which they are exact, relative to minors that grow
     orders: int  # in u that are kept; 0 where they follow from the bits
-    _sized: dict[int, Minors] = field(default_factory=dict, repr=False)
+    _sized: dict[int, MinorBounds] = field(default_factory=dict, repr=False)
     _made: dict[tuple[Lines, Lines], Polynomial] = field(default_factory=dict, repr=False)
-    _cuts: dict[tuple[Lines, Lines, int, int], tuple[Polynomial, arb]] = field(
-        default_factory=dict, repr=False
-    )
-    # The sizes of coefficients, and their logarithms.
-    _sizes: dict[tuple[Lines, Lines], tuple[arb_poly, list[float]]] = field(default_factory=dict, repr=False)
+    _cuts: dict[tuple[Lines, Lines, int, int], DiscPolynomial] = field(default_factory=dict, repr=False)
+    # Logarithms of bounds on minors, and of the sizes of their coefficients.
+    _wholes: dict[tuple[Lines, Lines], float] = field(default_factory=dict, repr=False)
+    _logarithms: dict[tuple[Lines, Lines], list[float]] = field(default_factory=dict, repr=False)
 
     def series(self, rows: Lines, columns: Lines, u: acb, terms: int = 1) -> list[acb]:
         """Return Taylor coefficients about ``u`` of a minor; of an entry, where there is one row."""
-        middle, size = u.mid(), abs(u).upper()
-        off = u - middle
-        found = []
-        is_wide = bool(u.rad() > abs(middle) * WIDE)
-        # Terms of an alternating series are larger than their sum: more bits, and the middle of the ball.
-        with ctx.workprec(self._bits_about(rows, columns, middle) if is_wide else self.precision):
-            polynomial, cut = self._cut(rows, columns, size)
-            if is_wide:
-                polynomial, middle, off = acb_poly(polynomial)(acb_poly([middle, 1])), acb(0), acb(0)
-                at = u - u.mid()
-            else:
-                at = middle
-            for k in range(terms):
-                polynomial = polynomial.derivative() * (1 / acb(k)) if k else polynomial
-                value = acb(polynomial(at))
-                if off != 0:
-                    value += acb(polynomial.derivative()(u)) * off
+        found, size = [], abs(u).upper()
+        with ctx.workprec(self.precision):
+            cut = self._cut(rows, columns, size)
+            # On the real axis arithmetic is a third of the work.
+            at: Number = u.real if u.imag == 0 else u
+            for k, value in enumerate(cut.series(at, terms)):
                 rest = self._rest(rows, columns, size, k)
-                if cut > 0:
-                    rest = (rest + cut / (size * ASIDE) ** k).abs_upper()
-                found.append(value + acb(arb(0, rest), arb(0, rest)))
+                if cut.left > 0:
+                    rest = (rest + cut.left / (size * ASIDE) ** k).abs_upper()
+                found.append(acb(value) + acb(arb(0, rest), arb(0, rest)))
         return [+x for x in found]
 
-    def _cut(self, rows: Lines, columns: Lines, size: arb) -> tuple[Polynomial, arb]:
-        """Return what matters of a polynomial for abs(u) up to a size at the current precision.
-
-        The second bounds the rest for abs(u) up to ``1 + ASIDE`` times the size.
-        """
-        polynomial, way = self._polynomial(rows, columns), float(size)
+    def _cut(self, rows: Lines, columns: Lines, size: arb) -> DiscPolynomial:
+        """Return what matters of a polynomial for abs(u) up to a size at the current precision."""
+        way = float(size)
         if not 0 < way < 2.0**HIGHEST_CUT:
-            return polynomial, arb(0)
+            return DiscPolynomial(self._polynomial(rows, columns), arb(0))
         # Sizes up to the same part of an octave are cut alike, once. A millionth more makes up for rounding.
         part = floor(CUTS * log2(way) + 1e-6) + 1
         key = rows, columns, part, ctx.prec
@@ -140,51 +128,39 @@ class PowerExpansion:
             self._cuts[key] = self._cut_for(rows, columns, 2.0 ** (part / CUTS) * (1 + ASIDE))
         return self._cuts[key]
 
-    def _cut_for(self, rows: Lines, columns: Lines, way: float) -> tuple[Polynomial, arb]:
+    def _cut_for(self, rows: Lines, columns: Lines, way: float) -> DiscPolynomial:
         polynomial, upto = self._polynomial(rows, columns), arb(way)
-        sizes, logarithms = self._sizes_of(rows, columns)
-        terms = [x + m * log2(way) for m, x in enumerate(logarithms)]
+        if (rows, columns) not in self._logarithms:
+            with ctx.workprec(FEWEST_BITS):
+                sizes = [abs(c).upper() for c in polynomial.coeffs()]
+                self._logarithms[rows, columns] = [bits_of(x) if x > 0 else -inf for x in sizes]
+        terms = [x + m * log2(way) for m, x in enumerate(self._logarithms[rows, columns])]
         least = max(terms, default=0.0) - ctx.prec - GUARD
         count = next((m + 1 for m in reversed(range(len(terms))) if terms[m] > least), 0)
         with ctx.workprec(FEWEST_BITS):
-            left = sizes.right_shift(count)(upto) * upto**count
-        return polynomial.truncate(count), left.abs_upper()
-
-    def _sizes_of(self, rows: Lines, columns: Lines) -> tuple[arb_poly, list[float]]:
-        """Return the sizes of the coefficients of a polynomial, and about their logarithms to base 2."""
-        if (rows, columns) not in self._sizes:
-            with ctx.workprec(FEWEST_BITS):
-                sizes = [abs(c).upper() for c in self._polynomial(rows, columns).coeffs()]
-                logarithms = [float(x.log()) * BITS_OF_E if x > 0 else -inf for x in sizes]
-                self._sizes[rows, columns] = arb_poly(sizes), logarithms
-        return self._sizes[rows, columns]
-
-    def _bits_about(self, rows: Lines, columns: Lines, middle: acb) -> int:
-        """Return the bits with which a minor keeps those of the current precision about a point."""
-        most = self.precision
-        with ctx.workprec(most):
-            value = abs(self._cut(rows, columns, abs(middle).upper())[0](middle))
-        with ctx.workprec(FEWEST_BITS):
-            lost = self._sizes_of(rows, columns)[0](abs(middle)) / value
-        if not 1 <= lost < arb(2) ** most:
-            return most
-        mantissa, exponent = lost.upper().man_exp()
-        return min(most, ctx.prec + GUARD + int(mantissa).bit_length() + int(exponent))
+            left = _sizes_of(polynomial.right_shift(count))(upto) * upto**count
+        return DiscPolynomial(polynomial.truncate(count), left.abs_upper())
 
     def _rest(self, rows: Lines, columns: Lines, size: arb, k: int) -> arb:
         """Return a bound on what a polynomial leaves out of the k-th Taylor coefficient, by Cauchy."""
         own = self._minors(len(rows))
         if size == 0 and k < own.terms:
             return arb(0)
-        (starts, ends), reach, found = own.growth.weights, own.growth.reach, arb("inf")
-        whole = own.growth.size * ends[own.lines.index(rows)] / starts[own.lines.index(columns)]
+        if (rows, columns) not in self._wholes:
+            starts, ends = own.growth.weights
+            whole = own.growth.size * ends[own.lines.index(rows)] / starts[own.lines.index(columns)]
+            self._wholes[rows, columns] = bits_of(whole)
+        found, largest, reach = inf, float(self.largest), float(own.growth.reach)
+        way = max(float(size), largest * TINY)
         # Of circles about a point a small one is better for the first derivatives.
         for share in (ASIDE, 1) if k else (0,):
-            apart = max(size, self.largest) * share
-            room = (size + apart) / reach
+            apart = max(way, largest) * share
+            room = (way + apart) / reach
             if room < 1:
-                found = min(found, (whole * room**own.terms / (1 - room) / apart**k).abs_upper())
-        return found
+                left = own.terms * log2(room) - log2(1 - room) - (k * log2(apart) if k else 0)
+                found = min(found, self._wholes[rows, columns] + left)
+        # One bit more makes up for rounding.
+        return arb(2) ** ceil(found + 1) if found < inf else arb("inf")
 
     def _polynomial(self, rows: Lines, columns: Lines) -> Polynomial:
         if (rows, columns) not in self._made:
@@ -197,13 +173,13 @@ class PowerExpansion:
             self._made.update(((line, columns), x) for line, x in found.items())
         return self._made[rows, columns]
 
-    def _minors(self, order: int) -> Minors:
+    def _minors(self, order: int) -> MinorBounds:
         if order not in self._sized:
             system = MinorsAlong(self.system, order)
             with ctx.workprec(self.bits):
                 far, near = (growth_of(system, self.legs, x) for x in (self.reach, self.largest))
             terms = ceil((self.precision + far.bits_over(near)) / log2(BEYOND / (1 + ASIDE)))
-            self._sized[order] = Minors(system.lines, far, self.orders or max(2, terms))
+            self._sized[order] = MinorBounds(system.lines, far, self.orders or max(2, terms))
         return self._sized[order]
 
     @cached_property
@@ -240,7 +216,57 @@ class PowerExpansion:
 
 
 @dataclass(frozen=True, slots=True)
-class Minors:
+class DiscPolynomial:
+    """What matters of a polynomial on a disc, with what its Taylor polynomials are made of."""
+
+    polynomial: Polynomial
+    left: arb  # bounds the rest on the disc, and a little beyond it
+    # Derivatives over the factorials of their orders, and those of the sizes of coefficients.
+    _derived: list[Polynomial] = field(default_factory=list, repr=False)
+    _sized: list[arb_poly] = field(default_factory=list, repr=False)
+
+    def series(self, u: Number, terms: int) -> list[Number]:
+        """Return Taylor coefficients about a ball."""
+        middle = u.mid()
+        radius = abs(u - middle).abs_upper()
+        if not radius > abs(middle) * WIDE:
+            slopes: list[Number] = [self._derivative(k + 1)(u) * (k + 1) for k in range(terms)]
+            return [self._derivative(k)(middle) + slope * (u - middle) for k, slope in enumerate(slopes)]
+        # Terms of an alternating series are larger than their sum: what a ball holds is told from its middle.
+        far, count, known, moved = (abs(middle) + radius).abs_upper(), 0, list[Number](), arb(0)
+        while True:
+            known.append(self._derivative(count)(middle))
+            moved = max(moved, (abs(known[count]) * radius**count).abs_lower()) if count else moved
+            count += 1
+            left = self._size(count)(far) * radius**count
+            if count >= terms and not left > moved * SMALL:
+                break
+        about, off = polynomial_of(known), u - middle
+        found = []
+        for k in range(terms):
+            value = about(off)
+            found.append(value + around((left * comb(count, k) / radius**k).abs_upper(), value))
+            about = about.derivative() * (1 / arb(k + 1))
+        return found
+
+    def _derivative(self, k: int) -> Polynomial:
+        if not self._derived:
+            self._derived.append(self.polynomial)
+        while len(self._derived) <= k:
+            self._derived.append(self._derived[-1].derivative() * (1 / arb(len(self._derived))))
+        return self._derived[k]
+
+    def _size(self, k: int) -> arb_poly:
+        with ctx.workprec(FEWEST_BITS):
+            if not self._sized:
+                self._sized.append(_sizes_of(self.polynomial))
+            while len(self._sized) <= k:
+                self._sized.append(self._sized[-1].derivative() * (1 / arb(len(self._sized))))
+        return self._sized[k]
+
+
+@dataclass(frozen=True, slots=True)
+class MinorBounds:
     """What is common to the minors of one size."""
 
     lines: Sequence[Lines]  # the rows of every one
@@ -262,6 +288,11 @@ def expand(system: VaryingSystem, largest: arb, bits: int, orders: int = 0) -> P
         for leg in legs
     ]
     return PowerExpansion(system, legs, discs, largest, bits, orders)
+
+
+def _sizes_of(polynomial: Polynomial) -> arb_poly:
+    """Return bounds on the sizes of coefficients."""
+    return arb_poly([abs(c).upper() for c in polynomial.coeffs()])
 
 
 def _combined(

@@ -110,6 +110,22 @@ def test_a_ball_of_u_holds_the_values_at_its_points():
             assert wide.contains(value)
 
 
+@pytest.mark.parametrize("middle", [-700.0, -500 + 300j])
+def test_on_a_wide_ball_a_minor_and_its_slopes_are_told_from_the_middle(middle):
+    # cosh(sqrt(u)), whose series alternates: terms of 1e10 sum up to less than 1.
+    made = expand(Equation((), (1.0,)), arb(1200), 120)
+    ball = acb(middle) + acb(arb(0, 2), arb(0, 2))
+    with ctx.workprec(120):
+        wide = made.series((0,), (0,), ball, 3)
+        for way in (0, 2, -2 + 2j, 1 - 2j):
+            root = (acb(middle) + way).sqrt()
+            slope = root.sinh() / (2 * root)
+            curved = (root.cosh() / root**2 - root.sinh() / root**3) / 8
+            for found, expected in zip(wide, (root.cosh(), slope, curved), strict=True):
+                assert found.contains(expected)
+        assert wide[0].rad() < 10 * abs(wide[1]).upper()
+
+
 def test_a_pole_is_met():
     class Pole(Equation):
         def bounds(self, x, largest):
