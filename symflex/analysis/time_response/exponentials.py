@@ -53,7 +53,7 @@ def values_of(
         for row, a in zip(left, outer, strict=True):
             grown = (term.rate * a).exp()
             if powers == 1:
-                factors = [polynomial(a) * grown]
+                factors = [(polynomial(a) if len(term.coefficients) > 1 else term.coefficients[0]) * grown]
             else:
                 moved = polynomial(acb_poly([a, acb(1)]))
                 factors = [moved[i] * grown for i in range(powers)]

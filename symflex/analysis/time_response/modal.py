@@ -78,7 +78,9 @@ SLOW_MODES = 1000
 ROUNDS = 3
 """Of telling how many it takes."""
 ENOUGH = 0.8
-"""Of the radius allowed: how bounds fall off is told from few modes."""
+"""Of the radius allowed: the rest is for what values are known to."""
+AIMED_AT = 0.7
+"""Of what is enough: bounds fall off more slowly than those of the first modes do."""
 CONTINUATION = (-1, 4, -6, 4)
 """By what the last four of a smooth sequence are multiplied to give the next."""
 NEXT_TO = 0.05
@@ -144,7 +146,7 @@ def _of_proved_modes(
         return None
     largest = max((abs(y.mid()) for y in found.values), default=arb(0))
     goal = ENOUGH * float(largest) * 10.0 ** -min(digits, MOST_DIGITS)
-    count = _needed((few, float(bounds[0])), (many, float(bounds[1])), goal)
+    count = _needed((few, float(bounds[0])), (many, float(bounds[1])), AIMED_AT * goal)
     if damping is not None and count > many:
         count = _until_faded(damping, (many, second[1]), count, integrations, times, goal / float(bounds[1]))
     for _ in range(ROUNDS):
@@ -420,7 +422,9 @@ def _summed(
         known = [term for term in terms if term is not None]
         if rest is None or len(known) < len(terms):
             return None
-        values = values_of([*origin, *known], times)
+        # Poles are known to half of the bits, and their sum is no better than these.
+        with precision(modes.bits // 2):
+            values = values_of([*origin, *known], times)
         at_times: tuple[arb, ...] = ()
         if damping is not None:
             squared = (2 * arb(reached)).exp()
