@@ -232,7 +232,7 @@ class RangedValue:
             return ""
         for k in range(1, PIECES):
             place = whole * k / PIECES
-            value = _value_along(self.expression, _ball(place), line)
+            value = value_along(self.expression, _ball(place), line)
             if value is None or not value.is_finite():
                 return ""
             if value < 0 or (self._least and value == 0):
@@ -317,7 +317,7 @@ def _ball(number: Fraction) -> arb:
     return arb(fmpq(number.numerator, number.denominator))
 
 
-def _value_along(value: Expression, x: arb, line: Line) -> arb | None:
+def value_along(value: Expression, x: arb, line: Line) -> arb | None:
     """Return what varies along x on a ball of x, None where a parameter has no value."""
 
     def named(name: str) -> arb:
@@ -347,7 +347,7 @@ def _sign_along(value: Expression, length: Fraction, line: Line) -> int | None:
     """Return 1 where a value is proved to be positive all along a member, else None."""
     half = _ball(length) / (2 * PIECES)
     pieces = ((2 * k + 1) * half + arb(0, half.upper()) for k in range(PIECES))
-    found = (_value_along(value, x, line) for x in pieces)
+    found = (value_along(value, x, line) for x in pieces)
     return 1 if all(x is not None and x > 0 for x in found) else None
 
 

@@ -19,6 +19,7 @@ from symflex.roots.distributed.side import ACCUMULATION_DIGITS, Side, groups, po
 from symflex.roots.engines import LOSSLESS, POLYNOMIAL
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.passive import passive_loop
+from symflex.roots.passive_fields import are_passive
 from symflex.roots.plane.search import HIGHEST
 from symflex.roots.pole_zero_map import (
     Certificate,
@@ -512,9 +513,10 @@ def _passivity(bound: BoundTransferFunction) -> tuple[str, bool]:
     """Return why no pole lies right of the imaginary axis, and whether none lies on it but at 0."""
     if not bound.is_of_model:
         return "", False
-    if is_passive(bound.source.model, bound.values):
+    model = bound.source.model
+    if is_passive(model, bound.values) or are_passive(model, bound.values):
         return PASSIVE, False
-    loop = passive_loop(bound.source.model, "", bound.values)
+    loop = passive_loop(model, "", bound.values)
     return ("", False) if loop is None else (PASSIVE_LOOP, loop.rests)
 
 

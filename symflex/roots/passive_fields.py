@@ -1,0 +1,371 @@
+"""Fields that nothing supplies with energy: no pole lies right of the imaginary axis, whatever has no end.
+
+The states of a field are displacements q and the forces p that do work on them, ``q' = a q + C p`` and
+``p' = G q - a^T p`` up to signs. Then ``q* p`` changes along x by ``C* |p|^2 + G |q|^2``, and between its
+ends by nothing where at each end one of the two vanishes.
+
+    (E I w'')'' + rho A s^2 w = 0, w = w' = 0 at one end, free at the other
+    s^2 int rho A |w|^2 + int E I |w''|^2 = 0, so that s^2 is real and negative
+
+Here 1/C and G are polynomials ``k + c s + m s^2`` without negative coefficients, of stiffness, loss and mass,
+and so is what holds an end; over s their real parts are not negative where that of s is positive (Anderson &
+Vongpanitlerd 1973, Network Analysis and Synthesis, chapter 2).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import chain, combinations, permutations, product
+from typing import TYPE_CHECKING
+
+from flint import arb
+
+from symflex.algebra import LAPLACE, Factored, by_powers, degree_in
+from symflex.algebra.ring import terms_of
+from symflex.equations import assemble
+from symflex.equations.along import composed
+from symflex.expressions import Name
+from symflex.library.elements import LinearForm
+from symflex.model.along import COORDINATE, varies_along_x
+from symflex.model.signs import Line, value_along
+from symflex.roots import precision
+from symflex.transfer.balls import ball
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+    from symflex.equations import Continuum, Equations
+    from symflex.expressions import Call
+    from symflex.library.elements import Variable
+    from symflex.model import ExactValue, Model
+
+BITS = 128
+MOST_STATES = 6
+"""Of a field, whose displacements and forces are told by trial."""
+HALVINGS = 10
+"""Of an interval on which no sign is told."""
+INERTIA = 2
+"""The power of s of a mass."""
+BEAM = 4
+"""States of a field whose equation is of fourth order."""
+Matrix = list[list[Factored]]
+Pair = tuple[int, int, int]
+"""The number of a displacement, that of its force, and the sign of the work they do."""
+Parts = dict["Variable", Factored]
+"""What something is of states that are free."""
+
+
+def are_passive(model: Model, values: Iterable[tuple[str, ExactValue]]) -> bool:
+    """Tell whether it is proved that nothing in a model of fields alone supplies energy but its inputs.
+
+    ``values`` are those of the parameters. Nothing is known with elements, signals or blocks, or where the
+    equations of a field are of no such form as those above.
+    """
+    if not model.fields or model.elements or model.signals or model.blocks:
+        return False
+    with precision(BITS):
+        plain = replace(model, outputs=(), figures=(), published=())
+        return _Fields(assemble(plain, is_cut=True), dict(values)).are_passive()
+
+
+@dataclass(frozen=True, slots=True)
+class _Paired:
+    """A field with the states that do work on one another."""
+
+    field: Continuum
+    states: Matrix  # in terms of those of the field
+    pairs: tuple[Pair, ...]
+
+
+@dataclass(frozen=True)
+class _Fields:
+    """The equations of fields, with numbers."""
+
+    equations: Equations
+    values: Mapping[str, ExactValue]
+
+    def are_passive(self) -> bool:
+        """Tell whether all fields and what holds their ends are passive."""
+        found = [self._paired(field) for field in self.equations.continua]
+        paired = [each for each in found if each is not None]
+        return len(paired) == len(found) and self._ends_are_passive(paired)
+
+    def _paired(self, field: Continuum) -> _Paired | None:
+        """Return the pairs of a field, ``None`` where there are none with which it is passive."""
+        n = len(field.system.states)
+        if n % 2 or n > MOST_STATES:
+            return None
+        for matrix, states in _canonical(field):
+            for chosen in combinations(range(n), n // 2):
+                others = [i for i in range(n) if i not in chosen]
+                for forces, signs in product(permutations(others), product((1, -1), repeat=n // 2)):
+                    pairs = tuple(zip(chosen, forces, signs, strict=True))
+                    if (
+                        _is_reciprocal(matrix, pairs)
+                        and _begins_without_force(field, pairs)
+                        and self._supplies_nothing(field, matrix, pairs)
+                    ):
+                        return _Paired(field, states, pairs)
+        return None
+
+    def _supplies_nothing(self, field: Continuum, matrix: Matrix, pairs: Iterable[Pair]) -> bool:
+        """Tell whether what is stored and lost along a field is not negative, and zero only at rest."""
+        resting = set[int]()
+        for q, p, sign in pairs:
+            give, hold = matrix[q][p] * sign, matrix[p][q] * sign
+            for state, value in ((p, give if give.is_zero else 1 / give), (q, hold)):
+                powers = set[int]() if value.is_zero else self._powers(value, field)
+                if powers is None:
+                    return False
+                if powers:
+                    resting.add(state)
+        # A state at rest has no slope; if that is made of one other state alone, it rests, too.
+        size = range(len(matrix))
+        while True:
+            moving = [[j for j in size if not matrix[i][j].is_zero and j not in resting] for i in resting]
+            more = {row[0] for row in moving if len(row) == 1}
+            if not more:
+                return len(resting) == len(matrix)
+            resting |= more
+
+    def _ends_are_passive(self, fields: Sequence[_Paired]) -> bool:
+        """Tell whether no energy comes in at the ends, if all inputs rest."""
+        ends = [(each, *end) for each in fields for end in self._ends(each.field)]
+        forces = {v for each, _, _, given in ends for _, p, _ in each.pairs if (v := given[p]) is not None}
+        known = _eliminated([row.form for row in self.equations.rows], forces)
+        supplied: dict[tuple[Variable, Variable], Factored] = {}
+        for each, side, place, given in ends:
+            rows = [[_at(x, place) for x in row] for row in each.states]
+            free = [_reduced(LinearForm.of(*zip(given, row, strict=True)), known) for row in rows]
+            for q, p, sign in each.pairs:
+                if any(a.depends_on(LAPLACE) for a in free[q].values()):
+                    return False
+                for (one, a), (other, b) in product(free[q].items(), free[p].items()):
+                    work = a * b * (side * sign)
+                    supplied[one, other] = supplied.get((one, other), work * 0) + work
+        return all(
+            work.is_zero or (one == other and self._powers(-work, None) is not None)
+            for (one, other), work in supplied.items()
+        )
+
+    def _ends(self, field: Continuum) -> list[tuple[int, Factored, Sequence[Variable | None]]]:
+        """Return per end -1 where x begins and 1 where it ends, its place, and the states there."""
+        side = -1 if self._number(field.length) > 0 else 1
+        there = [v for v, _ in field.final]
+        return [(side, field.start, field.initial), (-side, field.start + field.length, there)]
+
+    def _powers(self, value: Factored, field: Continuum | None) -> set[int] | None:
+        """Return the powers of s in a value, ``None`` where one of them may have a negative coefficient."""
+        ring = value.ring
+        moving = value.filter(lambda factor: degree_in(factor, 0) > 0)
+        if not moving.denominator().is_one:
+            return None
+        rest = value / moving
+        parts = by_powers(ring, moving.expand())
+        signs = (self._sign(Factored.polynomial(ring, part) * rest, field) for part in parts.values())
+        return set(parts) if max(parts) <= INERTIA and all(sign == 1 for sign in signs) else None
+
+    def _sign(self, value: Factored, field: Continuum | None) -> int | None:
+        """Return the sign of a value all along a field, but for its ends; ``None`` where it is not told."""
+        found = 1 if value.unit > 0 else -1
+        for factor, exponent in value.factors:
+            own = self._sign_of_factor(Factored.polynomial(value.ring, factor), field) if exponent % 2 else 1
+            if own is None:
+                return None
+            found *= own
+        return found
+
+    def _sign_of_factor(self, value: Factored, field: Continuum | None) -> int | None:
+        if field is None or not any(n in value.ring.index and value.depends_on(n) for n in self._along):
+            return _sign_of(self._number(value))
+        (low, is_zero_first), (high, is_zero_last) = (
+            (self._number(place), _at(value, place).is_zero)
+            for _, place, _ in sorted(self._ends(field), key=lambda end: end[0])
+        )
+        slope = value.slope(COORDINATE) if len(self._along) == 1 else None
+        signs, pending = set[int | None](), [(0.0, 1.0, 0)]
+        while pending:
+            a, b, depth = pending.pop()
+            x = low + (high - low) * arb((a + b) / 2, (b - a) / 2)
+            sign = _sign_of(self._number(value, x))
+            starts, stops = is_zero_first and a == 0, is_zero_last and b == 1
+            if sign is None and slope is not None and starts != stops:
+                # Next to an end where it is zero the slope tells the sign.
+                rate = _sign_of(self._number(slope, x))
+                sign = None if rate is None else rate if starts else -rate
+            if sign is None and depth < HALVINGS:
+                middle = (a + b) / 2
+                pending += [(a, middle, depth + 1), (middle, b, depth + 1)]
+            else:
+                signs.add(sign)
+        return signs.pop() if len(signs) == 1 else None
+
+    @cached_property
+    def _along(self) -> tuple[str, ...]:
+        """The generators that vary along x."""
+        return (COORDINATE, *(n for n, c in self._functions.items() if varies_along_x(c)))
+
+    @cached_property
+    def _functions(self) -> Mapping[str, Call]:
+        return {c.generator: c.expression for c in self.equations.constants}
+
+    @cached_property
+    def _line(self) -> Line:
+        return Line.of_numbers(self.equations.model.definitions, self.values.items())
+
+    def _number(self, value: Factored, x: arb | None = None) -> arb:
+        """Return a value on a ball of x; not a number where a parameter has none."""
+        total = ball(value.unit)
+        for factor, exponent in value.factors:
+            own = arb(0)
+            for monomial, c in terms_of(factor):
+                term = arb(c)
+                for i, e in monomial:
+                    term = term * self._generator(value.ring.names[i], x) ** e
+                own = own + term
+            total = total * own**exponent
+        return total
+
+    def _generator(self, name: str, x: arb | None) -> arb:
+        expression = self._functions.get(name, Name(name))
+        found = value_along(expression, arb("nan") if x is None else x, self._line)
+        return arb("nan") if found is None else found
+
+
+def _canonical(field: Continuum) -> Iterator[tuple[Matrix, Matrix]]:
+    """Yield equations of a field, and their states by its own: as they are, and with forces for slopes."""
+    matrix = [list(row) for row in field.system.matrix]
+    n, zero = len(matrix), matrix[0][0] * 0
+    unit = [[zero + int(i == j) for j in range(n)] for i in range(n)]
+    yield matrix, unit
+    if None in field.initial:
+        return  # finite solutions are told in the field's own states
+    if n == BEAM and all(_is_slope(matrix, i) for i in range(n - 1)):
+        yield from _bent(matrix, unit)
+    elif all(_is_slope(matrix, i) for i in range(0, n, 2)):
+        yield from _stretched(matrix, unit)
+
+
+def _is_slope(matrix: Matrix, i: int) -> bool:
+    """Tell whether the slope of a state is the next one, and nothing else."""
+    return all(x.is_one if j == i + 1 else x.is_zero for j, x in enumerate(matrix[i]))
+
+
+def _moves(value: Factored) -> bool:
+    return COORDINATE in value.ring.index and value.depends_on(COORDINATE)
+
+
+def _bent(matrix: Matrix, unit: Matrix) -> Iterator[tuple[Matrix, Matrix]]:
+    """Yield w'''' = a w'' + a' w' + b w as (w'')'' - (a w')' - b w = 0, whose force is w''' - a w'.
+
+    All of it is multiplied by what it was divided by, so that a loss stays with its stiffness.
+    """
+    load, slope, tension, odd = matrix[-1]
+    zero, common = load * 0, load.denominator()
+    change = tension.slope(COORDINATE) if _moves(tension) else zero
+    if load.is_zero or _moves(common) or not odd.is_zero or not (slope - change).is_zero:
+        return
+    held = tension * common
+    states = [*unit[:2], [zero, zero, common, zero], [zero, -held, zero, common]]
+    bent = [zero, zero, 1 / common, zero]
+    yield [unit[1], bent, [zero, held, zero, zero + 1], [load * common, zero, zero, zero]], states
+
+
+def _stretched(matrix: Matrix, unit: Matrix) -> Iterator[tuple[Matrix, Matrix]]:
+    """Yield K u'' = (B^T - B) u' + D u with forces K u' + B u, for every B of one entry per pair.
+
+    Of a beam that shears u is w and phi, K is k G A and E I, and B holds -k G A: k G A (w' - phi) is a force.
+    """
+    m, zero = len(matrix) // 2, matrix[0][0] * 0
+    moved = [[matrix[2 * i + 1][2 * j + 1] for j in range(m)] for i in range(m)]
+    held = [[matrix[2 * i + 1][2 * j] for j in range(m)] for i in range(m)]
+    scale: list[Factored] = []
+    for i in range(m):
+        # Entries of B^T - B have both signs, those of D one: that tells all factors from those before.
+        told = [-scale[j] * moved[j][i] / moved[i][j] for j in range(i) if not moved[i][j].is_zero]
+        told += [scale[j] * held[j][i] / held[i][j] for j in range(i) if not held[i][j].is_zero]
+        told += [x.denominator() for x in (held[i][i], *moved[i]) if not x.is_zero]
+        scale.append(next(iter(told), zero + 1))
+    both = [(i, j) for i in range(m) for j in range(i + 1)]
+    if any(k.is_zero or _moves(k) for k in scale) or not all(
+        (scale[i] * moved[i][j] + scale[j] * moved[j][i]).is_zero for i, j in both
+    ):
+        return
+    coupled = [(i, j) for i, j in both if not moved[i][j].is_zero]
+    for turned in product((False, True), repeat=len(coupled)):
+        b = [[zero] * m for _ in range(m)]
+        for (i, j), is_turned in zip(coupled, turned, strict=True):
+            row, column = (j, i) if is_turned else (i, j)
+            b[row][column] = -scale[row] * moved[row][column]
+        # u' = (p - B u)/K and p' = B^T u' + D u.
+        rows, forces = [], []
+        for i in range(m):
+            rows.append(
+                [*(-x / scale[i] for x in b[i]), *(1 / scale[i] if j == i else zero for j in range(m))]
+            )
+            forces.append(
+                list(chain(*zip(b[i], (scale[i] if j == i else zero for j in range(m)), strict=True)))
+            )
+        for i in range(m):
+            taken = [sum((b[k][i] * b[k][j] / scale[k] for k in range(m)), zero) for j in range(m)]
+            own = [held[i][j] * scale[i] - x for j, x in enumerate(taken)]
+            rows.append([*own, *(b[j][i] / scale[j] for j in range(m))])
+        yield rows, [*unit[::2], *forces]
+
+
+def _is_reciprocal(matrix: Matrix, pairs: Sequence[Pair]) -> bool:
+    """Tell whether the work of pairs changes by nothing but squares of displacements and forces."""
+    for (q, p, sign), (other, force, its) in product(pairs, repeat=2):
+        if q != other and not (matrix[q][force].is_zero and matrix[p][other].is_zero):
+            return False
+        carried = matrix[q][other]
+        if carried.depends_on(LAPLACE) or not (carried * sign + matrix[force][p] * its).is_zero:
+            return False
+    return True
+
+
+def _begins_without_force(field: Continuum, pairs: Iterable[Pair]) -> bool:
+    """Tell whether no force acts where a field begins at a tip."""
+    if None not in field.initial:
+        return True
+    laws = [law.singular for _, law in field.parts]
+    if len(laws) != 1 or laws[0] is None:
+        return False
+    values = laws[0].at_start()
+    return all(x.is_zero for _, p, _ in pairs for x in values[p])
+
+
+def _eliminated(forms: Iterable[LinearForm], forces: set[Variable]) -> dict[Variable, Parts]:
+    """Return what equations say of states, in terms of those that stay free: forces follow first."""
+    known: dict[Variable, Parts] = {}
+    for form in forms:
+        row = _reduced(form, known)
+        chosen = min(row, key=lambda v: v not in forces, default=None)
+        if chosen is not None:
+            own = row.pop(chosen)
+            known[chosen] = {v: -c / own for v, c in row.items()}
+            known = {v: _reduced(LinearForm(tuple(parts.items())), known) for v, parts in known.items()}
+    return known
+
+
+def _reduced(form: LinearForm, known: Mapping[Variable, Parts]) -> Parts:
+    """Return a form of what is free; inputs rest."""
+    forms = [
+        LinearForm(tuple((v, c * coefficient) for v, c in known[variable].items()))
+        if variable in known
+        else LinearForm(((variable, coefficient),))
+        for variable, coefficient in form.terms
+        if variable.kind != "input"
+    ]
+    return dict(LinearForm.total(forms).terms)
+
+
+def _at(value: Factored, place: Factored) -> Factored:
+    """Return what varies along x at a place."""
+    images = {COORDINATE: place} if COORDINATE in value.ring.index else {}
+    return value.map_factors(value.ring, lambda factor: composed(value, factor, images))
+
+
+def _sign_of(number: arb) -> int | None:
+    return 1 if number > 0 else -1 if number < 0 else None
