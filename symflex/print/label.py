@@ -55,6 +55,7 @@ _TOKEN: Final = re.compile(r"\\([A-Za-z]+) *|\\([,;:! ])|([A-Za-z0-9_^{}'+\-=/.,
 _NUMBER: Final = re.compile(r"[0-9]+(?:\.[0-9]+)?")
 _TEXT: Final = re.compile(r"[A-Za-z0-9'+\-=/.,()| *]*")
 _NAME: Final = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+_INDICES: Final = re.compile(r"\d*i?j")  # of a row and a column, which are no word
 _STEM: Final = re.compile(r"([A-Za-z]+)([0-9]*)")
 
 
@@ -85,8 +86,8 @@ def label_of(name: str) -> str:
 
     Examples
     --------
-    >>> print(*map(label_of, ("omega_p1", "k_amp", "EI", "m_1", "k_tau", "V_tip_x")))
-    \omega_{p1} k_{\mathrm{amp}} \mathit{EI} m_{1} k_{\tau} V_{\mathrm{tip},x}
+    >>> print(*map(label_of, ("omega_p1", "k_amp", "EI", "m_1", "k_tau", "V_tip_x", "Z_ij")))
+    \omega_{p1} k_{\mathrm{amp}} \mathit{EI} m_{1} k_{\tau} V_{\mathrm{tip},x} Z_{ij}
     """
     return _made(name).latex
 
@@ -168,7 +169,7 @@ def _subscript(part: str) -> str:
     number = part[len(letters) :]
     if letters in _GREEK:
         return f"\\{letters} {number}".rstrip()
-    return part if len(letters) <= 1 else rf"\mathrm{{{part}}}"
+    return part if len(letters) <= 1 or _INDICES.fullmatch(part) else rf"\mathrm{{{part}}}"
 
 
 def _verbatim(name: str) -> Label:
