@@ -49,14 +49,6 @@ def uniform(paths: Iterable[Path]) -> list[Path]:
     return [path for path in paths if path.parent.name != "tapers"]
 
 
-def without_tips(paths: Iterable[Path]) -> list[Path]:
-    """Return the specifications without those of members whose stiffness vanishes at an end.
-
-    These have code in numpy only (SF910).
-    """
-    return [path for path in paths if path.stem not in ("cone", "hanging_string", "wedge")]
-
-
 def tracked_files() -> list[Path]:
     """Return every file that is, or would be, under version control."""
     command = [

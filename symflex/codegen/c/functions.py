@@ -35,7 +35,7 @@ from symflex.codegen.c.body import (
 from symflex.codegen.program import nodes as tree
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
 
 @dataclass(frozen=True)
@@ -130,12 +130,9 @@ class Functions:
         for node, own in followed.items():
             table = f"{{{', '.join(map(str, minors_plan(node)))}}}"
             blocks.append(statement(f"static const int plan_{own}[] =", table, 0))
-            scope = Body.of(self.members, ALONG)
-            scope.assign((*node.along.constants, *node.along.assignments))
-            for k, value in enumerate(node.along.values):
-                scope.say(f"part[{k}] =", scope.term(value).text)
-            head = [f"static void along_{own}(double x, const {self.structure} *p, double *part)", "{"]
-            blocks.append(self._ends(scope, head, "x"))
+            blocks.append(self._parts(f"along_{own}", node.along, node.along.values[: len(node.places)]))
+            if node.tip is not None:
+                blocks += self._beginning(own, node, node.tip)
             scope = Body.of(self.members, S)
             given = (node.start, node.length, *node.bases)
             code = piece.code.needed(given)
@@ -144,7 +141,10 @@ class Functions:
                 scope.say(f"given[{k}] =", complex_term(scope.term(value)).text)
             head = [f"static void given_{own}(cx s, const {self.structure} *p, cx *given)", "{"]
             blocks.append(self._ends(scope, head))
-        members = ", ".join(f"{{along_{own}, given_{own}, plan_{own}}}" for own in followed.values())
+        members = ", ".join(
+            f"{{along_{own}, given_{own}, {'NULL' if node.tip is None else f'begun_{own}'}, plan_{own}}}"
+            for node, own in followed.items()
+        )
         blocks.append(statement(f"static const cx_member members_of_{self.name}[] =", f"{{{members}}}", 0))
         scope = Body.of(self.members, S)
         scope.followed = followed
@@ -191,6 +191,33 @@ class Functions:
             "}",
         ]
         return [*blocks, self._ends(scope, head), self._wrapped_value(whole), response]
+
+    def _parts(self, name: str, along: tree.Straight, values: Sequence[tree.CodeNode]) -> list[str]:
+        """Return the function of x that gives some of the values of a program."""
+        scope = Body.of(self.members, ALONG)
+        code = along.needed(values)
+        scope.assign((*code.constants, *code.assignments))
+        for k, value in enumerate(values):
+            scope.say(f"part[{k}] =", scope.term(value).text)
+        head = [f"static void {name}(double x, const {self.structure} *p, double *part)", "{"]
+        return self._ends(scope, head, "x")
+
+    def _beginning(self, own: str, node: tree.FundamentalMinors, tip: tree.Tip) -> list[list[str]]:
+        """Return what begins a member where a stiffness vanishes."""
+        table = f"{{{', '.join(map(str, tip_plan(node, tip)))}}}"
+        opening = f"static int begun_{own}("
+        begun = [
+            f"{opening}const cx_law *law, const cx_table *table, double to, int halvings,",
+            f"{' ' * len(opening)}double *sum)",
+            "{",
+            f"{STEP}return cx_begun(law, table, beginning_{own}, tip_{own}, to, halvings, sum);",
+            "}",
+        ]
+        return [
+            statement(f"static const int tip_{own}[] =", table, 0),
+            self._parts(f"beginning_{own}", node.along, node.along.values[len(node.places) :]),
+            begun,
+        ]
 
     def _response(self, value: str) -> list[str]:
         """Return the response whose values calls at ``omega[i]`` give."""
@@ -398,14 +425,14 @@ GROWTH, LAST = 3.0, 1e-18
 """By which power of e waves grow on a piece at most, and the last term of Picard's iteration."""
 
 
-def minors_plan(node: tree.FundamentalMinors) -> list[int]:
-    """Return a law along x as a table of numbers in the order in which ``cx_minors`` reads them."""
+def _products(node: tree.FundamentalMinors) -> list[tuple[int, ...]]:
+    """Return the powers of the bases in the products that matter."""
     bases, size = len(node.bases), node.size
-    # No piece takes more steps of Picard's iteration.
-    steps, left = 0, 1.0
+    # No piece takes more steps of Picard's iteration. At a tip waves grow by another power than is expected.
+    steps, left, growth = 0, 1.0, GROWTH if node.tip is None else 2.0 * GROWTH
     while left > LAST or steps < 2 * size:
         steps += 1
-        left *= GROWTH / steps
+        left *= growth / steps
     reached = {(i, (0,) * bases) for i in range(size)}
     every = set(reached)
     for _ in range(steps):
@@ -416,12 +443,23 @@ def minors_plan(node: tree.FundamentalMinors) -> list[int]:
             if i == column
         }
         every |= reached
-    products = sorted({powers for _, powers in every})
-    places = {powers: k for k, powers in enumerate(products)}
+    return sorted({powers for _, powers in every})
+
+
+def _made(places: Iterable[Sequence[int]], products: Sequence[tuple[int, ...]]) -> list[int]:
+    """Return, per part, its row, its column, its powers, and what it makes of each product, -1 for none."""
+    numbers = {powers: k for k, powers in enumerate(products)}
     parts: list[int] = []
-    for row, column, *powers in node.places:
+    for row, column, *powers in places:
         made = (tuple(p + q for p, q in zip(before, powers, strict=True)) for before in products)
-        parts += [row, column, *powers, *(places.get(x, -1) for x in made)]
+        parts += [row, column, *powers, *(numbers.get(x, -1) for x in made)]
+    return parts
+
+
+def minors_plan(node: tree.FundamentalMinors) -> list[int]:
+    """Return a law along x as a table of numbers in the order in which ``cx_minors`` reads them."""
+    bases, size, products = len(node.bases), node.size, _products(node)
+    parts = _made(node.places, products)
     lines = {q: lines_of(size, q) for q in range(1, size + 1)}
     largest = max(len(rows) for rows, _ in node.wanted)
     choices = [largest]
@@ -442,6 +480,17 @@ def minors_plan(node: tree.FundamentalMinors) -> list[int]:
     at = 7 + len(parts) + len(products) * bases
     head = [size, len(node.places), bases, len(products), room, at, at + len(choices)]
     return [*head, *parts, *chain.from_iterable(products), *choices, *ends]
+
+
+def tip_plan(node: tree.FundamentalMinors, tip: tree.Tip) -> list[int]:
+    """Return how a law begins as a table of numbers in the order in which ``cx_begun`` reads them."""
+    products = _products(node)
+    parts = _made(((row, column, *powers) for row, column, _, *powers in tip.places), products)
+    # As a law's plan; what cx_through reads is that of the law.
+    head = [node.size, len(tip.places), len(node.bases), len(products), 0, 0, 0]
+    orders = [place[2] for place in tip.places]
+    is_free = [int(i in tip.free) for i in range(node.size)]
+    return [*head, *parts, *orders, *tip.powers, *(-b for b in tip.exponents), *is_free]
 
 
 LOOP = "for (int j = 0; j < LANES; j++) {"

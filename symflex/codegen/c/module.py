@@ -286,4 +286,5 @@ C99 = Language(
     c_files,
     solves=True,
     follows=True,
+    begins=True,
 )

@@ -781,12 +781,17 @@ static cx cx_network(const cx *entry, const int *plan, int output, int source)
 /* So many frequencies are computed at a time, in loops that compilers turn into vector instructions. */
 enum { cx_lanes = 32 };
 
+typedef struct cx_law cx_law;
+typedef struct cx_table cx_table;
+
 /* A matrix whose law varies along x: the parts of the law at x, and at s the start, the length and the
- * bases; the plan is told at cx_law.
+ * bases; the plan is told at cx_law. begun calls cx_begun where a stiffness vanishes at the start, and is
+ * NULL elsewhere.
  */
 typedef struct {
     void (*along)(double x, const PARAMETERS *p, double *part);
     void (*at)(cx s, const PARAMETERS *p, cx *given);
+    int (*begun)(const cx_law *law, const cx_table *table, double to, int halvings, double *sum);
     const int *plan;
 } cx_member;
 
@@ -828,11 +833,11 @@ static void cx_end(cx_pieces *kept, int count)
 enum { cx_points = 20, cx_room = 24 };
 
 /* Points from 0 to 1, what makes Chebyshev's terms of values there, and by value its integrals from 0. */
-typedef struct {
+struct cx_table {
     double point[cx_points + 1];
     double term[cx_points + 1][cx_points + 1], integral[cx_points + 1][cx_room];
     int at[cx_points + 1];    /* where the integrals of a value begin */
-} cx_table;
+};
 
 static void cx_chebyshev(cx_table *table)
 {
@@ -871,9 +876,9 @@ static void cx_chebyshev(cx_table *table)
     }
 }
 
-//: cx_parts cx_growth
+//: cx_parts cx_scales cx_growth
 /* A law along x, the parts of whose coefficients are functions of x times powers of the bases;
- * scale has what these are at the limits. The plan begins with the numbers of states, parts, bases
+ * scale has what these are at the limits, which octave tells, times the length. The plan begins with the numbers of states, parts, bases
  * and products of their powers, how many complex numbers cx_through needs, and where choices and
  * starts stand. Then follow per part its row, its column, its powers, and what it makes of each
  * product, -1 for none; the powers in each product; the choices: the largest number of rows, and for
@@ -881,19 +886,32 @@ static void cx_chebyshev(cx_table *table)
  * choices that are left without one of them; the starts: how many, of each how many columns and
  * which choice of these; and how many minors, of each its start and its choice of rows.
  */
-typedef struct {
+struct cx_law {
     void (*along)(double x, const PARAMETERS *p, double *part);
+    int (*begun)(const cx_law *law, const cx_table *table, double to, int halvings, double *sum);
     const PARAMETERS *p;
-    const int *plan;
+    const int *plan, *octave;
     double start, length, *scale;
     int *sum;    /* of the powers in two products, which product has them; -1 for none */
-} cx_law;
+};
 
 static void cx_parts(const cx_law *law, double share, double *part)
 {
     law->along(law->start + law->length * share, law->p, part);
     for (int k = 0; k < law->plan[1]; k++) {
-        part[k] *= law->length * law->scale[k];
+        part[k] *= law->scale[k];
+    }
+}
+
+/* Make the scales, times a factor. */
+static void cx_scales(const cx_law *law, double factor)
+{
+    const int bases = law->plan[2], stride = 2 + bases + law->plan[3];
+    for (int k = 0; k < law->plan[1]; k++) {
+        law->scale[k] = factor;
+        for (int b = 0; b < bases; b++) {
+            law->scale[k] *= ldexp(1.0, 4 * law->octave[b] * law->plan[9 + k * stride + b]);
+        }
     }
 }
 
@@ -1025,29 +1043,24 @@ static void cx_joined(const cx_law *law, double *work, cx_pieces *kept)
     kept->pieces--;
 }
 
-//: cx_followed
-/* Append the fundamental matrix of a piece, from one share of the length to another, by so many
- * steps of Picard's iteration; it is made of halves until the parts are polynomials there to the
- * last digits. work holds values of the parts, and rows of the matrix at Chebyshev points, by
- * product of powers, row and column, of each at last whether there is any. 0 without memory.
+//: cx_sampled
+/* Put the parts of a law, times a factor, at Chebyshev points from one share of the length to another.
+ * Nonzero where these are too few: the parts are no polynomials there to the last digits.
  */
-static int cx_followed(const cx_law *law, const cx_table *table, double from, double to, int halvings,
-                       int steps, double *work, cx_pieces *kept)
+static int cx_sampled(const cx_law *law, const cx_table *table, double from, double to, double factor,
+                      double *value, double *part)
 {
-    enum { N = cx_points, STRIDE = cx_room, FLAG = cx_room - 1 };
-    const int n = law->plan[0], parts = law->plan[1], bases = law->plan[2], products = law->plan[3];
-    const int total = products * n * n;
-    double *const value = work, *const sum = value + STRIDE * parts;
-    double *row = sum + 2 * total, *next = row + STRIDE * total, *const part = next + STRIDE * total;
+    enum { N = cx_points, STRIDE = cx_room };
+    const int parts = law->plan[1];
     int is_rough = 0;
     memset(value, 0, (size_t)(STRIDE * parts) * sizeof *value);
     for (int i = 0; i <= N; i++) {
         cx_parts(law, from + (to - from) * table->point[i], part);
         for (int k = 0; k < parts; k++) {
-            value[STRIDE * k + i] = (to - from) * part[k];
+            value[STRIDE * k + i] = factor * part[k];
         }
     }
-    for (int k = 0; k < parts && halvings < 12; k++) {
+    for (int k = 0; k < parts; k++) {
         double most = 0.0, last = 0.0;
         for (int m = 0; m <= N; m++) {
             double own = 0.0;
@@ -1059,15 +1072,47 @@ static int cx_followed(const cx_law *law, const cx_table *table, double from, do
         }
         is_rough |= last > 1e-13 * most;
     }
-    if (is_rough) {
-        const double middle = 0.5 * (from + to);
-        if (!cx_followed(law, table, from, middle, halvings + 1, steps, work, kept)
-            || !cx_followed(law, table, middle, to, halvings + 1, steps, work, kept)) {
-            return 0;
-        }
-        cx_joined(law, work, kept);
-        return 1;
+    return is_rough;
+}
+
+//: cx_slopes
+/* The parts of a plan times rows of a matrix, at Chebyshev points; at last of each whether there is any. */
+static void cx_slopes(const int *plan, const double *value, const double *row, double *next)
+{
+    enum { STRIDE = cx_room, FLAG = cx_room - 1 };
+    const int n = plan[0], parts = plan[1], bases = plan[2], products = plan[3];
+    for (int k = 0; k < products * n * n; k++) {
+        next[STRIDE * k + FLAG] = 0.0;
     }
+    for (int k = 0; k < parts; k++) {
+        const int *const own = plan + 7 + k * (2 + bases + products), *const made = own + 2 + bases;
+        const double *const factor = value + STRIDE * k;
+        for (int m = 0; m < n * products; m++) {
+            const double *const given = row + STRIDE * (n * (n * (m / n) + own[1]) + m % n);
+            if (given[FLAG] == 0.0 || made[m / n] < 0) {
+                continue;
+            }
+            double *const slope = next + STRIDE * (n * (n * made[m / n] + own[0]) + m % n);
+            for (int i = 0; i < STRIDE && slope[FLAG] == 0.0; i++) {
+                slope[i] = 0.0;
+            }
+            for (int i = 0; i < STRIDE; i++) {
+                slope[i] += factor[i] * given[i];
+            }
+            slope[FLAG] = 1.0;
+        }
+    }
+}
+
+//: cx_iterated
+/* The fundamental matrix at the end of a piece by so many steps of Picard's iteration, of each entry
+ * with whether there is any.
+ */
+static void cx_iterated(const cx_law *law, const cx_table *table, int steps, const double *value, double *sum)
+{
+    enum { N = cx_points, STRIDE = cx_room, FLAG = cx_room - 1 };
+    const int n = law->plan[0], total = law->plan[3] * n * n;
+    double *const row = sum + 2 * total, *const next = row + STRIDE * total;
     for (int k = 0; k < total; k++) {
         row[STRIDE * k + FLAG] = sum[2 * k] = sum[2 * k + 1] = 0.0;
     }
@@ -1079,27 +1124,7 @@ static int cx_followed(const cx_law *law, const cx_table *table, double from, do
         }
     }
     for (int step = 0; step < steps; step++) {
-        for (int k = 0; k < total; k++) {
-            next[STRIDE * k + FLAG] = 0.0;
-        }
-        for (int k = 0; k < parts; k++) {
-            const int *const own = law->plan + 7 + k * (2 + bases + products), *const made = own + 2 + bases;
-            const double *const factor = value + STRIDE * k;
-            for (int m = 0; m < n * products; m++) {
-                const double *const given = row + STRIDE * (n * (n * (m / n) + own[1]) + m % n);
-                if (given[FLAG] == 0.0 || made[m / n] < 0) {
-                    continue;
-                }
-                double *const slope = next + STRIDE * (n * (n * made[m / n] + own[0]) + m % n);
-                for (int i = 0; i < STRIDE && slope[FLAG] == 0.0; i++) {
-                    slope[i] = 0.0;
-                }
-                for (int i = 0; i < STRIDE; i++) {
-                    slope[i] += factor[i] * given[i];
-                }
-                slope[FLAG] = 1.0;
-            }
-        }
+        cx_slopes(law->plan, value, row, next);
         for (int k = 0; k < total; k++) {
             const double *const slope = next + STRIDE * k;
             double *const grown = row + STRIDE * k;
@@ -1111,6 +1136,156 @@ static int cx_followed(const cx_law *law, const cx_table *table, double from, do
                 sum[2 * k + 1] = 1.0;
             }
         }
+    }
+}
+
+//: cx_weighted
+/* Make, by value at Chebyshev points, the integrals over t in [0, 1] of g(t x) t^(a - 1); of g less g(0)
+ * where a = 0. They are u with x u' + a u = g: of Chebyshev's terms of u that of the highest order is the
+ * first to be known, since x T_k' has 2 k of each term below T_k but of the last, which it has k times.
+ */
+static void cx_weighted(const cx_table *table, int a, double *integral)
+{
+    enum { N = cx_points };
+    double cosine[2 * N];
+    for (int m = 0; m < 2 * N; m++) {
+        cosine[m] = cos(3.141592653589793 * m / N);
+    }
+    memset(integral, 0, (N + 1) * cx_room * sizeof *integral);
+    for (int j = 0; j <= N; j++) {
+        double term[N + 1] = {0.0}, above = 0.0, at_start = 0.0;
+        for (int k = N; k > 0; k--) {
+            term[k] = (table->term[k][j] - 2.0 * above) / (k + a);
+            above += k * term[k];
+            at_start += k % 2 ? -term[k] : term[k];
+        }
+        term[0] = a > 0 ? (table->term[0][j] - above) / a : -at_start;
+        for (int i = 0; i <= N; i++) {
+            for (int k = 0; k <= N; k++) {
+                integral[table->at[j] + i] += term[k] * cosine[k * (N - i) % (2 * N)];
+            }
+        }
+    }
+}
+
+//: cx_begun
+/* The fundamental matrix at the end of the piece that begins where a stiffness vanishes, as cx_iterated
+ * gives others. There h v' = B v, with h the way from the start and z_i = h^power_i v_i. The diagonal of B
+ * has a number b_i <= 0 at h = 0; beginning gives the parts of B without these, and g is that times v:
+ *
+ *     v_i(h) = 1 or 0 + integral over t in [0, 1] of g_i(t h) t^(-b_i - 1)
+ *
+ * with 1 in one free state; where b_i = 0 g_i(0) is zero, or what made a logarithm. The plan has what that
+ * of a law has up to what parts make of products; then the power of h of each part, and of all states the
+ * powers, the -b_i, and whether they are free. Nonzero where no matrix is made: 1 where Chebyshev points
+ * are too few for the parts of B, -1 where there is no memory.
+ */
+static int cx_begun(const cx_law *law, const cx_table *table,
+                    void (*beginning)(double x, const PARAMETERS *p, double *part), const int *plan,
+                    double to, int halvings, double *sum)
+{
+    enum { N = cx_points, STRIDE = cx_room, FLAG = cx_room - 1, MOST = 200 };
+    const int n = plan[0], parts = plan[1], total = plan[3] * n * n;
+    const int *const order = plan + 7 + parts * (2 + plan[2] + plan[3]), *const power = order + parts;
+    const int *const decay = power + n, *const is_free = decay + n;
+    const double way = law->length * to;
+    double integral[CX_ORDER][(N + 1) * STRIDE], largest[CX_ORDER * CX_ORDER] = {0.0};
+    double *const row = sum + 2 * total, *const next = row + STRIDE * total;
+    double *const value = malloc((STRIDE + 2) * (size_t)parts * sizeof *value);
+    cx_law own = *law;
+    if (value == NULL) {
+        return -1;
+    }
+    own.along = beginning;
+    own.plan = plan;
+    own.scale = value + STRIDE * parts;
+    cx_scales(&own, 1.0);
+    if (cx_sampled(&own, table, 0.0, to, 1.0, value, own.scale + parts) && halvings < 12) {
+        free(value);
+        return 1;
+    }
+    for (int k = 0; k < parts; k++) {
+        for (int i = 0; i <= N; i++) {
+            value[STRIDE * k + i] *= pow(way * table->point[i], order[k]);
+        }
+    }
+    for (int k = 0; k < total; k++) {
+        row[STRIDE * k + FLAG] = sum[2 * k] = 0.0;
+        /* Pieces that follow may have any entry. */
+        sum[2 * k + 1] = 1.0;
+    }
+    for (int i = 0; i < n; i++) {
+        const int at = (n + 1) * i;
+        cx_weighted(table, decay[i], integral[i]);
+        sum[2 * at] = is_free[i];
+        for (int k = 0; k < STRIDE && is_free[i]; k++) {
+            row[STRIDE * at + k] = 1.0;
+        }
+    }
+    /* Terms of one state may vanish while others grow, but not for as many steps as there are states. */
+    for (int step = 0, quiet = 0; step < MOST && quiet < n; step++) {
+        double size[CX_ORDER * CX_ORDER] = {0.0};
+        cx_slopes(plan, value, row, next);
+        for (int k = 0; k < total; k++) {
+            const double *const slope = next + STRIDE * k;
+            double *const grown = row + STRIDE * k, *const most = size + k % (n * n);
+            grown[FLAG] = slope[FLAG];
+            if (slope[FLAG] != 0.0) {
+                cx_combined(N + 1, slope, integral[k % (n * n) / n], table->at, STRIDE, grown);
+                grown[FLAG] = 1.0;
+                sum[2 * k] += grown[N];
+                for (int i = 0; i <= N; i++) {
+                    *most = fmax(*most, fabs(grown[i]));
+                }
+            }
+        }
+        quiet++;
+        for (int k = 0; k < n * n; k++) {
+            largest[k] = fmax(largest[k], size[k]);
+            quiet = size[k] <= 1e-18 * largest[k] ? quiet : 0;
+        }
+    }
+    for (int k = 0; k < total; k++) {
+        sum[2 * k] *= pow(way, power[k % (n * n) / n]);
+    }
+    free(value);
+    return 0;
+}
+
+//: cx_followed
+/* Append the fundamental matrix of a piece, from one share of the length to another, by so many
+ * steps of Picard's iteration; it is made of halves until the parts are polynomials there to the
+ * last digits. work holds values of the parts, and rows of the matrix at Chebyshev points, by
+ * product of powers, row and column, of each at last whether there is any. 0 without memory.
+ */
+static int cx_followed(const cx_law *law, const cx_table *table, double from, double to, int halvings,
+                       int steps, double *work, cx_pieces *kept)
+{
+    enum { STRIDE = cx_room };
+    const int n = law->plan[0], parts = law->plan[1], products = law->plan[3];
+    const int total = products * n * n, is_first = law->begun && from == 0.0;
+    double *const value = work, *const sum = value + STRIDE * parts;
+    double *const part = sum + 2 * (STRIDE + 1) * total;
+    int is_rough;
+    if (is_first) {
+        is_rough = law->begun(law, table, to, halvings, sum);
+    } else {
+        is_rough = cx_sampled(law, table, from, to, to - from, value, part) && halvings < 12;
+    }
+    if (is_rough < 0) {
+        return 0;
+    }
+    if (is_rough) {
+        const double middle = 0.5 * (from + to);
+        if (!cx_followed(law, table, from, middle, halvings + 1, steps, work, kept)
+            || !cx_followed(law, table, middle, to, halvings + 1, steps, work, kept)) {
+            return 0;
+        }
+        cx_joined(law, work, kept);
+        return 1;
+    }
+    if (!is_first) {
+        cx_iterated(law, table, steps, value, sum);
     }
     if (kept->place == NULL) {
         /* The same for all pieces of one cut. */
@@ -1156,12 +1331,15 @@ static void cx_cut(const cx_law *law, double *work, cx_pieces *kept)
     double share[COUNT + 1] = {0.0}, growth = 0.0, size = 1.0, from = 0.0;
     cx_table table;
     int steps = 0, at = 0, is_made = 1;
+    /* Where a stiffness vanishes waves grow ever faster, in measure of the length, but not of its root. */
+    const int degree = law->begun ? 4 : 1;
     free(kept->place);
     kept->place = NULL;
     kept->count = kept->pieces = 0;
     for (int i = 0; i < COUNT; i++) {
-        cx_parts(law, (i + 0.5) / COUNT, work);
-        growth += cx_growth(law, work) / COUNT;
+        const double root = (i + 0.5) / COUNT;
+        cx_parts(law, pow(root, degree), work);
+        growth += degree * pow(root, degree - 1) * cx_growth(law, work) / COUNT;
         share[i + 1] = growth + 1e-9 * (i + 1);
     }
     /* Where waves grow by e^3, sums of terms of both signs lose a digit. */
@@ -1180,7 +1358,7 @@ static void cx_cut(const cx_law *law, double *work, cx_pieces *kept)
             at++;
         }
         const double rest = (wanted - share[at]) / (share[at + 1] - share[at]);
-        const double to = k == number ? 1.0 : (at + rest) / COUNT;
+        const double to = k == number ? 1.0 : pow((at + rest) / COUNT, degree);
         is_made = cx_followed(law, &table, from, to, 0, steps, work, kept);
         from = to;
     }
@@ -1461,7 +1639,8 @@ static void cx_minors(cx_pieces *kept, const PARAMETERS *p, const cx *s, int cou
             const int *const exponent = plan + 7 + parts * (2 + bases + products);
             double *const scale = malloc(room * sizeof *scale);
             int *const sum = malloc((size_t)(products * products) * sizeof *sum);
-            const cx_law law = {kept->member->along, p, plan, given[0].re, given[1].re, scale, sum};
+            const cx_law law = {kept->member->along, kept->member->begun, p, plan, kept->octave, given[0].re,
+                                given[1].re, scale, sum};
             kept->pieces = 0;
             for (int k = 0; k < products * products && sum; k++) {
                 sum[k] = -1;
@@ -1474,13 +1653,8 @@ static void cx_minors(cx_pieces *kept, const PARAMETERS *p, const cx *s, int cou
                     sum[k] = is_same ? m : sum[k];
                 }
             }
-            for (int k = 0; k < parts && scale; k++) {
-                scale[k] = 1.0;
-                for (int b = 0; b < bases; b++) {
-                    scale[k] *= ldexp(1.0, 4 * kept->octave[b] * plan[9 + k * (2 + bases + products) + b]);
-                }
-            }
             if (scale && sum) {
+                cx_scales(&law, law.length);
                 cx_cut(&law, scale + parts, kept);
             }
             free(scale);

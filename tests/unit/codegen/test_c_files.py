@@ -7,12 +7,14 @@ import itertools
 import math
 import re
 import subprocess
+from fractions import Fraction
 from functools import cache
 
 import mpmath as mp
 import numpy as np
 import pytest
 from flint import acb
+from scipy.special import jv
 
 from symflex import pipeline
 from symflex.codegen.c.body import Kind, Term, complex_term, difference, product, quotient, total
@@ -22,15 +24,15 @@ from symflex.codegen.program import verify
 from symflex.errors import UsageError
 from symflex.transfer import bind, bind_any
 from symflex.transfer.nested_form import BoundNested, EnclosedNested
-from tests.house.repository import ROOT, blocks, slow_ones, specifications, without_tips
+from tests.house.repository import ROOT, blocks, slow_ones, specifications
 from tests.unit.codegen.against_balls import axis_points, worst_errors
 from tests.unit.codegen.exportable import BAR, DELAY, MASSLESS, PIPE
 from tests.unit.codegen.test_numpy_distributed import COMPRESSED, SENSOR, specification
-from tests.unit.codegen.test_numpy_tapers import CONE, receptance
+from tests.unit.codegen.test_numpy_tapers import CONE, TIPS, hanging, kirchhoff, receptance
 
 pytestmark = pytest.mark.needs_tool("gcc")
 
-SPECS = without_tips(specifications(ROOT / "derivations", "*/*.toml"))
+SPECS = specifications(ROOT / "derivations", "*/*.toml")
 STRICT = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic"]
 FEW = ("two_mass", "six_mass", "rigid_body", "sliding_free_beam", "rod_tip_mass", "two_mass_force")
 """Models whose values are compared here; of all models, in ``test_error_table.py``."""
@@ -127,6 +129,105 @@ def test_waves_that_are_too_many_have_no_value(tmp_path):
     library, _ = compiled(tmp_path, exported(CONE))
     assert np.all(np.isnan(value_at(library, 0, [1e9j, 1e200, np.inf])))
     assert np.isfinite(value_at(library, 0, 1e4j)[0])
+
+
+def begun(name, folder):
+    """Return the library of a model in which a stiffness vanishes at an end."""
+    model = pipeline.load(ROOT / "derivations" / "tapers" / f"{name}.toml")
+    files = C99.export(model, pipeline.derive_all(model), stem="plant", is_alone=False, samples=5)
+    assert not files.warnings
+    return compiled(folder, files)[0]
+
+
+def test_a_hanging_string_is_bessels_function(tmp_path):
+    library = begun("hanging_string", tmp_path)
+    assert value_at(library, 0, TIPS) == pytest.approx(hanging(TIPS, 0.0, 2.0), rel=2e-13)
+    assert value_at(library, 1, TIPS) == pytest.approx(hanging(TIPS, 1.0, 2.0), rel=2e-13)
+    changed = np.array([0.02, 9.81, 0.5])  # as they are declared
+    assert value_at(library, 0, TIPS, changed) == pytest.approx(hanging(TIPS, 0.0, 0.5), rel=2e-13)
+    # Up to the mode 570. A rounding of s alone costs |s G'/G| times as much.
+    omega = np.geomspace(0.1, 2e3, 300)
+    x = 2 * omega * np.sqrt(2 / 9.81)
+    room = 3e-14 * (1 + np.abs(x * jv(1, x) / jv(0, x)))
+    assert np.all(np.abs(response(library, 0, omega) * jv(0, x) - 1) < room)
+
+
+@pytest.mark.parametrize(("name", "n"), [("wedge", 1), ("cone", 2)])
+def test_a_wedge_and_a_cone_are_kirchhoffs(name, n, tmp_path):
+    library = begun(name, tmp_path)
+    s = np.array([*(200 * TIPS), 2e5j])
+    assert value_at(library, 0, s[:-1]) == pytest.approx(kirchhoff(s[:-1], n), rel=1e-12)
+    assert response(library, 0, s[[0, -1]].imag) == pytest.approx(kirchhoff(s[[0, -1]], n), rel=1e-11)
+
+
+def test_a_string_of_which_little_is_heavy_is_bessels_function(tmp_path):
+    """With u = h/(1 + k h) in the place of h, the height above the free end, it is one that hangs."""
+    text = """
+symflex = 1
+[parameters]
+rhoA = "20 g/m"
+g = "9.81 m/s^2"
+l = "2 m"
+k = "20 1/m"
+[fields.w]
+domain = ["0", "l"]
+equation = "(rhoA*g*(l - x)*(1 + k*(l - x))*w')' = rhoA*s^2/(1 + k*(l - x))^2*w"
+conditions = ["w(0) = w_0"]
+[inputs]
+w_0 = { unit = "m" }
+[outputs]
+tip = "w(l)"
+"""
+    library, _ = compiled(tmp_path, exported(text, band_hz=(Fraction(1), Fraction(10))))
+    s = 10 * TIPS
+    assert value_at(library, 0, s) == pytest.approx(hanging(s, 0.0, 2 / 41), rel=2e-13)
+
+
+@pytest.mark.slow
+def test_a_lossy_blade_that_ends_in_a_tip_agrees_with_balls(tmp_path):
+    text = """
+symflex = 1
+[parameters]
+E = "70 GPa"
+eta = "20 us"
+rho = "2700 kg/m^3"
+h = "20 mm"
+l = "0.5 m"
+m = "0.1 kg"
+[elements]
+hub = { type = "mass", at = "q", m = "m" }
+[elements.root]
+type = "beam"
+between = ["ground", "q"]
+E = "E*(1 + eta*s)"
+I = "h^4/12"
+rho = "rho"
+A = "h^2"
+l = "l"
+[elements.blade]
+type = "beam"
+between = ["q", "r"]
+E = "E*(1 + eta*s)"
+I = "h^4/12*(1 - x/l)^3"
+rho = "rho"
+A = "h^2*(1 - x/l)"
+l = "l"
+[inputs]
+F = { force = "q" }
+[outputs]
+y = "r"
+"""
+    library, _ = compiled(tmp_path, exported(text))
+    enclosed = bind_any(pipeline.derive_all(pipeline.loads(text))[0]).enclosed(192)
+    omega = np.geomspace(6, 1e4, 20)
+    s = omega * np.exp(1j * np.linspace(0.1, 6.2, 20))
+    assert errors(enclosed, 1j * omega, response(library, 0, omega)) <= ACCURACY
+    assert errors(enclosed, s, value_at(library, 0, s)) <= ACCURACY
+
+
+def test_only_files_of_members_with_tips_hold_what_begins_there():
+    assert "cx_begun(" not in exported(CONE).text
+    assert "cx_begun(" in exported((ROOT / "derivations/tapers/cone.toml").read_text(encoding="utf-8")).text
 
 
 @pytest.mark.slow

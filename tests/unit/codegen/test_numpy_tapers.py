@@ -6,7 +6,7 @@ import types
 
 import numpy as np
 import pytest
-from scipy.special import iv, jv
+from scipy.special import factorial, ive, jv
 
 from symflex import pipeline
 from symflex.codegen.exporters import EXPORTERS
@@ -131,14 +131,22 @@ def test_a_hanging_string_is_bessels_function():
     assert string.tip_over_w_0(TIPS, l=lengths) == pytest.approx(hanging(TIPS, 0.0, lengths), rel=2e-12)
 
 
-def test_a_wedge_is_kirchhoffs():
-    """With h from the tip w = (a J_1(z) + b I_1(z))/sqrt(h), z = 2 beta sqrt(h) (Kirchhoff 1879)."""
-    s = 200 * TIPS  # up to 6000 rad/s, the sixth mode
+def kirchhoff(s, n):
+    """Return w/w_0 at the tip of a wedge, n = 1, or of a cone, n = 2, of length 1 (Kirchhoff 1879).
+
+    With h from the tip w = (a J_n(z) + b I_n(z)) h^(-n/2), z = 2 beta sqrt(h).
+    """
     beta = (-(s**2) * 0.8 / 200.0 + 0j) ** 0.25
     z = 2 * beta
-    a = 1 / (jv(1, z) + iv(1, z) * jv(2, z) / iv(2, z))
-    expected = beta * a * (1 + jv(2, z) / iv(2, z))
-    assert functions("wedge").tip_over_w_0(s) == pytest.approx(expected, rel=1e-11)
+    # w' = 0 at the clamp; both functions begin with (z/2)^n/n!. ive(n, z) is iv(n, z) exp(-|Re z|).
+    shape = jv(n + 1, z) / ive(n + 1, z)
+    growing = shape * np.exp(-np.abs(z.real))
+    return beta**n / factorial(n) * (1 + growing) / (jv(n, z) + shape * ive(n, z))
+
+
+def test_a_wedge_is_kirchhoffs():
+    s = 200 * TIPS  # up to 6000 rad/s, the sixth mode
+    assert functions("wedge").tip_over_w_0(s) == pytest.approx(kirchhoff(s, 1), rel=1e-11)
 
 
 def test_code_without_a_beginning_at_tips_is_refused():
