@@ -877,14 +877,14 @@ static void cx_chebyshev(cx_table *table)
 }
 
 //: cx_parts cx_scales cx_growth
-/* A law along x, the parts of whose coefficients are functions of x times powers of the bases;
- * scale has what these are at the limits, which octave tells, times the length. The plan begins with the numbers of states, parts, bases
- * and products of their powers, how many complex numbers cx_through needs, and where choices and
- * starts stand. Then follow per part its row, its column, its powers, and what it makes of each
- * product, -1 for none; the powers in each product; the choices: the largest number of rows, and for
- * each above one how many choices of so many rows there are, and of each choice these, and the
- * choices that are left without one of them; the starts: how many, of each how many columns and
- * which choice of these; and how many minors, of each its start and its choice of rows.
+/* A law along x, the parts of whose coefficients are functions of x times powers of the bases; scale has
+ * what these are at the limits, which octave tells, times the length. The plan begins with the numbers of
+ * states, parts, bases and products of their powers, how many complex numbers cx_through needs, and where
+ * choices and starts stand. Then follow per part its row, its column, its powers, and what it makes of
+ * each product, -1 for none; the powers in each product; the choices: the largest number of rows, and for
+ * each above one how many choices of so many rows there are, and of each choice these, and the choices
+ * that are left without one of them; the starts: how many, of each how many columns and which choice of
+ * these; and how many minors, of each its start and its choice of rows.
  */
 struct cx_law {
     void (*along)(double x, const PARAMETERS *p, double *part);
@@ -1142,7 +1142,7 @@ static void cx_iterated(const cx_law *law, const cx_table *table, int steps, con
 //: cx_weighted
 /* Make, by value at Chebyshev points, the integrals over t in [0, 1] of g(t x) t^(a - 1); of g less g(0)
  * where a = 0. They are u with x u' + a u = g: of Chebyshev's terms of u that of the highest order is the
- * first to be known, since x T_k' has 2 k of each term below T_k but of the last, which it has k times.
+ * first to be known, since x T_k' = k (T_k + 2 T_(k-1) + ... + 2 T_1 + T_0).
  */
 static void cx_weighted(const cx_table *table, int a, double *integral)
 {

@@ -160,6 +160,7 @@ def test_a_wedge_and_a_cone_are_kirchhoffs(name, n, tmp_path):
     assert response(library, 0, s[[0, -1]].imag) == pytest.approx(kirchhoff(s[[0, -1]], n), rel=1e-11)
 
 
+@pytest.mark.slow
 def test_a_string_of_which_little_is_heavy_is_bessels_function(tmp_path):
     """With u = h/(1 + k h) in the place of h, the height above the free end, it is one that hangs."""
     text = """
