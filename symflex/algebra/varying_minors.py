@@ -224,20 +224,23 @@ def edges_along(
 
     # Of a matrix without negative entries the largest eigenvalue is the norm, if states are scaled well.
     count, most, rounding = 64, 4000, 1e-13
+    # Where a stiffness vanishes waves grow ever faster, in measure of the length, but not of its root.
+    degree = 4 if tip else 1
+    roots = (np.arange(count) + 0.5) / count
     sizes = np.zeros((count, n, n))
-    for place, c in zip(
-        places, parts_at(slopes, start, length, scales, where, (np.arange(count) + 0.5) / count), strict=True
-    ):
+    for place, c in zip(places, parts_at(slopes, start, length, scales, where, roots**degree), strict=True):
         sizes[:, place[0], place[1]] += np.max(np.abs(c), axis=1)
     if not np.all(np.isfinite(sizes)):
         return None
-    growth = np.cumsum(np.max(np.abs(np.linalg.eigvals(sizes)), axis=1) / count)
+    growth = np.max(np.abs(np.linalg.eigvals(sizes)), axis=1) * degree * roots ** (degree - 1)
+    growth = np.cumsum(growth / count)
     # Where waves grow by e^3, sums of terms of both signs lose a digit.
     number = int(growth[-1] / 3.0) + 1
     if number > most:
         return None
     shares = np.concatenate([[0.0], growth + 1e-9 * np.arange(1, count + 1)])
     edges = np.interp(shares[-1] * np.arange(number + 1) / number, shares, np.arange(count + 1) / count)
+    edges = edges**degree
     points, to_terms, _ = chebyshev_points(20)
     values = cut_at(edges)
     # Pieces are halved until functions of x are polynomials there to the last digits.
