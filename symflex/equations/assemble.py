@@ -7,6 +7,7 @@ Output: :class:`Equations`; every element has left its stamp, parallel branches 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from fractions import Fraction
 from graphlib import CycleError, TopologicalSorter
 from typing import TYPE_CHECKING
 
@@ -24,7 +25,7 @@ from symflex.budget import spend
 from symflex.equations.equations import ConstantFunction, Continuum, Equations, OutputRow
 from symflex.equations.evaluate import ExactEvaluator, Opener, written_denominator
 from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError
-from symflex.expressions import Call, Expression, Name, format_expression, names, substitute
+from symflex.expressions import Call, Expression, Name, Number, format_expression, names, substitute
 from symflex.library.elements import (
     COMPONENTS,
     ElementUse,
@@ -135,9 +136,14 @@ def _of_the_coordinate(model: Model, known: Mapping[str, ConstantFunction]) -> d
         for n in names(e)
         if isinstance(n, Call) and (n.name in scope.unknowns or n.name in scope.along)
     )
+    # At an end a stiffness may vanish, where solutions are told by what is beside it.
+    ends = [end for field in model.fields for end in (field.start, field.end)]
+    for use in model.elements:
+        if isinstance(use.element, LineElement) and any(varies_along_x(e) for _, e in use.all_values):
+            ends += [Number(Fraction(0)), dict(use.all_values)[use.element.length]]
     found: dict[str, ConstantFunction] = {}
     for call in calls:
-        for put_in in (call, *(substitute(call, {COORDINATE: p}) for p in points)):
+        for put_in in (call, *(substitute(call, {COORDINATE: p}) for p in (*points, *ends))):
             opened = opener.open(put_in) if isinstance(put_in, Call) else call
             text = format_expression(opened)
             found.setdefault(text, ConstantFunction(text, opened))

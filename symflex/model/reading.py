@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, TypeVar
 
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 Made = TypeVar("Made")
 
+NAMED = "in a formula a value with a unit is a name: declare it in [parameters]"
 SHOWN = 40
 """Characters of a value that a message repeats."""
 MAX_PROBLEMS = 100
@@ -171,7 +172,11 @@ class Reader:
             self.misfit(f"{what} must be an expression or a number", value)
             return None
         if quantities and looks_like_quantity(value.text.value):
-            found = self.quantity(value, what)
+            own = Reader()
+            found = own.quantity(value, what)
+            for problem in own.problems:
+                hint = problem.hint or (NAMED if problem.code == "SF202" else None)
+                self.take((replace(problem, hint=hint),))
             if found is None:
                 return None
             if found.unit:

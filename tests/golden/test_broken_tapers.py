@@ -177,6 +177,11 @@ BROKEN = {
         "SF210",
         NO_X,
     ),
+    "a_quantity_in_a_formula": (
+        arm('I = "4e-8 m^4*(1 «-» c*x/l)^3", A = "A_0"'),
+        "SF202",
+        "unexpected '-' in the quantity",
+    ),
     "x_in_a_loss": (arm('I = "I_0", A = "A_0", eta = "0.1*«x»/l"'), "SF210", NO_X),
     "x_in_a_shear_coefficient": (
         arm('I = "I_0", A = "A_0", theory = "timoshenko", G = "G", kappa = "0.85*(1 - c*«x»/l)"'),
@@ -280,3 +285,10 @@ def test_a_broken_taper_is_refused_at_its_place_in_a_sentence(name, tmp_path, mo
     assert carets.count("^") == len(marked_text)
     assert marked_text in source
     assert printed.count("error[") == 1
+
+
+def test_a_quantity_in_a_formula_is_to_get_a_name(tmp_path, capsys):
+    path = tmp_path / "taper.toml"
+    path.write_text(BROKEN["a_quantity_in_a_formula"][0].replace("«", "").replace("»", ""))
+    assert run(["check", str(path)]) == 3
+    assert "declare it in [parameters]" in capsys.readouterr().err

@@ -177,3 +177,38 @@ def test_a_mass_at_a_tip_is_refused():
     text = ARM.format('"base", "tip"', "1 - x/l", "1 - x/l", ball)
     with pytest.raises(ModelError, match="can be neither held nor loaded"):
         bound(text)
+
+
+THINNING = """
+symflex = 1
+[parameters]
+E = "210 GPa"
+rho = "7800 kg/m^3"
+A_0 = "10 cm^2"
+l = "0.8 m"
+[elements.rod]
+type = "rod"
+between = ["root", "tip"]
+E = "E"
+rho = "rho"
+l = "l"
+A = "A_0*(1 - x/l)*exp(-2*x/l)"
+[inputs]
+F = { force = "root" }
+[outputs]
+y = "root"
+"""
+
+
+@pytest.mark.parametrize("s", [mpc(0, 3000), mpc(-400, 9000), mpc(0, 40000), mpc(2500, 0)])
+def test_a_rod_that_thins_out_faster_than_its_taper_is_a_power_series_about_its_tip(s):
+    # With t from the tip on the section is t exp(2 t/l): t u'' + (1 + 2 t/l) u' = k^2 t u.
+    with mp.workdps(40):
+        squared, terms = s**2 * 7800 / mpf("210e9"), [mpf(1), mpf(0)]
+        for n in range(2, 200):
+            terms.append((squared * terms[n - 2] - 2 / L * (n - 1) * terms[n - 1]) / n**2)
+        value = sum(c * L**n for n, c in enumerate(terms))
+        slope = sum(n * c * L ** (n - 1) for n, c in enumerate(terms) if n)
+        expected = value / (mpf("210e9") * mpf("1e-3") * slope)
+        found = complex(bound(THINNING)(complex(s)))
+        assert abs(found - complex(expected)) < 1e-13 * abs(complex(expected))
