@@ -210,7 +210,7 @@ def _refuse_tips(tf: TransferFunction) -> None:
     tip = next((law.name for law in tf.kernels.dispersions if law.singular is not None), None)
     if tip is not None:
         message = f"a stiffness vanishes at an end of '{tip}', where code in this language cannot begin"
-        raise ModelError(Diagnostic("SF910", message, None, "export it to numpy or c"))
+        raise ModelError(Diagnostic("SF910", message, None, "export it to numpy, c or matlab"))
 
 
 def _members(

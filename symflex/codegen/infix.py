@@ -108,6 +108,10 @@ class InfixPrinter(ABC):
     def frames(self, frames: tree.Frames) -> str:
         """Return the frames of a sum of exponentials."""
 
+    def follower(self, minors: tree.FundamentalMinors) -> str:
+        """Return what follows a matrix along x."""
+        return "fundamental_minors"
+
     def positions(self, minors: tree.FundamentalMinors) -> list[str]:
         """Return where parts of a law along x stand, and which minors of its matrix are wanted."""
         return [repr(minors.places), repr(minors.wanted)]
@@ -164,7 +168,7 @@ class InfixPrinter(ABC):
             case tree.FundamentalMinors(start, length, bases, along):
                 ends = [self.print(start), self.print(length), self._listed(bases)]
                 everything = [self.follows[along], *ends, *self.positions(node)]
-                return self.call("fundamental_minors", everything)
+                return self.call(self.follower(node), everything)
             case tree.Item(values, position):
                 return self.item(self.within(values, LEAF), position)
         message = f"no text for {type(node).__name__}"

@@ -71,7 +71,7 @@ FUNCTIONS = frozenset(
     "cos tan sinh cosh tanh abs real imag conj complex any all size zeros ones reshape numel unique isempty "
     "isnumeric islogical isreal isscalar isstruct isfield isa ischar char double error cell cellfun "
     "fieldnames struct2cell mod max min find repmat eye eig diag ceil log2 isfinite sum struct "
-    "cumsum diff floor interp1 inv isequal ismember kron nchoosek num2cell prod sort".split()
+    "acos cumsum diff fliplr floor interp1 inv isequal ismember kron nchoosek num2cell prod sort".split()
 )
 """What generated code uses, and constants that a reader would miss."""
 
@@ -152,10 +152,17 @@ class MatlabPrinter(InfixPrinter):
         return f"{function}({', '.join(arguments)})"
 
     def positions(self, minors: FundamentalMinors) -> list[str]:
-        """Return matrices of positions counted from 1."""
-        rows = [(row + 1, column + 1, *powers) for row, column, *powers in minors.places]
+        """Return matrices of positions counted from 1, and what tells of a tip where there is one."""
         wanted = "; ".join(", ".join(_matrix([lines], 1) for lines in minor) for minor in minors.wanted)
-        return [_matrix(rows, 0), f"{{{wanted}}}"]
+        texts = [_places(minors.places), f"{{{wanted}}}"]
+        if (tip := minors.tip) is None:
+            return texts
+        own = [_matrix([tip.powers], 0), _matrix([tip.exponents], 0), _matrix([tip.free], 1)]
+        return [*texts, self.listed([_places(tip.places), *own])]
+
+    def follower(self, minors: FundamentalMinors) -> str:
+        """Return what follows a matrix along x: where it begins at a tip, a function of its own."""
+        return "minors_from_tip" if minors.tip else super().follower(minors)
 
     def frames(self, frames: Frames) -> str:
         """Return a cell per frame: slots, orders and coefficients of terms, roots and divisors of keys."""
@@ -170,6 +177,11 @@ class MatlabPrinter(InfixPrinter):
             ]
             texts.append(self.listed(parts))
         return self.listed(texts)
+
+
+def _places(places: Sequence[Sequence[int]]) -> str:
+    """Return the matrix of where parts of a law stand, by rows and columns counted from 1."""
+    return _matrix([(row + 1, column + 1, *powers) for row, column, *powers in places], 0)
 
 
 def _matrix(rows: Sequence[Sequence[int]], shift: int) -> str:
@@ -564,6 +576,7 @@ MATLAB = Language(
     "MATLAB and Octave function file, a handle per transfer function, verified likewise",
     matlab_function_file,
     follows=True,
+    begins=True,
 )
 
 

@@ -8,10 +8,11 @@ import pytest
 from symflex import pipeline
 from symflex.codegen.matlab import MATLAB
 from symflex.transfer import bind
+from tests.house.repository import ROOT
 from tests.integration.octave import Octave
 from tests.unit.codegen.against_balls import axis_points, worst_errors
 from tests.unit.codegen.exportable import SPECS, derived, public_name
-from tests.unit.codegen.test_numpy_tapers import CONE, receptance
+from tests.unit.codegen.test_numpy_tapers import CONE, FAST, TIPS, hanging, kirchhoff, receptance
 
 pytestmark = pytest.mark.needs_tool("octave")
 
@@ -73,6 +74,41 @@ def test_a_conical_rod_is_its_formula_also_where_the_taper_is_an_array(octave):
     assert np.isnan(octave.value(keys[0])[5])  # too many waves
     found = octave.value(keys[1])
     assert found == pytest.approx(receptance(9000j, np.array([0.0, 0.3, 0.8])), rel=1e-11)
+
+
+def tapered(octave, name):
+    """Write the function file of a derivation with a tip, and call its main function."""
+    model = pipeline.load(ROOT / "derivations" / "tapers" / f"{name}.toml")
+    made = MATLAB.export(model, pipeline.derive_all(model), name, samples=5)
+    assert not made.warnings
+    octave.write(name, made.text)
+    octave.do(f"G = {name}();")
+
+
+def test_a_hanging_string_is_bessels_function_also_far_above_its_band(octave):
+    tapered(octave, "hanging_string")
+    points = octave.points(TIPS)
+    keys = [octave.keep(f"G.{name}_over_w_0({points})") for name in ("tip", "mid")]
+    lengths = np.array([0.5, 3.0, 0.7, 2.0, 1.0, 1.5])
+    keys += [octave.keep(f"G.tip_over_w_0({points}, 'l', {octave.points(lengths)})")]
+    far = np.array([200j, 40 + 600j, 0.0])
+    keys += [octave.keep(f"G.tip_over_w_0({octave.points(far)})")]
+    octave.run()
+    found = [octave.value(key) for key in keys]
+    assert found[0] == pytest.approx(hanging(TIPS, 0.0, 2.0), rel=1e-13)
+    assert found[1] == pytest.approx(hanging(TIPS, 1.0, 2.0), rel=1e-13)
+    assert found[2] == pytest.approx(hanging(TIPS, 0.0, lengths), rel=1e-13)
+    assert found[3] == pytest.approx(hanging(far, 0.0, 2.0), rel=1e-12)
+
+
+def test_a_wedge_and_a_cone_are_kirchhoffs(octave):
+    found = []
+    for name, m in (("wedge", 1), ("cone", 2)):
+        tapered(octave, name)
+        found.append((octave.keep(f"G.tip_over_w_0({octave.points(FAST)})"), m))
+    octave.run()
+    for key, m in found:
+        assert octave.value(key) == pytest.approx(kirchhoff(FAST, m), rel=1e-13)
 
 
 # ------------------------------------------------------------------------------------------ what is called

@@ -541,6 +541,249 @@ function found = compound(z, order)
   end
 end
 
+%: minors_from_tip
+function found = minors_from_tip(along, start, len, bases, places, wanted, tip)
+%MINORS_FROM_TIP  What FUNDAMENTAL_MINORS gives, where a stiffness vanishes at the start.
+%   With h the way from there z_i = h^powers_i v_i and h v' = B v. Parts of B follow
+%   those of A in along(x). The tip is a cell: of each part of B its row, its column,
+%   its powers of h and of the bases; the powers_i; the diagonal of B at the start,
+%   which is in no part; and the states whose values there tell a solution.
+  n = max(max(places(:, 1:2)));
+  count = max(cellfun(@numel, bases));
+  b = zeros(count, numel(bases));
+  for k = 1:numel(bases)
+    b(:, k) = bases{k}(:);
+  end
+  % Frequencies within a factor of four share their pieces.
+  octaves = ceil(log2(abs(b)) ./ 4);
+  octaves(b == 0) = -250;
+  [every, ~, own] = unique(octaves, 'rows');
+  values = complex(NaN(count, size(wanted, 1) + n));
+  for k = find(all(isfinite(every), 2)).'
+    limits = 16 .^ every(k, :);
+    where = find(own == k);
+    [powers, z] = pieces_from_tip(along, start, len, places, limits, where, tip);
+    if ~isempty(z)
+      values(where, :) = minors_through(powers, z, b(where, :) ./ limits, wanted);
+    end
+  end
+  found = num2cell(values, 1);
+end
+
+%: pieces_from_tip
+function [powers, z] = pieces_from_tip(along, start, len, places, limits, where, tip)
+%PIECES_FROM_TIP  What PIECES_ALONG gives, after a piece that begins at a tip.
+%   Near a tip A has no bound. It varies little on a stretch as long as all before it.
+  powers = [];
+  z = {};
+  n = max(max(places(:, 1:2)));
+  [at_tip, own_powers, exponents] = tip{1:3};
+  beginning = @(x) parts_among(along(x), size(places, 1) + (1:size(at_tip, 1)));
+  halvings = edge_at_tip(beginning, start, len, n, limits, where, at_tip);
+  if isempty(halvings)
+    return;
+  end
+  [keys, made] = begun_along(beginning, start, 2 .^ -halvings .* len, n, limits, where, tip);
+  % A is told by B and h, in which no digits cancel: h is small where start - x would be.
+  law = @(h) law_of_way(beginning(start + h), h, tip);
+  left = find(own_powers + exponents).';
+  at = [at_tip(:, [1, 2, 4:end]); [left, left, zeros(numel(left), numel(limits))]];
+  for k = halvings:-1:1
+    stretch = 2 .^ -k .* len;
+    [own_keys, own] = pieces_along(law, stretch, stretch, at, limits, where);
+    if isempty(own)
+      return;
+    end
+    [keys, made] = joined_pieces(keys, made, own_keys, own);
+  end
+  powers = keys;
+  z = made;
+end
+
+%: edge_at_tip
+function halvings = edge_at_tip(beginning, start, len, n, limits, where, places)
+%EDGE_AT_TIP  How often the length is halved for the piece that begins at a tip.
+%   On it waves grow little, and functions of x are polynomials to the last digits;
+%   empty where there is none such.
+  halvings = [];
+  shares = 2 .^ -(0:48);
+  scales = prod(limits .^ places(:, 4:end), 2);
+  [c, way] = parts_at_tip(beginning, start, len, scales, where, shares);
+  % Of a matrix without negative entries the largest eigenvalue is the norm, if states
+  % are scaled well.
+  growth = zeros(size(shares));
+  for i = 1:numel(shares)
+    sizes = zeros(n);
+    for k = 1:numel(c)
+      at = places(k, 1) + n * (places(k, 2) - 1);
+      own = c{k}(:, i) .* (shares(i) .* way) .^ places(k, 3);
+      sizes(at) = sizes(at) + max(abs(own));
+    end
+    if ~all(isfinite(sizes(:)))
+      return;
+    end
+    growth(i) = log(2) .* max(abs(eig(sizes)));
+  end
+  growth = fliplr(cumsum(fliplr(growth)));
+  [points, to_terms] = chebyshev_points();
+  % Where waves grow by e^3, sums of terms of both signs lose a digit.
+  for i = find(growth <= 3)
+    c = parts_at_tip(beginning, start, shares(i) .* len, scales, where, points.');
+    is_rough = false;
+    for k = 1:numel(c)
+      spectrum = abs(to_terms * c{k}.');
+      bad = max(spectrum(end - 2:end, :), [], 1) > 1e-13 .* max(spectrum, [], 1);
+      is_rough = is_rough || any(bad);
+    end
+    if ~is_rough
+      halvings = i - 1;
+      return;
+    end
+  end
+end
+
+%: begun_along
+function [powers, z] = begun_along(beginning, start, len, n, limits, where, tip)
+%BEGUN_ALONG  What PIECES_ALONG gives, of the piece that begins at a tip.
+%   At h the state v_i is its value at the start or 0, and the integral over t from 0
+%   to 1 of g_i(t h) t^(-b_i - 1), where g is B v without the diagonal b at the start.
+  [places, own_powers, exponents, free] = tip{:};
+  [points, to_terms] = chebyshev_points();
+  scales = prod(limits .^ places(:, 4:end), 2);
+  [c, way] = parts_at_tip(beginning, start, len, scales, where, points.');
+  elements = max([cellfun(@(v) size(v, 1), c), numel(way)]);
+  way = way.' .* ones(1, elements);
+  for k = 1:numel(c)
+    c{k} = c{k}.' .* (points .* way) .^ places(k, 3);
+  end
+  % Nodes and weights of Gauss and Legendre from 0 to 1, by Jacobi's matrix.
+  m = 1:47;
+  beside = diag(m ./ sqrt(4 .* m .^ 2 - 1), 1);
+  [vectors, nodes] = eig(beside + beside.');
+  weights = vectors(1, :) .^ 2;
+  nodes = (1 + diag(nodes)) ./ 2;
+  integrals = repmat({zeros(numel(points))}, n, 1);
+  for q = 1:numel(nodes)
+    angles = acos(2 .* nodes(q) .* points - 1);
+    inside = cos(angles * (0:numel(points) - 1)) * to_terms;
+    for i = 1:n
+      own = inside;
+      if exponents(i) == 0
+        % g_i vanishes at the start.
+        own(:, 1) = own(:, 1) - 1;
+      end
+      integrals{i} = integrals{i} + weights(q) .* nodes(q) .^ (-exponents(i) - 1) .* own;
+    end
+  end
+  % Rows of v by row, column and powers; each step is one more factor B.
+  every = [kron([1; 1], 1:n).', zeros(n, numel(limits))];
+  total = num2cell(double(ismember(1:n, free)).' .* ones(1, elements), 2);
+  keys = every(free, :);
+  rows = repmat({ones(numel(points), elements)}, numel(free), 1);
+  largest = zeros(n * n, elements);
+  quiet = 0;
+  for step = 1:200
+    made = zeros(0, size(keys, 2));
+    slopes = {};
+    for k = 1:numel(c)
+      for i = find(keys(:, 1) == places(k, 2)).'
+        key = [places(k, 1), keys(i, 2), keys(i, 3:end) + places(k, 4:end)];
+        at = find(all(made == key, 2));
+        if isempty(at)
+          made(end + 1, :) = key;
+          slopes{end + 1, 1} = c{k} .* rows{i};
+        else
+          slopes{at} = slopes{at} + c{k} .* rows{i};
+        end
+      end
+    end
+    keys = made;
+    rows = slopes;
+    sizes = zeros(n * n, elements);
+    for i = 1:size(keys, 1)
+      rows{i} = integrals{keys(i, 1)} * slopes{i};
+      at = find(all(every == keys(i, :), 2));
+      if isempty(at)
+        every(end + 1, :) = keys(i, :);
+        total{end + 1, 1} = rows{i}(end, :);
+      else
+        total{at} = total{at} + rows{i}(end, :);
+      end
+      at = keys(i, 1) + n * (keys(i, 2) - 1);
+      sizes(at, :) = max(sizes(at, :), max(abs(rows{i}), [], 1));
+    end
+    largest = max(largest, sizes);
+    quiet = (quiet + 1) .* all(sizes(:) <= 1e-18 .* largest(:));
+    if quiet == n
+      break;
+    end
+  end
+  powers = every;
+  z = cell(size(total));
+  for k = 1:numel(total)
+    z{k} = (total{k} .* way .^ own_powers(powers(k, 1))).';
+  end
+end
+
+%: parts_at_tip
+function [c, way] = parts_at_tip(beginning, start, len, scales, where, shares)
+%PARTS_AT_TIP  Parts of B, for bases at their limits, at shares of the length, and this length.
+  x = start + len .* shares;
+  c = beginning(x);
+  for k = 1:numel(c)
+    c{k} = scales(k) .* c{k} + zeros(size(x));
+    if size(c{k}, 1) > 1
+      c{k} = c{k}(where, :);
+    end
+  end
+  way = len;
+  if numel(way) > 1
+    way = way(where);
+  end
+end
+
+%: law_of_way
+function c = law_of_way(c, h, tip)
+%LAW_OF_WAY  Parts of A by those of B, and its entries that B has none of.
+  [places, powers, exponents] = tip{1:3};
+  for k = 1:numel(c)
+    c{k} = c{k} .* h .^ (places(k, 3) + powers(places(k, 1)) - powers(places(k, 2)) - 1);
+  end
+  for i = find(powers + exponents)
+    c{end + 1} = (powers(i) + exponents(i)) ./ h;
+  end
+end
+
+%: parts_among
+function c = parts_among(c, numbers_of)
+%PARTS_AMONG  Some of the parts that a function of x gives.
+  c = c(numbers_of);
+end
+
+%: joined_pieces
+function [every, joined] = joined_pieces(powers, z, more, after)
+%JOINED_PIECES  Pieces, and those that come after them.
+  [every, ~, at] = unique([powers; more], 'rows');
+  column = ones(max(size(z{1}, 1), size(after{1}, 1)), 1);
+  count = size(z{1}, 2);
+  joined = repmat({zeros(numel(column), count + size(after{1}, 2))}, size(every, 1), 1);
+  for k = 1:numel(z)
+    joined{at(k)}(:, 1:count) = z{k} .* column;
+  end
+  for k = 1:numel(after)
+    joined{at(numel(z) + k)}(:, count + 1:end) = after{k} .* column;
+  end
+end
+
+%: chebyshev_points
+function [points, to_terms] = chebyshev_points()
+%CHEBYSHEV_POINTS  Points from 0 to 1, and what makes Chebyshev's terms of values there.
+  order = 20;
+  angles = pi .* (order:-1:0).' ./ order;
+  to_terms = inv(cos(angles * (0:order)));
+  points = (1 + cos(angles)) ./ 2;
+end
+
 %: scaled_sum
 function found = scaled_sum(amplitudes, exponents)
 %SCALED_SUM  A sum of amplitudes times exponentials over the largest one, and its logarithm.

@@ -149,9 +149,13 @@ def kirchhoff(s, n):
     return beta**n / factorial(n) * (1 + growing) / (jv(n, z) + shape * ive(n, z))
 
 
-def test_a_wedge_is_kirchhoffs():
-    s = 200 * TIPS  # up to 6000 rad/s, the sixth mode
-    assert functions("wedge").tip_over_w_0(s) == pytest.approx(kirchhoff(s, 1), rel=1e-11)
+FAST = 200 * TIPS
+"""Frequencies [rad/s] up to the sixth mode of the wedge."""
+
+
+@pytest.mark.parametrize(("name", "n"), [("wedge", 1), ("cone", 2)])
+def test_a_wedge_and_a_cone_are_kirchhoffs(name, n):
+    assert functions(name).tip_over_w_0(FAST) == pytest.approx(kirchhoff(FAST, n), rel=1e-11)
 
 
 def test_code_without_a_beginning_at_tips_is_refused():
