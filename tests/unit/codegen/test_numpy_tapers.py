@@ -158,9 +158,11 @@ def test_a_wedge_and_a_cone_are_kirchhoffs(name, n):
     assert functions(name).tip_over_w_0(FAST) == pytest.approx(kirchhoff(FAST, n), rel=1e-11)
 
 
-def test_code_without_a_beginning_at_tips_is_refused():
+def test_code_without_a_beginning_at_tips_is_refused_and_languages_that_have_it_are_named():
     model = pipeline.load(ROOT / "derivations" / "tapers" / "wedge.toml")
     with pytest.raises(
         ModelError, match="a stiffness vanishes at an end of 'w', where code in this language"
-    ):
+    ) as caught:
         EXPORTERS["jax"].export(model, pipeline.derive_all(model), "wedge")
+    (problem,) = caught.value.diagnostics
+    assert problem.hint == "export it to numpy or matlab"
