@@ -165,4 +165,4 @@ def test_code_without_a_beginning_at_tips_is_refused_and_languages_that_have_it_
     ) as caught:
         EXPORTERS["jax"].export(model, pipeline.derive_all(model), "wedge")
     (problem,) = caught.value.diagnostics
-    assert problem.hint == "export it to numpy or matlab"
+    assert problem.hint == "export it to numpy, c or matlab"
