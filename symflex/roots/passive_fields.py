@@ -87,15 +87,17 @@ class _Fields:
 
     def are_passive(self) -> bool:
         """Tell whether all fields and what holds their ends are passive."""
-        found = [self._paired(field) for field in self.equations.continua]
-        paired = [each for each in found if each is not None]
-        return len(paired) == len(found) and self._ends_are_passive(paired)
+        if any(value.depends_on(LAPLACE) for _, value in self.equations.definitions):
+            return False  # what hides s behind a name is not seen to depend on it
+        found = [list(self._paired(field)) for field in self.equations.continua]
+        ways = max(map(len, found), default=0) if all(found) else 0
+        return any(self._ends_are_passive([own[min(k, len(own) - 1)] for own in found]) for k in range(ways))
 
-    def _paired(self, field: Continuum) -> _Paired | None:
-        """Return the pairs of a field, ``None`` where there are none with which it is passive."""
+    def _paired(self, field: Continuum) -> Iterator[_Paired]:
+        """Yield the pairs of a field with which it is passive: its energy may be written in several ways."""
         n = len(field.system.states)
         if n % 2 or n > MOST_STATES:
-            return None
+            return
         for matrix, states in _canonical(field):
             for chosen in combinations(range(n), n // 2):
                 others = [i for i in range(n) if i not in chosen]
@@ -106,8 +108,7 @@ class _Fields:
                         and _begins_without_force(field, pairs)
                         and self._supplies_nothing(field, matrix, pairs)
                     ):
-                        return _Paired(field, states, pairs)
-        return None
+                        yield _Paired(field, states, pairs)
 
     def _supplies_nothing(self, field: Continuum, matrix: Matrix, pairs: Iterable[Pair]) -> bool:
         """Tell whether what is stored and lost along a field is not negative, and zero only at rest."""
@@ -133,7 +134,9 @@ class _Fields:
         """Tell whether no energy comes in at the ends, if all inputs rest."""
         ends = [(each, *end) for each in fields for end in self._ends(each.field)]
         forces = {v for each, _, _, given in ends for _, p, _ in each.pairs if (v := given[p]) is not None}
-        known = _eliminated([row.form for row in self.equations.rows], forces)
+        known = self._eliminated(forces)
+        if known is None:
+            return False
         supplied: dict[tuple[Variable, Variable], Factored] = {}
         for each, side, place, given in ends:
             rows = [[_at(x, place) for x in row] for row in each.states]
@@ -148,6 +151,23 @@ class _Fields:
             work.is_zero or (one == other and self._powers(-work, None) is not None)
             for (one, other), work in supplied.items()
         )
+
+    def _eliminated(self, forces: set[Variable]) -> dict[Variable, Parts] | None:
+        """Return what conditions say of states, in terms of those that stay free: forces follow first.
+
+        None where a state is multiplied by what may vanish at some s in the right half plane.
+        """
+        known: dict[Variable, Parts] = {}
+        for row in self.equations.rows:
+            parts = _reduced(row.form, known)
+            chosen = min(parts, key=lambda v: v not in forces, default=None)
+            if chosen is not None:
+                own = parts.pop(chosen)
+                if self._powers(own, None) is None and self._powers(-own, None) is None:
+                    return None
+                known[chosen] = {v: -c / own for v, c in parts.items()}
+                known = {v: _reduced(LinearForm(tuple(c.items())), known) for v, c in known.items()}
+        return known
 
     def _ends(self, field: Continuum) -> list[tuple[int, Factored, Sequence[Variable | None]]]:
         """Return per end -1 where x begins and 1 where it ends, its place, and the states there."""
@@ -234,17 +254,19 @@ class _Fields:
 
 
 def _canonical(field: Continuum) -> Iterator[tuple[Matrix, Matrix]]:
-    """Yield equations of a field, and their states by its own: as they are, and with forces for slopes."""
+    """Yield equations of a field, and their states by its own: with forces for slopes, and as they are.
+
+    Forces come first: where fields meet, it is their work that is the same on both sides.
+    """
     matrix = [list(row) for row in field.system.matrix]
     n, zero = len(matrix), matrix[0][0] * 0
     unit = [[zero + int(i == j) for j in range(n)] for i in range(n)]
-    yield matrix, unit
-    if None in field.initial:
-        return  # finite solutions are told in the field's own states
-    if n == BEAM and all(_is_slope(matrix, i) for i in range(n - 1)):
+    # Finite solutions at a tip are told in the field's own states.
+    if None not in field.initial and n == BEAM and all(_is_slope(matrix, i) for i in range(n - 1)):
         yield from _bent(matrix, unit)
-    elif all(_is_slope(matrix, i) for i in range(0, n, 2)):
+    elif None not in field.initial and all(_is_slope(matrix, i) for i in range(0, n, 2)):
         yield from _stretched(matrix, unit)
+    yield matrix, unit
 
 
 def _is_slope(matrix: Matrix, i: int) -> bool:
@@ -334,19 +356,6 @@ def _begins_without_force(field: Continuum, pairs: Iterable[Pair]) -> bool:
         return False
     values = laws[0].at_start()
     return all(x.is_zero for _, p, _ in pairs for x in values[p])
-
-
-def _eliminated(forms: Iterable[LinearForm], forces: set[Variable]) -> dict[Variable, Parts]:
-    """Return what equations say of states, in terms of those that stay free: forces follow first."""
-    known: dict[Variable, Parts] = {}
-    for form in forms:
-        row = _reduced(form, known)
-        chosen = min(row, key=lambda v: v not in forces, default=None)
-        if chosen is not None:
-            own = row.pop(chosen)
-            known[chosen] = {v: -c / own for v, c in row.items()}
-            known = {v: _reduced(LinearForm(tuple(parts.items())), known) for v, parts in known.items()}
-    return known
 
 
 def _reduced(form: LinearForm, known: Mapping[Variable, Parts]) -> Parts:

@@ -75,6 +75,7 @@ PASSIVE = {
     "a taper": ("(EI*(1 - x/(2*l))^3*w'')'' + rhoA*(1 - x/(2*l))*s^2*w = 0", FREE),
     "a string": (STRING, FIXED),
     "a string with a mass": (STRING, ["w(0) = 0", "T*w'(l) = F - m*s^2*w(l)"]),
+    "a force that comes late": (STRING, ["w(0) = 0", "(1 + eta*s)*T*w'(l) = F"]),
     "a string of growing mass": ("T*w'' = rhoA*exp(x/l)*s^2*w", FIXED),
 }
 NOT_PASSIVE = {
@@ -92,6 +93,10 @@ NOT_PASSIVE = {
     ),
     "a string that moves along": ("T*w'' = rhoA*(s^2*w + 2*v*s*w' + v^2*w'')", FIXED),
     "a negative loss": ("EI*(1 - eta*s)*w'''' + rhoA*s^2*w = 0", [*FREE[:3], "w'''(l) = -F/EI"]),
+    "a condition that an s in the right half plane meets": (
+        STRING,
+        ["w(0) = 0", "(s*l/v - 1)*T*w'(l) = F"],
+    ),
     "not what a slope does": ("EI*w'''' - T*x/l*w'' + rhoA*s^2*w = 0", FREE),
 }
 
@@ -146,3 +151,30 @@ def test_nothing_is_known_beside_elements():
         + '[elements]\nbody = { type = "mass", at = "z", m = "m" }\n'
     )
     assert not known(model)
+
+
+JOINED = """
+[fields.a]
+domain = ["0", "l"]
+equation = "EI*a'''' + rhoA*s^2*a = 0"
+conditions = ["a(0) = 0", "a'(0) = 0", "a(l) = b(l)", "a'(l) = b'(l)"]
+[fields.b]
+domain = ["l", "2*l"]
+equation = "2*EI*b'''' + rhoA*s^2*b = 0"
+conditions = [
+  "a''(l) = 2*b''(l)", "EI*a'''(l) = 2*EI*b'''(l)SIGNm*s^2*a(l)", "b''(2*l) = 0", "2*EI*b'''(2*l) = -F"
+]
+[outputs]
+y = "b(2*l)"
+"""
+
+
+@pytest.mark.parametrize(("sign", "expected"), [(" + ", True), (" - ", False)])
+def test_two_fields_that_meet_at_a_mass(sign, expected):
+    assert known(pipeline.loads(HEAD + JOINED.replace("SIGN", sign))) is expected
+
+
+def test_an_s_behind_a_name_is_not_overlooked():
+    text = HEAD + '[definitions]\nT_s = "T*(1 + eta*s)"\n'
+    text += FIELD.replace("EQUATION", "T_s*w'' = rhoA*s^2*w")
+    assert not known(pipeline.loads(text.replace("CONDITIONS", """["w(0) = 0", "T_s*w'(l) = F"]""")))
