@@ -22,7 +22,7 @@ from flint import acb, acb_poly, acb_series, arb, arb_poly, arb_series, ctx
 
 from symflex.algebra import FUNCTIONS, LAPLACE, Factored, by_powers, degree_in
 from symflex.algebra.fundamental_matrix import expand
-from symflex.algebra.ring import terms_of
+from symflex.algebra.ring import PolynomialMemo, terms_of
 from symflex.algebra.varying_growth import SingularCoefficientError, growth_along, legs_along
 from symflex.algebra.varying_system import RationalPart, SingularBeginning
 from symflex.errors import Diagnostic, ModelError
@@ -38,6 +38,7 @@ if TYPE_CHECKING:
 
     from symflex.algebra import Dispersion
     from symflex.algebra.fundamental_matrix import PowerExpansion
+    from symflex.algebra.sparse import Monomial
     from symflex.algebra.varying_system import Coefficients, Number, Place
     from symflex.expressions import Expression
     from symflex.transfer.balls import Value
@@ -290,21 +291,31 @@ class BoundLaw(PartedLaw):
 
     def value(self, value: Factored, along: Mapping[str, Along], s: Value | None = None) -> Along:
         """Return a coefficient, given the coordinate and functions of it, and s where that occurs."""
-        names = value.ring.names
         is_series = isinstance(along.get(COORDINATE), arb_series)
         one: Along = arb_series([1]) if is_series else acb(1)
         total: Along = one * ball(value.unit)
         for factor, exponent in value.factors:
-            own: Along = one * 0
-            for monomial, c in terms_of(factor):
-                term: Along = one * c
-                for i, e in monomial:
-                    name = names[i]
-                    known: Along = along.get(name, s if name == LAPLACE else None)
-                    term = term * raised(self.constants[name]() if known is None else known, e)
-                own = own + term
+            own = self._sum(value.ring.names, terms_of(factor), along, s, one)
             total = total * raised(own, exponent)
         return total
+
+    def _sum(
+        self,
+        names: Sequence[str],
+        terms: Sequence[tuple[Monomial, int]],
+        along: Mapping[str, Along],
+        s: Value | None,
+        one: Along,
+    ) -> Along:
+        own: Along = one * 0
+        for monomial, c in terms:
+            term: Along = one * c
+            for i, e in monomial:
+                name = names[i]
+                known: Along = along.get(name, s if name == LAPLACE else None)
+                term = term * raised(self.constants[name]() if known is None else known, e)
+            own = own + term
+        return own
 
     def rational_parts(
         self, x: arb, rates: Callable[[Summand], tuple[tuple[int, Number], ...]]
@@ -352,9 +363,14 @@ class BoundLaw(PartedLaw):
         """Return a bound on a coefficient on balls: factor by factor, as powers of wide balls are wider."""
         total = abs(ball(value.unit))
         for factor, exponent in value.factors:
-            own: acb = self.value(Factored.polynomial(value.ring, factor), along, s)
+            own: acb = self._sum(value.ring.names, self._terms(factor), along, s, acb(1))
             total *= (own.abs_upper() if exponent > 0 else own.abs_lower()) ** exponent
         return total
+
+    @cached_property
+    def _terms(self) -> PolynomialMemo[list[tuple[Monomial, int]]]:
+        """The terms of the factors of coefficients, which are bounded on many balls."""
+        return PolynomialMemo(terms_of)
 
 
 @dataclass(frozen=True, eq=False)
