@@ -34,7 +34,7 @@ from symflex.analysis.time_response.lossless_modes import LosslessModes, lossles
 from symflex.analysis.time_response.lossy_modes import LossyBound, lossy_bound
 from symflex.analysis.time_response.passive_modes import PassiveBound, passive_bound
 from symflex.budget import entered_budget
-from symflex.errors import Diagnostic, UncertifiedError
+from symflex.errors import BudgetError, Diagnostic, UncertifiedError
 from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.winding import RootOnPathError
 from symflex.roots.distributed.proof import holes_about
@@ -69,6 +69,8 @@ MOST_MODES = 2000
 """Velocities fall off so slowly that no number of modes is enough; so many are searched at most."""
 MOST_SEARCHED = 100
 """The same where each is searched in the plane, and does not follow from others: that takes some seconds."""
+SEARCHED_TOO_LONG = "SF505"
+"""The code of a search that ends by itself, next to roots that accumulate; the user's own budgets end all."""
 MOST_CONTINUED = 5000
 """The same where each is told by those before: a millisecond or two."""
 LONG = 100
@@ -186,7 +188,7 @@ def _of_bounded(
     goal = float(largest) * 10.0 ** -min(digits, MOST_DIGITS)
     found = first if first.left <= goal else modes.summed(many)
     if found is None:
-        return None
+        return first if modes.is_exhausted else None
     counts = few, many
     most = MOST_CONTINUED if bounding.function.length <= LONG else many
     for _ in range(ROUNDS if found is not first else 0):
@@ -249,6 +251,7 @@ class BoundedModes:
         self._side = Side(self._bound, self._bound.den, DIGITS, entered_budget())
         self._rings: dict[Cell, Ring] = {}
         self._known: dict[float, PartialSum] = {}
+        self.is_exhausted = False  # whether a search for more modes ended by itself
 
     def summed(self, count: int) -> PartialSum | None:
         """Return the sum over so many modes, None where it is not proved.
@@ -263,8 +266,15 @@ class BoundedModes:
             reached, roots = continued
         else:
             wanted = Modes(min(count, MOST_MODES if side.engine == LOSSLESS else MOST_SEARCHED))
-            side.extend(wanted.count, least)
-            if not side.prove(wanted).is_complete:
+            try:
+                side.extend(wanted.count, least)
+                is_complete = side.prove(wanted).is_complete
+            except BudgetError as error:
+                if any(d.code != SEARCHED_TOO_LONG for d in error.diagnostics):
+                    raise
+                self.is_exhausted = True
+                return None
+            if not is_complete:
                 return None
             reached, roots = side.reached, side.roots
         if reached in self._known:

@@ -397,3 +397,26 @@ def test_the_size_of_a_function_whose_terms_cancel_holds_in_a_wide_ball(width):
 def test_what_an_active_model_leaves_out_is_not_bounded_by_its_energy():
     assert passive_bound(clamped(spring("-1"))) is None
     assert passive_bound(clamped(output="arm.y(0.5 m) - arm.y(0.2 m)")) is None
+
+
+def test_a_search_that_ends_by_itself_leaves_what_was_proved_before(monkeypatch):
+    text = 'elements.arm = { type = "beam", between = ["ground", "x"], E = "1 Pa", A = "1 m^2", l = "1 m", '
+    text += 'I = "0.01 m^4", rho = "1 kg/m^3" }\n'
+    text += 'elements.d = { type = "damper", between = ["x", "ground"], b = "0.1 N*s/m" }\n'
+    text += 'inputs.F = { force = "x" }\noutputs.X = "x"'
+    summed, asked = BoundedModes.summed, []
+
+    def ends_early(self, count):
+        asked.append(count)
+        if len(asked) > 1:
+            self.is_exhausted = True
+            return None
+        return summed(self, count)
+
+    times = SampleTimes.of([0.0, 3.0, 10.0])
+    whole = time_response(of(text), "step", times)
+    monkeypatch.setattr(BoundedModes, "summed", ends_early)
+    found = time_response(of(text), "step", times)
+    assert len(asked) == 2
+    assert found.certified
+    assert np.all(np.abs(found.values - whole.values) <= found.radius + whole.radius)
