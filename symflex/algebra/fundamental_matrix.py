@@ -28,7 +28,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import ceil, comb, floor, inf, log2
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from flint import acb, arb, arb_poly, ctx
 
@@ -61,6 +61,7 @@ if TYPE_CHECKING:
         VaryingSystem,
     )
 
+Derived = TypeVar("Derived", arb_poly, Polynomial)
 Matrix = list[list[Polynomial]]
 """Entries as polynomials in u."""
 
@@ -95,7 +96,8 @@ class PowerExpansion:
     largest: arb  # values are for abs(u) up to this, or not much more
     bits: int  # to which they are exact, relative to minors that grow
     orders: int  # in u that are kept; 0 where they follow from the bits
-    _sized: dict[int, MinorBounds] = field(default_factory=dict, repr=False)
+    # How minors of so many rows grow, on the disc of u on which solutions are bounded.
+    _growths: dict[int, Growth] = field(default_factory=dict, repr=False)
     _made: dict[tuple[Lines, Lines], Polynomial] = field(default_factory=dict, repr=False)
     _cuts: dict[tuple[Lines, Lines, int, int], DiscPolynomial] = field(default_factory=dict, repr=False)
     # Logarithms of bounds on minors, and of the sizes of their coefficients.
@@ -143,68 +145,84 @@ class PowerExpansion:
 
     def _rest(self, rows: Lines, columns: Lines, size: arb, k: int) -> arb:
         """Return a bound on what a polynomial leaves out of the k-th Taylor coefficient, by Cauchy."""
-        own = self._minors(len(rows))
-        if size == 0 and k < own.terms:
+        if size == 0 and k < self.terms:
             return arb(0)
         if (rows, columns) not in self._wholes:
-            starts, ends = own.growth.weights
-            whole = own.growth.size * ends[own.lines.index(rows)] / starts[own.lines.index(columns)]
+            growth, lines = self._growth(len(rows)), self._lines(len(rows))
+            starts, ends = growth.weights
+            whole = growth.size * ends[lines.index(rows)] / starts[lines.index(columns)]
             self._wholes[rows, columns] = bits_of(whole)
-        found, largest, reach = inf, float(self.largest), float(own.growth.reach)
+        found, largest, reach = inf, float(self.largest), float(self.reach)
         way = max(float(size), largest * TINY)
         # Of circles about a point a small one is better for the first derivatives.
         for share in (ASIDE, 1) if k else (0,):
             apart = max(way, largest) * share
             room = (way + apart) / reach
             if room < 1:
-                left = own.terms * log2(room) - log2(1 - room) - (k * log2(apart) if k else 0)
+                left = self.terms * log2(room) - log2(1 - room) - (k * log2(apart) if k else 0)
                 found = min(found, self._wholes[rows, columns] + left)
         # One bit more makes up for rounding.
         return arb(2) ** ceil(found + 1) if found < inf else arb("inf")
 
     def _polynomial(self, rows: Lines, columns: Lines) -> Polynomial:
         if (rows, columns) not in self._made:
-            own = self._minors(len(rows))
-            found: dict[Lines, Polynomial] = {line: arb_poly([int(line == columns)]) for line in own.lines}
+            lines = self._lines(len(rows))
+            found: dict[Lines, Polynomial] = {line: arb_poly([int(line == columns)]) for line in lines}
             with ctx.workprec(self.precision):
                 for step in self._steps:
                     spend()
-                    found = {line: _combined(step, line, found, own.terms) for line in own.lines}
+                    found = {line: _combined(step, line, found, self.terms) for line in lines}
             self._made.update(((line, columns), x) for line, x in found.items())
         return self._made[rows, columns]
 
-    def _minors(self, order: int) -> MinorBounds:
-        if order not in self._sized:
-            system = MinorsAlong(self.system, order)
+    def _lines(self, order: int) -> tuple[Lines, ...]:
+        return MinorsAlong(self.system, order).lines
+
+    def _growth(self, order: int) -> Growth:
+        if order not in self._growths:
             with ctx.workprec(self.bits):
-                far, near = (growth_of(system, self.legs, x) for x in (self.reach, self.largest))
-            terms = ceil((self.precision + far.bits_over(near)) / log2(BEYOND / (1 + ASIDE)))
-            self._sized[order] = MinorBounds(system.lines, far, self.orders or max(2, terms))
-        return self._sized[order]
+                self._growths[order] = growth_of(MinorsAlong(self.system, order), self.legs, self.reach)
+        return self._growths[order]
+
+    @cached_property
+    def _near(self) -> Growth:
+        """How minors of half of the rows grow, which grow most, where they are used."""
+        with ctx.workprec(self.bits):
+            return growth_of(MinorsAlong(self.system, self._half), self.legs, self.largest)
+
+    @property
+    def _half(self) -> int:
+        return max(1, self.system.size // 2)
 
     @cached_property
     def precision(self) -> int:
         """The bits of polynomials: where they are used, minors are smaller than their terms."""
-        half = max(1, self.system.size // 2)
         with ctx.workprec(self.bits):
-            near = growth_of(MinorsAlong(self.system, half), self.legs, self.largest)
-            lost = bits_of(near.size) - least_growth(self.system, half, self.largest)
+            lost = bits_of(self._near.size) - least_growth(self.system, self._half, self.largest)
         return self.bits + GUARD + ceil(max(0.0, lost))
+
+    @cached_property
+    def terms(self) -> int:
+        """The number of terms of all polynomials, those of the steps too."""
+        if self.orders:
+            return self.orders
+        beyond = self._growth(self._half).bits_over(self._near)
+        return max(2, ceil((self.precision + beyond) / log2(BEYOND / (1 + ASIDE))))
 
     @cached_property
     def _steps(self) -> Sequence[dict[tuple[Lines, Lines], Polynomial]]:
         """The fundamental matrix of every step, by rows and columns."""
         found: list[dict[tuple[Lines, Lines], Polynomial]] = []
-        last, terms = len(self.legs) - 1, self._minors(1).terms
+        last = len(self.legs) - 1
         with ctx.workprec(self.precision):
             start, end = self.system.ends()
             for k, (leg, discs) in enumerate(zip(self.legs, self.discs, strict=True)):
                 spend()
                 exact = replace(leg, start=start if k == 0 else leg.start, end=end if k == last else leg.end)
                 if leg.is_first and self.system.beginning is not None:
-                    made = _begun(self.system.beginning, exact, self.reach, terms)
+                    made = _begun(self.system.beginning, exact, self.reach, self.terms)
                 else:
-                    made = _stepped(self.system, exact, discs, terms)
+                    made = _stepped(self.system, exact, discs, self.terms)
                 rows = enumerate(made)
                 found.append({((i,), (j,)): x for i, row in rows for j, x in enumerate(row)})
         return found
@@ -252,26 +270,13 @@ class DiscPolynomial:
     def _derivative(self, k: int) -> Polynomial:
         if not self._derived:
             self._derived.append(self.polynomial)
-        while len(self._derived) <= k:
-            self._derived.append(self._derived[-1].derivative() * (1 / arb(len(self._derived))))
-        return self._derived[k]
+        return _extended(self._derived, k)
 
     def _size(self, k: int) -> arb_poly:
         with ctx.workprec(FEWEST_BITS):
             if not self._sized:
                 self._sized.append(_sizes_of(self.polynomial))
-            while len(self._sized) <= k:
-                self._sized.append(self._sized[-1].derivative() * (1 / arb(len(self._sized))))
-        return self._sized[k]
-
-
-@dataclass(frozen=True, slots=True)
-class MinorBounds:
-    """What is common to the minors of one size."""
-
-    lines: Sequence[Lines]  # the rows of every one
-    growth: Growth  # on the disc of u on which polynomials are bounded
-    terms: int  # of each polynomial
+            return _extended(self._sized, k)
 
 
 def expand(system: VaryingSystem, largest: arb, bits: int, orders: int = 0) -> PowerExpansion:
@@ -288,6 +293,13 @@ def expand(system: VaryingSystem, largest: arb, bits: int, orders: int = 0) -> P
         for leg in legs
     ]
     return PowerExpansion(system, legs, discs, largest, bits, orders)
+
+
+def _extended(derived: list[Derived], k: int) -> Derived:
+    """Return a derivative over the factorial of its order, after those of lower orders in a list."""
+    while len(derived) <= k:
+        derived.append(derived[-1].derivative() * (1 / arb(len(derived))))
+    return derived[k]
 
 
 def _sizes_of(polynomial: Polynomial) -> arb_poly:
@@ -321,11 +333,8 @@ def _minor(
 
 def _begun(beginning: SingularBeginning, step: Leg, reach: arb, terms: int) -> Matrix:
     """Return the solutions that are finite at a singular start, at the end of the first step."""
-    n, share, growth = (
-        beginning.matrix.size,
-        abs(step.length) / step.radius,
-        growth_begun(beginning, step, reach),
-    )
+    n, share = beginning.matrix.size, abs(step.length) / step.radius
+    growth, _ = growth_begun(beginning, step, reach)
     count = ceil((ctx.prec + bits_of(growth.size)) / -log2(float(share.upper())))
     orders = beginning.matrix.series(step.start, count)
     rates: list[list[tuple[int, int, Polynomial]]] = []
@@ -398,8 +407,10 @@ def _stepped(system: VaryingSystem, step: Leg, discs: Sequence[Growth], terms: i
             for place, coefficient in own.items()
         ]
     if parts is None:
+        edges = {(*place, q) for q, own in enumerate(series) for place in own}
         columns = _by_quadrature(series, n, step.length, [_needed(bits, min(x)) for x in places], counts)
     else:
+        edges = {(*part.place, q) for part in parts for q, _ in part.rates}
         needed = [_needed(bits, min(places[0]) - k * doublings) for k in range(counts[0])]
         columns = _by_recurrence(parts, n, step.length, counts, needed)
     left = []
@@ -408,11 +419,14 @@ def _stepped(system: VaryingSystem, step: Leg, discs: Sequence[Growth], terms: i
         left.append((closest, (closest.size * share**count / (1 - share) / closest.reach**m).abs_upper()))
     made: Matrix = [[arb_poly([]) for _ in range(n)] for _ in range(n)]
     for j, values in enumerate(columns):
+        reached = _reached(edges, [(j, 0)], terms)
         for i in range(n):
             made[i][j] = polynomial_of(
                 [
-                    arb(0) if v is None else v + around(rest * disc.weights[1][i] / disc.weights[0][j], v)
-                    for v, (disc, rest) in zip(values[i], left, strict=True)
+                    v + around(rest * disc.weights[1][i] / disc.weights[0][j], v)
+                    if (i, m) in reached
+                    else arb(0)
+                    for m, (v, (disc, rest)) in enumerate(zip(values[i], left, strict=True))
                 ]
             )
     return made
@@ -423,8 +437,8 @@ def _needed(bits: int, left: float) -> int:
     return min(bits, max(FEWEST_BITS, ceil(left)))
 
 
-Column = list[list[Number | None]]
-"""Per state its orders in u; what no coefficient reaches is zero, and stays None."""
+Column = list[list[Number]]
+"""Per state its orders in u."""
 
 
 def _by_recurrence(
@@ -459,14 +473,12 @@ def _by_recurrence(
                     new[part.place[0]] = moved if before is None else before + moved
         for state, following in zip(states, new, strict=True):
             state.append(arb_poly([]) if following is None else following)
-    edges = [(*part.place, q) for part in parts for q, _ in part.rates]
-    reached = [_reached(edges, [(j, 0)], len(counts)) for j in range(n)]
     columns: list[Column] = [[] for _ in range(n)]
-    for i, state in enumerate(states):
+    for state in states:
         total: list[Number] = [*sum(state[1:], state[0]).coeffs()]
         total += [arb(0)] * (n * len(counts) - len(total))
         for j, column in enumerate(columns):
-            column.append([v if (i, m) in reached[j] else None for m, v in enumerate(total[j::n])])
+            column.append(total[j::n])
     return columns
 
 
@@ -532,7 +544,7 @@ def _by_quadrature(
     columns: list[Column] = []
     for j in range(n):
         orders: list[dict[int, Polynomial]] = []
-        values: Column = [[None] * len(counts) for _ in range(n)]
+        values: Column = [[arb(0)] * len(counts) for _ in range(n)]
         for m, (precision, count) in enumerate(zip(needed, counts, strict=True)):
             here: dict[int, Polynomial] = {}
             orders.append(here)

@@ -100,7 +100,6 @@ class Growth:
     reach: arb
     size: arb  # over the weight of a state, at most
     weights: tuple[Weights, Weights]  # at the start, and where it is
-    end: arb | None = None  # a size closer by, if solutions are followed from a pole
 
     def bits_over(self, other: Growth) -> float:
         """Return by how many bits bounds are larger than others."""
@@ -145,8 +144,8 @@ def growth_of(system: MinorsAlong, legs: Sequence[Leg], reach: arb) -> Growth:
     found, size = list[Weights](), arb(1)
     for leg in legs:
         if leg.is_first and system.whole.beginning is not None:
-            begun = growth_begun(system.whole.beginning, leg, reach)
-            size *= (begun.end or begun.size) ** system.order * factorial(system.order)
+            begun, reached = growth_begun(system.whole.beginning, leg, reach)
+            size *= reached**system.order * factorial(system.order)
             states = begun.weights[1]
             found.append(tuple(prod((states[i] for i in rows), start=arb(1)) for rows in system.lines))
             continue
@@ -290,10 +289,10 @@ def _first_step(beginning: SingularBeginning, start: arb, end: arb, reach: arb, 
     raise SingularCoefficientError(float(start.mid()))
 
 
-def growth_begun(beginning: SingularBeginning, leg: Leg, reach: arb) -> Growth:
+def growth_begun(beginning: SingularBeginning, leg: Leg, reach: arb) -> tuple[Growth, arb]:
     """Return how solutions grow that are finite at a start where coefficients have poles.
 
-    The size is that on the radius of the first step, the end that at its end.
+    That is on the radius of the first step; and their size at its end.
     Raises SingularCoefficientError where that takes too many terms.
     """
     found = _begun_along(beginning, leg, reach, BOUND_BITS)
@@ -302,7 +301,7 @@ def growth_begun(beginning: SingularBeginning, leg: Leg, reach: arb) -> Growth:
     return found
 
 
-def _begun_along(beginning: SingularBeginning, leg: Leg, reach: arb, bits: int) -> Growth | None:
+def _begun_along(beginning: SingularBeginning, leg: Leg, reach: arb, bits: int) -> tuple[Growth, arb] | None:
     square = arb(0, leg.radius * 2)
     hull = acb(leg.start + square, square)
     weights = _weights(beginning.matrix, hull, reach)
@@ -313,7 +312,7 @@ def _begun_along(beginning: SingularBeginning, leg: Leg, reach: arb, bits: int) 
     if found is None:
         return None
     scaled = tuple((w * way**d).mid() for w, d in zip(weights, beginning.powers, strict=True))
-    return Growth(reach, found[0], (scaled, scaled), found[1])
+    return Growth(reach, found[0], (scaled, scaled)), found[1]
 
 
 def _bounded(

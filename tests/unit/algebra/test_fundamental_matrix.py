@@ -126,6 +126,17 @@ def test_on_a_wide_ball_a_minor_and_its_slopes_are_told_from_the_middle(middle):
         assert wide[0].rad() < 10 * abs(wide[1]).upper()
 
 
+def test_what_a_step_leaves_out_is_bounded_at_every_order_that_is_kept():
+    # Most orders of a short step lie below what matters; of u^0 an entry below the diagonal has none.
+    made = expand(Equation((), (1.0, -0.9)), arb(10000), 60)
+    assert len(made.legs) > 3
+    for step in made._steps:
+        for (row, column), polynomial in step.items():
+            coefficients = polynomial.coeffs()
+            assert len(coefficients) == made.terms
+            assert all(c.rad() > 0 for c in coefficients[int(row > column) :])
+
+
 def test_a_pole_is_met():
     class Pole(Equation):
         def bounds(self, x, largest):
