@@ -153,13 +153,14 @@ class Reader:
             self.take(error.diagnostics)
             return None
 
-    def quantity(self, value: Value, what: str) -> Quantity | None:
-        """Return a number or a quantity."""
+    def quantity(self, value: Value, what: str, hint: str | None = None) -> Quantity | None:
+        """Return a number or a quantity; the hint is for one that is malformed and has no better one."""
         if isinstance(value, StringValue):
             try:
                 return parse_quantity(value.text)
             except SpecError as error:
-                self.take(error.diagnostics)
+                own = {"SF202": hint}
+                self.take(replace(d, hint=d.hint or own.get(d.code)) for d in error.diagnostics)
                 return None
         self.misfit(f'{what} must be a number or a quantity such as "35 kN/m"', value)
         return None
@@ -172,11 +173,7 @@ class Reader:
             self.misfit(f"{what} must be an expression or a number", value)
             return None
         if quantities and looks_like_quantity(value.text.value):
-            own = Reader()
-            found = own.quantity(value, what)
-            for problem in own.problems:
-                hint = problem.hint or (NAMED if problem.code == "SF202" else None)
-                self.take((replace(problem, hint=hint),))
+            found = self.quantity(value, what, NAMED)
             if found is None:
                 return None
             if found.unit:

@@ -319,16 +319,19 @@ function found = modal_value(modes, coefficients, frames)
   found = scaled_sum(amplitudes, exponents);
 end
 
-%: fundamental_minors parts_at pieces_along minors_through compound
+%: fundamental_minors minors_by_octaves parts_at pieces_along slopes_of with_ends chebyshev_points minors_through compound
 function found = fundamental_minors(along, start, len, bases, places, wanted)
 %FUNDAMENTAL_MINORS  Minors of the matrix Z(len), Z' = A(start + x) Z, over the scales of their
 %   sizes, and the logarithms of these. Part k of A is along(x){k} times powers of
 %   the bases; a row of places has its row, its column, and these powers.
   n = max(max(places(:, 1:2)));
-  count = 1;
-  for k = 1:numel(bases)
-    count = max(count, numel(bases{k}));
-  end
+  pieces = @(limits, where) pieces_along(along, start, len, places, limits, where);
+  found = minors_by_octaves(pieces, n, bases, wanted);
+end
+
+function found = minors_by_octaves(pieces, n, bases, wanted)
+%MINORS_BY_OCTAVES  The same of a matrix of size n, given its pieces for bases up to limits.
+  count = max(cellfun(@numel, bases));
   b = zeros(count, numel(bases));
   for k = 1:numel(bases)
     b(:, k) = bases{k}(:);
@@ -341,7 +344,7 @@ function found = fundamental_minors(along, start, len, bases, places, wanted)
   for k = find(all(isfinite(every), 2)).'
     limits = 16 .^ every(k, :);
     where = find(own == k);
-    [powers, z] = pieces_along(along, start, len, places, limits, where);
+    [powers, z] = pieces(limits, where);
     if ~isempty(z)
       values(where, :) = minors_through(powers, z, b(where, :) ./ limits, wanted);
     end
@@ -349,12 +352,13 @@ function found = fundamental_minors(along, start, len, bases, places, wanted)
   found = num2cell(values, 1);
 end
 
-function c = parts_at(along, start, len, scales, where, shares)
-%PARTS_AT  Parts of A, for bases at their limits, at shares of the length: a row per element.
+function c = parts_at(along, start, len, rate, scales, where, shares)
+%PARTS_AT  Parts of A times a rate, for bases at their limits, at shares of the length: a
+%   row per element.
   x = start + len .* shares;
   c = along(x);
   for k = 1:numel(c)
-    c{k} = scales(k) .* c{k} .* len + zeros(size(x));
+    c{k} = scales(k) .* c{k} .* rate + zeros(size(x));
     if size(c{k}, 1) > 1
       c{k} = c{k}(where, :);
     end
@@ -370,7 +374,7 @@ function [powers, z] = pieces_along(along, start, len, places, limits, where)
   n = max(max(places(:, 1:2)));
   scales = prod(limits .^ places(:, 3:end), 2);
   count = 64;
-  c = parts_at(along, start, len, scales, where, ((1:count) - 0.5) ./ count);
+  c = parts_at(along, start, len, len, scales, where, ((1:count) - 0.5) ./ count);
   % Of a matrix without negative entries the largest eigenvalue is the norm, if states
   % are scaled well.
   growth = zeros(1, count);
@@ -394,25 +398,16 @@ function [powers, z] = pieces_along(along, start, len, places, limits, where)
   shares = [0, growth + 1e-9 .* (1:count)];
   edges = interp1(shares, (0:count) ./ count, shares(end) .* (0:number) ./ number);
   edges([1, end]) = [0, 1];
-  % Points from 0 to 1, what makes Chebyshev's terms of values there, and their integrals.
-  order = 20;
-  angles = pi .* (order:-1:0).' ./ order;
-  terms = cos(angles * (0:order + 1));
-  to_terms = inv(terms(:, 1:end - 1));
-  m = 2:order;
-  grown = terms(:, 4:end) ./ (2 .* (m + 1)) - terms(:, 2:end - 2) ./ (2 .* (m - 1));
-  grown = [terms(:, 2), terms(:, 3) ./ 4, grown];
-  integral = (grown - grown(1, :)) * to_terms ./ 2;
-  points = (1 + cos(angles)) ./ 2;
+  [points, to_terms, integral] = chebyshev_points();
   % Pieces are halved until functions of x are polynomials there to the last digits.
   for turn = 0:12
     widths = diff(edges);
     places_of_x = edges(1:end - 1) + points .* widths;
-    c = parts_at(along, start, len, scales, where, places_of_x(:).');
+    c = parts_at(along, start, len, len, scales, where, places_of_x(:).');
     rough = false(1, numel(widths));
     elements = max(cellfun(@(v) size(v, 1), c));
     for k = 1:numel(c)
-      c{k} = reshape(repmat(c{k}, elements ./ size(c{k}, 1), 1).', order + 1, []);
+      c{k} = reshape(repmat(c{k}, elements ./ size(c{k}, 1), 1).', numel(points), []);
       spectrum = abs(to_terms * c{k});
       bad = max(spectrum(end - 2:end, :), [], 1) > 1e-13 .* max(spectrum, [], 1);
       rough = rough | any(reshape(bad, numel(widths), []), 2).';
@@ -434,34 +429,57 @@ function [powers, z] = pieces_along(along, start, len, places, limits, where)
   while size_left > 1e-18 || steps < 2 .* n
     steps = steps + 1;
     size_left = size_left .* growth(end) ./ number ./ steps;
-    made = zeros(0, size(keys, 2));
-    slopes = {};
-    for k = 1:numel(c)
-      for i = find(keys(:, 1) == places(k, 2)).'
-        key = [places(k, 1), keys(i, 2), keys(i, 3:end) + places(k, 3:end)];
-        at = find(all(made == key, 2));
-        if isempty(at)
-          made(end + 1, :) = key;
-          slopes{end + 1, 1} = c{k} .* rows{i};
-        else
-          slopes{at} = slopes{at} + c{k} .* rows{i};
-        end
-      end
-    end
-    keys = made;
+    [keys, slopes] = slopes_of(keys, rows, places, c);
     rows = cellfun(@(v) integral * v .* widths, slopes, 'UniformOutput', false);
-    for i = 1:size(keys, 1)
-      at = find(all(every == keys(i, :), 2));
-      if isempty(at)
-        every(end + 1, :) = keys(i, :);
-        total{end + 1, 1} = rows{i}(end, :);
-      else
-        total{at} = total{at} + rows{i}(end, :);
-      end
-    end
+    [every, total] = with_ends(every, total, keys, rows);
   end
   powers = every;
   z = cellfun(@(v) reshape(v, [], elements).', total, 'UniformOutput', false);
+end
+
+function [made, slopes] = slopes_of(keys, rows, places, c)
+%SLOPES_OF  Parts times the rows that they act on, summed by row, column and powers.
+  made = zeros(0, size(keys, 2));
+  slopes = {};
+  for k = 1:numel(c)
+    for i = find(keys(:, 1) == places(k, 2)).'
+      key = [places(k, 1), keys(i, 2), keys(i, 3:end) + places(k, 3:end)];
+      at = find(all(made == key, 2));
+      if isempty(at)
+        made(end + 1, :) = key;
+        slopes{end + 1, 1} = c{k} .* rows{i};
+      else
+        slopes{at} = slopes{at} + c{k} .* rows{i};
+      end
+    end
+  end
+end
+
+function [every, total] = with_ends(every, total, keys, rows)
+%WITH_ENDS  Totals by row, column and powers, with what rows are at the last point added.
+  for i = 1:size(keys, 1)
+    at = find(all(every == keys(i, :), 2));
+    if isempty(at)
+      every(end + 1, :) = keys(i, :);
+      total{end + 1, 1} = rows{i}(end, :);
+    else
+      total{at} = total{at} + rows{i}(end, :);
+    end
+  end
+end
+
+function [points, to_terms, integral] = chebyshev_points()
+%CHEBYSHEV_POINTS  Points from 0 to 1, what makes Chebyshev's terms of values there, and
+%   their integrals.
+  order = 20;
+  angles = pi .* (order:-1:0).' ./ order;
+  terms = cos(angles * (0:order + 1));
+  to_terms = inv(terms(:, 1:end - 1));
+  m = 2:order;
+  grown = terms(:, 4:end) ./ (2 .* (m + 1)) - terms(:, 2:end - 2) ./ (2 .* (m - 1));
+  grown = [terms(:, 2), terms(:, 3) ./ 4, grown];
+  integral = (grown - grown(1, :)) * to_terms ./ 2;
+  points = (1 + cos(angles)) ./ 2;
 end
 
 function values = minors_through(powers, z, b, wanted)
@@ -549,25 +567,8 @@ function found = minors_from_tip(along, start, len, bases, places, wanted, tip)
 %   its powers of h and of the bases; the powers_i; the diagonal of B at the start,
 %   which is in no part; and the states whose values there tell a solution.
   n = max(max(places(:, 1:2)));
-  count = max(cellfun(@numel, bases));
-  b = zeros(count, numel(bases));
-  for k = 1:numel(bases)
-    b(:, k) = bases{k}(:);
-  end
-  % Frequencies within a factor of four share their pieces.
-  octaves = ceil(log2(abs(b)) ./ 4);
-  octaves(b == 0) = -250;
-  [every, ~, own] = unique(octaves, 'rows');
-  values = complex(NaN(count, size(wanted, 1) + n));
-  for k = find(all(isfinite(every), 2)).'
-    limits = 16 .^ every(k, :);
-    where = find(own == k);
-    [powers, z] = pieces_from_tip(along, start, len, places, limits, where, tip);
-    if ~isempty(z)
-      values(where, :) = minors_through(powers, z, b(where, :) ./ limits, wanted);
-    end
-  end
-  found = num2cell(values, 1);
+  pieces = @(limits, where) pieces_from_tip(along, start, len, places, limits, where, tip);
+  found = minors_by_octaves(pieces, n, bases, wanted);
 end
 
 %: pieces_from_tip
@@ -608,7 +609,8 @@ function halvings = edge_at_tip(beginning, start, len, n, limits, where, places)
   halvings = [];
   shares = 2 .^ -(0:48);
   scales = prod(limits .^ places(:, 4:end), 2);
-  [c, way] = parts_at_tip(beginning, start, len, scales, where, shares);
+  c = parts_at(beginning, start, len, 1, scales, where, shares);
+  way = at_elements(len, where);
   % Of a matrix without negative entries the largest eigenvalue is the norm, if states
   % are scaled well.
   growth = zeros(size(shares));
@@ -628,7 +630,7 @@ function halvings = edge_at_tip(beginning, start, len, n, limits, where, places)
   [points, to_terms] = chebyshev_points();
   % Where waves grow by e^3, sums of terms of both signs lose a digit.
   for i = find(growth <= 3)
-    c = parts_at_tip(beginning, start, shares(i) .* len, scales, where, points.');
+    c = parts_at(beginning, start, shares(i) .* len, 1, scales, where, points.');
     is_rough = false;
     for k = 1:numel(c)
       spectrum = abs(to_terms * c{k}.');
@@ -650,7 +652,8 @@ function [powers, z] = begun_along(beginning, start, len, n, limits, where, tip)
   [places, own_powers, exponents, free] = tip{:};
   [points, to_terms] = chebyshev_points();
   scales = prod(limits .^ places(:, 4:end), 2);
-  [c, way] = parts_at_tip(beginning, start, len, scales, where, points.');
+  c = parts_at(beginning, start, len, 1, scales, where, points.');
+  way = at_elements(len, where);
   elements = max([cellfun(@(v) size(v, 1), c), numel(way)]);
   way = way.' .* ones(1, elements);
   for k = 1:numel(c)
@@ -683,35 +686,15 @@ function [powers, z] = begun_along(beginning, start, len, n, limits, where, tip)
   largest = zeros(n * n, elements);
   quiet = 0;
   for step = 1:200
-    made = zeros(0, size(keys, 2));
-    slopes = {};
-    for k = 1:numel(c)
-      for i = find(keys(:, 1) == places(k, 2)).'
-        key = [places(k, 1), keys(i, 2), keys(i, 3:end) + places(k, 4:end)];
-        at = find(all(made == key, 2));
-        if isempty(at)
-          made(end + 1, :) = key;
-          slopes{end + 1, 1} = c{k} .* rows{i};
-        else
-          slopes{at} = slopes{at} + c{k} .* rows{i};
-        end
-      end
-    end
-    keys = made;
+    [keys, slopes] = slopes_of(keys, rows, places(:, [1:2, 4:end]), c);
     rows = slopes;
     sizes = zeros(n * n, elements);
     for i = 1:size(keys, 1)
       rows{i} = integrals{keys(i, 1)} * slopes{i};
-      at = find(all(every == keys(i, :), 2));
-      if isempty(at)
-        every(end + 1, :) = keys(i, :);
-        total{end + 1, 1} = rows{i}(end, :);
-      else
-        total{at} = total{at} + rows{i}(end, :);
-      end
       at = keys(i, 1) + n * (keys(i, 2) - 1);
       sizes(at, :) = max(sizes(at, :), max(abs(rows{i}), [], 1));
     end
+    [every, total] = with_ends(every, total, keys, rows);
     largest = max(largest, sizes);
     quiet = (quiet + 1) .* all(sizes(:) <= 1e-18 .* largest(:));
     if quiet == n
@@ -725,18 +708,9 @@ function [powers, z] = begun_along(beginning, start, len, n, limits, where, tip)
   end
 end
 
-%: parts_at_tip
-function [c, way] = parts_at_tip(beginning, start, len, scales, where, shares)
-%PARTS_AT_TIP  Parts of B, for bases at their limits, at shares of the length, and this length.
-  x = start + len .* shares;
-  c = beginning(x);
-  for k = 1:numel(c)
-    c{k} = scales(k) .* c{k} + zeros(size(x));
-    if size(c{k}, 1) > 1
-      c{k} = c{k}(where, :);
-    end
-  end
-  way = len;
+%: at_elements
+function way = at_elements(way, where)
+%AT_ELEMENTS  A length at some elements.
   if numel(way) > 1
     way = way(where);
   end
@@ -773,15 +747,6 @@ function [every, joined] = joined_pieces(powers, z, more, after)
   for k = 1:numel(after)
     joined{at(numel(z) + k)}(:, count + 1:end) = after{k} .* column;
   end
-end
-
-%: chebyshev_points
-function [points, to_terms] = chebyshev_points()
-%CHEBYSHEV_POINTS  Points from 0 to 1, and what makes Chebyshev's terms of values there.
-  order = 20;
-  angles = pi .* (order:-1:0).' ./ order;
-  to_terms = inv(cos(angles * (0:order)));
-  points = (1 + cos(angles)) ./ 2;
 end
 
 %: scaled_sum
