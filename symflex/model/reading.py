@@ -159,8 +159,10 @@ class Reader:
             try:
                 return parse_quantity(value.text)
             except SpecError as error:
-                own = {"SF202": hint}
-                self.take(replace(d, hint=d.hint or own.get(d.code)) for d in error.diagnostics)
+                self.take(
+                    replace(d, hint=d.hint or (hint if d.code == "SF202" else None))
+                    for d in error.diagnostics
+                )
                 return None
         self.misfit(f'{what} must be a number or a quantity such as "35 kN/m"', value)
         return None

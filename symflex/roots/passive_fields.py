@@ -22,22 +22,21 @@ from typing import TYPE_CHECKING
 from flint import arb
 
 from symflex.algebra import LAPLACE, Factored, by_powers, degree_in
-from symflex.algebra.ring import terms_of
 from symflex.equations import assemble
 from symflex.equations.along import composed
 from symflex.expressions import Name
-from symflex.library.elements import LinearForm
+from symflex.library.elements import LinearForm, put_in
 from symflex.model.along import COORDINATE, varies_along_x
 from symflex.model.signs import Line, value_along
 from symflex.roots import precision
-from symflex.transfer.balls import ball
+from symflex.transfer.balls import evaluated
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from symflex.equations import Continuum, Equations
     from symflex.expressions import Call
-    from symflex.library.elements import Variable
+    from symflex.library.elements import Terms, Variable
     from symflex.model import ExactValue, Model
 
 BITS = 128
@@ -52,8 +51,6 @@ BEAM = 4
 Matrix = list[list[Factored]]
 Pair = tuple[int, int, int]
 """The number of a displacement, that of its force, and the sign of the work they do."""
-Parts = dict["Variable", Factored]
-"""What something is of states that are free."""
 
 
 def are_passive(model: Model, values: Iterable[tuple[str, ExactValue]]) -> bool:
@@ -152,12 +149,12 @@ class _Fields:
             for (one, other), work in supplied.items()
         )
 
-    def _eliminated(self, forces: set[Variable]) -> dict[Variable, Parts] | None:
+    def _eliminated(self, forces: set[Variable]) -> dict[Variable, Terms] | None:
         """Return what conditions say of states, in terms of those that stay free: forces follow first.
 
         None where a state is multiplied by what may vanish at some s in the right half plane.
         """
-        known: dict[Variable, Parts] = {}
+        known: dict[Variable, Terms] = {}
         for row in self.equations.rows:
             parts = _reduced(row.form, known)
             chosen = min(parts, key=lambda v: v not in forces, default=None)
@@ -166,7 +163,7 @@ class _Fields:
                 if self._powers(own, None) is None and self._powers(-own, None) is None:
                     return None
                 known[chosen] = {v: -c / own for v, c in parts.items()}
-                known = {v: _reduced(LinearForm(tuple(c.items())), known) for v, c in known.items()}
+                known = {v: put_in(c, known) for v, c in known.items()}
         return known
 
     def _ends(self, field: Continuum) -> list[tuple[int, Factored, Sequence[Variable | None]]]:
@@ -236,16 +233,8 @@ class _Fields:
 
     def _number(self, value: Factored, x: arb | None = None) -> arb:
         """Return a value on a ball of x; not a number where a parameter has none."""
-        total = ball(value.unit)
-        for factor, exponent in value.factors:
-            own = arb(0)
-            for monomial, c in terms_of(factor):
-                term = arb(c)
-                for i, e in monomial:
-                    term = term * self._generator(value.ring.names[i], x) ** e
-                own = own + term
-            total = total * own**exponent
-        return total
+        found: arb = evaluated(value, lambda name: self._generator(name, x), arb(1))
+        return found
 
     def _generator(self, name: str, x: arb | None) -> arb:
         expression = self._functions.get(name, Name(name))
@@ -358,16 +347,10 @@ def _begins_without_force(field: Continuum, pairs: Iterable[Pair]) -> bool:
     return all(x.is_zero for _, p, _ in pairs for x in values[p])
 
 
-def _reduced(form: LinearForm, known: Mapping[Variable, Parts]) -> Parts:
+def _reduced(form: LinearForm, known: Mapping[Variable, Terms]) -> Terms:
     """Return a form of what is free; inputs rest."""
-    forms = [
-        LinearForm(tuple((v, c * coefficient) for v, c in known[variable].items()))
-        if variable in known
-        else LinearForm(((variable, coefficient),))
-        for variable, coefficient in form.terms
-        if variable.kind != "input"
-    ]
-    return dict(LinearForm.total(forms).terms)
+    terms = {v: c for v, c in LinearForm.total([form]).terms if v.kind != "input"}
+    return put_in(terms, known)
 
 
 def _at(value: Factored, place: Factored) -> Factored:

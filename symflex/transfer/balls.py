@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from flint import acb, acb_series, arb, ctx, fmpq
 
-from symflex.algebra import FUNCTIONS
+from symflex.algebra import FUNCTIONS, terms_of
 from symflex.errors import Diagnostic, ModelError
 from symflex.expressions import Expression, fold, format_expression
 
@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
     from flint import fmpz_mpoly
 
+    from symflex.algebra import Factored
+    from symflex.algebra.sparse import Monomial
     from symflex.model import ExactValue
 
     Ball = Callable[[acb], acb]
@@ -157,6 +159,30 @@ def raised(base: Arithmetic, exponent: int) -> Arithmetic:
         # Balls are not finite then by themselves; series of them raise an error.
         return found * arb("nan") if found[0].contains(0) else 1 / found
     return found
+
+
+def evaluated(value: Factored, number: Callable[[str], Arithmetic], one: Arithmetic) -> Arithmetic:
+    """Return a rational function with a number in place of every generator; ``one`` is 1 of their kind."""
+    total, names = one * ball(value.unit), value.ring.names
+    for factor, exponent in value.factors:
+        total = total * raised(summed(terms_of(factor), names, number, one), exponent)
+    return total
+
+
+def summed(
+    terms: Sequence[tuple[Monomial, int]],
+    names: Sequence[str],
+    number: Callable[[str], Arithmetic],
+    one: Arithmetic,
+) -> Arithmetic:
+    """Return the same of a polynomial, by its terms."""
+    total = one * 0
+    for monomial, coefficient in terms:
+        term = one * coefficient
+        for i, exponent in monomial:
+            term = term * raised(number(names[i]), exponent)
+        total = total + term
+    return total
 
 
 Step = tuple[int, tuple[int, ...], int]

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, partial
 from math import gcd
 from typing import TYPE_CHECKING, Any
 
@@ -29,7 +29,7 @@ from symflex.errors import Diagnostic, ModelError
 from symflex.expressions import fold
 from symflex.model.along import COORDINATE
 from symflex.model.linearity import integer_exponent
-from symflex.transfer.balls import at_centre, ball, raised, series_terms
+from symflex.transfer.balls import at_centre, ball, evaluated, raised, series_terms, summed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -293,29 +293,11 @@ class BoundLaw(PartedLaw):
         """Return a coefficient, given the coordinate and functions of it, and s where that occurs."""
         is_series = isinstance(along.get(COORDINATE), arb_series)
         one: Along = arb_series([1]) if is_series else acb(1)
-        total: Along = one * ball(value.unit)
-        for factor, exponent in value.factors:
-            own = self._sum(value.ring.names, terms_of(factor), along, s, one)
-            total = total * raised(own, exponent)
-        return total
+        return evaluated(value, partial(self._number, along, s), one)
 
-    def _sum(
-        self,
-        names: Sequence[str],
-        terms: Sequence[tuple[Monomial, int]],
-        along: Mapping[str, Along],
-        s: Value | None,
-        one: Along,
-    ) -> Along:
-        own: Along = one * 0
-        for monomial, c in terms:
-            term: Along = one * c
-            for i, e in monomial:
-                name = names[i]
-                known: Along = along.get(name, s if name == LAPLACE else None)
-                term = term * raised(self.constants[name]() if known is None else known, e)
-            own = own + term
-        return own
+    def _number(self, along: Mapping[str, Along], s: Value | None, name: str) -> Along:
+        known: Along = along.get(name, s if name == LAPLACE else None)
+        return self.constants[name]() if known is None else known
 
     def rational_parts(
         self, x: arb, rates: Callable[[Summand], tuple[tuple[int, Number], ...]]
@@ -363,7 +345,8 @@ class BoundLaw(PartedLaw):
         """Return a bound on a coefficient on balls: factor by factor, as powers of wide balls are wider."""
         total = abs(ball(value.unit))
         for factor, exponent in value.factors:
-            own: acb = self._sum(value.ring.names, self._terms(factor), along, s, acb(1))
+            number = partial(self._number, along, s)
+            own: acb = summed(self._terms(factor), value.ring.names, number, acb(1))
             total *= (own.abs_upper() if exponent > 0 else own.abs_lower()) ** exponent
         return total
 

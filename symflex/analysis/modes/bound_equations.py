@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING
 
 from flint import acb, acb_mat, arb, arb_mat
 
-from symflex.algebra import LAPLACE, Factored, terms_of
+from symflex.algebra import LAPLACE, Factored
 from symflex.algebra.propagators import EXPONENTIAL, Propagation
 from symflex.analysis.modes.shape import DistributedShape, VaryingCarrier
 from symflex.equations.along import composed
 from symflex.model.along import is_tapered, varies_along_x
-from symflex.transfer.balls import at_centre, ball, enclose, enclosure
+from symflex.transfer.balls import at_centre, enclose, enclosure, evaluated
 from symflex.transfer.enclose_kernels import fundamental_functions
 from symflex.transfer.varying_law import BoundLaw
 
@@ -158,7 +158,7 @@ class BoundEquations:
         for entry, row in zip(entries, equations.rows, strict=True):
             for variable, coefficient in row.form.terms:
                 if variable in columns:
-                    entry[columns[variable]] += evaluated(coefficient, values)
+                    entry[columns[variable]] += _evaluated(coefficient, values)
         continua = tuple(_continuum(c, values, laws) for c in equations.continua)
         return SystemAt(tuple(columns), acb_mat(entries), continua)
 
@@ -260,25 +260,16 @@ class SystemAt:
     continua: tuple[ContinuumAt, ...]
 
 
-def evaluated(value: Factored, values: Mapping[str, acb]) -> acb:
+def _evaluated(value: Factored, values: Mapping[str, acb]) -> acb:
     """Return a rational function with a ball in place of every generator; KeyError where one has no value."""
-    names = value.ring.names
-    result = acb(ball(value.unit))
-    for factor, exponent in value.factors:
-        total = acb(0)
-        for monomial, coefficient in terms_of(factor):
-            term = acb(coefficient)
-            for i, power in monomial:
-                term = term * values[names[i]] ** power
-            total = total + term
-        result = result * total**exponent
-    return result
+    found: acb = evaluated(value, values.__getitem__, acb(1))
+    return found
 
 
 def _define(name: str, value: Factored, values: Values) -> bool:
     """Add a definition's value; False when it holds what has none yet."""
     try:
-        values[name] = evaluated(value, values)
+        values[name] = _evaluated(value, values)
     except KeyError:
         return False
     return True
@@ -295,9 +286,9 @@ def _propagators(propagation: Propagation, values: Values, laws: Laws) -> Values
     columns: dict[tuple[int, int], tuple[Value, ...]] = {}
     for p in propagation.propagators:
         law = propagation.table.dispersions[p.dispersion]
-        length = evaluated(propagation.lengths[p.dispersion][p.length], values)
+        length = _evaluated(propagation.lengths[p.dispersion][p.length], values)
         if p.order == EXPONENTIAL:
-            found[p.generator] = (-evaluated(law.shift, values) * length).exp()
+            found[p.generator] = (-_evaluated(law.shift, values) * length).exp()
             continue
         key = (p.dispersion, p.length)
         if law in laws:
@@ -308,7 +299,7 @@ def _propagators(propagation: Propagation, values: Values, laws: Laws) -> Values
             found[p.generator] = matrices[key][row][column]
             continue
         if key not in columns:
-            coefficients = [evaluated(c, values) for c in law.characteristic]
+            coefficients = [_evaluated(c, values) for c in law.characteristic]
             columns[key] = fundamental_functions(coefficients, length)
         found[p.generator] = at_centre(columns[key][p.order])
     return found
@@ -326,12 +317,12 @@ def _continuum(continuum: Continuum, values: Values, laws: Laws) -> ContinuumAt:
         continuum.name,
         continuum.kind,
         system.states,
-        tuple(tuple(evaluated(x, values) for x in row) for row in matrix),
-        tuple(tuple(evaluated(x, values) for x in column) for column in loads),
-        evaluated(continuum.start, values).real,
-        evaluated(continuum.length, values).real,
+        tuple(tuple(_evaluated(x, values) for x in row) for row in matrix),
+        tuple(tuple(_evaluated(x, values) for x in column) for column in loads),
+        _evaluated(continuum.start, values).real,
+        _evaluated(continuum.length, values).real,
         continuum.initial,
         continuum.loads,
-        () if axes is None else tuple(evaluated(x, values).real for x in (axes.cos, axes.sin)),
+        () if axes is None else tuple(_evaluated(x, values).real for x in (axes.cos, axes.sin)),
         varying,
     )

@@ -21,7 +21,9 @@ from symflex.library.elements.element import (
     Port,
     PortTerminal,
     Stamp,
+    Terms,
     Variable,
+    put_in,
 )
 from symflex.library.elements.frame import FrameMember
 from symflex.library.elements.line import Beam, LineElement, Rod, Shaft, String
@@ -99,5 +101,7 @@ __all__ = [
     "PortTerminal",
     "Sign",
     "Stamp",
+    "Terms",
     "Variable",
+    "put_in",
 ]

@@ -95,6 +95,18 @@ class LinearForm:
         return LinearForm(tuple((v, c * scale) for v, c in self.terms if not scale.is_zero))
 
 
+Terms = dict[Variable, "Factored"]
+"""The coefficients of a linear combination, by its variables."""
+
+
+def put_in(terms: Terms, known: Mapping[Variable, Terms]) -> Terms:
+    """Return a combination with others in place of some variables."""
+    if not any(v in known for v in terms):
+        return terms
+    forms = [LinearForm(tuple(known.get(v, {v: c**0}).items())) * c for v, c in terms.items()]
+    return dict(LinearForm.total(forms).terms)
+
+
 @dataclass(frozen=True, slots=True)
 class Admittance:
     """A two-terminal admittance: ``admittance * (a - b)`` flows from ``a`` to ``b``.

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from flint import arb, arb_poly, ctx, fmpq
 
 from symflex.algebra import LAPLACE, Factored, terms_of
-from symflex.library.elements import LinearForm
+from symflex.library.elements import LinearForm, put_in
 from symflex.model.signs import is_passive
 from symflex.transfer.balls import ball, later
 
@@ -25,9 +25,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from symflex.equations import Equations
-    from symflex.library.elements import Variable
+    from symflex.library.elements import Terms, Variable
 
-Terms = dict["Variable", "Factored"]
 ONE_WAY = "forces and motions are coupled in one direction only, as in a loop"
 LOSES = "something in it loses or supplies energy"
 MASS_BITS = 256
@@ -167,9 +166,9 @@ class _NetworkReading:
         replaced = self._signals(signals)
         for variable in replaced:
             del rows[variable]
-        rows = {v: _put_in(row, replaced) for v, row in rows.items()}
+        rows = {v: put_in(row, replaced) for v, row in rows.items()}
         read = next(o for o in equations.outputs if o.name == output)
-        form = _put_in(dict(LinearForm.total([read.form]).terms), replaced)
+        form = put_in(dict(LinearForm.total([read.form]).terms), replaced)
         self._take_members(rows)
         inputs = set(equations.inputs)
         below, given = 0, next(v for v in equations.inputs if v.owner == source)
@@ -238,7 +237,7 @@ class _NetworkReading:
                 continue
             waited = 0
             own = row[variable]
-            found[variable] = _put_in({v: c / -own for v, c in others.items()}, found)
+            found[variable] = put_in({v: c / -own for v, c in others.items()}, found)
         return found
 
     def _take_members(self, rows: Mapping[Variable, Terms]) -> None:
@@ -396,14 +395,6 @@ class _NetworkReading:
 
 def _refuse(message: str) -> NoReturn:
     raise OtherNetworkError(message)
-
-
-def _put_in(terms: Terms, known: Mapping[Variable, Terms]) -> Terms:
-    """Return a form with other forms in place of some variables."""
-    if not any(v in known for v in terms):
-        return terms
-    forms = [LinearForm(tuple(known.get(v, {v: c**0}).items())) * c for v, c in terms.items()]
-    return dict(LinearForm.total(forms).terms)
 
 
 def _rational_slope(value: Factored) -> fmpq | None:
