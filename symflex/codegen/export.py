@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from symflex.codegen.program.nodes import Piecewise
     from symflex.codegen.program.verify import Verification
     from symflex.model import Model, ModelParameter
-    from symflex.transfer import AnyTransferFunction, TransferFunction
+    from symflex.transfer import AnyTransferFunction
 
 
 ACCURACY = 1e-13
@@ -139,7 +139,6 @@ class Language:
     print: Callable[[Contents], Export]  # makes the file of its contents
     solves: bool = False  # true where there is what solves networks of line elements
     follows: bool = False  # true where there is what follows waves through members that vary along x
-    begins: bool = False  # true where these may begin where a stiffness vanishes
 
     def export(
         self,
@@ -185,8 +184,6 @@ class Language:
         for tf in tfs:
             if not isinstance(tf, NestedTransferFunction) and not self.follows:
                 tf.kernels.without_tapers("code in this language is", "export it to numpy, c or matlab")
-            elif not isinstance(tf, NestedTransferFunction) and not self.begins:
-                _refuse_tips(tf)
         members = _members(tfs, band_hz or model.analysis.band, samples)
         contents = Contents(model, members, stem, is_alone, digits)
         made = self.print(contents)
@@ -203,14 +200,6 @@ def _refuse_networks(tfs: Sequence[AnyTransferFunction]) -> None:
             )
             hint = "export it to numpy or c; small networks have a formula with --representation expanded"
             raise ModelError(Diagnostic("SF910", message, None, hint))
-
-
-def _refuse_tips(tf: TransferFunction) -> None:
-    """Raise SF910 for a function of a member that begins where a stiffness vanishes."""
-    tip = next((law.name for law in tf.kernels.dispersions if law.singular is not None), None)
-    if tip is not None:
-        message = f"a stiffness vanishes at an end of '{tip}', where code in this language cannot begin"
-        raise ModelError(Diagnostic("SF910", message, None, "export it to numpy, c or matlab"))
 
 
 def _members(

@@ -576,7 +576,6 @@ MATLAB = Language(
     "MATLAB and Octave function file, a handle per transfer function, verified likewise",
     matlab_function_file,
     follows=True,
-    begins=True,
 )
 
 

@@ -56,7 +56,7 @@ def seeds(most):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", seeds(6)[::4])
+@pytest.mark.parametrize("seed", seeds(6)[::6])
 def test_responses_grow_and_vanish_where_roots_are(seed):
     network = random_members(seed, 6)
     found = located(network, Modes(2))
@@ -67,7 +67,7 @@ def test_responses_grow_and_vanish_where_roots_are(seed):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", seeds(4)[:16:3])
+@pytest.mark.parametrize("seed", seeds(4)[:16:5])
 def test_as_many_are_counted_as_the_response_winds(seed):
     network = random_members(seed, 4)
     near = located(network, Modes(2))

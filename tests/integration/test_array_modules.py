@@ -21,7 +21,7 @@ from tests.house.repository import slow_ones, specifications, uniform
 from tests.unit.codegen.against_balls import axis_points, worst_errors
 from tests.unit.codegen.exportable import MASSLESS, PIPE
 from tests.unit.codegen.test_numpy_distributed import beam, clamped_end_compliance, specification
-from tests.unit.codegen.test_numpy_tapers import CONE, receptance
+from tests.unit.codegen.test_numpy_tapers import CONE, hanging, receptance
 
 ROOT = Path(__file__).parents[2]
 SPECS = {path.stem: path for path in uniform(specifications(ROOT / "derivations", "*/*.toml"))}
@@ -29,6 +29,7 @@ SPECS = {path.stem: path for path in uniform(specifications(ROOT / "derivations"
 needs_strict = pytest.mark.needs_module("array_api_strict")
 needs_jax = pytest.mark.needs_module("jax")
 
+HANGING = ROOT / "derivations" / "tapers" / "hanging_string.toml"
 CHAIN = "\n".join(
     [
         'symflex = 1\n[parameters]\nm = "2 kg"\nk = "3 kN/m"\nb = "4 N*s/m"\n[elements]',
@@ -161,6 +162,18 @@ def test_jax_compiles_and_differentiates_a_conical_rod(over_jax, jax, jnp):
     assert np.asarray(jax.jit(function)(s)) == pytest.approx(receptance(s), rel=1e-11)
     slope = jax.jit(jax.grad(lambda c: jnp.real(function(4000j + 100, c=c))))(0.5)
     above, below = (receptance(4000j + 100, 0.5 + h) for h in (1e-5, -1e-5))
+    assert float(slope) == pytest.approx(np.real(above - below) / 2e-5, rel=1e-8)
+
+
+@pytest.mark.slow
+@needs_jax
+def test_jax_compiles_and_differentiates_a_string_that_hangs(over_jax, jax, jnp):
+    function = over_jax(HANGING.read_text()).mid_over_w_0
+    s = np.array([2j, 9j, 0.3 + 4j, -0.5 + 12j, 1.5])
+    assert np.asarray(jax.jit(function)(s)) == pytest.approx(hanging(s, 1.0, 2.0), rel=1e-11)
+    slope = jax.jit(jax.grad(lambda l: jnp.real(function(9j + 0.1, l=l))))(2.0)  # noqa: E741
+    # Half of the length is above the free end.
+    above, below = (hanging(9j + 0.1, 1.0 + h / 2, 2.0 + h) for h in (1e-5, -1e-5))
     assert float(slope) == pytest.approx(np.real(above - below) / 2e-5, rel=1e-8)
 
 

@@ -16,7 +16,7 @@ import pytest
 from symflex import pipeline
 from symflex.codegen.latex import LatexExporter
 from symflex.print.latex import DOCUMENT
-from tests.integration.test_latex_compiles import COMPLAINT, HOSTILE, LABELS, SAFE, UNITS
+from tests.integration.test_latex_compiles import COMPLAINT, HOSTILE, LABELS, UNITS, settled
 from tests.unit.codegen.test_numpy_hostile import HOSTILE as TEXTS
 
 DERIVATIONS = Path(__file__).parents[2] / "derivations"
@@ -35,9 +35,6 @@ def engines(quick):
     ]
 
 
-RUNS = 3
-"""With hyperref, a third run settles the outlines."""
-
 # Two columns as in a journal, with packages that authors load.
 PAPER = r"""\documentclass[10pt,twocolumn]{article}
 \usepackage[T1]{fontenc}
@@ -52,9 +49,7 @@ PAPER = r"""\documentclass[10pt,twocolumn]{article}
 
 
 def compiled(engine, folder, name="paper"):
-    for _ in range(RUNS):
-        subprocess.run([engine, *SAFE, f"{name}.tex"], cwd=folder, capture_output=True, check=False)
-    log = (folder / f"{name}.log").read_text(encoding="latin-1")
+    log = settled(engine, folder, name)
     assert "Output written" in log
     return COMPLAINT.findall(log)
 

@@ -60,7 +60,7 @@ def assert_close(found, expected):
 
 @pytest.mark.slow
 @given(network=networks())
-@quiet(150)
+@quiet(80)
 def test_the_exported_functions_agree_with_the_dense_tableau(numpy_functions, network):
     functions = numpy_functions(to_toml(network))
     for output, source in pairs(network):
@@ -69,7 +69,7 @@ def test_the_exported_functions_agree_with_the_dense_tableau(numpy_functions, ne
 
 
 @given(network=networks())
-@quiet(100)
+@quiet(60)
 @pytest.mark.slow
 def test_an_exported_function_broadcasts_over_s(numpy_functions, network):
     function = next(iter(numpy_functions(to_toml(network)).values()))
@@ -78,7 +78,7 @@ def test_an_exported_function_broadcasts_over_s(numpy_functions, network):
 
 
 @given(network=networks())
-@quiet(100)
+@quiet(60)
 @pytest.mark.slow
 def test_the_bound_transfer_functions_agree_with_the_dense_tableau(network):
     model = symflex.loads(to_toml(network))
@@ -90,7 +90,7 @@ def test_the_bound_transfer_functions_agree_with_the_dense_tableau(network):
 
 @pytest.mark.slow
 @given(network=reciprocal_networks())
-@quiet(100)
+@quiet(60)
 def test_a_passive_network_is_reciprocal(network):
     model = symflex.loads(to_toml(network))
     there = model.transfer_function("Y_2", "U_1").bind()
@@ -102,7 +102,7 @@ def test_a_passive_network_is_reciprocal(network):
 
 @pytest.mark.slow
 @given(network=passive_networks())
-@quiet(100)
+@quiet(60)
 def test_the_poles_of_a_passive_network_are_not_in_the_right_half_plane(network):
     H = symflex.loads(to_toml(network)).transfer_function("Y_1", "U_1").bind()
     assert not any(pole.re > 0 for pole in H.poles())  # a ball is positive only when all of it is
@@ -110,7 +110,7 @@ def test_the_poles_of_a_passive_network_are_not_in_the_right_half_plane(network)
 
 @pytest.mark.slow
 @given(network=passive_networks())
-@quiet(100)
+@quiet(60)
 def test_the_zeros_of_a_driving_point_are_not_in_the_right_half_plane(network):
     G = symflex.loads(to_toml(network)).transfer_function("Y_1", "U_1")
     assume(G.num != 0)  # a held node has no zeros to speak of

@@ -286,5 +286,4 @@ C99 = Language(
     c_files,
     solves=True,
     follows=True,
-    begins=True,
 )

@@ -400,7 +400,6 @@ NUMPY = Language(
     partial(python_module, dialect=NUMPY_DIALECT),
     solves=True,
     follows=True,
-    begins=True,
 )
 ARRAY_API = Language(
     ".py",

@@ -101,19 +101,30 @@ class PrivateText(ABC):
         """What calls the functions of x that members vary like."""
         given = ", ".join(["_x", *self.arguments[1:]])
         return {
-            minors.along: f"lambda _x: _along_{number}_of_{self.name}({self.leading}{given})"
-            for number, minors in enumerate(self.given.minors)
+            minors.along: self._joined([f"lambda _x: {name}({self.leading}{given})" for name in laws])
+            for minors, laws in zip(self.given.minors, self._laws, strict=True)
         }
+
+    @property
+    def _laws(self) -> list[dict[str, tuple[tree.CodeNode, ...]]]:
+        """Functions of x by their names, of every matrix that is followed along x."""
+        minors = self.given.minors
+        return [{f"_along_{i}_of_{self.name}": own.along.values} for i, own in enumerate(minors)]
+
+    def _joined(self, laws: Sequence[str]) -> str:
+        """Return how functions of x are given to what follows a matrix."""
+        return laws[0]
 
     def _along(self) -> list[str]:
         """Return the lines of the functions of x that members vary like."""
         lines: list[str] = []
-        for number, minors in enumerate(self.given.minors):
-            variable = identifiers({"x": "x"}, {*self.dialect.reserved, *self.arguments})["x"]
-            own, printer = self._body(minors.along, variable)
-            values = ", ".join(printer.print(v) for v in minors.along.values)
-            head = self._head(f"_along_{number}_of_{self.name}", [variable, *self.arguments[1:]])
-            lines += [*head, *own, *statement("return", f"[{values}]", "    "), "", ""]
+        variable = identifiers({"x": "x"}, {*self.dialect.reserved, *self.arguments})["x"]
+        for minors, laws in zip(self.given.minors, self._laws, strict=True):
+            for name, values in laws.items():
+                own, printer = self._body(minors.along.needed(values), variable)
+                texts = ", ".join(printer.print(v) for v in values)
+                head = self._head(name, [variable, *self.arguments[1:]])
+                lines += [*head, *own, *statement("return", f"[{texts}]", "    "), "", ""]
         return lines
 
     def _piece(self, number: int, piece: tree.CodePiece) -> list[str]:
@@ -317,6 +328,20 @@ class TracedText(PrivateText):
             ]
         return [*lines, ")"]
 
+    @property
+    def _laws(self) -> list[dict[str, tuple[tree.CodeNode, ...]]]:
+        # Libraries may warn of the law's poles at a tip, where that of the beginning is regular.
+        found = super()._laws
+        for number, (minors, laws) in enumerate(zip(self.given.minors, found, strict=True)):
+            if minors.tip:
+                ((name, values),) = laws.items()
+                count = len(minors.places)
+                laws |= {name: values[:count], f"_beginning_{number}_of_{self.name}": values[count:]}
+        return found
+
+    def _joined(self, laws: Sequence[str]) -> str:
+        return f"[{', '.join(laws)}]"
+
     def _body(self, code: tree.Straight, variable: str) -> tuple[list[str], ArrayPrinter]:
         assignments = (*code.constants, *code.assignments)
         taken = {*self.dialect.reserved, *self.arguments, variable}
@@ -455,7 +480,8 @@ class ArrayPrinter(PythonPrinter):
 
     def positions(self, minors: tree.FundamentalMinors) -> list[str]:
         """Return what a matrix is followed by, along cuts that no value changes."""
-        return [*super(PythonPrinter, self).positions(minors), *(repr(x) for x in self.cuts[minors])]
+        places, wanted, tip = super().positions(minors)
+        return [places, wanted, *(repr(x) for x in self.cuts[minors]), tip]
 
     def print(self, node: tree.CodeNode) -> str:
         """Return the text of an expression."""
@@ -583,7 +609,8 @@ def cuts_along(
         sizes = (np.max(np.abs(base[np.isfinite(base)])) for base in bases)
         # Beside the imaginary axis what divides may be smaller than on it.
         limits = np.array([BEYOND * size for size in sizes])
-        cut = edges_along(along, start, length, minors.places, limits, np.array([0]))
+        tip = astuple(minors.tip) if minors.tip else ()
+        cut = edges_along(along, start, length, minors.places, limits, np.array([0]), tip)
         edges = np.linspace(0.0, 1.0, 2) if cut is None else cut[0]
         found[minors] = tuple(map(float, edges)), tuple(map(float, limits))
     return found

@@ -382,49 +382,40 @@ def _settled(xp, scaled, x):
     return x
 
 
-#: _fundamental_minors _parts_along _keys_along _growth_along _every_minor _choices _chebyshev
-def _fundamental_minors(xp, along, start, length, bases, places, wanted, edges, limits):
+#: _fundamental_minors _entries_along _parts_along _followed_along _keys_along _growth_along _every_minor _choices _chebyshev
+def _fundamental_minors(xp, laws, start, length, bases, places, wanted, edges, limits, tip):
     """Return minors of Z(start + length) over the scales of their sizes, then the logarithms of these.
 
-    Z' = A Z, and part k of A is along(x)[k] times powers of the bases: places[k] holds its row,
+    Z' = A Z, and part k of A is laws[0](x)[k] times powers of the bases: places[k] holds its row,
     its column and these powers. The length is cut at edges, which are shares of it: between
     them functions of x are polynomials to the last digits, and waves grow little for bases up to
     their limits. Where bases are larger, or parameters make it otherwise, there is no number.
+    Where a stiffness vanishes at the start, the first piece is that of a tip: see _begun_along.
     """
     n = 1 + max(max(place[:2]) for place in places)
-    parts, known = _parts_along(xp, along, start, length, places, edges, limits)
-    keys, sources = _keys_along(places, n)
-    one = xp.ones_like(parts[0, ...])
-    first = xp.stack([one * float(i == k and not any(powers)) for i, k, powers in keys])
-    integral = _table(xp, _chebyshev()[2], [parts])
-    total = _iterated(xp, parts, sources, first, integral)
+    beyond = edges[1:] if tip else edges
+    parts, known = _parts_along(xp, laws[0], start, length, places, beyond, limits, ())
     known = known & (_growth_along(xp, parts, places, n) < 6.0)
+    followed = [_followed_along(xp, parts, places, range(n), [_chebyshev()[2]] * n)]
+    if tip:
+        begun, is_known = _begun_along(xp, laws[1], start, length * edges[1], tip, n, limits)
+        followed, known = [begun, *followed], known & is_known
     reduced = [base / limit for base, limit in zip(bases, limits)]
     for base in reduced:
         known = known & (xp.abs(base) <= 1.0)
     reduced = [xp.where(known, base, xp.zeros_like(base)) for base in reduced]
     unit = xp.broadcast_to(xp.ones_like(reduced[0]), _shape([known, *reduced]))
-    axes = len(unit.shape) + 1
-    z = [[None] * n for _ in range(n)]
-    powers = {}
-    for number, (i, k, exponents) in enumerate(keys):
-        if exponents not in powers:
-            powers[exponents] = unit
-            for base, exponent in zip(reduced, exponents):
-                for _ in range(exponent):
-                    powers[exponents] = powers[exponents] * base
-        own = total[number, ...]
-        own = xp.reshape(own, (own.shape[0], *(1,) * (axes - len(own.shape)), *own.shape[1:]))
-        z[i][k] = own * powers[exponents][None, ...] + (0.0 if z[i][k] is None else z[i][k])
+    pieces = [_entries_along(xp, keys, total, reduced, unit, n) for keys, total in followed]
     found, scales = [None] * len(wanted), [xp.real(unit) * 0.0 for _ in range(n)]
     for order in sorted({len(rows) for rows, _ in wanted}):
         lines = _choices(n, order)
         starts = sorted({columns for rows, columns in wanted if len(rows) == order})
-        minors = _every_minor(z, order)
-        zero = 0.0 * next(m for row in minors for m in row if m is not None)
-        minors = [xp.stack([zero if m is None else m for m in row], axis=1) for row in minors]
-        state = [xp.stack([unit * float(line == columns) for columns in starts]) for line in lines]
-        state, scales[order - 1] = _through(xp, xp.stack(minors, axis=1), xp.stack(state), scales[0])
+        state = xp.stack([xp.stack([unit * float(line == columns) for columns in starts]) for line in lines])
+        for z in pieces:
+            minors = _every_minor(z, order)
+            zero = 0.0 * next(m for row in minors for m in row if m is not None)
+            minors = [xp.stack([zero if m is None else m for m in row], axis=1) for row in minors]
+            state, scales[order - 1] = _through(xp, xp.stack(minors, axis=1), state, scales[order - 1])
         for k, (rows, columns) in enumerate(wanted):
             if len(rows) == order:
                 value = state[lines.index(rows), starts.index(columns), ...]
@@ -432,29 +423,51 @@ def _fundamental_minors(xp, along, start, length, bases, places, wanted, edges, 
     return [*found, *scales]
 
 
-def _parts_along(xp, along, start, length, places, edges, limits):
+def _entries_along(xp, keys, total, bases, unit, n):
+    """Return the entries of Z of every piece; None stands for zero."""
+    ladders = [[unit] for _ in bases]
+    for ladder, base, most in zip(ladders, bases, map(max, zip(*(powers for _, _, powers in keys)))):
+        for _ in range(most):
+            ladder.append(ladder[-1] * base)
+    found = [[None] * n for _ in range(n)]
+    for i, k in sorted({key[:2] for key in keys}):
+        own = [number for number, key in enumerate(keys) if key[:2] == (i, k)]
+        values = xp.take(total, xp.asarray(own), axis=0)
+        values = xp.reshape(
+            values, (*values.shape[:2], *(1,) * (len(unit.shape) + 2 - len(values.shape)), *values.shape[2:])
+        )
+        powers = [unit] * len(own)
+        for base, ladder in enumerate(ladders):
+            powers = [power * ladder[keys[number][2][base]] for power, number in zip(powers, own)]
+        found[i][k] = xp.sum(values * xp.stack(powers)[:, None, ...], axis=0)
+    return found
+
+
+def _parts_along(xp, along, start, length, places, edges, limits, ways):
     """Return the parts of A times the widths of pieces, and whether they are polynomials there.
 
-    The first three axes are those of parts, points and pieces.
+    The first three axes are those of parts, points and pieces. Where parts are those of B at a tip, the
+    powers of the way from there take the place of widths.
     """
     points, to_terms, _ = _chebyshev()
     shares = [[a + (b - a) * p for a, b in zip(edges, edges[1:])] for p in points]
     shares = _table(xp, shares, [start, length])
     widths = _table(xp, [b - a for a, b in zip(edges, edges[1:])], [start, length])
     # Axes of parameters come last, so those of points and pieces stand before as many as any has.
-    once = along(start + length * shares[0, 0])
-    axes = max((len(v.shape) for v in once if hasattr(v, "dtype")), default=0)
+    once = start + length * shares[-1, -1]
+    axes = max(len(v.shape) for v in (once, *along(once)) if hasattr(v, "dtype"))
     shares = xp.reshape(shares, (*shares.shape, *(1,) * axes))
     widths = xp.reshape(widths, (*widths.shape, *(1,) * axes))
     to_terms = _table(xp, to_terms, [shares])
     to_terms = xp.reshape(to_terms, (*to_terms.shape, *(1,) * (axes + 1)))
     values = along(start + length * shares)
     parts, known = [], None
-    for value, (_, _, *powers) in zip(values, places):
+    for k, (value, (_, _, *powers)) in enumerate(zip(values, places)):
         scale = 1.0
         for limit, power in zip(limits, powers):
             scale *= limit**power
-        parts.append(value * length * scale * widths + 0.0 * shares)
+        factor = (length * shares) ** ways[k] if ways else length * widths
+        parts.append(value * factor * scale + 0.0 * shares)
         spectrum = _size(xp, xp.sum(to_terms * parts[-1][None, ...], axis=1))
         terms = [spectrum[m, ...] for m in range(len(points))]
         own = _largest(xp, terms[-3:]) <= 1e-11 * _largest(xp, terms)
@@ -463,13 +476,38 @@ def _parts_along(xp, along, start, length, places, edges, limits):
     return xp.stack([xp.broadcast_to(part, shape) for part in parts]), xp.all(known, axis=0)
 
 
-def _keys_along(places, n):
+def _followed_along(xp, parts, places, first, integrals):
+    """Return keys of what states have of the powers of the bases, and these at the end of every piece.
+
+    A key is told by a state, the one of those ``first`` that it is followed from, and powers. Every
+    row of A has integrals of its own.
+    """
+    keys, sources = _keys_along(places, first, len(places[0]) - 2)
+    # What is integrated alike: per part of A, of which entry it makes each, if it makes it.
+    steps = []
+    for own in {id(own): own for own in integrals}.values():
+        made = {}
+        for i, (key, pairs) in enumerate(zip(keys, sources)):
+            for part, k in pairs if integrals[key[0]] is own else ():
+                made.setdefault(part, {})[i] = k
+        moves = []
+        for part, before in made.items():
+            is_made = [float(i in before) for i in range(len(keys))]
+            is_made = xp.reshape(_table(xp, is_made, [parts]), (1, len(keys), *(1,) * (len(parts.shape) - 2)))
+            moves.append((part, [before.get(i, 0) for i in range(len(keys))], is_made))
+        if moves:
+            steps.append((_table(xp, own, [parts]), moves))
+    nothing = 0.0 * parts[0, :, ...]
+    begun = [nothing + float(i == k and not any(powers)) for i, k, powers in keys]
+    return keys, _iterated(xp, parts, steps, xp.stack(begun, axis=1))
+
+
+def _keys_along(places, first, bases):
     """Return row, column and powers of the entries of Z, and what each is made of by one more factor A.
 
     That is a list of pairs: a part of A, and the entry before.
     """
-    nothing = (0,) * (len(places[0]) - 2)
-    keys = reached = [(i, i, nothing) for i in range(n)]
+    keys = reached = [(i, i, (0,) * bases) for i in first]
     sources = {}
     for _ in range(_STEPS):
         following = []
@@ -563,6 +601,47 @@ _STEPS = 42
 """Of Picard's iteration: terms are below 1e-18 where waves grow by e^6."""
 
 
+#: _begun_along _from_tip
+def _begun_along(xp, along, start, way, tip, n, limits):
+    """Return what _followed_along does, on the piece that begins at a tip, and whether it is known.
+
+    With h the way from there z_i = h^powers_i v_i and h v' = B v, and along(x) holds parts of B. At h
+    the state v_i is its value at the start or 0, and the integral over t from 0 to 1 of
+    g_i(t h) t^(-b_i - 1), where g is B v without the diagonal b at the start.
+    """
+    places, powers, exponents, free = tip
+    places, ways = [(i, k, *own) for i, k, _, *own in places], [place[2] for place in places]
+    parts, known = _parts_along(xp, along, start, way, places, (0.0, 1.0), limits, ways)
+    # The mean of B is at least half of its integral over h, by which waves grow.
+    known = known & (_growth_along(xp, parts, places, n) < 3.0)
+    integrals = {b: _from_tip(b) for b in exponents}
+    keys, total = _followed_along(xp, parts, places, free, [integrals[b] for b in exponents])
+    rows = [total[number, ...] * way ** powers[key[0]] for number, key in enumerate(keys)]
+    return (keys, xp.stack(rows)), known
+
+
+def _from_tip(b):
+    """Return what makes integrals over t from 0 to 1 of g(t h) t^(-b - 1) at points of values of g there.
+
+    For b = 0 the value at the start, which vanishes, is taken away. What is integrated are polynomials,
+    for which Fejer's rule is exact.
+    """
+    points, to_terms, _ = _chebyshev()
+    count = 2 * (len(points) - b)
+    sums = [[0.0] * len(points) for _ in points]
+    for q in range(count):
+        angle = cmath.pi * (q + 0.5) / count
+        cosines = [cmath.cos(2 * m * angle).real for m in range(1, count // 2)]
+        weight = (1.0 - 2.0 * sum(c / (4.0 * m * m - 1.0) for m, c in enumerate(cosines, 1))) / count
+        t = 0.5 - 0.5 * cmath.cos(angle).real
+        for row, p in zip(sums, points):
+            inside = cmath.acos(2.0 * t * p - 1.0).real
+            for m in range(len(points)):
+                value = cmath.cos(m * inside).real - ((-1.0) ** m if b == 0 else 0.0)
+                row[m] += weight * t ** (-b - 1) * value
+    return [[sum(v * own[j] for v, own in zip(row, to_terms)) for j in range(len(points))] for row in sums]
+
+
 #: _table
 def _table(xp, values, beside):
     """Return lists of numbers as an array where others are."""
@@ -571,23 +650,25 @@ def _table(xp, values, beside):
 
 
 #: _next_factor
-def _next_factor(xp, parts, sources, state, integral):
-    """Return the integral from the start of every piece of A times a matrix."""
-    nothing = 0.0 * state[0, ...]
-    slopes = xp.stack(
-        [sum((parts[p, ...] * state[k, ...] for p, k in own), start=nothing) for own in sources]
-    )
-    weights = xp.reshape(integral, (*integral.shape, *(1,) * (len(slopes.shape) - 2)))
-    return xp.stack([xp.sum(weights * slopes[k, None, ...], axis=1) for k in range(len(sources))])
+def _next_factor(xp, parts, steps, state):
+    """Return the integral from the start of every piece of A times a matrix, as points times keys."""
+    following = 0.0
+    for integral, moves in steps:
+        slopes = 0.0
+        for part, before, is_made in moves:
+            entries = xp.take(state, xp.asarray(before), axis=1)
+            slopes = slopes + parts[part, :, None, ...] * is_made * entries
+        following = following + xp.tensordot(integral, slopes, axes=1)
+    return following
 
 
 #: _iterated
-def _iterated(xp, parts, sources, first, integral):
+def _iterated(xp, parts, steps, first):
     """Return what entries of Z have of the powers of the bases, at the end of every piece."""
-    state, total = first, first[:, -1, ...]
+    state, total = first, first[-1, ...]
     for _ in range(_STEPS):
-        state = _next_factor(xp, parts, sources, state, integral)
-        total = total + state[:, -1, ...]
+        state = _next_factor(xp, parts, steps, state)
+        total = total + state[-1, ...]
     return total
 
 

@@ -155,14 +155,14 @@ def _table(values, beside):
 
 
 #: _iterated
-def _iterated(parts, sources, first, integral):
+def _iterated(parts, steps, first):
     """Return what entries of Z have of the powers of the bases, at the end of every piece."""
 
     def following(state, _):
-        state = _next_factor(parts, sources, state, integral)
-        return state, state[:, -1, ...]
+        state = _next_factor(parts, steps, state)
+        return state, state[-1, ...]
 
-    return first[:, -1, ...] + jnp.sum(jax.lax.scan(following, first, length=_STEPS)[1], axis=0)
+    return first[-1, ...] + jnp.sum(jax.lax.scan(following, first, length=_STEPS)[1], axis=0)
 
 
 #: _through

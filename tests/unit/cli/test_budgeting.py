@@ -14,7 +14,8 @@ from symflex.cli.budgeting import Memory
 FREE_OF_WORK = {"new", "elements", "units"}
 ENDLESS = "while True: pass"
 SELF = """
-import sys, os
+import sys, os, signal
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell ignores it for what it runs beside itself
 from symflex.cli import main, budgeting
 from symflex.cli import formulas
 import symflex.pipeline
@@ -35,7 +36,11 @@ def started(body, *options):
 
 
 def ended(process):
-    out, err = process.communicate(timeout=120)
+    try:
+        out, err = process.communicate(timeout=120)
+    except subprocess.TimeoutExpired:
+        process.kill()  # and with it what works for it
+        raise
     return process.returncode, out, err
 
 

@@ -68,8 +68,7 @@ LOOPS = {
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", ["step", "ramp"])
-@pytest.mark.parametrize("name", LOOPS)
+@pytest.mark.parametrize(("name", "kind"), [*((name, "step") for name in LOOPS), ("that acts late", "ramp")])
 def test_a_loop_is_what_the_method_of_steps_says(name, kind):
     force, gain, late = LOOPS[name]
     times = [0.1, 0.5, 0.87, 1.3]
