@@ -25,16 +25,16 @@ from symflex.transfer import bind
 
 E, RHO, G, N, K_F, C_F, M_TIP, J_HUB = 200 * 10**9, 7800, 77 * 10**9, 20_000, 300_000, 40, 1.5, 0.25
 A_0, I_0, ETA, KAPPA = fmpq(16, 10**4), fmpq(213, 10**9), fmpq(2, 10**5), fmpq(17, 20)
-BITS, TERMS, STEPS = 160, 40, 20
+BITS, TERMS, STEPS = 128, 28, 20
 
 TAPERS = {
-    "wedge": ("(1 - x/(2*l))^3", "(1 - x/(2*l))", lambda x: ((1 - x / 2) ** 3, 1 - x / 2)),
-    "double": ("(1 - 0.6*x/l)^4", "(1 - 0.6*x/l)^2", lambda x: ((1 - x * 3 / 5) ** 4, (1 - x * 3 / 5) ** 2)),
     "exponential": (
         "exp(-2*a*x)*(1 + x/l)",
         "exp(-a*x)",
         lambda x: ((x * -1.5).exp() * (1 + x), (x * -0.75).exp()),
     ),
+    "wedge": ("(1 - x/(2*l))^3", "(1 - x/(2*l))", lambda x: ((1 - x / 2) ** 3, 1 - x / 2)),
+    "double": ("(1 - 0.6*x/l)^4", "(1 - 0.6*x/l)^2", lambda x: ((1 - x * 3 / 5) ** 4, (1 - x * 3 / 5) ** 2)),
     "quotient": (
         "1/(1 + x^2/l^2)",
         "(2 + x/l)/(2 + x^2/l^2)",
@@ -77,7 +77,7 @@ BEAMS = list(
         (theory, RATIONAL.get(taper, taper) if loss in MORE_AT_REST else taper, loss, ends)
         for theory in THEORIES
         for taper, loss, ends in zip(
-            list(TAPERS) * 3,
+            list(TAPERS) * 2,
             cycle(LOSSES[:3] if theory == "timoshenko" else LOSSES),
             cycle(["tip", "hub"]),
             strict=False,
