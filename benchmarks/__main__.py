@@ -11,6 +11,7 @@ from dataclasses import asdict
 from functools import partial
 from importlib.metadata import version
 from pathlib import Path
+from time import monotonic
 
 from benchmarks import (
     chains,
@@ -59,12 +60,13 @@ def main(arguments: list[str] | None = None) -> int:
         sweep,
     )
     measurements, claims = list[Measurement](), list[Claim]()
-    benchmarks: list[Callable[[], Measured]] = [startup.measure]
-    benchmarks += [partial(benchmark.measure, asked.limit) for benchmark in limited]
-    for measure in benchmarks:
-        runs = [measure()]
+    benchmarks: dict[str, Callable[[], Measured]] = {startup.__name__: startup.measure}
+    benchmarks |= {benchmark.__name__: partial(benchmark.measure, asked.limit) for benchmark in limited}
+    for name, measure in benchmarks.items():
+        begin, runs = monotonic(), [measure()]
         while asked.check and _missed(runs[-1]) and len(runs) < RUNS:
             runs.append(measure())
+        print(f"{name}: {monotonic() - begin:.0f} s, runs: {len(runs)}", file=sys.stderr)
         measured, bounds = min(runs, key=_missed)
         measurements += measured
         claims += bounds
