@@ -432,10 +432,9 @@ def _entries_along(xp, keys, total, bases, unit, n):
     found = [[None] * n for _ in range(n)]
     for i, k in sorted({key[:2] for key in keys}):
         own = [number for number, key in enumerate(keys) if key[:2] == (i, k)]
-        values = xp.take(total, xp.asarray(own), axis=0)
-        values = xp.reshape(
-            values, (*values.shape[:2], *(1,) * (len(unit.shape) + 2 - len(values.shape)), *values.shape[2:])
-        )
+        values = xp.take(total, _table(xp, own, [total]), axis=0)
+        axes = len(unit.shape) + 2 - len(values.shape)
+        values = xp.reshape(values, (*values.shape[:2], *(1,) * axes, *values.shape[2:]))
         powers = [unit] * len(own)
         for base, ladder in enumerate(ladders):
             powers = [power * ladder[keys[number][2][base]] for power, number in zip(powers, own)]
@@ -494,7 +493,7 @@ def _followed_along(xp, parts, places, first, integrals):
         for part, before in made.items():
             is_made = [float(i in before) for i in range(len(keys))]
             is_made = xp.reshape(_table(xp, is_made, [parts]), (1, len(keys), *(1,) * (len(parts.shape) - 2)))
-            moves.append((part, [before.get(i, 0) for i in range(len(keys))], is_made))
+            moves.append((part, _table(xp, [before.get(i, 0) for i in range(len(keys))], [parts]), is_made))
         if moves:
             steps.append((_table(xp, own, [parts]), moves))
     nothing = 0.0 * parts[0, :, ...]
@@ -646,7 +645,8 @@ def _from_tip(b):
 def _table(xp, values, beside):
     """Return lists of numbers as an array where others are."""
     place = _place(xp, [value for value in beside if hasattr(value, "dtype")])
-    return xp.asarray(values, dtype=xp.float64, **place)
+    dtype = xp.int64 if isinstance(values[0], int) else xp.float64
+    return xp.asarray(values, dtype=dtype, **place)
 
 
 #: _next_factor
@@ -656,8 +656,7 @@ def _next_factor(xp, parts, steps, state):
     for integral, moves in steps:
         slopes = 0.0
         for part, before, is_made in moves:
-            entries = xp.take(state, xp.asarray(before), axis=1)
-            slopes = slopes + parts[part, :, None, ...] * is_made * entries
+            slopes = slopes + parts[part, :, None, ...] * is_made * xp.take(state, before, axis=1)
         following = following + xp.tensordot(integral, slopes, axes=1)
     return following
 

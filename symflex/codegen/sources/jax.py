@@ -151,7 +151,7 @@ def _settled(scaled, x):
 #: _table
 def _table(values, beside):
     """Return lists of numbers as an array."""
-    return jnp.asarray(values, dtype=jnp.float64)
+    return jnp.asarray(values, dtype=int if isinstance(values[0], int) else jnp.float64)
 
 
 #: _iterated
