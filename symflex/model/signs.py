@@ -10,13 +10,25 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import reduce
-from typing import TYPE_CHECKING
+from math import prod
+from typing import TYPE_CHECKING, cast
 
-from flint import arb, fmpq
+from flint import arb, arb_series, fmpq
 
 from symflex.algebra import FUNCTIONS
 from symflex.errors import Diagnostic, UsageError
-from symflex.expressions import Expression, Name, Number, fold, names, substitute
+from symflex.expressions import (
+    Expression,
+    Name,
+    Negative,
+    Number,
+    Power,
+    Product,
+    Quotient,
+    fold,
+    names,
+    substitute,
+)
 from symflex.library.elements import LineElement
 from symflex.model.linearity import integer_exponent
 from symflex.model.model import PI_NEARLY
@@ -343,12 +355,52 @@ def value_along(value: Expression, x: arb, line: Line) -> arb | None:
         return None  # a parameter without value, or a quantity that is no number
 
 
-def _sign_along(value: Expression, length: Fraction, line: Line) -> int | None:
-    """Return 1 where a value is proved to be positive all along a member, else None."""
-    half = _ball(length) / (2 * PIECES)
-    pieces = ((2 * k + 1) * half + arb(0, half.upper()) for k in range(PIECES))
-    found = (value_along(value, x, line) for x in pieces)
-    return 1 if all(x is not None and x > 0 for x in found) else None
+def _slope_along(value: Expression, x: arb, line: Line) -> arb | None:
+    """Return the slope of what varies along x on a ball of x, None where it is not known."""
+    beside = arb_series([x, 1], 2)
+    # Series have the arithmetic of balls.
+    found = cast("arb_series | arb | None", value_along(value, cast("arb", beside), line))
+    return found[1] if isinstance(found, arb_series) else None
+
+
+def _sign_along(value: Expression, length: Expression, line: Line) -> int | None:
+    """Return the sign that a value is proved to have all along a member, but at its ends; else None.
+
+    There it may be zero: a wedge ends in a tip.
+    """
+    match value:
+        case Negative(operand):
+            sign = _sign_along(operand, length, line)
+            return None if sign is None else -sign
+        case Product() | Quotient():
+            signs = [_sign_along(each, length, line) for each in value.children]
+            return None if None in signs else prod(sign for sign in signs if sign is not None)
+        case Power(base, exponent):
+            count = integer_exponent(exponent)
+            sign = None if count is None else _sign_along(base, length, line)
+            return sign if sign is None or (count or 0) % 2 else 1
+        case Name(name) if name in line.definitions:
+            return _sign_along(line.definitions[name], length, line)
+    half = _ball(line.value(length) or Fraction(0)) / (2 * PIECES)
+    found = set[int]()
+    for k in range(PIECES):
+        x = (2 * k + 1) * half + arb(0, half.upper())
+        own = _sign_on(value_along(value, x, line))
+        if own is None and k in (0, PIECES - 1):
+            # Next to an end where it is zero the slope tells the sign.
+            end = substitute(value, {COORDINATE: lower(length) if k else Number(Fraction(0))})
+            if line.value(end) == 0 and (own := _sign_on(_slope_along(value, x, line))):
+                own = -own if k else own
+        if own is None:
+            return None
+        found.add(own)
+    return found.pop() if len(found) == 1 else None
+
+
+def _sign_on(value: arb | None) -> int | None:
+    if value is None or not (value > 0 or value < 0):
+        return None
+    return 1 if value > 0 else -1
 
 
 def is_passive(model: Model, values: Iterable[tuple[str, ExactValue]] | None = None) -> bool:
@@ -408,8 +460,8 @@ def parameter_signs(use: PlacedElement, line: Line) -> dict[str, int | None]:
     element, given = use.element, dict(use.values)
     signs = {name: line.sign(value) for name, value in given.items()}
     if isinstance(element, LineElement) and None in signs.values():
-        length = line.value(given[element.length])
+        length = given[element.length]
         along = {p.name for p in element.parameters if p.varies}
-        for name in (n for n, sign in signs.items() if sign is None and n in along and length is not None):
-            signs[name] = _sign_along(given[name], length or Fraction(0), line)
+        for name in (n for n, sign in signs.items() if sign is None and n in along and line.value(length)):
+            signs[name] = _sign_along(given[name], length, line)
     return signs

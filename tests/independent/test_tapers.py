@@ -257,3 +257,13 @@ def test_a_tapered_arm_with_dampers_is_passive_where_its_sections_are_positive()
         assert is_passive(model, list(values.items()))
         steeper = values | {"a": replace(values["a"], rational=Fraction(3, 2))}
         assert is_passive(model, list(steeper.items())) is (taper != "1 - a*x")
+
+
+@pytest.mark.parametrize("section", ["(1 - a*x)^3", "a*x*(1 - a*x)/(2 - a*x)", "(1 - a*x)*exp(a*x)"])
+def test_an_arm_whose_section_vanishes_at_an_end_is_passive_too(section):
+    # With a of 1/m it vanishes at 1 m, the end; with 3/2 before, and is negative beyond.
+    model = pipeline.loads(BEAM.format(f'I = "I_0*(1 - x/(2*l))", A = "A_0*{section}"'))
+    values = {p.name: p.value for p in model.parameters if p.value}
+    for a, is_told in ((Fraction(1), True), (Fraction(3, 2), False)):
+        varied = values | {"a": replace(values["a"], rational=a)}
+        assert is_passive(model, list(varied.items())) is is_told
