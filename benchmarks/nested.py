@@ -33,6 +33,8 @@ EVEN = 1.02
 """How far the operations per mass may differ between 1000 masses and the largest number."""
 LONGEST = 60.0
 """Seconds the largest networks may take, model and equations included."""
+PER_SECOND = 1_000
+"""Masses of the largest networks, per second of the limit: to assemble 50,000 takes half a minute."""
 MASSES, POINTS, ROUNDS = 200, 1_000, 5
 TIMES_FASTER = 30.0
 AGREEMENT = 1e-11
@@ -118,7 +120,7 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
     claims: list[Claim] = []
     curve: list[Growth] = []
     for kind, sizes in SIZES.items():
-        for n in sizes:
+        for n in (n for n in sizes if n <= PER_SECOND * limit):
             grown = grow(kind, n, max(limit, LONGEST))
             seconds = None if grown is None else grown.seconds
             peak = None if grown is None else grown.memory

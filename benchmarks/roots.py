@@ -247,8 +247,14 @@ def numpy_in_the_wrong_half_plane() -> int:
 
 
 def _compare(found: list[mpc], modes: int, digits: int) -> None:
+    """Compare some twenty of the modes: all would take as long as what the engine is compared with."""
+    if len(found) != modes:
+        message = f"{len(found)} poles, not {modes}"
+        raise RuntimeError(message)
+    some = range(1, modes + 1, max(1, modes // 20))
     with mp.workdps(digits + 10):
-        _agree(found, findroot_beam([guess(mode) for mode in range(1, modes + 1)], digits + 10), digits)
+        expected = findroot_beam([guess(mode) for mode in some], digits + 10)
+        _agree([found[mode - 1] for mode in some], expected, digits)
 
 
 def _agree(found: list[Any], expected: list[Any], digits: int) -> None:
