@@ -25,7 +25,7 @@ from symflex.transfer import bind
 
 E, RHO, G, N, K_F, C_F, M_TIP, J_HUB = 200 * 10**9, 7800, 77 * 10**9, 20_000, 300_000, 40, 1.5, 0.25
 A_0, I_0, ETA, KAPPA = fmpq(16, 10**4), fmpq(213, 10**9), fmpq(2, 10**5), fmpq(17, 20)
-BITS, TERMS, STEPS = 128, 36, 20
+BITS, TERMS, STEPS = 128, 36, 30
 
 TAPERS = {
     "exponential": (

@@ -85,6 +85,7 @@ def tapered(octave, name):
     octave.do(f"G = {name}();")
 
 
+@pytest.mark.slow
 def test_a_hanging_string_is_bessels_function_also_far_above_its_band(octave):
     tapered(octave, "hanging_string")
     points = octave.points(TIPS)

@@ -123,7 +123,7 @@ def hanging(s, above, length):
     return jv(0, x * np.sqrt(above)) / jv(0, x * np.sqrt(length))
 
 
-@pytest.mark.parametrize("target", ["numpy", "array-api"])
+@pytest.mark.parametrize("target", ["numpy", pytest.param("array-api", marks=pytest.mark.slow)])
 def test_a_hanging_string_is_bessels_function(target):
     string = functions("hanging_string", target)
     assert string.tip_over_w_0(TIPS) == pytest.approx(hanging(TIPS, 0.0, 2.0), rel=2e-12)
@@ -156,7 +156,7 @@ FAST = 200 * TIPS
 """Frequencies [rad/s] up to the sixth mode of the wedge."""
 
 
-@pytest.mark.parametrize("target", ["numpy", "array-api"])
+@pytest.mark.parametrize("target", ["numpy", pytest.param("array-api", marks=pytest.mark.slow)])
 @pytest.mark.parametrize(("name", "n"), [("wedge", 1), ("cone", 2)])
 def test_a_wedge_and_a_cone_are_kirchhoffs(name, n, target):
     assert functions(name, target).tip_over_w_0(FAST) == pytest.approx(kirchhoff(FAST, n), rel=1e-11)
