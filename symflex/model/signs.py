@@ -37,7 +37,7 @@ from symflex.model.scope import COORDINATE
 from symflex.model.units import lower
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Hashable, Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Mapping, Sequence
 
     from symflex.errors import Span
     from symflex.library.elements import Sign
@@ -322,7 +322,9 @@ def check_value(model: Model, name: str, value: ExactValue, varied: Collection[s
 
 
 PIECES = 64
-"""Of a member, on each of which a value that varies along x is enclosed; it is tried between any two."""
+"""Of a member; a value that varies along x is tried between any two."""
+HALVINGS = 10
+"""Of an interval on which no sign is told."""
 
 
 def _ball(number: Fraction) -> arb:
@@ -381,26 +383,64 @@ def _sign_along(value: Expression, length: Expression, line: Line) -> int | None
             return sign if sign is None or (count or 0) % 2 else 1
         case Name(name) if name in line.definitions:
             return _sign_along(line.definitions[name], length, line)
-    half = _ball(line.value(length) or Fraction(0)) / (2 * PIECES)
-    found = set[int]()
-    for k in range(PIECES):
-        x = (2 * k + 1) * half + arb(0, half.upper())
-        own = _sign_on(value_along(value, x, line))
-        if own is None and k in (0, PIECES - 1):
+    places = Number(Fraction(0)), lower(length)
+    first, last = (line.value(substitute(value, {COORDINATE: place})) == 0 for place in places)
+    return sign_between(
+        (arb(0), _ball(line.value(length) or Fraction(0))),
+        lambda x: value_along(value, x, line),
+        lambda x: _slope_along(value, x, line),
+        (first, last),
+    )
+
+
+def sign_between(
+    ends: tuple[arb, arb],
+    value: Callable[[arb], arb | None],
+    slope: Callable[[arb], arb | None],
+    is_zero: tuple[bool, bool],
+) -> int | None:
+    """Return the sign of a function of x all along an interval, but at ends; ``None`` where it is not told.
+
+    ``value`` and ``slope`` enclose the function and its slope on a ball of x; ``is_zero`` says of each end
+    whether the function vanishes there.
+
+    Examples
+    --------
+    >>> sign_between((arb(0), arb(1)), lambda x: x * (1 - x), lambda x: 1 - 2 * x, (True, True))
+    1
+    >>> sign_between((arb(0), arb(1)), lambda x: x - 1, lambda x: arb(1), (False, True))
+    -1
+    """
+    low, high = ends
+    found, pending = set[int](), [(0.0, 1.0, 0)]
+    while pending:
+        a, b, depth = pending.pop()
+        x = low + (high - low) * arb((a + b) / 2, (b - a) / 2)
+        sign = sign_of(value(x))
+        starts, stops = is_zero[0] and a == 0, is_zero[1] and b == 1
+        if sign is None and starts != stops:
             # Next to an end where it is zero the slope tells the sign.
-            end = substitute(value, {COORDINATE: lower(length) if k else Number(Fraction(0))})
-            if line.value(end) == 0 and (own := _sign_on(_slope_along(value, x, line))):
-                own = -own if k else own
-        if own is None:
+            rate = sign_of(slope(x))
+            sign = None if rate is None else rate if starts else -rate
+        if sign is not None:
+            found.add(sign)
+        elif depth == HALVINGS:
             return None
-        found.add(own)
+        else:
+            middle = (a + b) / 2
+            pending += [(a, middle, depth + 1), (middle, b, depth + 1)]
     return found.pop() if len(found) == 1 else None
 
 
-def _sign_on(value: arb | None) -> int | None:
-    if value is None or not (value > 0 or value < 0):
-        return None
-    return 1 if value > 0 else -1
+def sign_of(number: arb | None) -> int | None:
+    """Return the sign of all numbers of a ball, ``None`` where they have none in common.
+
+    Examples
+    --------
+    >>> sign_of(arb(-3)), sign_of(arb(0, 1)), sign_of(arb("nan"))
+    (-1, None, None)
+    """
+    return None if number is None else 1 if number > 0 else -1 if number < 0 else None
 
 
 def is_passive(model: Model, values: Iterable[tuple[str, ExactValue]] | None = None) -> bool:

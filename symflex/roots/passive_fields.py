@@ -27,7 +27,7 @@ from symflex.equations.along import composed
 from symflex.expressions import Name
 from symflex.library.elements import LinearForm, put_in
 from symflex.model.along import COORDINATE, varies_along_x
-from symflex.model.signs import Line, value_along
+from symflex.model.signs import Line, sign_between, sign_of, value_along
 from symflex.roots import precision
 from symflex.transfer.balls import evaluated
 
@@ -42,8 +42,6 @@ if TYPE_CHECKING:
 BITS = 128
 MOST_STATES = 6
 """Of a field, whose displacements and forces are told by trial."""
-HALVINGS = 10
-"""Of an interval on which no sign is told."""
 INERTIA = 2
 """The power of s of a mass."""
 BEAM = 4
@@ -195,28 +193,18 @@ class _Fields:
 
     def _sign_of_factor(self, value: Factored, field: Continuum | None) -> int | None:
         if field is None or not any(n in value.ring.index and value.depends_on(n) for n in self._along):
-            return _sign_of(self._number(value))
+            return sign_of(self._number(value))
         (low, is_zero_first), (high, is_zero_last) = (
             (self._number(place), _at(value, place).is_zero)
             for _, place, _ in sorted(self._ends(field), key=lambda end: end[0])
         )
         slope = value.slope(COORDINATE) if len(self._along) == 1 else None
-        signs, pending = set[int | None](), [(0.0, 1.0, 0)]
-        while pending:
-            a, b, depth = pending.pop()
-            x = low + (high - low) * arb((a + b) / 2, (b - a) / 2)
-            sign = _sign_of(self._number(value, x))
-            starts, stops = is_zero_first and a == 0, is_zero_last and b == 1
-            if sign is None and slope is not None and starts != stops:
-                # Next to an end where it is zero the slope tells the sign.
-                rate = _sign_of(self._number(slope, x))
-                sign = None if rate is None else rate if starts else -rate
-            if sign is None and depth < HALVINGS:
-                middle = (a + b) / 2
-                pending += [(a, middle, depth + 1), (middle, b, depth + 1)]
-            else:
-                signs.add(sign)
-        return signs.pop() if len(signs) == 1 else None
+        return sign_between(
+            (low, high),
+            lambda x: self._number(value, x),
+            lambda x: None if slope is None else self._number(slope, x),
+            (is_zero_first, is_zero_last),
+        )
 
     @cached_property
     def _along(self) -> tuple[str, ...]:
@@ -357,7 +345,3 @@ def _at(value: Factored, place: Factored) -> Factored:
     """Return what varies along x at a place."""
     images = {COORDINATE: place} if COORDINATE in value.ring.index else {}
     return value.map_factors(value.ring, lambda factor: composed(value, factor, images))
-
-
-def _sign_of(number: arb) -> int | None:
-    return 1 if number > 0 else -1 if number < 0 else None

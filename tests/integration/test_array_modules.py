@@ -171,7 +171,7 @@ def test_jax_compiles_and_differentiates_a_string_that_hangs(over_jax, jax, jnp)
     function = over_jax(HANGING.read_text()).mid_over_w_0
     s = np.array([2j, 9j, 0.3 + 4j, -0.5 + 12j, 1.5])
     assert np.asarray(jax.jit(function)(s)) == pytest.approx(hanging(s, 1.0, 2.0), rel=1e-11)
-    slope = jax.jit(jax.grad(lambda l: jnp.real(function(9j + 0.1, l=l))))(2.0)  # noqa: E741
+    slope = jax.jit(jax.grad(lambda length: jnp.real(function(9j + 0.1, l=length))))(2.0)
     # Half of the length is above the free end.
     above, below = (hanging(9j + 0.1, 1.0 + h / 2, 2.0 + h) for h in (1e-5, -1e-5))
     assert float(slope) == pytest.approx(np.real(above - below) / 2e-5, rel=1e-8)

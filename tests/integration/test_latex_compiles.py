@@ -73,15 +73,16 @@ def settled(engine, folder, name="paper"):
     return log
 
 
-def run(folder, source):
-    (folder / "paper.tex").write_text(source, encoding="utf-8")
-    return settled("pdflatex", folder)
+def compiled(engine, folder, name="paper"):
+    """Compile a file, and return what was complained of."""
+    log = settled(engine, folder, name)
+    assert "Output written" in log
+    return COMPLAINT.findall(log)
 
 
 def complaints(folder, source):
-    log = run(folder, source)
-    assert "Output written" in log
-    return COMPLAINT.findall(log)
+    (folder / "paper.tex").write_text(source, encoding="utf-8")
+    return compiled("pdflatex", folder)
 
 
 def nested(block, ring):
@@ -235,7 +236,8 @@ def test_estimated_widths_are_never_below_those_of_tex(tmp_path):
         rf"\setbox0\hbox{{$\displaystyle {latex_expression(e, DECLARED)}$}}\typeout{{WIDTH \the\wd0}}"
         for e in expressions
     ]
-    log = run(tmp_path, WRAPPER % (160, "\n".join(boxes)))
+    (tmp_path / "paper.tex").write_text(WRAPPER % (160, "\n".join(boxes)), encoding="utf-8")
+    log = settled("pdflatex", tmp_path)
     widths = [float(w) / 10 for w in re.findall(r"WIDTH ([0-9.]+)pt", log)]  # one em is ten points
     estimates = [Writer(DECLARED).piece(e).width for e in expressions]
     assert len(widths) == len(estimates)

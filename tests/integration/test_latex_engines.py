@@ -16,7 +16,7 @@ import pytest
 from symflex import pipeline
 from symflex.codegen.latex import LatexExporter
 from symflex.print.latex import DOCUMENT
-from tests.integration.test_latex_compiles import COMPLAINT, HOSTILE, LABELS, UNITS, settled
+from tests.integration.test_latex_compiles import HOSTILE, LABELS, UNITS, compiled
 from tests.unit.codegen.test_numpy_hostile import HOSTILE as TEXTS
 
 DERIVATIONS = Path(__file__).parents[2] / "derivations"
@@ -46,12 +46,6 @@ PAPER = r"""\documentclass[10pt,twocolumn]{article}
 %s
 \end{document}
 """
-
-
-def compiled(engine, folder, name="paper"):
-    log = settled(engine, folder, name)
-    assert "Output written" in log
-    return COMPLAINT.findall(log)
 
 
 def beyond(folder, columns, tolerance, name="paper"):

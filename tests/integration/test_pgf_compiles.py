@@ -16,8 +16,7 @@ from symflex.codegen.latex import LatexExporter
 from symflex.figures import draw, render
 from symflex.print.latex import DOCUMENT
 from tests.house.repository import specifications
-from tests.integration.test_latex_compiles import HOSTILE, LABELS
-from tests.integration.test_latex_engines import compiled
+from tests.integration.test_latex_compiles import HOSTILE, LABELS, compiled
 
 ROOT = Path(__file__).parents[2]
 DERIVATIONS = ROOT / "derivations"

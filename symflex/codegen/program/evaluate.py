@@ -6,7 +6,6 @@ numpy, each other and :func:`symflex.algebra.modal_sum.modal_amplitudes`, and no
 
 from __future__ import annotations
 
-from dataclasses import astuple
 from fractions import Fraction
 from functools import reduce
 from math import isfinite
@@ -241,12 +240,10 @@ class _ProgramRun:
                 return modal_value(
                     [self.value(m) for m in modes], [self.value(c) for c in coefficients], frames
                 )
-            case tree.FundamentalMinors(start, length, bases, along, places, wanted, tip):
+            case tree.FundamentalMinors(start, length, bases, along, places, wanted):
                 ends = self.value(start), self.value(length)
                 given = [np.atleast_1d(self.value(b)) for b in bases]
-                return fundamental_minors(
-                    self.along(along), *ends, given, places, wanted, astuple(tip) if tip else ()
-                )
+                return fundamental_minors(self.along(along), *ends, given, places, wanted, node.beginning)
             case tree.ScaledSum(amplitudes, exponents):
                 return scaled_sum([self.value(a) for a in amplitudes], [self.value(e) for e in exponents])
             case tree.Solve(entries, network, output, source):

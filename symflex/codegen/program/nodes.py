@@ -12,7 +12,7 @@ where ``m`` is ``ParameterValue("m")``.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 from fractions import Fraction
 from itertools import islice
 from math import inf
@@ -298,6 +298,11 @@ class FundamentalMinors(CodeNode):
     def size(self) -> int:
         """The number of states; so many logarithms of scales follow the minors."""
         return 1 + max(max(place[:2]) for place in self.places)
+
+    @property
+    def beginning(self) -> tuple[object, ...]:
+        """What run-time functions take of the tip, empty without one."""
+        return astuple(self.tip) if self.tip else ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from cmath import isfinite
-from dataclasses import astuple, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from textwrap import TextWrapper
 from typing import TYPE_CHECKING, Any
 
@@ -101,15 +101,15 @@ class PrivateText(ABC):
         """What calls the functions of x that members vary like."""
         given = ", ".join(["_x", *self.arguments[1:]])
         return {
-            minors.along: self._joined([f"lambda _x: {name}({self.leading}{given})" for name in laws])
-            for minors, laws in zip(self.given.minors, self._laws, strict=True)
+            minors.along: self._joined(
+                [f"lambda _x: {name}({self.leading}{given})" for name in self._laws(number, minors)]
+            )
+            for number, minors in enumerate(self.given.minors)
         }
 
-    @property
-    def _laws(self) -> list[dict[str, tuple[tree.CodeNode, ...]]]:
-        """Functions of x by their names, of every matrix that is followed along x."""
-        minors = self.given.minors
-        return [{f"_along_{i}_of_{self.name}": own.along.values} for i, own in enumerate(minors)]
+    def _laws(self, number: int, minors: tree.FundamentalMinors) -> Mapping[str, tuple[tree.CodeNode, ...]]:
+        """Return the functions of x that a matrix is followed by, by their names."""
+        return {f"_along_{number}_of_{self.name}": minors.along.values}
 
     def _joined(self, laws: Sequence[str]) -> str:
         """Return how functions of x are given to what follows a matrix."""
@@ -119,8 +119,8 @@ class PrivateText(ABC):
         """Return the lines of the functions of x that members vary like."""
         lines: list[str] = []
         variable = identifiers({"x": "x"}, {*self.dialect.reserved, *self.arguments})["x"]
-        for minors, laws in zip(self.given.minors, self._laws, strict=True):
-            for name, values in laws.items():
+        for number, minors in enumerate(self.given.minors):
+            for name, values in self._laws(number, minors).items():
                 own, printer = self._body(minors.along.needed(values), variable)
                 texts = ", ".join(printer.print(v) for v in values)
                 head = self._head(name, [variable, *self.arguments[1:]])
@@ -328,16 +328,12 @@ class TracedText(PrivateText):
             ]
         return [*lines, ")"]
 
-    @property
-    def _laws(self) -> list[dict[str, tuple[tree.CodeNode, ...]]]:
+    def _laws(self, number: int, minors: tree.FundamentalMinors) -> Mapping[str, tuple[tree.CodeNode, ...]]:
         # Libraries may warn of the law's poles at a tip, where that of the beginning is regular.
-        found = super()._laws
-        for number, (minors, laws) in enumerate(zip(self.given.minors, found, strict=True)):
-            if minors.tip:
-                ((name, values),) = laws.items()
-                count = len(minors.places)
-                laws |= {name: values[:count], f"_beginning_{number}_of_{self.name}": values[count:]}
-        return found
+        words = ("along", "beginning") if minors.tip else ("along",)
+        values, count = minors.along.values, len(minors.places)
+        parts = (values[:count], values[count:])
+        return {f"_{word}_{number}_of_{self.name}": part for word, part in zip(words, parts, strict=False)}
 
     def _joined(self, laws: Sequence[str]) -> str:
         return f"[{', '.join(laws)}]"
@@ -435,7 +431,7 @@ class PythonPrinter(InfixPrinter):
 
     def positions(self, minors: tree.FundamentalMinors) -> list[str]:
         """Return where parts of a law along x stand, also at a tip, and which minors are wanted."""
-        return [*super().positions(minors), repr(astuple(minors.tip) if minors.tip else ())]
+        return [*super().positions(minors), repr(minors.beginning)]
 
     def applied(self, function: str, argument: tree.CodeNode) -> str:
         """Return the text of a function's value."""
@@ -609,8 +605,7 @@ def cuts_along(
         sizes = (np.max(np.abs(base[np.isfinite(base)])) for base in bases)
         # Beside the imaginary axis what divides may be smaller than on it.
         limits = np.array([BEYOND * size for size in sizes])
-        tip = astuple(minors.tip) if minors.tip else ()
-        cut = edges_along(along, start, length, minors.places, limits, np.array([0]), tip)
+        cut = edges_along(along, start, length, minors.places, limits, np.array([0]), minors.beginning)
         edges = np.linspace(0.0, 1.0, 2) if cut is None else cut[0]
         found[minors] = tuple(map(float, edges)), tuple(map(float, limits))
     return found

@@ -393,12 +393,12 @@ def _fundamental_minors(xp, laws, start, length, bases, places, wanted, edges, l
     Where a stiffness vanishes at the start, the first piece is that of a tip: see _begun_along.
     """
     n = 1 + max(max(place[:2]) for place in places)
-    beyond = edges[1:] if tip else edges
-    parts, known = _parts_along(xp, laws[0], start, length, places, beyond, limits, ())
+    rule, beyond = _chebyshev(), edges[1:] if tip else edges
+    parts, known = _parts_along(xp, rule, laws[0], start, length, places, beyond, limits, ())
     known = known & (_growth_along(xp, parts, places, n) < 6.0)
-    followed = [_followed_along(xp, parts, places, range(n), [_chebyshev()[2]] * n)]
+    followed = [_followed_along(xp, parts, places, range(n), [rule[2]] * n)]
     if tip:
-        begun, is_known = _begun_along(xp, laws[1], start, length * edges[1], tip, n, limits)
+        begun, is_known = _begun_along(xp, rule, laws[1], start, length * edges[1], tip, n, limits)
         followed, known = [begun, *followed], known & is_known
     reduced = [base / limit for base, limit in zip(bases, limits)]
     for base in reduced:
@@ -442,13 +442,13 @@ def _entries_along(xp, keys, total, bases, unit, n):
     return found
 
 
-def _parts_along(xp, along, start, length, places, edges, limits, ways):
+def _parts_along(xp, rule, along, start, length, places, edges, limits, ways):
     """Return the parts of A times the widths of pieces, and whether they are polynomials there.
 
     The first three axes are those of parts, points and pieces. Where parts are those of B at a tip, the
     powers of the way from there take the place of widths.
     """
-    points, to_terms, _ = _chebyshev()
+    points, to_terms, _ = rule
     shares = [[a + (b - a) * p for a, b in zip(edges, edges[1:])] for p in points]
     shares = _table(xp, shares, [start, length])
     widths = _table(xp, [b - a for a, b in zip(edges, edges[1:])], [start, length])
@@ -481,7 +481,7 @@ def _followed_along(xp, parts, places, first, integrals):
     A key is told by a state, the one of those ``first`` that it is followed from, and powers. Every
     row of A has integrals of its own.
     """
-    keys, sources = _keys_along(places, first, len(places[0]) - 2)
+    keys, sources = _keys_along(places, first)
     # What is integrated alike: per part of A, of which entry it makes each, if it makes it.
     steps = []
     for own in {id(own): own for own in integrals}.values():
@@ -501,12 +501,13 @@ def _followed_along(xp, parts, places, first, integrals):
     return keys, _iterated(xp, parts, steps, xp.stack(begun, axis=1))
 
 
-def _keys_along(places, first, bases):
+def _keys_along(places, first):
     """Return row, column and powers of the entries of Z, and what each is made of by one more factor A.
 
     That is a list of pairs: a part of A, and the entry before.
     """
-    keys = reached = [(i, i, (0,) * bases) for i in first]
+    nothing = (0,) * (len(places[0]) - 2)
+    keys = reached = [(i, i, nothing) for i in first]
     sources = {}
     for _ in range(_STEPS):
         following = []
@@ -601,7 +602,7 @@ _STEPS = 42
 
 
 #: _begun_along _from_tip
-def _begun_along(xp, along, start, way, tip, n, limits):
+def _begun_along(xp, rule, along, start, way, tip, n, limits):
     """Return what _followed_along does, on the piece that begins at a tip, and whether it is known.
 
     With h the way from there z_i = h^powers_i v_i and h v' = B v, and along(x) holds parts of B. At h
@@ -610,22 +611,22 @@ def _begun_along(xp, along, start, way, tip, n, limits):
     """
     places, powers, exponents, free = tip
     places, ways = [(i, k, *own) for i, k, _, *own in places], [place[2] for place in places]
-    parts, known = _parts_along(xp, along, start, way, places, (0.0, 1.0), limits, ways)
+    parts, known = _parts_along(xp, rule, along, start, way, places, (0.0, 1.0), limits, ways)
     # The mean of B is at least half of its integral over h, by which waves grow.
     known = known & (_growth_along(xp, parts, places, n) < 3.0)
-    integrals = {b: _from_tip(b) for b in exponents}
+    integrals = {b: _from_tip(rule, b) for b in exponents}
     keys, total = _followed_along(xp, parts, places, free, [integrals[b] for b in exponents])
     rows = [total[number, ...] * way ** powers[key[0]] for number, key in enumerate(keys)]
     return (keys, xp.stack(rows)), known
 
 
-def _from_tip(b):
+def _from_tip(rule, b):
     """Return what makes integrals over t from 0 to 1 of g(t h) t^(-b - 1) at points of values of g there.
 
     For b = 0 the value at the start, which vanishes, is taken away. What is integrated are polynomials,
     for which Fejer's rule is exact.
     """
-    points, to_terms, _ = _chebyshev()
+    points, to_terms, _ = rule
     count = 2 * (len(points) - b)
     sums = [[0.0] * len(points) for _ in points]
     for q in range(count):
