@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import asdict
 from functools import partial
 from importlib.metadata import version
+from math import isnan
 from pathlib import Path
 from time import monotonic
 
@@ -99,7 +100,8 @@ def _markdown(measurements: list[Measurement], claims: list[Claim]) -> str:
     for claim in claims:
         verdict = "holds" if claim.holds else "MISSED"
         bound = f"{'at least' if claim.larger_is_better else 'at most'} {claim.bound:g}"
-        lines.append(f"| {claim.text} | {bound} | {claim.measured:.3g} | {verdict} |")
+        measured = "stopped" if isnan(claim.measured) else f"{claim.measured:.3g}"
+        lines.append(f"| {claim.text} | {bound} | {measured} | {verdict} |")
     return "\n".join(lines)
 
 
@@ -118,7 +120,10 @@ def _json(measurements: list[Measurement], claims: list[Claim]) -> str:
             }
             for m in measurements
         ],
-        "claims": [{**asdict(claim), "holds": claim.holds} for claim in claims],
+        "claims": [
+            {**asdict(c), "measured": None if isnan(c.measured) else c.measured, "holds": c.holds}
+            for c in claims
+        ],
     }
     return json.dumps(content, indent=2) + "\n"
 

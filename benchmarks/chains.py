@@ -181,7 +181,7 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
         gone |= {other.way for other in theirs if other.seconds is None}
         found += [*ours, *theirs]
         if n in FLOORS:
-            ratio = min(other.at_least for other in theirs) / ours[0].at_least
+            ratio = min(other.at_least for other in theirs) / ours[0].taken
             claims.append(Claim(f"{n} masses: times as fast as the fastest other way", FLOORS[n], ratio))
         if n in CEILINGS:
             text = f"{n} masses: milliseconds from assembled equations"
@@ -200,7 +200,7 @@ def _ours(task: str, way: str, n: int, result: str, asked: dict[str, object], li
 
 
 def _ceiling(text: str, seconds: float, ours: Measurement) -> Claim:
-    return Claim(text, 1e3 * seconds, 1e3 * ours.at_least, larger_is_better=False, is_ratio=False)
+    return Claim(text, 1e3 * seconds, 1e3 * ours.taken, larger_is_better=False, is_ratio=False)
 
 
 def _others(n: int) -> dict[str, tuple[str, str]]:

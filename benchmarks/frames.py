@@ -7,7 +7,7 @@ and two within one step are missed.
 
 from __future__ import annotations
 
-from benchmarks.measure import Claim, Measurement, run_snippet
+from benchmarks.measure import OWN, Claim, Measurement, run_snippet
 
 STOREYS = (10, 33, 100)
 MODES = 10
@@ -144,13 +144,13 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
         task = f"ten modes of a frame of {3 * storeys} members"
         ways = {"symflex, 20 digits, proved": SYMFLEX, "numpy, signs of a dense determinant": NUMPY}
         ours, theirs = (
-            run_snippet(task, way, code.format(storeys=storeys, modes=MODES), limit)
-            for way, code in ways.items()
+            run_snippet(task, way, code.format(storeys=storeys, modes=MODES), seconds)
+            for (way, code), seconds in zip(ways.items(), (max(limit, OWN), limit), strict=True)
         )
         found += [ours, theirs]
         text = f"{task}, symflex: seconds"
         ceiling = CEILINGS[storeys]
-        claims.append(Claim(text, ceiling, ours.at_least, larger_is_better=False, is_ratio=False))
-        bound, ratio = SLOWER_THAN_NUMPY[storeys], ours.at_least / theirs.at_least
+        claims.append(Claim(text, ceiling, ours.taken, larger_is_better=False, is_ratio=False))
+        bound, ratio = SLOWER_THAN_NUMPY[storeys], ours.taken / theirs.at_least
         claims.append(Claim(f"{task}: times as long as numpy", bound, ratio, larger_is_better=False))
     return found, claims

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import resource
 import statistics
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
 
 OTHER_PYTHON = "SYMFLEX_BENCH_PYTHON"
 """Environment variable: an interpreter that has the programs symflex is compared with."""
+OWN = 60.0
+"""Seconds symflex may take where less is the limit: beside a run that was stopped no ratio means anything."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +55,11 @@ class Measurement:
     def at_least(self) -> float:
         """The time in seconds, or the limit when it was reached: a lower bound either way."""
         return self.limit if self.seconds is None else self.seconds
+
+    @property
+    def taken(self) -> float:
+        """The time in seconds, nan when the limit was reached: no bound on it can be kept then."""
+        return math.nan if self.seconds is None else self.seconds
 
 
 def fastest(
@@ -106,7 +114,7 @@ class Claim:
     bound : float
         The floor, or the ceiling when smaller is better.
     measured : float
-        In this run.
+        In this run; nan, which keeps no bound, where symflex itself was stopped at its limit.
     larger_is_better : bool
         False when the bound is a ceiling.
     is_ratio : bool
