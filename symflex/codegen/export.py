@@ -183,7 +183,7 @@ class Language:
             _refuse_networks(tfs)
         for tf in tfs:
             if not isinstance(tf, NestedTransferFunction) and not self.follows:
-                tf.kernels.without_tapers("code in this language is", "export it to numpy, c or matlab")
+                tf.kernels.without_tapers("code in this language is", "export it to numpy, jax, c or matlab")
         members = _members(tfs, band_hz or model.analysis.band, samples)
         contents = Contents(model, members, stem, is_alone, digits)
         made = self.print(contents)

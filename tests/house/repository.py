@@ -108,6 +108,13 @@ def slow_ones(values: Iterable[Any], is_slow: Callable[[Any], bool]) -> list[Any
     return [pytest.param(v, marks=pytest.mark.slow) if is_slow(v) else v for v in values]
 
 
+def one_in(n: int, values: Iterable[Any]) -> list[Any]:
+    """Return the values as parameters, of slow tests all but each n-th, where many go one way."""
+    kept = [*values]
+    quick = kept[::n]
+    return slow_ones(kept, lambda value: value not in quick)
+
+
 def in_turns(paths: Iterable[Path], dear: Iterable[str] = ()) -> list[Any]:
     """Return the paths as parameters; the dear, and most classics and loops, which go one way, are slow."""
     found: list[Any] = []

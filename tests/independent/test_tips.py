@@ -9,6 +9,7 @@ from symflex import pipeline
 from symflex.errors import ModelError, SpecError
 from symflex.roots.locate import locate
 from symflex.roots.region import Modes
+from tests.house.repository import one_in
 
 HEAD = """
 symflex = 1
@@ -200,7 +201,7 @@ y = "root"
 """
 
 
-@pytest.mark.parametrize("s", [mpc(0, 3000), mpc(-400, 9000), mpc(0, 40000), mpc(2500, 0)])
+@pytest.mark.parametrize("s", one_in(4, [mpc(-400, 9000), mpc(0, 3000), mpc(0, 40000), mpc(2500, 0)]))
 def test_a_rod_that_thins_out_faster_than_its_taper_is_a_power_series_about_its_tip(s):
     # With t from the tip on the section is t exp(2 t/l): t u'' + (1 + 2 t/l) u' = k^2 t u.
     with mp.workdps(40):

@@ -83,6 +83,7 @@ def test_a_model_shows_its_parameters(outputs):
     assert "<code>rho</code>" in text(outputs[0]["text/html"])
 
 
+@pytest.mark.slow
 def test_a_transfer_function_shows_as_an_equation(outputs):
     latex = text(outputs[1]["text/latex"])
     assert latex.startswith(r"$\displaystyle \begin{aligned}")

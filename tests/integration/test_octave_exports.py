@@ -102,6 +102,7 @@ def test_a_hanging_string_is_bessels_function_also_far_above_its_band(octave):
     assert found[3] == pytest.approx(hanging(far, 0.0, 2.0), rel=1e-12)
 
 
+@pytest.mark.slow
 def test_a_wedge_and_a_cone_are_kirchhoffs(octave):
     found = []
     for name, m in (("wedge", 1), ("cone", 2)):

@@ -128,6 +128,7 @@ def test_the_tableau_of_the_rigid_body_agrees_with_the_printed_formula():
     assert_agrees(network, "V_tip", eppinger1988.printed_rigid_body(), p)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", [*ELEMENTS, *BLOCKS])
 def test_every_element_and_block_occurs_in_some_random_network(kind):
     search = settings(QUIET, max_examples=3000, phases=[Phase.generate])

@@ -11,7 +11,7 @@ import inspect
 import keyword
 import re
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from typing import TYPE_CHECKING
 
 from symflex.algebra import line_networks, varying_minors
@@ -173,6 +173,7 @@ Accuracy holds in double precision, which jax has to be told to use before anyth
 )
 
 
+@cache
 def private_copy(function: Callable[..., object]) -> str:
     """Return the text of a run-time function of this package as a private one, without annotations.
 

@@ -35,7 +35,7 @@ X = "x"
 
 
 def some_each_time(texts):
-    """The texts; a few in every run, as the module over numpy takes all of them there and names alike."""
+    """The texts; a few in every run, as the module over numpy takes more of them and names alike."""
     return slow_ones(texts, lambda text: text not in MORE_NAMES and text not in (*HOSTILE, *NAMES)[::8])
 
 

@@ -139,6 +139,7 @@ def begun(name, folder):
     return compiled(folder, files)[0]
 
 
+@pytest.mark.slow
 def test_a_hanging_string_is_bessels_function(tmp_path):
     library = begun("hanging_string", tmp_path)
     assert value_at(library, 0, TIPS) == pytest.approx(hanging(TIPS, 0.0, 2.0), rel=2e-13)
@@ -152,7 +153,7 @@ def test_a_hanging_string_is_bessels_function(tmp_path):
     assert np.all(np.abs(response(library, 0, omega) * jv(0, x) - 1) < room)
 
 
-@pytest.mark.parametrize(("name", "n"), [("wedge", 1), ("cone", 2)])
+@pytest.mark.parametrize(("name", "n"), [pytest.param("wedge", 1, marks=pytest.mark.slow), ("cone", 2)])
 def test_a_wedge_and_a_cone_are_kirchhoffs(name, n, tmp_path):
     library = begun(name, tmp_path)
     s = np.array([*(200 * TIPS), 2e5j])

@@ -15,6 +15,7 @@ import pytest
 from symflex import pipeline
 from symflex.codegen.python.module import NUMPY
 from symflex.expressions import Name, substitute
+from tests.house.repository import one_in
 
 SPEC = """
 symflex = 1
@@ -230,7 +231,7 @@ def test_prose_changes_no_token_of_the_code(text):
     assert skeleton(with_prose(text)) == TAME
 
 
-@pytest.mark.parametrize("text", HOSTILE, ids=cut)
+@pytest.mark.parametrize("text", one_in(3, HOSTILE), ids=cut)
 def test_prose_survives_in_the_table_of_parameters(text, loaded):
     assert loaded(with_prose(text))["PARAMETERS"]["m"]["doc"] == text
 
@@ -246,7 +247,7 @@ def test_the_text_prints_and_holds_no_doctest(text):
         assert doctest.DocTestParser().get_examples(ast.get_docstring(node) or "") == []
 
 
-@pytest.mark.parametrize("name", [n for n in (*NAMES, *HOSTILE) if ring_takes(n)], ids=cut)
+@pytest.mark.parametrize("name", one_in(3, [n for n in (*NAMES, *HOSTILE) if ring_takes(n)]), ids=cut)
 def test_a_parameter_of_any_name_keeps_the_codes_structure_and_value(name, loaded):
     model = renamed(model_of(), {"b": name if name not in ("s", "pi", "m", "k") else f"{name} "})
     text = export(model)
@@ -255,7 +256,7 @@ def test_a_parameter_of_any_name_keeps_the_codes_structure_and_value(name, loade
     assert space["TRANSFER_FUNCTIONS"]["X/F"](1.0, **{list(space["PARAMETERS"])[2]: 5.0}) == 0.1
 
 
-@pytest.mark.parametrize("name", [*NAMES, *HOSTILE], ids=cut)
+@pytest.mark.parametrize("name", one_in(3, [*NAMES, *HOSTILE]), ids=cut)
 def test_an_output_of_any_name_gives_a_plain_function_name(name, loaded):
     model = model_of()
     tfs = tuple(replace(tf, output=replace(tf.output, name=name)) for tf in pipeline.derive_all(model)[:1])

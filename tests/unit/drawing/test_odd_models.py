@@ -11,6 +11,7 @@ from symflex import pipeline
 from symflex.cli import run
 from symflex.drawing import drawing_of
 from symflex.errors import SpecError
+from tests.house.repository import one_in
 from tests.unit.drawing.geometry_checks import count, outside, overlaps, struck_texts, wrongly_counted
 
 LONG = "a" * 64
@@ -250,7 +251,7 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("values", [False, True])
-@pytest.mark.parametrize("name", ODD)
+@pytest.mark.parametrize("name", one_in(3, ODD))
 def test_odd_models_are_drawn(name, values):
     model = pipeline.loads(f"symflex = 1\n{ODD[name]}")
     drawing = drawing_of(model, values=values)

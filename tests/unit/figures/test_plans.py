@@ -51,6 +51,7 @@ def test_what_a_hinge_joins_is_drawn_at_one_place():
     assert [(node, round(x, 12), round(y, 12)) for node, x, y in plan.loaded] == [("q", 0.5, 0.5)]
 
 
+@pytest.mark.slow
 def test_the_largest_displacement_of_a_frame_is_that_along_x_or_y():
     """The sway of a portal moves its corners most, its symmetric mode the middle of the beam."""
     _, (sway, symmetric) = shapes(PORTAL)

@@ -31,7 +31,7 @@ from symflex.print.latex import transfer_function_latex
 from symflex.print.sympy import to_sympy
 from symflex.print.text import derive_text, form_text
 from tests.contract.exact import read
-from tests.house.repository import slow_ones
+from tests.house.repository import one_in, slow_ones
 from tests.unit.codegen.models_with_kernels import MODELS, NAMES, derived, spec
 from tests.unit.print.residues import PRIME, point_for
 
@@ -73,7 +73,7 @@ def turns(names):
     return slow_ones(names, lambda name: name in LONG)
 
 
-@pytest.mark.parametrize("form", EVERY_FORM, ids=str)
+@pytest.mark.parametrize("form", one_in(2, EVERY_FORM), ids=str)
 @pytest.mark.parametrize("name", turns(NAMES))
 def test_a_form_is_the_function_in_exact_arithmetic(name, form):
     for number, tf in enumerate(of_case(name)):

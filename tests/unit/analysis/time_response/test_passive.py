@@ -399,6 +399,7 @@ def test_what_an_active_model_leaves_out_is_not_bounded_by_its_energy():
     assert passive_bound(clamped(output="arm.y(0.5 m) - arm.y(0.2 m)")) is None
 
 
+@pytest.mark.slow
 def test_a_search_that_ends_by_itself_leaves_what_was_proved_before(monkeypatch):
     text = 'elements.arm = { type = "beam", between = ["ground", "x"], E = "1 Pa", A = "1 m^2", l = "1 m", '
     text += 'I = "0.01 m^4", rho = "1 kg/m^3" }\n'
