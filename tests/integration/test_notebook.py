@@ -90,6 +90,7 @@ def test_a_transfer_function_shows_as_an_equation(outputs):
     assert r"\text{where}\quad q &= \mu l" in latex
 
 
+@pytest.mark.slow
 def test_poles_and_zeros_show_as_a_table(outputs):
     html = text(outputs[3]["text/html"])
     # tan q + tanh q = 0 first at q = 2.365020372, omega = q^2 sqrt(E I/(rho A))/l^2
@@ -98,6 +99,7 @@ def test_poles_and_zeros_show_as_a_table(outputs):
     assert "certified" in html
 
 
+@pytest.mark.slow
 def test_a_response_shows_as_a_drawing_and_a_long_one_as_a_raster(outputs):
     assert "<svg" in text(outputs[4]["image/svg+xml"])
     assert text(outputs[5]["image/png"]).startswith("iVBORw0KGgo")  # the signature of PNG in base 64

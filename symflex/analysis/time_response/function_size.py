@@ -6,9 +6,11 @@ poles that a sum over modes leaves out may add to a response.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
-from math import pi
+from math import inf, pi
 from typing import TYPE_CHECKING, Final
 
 from flint import acb, acb_series, arb
@@ -17,7 +19,9 @@ from symflex.algebra.exponential_sum import REAL, arguments_of, exponential_sum
 from symflex.analysis.time_response.exponentials import ExponentialTerm
 from symflex.budget import spend
 from symflex.roots.counting.argument_principle import LogarithmicLine
+from symflex.roots.counting.local_series import SeriesSteps
 from symflex.roots.functions.exponential_values import ExponentialValues
+from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.precision import precision
 from symflex.transfer.balls import at_centre, ball
 
@@ -40,6 +44,8 @@ SERIES_TERMS = 4
 """Of sums on a step: with more, they hardly become longer."""
 WIDEST = 2.0
 """How far from poles that accumulate a ring about them is sought, over the size of what they lie in."""
+SERIES_BITS = 96
+"""Of values that make a series, of which a few digits are wanted; terms are lost on the way."""
 RING_STEPS = 16
 """Of half a ring, at first."""
 RING_POWER = 50
@@ -47,81 +53,29 @@ RING_POWER = 50
 
 
 @dataclass(frozen=True, eq=False)
-class SizeOfFunction:
-    """How large a transfer function is at most on a ball of s, as a sum of exponentials over another.
-
-    Of every sum the largest exponential is taken out, so that values far from the imaginary axis hardly vary.
-    """
+class SizeOfFunction(ABC):
+    """How large a transfer function is at most on a ball of s."""
 
     bound: BoundTransferFunction
-    values: ExponentialValues
+
+    @cached_property
+    def is_even(self) -> bool:
+        """Whether the function is even or odd in s, as it is without losses."""
+        return all(KernelFunction(self.bound, p).is_even for p in (self.bound.num, self.bound.den))
 
     @classmethod
     def of(cls, bound: BoundTransferFunction) -> SizeOfFunction | None:
-        """Return the evaluator of a function; None where a wavenumber has no formula, or for long sums."""
-        arguments = arguments_of(bound.kernels)
-        if arguments is None:
-            return None
-        found = []
-        for factor, exponent in bound.ratio.factors:
-            terms = exponential_sum(bound.ratio.ring, bound.kernels, arguments, factor)
-            if terms is None:
-                return None
-            found.append((terms, exponent))
-        with precision(BITS):
-            return cls(bound, ExponentialValues(bound.kernel_values(), arguments, tuple(found)))
+        """Return the evaluator of a function; None where there is none, as for long sums."""
+        return SizeOfExponentials.of(bound) or SizeBySeries.of(bound)
 
     @property
-    def length(self) -> int:
-        """How many exponentials it is made of."""
-        return sum(len(terms.terms) for terms, _ in self.values.sums)
+    @abstractmethod
+    def length(self) -> float:
+        """How many exponentials it is made of; infinite where it is not."""
 
+    @abstractmethod
     def at(self, s: acb, sharp: float = 1.0) -> arb | None:
         """Return the most that abs(H) is on a ball; None where it is not told, to about a share."""
-        spend()
-        place = self.values.at(s)
-        total = abs(acb(ball(self.bound.ratio.unit)))
-        grown: dict[int, complex] = {}
-        for i, (terms, exponent) in enumerate(self.values.sums):
-            only = next(iter(terms.terms), REAL)
-            largest = only if len(terms.terms) == 1 else self.values.largest([i], place)
-            value = at_centre(self.values.value(i, place, largest))
-            if not value.is_finite():
-                return None
-            scale = abs(value.mid())
-            if exponent > 0:
-                # A numerator may vanish on the way.
-                own = self.values.amplitudes(i, place)[list(terms.terms).index(largest)]
-                scale = scale.max(abs(at_centre(own).mid()))
-            if not value.rad() <= sharp * scale or (exponent < 0 and not abs(value) > 0):
-                value = self._expanded(i, s, largest)
-                scale = scale if exponent > 0 else abs(value.mid())
-                if not value.rad() <= sharp * scale:
-                    return None
-            size = abs(value)
-            total = total * (size.upper() if exponent > 0 else size.lower()) ** exponent
-            for k, real, imaginary in largest:
-                grown[k] = grown.get(k, 0j) + exponent * complex(real, imaginary)
-        # Added up first: the balls of what grows above and below would not cancel.
-        rest = place.combined(tuple((k, acb(c.real, c.imag)) for k, c in grown.items() if c))
-        found = total if rest is None else total * at_centre(rest).real.exp()
-        return found.upper() if found.is_finite() else None
-
-    def _expanded(self, number: int, s: acb, largest: Exponent) -> acb:
-        """Return one sum over an exponential from its series in a ball's middle, its last term on the ball.
-
-        Where terms cancel, their balls do not, and it would take a thousand times as many small ones.
-        """
-        middle, last = s.mid(), SERIES_TERMS - 1
-        near = self.values.at(acb_series([s, acb(1)], SERIES_TERMS))
-        at_middle = self.values.at(acb_series([middle, acb(1)], SERIES_TERMS), near)
-        wide, sharp = (self.values.value(number, place, largest) for place in (near, at_middle))
-        if not (isinstance(wide, acb_series) and isinstance(sharp, acb_series)):
-            return at_centre(wide)
-        total = wide[last]
-        for k in reversed(range(last)):
-            total = total * (s - middle) + sharp[k]
-        return total
 
     def on_arc(self, reached: float, start: float, end: float) -> arb | None:
         """Return the integral of abs(H) over the angle [rad] from one to another, at one ln(abs(s))."""
@@ -181,6 +135,129 @@ class SizeOfFunction:
             # Left of the imaginary axis no exponential is larger than 1.
             missing = largest * ring.radius * (ring.width + 1 / ring.width) / (ring.width**count - 1)
             return ring, terms, missing.upper()
+
+
+@dataclass(frozen=True, eq=False)
+class SizeOfExponentials(SizeOfFunction):
+    """The same of a sum of exponentials over another.
+
+    Of every sum the largest exponential is taken out, so that values far from the imaginary axis hardly vary.
+    """
+
+    values: ExponentialValues
+
+    @classmethod
+    def of(cls, bound: BoundTransferFunction) -> SizeOfExponentials | None:
+        """Return the evaluator of a function; None where a wavenumber has no formula, or for long sums."""
+        arguments = arguments_of(bound.kernels)
+        if arguments is None:
+            return None
+        found = []
+        for factor, exponent in bound.ratio.factors:
+            terms = exponential_sum(bound.ratio.ring, bound.kernels, arguments, factor)
+            if terms is None:
+                return None
+            found.append((terms, exponent))
+        with precision(BITS):
+            return cls(bound, ExponentialValues(bound.kernel_values(), arguments, tuple(found)))
+
+    @property
+    def length(self) -> int:
+        """How many exponentials it is made of."""
+        return sum(len(terms.terms) for terms, _ in self.values.sums)
+
+    def at(self, s: acb, sharp: float = 1.0) -> arb | None:
+        """Return the most that abs(H) is on a ball, by exponentials."""
+        spend()
+        place = self.values.at(s)
+        total = abs(acb(ball(self.bound.ratio.unit)))
+        grown: dict[int, complex] = {}
+        for i, (terms, exponent) in enumerate(self.values.sums):
+            only = next(iter(terms.terms), REAL)
+            largest = only if len(terms.terms) == 1 else self.values.largest([i], place)
+            value = at_centre(self.values.value(i, place, largest))
+            if not value.is_finite():
+                return None
+            scale = abs(value.mid())
+            if exponent > 0:
+                # A numerator may vanish on the way.
+                own = self.values.amplitudes(i, place)[list(terms.terms).index(largest)]
+                scale = scale.max(abs(at_centre(own).mid()))
+            if not value.rad() <= sharp * scale or (exponent < 0 and not abs(value) > 0):
+                value = self._expanded(i, s, largest)
+                scale = scale if exponent > 0 else abs(value.mid())
+                if not value.rad() <= sharp * scale:
+                    return None
+            size = abs(value)
+            total = total * (size.upper() if exponent > 0 else size.lower()) ** exponent
+            for k, real, imaginary in largest:
+                grown[k] = grown.get(k, 0j) + exponent * complex(real, imaginary)
+        # Added up first: the balls of what grows above and below would not cancel.
+        rest = place.combined(tuple((k, acb(c.real, c.imag)) for k, c in grown.items() if c))
+        found = total if rest is None else total * at_centre(rest).real.exp()
+        return found.upper() if found.is_finite() else None
+
+    def _expanded(self, number: int, s: acb, largest: Exponent) -> acb:
+        """Return one sum over an exponential from its series in a ball's middle, its last term on the ball.
+
+        Where terms cancel, their balls do not, and it would take a thousand times as many small ones.
+        """
+        middle, last = s.mid(), SERIES_TERMS - 1
+        near = self.values.at(acb_series([s, acb(1)], SERIES_TERMS))
+        at_middle = self.values.at(acb_series([middle, acb(1)], SERIES_TERMS), near)
+        wide, sharp = (self.values.value(number, place, largest) for place in (near, at_middle))
+        if not (isinstance(wide, acb_series) and isinstance(sharp, acb_series)):
+            return at_centre(wide)
+        total = wide[last]
+        for k in reversed(range(last)):
+            total = total * (s - middle) + sharp[k]
+        return total
+
+
+@dataclass(frozen=True, eq=False)
+class SizeBySeries(SizeOfFunction):
+    """The same of members whose coefficients vary along x, from power series about the middles of balls.
+
+    Numerator and denominator are entire, and each is followed by its own series.
+    """
+
+    parts: tuple[SeriesSteps, SeriesSteps]
+
+    @classmethod
+    def of(cls, bound: BoundTransferFunction) -> SizeBySeries | None:
+        """Return the evaluator of a function; None where some waves have wavenumbers."""
+        if bound.kernels.wavenumbers or not bound.kernels.kernels or bound.ratio.is_zero:
+            return None
+        num, den = (SeriesSteps(KernelFunction(bound, part)) for part in (bound.num, bound.den))
+        return cls(bound, (num, den)) if num.function.power == den.function.power == 1 else None
+
+    @property
+    def length(self) -> float:
+        """It is made of none."""
+        return inf
+
+    def at(self, s: acb, sharp: float = 1.0) -> arb | None:
+        """Return the most that abs(H) is on a ball, by series; its radius is less than half of abs(s)."""
+        spend()
+        middle, reach = s.mid(), (s - s.mid()).abs_upper()
+        sizes = [abs(part.unit) for part in (self.bound.num, self.bound.den)]
+        size = abs(ball(sizes[0] / sizes[1]))
+        for part, exponent in zip(self.parts, (1, -1), strict=True):
+            if reach > 0:
+                here = part.near(middle, reach, SERIES_BITS)
+                if here is None:
+                    return None
+                (first, *others), missed = here
+            else:
+                first, others, missed = part.function.value(middle, BITS), [], arb(0)
+            off, power = missed, arb(1)
+            for coefficient in others:
+                power *= reach
+                off += abs(coefficient) * power
+            if exponent < 0 and not off <= sharp * abs(first):
+                return None
+            size *= (abs(first) + off) if exponent > 0 else 1 / (abs(first) - off)
+        return size.upper() if size.is_finite() else None
 
 
 @dataclass(frozen=True, slots=True)

@@ -31,7 +31,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from flint import arb
 
-from symflex.analysis.time_response.function_size import BITS, Rest, SizeOfFunction
+from symflex.analysis.time_response.function_size import BITS, Rest, SizeOfExponentials
 from symflex.roots.distributed.far_out import SECTORS, TILTED, FunctionFarOut
 from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.precision import precision
@@ -55,7 +55,7 @@ INWARD = 1 - 1e-12
 class LossyBound:
     """A transfer function that is about a power of s in the right half plane, and beyond, far from 0."""
 
-    function: SizeOfFunction
+    function: SizeOfExponentials
     far_out: FunctionFarOut
     least: float  # ln of the radius from which on it is
 
@@ -99,7 +99,7 @@ class LossyBound:
 
 def lossy_bound(bound: BoundTransferFunction) -> LossyBound | None:
     """Return what bounds the modes of a function; None where poles have no end along the imaginary axis."""
-    function = SizeOfFunction.of(bound)
+    function = SizeOfExponentials.of(bound)
     if function is None:
         return None
     start = KernelFunction(bound, bound.den).frequency_of(1.0)

@@ -17,7 +17,6 @@ from __future__ import annotations
 
 from cmath import sqrt as csqrt
 from dataclasses import dataclass, replace
-from functools import cached_property
 from math import log, pi
 from typing import TYPE_CHECKING
 
@@ -29,7 +28,7 @@ from symflex.analysis.time_response.damped_modes import Damping, damping_of
 from symflex.analysis.time_response.echoes import Sampled
 from symflex.analysis.time_response.exponentials import ExponentialTerm, values_of
 from symflex.analysis.time_response.filtered import filtered
-from symflex.analysis.time_response.function_size import ZERO, SizeOfFunction
+from symflex.analysis.time_response.function_size import ZERO, SizeOfExponentials
 from symflex.analysis.time_response.lossless_modes import LosslessModes, lossless_modes
 from symflex.analysis.time_response.lossy_modes import LossyBound, lossy_bound
 from symflex.analysis.time_response.passive_modes import PassiveBound, passive_bound
@@ -40,7 +39,6 @@ from symflex.roots.counting.winding import RootOnPathError
 from symflex.roots.distributed.proof import holes_about
 from symflex.roots.distributed.side import Side, accumulation_points
 from symflex.roots.engines import LOSSLESS
-from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.locate import locate
 from symflex.roots.plane.local_roots import prove_simple
 from symflex.roots.polynomial_roots import in_order
@@ -381,14 +379,10 @@ class BoundedModes:
         """
         if root.is_zero or root.im < 0:
             return False
-        if self._bounding.is_passive and (root.re > 0 or (root.re < 0 and self._is_lossless)):
+        function = self._bounding.function
+        if self._bounding.is_passive and (root.re > 0 or (root.re < 0 and function.is_even)):
             return False
         return not root.natural_frequency() > radius
-
-    @cached_property
-    def _is_lossless(self) -> bool:
-        """Whether the function is even or odd in s."""
-        return all(KernelFunction(self._bound, p).is_even for p in (self._bound.num, self._bound.den))
 
 
 def _root_of(pole: Root) -> complex:
@@ -604,7 +598,7 @@ def _begun(bound: AnyBoundFunction, integrations: int, far: arb) -> arb:
 
 def _rings(bound: AnyBoundFunction, poles: Sequence[Root], integrations: int) -> list[Ring]:
     """Return what poles add that accumulate, as about -1/eta, as far as all others on a ring are known."""
-    function = None if isinstance(bound, BoundNested) else SizeOfFunction.of(bound)
+    function = None if isinstance(bound, BoundNested) else SizeOfExponentials.of(bound)
     if function is None:
         return []
     reached = max((root.natural_frequency() for root in poles), default=arb(0), key=arb.mid)

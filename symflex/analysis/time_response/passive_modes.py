@@ -64,7 +64,7 @@ class PassiveBound:
     function: SizeOfFunction
     order: int
     factor: arb  # its size
-    colocated: tuple[SizeOfFunction, ...]  # what forces at either end move there; one where both are the same
+    colocated: tuple[SizeOfFunction, ...]  # what forces at both ends move; none where these are one
 
     is_passive: ClassVar = True
     least: ClassVar = -inf  # ln of the radius from which on something is known
@@ -80,12 +80,14 @@ class PassiveBound:
             return None
         with precision(BITS):
             radius = arb(reached).exp()
-            sizes = [each.at(acb(radius)) for each in self.colocated]
-            right, left = (self.function.on_arc(reached, *ends) for ends in ((0.0, pi / 2), (pi / 2, pi)))
-            known = [size for size in sizes if size is not None]
-            if right is None or left is None or len(known) < len(sizes):
+            right = self.function.on_arc(reached, 0.0, pi / 2)
+            left = right if self.function.is_even else self.function.on_arc(reached, pi / 2, pi)
+            both = self.colocated or (self.function, self.function)
+            here, there = (each.at(acb(radius)) for each in both)
+            if right is None or left is None or here is None or there is None:
                 return None
-            beyond = 4 * self.factor * (known[0] * known[-1]).sqrt()
+            beyond = 4 * (here * there).sqrt()
+            beyond *= self.factor if self.colocated else radius**-self.order
             # Both arcs stand for their mirror images as well.
             step = beyond + (left + 3 * right) / arb.pi() / radius**self.order
             if smooth == RAMP:
@@ -120,22 +122,18 @@ def passive_bound(bound: BoundTransferFunction) -> PassiveBound | None:
     factor = there.factor / s**order
     if not factor.is_constant or order < 0:
         return None
-    function = SizeOfFunction.of(bound)
-    if function is None:
-        return None
-    ends = [here] if here == there.coordinates else [here, there.coordinates]
-    colocated = _colocated(bound, model, ends)
-    if colocated is None:
-        return None
-    sizes = tuple(found for c in colocated if (found := SizeOfFunction.of(c)) is not None)
     size = abs(ball(factor.unit))
-    return PassiveBound(function, order, size, sizes) if len(sizes) == len(ends) else None
+    if here == there.coordinates:
+        return None if force_on(model, here[0][0]) is None else PassiveBound(function, order, size, ())
+    found = [SizeOfFunction.of(c) for c in _colocated(bound, model, [here, there.coordinates])]
+    sizes = tuple(each for each in found if each is not None)
+    return PassiveBound(function, order, size, sizes) if len(sizes) == PAIR else None
 
 
 def _colocated(
     bound: BoundTransferFunction, model: Model, ends: list[Coordinates]
-) -> list[BoundTransferFunction] | None:
-    """Return what a force moves where it acts, at each end; None where the model is not reciprocal.
+) -> list[BoundTransferFunction]:
+    """Return what a force moves where it acts, at both ends; nothing where the model is not reciprocal.
 
     That a force at one end moves the other as much as the other way round is seen from both functions.
     """
@@ -143,7 +141,7 @@ def _colocated(
     for i, coordinates in enumerate(ends):
         kind = force_on(model, coordinates[0][0])
         if kind is None:
-            return None
+            return []
         nodes = tuple(NodeReference(v.owner, v.component) for v, _ in coordinates)
         forces.append(Input(f"{INPUT}_{i}", kind, nodes))
         shown.append(Output(f"{OUTPUT}_{i}", _written(coordinates)))
@@ -151,9 +149,7 @@ def _colocated(
     given = replace(model, inputs=(*model.inputs, *forces), outputs=tuple(shown), figures=(), published=())
     pairs = [(o.name, i.name) for o in shown for i in forces]
     found = [bind(tf, dict(bound.values)) for tf in derive_all(given, pairs)]
-    if len(ends) == PAIR and not (found[1].ratio / found[2].ratio).is_one:
-        return None
-    return [found[0], found[-1]] if len(ends) == PAIR else found
+    return [found[0], found[-1]] if (found[1].ratio / found[2].ratio).is_one else []
 
 
 def force_on(model: Model, variable: Variable) -> str | None:

@@ -551,6 +551,7 @@ def test_the_objects_call_no_allocator_and_hold_no_variables(written):
     assert {kind.lower() for kind, _ in symbols} <= {"t", "r", "u"}
 
 
+@pytest.mark.slow
 def test_objects_of_two_models_are_linked_together(written):
     (written / "main.c").write_text(
         '#include "six_mass.h"\n#include "sliding_free_beam.h"\n#include <stdio.h>\n'

@@ -16,7 +16,7 @@ from symflex.codegen.program.build import available_forms, build_program
 from symflex.codegen.program.evaluate import evaluate, nearest_double
 from symflex.codegen.program.nodes import Assigned, Laplace, RealNumber, lumped
 from symflex.errors import BudgetError, ModelError
-from tests.house.repository import specifications
+from tests.house.repository import one_in, specifications
 
 MASSES = [Fraction(11 + i, 2) for i in range(8)]
 SPRINGS = [Fraction(100_000 + 7_000 * i) for i in range(7)]
@@ -71,7 +71,7 @@ def program_of(number, which, form):
 
 
 @pytest.mark.parametrize("form", ["closed", "closed in s", "nested", "factors"])
-@pytest.mark.parametrize("s", [1e-9j, 3 + 40j, -2 + 1e3j, 1e8 + 1e8j, 1e10j, 1e12j])
+@pytest.mark.parametrize("s", one_in(3, [1e-9j, 3 + 40j, -2 + 1e3j, 1e12j, 1e8 + 1e8j, 1e10j]))
 @pytest.mark.parametrize("which", [0, 1])
 def test_eight_masses_agree_with_a_linear_solve_from_1e_minus_9_to_1e12(form, s, which):
     number = 6 if form == "factors" else 8

@@ -75,7 +75,7 @@ def test_every_worked_model_is_drawn_with_everything_in_its_place(path):
     assert drawing.width == pytest.approx(88.5 / 25.4 * 72)
 
 
-@pytest.mark.parametrize("block", SHOWN, ids=str)
+@pytest.mark.parametrize("block", one_in(3, SHOWN), ids=str)
 def test_every_model_of_the_pages_is_drawn_with_everything_in_its_place(block):
     try:
         model = pipeline.loads(block.text, str(ROOT / "derivations/eppinger1988/page.toml"))

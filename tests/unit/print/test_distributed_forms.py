@@ -415,7 +415,8 @@ def test_text_keeps_to_80_columns(name):
             assert max(map(len, rows)) <= 80 or len(rows) > 100
 
 
-@pytest.mark.parametrize("name", turns(NAMES))
+@pytest.mark.slow
+@pytest.mark.parametrize("name", NAMES)
 def test_a_form_that_is_given_up_for_its_terms_would_not_have_been_shorter(name, monkeypatch):
     monkeypatch.setattr(forms, "FEW", 20)
     for tf in of_case(name):

@@ -308,7 +308,7 @@ CONE = 'E = "1 Pa", A = "A_0*(1 - x/(2*l))^2", rho = "1 kg/m^3", l = "l"'
 
 
 @pytest.mark.slow
-def test_an_estimate_of_a_tapered_rod_swings_about_where_it_would_rest():
+def test_a_step_of_a_tapered_rod_is_what_its_modes_add():
     text = 'symflex = 1\nparameters = { A_0 = "1 m^2", l = "1 m" }\n'
     text += f'elements.horn = {{ type = "rod", between = ["ground", "x"], {CONE} }}\n'
     bound = loads(f'{text}inputs.F = {{ force = "x" }}\noutputs.X = "x"').transfer_function("X", "F").bind()
@@ -317,8 +317,10 @@ def test_an_estimate_of_a_tapered_rod_swings_about_where_it_would_rest():
     k = roots_of(lambda k: np.sin(k) / k + np.cos(k), (np.arange(MODES) + 0.6) * np.pi)
     expected = [2 - np.sum(8 / (2 + k**2) * np.cos(k * t)) for t in found.times]
     left = 8 / (np.pi**2 * MODES)
+    assert found.certified
     assert np.all(np.abs(found.values - expected) <= found.radius + left)
-    assert np.all(found.radius < 0.1)
+    # What is left falls off with the number of modes itself: a thirtieth of the largest value, and proved.
+    assert np.all(found.radius < 0.25)
 
 
 def test_an_acceleration_of_a_beam_is_refused_as_modes_do_not_fall_off():
