@@ -9,7 +9,7 @@ Times are processor times: other programs on the machine count little.
 
 from __future__ import annotations
 
-from benchmarks.measure import Claim, Measurement, interpreter_with, run_snippet
+from benchmarks.measure import Claim, Measurement, interpreter_with, milliseconds, run_snippet, times_as_fast
 
 SIZES = (2, 4, 6, 8, 10, 12)
 COMPARED = 8
@@ -181,15 +181,15 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
         gone |= {other.way for other in theirs if other.seconds is None}
         found += [*ours, *theirs]
         if n in FLOORS:
-            ratio = min(other.at_least for other in theirs) / ours[0].taken
+            ratio = times_as_fast(ours[0], *theirs)
             claims.append(Claim(f"{n} masses: times as fast as the fastest other way", FLOORS[n], ratio))
         if n in CEILINGS:
             text = f"{n} masses: milliseconds from assembled equations"
-            claims.append(_ceiling(text, CEILINGS[n], ours[2]))
+            claims.append(milliseconds(text, CEILINGS[n], ours[2]))
     task = f"chain of {CLOSED} masses, links kept as one symbol"
     way, asked = "symflex, first run of a process", SYMFLEX_WAYS["symflex, first run of a process"]
     closed = _ours(task, way, CLOSED, "tf.closed", asked, limit)
-    claims.append(_ceiling(f"{task}: milliseconds", CLOSED_CEILING, closed))
+    claims.append(milliseconds(f"{task}: milliseconds", CLOSED_CEILING, closed))
     return [*found, closed], claims
 
 
@@ -197,10 +197,6 @@ def _ours(task: str, way: str, n: int, result: str, asked: dict[str, object], li
     repeats = asked["repeats"] if n <= COMPARED else min(3, int(str(asked["repeats"])))
     code = SYMFLEX.format(n=n, result=result, repeats=repeats, clock=asked["clock"], limit=limit)
     return run_snippet(task, way, code, limit)
-
-
-def _ceiling(text: str, seconds: float, ours: Measurement) -> Claim:
-    return Claim(text, 1e3 * seconds, 1e3 * ours.taken, larger_is_better=False, is_ratio=False)
 
 
 def _others(n: int) -> dict[str, tuple[str, str]]:

@@ -142,11 +142,9 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
     claims: list[Claim] = []
     for storeys in STOREYS:
         task = f"ten modes of a frame of {3 * storeys} members"
-        ways = {"symflex, 20 digits, proved": SYMFLEX, "numpy, signs of a dense determinant": NUMPY}
-        ours, theirs = (
-            run_snippet(task, way, code.format(storeys=storeys, modes=MODES), seconds)
-            for (way, code), seconds in zip(ways.items(), (max(limit, OWN), limit), strict=True)
-        )
+        own, dense = (code.format(storeys=storeys, modes=MODES) for code in (SYMFLEX, NUMPY))
+        ours = run_snippet(task, "symflex, 20 digits, proved", own, max(limit, OWN))
+        theirs = run_snippet(task, "numpy, signs of a dense determinant", dense, limit)
         found += [ours, theirs]
         text = f"{task}, symflex: seconds"
         ceiling = CEILINGS[storeys]

@@ -133,6 +133,16 @@ class Claim:
         return self.measured >= self.bound if self.larger_is_better else self.measured <= self.bound
 
 
+def times_as_fast(ours: Measurement, *theirs: Measurement) -> float:
+    """Return how many times as long the fastest other way took, or more; nan where ours was stopped."""
+    return min(other.at_least for other in theirs) / ours.taken
+
+
+def milliseconds(text: str, seconds: float, ours: Measurement) -> Claim:
+    """Return the claim that a time is no longer, in milliseconds."""
+    return Claim(text, 1e3 * seconds, 1e3 * ours.taken, larger_is_better=False, is_ratio=False)
+
+
 def run_snippet(
     task: str, way: str, code: str, limit: float, interpreter: str = sys.executable
 ) -> Measurement:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import sympy
 
-from benchmarks.measure import Claim, Measurement, interpreter_with, run_snippet
+from benchmarks.measure import Claim, Measurement, interpreter_with, milliseconds, run_snippet, times_as_fast
 
 SIZES = (10, 50, 200)
 LARGEST = 200
@@ -172,21 +172,21 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
         gone |= {other.way for other in theirs if other.seconds is None}
         found += [ours, *theirs]
         if n == MEDIUM and theirs:
-            ratio = min(other.at_least for other in theirs) / ours.taken
+            ratio = times_as_fast(ours, *theirs)
             claims.append(
                 Claim(f"{n} masses with numbers: times as fast as the fastest other way", FLOOR, ratio)
             )
         if n == LARGEST:
-            claims.append(_ceiling(f"{n} masses with numbers: milliseconds", CEILING, ours))
+            claims.append(milliseconds(f"{n} masses with numbers: milliseconds", CEILING, ours))
     for kind, ceiling in ROOT_CEILINGS.items():
         task = f"poles and zeros of {LARGEST} masses, {kind}, proved at 30 digits"
         then = ROOTS.format(n=LARGEST)
         code = SYMFLEX.format(n=LARGEST, damped=kind == "damped", then=then)
         ours = run_snippet(task, "symflex", code, limit)
         found.append(ours)
-        claims.append(_ceiling(f"{task}: milliseconds", ceiling, ours))
+        claims.append(milliseconds(f"{task}: milliseconds", ceiling, ours))
     ours, *theirs = _pole_ways(limit)
-    ratio = min(other.at_least for other in theirs if other.way != UNPROVED) / ours.taken
+    ratio = times_as_fast(ours, *(other for other in theirs if other.way != UNPROVED))
     text = f"{FEW} masses, poles and zeros: times as fast as mpmath and sympy.physics.control"
     claims.append(Claim(text, POLES_FLOOR, ratio))
     return [*found, ours, *theirs], claims
@@ -199,10 +199,6 @@ def _pole_ways(limit: float) -> list[Measurement]:
     start = COEFFICIENTS.format(n=FEW)
     ours = run_snippet(task, "symflex, proved, 30 digits", code, limit)
     return [ours, *(run_snippet(task, way, start + c + END, limit) for way, c in POLE_WAYS.items())]
-
-
-def _ceiling(text: str, seconds: float, ours: Measurement) -> Claim:
-    return Claim(text, 1e3 * seconds, 1e3 * ours.taken, larger_is_better=False, is_ratio=False)
 
 
 def _others(n: int) -> dict[str, tuple[str, str]]:

@@ -20,7 +20,7 @@ import mpmath
 from mpmath import mp, mpc, mpf
 
 import symflex
-from benchmarks.measure import OWN, Claim, Measurement, run_snippet
+from benchmarks.measure import OWN, Claim, Measurement, run_snippet, times_as_fast
 from symflex.roots import Budget, Mode, Modes, Position, Rectangle
 from symflex.roots.distributed.side import Side
 from symflex.roots.locate import locate
@@ -348,7 +348,7 @@ def _run(
 
 def _ratio(text: str, bound: float, theirs: Measurement | None, ours: Measurement | None) -> Claim:
     # What was not done is missed.
-    return Claim(text, bound, theirs.at_least / ours.taken if theirs and ours else math.nan)
+    return Claim(text, bound, times_as_fast(ours, theirs) if theirs and ours else math.nan)
 
 
 def _has_cxroots(interpreter: str) -> bool:

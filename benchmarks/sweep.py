@@ -18,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.measure import OWN, Claim, Measurement, run_snippet
+from benchmarks.measure import OWN, Claim, Measurement, run_snippet, times_as_fast
 from symflex import pipeline
 from symflex.options import SweepOptions
 from symflex.roots import Modes
@@ -187,8 +187,10 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
         memory = math.nan
     name = f"sweep of {most} beams"
     return measurements, [
-        Claim(f"{name}: times as fast as `findroot`", FASTER_THAN_FINDROOT, _ratio(findroot, ours[-1])),
-        Claim(f"{name}: times as fast as searches", FASTER_THAN_SEARCHES, _ratio(searches, ours[-1])),
+        Claim(
+            f"{name}: times as fast as `findroot`", FASTER_THAN_FINDROOT, times_as_fast(ours[-1], findroot)
+        ),
+        Claim(f"{name}: times as fast as searches", FASTER_THAN_SEARCHES, times_as_fast(ours[-1], searches)),
         Claim(
             f"{name}: time per point over that of half as many",
             LINEAR_WITHIN,
@@ -204,7 +206,3 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
             is_ratio=False,
         ),
     ]
-
-
-def _ratio(theirs: Measurement, ours: Measurement) -> float:
-    return theirs.at_least / ours.taken

@@ -240,8 +240,7 @@ class SizeBySeries(SizeOfFunction):
         """Return the most that abs(H) is on a ball, by series; its radius is less than half of abs(s)."""
         spend()
         middle, reach = s.mid(), (s - s.mid()).abs_upper()
-        sizes = [abs(part.unit) for part in (self.bound.num, self.bound.den)]
-        size = abs(ball(sizes[0] / sizes[1]))
+        size = abs(ball(self.bound.num.unit / self.bound.den.unit))
         for part, exponent in zip(self.parts, (1, -1), strict=True):
             if reach > 0:
                 here = part.near(middle, reach, SERIES_BITS)

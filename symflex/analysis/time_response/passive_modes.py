@@ -82,11 +82,11 @@ class PassiveBound:
             radius = arb(reached).exp()
             right = self.function.on_arc(reached, 0.0, pi / 2)
             left = right if self.function.is_even else self.function.on_arc(reached, pi / 2, pi)
-            both = self.colocated or (self.function, self.function)
-            here, there = (each.at(acb(radius)) for each in both)
-            if right is None or left is None or here is None or there is None:
+            sizes = [each.at(acb(radius)) for each in self.colocated or (self.function,)]
+            known = [size for size in sizes if size is not None]
+            if right is None or left is None or len(known) < len(sizes):
                 return None
-            beyond = 4 * (here * there).sqrt()
+            beyond = 4 * (known[0] * known[-1]).sqrt()
             beyond *= self.factor if self.colocated else radius**-self.order
             # Both arcs stand for their mirror images as well.
             step = beyond + (left + 3 * right) / arb.pi() / radius**self.order
