@@ -54,26 +54,21 @@ def with_texts(model, text):
     return replace(model, title=f"t{text}", source=f"s{text}", parameters=parameters)
 
 
-@pytest.fixture(scope="module")
-def usual(model):
+def test_no_text_of_a_model_brings_a_command(model):
     # Letters that a plain text is made of, a unit that siunitx lacks, and a description in lines.
-    return commands(files_of(with_texts(model, "words " * 20)))
-
-
-@pytest.mark.parametrize("text", [*HOSTILE, *MARKUP, *MORE], ids=ascii)
-def test_no_text_of_a_model_brings_a_command(model, usual, text):
-    files = files_of(with_texts(model, text))
-    found = commands(files)
-    assert found <= usual | {r"\qty", r"\num", r"\unit", r"\newline"}
-    assert all(file.isascii() for file in files.values())
-    for name, file in files.items():
-        plain = OF_TEXT.sub("", file)
-        assert plain.count("{") == plain.count("}"), name
-        # Comments are the ones at the top.
-        lines = plain.splitlines()
-        first = next(i for i, line in enumerate(lines) if not line.startswith("%"))
-        assert "%" not in "\n".join(lines[first:])
-        assert "^^" not in plain
+    usual = commands(files_of(with_texts(model, "words " * 20)))
+    for text in (*HOSTILE, *MARKUP, *MORE):
+        files = files_of(with_texts(model, text))
+        assert commands(files) <= usual | {r"\qty", r"\num", r"\unit", r"\newline"}, text
+        for name, file in files.items():
+            assert file.isascii(), (name, text)
+            plain = OF_TEXT.sub("", file)
+            assert plain.count("{") == plain.count("}"), (name, text)
+            # Comments are the ones at the top.
+            lines = plain.splitlines()
+            first = next(i for i, line in enumerate(lines) if not line.startswith("%"))
+            assert "%" not in "\n".join(lines[first:]), (name, text)
+            assert "^^" not in plain, (name, text)
 
 
 def test_what_is_input_are_the_files_themselves(model):

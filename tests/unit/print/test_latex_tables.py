@@ -31,35 +31,33 @@ UNITS = {
 }
 
 
-@pytest.mark.parametrize("unit", UNITS)
-def test_a_unit_is_spelt_for_siunitx(unit):
-    assert siunitx_unit(unit) == UNITS[unit]
+def test_a_unit_is_spelt_for_siunitx():
+    assert {unit: siunitx_unit(unit) for unit in UNITS} == UNITS
 
 
-@pytest.mark.parametrize("unit", ["furlong", r"\input{x}", "m)", "m^x", "5*m", "m^(1/0"])
-def test_an_unknown_unit_is_no_siunitx_unit(unit):
-    assert siunitx_unit(unit) is None
+def test_an_unknown_unit_is_no_siunitx_unit():
+    for unit in ("furlong", r"\input{x}", "m)", "m^x", "5*m", "m^(1/0"):
+        assert siunitx_unit(unit) is None, unit
 
 
 def test_an_unknown_unit_is_escaped_text():
     assert quantity_latex("2", "a_b") == r"\num{2}~a\_b"
 
 
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [
-        (Fraction(0), "0"),
-        (Fraction(80), "80"),
-        (Fraction("0.00375"), "0.00375"),
-        (Fraction(2, 3), "0.6666667"),
-        (Fraction("9999999.96"), "1.000000e7"),
-        (Fraction(-21, 10**13), "-2.1e-12"),
-        (Fraction(1326380), "1.32638e6"),
-        (Fraction(10**200), "1e200"),
-    ],
-)
-def test_a_value_is_a_short_decimal(value, text):
-    assert decimal_text(ExactValue(value)) == text
+SHORT = {
+    Fraction(0): "0",
+    Fraction(80): "80",
+    Fraction("0.00375"): "0.00375",
+    Fraction(2, 3): "0.6666667",
+    Fraction("9999999.96"): "1.000000e7",
+    Fraction(-21, 10**13): "-2.1e-12",
+    Fraction(1326380): "1.32638e6",
+    Fraction(10**200): "1e200",
+}
+
+
+def test_a_value_is_a_short_decimal():
+    assert {value: decimal_text(ExactValue(value)) for value in SHORT} == SHORT
 
 
 MODEL = Model(
@@ -186,17 +184,15 @@ def test_a_table_too_wide_for_every_setting_is_told_apart():
     assert r"\footnotesize" in tabular((column,), SETTINGS[3])
 
 
-@pytest.mark.parametrize(("text", "width"), [("ieee", 88.5), ("a4", 170), ("120", 120), ("90.5mm", 90.5)])
-def test_a_column_is_named_or_given_in_millimetres(text, width):
-    assert column_width(text) == width
+def test_a_column_is_named_or_given_in_millimetres():
+    widths = {"ieee": 88.5, "a4": 170, "120": 120, "90.5mm": 90.5}
+    assert {text: column_width(text) for text in widths} == widths
 
 
-@pytest.mark.parametrize(
-    "text", ["", "ieeee", "12cm", "-90", "79", "1001", "1e2", "nan", "90 in", "9" * 99, "٩٠"]
-)
-def test_no_other_width_is_taken(text):
-    with pytest.raises(UsageError, match="SF902"):
-        column_width(text)
+def test_no_other_width_is_taken():
+    for text in ("", "ieeee", "12cm", "-90", "79", "1001", "1e2", "nan", "90 in", "9" * 99, "٩٠"):
+        with pytest.raises(UsageError, match="SF902"):
+            column_width(text)
 
 
 def test_the_columns_of_the_named_papers_are_as_wide_as_theirs():

@@ -31,9 +31,9 @@ def model():
     return pipeline.loads(SPEC)
 
 
-@pytest.mark.parametrize("row", ROWS)
-def test_a_table_in_latex_has_values_as_they_were_written(row, model):
-    assert row in parameter_table(model)
+def test_a_table_in_latex_has_values_as_they_were_written(model):
+    table = parameter_table(model)
+    assert [row for row in ROWS if row not in table] == []
 
 
 def test_a_notebook_has_values_as_they_were_written(model):
@@ -63,19 +63,11 @@ X = "x"
 """
 
 
-@pytest.mark.parametrize(
-    ("target", "said"),
-    [
-        ("numpy", "[N/m]. 35 kN/m in the model."),
-        ("jax", "[N/m]. 35 kN/m in the model."),
-        ("julia", "[N/m]. 35 kN/m in the model."),
-        ("matlab", "[N/m]. 35 kN/m in the model."),
-        ("state-space", "[N/m]. 35 kN/m in the model."),
-        ("c", ".k = 35000.0, /* 35 kN/m */"),
-    ],
-)
-def test_generated_code_says_values_as_they_were_written(target, said):
+def test_generated_code_says_values_as_they_were_written():
     model = pipeline.loads(BEAM)
-    text = EXPORTERS[target].export(model, pipeline.derive_all(model), "spring").text
-    assert said in " ".join(text.replace("%", " ").split())
-    assert "3 kg in the model" not in text  # that is SI
+    tfs = pipeline.derive_all(model)
+    for target in ("numpy", "jax", "julia", "matlab", "state-space", "c"):
+        said = ".k = 35000.0, /* 35 kN/m */" if target == "c" else "[N/m]. 35 kN/m in the model."
+        text = EXPORTERS[target].export(model, tfs, "spring").text
+        assert said in " ".join(text.replace("%", " ").split()), target
+        assert "3 kg in the model" not in text, target  # that is SI
