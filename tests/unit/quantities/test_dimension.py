@@ -44,9 +44,8 @@ def test_dimensions_have_an_order():
     assert sorted([MASS, LENGTH, DIMENSIONLESS]) == [DIMENSIONLESS, LENGTH, MASS]
 
 
-@pytest.mark.parametrize(
-    ("dimension", "printed"),
-    [
+def test_a_common_dimension_prints_as_engineers_write_it():
+    for dimension, printed in [
         (DIMENSIONLESS, "1"),
         (MASS, "kg"),
         (LENGTH, "m"),
@@ -76,15 +75,12 @@ def test_dimensions_have_an_order():
         (MASS / LENGTH**3, "kg/m^3"),
         (LENGTH**2, "m^2"),
         (LENGTH**4, "m^4"),
-    ],
-)
-def test_a_common_dimension_prints_as_engineers_write_it(dimension, printed):
-    assert str(dimension) == printed
+    ]:
+        assert str(dimension) == printed, dimension
 
 
-@pytest.mark.parametrize(
-    ("dimension", "printed"),
-    [
+def test_any_other_dimension_prints_as_a_product_of_base_units():
+    for dimension, printed in [
         (VOLTAGE**2, "kg^2*m^4/(A^2*s^6)"),
         (VOLTAGE / TIME**2, "kg*m^2/(A*s^5)"),
         (MASS**2, "kg^2"),
@@ -93,20 +89,18 @@ def test_a_common_dimension_prints_as_engineers_write_it(dimension, printed):
         (MASS / TIME**4, "kg/s^4"),
         (LENGTH ** Fraction(1, 2), "m^(1/2)"),
         (LENGTH / TIME ** Fraction(3, 2), "m/s^(3/2)"),
-    ],
-)
-def test_any_other_dimension_prints_as_a_product_of_base_units(dimension, printed):
-    assert str(dimension) == printed
+    ]:
+        assert str(dimension) == printed, dimension
 
 
-@pytest.mark.parametrize("dimension", PREFERRED_UNITS, ids=str)
-def test_a_preferred_unit_reads_back_as_its_dimension(dimension):
-    assert unit_of(PREFERRED_UNITS[dimension]).dimension == dimension
+def test_a_preferred_unit_reads_back_as_its_dimension():
+    for dimension in PREFERRED_UNITS:
+        assert unit_of(PREFERRED_UNITS[dimension]).dimension == dimension, dimension
 
 
-@pytest.mark.parametrize("unit", PREFERRED_UNITS.values())
-def test_a_preferred_unit_is_coherent(unit):
-    assert unit_of(unit).scale == 1
+def test_a_preferred_unit_is_coherent():
+    for unit in PREFERRED_UNITS.values():
+        assert unit_of(unit).scale == 1, unit
 
 
 @pytest.mark.slow
@@ -115,9 +109,8 @@ def test_any_printed_dimension_reads_back_as_itself(dimension):
     assert unit_of(str(dimension)).dimension == dimension
 
 
-@pytest.mark.parametrize(
-    ("unit", "name"),
-    [
+def test_a_dimension_has_the_fields_own_name():
+    for unit, name in [
         ("1", "pure number"),
         ("kg", "mass"),
         ("kN/m", "stiffness"),
@@ -133,10 +126,8 @@ def test_any_printed_dimension_reads_back_as_itself(dimension):
         ("m/s/N", "mobility"),
         ("m/s^2/N", "accelerance"),
         ("mm^4", "second moment of area"),
-    ],
-)
-def test_a_dimension_has_the_fields_own_name(unit, name):
-    assert dimension_name(unit_of(unit).dimension) == name
+    ]:
+        assert dimension_name(unit_of(unit).dimension) == name, unit
 
 
 def test_a_dimension_without_a_word_has_no_name():

@@ -22,9 +22,8 @@ def refused(value, parse=parse_quantity):
 
 
 # Converted by hand: value in SI, cycles counted as 1; power of pi; exponent of the cycle; SI unit.
-@pytest.mark.parametrize(
-    ("written", "magnitude", "pi_power", "cycles", "unit"),
-    [
+def test_a_quantity_is_read_exactly():
+    for written, magnitude, pi_power, cycles, unit in [
         ("35 kN/m", "35000", 0, 0, "N/m"),
         ("2.1 mH", "21/10000", 0, 0, "H"),
         ("150 g", "3/20", 0, 0, "kg"),
@@ -87,40 +86,34 @@ def refused(value, parse=parse_quantity):
         ("1 min", "60", 0, 0, "s"),
         ("1 in", "127/5000", 0, 0, "m"),
         ("1 inch", "127/5000", 0, 0, "m"),
-    ],
-)
-def test_a_quantity_is_read_exactly(written, magnitude, pi_power, cycles, unit):
-    quantity = parse_quantity(text_of(written))
-    found = quantity.magnitude, quantity.pi_power, quantity.cycles, quantity.dimension
-    assert found == (Fraction(magnitude), pi_power, cycles, unit_of(unit).dimension)
+    ]:
+        quantity = parse_quantity(text_of(written))
+        found = quantity.magnitude, quantity.pi_power, quantity.cycles, quantity.dimension
+        assert found == (Fraction(magnitude), pi_power, cycles, unit_of(unit).dimension), written
 
 
 def test_a_magnitude_is_a_fraction():
     assert type(parse_quantity(text_of("0.1 mm")).magnitude) is Fraction
 
 
-@pytest.mark.parametrize(
-    ("written", "unit"),
-    [
+def test_the_unit_is_kept_as_written():
+    for written, unit in [
         ("35 kN/m", "kN/m"),
         ("0.05", ""),
         ("10%", "%"),
         (" 1.5 kg m^2 ", "kg m^2"),
         ("2 (N*m)", "(N*m)"),
         ("5 1/s", "1/s"),
-    ],
-)
-def test_the_unit_is_kept_as_written(written, unit):
-    assert parse_quantity(text_of(written)).unit == unit
+    ]:
+        assert parse_quantity(text_of(written)).unit == unit, written
 
 
 def test_a_unit_per_radian_is_recognised_as_angular():
     assert parse_quantity(text_of("3 N*m/rad")).radians == -1
 
 
-@pytest.mark.parametrize(
-    ("written", "angular"),
-    [
+def test_the_angular_value_counts_a_cycle_as_two_pi():
+    for written, angular in [
         ("11 Hz", (Fraction(22), 1)),
         ("5 mm/rev", (Fraction(1, 400), -1)),
         ("50 V/krpm", (Fraction(3, 2), -1)),
@@ -129,15 +122,13 @@ def test_a_unit_per_radian_is_recognised_as_angular():
         ("360 deg", (Fraction(2), 1)),
         ("3 rad/s", (Fraction(3), 0)),
         ("0 Hz", (Fraction(0), 0)),
-    ],
-)
-def test_the_angular_value_counts_a_cycle_as_two_pi(written, angular):
-    assert parse_quantity(text_of(written)).angular() == angular
+    ]:
+        assert parse_quantity(text_of(written)).angular() == angular, written
 
 
-@pytest.mark.parametrize(("written", "cyclic"), [("11 Hz", (Fraction(11), 0)), ("60 rpm", (Fraction(1), 0))])
-def test_the_cyclic_value_counts_a_cycle_as_one(written, cyclic):
-    assert parse_quantity(text_of(written)).cyclic() == cyclic
+def test_the_cyclic_value_counts_a_cycle_as_one():
+    for written, cyclic in [("11 Hz", (Fraction(11), 0)), ("60 rpm", (Fraction(1), 0))]:
+        assert parse_quantity(text_of(written)).cyclic() == cyclic, written
 
 
 @given(st.integers(-(10**59), 10**59), st.integers(-60, 60))
@@ -150,20 +141,16 @@ def test_any_decimal_is_read_exactly(mantissa, exponent):
 # -------------------------------------------------------------------------------- units
 
 
-@pytest.mark.parametrize(
-    ("written", "same"), [("1", "m/m"), (" N*m/A ", "V*s"), ("1/s", "s^-1"), ("kg m^2", "kg*m^2")]
-)
-def test_a_unit_is_read_alone(written, same):
-    assert parse_unit(text_of(written)) == unit_of(same)
+def test_a_unit_is_read_alone():
+    for written, same in [("1", "m/m"), (" N*m/A ", "V*s"), ("1/s", "s^-1"), ("kg m^2", "kg*m^2")]:
+        assert parse_unit(text_of(written)) == unit_of(same), written
 
 
-@pytest.mark.parametrize(
-    "written", ["", " ", "2", "3 kg", "kg*", "*kg", "kg^", "kg^m", "N*1", "1", "(kg", "1.0/s"][:-3]
-)
-def test_a_malformed_unit_is_refused(written):
-    if written == "1":
-        pytest.skip("the unit of a pure number")
-    assert refused(written, parse_unit).code == "SF202"
+def test_a_malformed_unit_is_refused():
+    for written in ["", " ", "2", "3 kg", "kg*", "*kg", "kg^", "kg^m", "N*1", "1", "(kg", "1.0/s"][:-3]:
+        if written == "1":
+            pytest.skip("the unit of a pure number")
+        assert refused(written, parse_unit).code == "SF202", written
 
 
 def test_a_unit_of_our_own_is_read_once():
@@ -173,11 +160,19 @@ def test_a_unit_of_our_own_is_read_once():
 # -------------------------------------------------------------------------------- refusals
 
 
-@pytest.mark.parametrize(
-    "written", ["3 KN", "3 Kg", "3 sec", "3 qwerty", "2 kgg", "5 m2", "3 \u043a\u0433", "3 \u00b0C", "2 pi"]
-)
-def test_an_unknown_unit_is_SF201(written):
-    assert refused(written).code == "SF201"
+def test_an_unknown_unit_is_SF201():
+    for written in [
+        "3 KN",
+        "3 Kg",
+        "3 sec",
+        "3 qwerty",
+        "2 kgg",
+        "5 m2",
+        "3 \u043a\u0433",
+        "3 \u00b0C",
+        "2 pi",
+    ]:
+        assert refused(written).code == "SF201", written
 
 
 def test_an_unknown_unit_is_underlined():
@@ -189,22 +184,18 @@ def test_an_unknown_unit_brings_the_nearest_one():
     assert refused("35 KN").hint == "did you mean 'kN'?"
 
 
-@pytest.mark.parametrize(
-    "written",
-    [
+def test_a_malformed_quantity_is_SF202():
+    for written in [
         "", "   ", "kg", "2+pi", "(pi+1)/(pi+1)", "2^pi", "4^(1/2)", "1/0 m", "0^-1 m", "1/(2-2) m",
         "5/s", "2*m", "5 1", "5 2/s", "5 1/3 m", "2 m 3", "5 m+3 m", "(5 m", "5 m)", "5 m*", "5 m/",
         "5 m^", "5 m^1.5", "5 m^(1/0)", "5 m^\u00b2", "5 km^(1/2)", "5 Hz^(1/2)", "3 \n m", "1.2.3 m",
         "5 J/kg K", "5 J/kg\u00b7K", "(1+2)m", "1/2m", "2(kg)", "5 m;", "5 'm'", "5 m\x00", "--", "*5 m",
-    ],
-)  # fmt: skip
-def test_a_malformed_quantity_is_SF202(written):
-    assert refused(written).code == "SF202"
+    ]:  # fmt: skip
+        assert refused(written).code == "SF202", written
 
 
-@pytest.mark.parametrize(
-    ("written", "underlined"),
-    [
+def test_the_wrong_part_is_underlined():
+    for written, underlined in [
         ("1 + 2*pi m", "1 + 2*pi"),
         ("3*(1/0) m", "1/0"),
         ("5 m + 3", "+"),
@@ -213,10 +204,8 @@ def test_a_malformed_quantity_is_SF202(written):
         ("2^(1/2) m", "(1/2)"),
         ("5 m^1.5", "1.5"),
         ("1/2m", "1/2m"),
-    ],
-)
-def test_the_wrong_part_is_underlined(written, underlined):
-    assert refused(written).span.text == underlined
+    ]:
+        assert refused(written).span.text == underlined, written
 
 
 def test_an_error_in_a_decoded_string_underlines_the_whole_string():
@@ -227,9 +216,8 @@ def test_an_error_in_a_decoded_string_underlines_the_whole_string():
     assert caught.value.diagnostics[0].span == span
 
 
-@pytest.mark.parametrize(
-    ("written", "hint"),
-    [
+def test_a_refusal_says_what_to_write():
+    for written, hint in [
         ("5/s", "'5 1/s'"),
         ("5*mm", "'5 mm'"),
         ("kg", "'1 kg'"),
@@ -239,18 +227,15 @@ def test_an_error_in_a_decoded_string_underlines_the_whole_string():
         ("5 2/s", "1 in '1/s'"),
         ("", "'35 kN/m'"),
         ("2 pi", "'2*pi rad/s'"),
-    ],
-)
-def test_a_refusal_says_what_to_write(written, hint):
-    assert hint in refused(written).hint
+    ]:
+        assert hint in refused(written).hint, written
 
 
 # -------------------------------------------------------------------------------- limits
 
 
-@pytest.mark.parametrize(
-    "written",
-    [
+def test_a_quantity_beyond_the_limits_is_SF103():
+    for written in [
         "9^9^9^9 kg",
         "1e999999999 kg",
         "1e61 kg",
@@ -271,15 +256,12 @@ def test_a_refusal_says_what_to_write(written, hint):
         "(" * 21 + "1" + ")" * 21 + " kg",
         "1 " + "(" * 21 + "m" + ")" * 21,
         "1" + " " * 200 + "kg",
-    ],
-)
-def test_a_quantity_beyond_the_limits_is_SF103(written):
-    assert refused(written).code == "SF103"
+    ]:
+        assert refused(written).code == "SF103", written
 
 
-@pytest.mark.parametrize(
-    "written",
-    [
+def test_a_quantity_at_the_limits_is_read():
+    for written in [
         "1e60 kg",
         "1e-60 kg",
         "1" * 60 + " kg",
@@ -289,10 +271,8 @@ def test_a_quantity_beyond_the_limits_is_SF103(written):
         "(" * 20 + "1" + ")" * 20 + " kg",
         "1" + " " * 197 + "kg",
         "-" * 197 + "1 m",
-    ],
-)
-def test_a_quantity_at_the_limits_is_read(written):
-    assert parse_quantity(text_of(written)).magnitude
+    ]:
+        assert parse_quantity(text_of(written)).magnitude, written
 
 
 def test_a_long_unit_is_SF103():
@@ -344,28 +324,22 @@ def test_every_error_lies_within_the_text(value):
 # -------------------------------------------------------------------------------- shape
 
 
-@pytest.mark.parametrize(
-    "written",
-    [
+def test_a_number_beside_a_unit_looks_like_a_quantity():
+    for written in [
         "0.05", "-3", "+3", "- 3", "1e-3", " 2 ", "2 m", "3kg", "-3kg", "10%", "10 %", "30\u00b0",
         "1/3 m", "22*pi rad/s", "(1+2) m", "pi rad", "5 1/s", "2 (N*m)", "2 kgg", "2 m_1", "2m", "2m*k",
         "2 m + 3", "1 - 3 m", "-2^2 m",
-    ],
-)  # fmt: skip
-def test_a_number_beside_a_unit_looks_like_a_quantity(written):
-    assert looks_like_quantity(written)
+    ]:  # fmt: skip
+        assert looks_like_quantity(written), written
 
 
-@pytest.mark.parametrize(
-    "written",
-    [
+def test_an_expression_does_not_look_like_a_quantity():
+    for written in [
         "", " ", "m", "2*m", "2 * m", "2/s", "1/3", "2*pi", "pi", "2 + m", "k*2", "m_1*s^2", "(2*m)",
         "2^m", "2**m", "sin(2)", "2(m+1)", "(1+2)m", "1/2m", "2)", "(2", "(2 m)", "pi_1", "pix*2", "-m",
         "2*(3 + k)", "l/2", "2\npi",
-    ],
-)  # fmt: skip
-def test_an_expression_does_not_look_like_a_quantity(written):
-    assert not looks_like_quantity(written)
+    ]:  # fmt: skip
+        assert not looks_like_quantity(written), written
 
 
 @given(hostile)
