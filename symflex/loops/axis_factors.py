@@ -34,12 +34,14 @@ F = TypeVar("F", bound=OnAxis)
 class AxisFactors(ABC, Generic[F]):
     """The factors of a characteristic function that no polynomial tells, on the imaginary axis.
 
-    ``limits`` are the range of the gain; ``reasons`` say why something is not certified.
+    ``limits`` are the range of the gain; ``reasons`` say why something is not certified, ``method`` how poles
+    are counted.
     """
 
     limits: tuple[Fraction, Fraction]
     budget: Budget
     reasons: list[str]
+    method: str
 
     @property
     @abstractmethod

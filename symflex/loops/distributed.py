@@ -59,6 +59,7 @@ class DistributedFactors(AxisFactors[LoopFunction]):
     up_to: float | None  # a frequency up to which to search where no end can be proved [rad/s]
     budget: Budget  # of the search
     reasons: list[str] = field(default_factory=list)
+    method: str = "argument principle"
 
     @cached_property
     def with_gain(self) -> tuple[LoopFunction, ...]:
@@ -91,6 +92,7 @@ class DistributedFactors(AxisFactors[LoopFunction]):
         if not self.is_endless:
             return max(proved), True
         if self.passive is not None and self.passive.rests:
+            self.method = "passive loop"
             return self._without_end, True
         reason = next(tail.reason for tail in self._tails if tail.radius is None)
         passive = "; as the loop is passive, none lies right of it"
@@ -231,6 +233,7 @@ class DistributedFactors(AxisFactors[LoopFunction]):
         if not proof.is_complete:
             message = f"poles cannot be told apart for a gain of {float(gain):.6g}"
             raise UncertifiedError(Diagnostic("SF802", message))
+        self.method = f"roots, {side.engine}"
         roots = [r for r in side.roots if float(r.natural_frequency().mid()) <= self.radius[0]]
         right = sum(r.multiplicity for r in roots if not r.on_imaginary_axis and r.re > 0)
         axis = sum(r.multiplicity for r in roots if r.on_imaginary_axis and not r.is_zero)

@@ -99,6 +99,7 @@ def find_stable_gains(
         tuple(reasons),
         digits,
         None,
+        method="polynomials" if along is None else along.method,
     )
     loop_gain = _loop_gain(loop, along, digits + GUARD_DIGITS, budget)
     phase_margins: tuple[PhaseMargin, ...] = ()

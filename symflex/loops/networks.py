@@ -296,6 +296,7 @@ class NetworkFactors(AxisFactors[LoopInDisc]):
     digits: int  # of gains
     budget: Budget
     reasons: list[str] = field(default_factory=list)
+    method: str = "network"
     _wanted: float | None = None  # radius [rad/s] in which poles are counted
 
     @cached_property

@@ -112,6 +112,9 @@ class StabilityMap:
         several places.
     margin_beyond : float or None
         Which phase margins beyond the radius are not below [rad], where no more than that is known of them.
+    method : str
+        How poles were counted: ``polynomials``, ``argument principle``, ``roots`` (all found, and by which
+        engines), ``network``; and ``passive loop`` where that proves that there are none.
     """
 
     gain: str
@@ -128,6 +131,7 @@ class StabilityMap:
     digits: int
     bandwidth: AllowedBandwidth | None
     margin_beyond: float | None = None
+    method: str = ""
 
     def __repr__(self) -> str:
         count = len(self.boundaries)

@@ -225,6 +225,7 @@ def settling_echoes(
         values=(*early.values, *values),
         impulses=tuple(ImpulseAt(each.time, 0, each.height) for each in through if not integrations),
         jumps=tuple(each for each in through if integrations == 1 and each.time > 0),
+        method="settling echoes",
     )
 
 

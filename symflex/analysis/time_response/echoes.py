@@ -72,6 +72,7 @@ class Sampled:
     jumps: tuple[JumpAt, ...] = ()
     at_jumps: frozenset[int] = frozenset()  # positions of values that hold both sides of a jump
     modes: PartialSum | None = None  # of which it is a sum, at any time
+    method: str = ""  # what found it, such as ``echoes``; empty where there is nothing to find
 
 
 @dataclass(frozen=True)
@@ -197,7 +198,7 @@ def echoed(
             start = total.start(delay)
             values = values_of(terms, times, start, delay)
             total.add(delay, *at_infinity(part, integrations), values, is_late=bool(echo.delay))
-        return total.sampled
+        return replace(total.sampled, method="echoes")
 
 
 class Gathered:

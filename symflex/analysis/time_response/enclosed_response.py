@@ -76,6 +76,8 @@ class EnclosedResponse:
         The kind of shaper that the input went through.
     modes : PartialSum or None
         The proved sum over modes that it is, at any time, where it was found so.
+    method : str
+        What found it, such as ``partial fractions`` or ``passive modes``; empty where nothing is to be found.
     """
 
     tf: str
@@ -90,6 +92,7 @@ class EnclosedResponse:
     digits: int = 12
     shaper: str | None = None
     modes: PartialSum | None = field(default=None, repr=False)
+    method: str = ""
 
     @cached_property
     def _doubles(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:

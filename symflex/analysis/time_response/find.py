@@ -118,6 +118,7 @@ def time_response(
         reason,
         digits,
         modes=found.modes if certified else None,
+        method=found.method,
     )
 
 
@@ -321,7 +322,7 @@ def _later(
         instants = times.enclosed(start)
     found, reason = _found(undelayed, integrations, later, digits)
     values = [y if t > wait else y.union(arb(0)) for t, y in zip(instants, found.values, strict=False)]
-    return Sampled((*[arb(0)] * start, *values)), reason
+    return Sampled((*[arb(0)] * start, *values), method=found.method), reason
 
 
 def _of_lumped(bound: BoundTransferFunction, integrations: int, times: SampleTimes, digits: int) -> Sampled:
@@ -335,15 +336,16 @@ def _of_lumped(bound: BoundTransferFunction, integrations: int, times: SampleTim
             last = arb(float(times.seconds[-1]))
             turned = max((root.natural_frequency() * last for root in poles), default=arb(0), key=arb.mid)
             quotient = EnclosedQuotient.of(bound, bits)
-            terms = partial_fractions(quotient, poles, integrations)
+            terms, method = partial_fractions(quotient, poles, integrations), "partial fractions"
             if terms is None and attempt:
+                method = "power series"
                 terms = power_series_terms(quotient, integrations, last, bits_for_digits(wanted))
             if terms is not None:
                 weights, _ = at_infinity(quotient, integrations)
                 impulses = tuple(ImpulseAt(arb(0), k, w) for k, w in enumerate(weights) if w != 0)
                 # Residues may need all bits that poles have; sums of exponentials need those of their result.
                 with precision(bits_for_digits(wanted + decimal_exponent(exact_fraction(turned + 1)) + 1)):
-                    found = Sampled(tuple(values_of(terms, times)), impulses)
+                    found = Sampled(tuple(values_of(terms, times)), impulses, method=method)
                 if is_precise(found.values, digits):
                     return found
                 if not times.is_exact:

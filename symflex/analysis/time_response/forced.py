@@ -115,6 +115,7 @@ def forced_response(
         reason,
         digits,
         ramp.shaper,
+        method=ramp.method,
     )
 
 

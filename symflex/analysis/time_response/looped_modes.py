@@ -238,7 +238,8 @@ def looped_modes(
         message = f"the loop of {bound.name} grows too much until then to say what high modes add"
         raise UncertifiedError(Diagnostic("SF810", message, None, "ask for a shorter time"))
     reason = None if is_proved else "what high modes add in the loop is estimated"
-    return replace(found, values=tuple(y + arb(0, off) for y in found.values)), reason
+    values = tuple(y + arb(0, off) for y in found.values)
+    return replace(found, values=values, method="looped modes"), reason
 
 
 def _estimated_rest(

@@ -213,7 +213,8 @@ def _of_filtered(
         terms = found.convolved(inner.terms)
         if terms is None:
             return None
-        return PartialSum(tuple(terms), tuple(values_of(terms, times)), (inner.rest * found.weight).upper())
+        rest = (inner.rest * found.weight).upper()
+        return PartialSum(tuple(terms), tuple(values_of(terms, times)), rest, method="filtered modes")
 
 
 @dataclass(frozen=True, slots=True)
@@ -226,6 +227,7 @@ class PartialSum:
     at_times: tuple[arb, ...] = ()  # at each of the times, where that is less
     speed: arb | None = None  # how much the derivative of what is left out is at most, where that is known
     fade: arb = ZERO  # at a time t [s] exp(-fade t) times the rest is left, at most [1/s]
+    method: str = "estimated modes"  # what bounds the rest, such as ``passive modes``
 
     @property
     def left(self) -> arb:
@@ -237,7 +239,8 @@ class PartialSum:
         """The response, with what is left out as part of its balls."""
         rests = self.at_times or (self.rest,) * len(self.values)
         pairs = zip(self.values, rests, strict=True)
-        return Sampled(tuple(y + arb(0, rest.upper()) for y, rest in pairs), modes=self)
+        values = tuple(y + arb(0, rest.upper()) for y, rest in pairs)
+        return Sampled(values, modes=self, method=self.method)
 
 
 class BoundedModes:
@@ -314,6 +317,7 @@ class BoundedModes:
                 tuple(own.upper() for own in left),
                 speed,
                 min((rest.fade, *(ring.fade for ring in rings)), key=arb.mid).lower(),
+                "passive modes" if isinstance(self._bounding, PassiveBound) else "lossy modes",
             )
             return self._known.setdefault(reached, total)
 
@@ -435,7 +439,8 @@ def _summed(
             at_times = tuple(rest * damping.fading(squared, integrations, t) for t in times.enclosed())
             # Every mode begins at rest.
             values = [y if left > 0 else arb(0) for y, left in zip(values, at_times, strict=True)]
-        return PartialSum((*origin, *known), tuple(values), rest, at_times, speed)
+        method = "lossless modes" if damping is None else "damped modes"
+        return PartialSum((*origin, *known), tuple(values), rest, at_times, speed, method=method)
 
 
 def _damped(

@@ -18,7 +18,7 @@ place of series. Nothing is known or asked of poles, and loops need not be stabl
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from math import isqrt
@@ -209,7 +209,7 @@ class WaveQuotient:
             rest = [by_power.get(k, zero) for k in range(1, max(by_power, default=0) + 1)] or [zero]
             values = _in_time(rest, times, total.start(delay), delay, off)
             total.add(delay, weights, rest[0], values, is_late=bool(echo))
-        return total.sampled
+        return replace(total.sampled, method="wave echoes")
 
 
 def _in_time(coefficients: Sequence[arb], times: SampleTimes, start: int, delay: arb, off: arb) -> list[arb]:
