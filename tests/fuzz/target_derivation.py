@@ -17,6 +17,7 @@ from symflex.model.spec import write
 from symflex.print.roots import roots_text
 from symflex.roots import Budget
 from tests.house.repository import ROOT, specifications
+from tests.random_models import Bytes
 
 ROOMS = ("symflex.model", "symflex.equations", "symflex.equations.elimination")
 SECONDS = 1
@@ -62,22 +63,6 @@ KINDS = (
 NODES = ("ground", "x", "y", "z", "theta")
 
 
-class Choices:
-    """Bytes as choices; when they end, always the first."""
-
-    def __init__(self, data):
-        self.data = iter(data)
-
-    def number(self, count):
-        """Return a number below a count."""
-        return next(self.data, 0) % count
-
-    def one(self, items):
-        """Return one of some items."""
-        items = list(items)
-        return items[self.number(len(items))]
-
-
 @cache
 def models():
     """Return small worked models, templates and models of the test, parsed."""
@@ -101,67 +86,71 @@ def seeds():
 
 def changed(data):
     """Return the text of a model that was changed as bytes say."""
-    choices = Choices(data)
-    model = choices.one(models())
+    choices = Bytes(data)
+    model = _one(choices, models())
     model = tomllib.loads(write(model))  # a copy
     model.pop("published", None)
-    for _ in range(choices.number(4)):
-        CHANGE[choices.number(len(CHANGE))](model, choices)
+    for _ in range(choices.randrange(4)):
+        CHANGE[choices.randrange(len(CHANGE))](model, choices)
     return write(model)
 
 
+def _one(choices, items):
+    return choices.choice([*items])
+
+
 def _section(model, choices):
-    return choices.one([s for s in model.values() if isinstance(s, dict) and s] or [{"_": 0}])
+    return _one(choices, [s for s in model.values() if isinstance(s, dict) and s] or [{"_": 0}])
 
 
 def _value(model, choices):
     """Give a parameter another number, in its unit."""
     parameters = model.get("parameters") or {"k": "1"}
-    name = choices.one(parameters)
+    name = _one(choices, parameters)
     old = parameters[name]
     unit = str(old.get("value", "") if isinstance(old, dict) else old).partition(" ")[2]
-    parameters[name] = f"{choices.one(NUMBERS)} {unit}".strip()
+    parameters[name] = f"{_one(choices, NUMBERS)} {unit}".strip()
 
 
 def _leave_out(model, choices):
     section = _section(model, choices)
-    section.pop(choices.one(section), None)
+    section.pop(_one(choices, section), None)
 
 
 def _repeat(model, choices):
     section = _section(model, choices)
-    name = choices.one(section)
+    name = _one(choices, section)
     section[f"{name}_2"] = section[name]
 
 
 def _connect(model, choices):
     """Put an element to other nodes."""
-    element = choices.one((model.get("elements") or {"_": {}}).values())
+    element = _one(choices, (model.get("elements") or {"_": {}}).values())
     lists = [v for e in model.get("elements", {}).values() for v in e.values() if isinstance(v, list)]
     nodes = [node for nodes in lists for node in nodes]
     for key, value in element.items() if isinstance(element, dict) else ():
         if isinstance(value, list):
-            element[key] = [choices.one([*nodes, *NODES]) for _ in value]
+            element[key] = [_one(choices, [*nodes, *NODES]) for _ in value]
         elif key == "at":
-            element[key] = choices.one([*nodes, *NODES])
+            element[key] = _one(choices, [*nodes, *NODES])
 
 
 def _kind(model, choices):
-    element = choices.one((model.get("elements") or {"_": {}}).values())
+    element = _one(choices, (model.get("elements") or {"_": {}}).values())
     if isinstance(element, dict):
-        element["type"] = choices.one(KINDS)
+        element["type"] = _one(choices, KINDS)
 
 
 def _expression(model, choices):
     section = _section(model, choices)
-    name = choices.one(section)
+    name = _one(choices, section)
     entry = section[name]
     if isinstance(entry, dict) and entry:
-        key = choices.one(entry)
+        key = _one(choices, entry)
         if isinstance(entry[key], str) and key != "type":
-            entry[key] = choices.one(EXPRESSIONS).format(entry[key])
+            entry[key] = _one(choices, EXPRESSIONS).format(entry[key])
     elif isinstance(entry, str):
-        section[name] = choices.one(EXPRESSIONS).format(entry)
+        section[name] = _one(choices, EXPRESSIONS).format(entry)
 
 
 CHANGE = (_value, _leave_out, _repeat, _connect, _kind, _expression)

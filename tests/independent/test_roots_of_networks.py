@@ -46,7 +46,7 @@ def growth(network, root):
 
 def is_quick(network):
     """Tell whether no roots accumulate below the second mode, as those of short shafts with losses do."""
-    return network.kind != "shaft" or not any("eta" in member.values for member in network.members)
+    return not any(e.kind == "shaft" and dict(e.values).get("eta") for e in network.elements)
 
 
 def seeds(most):
@@ -56,7 +56,7 @@ def seeds(most):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", seeds(6)[::6])
+@pytest.mark.parametrize("seed", seeds(6)[::24])
 def test_responses_grow_and_vanish_where_roots_are(seed):
     network = random_members(seed, 6)
     found = located(network, Modes(2))
@@ -67,7 +67,7 @@ def test_responses_grow_and_vanish_where_roots_are(seed):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", seeds(4)[:16:5])
+@pytest.mark.parametrize("seed", seeds(4)[:16:8])
 def test_as_many_are_counted_as_the_response_winds(seed):
     network = random_members(seed, 4)
     near = located(network, Modes(2))
@@ -86,11 +86,12 @@ def test_as_many_are_counted_as_the_response_winds(seed):
 
 def lossless(network):
     """Return a network without what loses energy or feeds back."""
-    members = tuple(
-        replace(m, values={key: x for key, x in m.values.items() if key != "eta"}) for m in network.members
+    elements = tuple(
+        replace(e, values=tuple((key, x) for key, x in e.values if key != "eta"))
+        for e in network.elements
+        if e.kind not in ("damper", "rotary_damper") and not e.source
     )
-    lumps = tuple(lump for lump in network.lumps if lump.power != 1)
-    return replace(network, members=members, lumps=lumps, loop=None)
+    return replace(network, elements=elements, blocks=())
 
 
 def frequencies(roots, top):
@@ -100,7 +101,7 @@ def frequencies(roots, top):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", seeds(7)[:8])
+@pytest.mark.parametrize("seed", seeds(7)[:3])
 def test_counts_of_eigenvalues_and_winding_numbers_find_the_same(seed):
     network = lossless(random_members(seed, 7))
     counted = located(network, Modes(4))

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from tests.independent import dense
-from tests.property.networks import GROUND, SOURCES, TWO_TERMINAL, Block, Element, Network, Term
+from tests.random_models import GROUND, SOURCES, TWO_TERMINAL, Element, Network, Term
 
 AXES = {"translation": "y", "rotation": "theta"}
 
@@ -48,7 +48,7 @@ def respond(network: Network, output: str, input_name: str, s: complex) -> Respo
     return Response(complex(sum(parts)), float(weight * size))
 
 
-def block_value(block: Block, s: np.clongdouble) -> np.clongdouble:
+def block_value(block: Element, s: np.clongdouble) -> np.clongdouble:
     """Return a block's transfer function at ``s``."""
     v = block.value
     if block.kind == "resonance":

@@ -10,9 +10,10 @@ import pytest
 from hypothesis import assume, given
 
 from symflex import pipeline
-from tests.property.networks import ONE_TERMINAL, TWO_TERMINAL, networks, to_toml
+from tests.property.networks import networks, to_toml
 from tests.property.tableau import respond
 from tests.property.test_random_networks import pairs, quiet
+from tests.random_models import ONE_TERMINAL, TWO_TERMINAL
 
 POINTS = (0.37 + 1.13j, 1.71 - 0.59j)
 SIMPLE = {**ONE_TERMINAL, **TWO_TERMINAL}
@@ -36,7 +37,7 @@ def responses(network):
 
 def with_another_value(network, element):
     ((key, parameter),) = element.values
-    changed = replace(element, values=((key, replace(parameter, tenths=3 * parameter.tenths)),))
+    changed = replace(element, values=((key, replace(parameter, number=f"{3 * parameter.value:.1f}")),))
     elements = tuple(changed if e is element else e for e in network.elements)
     return replace(network, elements=elements)
 

@@ -11,28 +11,16 @@ import sympy
 from hypothesis import Phase, find, given, settings
 
 from tests.independent import eppinger1988
-from tests.property.networks import (
-    BLOCKS,
-    ELEMENTS,
-    GROUND,
-    Element,
-    Input,
-    Network,
-    Parameter,
-    Term,
-    networks,
-    passive_networks,
-    reciprocal_networks,
-    to_toml,
-)
+from tests.property.networks import networks, passive_networks, reciprocal_networks, to_toml
 from tests.property.tableau import respond
+from tests.random_models import BLOCKS, ELEMENTS, GROUND, Element, Input, Network, Parameter, Term
 
 POINTS = (0.4 + 1.3j, 1.7 - 0.6j, 0.05 + 2.9j)
 QUIET = settings(max_examples=300)
 
 
 def parameters(**tenths):
-    return {name: Parameter(name, value) for name, value in tenths.items()}
+    return {name: Parameter(name, f"{value / 10}") for name, value in tenths.items()}
 
 
 def element(kind, name, ports, values, source=()):
@@ -41,7 +29,7 @@ def element(kind, name, ports, values, source=()):
 
 
 def value_of(expr, values, at):
-    numbers = {name: sympy.Rational(p.tenths, 10) for name, p in values.items()}
+    numbers = {name: sympy.Rational(p.number) for name, p in values.items()}
     return complex(expr.subs(numbers).subs("s", at))
 
 

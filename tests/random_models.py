@@ -1,0 +1,933 @@
+"""Random models of all kinds, for all tests: as data, as specifications, and what chooses among them.
+
+A recipe asks an object like :class:`random.Random`: one with a seed gives the same model each time, one drawn
+by hypothesis gives smaller ones where a test fails, one of bytes is what a fuzzer changes.
+
+`networks`, `passive_networks`, `reciprocal_networks`
+    Lumped elements, signals and blocks. A network is built as a tree from ground, so that every coordinate
+    has a path of its own; couplings, supports and voltage sources are added on top only while the constraints
+    they impose stay independent. Such a network is nonsingular at every s in the right half plane unless a
+    signal loop happens to have a pole there.
+`random_members`
+    A connected graph of beams, rods, shafts or strings with lumped elements, and now and then a loop with a
+    delay, at its nodes.
+`anything`
+    The text of parts, fields, blocks and signals put together without regard to what is sound.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from random import Random
+from typing import TYPE_CHECKING
+
+import numpy as np
+from hypothesis import strategies as st
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+# ------------------------------------------------------------------------------------------ what chooses
+
+
+class Drawn(Random):
+    """Choices that hypothesis draws."""
+
+    draw: Callable
+
+    def _randbelow(self, n: int) -> int:
+        # ``st.integers`` would prefer constants of whatever modules are imported by then.
+        return self.draw(st.sampled_from(range(n)))
+
+
+class Bytes(Random):
+    """Bytes as choices; when they end, always the first."""
+
+    def __init__(self, data: bytes) -> None:
+        super().__init__(0)
+        self._data = iter(data)
+
+    def _randbelow(self, n: int) -> int:
+        return next(self._data, 0) % n
+
+
+@st.composite
+def drawn(draw: Callable, recipe: Callable) -> object:
+    """Draw what a recipe makes."""
+    random = Drawn()
+    random.draw = draw
+    return recipe(random)
+
+
+GROUND = "ground"
+MAX_COORDINATES = 7
+
+ACROSS = {"translation": "m", "rotation": "rad", "electrical": "V"}
+THROUGH = {"translation": "N", "rotation": "N*m", "electrical": "A"}
+INPUT_KEYS = {"translation": "force", "rotation": "torque", "electrical": "current"}
+
+# kind: (domain, name of the value, its unit, name of the quantity it carries)
+TWO_TERMINAL = {
+    "spring": ("translation", "k", "N/m", "f"),
+    "damper": ("translation", "b", "N*s/m", "f"),
+    "torsion_spring": ("rotation", "k", "N*m/rad", "tau"),
+    "rotary_damper": ("rotation", "b", "N*m*s/rad", "tau"),
+    "resistor": ("electrical", "R", "ohm", "i"),
+    "inductor": ("electrical", "L", "H", "i"),
+    "capacitor": ("electrical", "C", "F", "i"),
+}
+ONE_TERMINAL = {"mass": ("translation", "m", "kg"), "inertia": ("rotation", "J", "kg*m^2")}
+SOURCES = {
+    "force_source": ("translation", "f", "N"),
+    "torque_source": ("rotation", "tau", "N*m"),
+    "current_source": ("electrical", "i", "A"),
+    "voltage_source": ("electrical", "v", "V"),
+}
+PLANAR = ("rigid_body", "rigid_link", "massless_beam", "fixed", "slider", "pin")
+COUPLINGS = ("dc_motor", "transformer", "gyrator")
+ELEMENTS = (*TWO_TERMINAL, *ONE_TERMINAL, *SOURCES, *PLANAR, *COUPLINGS)
+BLOCKS = ("resonance", "tf", "integrator", "lead_lag", "pid")
+LISTED_PORTS = ("between", "terminals")
+
+
+# ------------------------------------------------------------------------------------------------- data
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """Decimals in an SI unit, or plain ones; without a name they are written where they are used."""
+
+    name: str
+    number: str
+    unit: str = ""
+
+    @property
+    def value(self) -> np.longdouble:
+        """The value, correctly rounded."""
+        return np.longdouble(self.number)
+
+    @property
+    def toml(self) -> str:
+        """The value as a specification writes it."""
+        return f'"{self.number} {self.unit}"' if self.unit else self.number
+
+    @property
+    def used(self) -> str:
+        """What an element has as its value."""
+        return f'"{self.name}"' if self.name else self.toml
+
+
+@dataclass(frozen=True, slots=True)
+class Term:
+    """``sign * gains * s^power * blocks * quantity``.
+
+    ``quantity`` is a coordinate (``x_1``, ``p_1.theta``), a signal, an input, or an element's through
+    quantity (``spring_2.f``).
+    """
+
+    quantity: str
+    sign: int = 1
+    gains: tuple[Parameter, ...] = ()
+    power: int = 0
+    blocks: tuple[str, ...] = ()
+
+    @property
+    def text(self) -> str:
+        """The term in the expression grammar, with its sign."""
+        factors = [*(gain.name for gain in self.gains), *self.blocks]
+        factors += {0: [], 1: ["s"]}.get(self.power, [f"s^{self.power}"])
+        return ("- " if self.sign < 0 else "+ ") + "*".join([*factors, self.quantity])
+
+
+@dataclass(frozen=True, slots=True)
+class Element:
+    """One element, or a block, which has no ports; ``source`` is a source's value, ``theory`` a beam's.
+
+    A ``tf`` is (1 + T_1 s)/((1 + T_2 s)(1 + T_3 s)).
+    """
+
+    kind: str
+    name: str
+    ports: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    values: tuple[tuple[str, Parameter], ...] = ()
+    source: tuple[Term, ...] = ()
+    theory: str = ""
+
+    @property
+    def nodes(self) -> frozenset[str]:
+        """The nodes it touches, ground aside, planar ones without their axes."""
+        found = (node.partition(".")[0] for _, nodes in self.ports for node in nodes)
+        return frozenset(found) - {GROUND}
+
+    def port(self, key: str) -> tuple[str, ...]:
+        """Return the nodes of a port."""
+        return dict(self.ports)[key]
+
+    def value(self, key: str, default: int = 0) -> np.longdouble:
+        """Return a value, or the default when it is not given."""
+        found = dict(self.values).get(key)
+        return np.longdouble(default) if found is None else found.value
+
+    @property
+    def toml(self) -> str:
+        """The element's line."""
+        names = {key: parameter.used for key, parameter in self.values}
+        if self.kind == "tf":
+            lag = [parameter.name for _, parameter in self.values]
+            names = {"num": f'"1 + {lag[0]}*s"', "den": f'"(1 + {lag[1]}*s)*(1 + {lag[2]}*s)"'}
+        parts = [f'type = "{self.kind}"']
+        parts += [f"{key} = {_nodes(nodes, listed=key in LISTED_PORTS)}" for key, nodes in self.ports]
+        parts += [f"{key} = {text}" for key, text in names.items()]
+        if self.source:
+            parts.append(f'{SOURCES[self.kind][1]} = "{sum_text(self.source)}"')
+        parts += [f'theory = "{self.theory}"'] * bool(self.theory)
+        return f"{self.name} = {{ {', '.join(parts)} }}"
+
+
+@dataclass(frozen=True, slots=True)
+class Input:
+    """An input: ``key`` is force, torque, current, voltage, or empty for a free signal."""
+
+    name: str
+    key: str = ""
+    nodes: tuple[str, ...] = ()
+
+    @property
+    def toml(self) -> str:
+        """The input's line."""
+        if not self.key:
+            return f"{self.name} = {{}}"
+        return f"{self.name} = {{ {self.key} = {_nodes(self.nodes, listed=len(self.nodes) > 1)} }}"
+
+
+@dataclass(frozen=True, slots=True)
+class Network:
+    """A whole model. ``coordinates`` maps each scalar coordinate to its domain."""
+
+    coordinates: tuple[tuple[str, str], ...]
+    elements: tuple[Element, ...]
+    inputs: tuple[Input, ...]
+    outputs: tuple[tuple[str, tuple[Term, ...]], ...]
+    signals: tuple[tuple[str, tuple[Term, ...]], ...] = ()
+    blocks: tuple[Element, ...] = ()
+
+    @property
+    def kinds(self) -> frozenset[str]:
+        """The element and block types that occur."""
+        return frozenset(e.kind for e in self.elements) | frozenset(b.kind for b in self.blocks)
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """Every parameter with a name once, in the order of use."""
+        sums = [
+            *(e.source for e in self.elements),
+            *(t for _, t in self.signals),
+            *(t for _, t in self.outputs),
+        ]
+        used = [p for part in (*self.elements, *self.blocks) for _, p in part.values]
+        used += [gain for terms in sums for term in terms for gain in term.gains]
+        return tuple(dict.fromkeys(p for p in used if p.name))
+
+    def __repr__(self) -> str:
+        """Show the specification, which is what a failing example is reported by."""
+        return f"Network:\n{to_toml(self)}"
+
+
+def sum_text(terms: Sequence[Term]) -> str:
+    """Return a sum in the expression grammar.
+
+    Examples
+    --------
+    >>> sum_text((Term("x_1", power=2), Term("x_2", sign=-1)))
+    's^2*x_1 - x_2'
+    """
+    text = " ".join(term.text for term in terms)
+    return text.removeprefix("+ ") if text.startswith("+ ") else "-" + text.removeprefix("- ")
+
+
+def to_toml(network: Network) -> str:
+    """Return the specification of a network."""
+    sections = {
+        "parameters": [f"{parameter.name} = {parameter.toml}" for parameter in network.parameters],
+        "elements": [element.toml for element in network.elements],
+        "signals": [f'{name} = "{sum_text(terms)}"' for name, terms in network.signals],
+        "blocks": [block.toml for block in network.blocks],
+        "inputs": [entry.toml for entry in network.inputs],
+        "outputs": [f'{name} = "{sum_text(terms)}"' for name, terms in network.outputs],
+    }
+    written = ["\n".join([f"[{name}]", *lines]) for name, lines in sections.items() if lines]
+    return "\n\n".join(["symflex = 1", *written]) + "\n"
+
+
+def _nodes(nodes: tuple[str, ...], *, listed: bool) -> str:
+    quoted = [f'"{node}"' for node in nodes]
+    return f"[{', '.join(quoted)}]" if listed else quoted[0]
+
+
+# --------------------------------------------------------------------------------------- lumped networks
+
+
+@dataclass
+class _Builder:
+    """What has been drawn so far; lives only while one network is drawn."""
+
+    random: Random
+    coordinates: dict[str, str] = field(default_factory=dict)
+    planar: list[str] = field(default_factory=list)
+    sprung: set[str] = field(default_factory=set)
+    elements: list[Element] = field(default_factory=list)
+    blocks: list[Element] = field(default_factory=list)
+    pool: list[Parameter] = field(default_factory=list)
+    constraints: list[dict[str, complex]] = field(default_factory=list)
+
+    def chance(self, one_in: int) -> bool:
+        return self.random.randrange(one_in) == one_in - 1
+
+    def pick(self, options: Sequence) -> object:
+        return self.random.choice(list(options))
+
+    def parameter(self, unit: str) -> Parameter:
+        """Return a new parameter, or now and then one that is already in use."""
+        known = [p for p in self.pool if p.unit == unit]
+        if known and self.chance(5):
+            return self.pick(known)
+        new = Parameter(f"g_{len(self.pool) + 1}", f"{self.random.randint(2, 40) / 10}", unit)
+        self.pool.append(new)
+        return new
+
+    def port(self, coordinate: str) -> str:
+        """Return a coordinate as an element of its domain may name it: ``p_1.y``, or ``p_1`` for short.
+
+        The short name needs a planar element at the node; springs alone do not make it planar.
+        """
+        node = coordinate.partition(".")[0]
+        return node if node not in self.sprung and self.chance(2) else coordinate
+
+    def moving(self, names: Sequence[str]) -> list[str]:
+        """Return the coordinates that no support holds; all of them when every one is held."""
+        held = {name for row in self.constraints if len(row) == 1 for name in row}
+        return [name for name in names if name not in held] or list(names)
+
+    def linked(self, start: str) -> list[str]:
+        """Return the coordinates that elements connect to ``start``, which is one of them."""
+        reached, fresh = set(), {start}
+        while fresh:
+            reached |= fresh
+            nodes = {name.partition(".")[0] for name in reached}
+            touching = [e.nodes for e in self.elements if e.nodes & nodes]
+            fresh = {name for name in self.coordinates if name.partition(".")[0] in nodes.union(*touching)}
+            fresh -= reached
+        return [name for name in self.coordinates if name in reached]
+
+    def of(self, *domains: str) -> list[str]:
+        return [name for name, domain in self.coordinates.items() if domain in domains]
+
+    def add(self, kind: str, ports: dict, values: dict, source: tuple[Term, ...] = ()) -> Element:
+        number = 1 + sum(element.kind == kind for element in self.elements)
+        ports = {key: (nodes,) if isinstance(nodes, str) else tuple(nodes) for key, nodes in ports.items()}
+        new = Element(kind, f"{kind}_{number}", tuple(ports.items()), tuple(values.items()), source)
+        self.elements.append(new)
+        return new
+
+    def constrain(self, *rows: dict[str, complex]) -> bool:
+        """Keep the rows if they are independent of those kept before; say whether they are."""
+        order = list(self.coordinates)
+        kept = [*self.constraints, *rows]
+        matrix = np.array([[row.get(name, 0) for name in order] for row in kept])
+        if np.linalg.matrix_rank(matrix, tol=1e-6) < len(kept):
+            return False
+        self.constraints.extend(rows)
+        return True
+
+    # -- the tree
+
+    def add_planar(self) -> None:
+        name = f"p_{len(self.planar) + 1}"
+        y, theta = f"{name}.y", f"{name}.theta"
+        self.coordinates |= {y: "translation", theta: "rotation"}
+        first = ("body", "springs", "support")
+        later = ("body", "springs", "beam", "beam", "link", "link")
+        way = self.pick(later if self.planar else first)
+        if way == "body":
+            self.add_body(name)
+        elif way == "springs":
+            self.sprung.add(name)
+            self.add_two_terminal(self.pick(("spring", "damper")), y, GROUND)
+            self.add_two_terminal(self.pick(("torsion_spring", "rotary_damper")), theta, GROUND)
+        elif way == "support":
+            self.constrain({y: 1}, {theta: 1})
+            self.add("fixed", {"at": name}, {})
+            self.add_body(name)
+        elif way == "beam":
+            self.add_beam(self.pick(self.planar), name)
+        else:
+            other, length = self.pick(self.planar), self.parameter("m")
+            self.constrain(
+                {y: 1, f"{other}.y": -1, f"{other}.theta": -float(length.value)},
+                {theta: 1, f"{other}.theta": -1},
+            )
+            self.add("rigid_link", {"between": (other, name)}, {"length": length})
+        self.planar.append(name)
+
+    def add_body(self, name: str) -> None:
+        values = {"m": self.parameter("kg"), "J": self.parameter("kg*m^2")}
+        if self.chance(2):
+            values["cg"] = self.parameter("m")
+        self.add("rigid_body", {"at": name}, values)
+
+    def add_beam(self, a: str, b: str) -> None:
+        values = {"EI": self.parameter("N*m^2"), "l": self.parameter("m")}
+        self.add("massless_beam", {"between": (a, b)}, values)
+
+    def add_scalar(self, domain: str) -> None:
+        letter = {"translation": "x", "rotation": "a", "electrical": "v"}[domain]
+        name = f"{letter}_{1 + sum(n.startswith(letter) for n in self.coordinates)}"
+        others = self.moving(self.of(domain))
+        reached = [GROUND] if not others or self.chance(4) else others
+        self.coordinates[name] = domain
+        if domain != "electrical" and self.chance(4):
+            self.add_one_terminal({"translation": "mass", "rotation": "inertia"}[domain], name)
+        else:
+            kinds = [kind for kind, entry in TWO_TERMINAL.items() if entry[0] == domain]
+            self.add_two_terminal(self.pick(kinds), name, self.pick(reached))
+
+    def add_two_terminal(self, kind: str, a: str, b: str) -> None:
+        _, key, unit, _ = TWO_TERMINAL[kind]
+        ends = [self.port(node) for node in ((a, b) if self.chance(2) else (b, a))]
+        self.add(kind, {"between": ends}, {key: self.parameter(unit)})
+
+    def add_one_terminal(self, kind: str, node: str) -> None:
+        _, key, unit = ONE_TERMINAL[kind]
+        self.add(kind, {"at": self.port(node)}, {key: self.parameter(unit)})
+
+    def add_extra(self) -> None:
+        """Add an element between coordinates that are there."""
+        kind = self.pick((*TWO_TERMINAL, *ONE_TERMINAL, "rigid_body", "massless_beam"))
+        if kind in ONE_TERMINAL and self.of(ONE_TERMINAL[kind][0]):
+            self.add_one_terminal(kind, self.pick(self.of(ONE_TERMINAL[kind][0])))
+        elif kind in TWO_TERMINAL and self.of(TWO_TERMINAL[kind][0]):
+            nodes = self.of(TWO_TERMINAL[kind][0])
+            a = self.pick(nodes)
+            self.add_two_terminal(kind, a, self.pick([GROUND, *(n for n in nodes if n != a)]))
+        elif kind == "rigid_body" and self.planar:
+            self.add_body(self.pick(self.planar))
+        elif kind == "massless_beam" and len(self.planar) > 1:
+            self.add_beam(*self.random.sample(self.planar, 2))
+
+    # -- couplings and supports
+
+    def add_motor(self, *, reciprocal: bool) -> None:
+        shafts, terminals = self.of("rotation"), self.of("electrical")
+        if not shafts or not terminals:
+            return
+        a = self.pick(terminals)
+        b = self.pick([GROUND, *(n for n in terminals if n != a)])
+        values = {"R": self.parameter("ohm"), "k_t": self.parameter("N*m/A")}
+        if self.chance(2):
+            values["L"] = self.parameter("H")
+        if not reciprocal and self.chance(2):
+            values["k_e"] = self.parameter("V*s/rad")
+        ends = (a, b) if self.chance(2) else (b, a)
+        self.add("dc_motor", {"terminals": ends, "shaft": self.pick(shafts)}, values)
+
+    def add_transformer(self) -> None:
+        groups = (("translation", "rotation"), ("electrical",))
+        nodes = self.of(*self.pick(groups))
+        if len(nodes) < 2:
+            return
+        source, target = self.random.sample(nodes, 2)
+        self.transform(source, target)
+
+    def transform(self, source: str, target: str) -> None:
+        above, below = (ACROSS[self.coordinates[name]] for name in (target, source))
+        ratio = self.parameter("" if above == below else f"{above}/{below}")
+        if self.constrain({target: 1, source: -float(ratio.value)}):
+            self.add("transformer", {"from": source, "to": target}, {"ratio": ratio})
+
+    def add_geared_tip(self) -> None:
+        """Add a node that only a transformer reaches."""
+        source = self.pick(self.of("translation", "rotation") or [None])
+        if source is not None:
+            name = f"x_{1 + sum(n.startswith('x') for n in self.coordinates)}"
+            self.coordinates[name] = "translation"
+            self.transform(source, name)
+
+    def add_gyrator(self, *, reciprocal: bool) -> None:
+        nodes = list(self.coordinates)
+        if len(nodes) < 2:
+            return
+        source, target = self.random.sample(nodes, 2)
+        domains = (self.coordinates[source], self.coordinates[target])
+        electrical = domains.count("electrical")
+        if reciprocal and electrical != 1:
+            return
+        effort = {**THROUGH, "electrical": "V"}[domains[0]]
+        flow = {"translation": "m", "rotation": "rad", "electrical": "A"}[domains[1]]
+        ratio = self.parameter(f"{effort}/A" if flow == "A" else f"{effort}*s/{flow}")
+        if electrical == 1:  # ties a voltage to a velocity
+            voltage, motion = (source, target) if domains[0] == "electrical" else (target, source)
+            if not self.constrain({voltage: 1, motion: -float(ratio.value) * (0.83 + 0.47j)}):
+                return
+        self.add("gyrator", {"from": source, "to": target}, {"ratio": ratio})
+
+    def add_support(self) -> None:
+        kind = self.pick(("fixed", "slider", "pin"))
+        if kind == "fixed":
+            scalars = [name for name in self.coordinates if "." not in name]
+            node = self.pick([*scalars, *self.planar])
+            rows = [{node: 1}] if node in scalars else [{f"{node}.y": 1}, {f"{node}.theta": 1}]
+        elif self.planar:
+            node = self.pick(self.planar)
+            rows = [{f"{node}.theta" if kind == "slider" else f"{node}.y": 1}]
+        else:
+            return
+        if self.constrain(*rows):
+            self.add(kind, {"at": node}, {})
+
+    # -- signals
+
+    def add_block(self) -> tuple[str, tuple[Parameter, ...]]:
+        """Return a new dimensionless block, with the gain that makes it so."""
+        kind, gains = self.pick(BLOCKS), ()
+        if kind == "resonance":
+            units = {"omega_p": "rad/s", "zeta_p": "", "omega_z": "rad/s", "zeta_z": ""}
+        elif kind == "tf":
+            units = {"T_1": "s", "T_2": "s", "T_3": "s"}
+        elif kind == "lead_lag":
+            units = {"T_1": "s", "T_2": "s"} | ({"k": ""} if self.chance(2) else {})
+        elif kind == "pid":
+            given = self.pick(({}, {"k_i": "1/s"}, {"k_d": "s", "T_f": "s"}, {"k_i": "1/s", "k_d": "s"}))
+            units = {"k_p": "", **given}
+        elif self.chance(2):
+            units = {"k": "1/s"}
+        else:
+            units, gains = {}, (self.parameter("1/s"),)
+        values = tuple((key, self.parameter(unit)) for key, unit in units.items())
+        self.blocks.append(Element(kind, f"B_{len(self.blocks) + 1}", values=values))
+        return self.blocks[-1].name, gains
+
+    def measured(self, unit: str, sign: int) -> Term:
+        """Return a coordinate, velocity, or through quantity times a gain that gives it ``unit``."""
+        carried = [e for e in self.elements if e.kind in TWO_TERMINAL or e.kind == "dc_motor"]
+        if carried and self.chance(3):
+            element = self.pick(carried)
+            domain, quantity = "electrical", "i"
+            if element.kind in TWO_TERMINAL:
+                domain, _, _, quantity = TWO_TERMINAL[element.kind]
+            per = {"translation": "N", "rotation": "N/m", "electrical": "A"}[domain]  # dividing by N*m
+            gain = self.parameter(f"{unit}/{per}")
+            return Term(f"{element.name}.{quantity}", sign, (gain,))
+        name = self.pick(self.coordinates)
+        power = self.random.randint(0, 1)
+        gain = self.parameter(f"{unit}{'*s' * power}/{ACROSS[self.coordinates[name]]}")
+        return Term(name, sign, (gain,), power)
+
+    def add_signals(self, free: str) -> list[tuple[str, tuple[Term, ...]]]:
+        """Return a chain of signals in volts: the first takes the input, the others the one before."""
+        signals: list[tuple[str, tuple[Term, ...]]] = []
+        length = self.random.randint(1, 3)
+        for i in range(1, length + 1):
+            terms = [Term(free if i == 1 else f"e_{i - 1}")]
+            if self.chance(2):
+                block, gains = self.add_block()
+                terms = [replace(terms[0], gains=gains, blocks=(block,))]
+            if self.chance(2):
+                terms.append(self.measured("V", -1))
+            if i == 1 and length > 1 and self.chance(2):  # a loop of signals alone
+                terms.append(Term(f"e_{length}", -1, (self.parameter(""),)))
+            signals.append((f"e_{i}", tuple(terms)))
+        return signals
+
+    def add_source(self, quantity: str) -> bool:
+        """Let a signal or a free input drive a source; say whether there is a node for it."""
+        kinds = [kind for kind, (domain, _, _) in SOURCES.items() if self.of(domain)]
+        kind = self.pick(kinds)
+        domain, _, unit = SOURCES[kind]
+        node = self.pick(self.moving(self.of(domain)))
+        terms = [Term(quantity, self.pick((1, -1)), (self.parameter("" if unit == "V" else f"{unit}/V"),))]
+        if kind == "voltage_source":
+            if not self.constrain({node: 1}):
+                return False
+        elif self.chance(2):
+            terms.append(self.measured(unit, -1))
+        self.add(kind, {"at": self.port(node)}, {}, tuple(terms))
+        return True
+
+    def add_input(self, number: int) -> Input:
+        """Return an input that acts on the network directly."""
+        node = self.pick(self.moving(self.coordinates))
+        domain = self.coordinates[node]
+        if domain == "electrical" and self.chance(2) and self.constrain({node: 1}):
+            return Input(f"U_{number}", "voltage", (node,))
+        others = [name for name in self.of(domain) if name != node]
+        pair = (self.pick(others),) if others and self.chance(3) else ()
+        return Input(f"U_{number}", INPUT_KEYS[domain], tuple(self.port(end) for end in (node, *pair)))
+
+    def add_output(self, driven: str) -> tuple[Term, ...]:
+        """Return what an output shows, mostly of what ``driven`` is connected to."""
+        near = list(self.coordinates) if self.chance(8) else self.linked(driven)
+        nodes = {name.partition(".")[0] for name in near}
+        carried = [e for e in self.elements if e.kind in TWO_TERMINAL or e.kind == "dc_motor"]
+        carried = [e for e in carried if e.nodes & nodes]
+        if carried and self.chance(4):
+            element = self.pick(carried)
+            quantity = TWO_TERMINAL[element.kind][3] if element.kind in TWO_TERMINAL else "i"
+            return (Term(f"{element.name}.{quantity}"),)
+        name = self.pick(self.moving(near))
+        power = self.random.randint(0, 2)
+        others = [other for other in self.of(self.coordinates[name]) if other != name]
+        if others and self.chance(3):
+            return Term(name, power=power), Term(self.pick(others), -1, power=power)
+        return (Term(name, power=power),)
+
+    def network(self, inputs: Sequence[Input], outputs: Sequence, signals: Sequence = ()) -> Network:
+        return Network(
+            tuple(self.coordinates.items()),
+            tuple(self.elements),
+            tuple(inputs),
+            tuple((f"Y_{i}", terms) for i, terms in enumerate(outputs, 1)),
+            tuple(signals),
+            tuple(self.blocks),
+        )
+
+
+def _passive_part(random: Random, *, reciprocal: bool) -> _Builder:
+    builder = _Builder(random)
+    planar = random.randint(0, 2)
+    domains = random.choices(sorted(ACROSS), k=random.randint(planar == 0, 4))
+    for _ in range(planar):
+        builder.add_planar()
+    for domain in domains[: MAX_COORDINATES - 2 * planar]:
+        builder.add_scalar(domain)
+    couplings = (
+        lambda: builder.add_motor(reciprocal=reciprocal),
+        builder.add_transformer,
+        builder.add_geared_tip,
+        lambda: builder.add_gyrator(reciprocal=reciprocal),
+    )
+    for _ in range(random.randint(0, 3)):
+        builder.add_extra()
+    for _ in range(random.randint(1, 3)):
+        builder.pick(couplings)()
+    if builder.chance(3):
+        builder.add_support()
+    return builder
+
+
+def networks(random: Random) -> Network:
+    """Return a network of any elements, with signals, blocks and sources."""
+    builder = _passive_part(random, reciprocal=False)
+    inputs, signals = [], []
+    if builder.chance(2):
+        signals = builder.add_signals("U_1")
+        sources = [builder.add_source(signals[-1][0]) for _ in range(random.randint(1, 2))]
+        if any(sources):
+            inputs.append(Input("U_1"))
+        else:  # every source would have shorted another
+            signals, builder.blocks = [], []
+    elif builder.chance(4) and builder.add_source("U_1"):
+        inputs.append(Input("U_1"))
+    if not inputs or builder.chance(3):
+        inputs.append(builder.add_input(len(inputs) + 1))
+    driven = inputs[0].nodes or builder.elements[-1].port("at")  # the last source, of a free input
+    start = next(
+        name for name in builder.coordinates if name.partition(".")[0] == driven[0].partition(".")[0]
+    )
+    outputs = [builder.add_output(start) for _ in range(random.randint(1, 2))]
+    if signals and builder.chance(3):
+        outputs.append((Term(builder.pick(signals)[0]),))
+    return builder.network(inputs, outputs, signals)
+
+
+def passive_networks(random: Random) -> Network:
+    """Return a network without sources of power other than its one input; its output is at that input."""
+    builder = _passive_part(random, reciprocal=True)
+    node = builder.pick(builder.moving(builder.coordinates))
+    driven = Input("U_1", INPUT_KEYS[builder.coordinates[node]], (node,))
+    return builder.network([driven], [(Term(node),)])
+
+
+def reciprocal_networks(random: Random) -> Network:
+    """Return a passive network with inputs U_1, U_2 and the outputs Y_1, Y_2 that belong to them.
+
+    Both are mechanical or both electrical, and no gyrator stands between two ports of one kind, so that
+    Y_2/U_1 = Y_1/U_2.
+    """
+    builder = _passive_part(random, reciprocal=True)
+    groups = [builder.of("translation", "rotation"), builder.of("electrical")]
+    nodes = builder.moving(builder.pick([group for group in groups if group]))
+    first = builder.pick(nodes)
+    pair = [first, builder.pick([name for name in builder.linked(first) if name in nodes])]
+    inputs = [
+        Input(f"U_{i}", INPUT_KEYS[builder.coordinates[node]], (node,)) for i, node in enumerate(pair, 1)
+    ]
+    return builder.network(inputs, [(Term(node),) for node in pair])
+
+
+# ------------------------------------------------------------------------------ beams, rods, shafts, strings
+
+CARRIED = ("beam", "axial", "shaft")
+"""What the members of a network carry: bending, displacements along or across a line, angles."""
+MEMBERS = ("beam", "rod", "shaft", "string")
+UNITS = {
+    "rho": "kg/m^3",
+    "l": "m",
+    "eta": "s",
+    "G": "Pa",
+    "A": "m^2",
+    "N": "N",
+    "E": "Pa",
+    "I": "m^4",
+    "J": "m^4",
+}
+LUMPS = (("spring", "damper", "mass"), ("torsion_spring", "rotary_damper", "inertia"))
+"""By the power of s in force or torque per displacement or angle."""
+
+
+def random_members(seed: int, most: int = 12) -> Network:
+    """Return a network of two to so many members, driven at one node by F and read at another as X."""
+    random = Random(seed)
+    kind = CARRIED[seed % len(CARRIED)]
+    count = random.randint(2, most)
+    nodes = [GROUND, "n1"]
+    members = [_member(random, kind, (GROUND, "n1"))]
+    while len(members) < count:
+        if random.random() < 0.7 or len(nodes) < 3:
+            nodes.append(f"n{len(nodes)}")
+            ends = (random.choice(nodes[:-1]), nodes[-1])
+        else:
+            ends = tuple(random.sample(nodes, 2))
+        members.append(_member(random, kind, ends))
+    free = nodes[1:]
+    parts = [*members, *(_lump(random, kind, random.choice(free)) for _ in range(random.randint(0, 4)))]
+    force, per, blocks = ("torque", "N*m/rad", ()) if kind == "shaft" else ("force", "N/m", ())
+    if random.random() < 0.3:  # a source, minus a gain times the late displacement of a node
+        gain, delay = f"{random.randint(1, 90)}", f"0.00{random.randint(1, 9)}"
+        at, sensor = random.choice(free), random.choice(free)
+        fed_back = Term(sensor, -1, (Parameter("K", gain, per),), blocks=("D",))
+        parts.append(Element(f"{force}_source", "loop", (("at", (at,)),), source=(fed_back,)))
+        blocks = (Element("delay", "D", values=(("T", Parameter("T", delay, "s")),)),)
+    driven, read = random.choice(free), random.choice(free)
+    parts = [replace(part, name=part.name or f"part_{n}") for n, part in enumerate(parts)]
+    domain = "rotation" if kind == "shaft" else "translation"
+    return Network(
+        tuple((node, domain) for node in free),
+        tuple(parts),
+        (Input("F", force, (driven,)),),
+        (("X", (Term(read),)),),
+        blocks=blocks,
+    )
+
+
+def _member(random: Random, kind: str, ends: tuple[str, str]) -> Element:
+    values = {"rho": f"{random.randint(1, 8)}000", "l": f"0.{random.randint(2, 9)}"}
+    if random.random() < 0.3 and kind != "axial":
+        values["eta"] = f"{random.randint(1, 9)}e-5"
+    if random.random() < 0.2:
+        values["k_f"] = f"{random.randint(1, 9)}00"
+    theory = ""
+    if kind == "shaft":
+        values |= {"G": f"{random.randint(2, 8)}e10", "J": f"{random.randint(1, 9)}e-10"}
+    else:
+        values["A"] = f"{random.randint(1, 9)}e-5"
+    if kind == "axial":
+        kind, key = ("string", "N") if random.random() < 0.5 else ("rod", "E")
+        values[key] = f"{random.randint(1, 9)}{'00' if key == 'N' else 'e8'}"
+    elif kind == "beam":
+        values |= {"E": f"{random.randint(5, 20)}e10", "I": f"{random.randint(1, 9)}e-10"}
+        theory = random.choice(("euler-bernoulli", "rayleigh", "timoshenko"))
+        if theory == "timoshenko":
+            values |= {"G": f"{random.randint(2, 8)}e10", "kappa": "0.85"}
+    units = UNITS | {"k_f": "N*m/m" if kind == "shaft" else "N/m^2", "kappa": ""}
+    given = tuple((key, Parameter("", number, units[key])) for key, number in values.items())
+    return Element(kind, "", (("between", ends),), given, theory=theory)
+
+
+def _lump(random: Random, carried: str, node: str) -> Element:
+    power = random.randint(0, 2)
+    is_turning = carried == "shaft" or (carried == "beam" and random.random() < 0.4)
+    kind = LUMPS[is_turning][power]
+    number = (f"{random.randint(1, 90)}0", f"0.{random.randint(1, 9)}", f"0.0{random.randint(1, 9)}")[power]
+    at = f"{node}.theta" if is_turning and carried == "beam" else node
+    key, unit = ONE_TERMINAL[kind][1:] if power == 2 else TWO_TERMINAL[kind][1:3]
+    ports = (("at", (at,)),) if power == 2 else (("between", (at, GROUND)),)
+    return Element(kind, "", ports, ((key, Parameter("", number, unit)),))
+
+
+# ------------------------------------------------------------------------------- anything, sound or not
+
+MEMBER_VALUES = 'E = "E", I = "I", rho = "rho", A = "A", l = "l"'
+ANY_HEAD = """symflex = 1
+[parameters]
+E = "70 GPa"
+I = "1e-9 m^4"
+rho = "2700 kg/m^3"
+A = "1e-4 m^2"
+l = "0.8 m"
+N_w = "9 N"
+k_1 = { value = "95 kN/m", latex = 'k_{\\mathrm{long,one}}' }
+"""
+
+
+PARTS = (
+    'type = "mass", at = "{moving}", m = "{n} kg"',
+    'type = "spring", between = {moving_2}, k = "{stiffness}"',
+    'type = "damper", between = {moving_2}, b = "{n} N*s/m"',
+    'type = "spring", between = {t_2}, k = "k_1*2"',
+    'type = "inertia", at = "{theta}", J = "{n} kg*m^2"',
+    'type = "torsion_spring", between = {theta_2}, k = "2 N*m/rad"',
+    'type = "rotary_damper", between = {theta_2}, b = "2 N*m*s/rad"',
+    'type = "resistor", between = {v_2}, R = "2 Ohm"',
+    'type = "inductor", between = {v_2}, L = "2 mH"',
+    'type = "capacitor", between = {v_2}, C = "2 uF"',
+    'type = "dc_motor", terminals = {v_2}, shaft = "{r}", k_t = "0.1 N*m/A"',
+    'type = "transformer", from = "{r}", to = "{t}", ratio = "3 mm/rad"',
+    'type = "transformer", from = "{r}", to = "{r}", ratio = 3',
+    'type = "gyrator", from = "{v}", to = "{t}", ratio = 3',
+    'type = "piezo", terminals = {v_2}, between = {t_2}, alpha = "12 N/V"',
+    f'type = "beam", between = {{p_2}}, {MEMBER_VALUES}',
+    'type = "massless_beam", between = {p_2}, EI = "2 N*m^2", l = "l"',
+    'type = "rigid_link", between = {p_2}, length = "0.1 m"',
+    'type = "rigid_body", at = "{p}", m = "2 kg", J = "1 kg*m^2", cg = "0.1 m"',
+    'type = "rod", between = {t_2}, E = "E", A = "A", rho = "rho", l = "l"',
+    'type = "string", between = {t_2}, N = "9 N", A = "A", rho = "rho", l = "l"',
+    'type = "shaft", between = {r_2}, G = "E", J = "I", rho = "rho", l = "l"',
+    'type = "{support}", at = "{p}"',
+    'type = "{support}", between = {p_2}',
+    'type = "fixed", at = "{t}"',
+    'type = "force_source", at = "{moving}", f = "{signal}"',
+    'type = "torque_source", at = "{theta}", tau = "3*u"',
+    'type = "voltage_source", at = "{v}", v = "u"',
+    'type = "current_source", between = {v_2}, i = "u"',
+    f'type = "frame", between = {{q_2}}, {MEMBER_VALUES}, angle = "{{angle}} deg"',
+)
+CHOSEN = {
+    "n": range(1, 10),
+    "stiffness": ("k_1", "3 N/m"),
+    "support": ("pin", "slider", "fixed"),
+    "signal": ("u", "-u", "2*u"),
+    "angle": (0, 30, 90),
+    "q": ("q_0", "q_1", "q_2"),
+}
+
+
+class _Chosen(dict):
+    """What parts ask for, chosen anew each time: a node, or with ``_2`` a pair; IndexError without one."""
+
+    rng: Random
+
+    def __missing__(self, key: str) -> object:
+        options = self[f"{key.removesuffix('_2')}s"]
+        return _pair(self.rng, options) if key.endswith("_2") else self.rng.choice(options)
+
+
+def _pair(rng, nodes):
+    one = rng.choice(nodes)
+    other = rng.choice([n for n in [*nodes, "ground", "ground"] if n != one])
+    ends = [one, other]
+    rng.shuffle(ends)
+    return f'["{ends[0]}", "{ends[1]}"]'
+
+
+ENDS = {  # of a beam, at 0 or l
+    "clamped": ("w({x}) = 0", "w'({x}) = 0"),
+    "hinged": ("w({x}) = 0", "w''({x}) = 0"),
+    "free": ("w''({x}) = 0", "w'''({x}) = 0"),
+    "guided": ("w'({x}) = 0", "w'''({x}) = 0"),
+    "pushed": ("w''({x}) = 0", "E*I*w'''({x}) = F_w"),
+    "moved": ("w({x}) = F_w", "w'({x}) = 0"),
+}
+BARS = ("w({x}) = 0", "w'({x}) = 0", "E*A*w'({x}) = F_w", "w({x}) = F_w")
+ANY_BLOCKS = (
+    'type = "lag", T = "3 ms"',
+    'type = "integrator"',
+    'type = "lead_lag", T_1 = "2 s", T_2 = "50 ms"',
+    'type = "pid", k_p = 3, k_i = 2, k_d = 1, T_f = "1 ms"',
+    'type = "delay", T = "7 ms"',
+    'type = "tf", num = [1, 2], den = [1, 1, 3]',
+    'type = "resonance", omega_p = "3 rad/s", zeta_p = 0.1, omega_z = "5 rad/s", zeta_z = 0.2',
+)
+DRIVEN = {
+    "x": ["force", "displacement", "velocity", "acceleration"],
+    "r": ["torque", "angle", "angular_velocity", "angular_acceleration"],
+    "v": ["voltage", "current"],
+    "p": ["force", "torque", "displacement", "velocity", "angle", "angular_velocity"],
+    "q": ["torque", "angle"],
+}
+
+
+def _field(rng):
+    """Return a field and outputs that show it: a beam, a bar, a string, or one that tapers."""
+    taper = rng.choice(["", "", "*(1 - x/(2*l))"])
+    if rng.random() < 0.6:
+        equation = f"(E*I{taper}*w'')'' + rho*A*s^2*w"
+        conditions = [c.format(x=x) for x in ("0", "l") for c in ENDS[rng.choice([*ENDS])]]
+    else:
+        equation = f"({rng.choice(['E*A', 'N_w'])}{taper}*w')' - rho*A*s^2*w"
+        conditions = [rng.choice(BARS).format(x=x) for x in ("0", "l")]
+    load = rng.choice(["0", "0", "F_w"])
+    text = f'[fields.w]\ndomain = ["0", "l"]\nequation = "{equation} = {load}"\nconditions = {conditions}\n'
+    return text, rng.sample(["w(l)", "w'(0)", "s*w(l/3)", "w(0.1 m)", "E*I*w''(0)", "2*w(0) + u"], 2)
+
+
+def _signals(rng, nodes):
+    """Return blocks and signals that read inputs, nodes and each other, and outputs that show them."""
+    names = [f"sig_{i}" for i in range(rng.randint(1, 4))]
+    own = [f"G_{i}" for i in range(rng.randint(0, 3))]
+    read, unused = [*names, "u", *nodes], list(own)
+
+    def term():
+        factors = rng.sample(["3", "k_1", "s"], rng.randint(0, 1))
+        if unused and rng.random() < 0.6:
+            factors.append(unused.pop())
+        return "*".join([*factors, rng.choice(read)])
+
+    def value():
+        terms = [term() for _ in range(rng.randint(1, 3))]
+        return rng.choice(["", "-"]) + rng.choice([" + ", " - "]).join(terms)
+
+    lines = [f'{n} = "{value()}"' for n in names]
+    blocks = [f"{n} = {{ {rng.choice(ANY_BLOCKS)} }}" for n in own]
+    shown = [rng.choice(names), f"{rng.choice(names)} - 2*u"]
+    return "\n".join(("[blocks]", *blocks, "[signals]", *lines, "")), shown
+
+
+def anything(seed):
+    """Return the text of a model, or None; not all are sound."""
+    rng = Random(seed)
+    t, r, v, p = ([f"{letter}_{i}" for i in range(rng.randint(1, 4))] for letter in "xrvp")
+    nodes = {"t": t, "r": r, "v": v, "p": p, "moving": [*t, *p], "theta": [*r, *(f"{n}.theta" for n in p)]}
+    chosen = _Chosen({f"{key}s": options for key, options in (CHOSEN | nodes).items()})
+    chosen.rng = rng
+    liked = rng.sample(PARTS, rng.randint(3, 12))
+    lines = []
+    for i in range(rng.randint(1, 15)):
+        try:
+            lines.append(f"part_{i} = {{ {rng.choice(liked).format_map(chosen)} }}")
+        except IndexError:  # a pair of a single node
+            continue
+    body = "\n".join(lines)
+    used = [n for n in (*t, *r, *v, *p, "q_0", "q_1", "q_2") if f'"{n}"' in body or f'"{n}.' in body]
+    if not used:
+        return None
+    inputs, outputs, more = ["u = {}"], [], ""
+    for i in range(rng.randint(1, 3)):
+        node = rng.choice(used)
+        others = [n for n in used if n[0] == node[0] and n != node]
+        place = f'["{node}", "{rng.choice(others)}"]' if others and rng.random() < 0.3 else f'"{node}"'
+        inputs.append(f"in_{i} = {{ {rng.choice(DRIVEN[node[0]])} = {place} }}")
+    for _ in range(rng.randint(1, 4)):
+        node = rng.choice(used)
+        if node[0] == "q":
+            node = f"{node}.{rng.choice(['x', 'y', 'theta'])}"
+        others = [n for n in used if n[0] == node[0] and n != node and n[0] != "q"]
+        ways_out = [node, f"s*{node}", f"s^2*{node}", f"2*{node} + u", *(f"{node} - {o}" for o in others[:1])]
+        outputs.append(rng.choice(ways_out))
+    if rng.random() < 0.4:
+        text, shown = _signals(rng, [n for n in used if n[0] != "q"])
+        more, outputs, body = more + text, outputs + shown, body.replace('"3*u"', '"sig_0"')
+    if rng.random() < 0.3:
+        text, shown = _field(rng)
+        more, outputs, inputs = more + text, outputs + shown, [*inputs, "F_w = {}"]
+    outputs = "\n".join(f'out_{i} = "{one}"' for i, one in enumerate(outputs))
+    return f"{ANY_HEAD}{more}[elements]\n{body}\n[inputs]\n{chr(10).join(inputs)}\n[outputs]\n{outputs}\n"
