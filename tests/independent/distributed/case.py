@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import cmath
 import math
-import tomllib
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -24,10 +23,8 @@ class Case:
     ----------
     name : str
         What it is, in a few words.
-    text : str
-        The specification.
-    tf : str
-        "OUT/IN".
+    parameters, body, output, source : dict, str, str, str
+        The specification: values in SI units, all between these and the output ``out``, and its input ``u``.
     scale : float
         About the lowest natural frequency [rad/s].
     decades : tuple of float
@@ -37,16 +34,26 @@ class Case:
     """
 
     name: str
-    text: str
-    tf: str
+    parameters: dict[str, str]
+    body: str
+    output: str
     scale: float
     decades: tuple[float, float]
     respond: Callable[[Values, Number], Number]
+    source: str = "{}"
+
+    @property
+    def text(self) -> str:
+        """The specification."""
+        entries = "\n".join(f'{name} = "{value}"' for name, value in self.parameters.items())
+        return (
+            f"symflex = 1\n\n[parameters]\n{entries}\n{self.body}\n"
+            f'[inputs]\nu = {self.source}\n\n[outputs]\nout = "{self.output}"\n'
+        )
 
     def values(self) -> Values:
-        """Return the parameters' values, all written in SI units, at the working precision."""
-        entries = tomllib.loads(self.text)["parameters"]
-        return {name: mpf(str(entry).partition(" ")[0]) for name, entry in entries.items()}
+        """Return the parameters' values, at the working precision."""
+        return {name: mpf(value.partition(" ")[0]) for name, value in self.parameters.items()}
 
     def reference(self, s: complex, digits: int) -> Number:
         """Return the response at s, computed with that many digits."""
@@ -90,15 +97,6 @@ THICK_ELEMENT = BEAM_ELEMENT + ', theory = "timoshenko", kappa = "kappa", G = "G
 ROD_ELEMENT = 'type = "rod", E = "E", A = "A", rho = "rho"'
 SHAFT_ELEMENT = 'type = "shaft", G = "G", J = "J", rho = "rho"'
 STRING_ELEMENT = 'type = "string", N = "N", rho = "rho", A = "A"'
-
-
-def spec(parameters: dict[str, str], body: str, output: str, source: str = "{}") -> str:
-    """Return a specification with the output ``out`` and the input ``u``."""
-    entries = "\n".join(f'{name} = "{value}"' for name, value in parameters.items())
-    return (
-        f"symflex = 1\n\n[parameters]\n{entries}\n{body}\n"
-        f'[inputs]\nu = {source}\n\n[outputs]\nout = "{output}"\n'
-    )
 
 
 def ode(equation: str, *conditions: str, name: str = "w", domain: tuple[str, str] = ("0", "l")) -> str:

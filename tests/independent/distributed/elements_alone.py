@@ -22,14 +22,12 @@ from tests.independent.distributed.case import (
     TORSION,
     Case,
     elements,
-    spec,
 )
 from tests.independent.distributed.span import (
     clamped,
     first_end,
     free,
     free_with_force,
-    pinned,
     rayleigh,
     second_end,
     sliding_with_force,
@@ -78,53 +76,31 @@ ARM_ELEMENTS = elements(
 
 ELEMENTS_IN_BENDING = (
     Case(
-        "beam element from ground, driving point",
-        spec(
-            BEAM,
-            elements(arm=f'{BEAM_ELEMENT}, between = ["ground", "tip"], l = "l"'),
-            "tip",
-            '{ force = "tip" }',
-        ),
-        "out/u",
-        *SLENDER,
-        span(clamped, free_with_force, second_end(0)),
-    ),
-    Case(
         "beam element with losses, deflection under a moment",
-        spec(
-            BEAM | LOSSES,
-            elements(
-                clamp='type = "fixed", at = "root"',
-                arm=f'{BEAM_ELEMENT}, eta = "eta", c_f = "c_f", between = ["root", "tip"], l = "l"',
-            ),
-            "tip",
-            '{ torque = "tip" }',
+        BEAM | LOSSES,
+        elements(
+            clamp='type = "fixed", at = "root"',
+            arm=f'{BEAM_ELEMENT}, eta = "eta", c_f = "c_f", between = ["root", "tip"], l = "l"',
         ),
-        "out/u",
+        "tip",
         *SLENDER,
         span(clamped, turning_force, second_end(0)),
+        source='{ torque = "tip" }',
     ),
     Case(
         "beam element clamped at its second end",
-        spec(
-            BEAM | LOSSES,
-            elements(arm=f'{BEAM_ELEMENT}, eta = "eta", c_f = "c_f", between = ["tip", "ground"], l = "l"'),
-            "tip.theta",
-            '{ force = "tip" }',
-        ),
-        "out/u",
+        BEAM | LOSSES,
+        elements(arm=f'{BEAM_ELEMENT}, eta = "eta", c_f = "c_f", between = ["tip", "ground"], l = "l"'),
+        "tip.theta",
         *SLENDER,
         span(lambda w, slope, moment, shear, v, s: (moment, shear - 1), clamped, first_end(1)),
+        source='{ force = "tip" }',
     ),
     Case(
         "moment a cantilever delivers to its clamp",
-        spec(
-            BEAM | LOSSES,
-            elements(arm=f'{BEAM_ELEMENT}, eta = "eta", c_f = "c_f", between = ["tip", "ground"], l = "l"'),
-            "arm.tau",
-            '{ force = "tip" }',
-        ),
-        "out/u",
+        BEAM | LOSSES,
+        elements(arm=f'{BEAM_ELEMENT}, eta = "eta", c_f = "c_f", between = ["tip", "ground"], l = "l"'),
+        "arm.tau",
         *SLENDER,
         # The moment on the beam's second end is +M; the clamp receives -M.
         span(
@@ -132,165 +108,103 @@ ELEMENTS_IN_BENDING = (
             clamped,
             lambda line, v: -line.at(v["l"])[2],
         ),
-    ),
-    Case(
-        "force a cantilever delivers to its clamp",
-        spec(
-            BEAM,
-            elements(arm=f'{BEAM_ELEMENT}, between = ["tip", "ground"], l = "l"'),
-            "arm.f",
-            '{ force = "tip" }',
-        ),
-        "out/u",
-        *SLENDER,
-        # The force on the beam's second end is -V; the clamp receives V.
-        span(
-            lambda w, slope, moment, shear, v, s: (moment, shear - 1),
-            clamped,
-            lambda line, v: line.at(v["l"])[3],
-        ),
-    ),
-    Case(
-        "pinned-pinned beam element, rotation across",
-        spec(
-            BEAM,
-            elements(
-                left='type = "pin", at = "p"',
-                right='type = "pin", at = "q"',
-                arm=f'{BEAM_ELEMENT}, between = ["p", "q"], l = "l"',
-            ),
-            "q.theta",
-            '{ torque = "p" }',
-        ),
-        "out/u",
-        *SLENDER,
-        span(lambda w, slope, moment, shear, v, s: (w, moment + 1), pinned, second_end(1)),
-    ),
-    Case(
-        "free-free beam element",
-        spec(
-            BEAM,
-            elements(arm=f'{BEAM_ELEMENT}, between = ["p", "q"], l = "l"'),
-            "q",
-            '{ force = "p" }',
-        ),
-        "out/u",
-        *SLENDER,
-        span(lambda w, slope, moment, shear, v, s: (moment, shear - 1), free, second_end(0)),
+        source='{ force = "tip" }',
     ),
     Case(
         "sliding-free beam element",
-        spec(
-            BEAM,
-            elements(
-                guide='type = "slider", at = "act"',
-                arm=f'{BEAM_ELEMENT}, between = ["act", "tip"], l = "l"',
-            ),
-            "s*act",
-            '{ force = "act" }',
+        BEAM,
+        elements(
+            guide='type = "slider", at = "act"',
+            arm=f'{BEAM_ELEMENT}, between = ["act", "tip"], l = "l"',
         ),
-        "out/u",
+        "s*act",
         *SLENDER,
         lambda v, s: s * span(sliding_with_force, free, first_end(0))(v, s),
+        source='{ force = "act" }',
     ),
     Case(
         "one-link arm, tip",
-        spec(ARM, ARM_ELEMENTS, "tip", '{ torque = "hub" }'),
-        "out/u",
+        ARM,
+        ARM_ELEMENTS,
+        "tip",
         *SLENDER,
         span(hub, payload, second_end(0)),
+        source='{ torque = "hub" }',
     ),
     Case(
         "one-link arm, hub",
-        spec(ARM, ARM_ELEMENTS, "hub.theta", '{ torque = "hub" }'),
-        "out/u",
+        ARM,
+        ARM_ELEMENTS,
+        "hub.theta",
         *SLENDER,
         span(hub, payload, first_end(1)),
+        source='{ torque = "hub" }',
     ),
     Case(
         "beam element in tension on an elastic foundation, guided mass and spring",
-        spec(
-            BEAM | {"N": "85 N", "k_f": "420 N/m^2", "m": "0.11 kg", "k": "900 N/m"},
-            elements(
-                arm=f'{BEAM_ELEMENT}, N = "N", k_f = "k_f", between = ["ground", "tip"], l = "l"',
-                guide='type = "slider", at = "tip"',
-                load='type = "mass", at = "tip", m = "m"',
-                spring='type = "spring", between = ["tip", "ground"], k = "k"',
-            ),
-            "tip",
-            '{ force = "tip" }',
+        BEAM | {"N": "85 N", "k_f": "420 N/m^2", "m": "0.11 kg", "k": "900 N/m"},
+        elements(
+            arm=f'{BEAM_ELEMENT}, N = "N", k_f = "k_f", between = ["ground", "tip"], l = "l"',
+            guide='type = "slider", at = "tip"',
+            load='type = "mass", at = "tip", m = "m"',
+            spring='type = "spring", between = ["tip", "ground"], k = "k"',
         ),
-        "out/u",
+        "tip",
         *SLENDER,
         span(clamped, guided, second_end(0)),
+        source='{ force = "tip" }',
     ),
     Case(
         "compressed beam element",
-        # Half the Euler load of the cantilever, pi^2 E I/(4 l^2) = 151 N.
-        spec(
-            BEAM | {"P": "75 N"},
-            elements(arm=f'{BEAM_ELEMENT}, N = "-P", between = ["ground", "tip"], l = "l"'),
-            "tip",
-            '{ force = "tip" }',
-        ),
-        "out/u",
+        BEAM | {"P": "75 N"},
+        elements(arm=f'{BEAM_ELEMENT}, N = "-P", between = ["ground", "tip"], l = "l"'),
+        "tip",
         *SLENDER,
+        # Half the Euler load of the cantilever, pi^2 E I/(4 l^2) = 151 N.
         lambda v, s: span(clamped, free_with_force, second_end(0))(v | {"N": -v["P"]}, s),
+        source='{ force = "tip" }',
     ),
     Case(
         "Rayleigh beam element with a rigid body",
-        spec(
-            {name: THICK[name] for name in BEAM} | {"m": "0.8 kg", "J_b": "6e-4 kg*m^2", "c": "0.03 m"},
-            elements(
-                arm=f'{BEAM_ELEMENT}, theory = "rayleigh", between = ["ground", "tip"], l = "l"',
-                body='type = "rigid_body", at = "tip", m = "m", J = "J_b", cg = "c"',
-            ),
-            "tip.theta",
-            '{ force = "tip" }',
+        {name: THICK[name] for name in BEAM} | {"m": "0.8 kg", "J_b": "6e-4 kg*m^2", "c": "0.03 m"},
+        elements(
+            arm=f'{BEAM_ELEMENT}, theory = "rayleigh", between = ["ground", "tip"], l = "l"',
+            body='type = "rigid_body", at = "tip", m = "m", J = "J_b", cg = "c"',
         ),
-        "out/u",
+        "tip.theta",
         *STOCKY,
         span(clamped, body, second_end(1), rayleigh),
+        source='{ force = "tip" }',
     ),
     Case(
         "Timoshenko element, driving point",
-        spec(
-            THICK,
-            elements(arm=f'{THICK_ELEMENT}, between = ["ground", "tip"], l = "l"'),
-            "tip",
-            '{ force = "tip" }',
-        ),
-        "out/u",
+        THICK,
+        elements(arm=f'{THICK_ELEMENT}, between = ["ground", "tip"], l = "l"'),
+        "tip",
         *STOCKY,
         span(clamped, free_with_force, second_end(0), timoshenko),
+        source='{ force = "tip" }',
     ),
     Case(
         "Timoshenko element with all losses, clamped and pinned",
-        spec(
-            THICK | {"eta": "3e-7 s", "c_f": "900 N*s/m^2", "k_f": "4e6 N/m^2"},
-            elements(
-                arm=f'{THICK_ELEMENT}, eta = "eta", c_f = "c_f", k_f = "k_f", l = "l",'
-                ' between = ["ground", "q"]',
-                pin='type = "pin", at = "q"',
-            ),
-            "q.theta",
-            '{ torque = "q" }',
+        THICK | {"eta": "3e-7 s", "c_f": "900 N*s/m^2", "k_f": "4e6 N/m^2"},
+        elements(
+            arm=f'{THICK_ELEMENT}, eta = "eta", c_f = "c_f", k_f = "k_f", l = "l", between = ["ground", "q"]',
+            pin='type = "pin", at = "q"',
         ),
-        "out/u",
+        "q.theta",
         *STOCKY,
         span(clamped, lambda w, slope, moment, shear, v, s: (w, moment - 1), second_end(1), timoshenko),
+        source='{ torque = "q" }',
     ),
     Case(
         "free Timoshenko element, rotation across",
-        spec(
-            THICK,
-            elements(arm=f'{THICK_ELEMENT}, between = ["p", "q"], l = "l"'),
-            "q.theta",
-            '{ force = "p" }',
-        ),
-        "out/u",
+        THICK,
+        elements(arm=f'{THICK_ELEMENT}, between = ["p", "q"], l = "l"'),
+        "q.theta",
         *STOCKY,
         span(lambda w, slope, moment, shear, v, s: (moment, shear - 1), free, second_end(1), timoshenko),
+        source='{ force = "p" }',
     ),
 )
 
@@ -308,35 +222,27 @@ def loose(motion: Form, force: Form, v: Values, s: Number) -> tuple[Form]:
 ELEMENTS_IN_TENSION_AND_TORSION = (
     Case(
         "rod element with a tip mass",
-        spec(
-            ROD | {"m": "0.3 kg"},
-            elements(
-                bar=f'{ROD_ELEMENT}, between = ["ground", "tip"], l = "l"',
-                load='type = "mass", at = "tip", m = "m"',
-            ),
-            "s*tip",
-            '{ force = "tip" }',
+        ROD | {"m": "0.3 kg"},
+        elements(
+            bar=f'{ROD_ELEMENT}, between = ["ground", "tip"], l = "l"',
+            load='type = "mass", at = "tip", m = "m"',
         ),
-        "out/u",
+        "s*tip",
         *AXIAL,
         lambda v, s: (
             s * span(held, lambda u, f, v, s: (f + v["m"] * s**2 * u - 1,), second_end(0), rod)(v, s)
         ),
+        source='{ force = "tip" }',
     ),
     Case(
         "rod element with losses on a spring and a damper",
-        spec(
-            ROD
-            | {"eta": "3e-7 s", "c_f": "700 N*s/m^2", "k_f": "4e6 N/m^2", "k": "2e7 N/m", "b": "900 N*s/m"},
-            elements(
-                bar=f'{ROD_ELEMENT}, eta = "eta", c_f = "c_f", k_f = "k_f", between = ["p", "q"], l = "l"',
-                spring='type = "spring", between = ["p", "ground"], k = "k"',
-                damper='type = "damper", between = ["p", "ground"], b = "b"',
-            ),
-            "p",
-            '{ force = "q" }',
+        ROD | {"eta": "3e-7 s", "c_f": "700 N*s/m^2", "k_f": "4e6 N/m^2", "k": "2e7 N/m", "b": "900 N*s/m"},
+        elements(
+            bar=f'{ROD_ELEMENT}, eta = "eta", c_f = "c_f", k_f = "k_f", between = ["p", "q"], l = "l"',
+            spring='type = "spring", between = ["p", "ground"], k = "k"',
+            damper='type = "damper", between = ["p", "ground"], b = "b"',
         ),
-        "out/u",
+        "p",
         *AXIAL,
         span(
             # Tension pulls the first end forward, spring and damper hold it back.
@@ -345,68 +251,28 @@ ELEMENTS_IN_TENSION_AND_TORSION = (
             first_end(0),
             rod,
         ),
-    ),
-    Case(
-        "force a rod element delivers to a wall",
-        spec(
-            ROD,
-            elements(bar=f'{ROD_ELEMENT}, between = ["p", "ground"], l = "l"'),
-            "bar.f",
-            '{ force = "p" }',
-        ),
-        "out/u",
-        *AXIAL,
-        # A push of +1 on the first end is a tension of -1; the wall is pushed by minus the tension.
-        span(lambda u, tension, v, s: (tension + 1,), held, lambda line, v: -line.at(v["l"])[1], rod),
-    ),
-    Case(
-        "shaft element between two discs",
-        spec(
-            SHAFT | {"J_1": "0.003 kg*m^2", "J_2": "0.0011 kg*m^2"},
-            elements(
-                disc_1='type = "inertia", at = "p", J = "J_1"',
-                axle=f'{SHAFT_ELEMENT}, between = ["p", "q"], l = "l"',
-                disc_2='type = "inertia", at = "q", J = "J_2"',
-            ),
-            "q",
-            '{ torque = "p" }',
-        ),
-        "out/u",
-        *TORSION,
-        span(
-            lambda angle, torque, v, s: (v["J_1"] * s**2 * angle - torque - 1,),
-            lambda angle, torque, v, s: (v["J_2"] * s**2 * angle + torque,),
-            second_end(0),
-            shaft,
-        ),
+        source='{ force = "q" }',
     ),
     Case(
         "shaft element with losses",
-        spec(
-            SHAFT | {"eta": "8e-7 s", "c_f": "0.02 N*m*s/m", "k_f": "300 N*m/m"},
-            elements(
-                axle=f'{SHAFT_ELEMENT}, eta = "eta", c_f = "c_f", k_f = "k_f", between = ["p", "q"], l = "l"'
-            ),
-            "q",
-            '{ torque = "q" }',
+        SHAFT | {"eta": "8e-7 s", "c_f": "0.02 N*m*s/m", "k_f": "300 N*m/m"},
+        elements(
+            axle=f'{SHAFT_ELEMENT}, eta = "eta", c_f = "c_f", k_f = "k_f", between = ["p", "q"], l = "l"'
         ),
-        "out/u",
+        "q",
         *TORSION,
         span(loose, lambda angle, torque, v, s: (torque - 1,), second_end(0), shaft),
+        source='{ torque = "q" }',
     ),
     Case(
         "string element with a mass and a dashpot at its end",
-        spec(
-            STRING | {"m": "0.002 kg", "b": "0.4 N*s/m", "c_f": "0.15 N*s/m^2"},
-            elements(
-                wire=f'{STRING_ELEMENT}, c_f = "c_f", between = ["ground", "q"], l = "l"',
-                bead='type = "mass", at = "q", m = "m"',
-                loss='type = "damper", between = ["q", "ground"], b = "b"',
-            ),
-            "q",
-            '{ force = "q" }',
+        STRING | {"m": "0.002 kg", "b": "0.4 N*s/m", "c_f": "0.15 N*s/m^2"},
+        elements(
+            wire=f'{STRING_ELEMENT}, c_f = "c_f", between = ["ground", "q"], l = "l"',
+            bead='type = "mass", at = "q", m = "m"',
+            loss='type = "damper", between = ["q", "ground"], b = "b"',
         ),
-        "out/u",
+        "q",
         *TAUT,
         span(
             held,
@@ -414,5 +280,6 @@ ELEMENTS_IN_TENSION_AND_TORSION = (
             second_end(0),
             string,
         ),
+        source='{ force = "q" }',
     ),
 )

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from mpmath import mp
 
-from tests.independent.boundary_value import Number, Problem, Values, bending, rod, shaft, string, timoshenko
+from tests.independent.boundary_value import Number, Problem, Values, bending, rod, shaft, timoshenko
 from tests.independent.distributed.case import (
     AXIAL,
     BEAM,
@@ -18,15 +18,11 @@ from tests.independent.distributed.case import (
     SHAFT,
     SHAFT_ELEMENT,
     SLENDER,
-    STRING,
-    STRING_ELEMENT,
-    TAUT,
     THICK,
     THICK_ELEMENT,
     Case,
     elements,
     ode,
-    spec,
 )
 from tests.independent.distributed.elements_alone import payload
 from tests.independent.distributed.span import (
@@ -40,20 +36,6 @@ from tests.independent.distributed.span import (
 )
 
 
-def two_strings(v: Values, s: Number) -> Number:
-    """Two halves of a string with a bead between them, on an elastic foundation."""
-    problem = Problem()
-    left, right = problem.line(string(v, s)), problem.line(string(v, s))
-    w, force = left.at(v["l"] / 2)
-    problem.require(
-        left.start[0],
-        w - right.start[0],
-        v["m"] * s**2 * w - (right.start[1] - force) - 1,
-        right.at(v["l"] / 2)[0],
-    )
-    return problem.solve()(w)
-
-
 def two_spans(v: Values, s: Number) -> Number:
     """Beam of two spans over a spring, both ends pinned: moment at one end, rotation of the other."""
     problem = Problem()
@@ -64,11 +46,6 @@ def two_spans(v: Values, s: Number) -> Number:
     problem.require(left.start[0], left.start[2] + 1, *pinned(*end))
     problem.require(w - w_2, slope - slope_2, moment - moment_2, shear_2 - shear + w * v["k"])
     return problem.solve()(end[1])
-
-
-def sensor_between(v: Values, s: Number) -> Number:
-    """Cantilever as two elements, force at its tip, deflection of the node between them."""
-    return span(clamped, free_with_force, lambda line, v: line.at(v["l"] / 2)[0])(v, s)
 
 
 def two_theories(v: Values, s: Number) -> Number:
@@ -193,197 +170,143 @@ v_m = "k_c*(u - motor.i)"
 
 NETWORKS = (
     Case(
-        "bead on a string of two elements",
-        spec(
-            STRING | {"m": "0.002 kg", "k_f": "900 N/m^2"},
-            elements(
-                left=f'{STRING_ELEMENT}, k_f = "k_f", between = ["ground", "q"], l = "l/2"',
-                bead='type = "mass", at = "q", m = "m"',
-                right=f'{STRING_ELEMENT}, k_f = "k_f", between = ["q", "ground"], l = "l/2"',
-            ),
-            "q",
-            '{ force = "q" }',
-        ),
-        "out/u",
-        *TAUT,
-        two_strings,
-    ),
-    Case(
         "beam of two spans over a spring",
-        spec(
-            BEAM | {"l_1": "0.35 m", "k": "900 N/m"},
-            elements(
-                left='type = "pin", at = "p"',
-                first=f'{BEAM_ELEMENT}, between = ["p", "middle"], l = "l_1"',
-                spring='type = "spring", between = ["middle", "ground"], k = "k"',
-                second=f'{BEAM_ELEMENT}, between = ["middle", "q"], l = "l - l_1"',
-                right='type = "pin", at = "q"',
-            ),
-            "q.theta",
-            '{ torque = "p" }',
+        BEAM | {"l_1": "0.35 m", "k": "900 N/m"},
+        elements(
+            left='type = "pin", at = "p"',
+            first=f'{BEAM_ELEMENT}, between = ["p", "middle"], l = "l_1"',
+            spring='type = "spring", between = ["middle", "ground"], k = "k"',
+            second=f'{BEAM_ELEMENT}, between = ["middle", "q"], l = "l - l_1"',
+            right='type = "pin", at = "q"',
         ),
-        "out/u",
+        "q.theta",
         *SLENDER,
         two_spans,
-    ),
-    Case(
-        "cantilever of two elements, the node between them",
-        spec(
-            BEAM | LOSSES,
-            elements(
-                first=f'{BEAM_ELEMENT}, eta = "eta", c_f = "c_f", between = ["ground", "half"], l = "l/2"',
-                second=f'{BEAM_ELEMENT}, eta = "eta", c_f = "c_f", between = ["half", "tip"], l = "l/2"',
-            ),
-            "half",
-            '{ force = "tip" }',
-        ),
-        "out/u",
-        *SLENDER,
-        sensor_between,
+        source='{ torque = "p" }',
     ),
     Case(
         "Timoshenko root, rigid body, slender tip",
-        spec(
-            THICK
-            | {
-                "I_2": "7.2e-10 m^4",
-                "A_2": "2.4e-4 m^2",
-                "l_2": "0.5 m",
-                "m": "0.8 kg",
-                "J_b": "6e-4 kg*m^2",
-            },
-            elements(
-                root=f'{THICK_ELEMENT}, between = ["ground", "joint"], l = "l"',
-                body='type = "rigid_body", at = "joint", m = "m", J = "J_b", cg = "0"',
-                whip='type = "beam", E = "E", I = "I_2", rho = "rho", A = "A_2", between = ["joint", "tip"],'
-                ' l = "l_2"',
-            ),
-            "tip",
-            '{ force = "joint" }',
+        THICK
+        | {
+            "I_2": "7.2e-10 m^4",
+            "A_2": "2.4e-4 m^2",
+            "l_2": "0.5 m",
+            "m": "0.8 kg",
+            "J_b": "6e-4 kg*m^2",
+        },
+        elements(
+            root=f'{THICK_ELEMENT}, between = ["ground", "joint"], l = "l"',
+            body='type = "rigid_body", at = "joint", m = "m", J = "J_b", cg = "0"',
+            whip='type = "beam", E = "E", I = "I_2", rho = "rho", A = "A_2", between = ["joint", "tip"],'
+            ' l = "l_2"',
         ),
-        "out/u",
+        "tip",
         120.0,
         (-2.5, 2.0),
         two_theories,
+        source='{ force = "joint" }',
     ),
     Case(
         "massless flexure and an arm",
-        spec(
-            BEAM | {"EI_f": "4 N*m^2", "l_f": "0.06 m"},
-            elements(
-                flexure='type = "massless_beam", between = ["ground", "joint"], EI = "EI_f", l = "l_f"',
-                arm=f'{BEAM_ELEMENT}, between = ["joint", "tip"], l = "l"',
-            ),
-            "tip",
-            '{ force = "tip" }',
+        BEAM | {"EI_f": "4 N*m^2", "l_f": "0.06 m"},
+        elements(
+            flexure='type = "massless_beam", between = ["ground", "joint"], EI = "EI_f", l = "l_f"',
+            arm=f'{BEAM_ELEMENT}, between = ["joint", "tip"], l = "l"',
         ),
-        "out/u",
+        "tip",
         *SLENDER,
         massless_then_beam,
+        source='{ force = "tip" }',
     ),
     *(
         Case(
             f"motor, screw, carriage, flexible arm, gripper: {name}",
-            spec(ROBOT, ROBOT_BODY, output),
-            "out/u",
+            ROBOT,
+            ROBOT_BODY,
+            output,
             *SLENDER,
             robot(name),
         )
-        for name, output in (("tip", "tip"), ("carriage", "x"), ("current", "motor.i"))
+        for name, output in (("tip", "tip"), ("current", "motor.i"))
     ),
     Case(
         "motor, shaft, gear and disc",
-        spec(
-            SHAFT
-            | {
-                "R": "1.2 ohm",
-                "L": "0.0021 H",
-                "k_t": "0.11 N*m/A",
-                "J_m": "2.4e-4 kg*m^2",
-                "n": "0.2",
-                "J_1": "0.03 kg*m^2",
-                "b": "0.02 N*m*s",
-            },
-            elements(
-                motor='type = "dc_motor", terminals = ["e", "ground"], shaft = "p",'
-                ' L = "L", R = "R", k_t = "k_t"',
-                rotor='type = "inertia", at = "p", J = "J_m"',
-                axle=f'{SHAFT_ELEMENT}, between = ["p", "q"], l = "l"',
-                gear='type = "transformer", from = "q", to = "out_shaft", ratio = "n"',
-                disc='type = "inertia", at = "out_shaft", J = "J_1"',
-                loss='type = "rotary_damper", between = ["out_shaft", "ground"], b = "b"',
-            ),
-            "out_shaft",
-            '{ voltage = "e" }',
+        SHAFT
+        | {
+            "R": "1.2 ohm",
+            "L": "0.0021 H",
+            "k_t": "0.11 N*m/A",
+            "J_m": "2.4e-4 kg*m^2",
+            "n": "0.2",
+            "J_1": "0.03 kg*m^2",
+            "b": "0.02 N*m*s",
+        },
+        elements(
+            motor='type = "dc_motor", terminals = ["e", "ground"], shaft = "p",'
+            ' L = "L", R = "R", k_t = "k_t"',
+            rotor='type = "inertia", at = "p", J = "J_m"',
+            axle=f'{SHAFT_ELEMENT}, between = ["p", "q"], l = "l"',
+            gear='type = "transformer", from = "q", to = "out_shaft", ratio = "n"',
+            disc='type = "inertia", at = "out_shaft", J = "J_1"',
+            loss='type = "rotary_damper", between = ["out_shaft", "ground"], b = "b"',
         ),
-        "out/u",
+        "out_shaft",
         4150.0,
         (-4.0, 1.3),
         geared_shaft,
+        source='{ voltage = "e" }',
     ),
     Case(
         "mass and spring with delayed feedback",
-        spec(
-            {"m": "2 kg", "k": "50 N/m", "k_p": "7 N/m", "T": "0.3 s"},
-            '\n[blocks]\nD = { type = "delay", T = "T" }\n'
-            + elements(
-                body='type = "mass", at = "x", m = "m"',
-                spring='type = "spring", between = ["x", "ground"], k = "k"',
-                actuator='type = "force_source", at = "x", f = "u - k_p*D*x"',
-            ),
-            "x",
+        {"m": "2 kg", "k": "50 N/m", "k_p": "7 N/m", "T": "0.3 s"},
+        '\n[blocks]\nD = { type = "delay", T = "T" }\n'
+        + elements(
+            body='type = "mass", at = "x", m = "m"',
+            spring='type = "spring", between = ["x", "ground"], k = "k"',
+            actuator='type = "force_source", at = "x", f = "u - k_p*D*x"',
         ),
-        "out/u",
+        "x",
         5.0,
         (-3.0, 1.5),
         delayed_spring,
     ),
     Case(
         "cantilever with delayed velocity feedback",
-        spec(
-            BEAM | {"k_v": "0.7 N*s/m", "T": "0.004 s"},
-            '\n[blocks]\nD = { type = "delay", T = "T" }\n'
-            + elements(
-                arm=f'{BEAM_ELEMENT}, between = ["ground", "tip"], l = "l"',
-                actuator='type = "force_source", at = "tip", f = "u - k_v*D*s*tip"',
-            ),
-            "tip",
+        BEAM | {"k_v": "0.7 N*s/m", "T": "0.004 s"},
+        '\n[blocks]\nD = { type = "delay", T = "T" }\n'
+        + elements(
+            arm=f'{BEAM_ELEMENT}, between = ["ground", "tip"], l = "l"',
+            actuator='type = "force_source", at = "tip", f = "u - k_v*D*s*tip"',
         ),
-        "out/u",
+        "tip",
         38.0,
         (-2.5, 2.0),
         delayed_arm,
     ),
     Case(
         "free rod pushed after a delay",
-        spec(
-            ROD | {"T": "2e-4 s"},
-            '\n[blocks]\nD = { type = "delay", T = "T" }\n'
-            + elements(
-                bar=f'{ROD_ELEMENT}, between = ["p", "q"], l = "l"',
-                actuator='type = "force_source", at = "p", f = "D*u"',
-            ),
-            "q",
+        ROD | {"T": "2e-4 s"},
+        '\n[blocks]\nD = { type = "delay", T = "T" }\n'
+        + elements(
+            bar=f'{ROD_ELEMENT}, between = ["p", "q"], l = "l"',
+            actuator='type = "force_source", at = "p", f = "D*u"',
         ),
-        "out/u",
+        "q",
         *AXIAL,
         delayed_rod,
     ),
     Case(
         "field whose end is a node with a mass and a damper",
-        spec(
-            BEAM | LOSSES | {"m": "0.11 kg", "b": "0.6 N*s/m"},
-            ode(DAMPED, "w(0) = 0", "w'(0) = 0", "w''(l) = 0", "w(l) = load")
-            + elements(
-                gripper='type = "mass", at = "load", m = "m"',
-                loss='type = "damper", between = ["load", "ground"], b = "b"',
-                joint='type = "force_source", at = "load", f = "E*I*(1 + eta*s)*w\'\'\'(l)"',
-            ),
-            "load",
-            '{ force = "load" }',
+        BEAM | LOSSES | {"m": "0.11 kg", "b": "0.6 N*s/m"},
+        ode(DAMPED, "w(0) = 0", "w'(0) = 0", "w''(l) = 0", "w(l) = load")
+        + elements(
+            gripper='type = "mass", at = "load", m = "m"',
+            loss='type = "damper", between = ["load", "ground"], b = "b"',
+            joint='type = "force_source", at = "load", f = "E*I*(1 + eta*s)*w\'\'\'(l)"',
         ),
-        "out/u",
+        "load",
         *SLENDER,
         field_with_node,
+        source='{ force = "load" }',
     ),
 )

@@ -14,7 +14,6 @@ from tests.independent.distributed.case import (
     THICK_ELEMENT,
     Case,
     elements,
-    spec,
 )
 from tests.independent.distributed.elements_alone import held
 from tests.independent.distributed.span import clamped, free_with_force, rayleigh, second_end, span
@@ -31,13 +30,8 @@ def cantilever(name, parameters, element, options, respond):
     """Return the driving point of a part held at one end, its parameters all one but for those given."""
     ones = {key: "1 " + written.partition(" ")[2] for key, written in parameters.items()}
     given = "".join(f', {key} = "{key}"' for key in options)
-    text = spec(
-        ones | options,
-        elements(part=f'{element}{given}, between = ["ground", "q"], l = "l"'),
-        "q",
-        '{ force = "q" }',
-    )
-    return Case(name, text, "out/u", *ALL_ONE, respond)
+    part = elements(part=f'{element}{given}, between = ["ground", "q"], l = "l"')
+    return Case(name, ones | options, part, "q", *ALL_ONE, respond, '{ force = "q" }')
 
 
 BENDING = span(clamped, free_with_force, second_end(0))
