@@ -6,8 +6,6 @@ import copy
 from dataclasses import replace
 from itertools import product
 
-import pytest
-
 from symflex import pipeline
 from symflex.algebra import Factored, Ring
 from symflex.cli import run
@@ -27,7 +25,6 @@ from symflex.library.fields import FIELDS
 from symflex.quantities import unit_of
 from tests.contract.smallest import MODELS, element_model
 
-EVERY = pytest.mark.parametrize("kind", ELEMENTS)
 PORT_DOMAINS = ("translation", "rotation", "electrical", "planar", "plane", "any", "whole")
 RING = Ring(("s", "p", "q"))
 DIRECTION = ("cos", "sin", "cos_cos", "cos_sin")
@@ -79,163 +76,122 @@ def shown(stamp):
     )
 
 
-@EVERY
-def test_the_key_is_the_type_s_own_name(kind):
-    assert ELEMENTS[kind].type_name == kind
+def test_it_is_documented_under_its_own_name():
+    for kind, element in ELEMENTS.items():
+        assert element.type_name == kind
+        assert type(element).__doc__.strip(), kind
+        assert element.summary.strip(), kind
+        assert type(element).stamp.__doc__.strip(), kind
 
 
-@EVERY
-def test_it_is_documented(kind):
-    element = ELEMENTS[kind]
-    assert type(element).__doc__.strip()
-    assert element.summary.strip()
-    assert type(element).stamp.__doc__.strip()
+def test_its_ports_are_documented_and_of_a_known_domain():
+    for kind, element in ELEMENTS.items():
+        for port in element.ports:
+            assert port.doc.strip(), kind
+            assert port.domain in PORT_DOMAINS, kind
+            assert port.terminals in (1, 2), kind
 
 
-@EVERY
-def test_its_ports_are_documented_and_of_a_known_domain(kind):
-    for port in ELEMENTS[kind].ports:
-        assert port.doc.strip()
-        assert port.domain in PORT_DOMAINS
-        assert port.terminals in (1, 2)
+def test_its_parameters_and_choices_are_documented_with_the_defaults_they_may_have():
+    for kind, element in ELEMENTS.items():
+        assert all(item.doc.startswith(("a ", "an ")) for item in (*element.parameters, *element.choices)), (
+            kind
+        )
+        assert all(choice.default in choice.values for choice in element.choices), kind
+        earlier = []
+        for parameter in element.parameters:
+            default = parameter.default
+            assert default is None or default in earlier or float(default) == 0, (kind, parameter.name)
+            earlier.append(parameter.name)
 
 
-@EVERY
-def test_its_parameters_are_documented(kind):
-    for parameter in ELEMENTS[kind].parameters:
-        assert parameter.doc.startswith(("a ", "an "))
+def test_what_is_said_of_its_parameters_names_them_and_words_that_can_be_chosen():
+    for kind, element in ELEMENTS.items():
+        words = {v for c in element.choices for v in c.values}
+        assert all(set(p.only) <= words for p in element.parameters), kind
+        law = element.passive
+        said = {element.stiffness, element.damping, *(law.of_any_sign + law.equal if law else ())} - {""}
+        assert said <= {p.name for p in element.parameters}, kind
 
 
-@EVERY
-@pytest.mark.parametrize("domain", ACROSS_UNIT)
-def test_the_units_of_its_parameters_and_quantities_parse(kind, domain):
-    element = ELEMENTS[kind]
-    domains = domains_of(element, domain)
-    for name in (*(p.name for p in element.parameters), *element.quantities(domains)):
-        assert unit_of(element.unit_of(name, domains)).scale == 1
+def test_the_units_of_its_parameters_and_quantities_parse():
+    for (kind, element), domain in product(ELEMENTS.items(), ACROSS_UNIT):
+        domains = domains_of(element, domain)
+        for name in (*(p.name for p in element.parameters), *element.quantities(domains)):
+            assert unit_of(element.unit_of(name, domains)).scale == 1, (kind, domain, name)
 
 
-@EVERY
-def test_a_default_is_a_number_or_an_earlier_parameter(kind):
-    earlier = []
-    for parameter in ELEMENTS[kind].parameters:
-        default = parameter.default
-        assert default is None or default in earlier or float(default) == 0
-        earlier.append(parameter.name)
+def test_it_stamps_the_quantities_it_offers_and_as_many_rows_as_unknowns_of_its_name():
+    for (kind, element), domain in product(ELEMENTS.items(), ACROSS_UNIT):
+        use = use_of(element, domain)
+        stamp = element.stamp(use)
+        assert tuple(n for n, _ in stamp.through) == element.quantities(use.domains), (kind, domain)
+        assert len(stamp.rows) == len(stamp.unknowns), (kind, domain)
+        assert {r.about for r in stamp.rows} == set(stamp.unknowns), (kind, domain)
+        assert all((v.kind, v.owner) == ("through", "part") for v in stamp.unknowns), (kind, domain)
 
 
-@EVERY
-def test_its_choices_are_documented_and_their_default_is_one_of_them(kind):
-    for choice in ELEMENTS[kind].choices:
-        assert choice.doc.startswith(("a ", "an "))
-        assert choice.default in choice.values
+def test_it_has_no_state_and_its_stamp_is_pure():
+    for kind, element in ELEMENTS.items():
+        assert vars(element) == {}, kind
+        use = use_of(element)
+        before = copy.copy((dict(use.terminals), dict(use.values), dict(use.forms)))
+        first = shown(element.stamp(use))
+        assert shown(element.stamp(use)) == first, kind
+        assert (dict(use.terminals), dict(use.values), dict(use.forms)) == before, kind
 
 
-@EVERY
-def test_a_parameter_goes_only_with_words_that_can_be_chosen(kind):
-    words = {v for c in ELEMENTS[kind].choices for v in c.values}
-    assert all(set(p.only) <= words for p in ELEMENTS[kind].parameters)
+def test_it_is_derivable_in_a_smallest_model_where_its_value_matters():
+    for kind, element in ELEMENTS.items():
+        (tf,) = pipeline.derive_all(pipeline.loads(element_model(kind)))
+        bound = pipeline.bind(tf)
+        assert bound(1.7j) is not None, kind
+        assert [p.name for p in tf.parameters][:1] == ["p"], kind
+        if element.passive:
+            assert_passive(kind, bound)
 
 
-@EVERY
-@pytest.mark.parametrize("domain", ACROSS_UNIT)
-def test_it_stamps_exactly_the_quantities_it_offers(kind, domain):
-    element = ELEMENTS[kind]
-    use = use_of(element, domain)
-    assert tuple(n for n, _ in element.stamp(use).through) == element.quantities(use.domains)
-
-
-@EVERY
-@pytest.mark.parametrize("domain", ACROSS_UNIT)
-def test_its_stamp_has_as_many_rows_as_unknowns(kind, domain):
-    stamp = ELEMENTS[kind].stamp(use_of(ELEMENTS[kind], domain))
-    assert len(stamp.rows) == len(stamp.unknowns)
-    assert {r.about for r in stamp.rows} == set(stamp.unknowns)
-
-
-@EVERY
-def test_its_unknowns_bear_its_name(kind):
-    stamp = ELEMENTS[kind].stamp(use_of(ELEMENTS[kind]))
-    assert all((v.kind, v.owner) == ("through", "part") for v in stamp.unknowns)
-
-
-@EVERY
-def test_its_stamp_is_pure(kind):
-    element = ELEMENTS[kind]
-    use = use_of(element)
-    before = copy.copy((dict(use.terminals), dict(use.values), dict(use.forms)))
-    first = shown(element.stamp(use))
-    assert shown(element.stamp(use)) == first
-    assert (dict(use.terminals), dict(use.values), dict(use.forms)) == before
-
-
-@EVERY
-def test_it_has_no_state(kind):
-    assert vars(ELEMENTS[kind]) == {}
-
-
-@EVERY
-def test_it_is_derivable_in_a_smallest_model(kind):
-    (tf,) = pipeline.derive_all(pipeline.loads(element_model(kind)))
-    assert pipeline.bind(tf)(1.7j) is not None
-
-
-@EVERY
-def test_its_value_matters_in_a_smallest_model(kind):
-    (tf,) = pipeline.derive_all(pipeline.loads(element_model(kind)))
-    assert [p.name for p in tf.parameters][:1] == ["p"]
-
-
-@EVERY
-def test_every_quantity_it_offers_can_be_an_output(kind):
-    text = element_model(kind)
-    (use,) = [u for u in pipeline.loads(text).elements if u.name == "part_1"]
-    for quantity in use.element.quantities(dict(use.domains)):
-        model = pipeline.loads(text + f'Q = "part_1.{quantity}"\n')
-        tf = pipeline.derive(pipeline.assemble(model), "Q", "U")
-        assert pipeline.bind(tf)(0.3 + 1.7j) is not None
-        output = next(o for o in model.outputs if o.name == "Q")
-        wanted = use.element.unit_of(quantity, dict(use.domains))
-        assert output.dimension == unit_of(wanted).dimension
-
-
-@pytest.mark.parametrize("kind", [kind for kind, element in ELEMENTS.items() if element.passive])
-def test_what_is_called_passive_only_takes_energy_in(kind):
+def assert_passive(kind, bound):
     """A passive port's flow over effort has no negative real part where Re(s) > 0 (Brune 1931)."""
-    (tf,) = pipeline.derive_all(pipeline.loads(element_model(kind)))
-    bound = pipeline.bind(tf)
     for s in (0.1 + 0.3j, 1 + 2j, 3 - 1j, 0.01 + 5j, 0.5 + 0j):
         flow = complex(bound(s)) * (1 if MODELS[kind][1] == "current" else s)
-        assert flow.real >= -1e-12 * abs(flow)
+        assert flow.real >= -1e-12 * abs(flow), kind
 
 
-@EVERY
-def test_what_is_said_of_its_parameters_names_them(kind):
-    element = ELEMENTS[kind]
-    law = element.passive
-    said = {element.stiffness, element.damping, *(law.of_any_sign + law.equal if law else ())} - {""}
-    assert said <= {p.name for p in element.parameters}
+def test_every_quantity_it_offers_can_be_an_output():
+    for kind in ELEMENTS:
+        text = element_model(kind)
+        (use,) = [u for u in pipeline.loads(text).elements if u.name == "part_1"]
+        names = use.element.quantities(dict(use.domains))
+        model = pipeline.loads(text + "".join(f'Q_{name} = "part_1.{name}"\n' for name in names))
+        equations = pipeline.assemble(model)
+        dimensions = {o.name: o.dimension for o in model.outputs}
+        for name in names:
+            tf = pipeline.derive(equations, f"Q_{name}", "U")
+            assert pipeline.bind(tf)(0.3 + 1.7j) is not None, (kind, name)
+            wanted = use.element.unit_of(name, dict(use.domains))
+            assert dimensions[f"Q_{name}"] == unit_of(wanted).dimension, (kind, name)
 
 
-@EVERY
-def test_the_command_line_lists_it_with_every_key(kind, capsys):
+def test_the_command_line_lists_it_with_every_key(capsys):
     assert run(["elements"]) == 0
-    line = next(x for x in capsys.readouterr().out.splitlines() if x.strip().startswith(f"{kind}("))
-    element = ELEMENTS[kind]
-    assert all(p.name in line for p in (*element.ports, *element.parameters, *element.choices))
-    assert len(line) <= 80
+    listed = capsys.readouterr().out.splitlines()
+    for kind, element in ELEMENTS.items():
+        line = next(x for x in listed if x.strip().startswith(f"{kind}("))
+        assert all(p.name in line for p in (*element.ports, *element.parameters, *element.choices)), kind
+        assert len(line) <= 80, kind
 
 
-@EVERY
-def test_the_command_line_describes_it(kind, capsys):
-    assert run(["elements", kind]) == 0
-    described = capsys.readouterr().out
-    for item in (*ELEMENTS[kind].ports, *ELEMENTS[kind].parameters, *ELEMENTS[kind].choices):
-        assert item.name in described
-    assert all(word in described for choice in ELEMENTS[kind].choices for word in choice.values)
+def test_the_command_line_describes_it(capsys):
+    for kind, element in ELEMENTS.items():
+        assert run(["elements", kind]) == 0, kind
+        described = capsys.readouterr().out
+        items = (*element.ports, *element.parameters, *element.choices)
+        words = [word for choice in element.choices for word in choice.values]
+        assert [x for x in (*(item.name for item in items), *words) if x not in described] == [], kind
 
 
-LINES = pytest.mark.parametrize("kind", [k for k, e in ELEMENTS.items() if isinstance(e, LineElement)])
+LINES = {kind: element for kind, element in ELEMENTS.items() if isinstance(element, LineElement)}
 
 
 def chosen(element):
@@ -246,61 +202,57 @@ def chosen(element):
     ]
 
 
-@LINES
-def test_a_line_element_has_its_length_among_its_parameters_in_metres(kind):
-    element = ELEMENTS[kind]
-    assert [p.unit for p in element.parameters if p.name == element.length] == ["m"]
+def test_a_line_element_has_its_length_among_its_parameters_in_metres():
+    for kind, element in LINES.items():
+        assert [p.unit for p in element.parameters if p.name == element.length] == ["m"], kind
 
 
-@LINES
-def test_a_line_element_s_theories_are_registered_and_of_its_state(kind):
-    element = ELEMENTS[kind]
-    for choices in chosen(element):
-        words = choices.values()
-        values = {
-            p.name: Factored.generator(RING, "p")
-            for p in element.parameters
-            if p.applies(words) or p.default is not None
-        } | dict.fromkeys(DIRECTION, Factored.generator(RING, "p"))
-        system = FIELDS[element.theory(choices)](Factored.generator(RING, "s"), values)
-        assert len(system.states) == len(element.ends) + len(element.through)
-        assert system.states[len(element.ends) :] == element.through
+def test_a_line_element_s_theories_are_registered_and_of_its_state():
+    for kind, element in LINES.items():
+        for choices in chosen(element):
+            words = choices.values()
+            values = {
+                p.name: Factored.generator(RING, "p")
+                for p in element.parameters
+                if p.applies(words) or p.default is not None
+            } | dict.fromkeys(DIRECTION, Factored.generator(RING, "p"))
+            system = FIELDS[element.theory(choices)](Factored.generator(RING, "s"), values)
+            assert len(system.states) == len(element.ends) + len(element.through), kind
+            assert system.states[len(element.ends) :] == element.through, kind
 
 
-@LINES
-def test_a_line_element_that_transmits_its_state_unchanged_is_a_rigid_and_massless_joint(kind):
-    element = ELEMENTS[kind]
-    use = use_of(element)
-    size = len(use.transmission)
-    zero, one = use.one * 0, use.one
-    unit = tuple(tuple(one if i == j else zero for j in range(size)) for i in range(size))
-    stamp = element.stamp(replace(use, transmission=unit))
-    laws = [{str(v): c.unit for v, c in row.form.terms} for row in stamp.rows]
-    dots = [""] if element.ends == ("across",) else [f".{end}" for end in element.ends]
-    twice = zip((*element.through, *element.through), (*dots, *dots), laws, strict=True)
-    for name, dot, law in twice:
-        # The ends move alike; what is delivered at one end is taken at the other.
-        assert law in ({f"n2{dot}": 1, f"n1{dot}": -1}, {f"part.{name}": -1, f"part.{name}_a": -1})
+def test_a_line_element_that_transmits_its_state_unchanged_is_a_rigid_and_massless_joint():
+    for kind, element in LINES.items():
+        use = use_of(element)
+        size = len(use.transmission)
+        zero, one = use.one * 0, use.one
+        unit = tuple(tuple(one if i == j else zero for j in range(size)) for i in range(size))
+        stamp = element.stamp(replace(use, transmission=unit))
+        laws = [{str(v): c.unit for v, c in row.form.terms} for row in stamp.rows]
+        dots = [""] if element.ends == ("across",) else [f".{end}" for end in element.ends]
+        twice = zip((*element.through, *element.through), (*dots, *dots), laws, strict=True)
+        for name, dot, law in twice:
+            # The ends move alike; what is delivered at one end is taken at the other.
+            assert law in ({f"n2{dot}": 1, f"n1{dot}": -1}, {f"part.{name}": -1, f"part.{name}_a": -1}), kind
 
 
-@LINES
-def test_a_line_element_at_ground_has_no_across_there(kind):
-    element = ELEMENTS[kind]
-    use = use_of(element)
-    (port,) = use.terminals
-    grounded = replace(use, terminals={port: (PortTerminal(), use.terminals[port][1])})
-    stamp = element.stamp(grounded)
-    assert not any(str(v).startswith("n1") for row in stamp.rows for v, _ in row.form.terms)
-    assert len(stamp.rows) == len(stamp.unknowns)
+def test_a_line_element_at_ground_has_no_across_there():
+    for kind, element in LINES.items():
+        use = use_of(element)
+        (port,) = use.terminals
+        grounded = replace(use, terminals={port: (PortTerminal(), use.terminals[port][1])})
+        stamp = element.stamp(grounded)
+        assert not any(str(v).startswith("n1") for row in stamp.rows for v, _ in row.form.terms), kind
+        assert len(stamp.rows) == len(stamp.unknowns), kind
 
 
 def test_every_element_has_a_smallest_model():
     assert set(MODELS) == set(ELEMENTS)
 
 
-@pytest.mark.parametrize("domain", ACROSS_UNIT)
-def test_across_times_through_is_an_energy_or_a_power(domain):
+def test_across_times_through_is_an_energy_or_a_power():
     """Newton metres for motion, volt amperes for electricity (IEC 80000)."""
-    product = unit_of(ACROSS_UNIT[domain]).dimension * unit_of(THROUGH_UNIT[domain]).dimension
-    assert product == unit_of("W" if domain == "electrical" else "J").dimension
-    assert THROUGH_NAME[domain] in ("f", "tau", "i")
+    for domain, across in ACROSS_UNIT.items():
+        energy = unit_of(across).dimension * unit_of(THROUGH_UNIT[domain]).dimension
+        assert energy == unit_of("W" if domain == "electrical" else "J").dimension, domain
+        assert THROUGH_NAME[domain] in ("f", "tau", "i"), domain
