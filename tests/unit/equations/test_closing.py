@@ -66,11 +66,11 @@ def responses():
     }
 
 
-@pytest.mark.parametrize(("pair", "expected"), responses().items(), ids=str)
-def test_a_bordered_determinant_over_the_determinant_is_the_response(pair, expected):
-    found = Determinants.of(EQUATIONS)
-    num, den = found.opened(found.num(*pair)), found.opened(found.den)
-    assert value(num) / value(den) == expected
+def test_a_bordered_determinant_over_the_determinant_is_the_response():
+    for pair, expected in responses().items():
+        found = Determinants.of(EQUATIONS)
+        num, den = found.opened(found.num(*pair)), found.opened(found.den)
+        assert value(num) / value(den) == expected, pair
 
 
 def test_sums_with_a_parameter_are_closed_and_sums_of_s_alone_are_not():
@@ -106,16 +106,16 @@ def test_factors_in_front_stay_factored():
     )
 
 
-@pytest.mark.parametrize("limit", ["TERM_LIMIT", "MEMORY_LIMIT"])
-def test_opening_keeps_to_its_limits(monkeypatch, limit):
-    closure = close(EQUATIONS).closure
-    first, second = closure.ring.generator("sum0!"), closure.ring.generator("sum1")
-    polynomial = (first + second) * (first - 2 * second)
-    assert closure.opened_length(polynomial) >= 12
-    assert not closure.open(polynomial).is_zero
-    monkeypatch.setattr(closing, limit, 3)
-    with pytest.raises(BudgetError):
-        closure.open(polynomial)
+def test_opening_keeps_to_its_limits(monkeypatch):
+    for limit in ["TERM_LIMIT", "MEMORY_LIMIT"]:
+        closure = close(EQUATIONS).closure
+        first, second = closure.ring.generator("sum0!"), closure.ring.generator("sum1")
+        polynomial = (first + second) * (first - 2 * second)
+        assert closure.opened_length(polynomial) >= 12, limit
+        assert not closure.open(polynomial).is_zero, limit
+        with monkeypatch.context() as patch, pytest.raises(BudgetError):
+            patch.setattr(closing, limit, 3)
+            closure.open(polynomial)
 
 
 def test_one_mass_has_one_column_and_the_sign_of_its_border():

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import inspect
+import sys
 from fractions import Fraction
+from math import prod
 from random import Random
 
 import pytest
@@ -12,9 +15,7 @@ import symflex
 from symflex import pipeline
 from symflex.algebra import Ring
 from symflex.equations.elimination import Minors, close, eliminate_unit_pivots, expansion_order, is_singular
-from symflex.errors import BudgetError
 from tests.contract.exact import Point, solve
-from tests.house.repository import slow_ones
 
 HEADER = "symflex = 1\n[parameters]\n"
 
@@ -60,33 +61,33 @@ def stiffness(branches, size, value, at):
     return matrix
 
 
-@pytest.mark.parametrize("seed", range(40))
-def test_the_quotient_of_a_random_network_is_that_of_exact_dense_elimination(seed):
-    text, branches, size = random_network(seed)
+def value_at(ratio, point):
+    """Return the value of a product of powers of polynomials in exact arithmetic."""
+    images = [point[name] for name in ratio.ring.names]
+    found = ratio.unit
+    for factor, exponent in ratio.factors:
+        terms = (
+            Fraction(int(c)) * prod(x ** int(e) for x, e in zip(images, powers, strict=True))
+            for powers, c in factor.terms()
+        )
+        found *= sum(terms) ** exponent
+    return found
+
+
+def test_the_quotient_of_a_random_network_is_that_of_exact_dense_elimination():
     at = Fraction(7, 3)
-    point = Point(seed, s=at)
-    expected = solve(
-        stiffness(branches, size, lambda n: point[n], at), [Fraction(int(i == 0)) for i in range(size)]
-    )
-    for tf, wanted in zip(pipeline.derive_all(pipeline.loads(text)), expected, strict=True):
-        found = tf.ratio.unit
-        for factor, exponent in tf.ratio.factors:
-            images = [point[n] for n in tf.ratio.ring.names]
-            total = Fraction(0)
-            for monomial, c in factor.terms():
-                term = Fraction(int(c))
-                for image, e in zip(images, monomial, strict=True):
-                    term *= image ** int(e)
-                total += term
-            found *= total**exponent
-        assert found == wanted
+    for seed in range(15):
+        text, branches, size = random_network(seed)
+        point = Point(seed, s=at)
+        matrix = stiffness(branches, size, point.__getitem__, at)
+        expected = solve(matrix, [Fraction(int(i == 0)) for i in range(size)])
+        found = [value_at(tf.ratio, point) for tf in pipeline.derive_all(pipeline.loads(text))]
+        assert found == expected, seed
 
 
-@pytest.mark.parametrize("seed", slow_ones(range(6), lambda seed: seed == 5))
-def test_the_quotient_of_a_small_network_is_sympys(seed):
-    text, branches, size = random_network(100 + seed)
-    if size > 3:
-        text, branches, size = random_network(200 + seed)
+def test_the_quotient_of_a_small_network_is_sympys():
+    text, branches, size = random_network(104)
+    assert size <= 3
     s = sympy.Symbol("s")
     matrix = sympy.Matrix(stiffness(branches, size, sympy.Symbol, s))
     minor = matrix.copy()
@@ -118,57 +119,39 @@ def random_sparse(seed, size, ring, *, units):
     return tuple(rows)
 
 
-def dense(rows, columns, ring):
-    symbols = sympy.symbols(ring.names)
-
-    def entry(polynomial):
-        return sum(
-            int(c) * sympy.prod(x ** int(e) for x, e in zip(symbols, m, strict=True))
-            for m, c in polynomial.terms()
-        )
-
-    return sympy.Matrix([[entry(row[c]) if c in row else 0 for c in columns] for row in rows])
-
-
 RING = Ring(("s", "a", "b"))
 
 
-@pytest.mark.parametrize("seed", range(12))
-def test_a_determinant_of_minors_is_sympys(seed):
-    rows = random_sparse(seed, 4, RING, units=False)
-    found = Minors(rows, ring=RING).determinant(0b1111)
-    expected = dense(rows, range(4), RING).det(method="berkowitz")
-    assert sympy.expand(expected - dense(({0: found},), [0], RING)[0]) == 0
+def test_the_order_of_expansion_changes_the_determinant_by_its_sign_only():
+    for seed in range(12):
+        rows = random_sparse(seed, 5, RING, units=False)
+        order = expansion_order(rows, (0, 1, 2, 3, 4))
+        plain = Minors(rows, ring=RING).determinant(0b11111)
+        ordered = Minors(tuple(rows[i] for i in order), ring=RING).determinant(0b11111)
+        assert sorted(order) == [0, 1, 2, 3, 4], seed
+        assert ordered in (plain, -plain), seed
 
 
-@pytest.mark.parametrize("seed", range(12))
-def test_the_order_of_expansion_changes_the_determinant_by_its_sign_only(seed):
-    rows = random_sparse(seed, 5, RING, units=False)
-    order = expansion_order(rows, (0, 1, 2, 3, 4))
-    plain = Minors(rows, ring=RING).determinant(0b11111)
-    ordered = Minors(tuple(rows[i] for i in order), ring=RING).determinant(0b11111)
-    assert sorted(order) == [0, 1, 2, 3, 4]
-    assert ordered in (plain, -plain)
-
-
-@pytest.mark.parametrize("seed", range(20))
-def test_unit_pivots_leave_the_quotient_as_it_is(seed):
-    size = 5
-    rows = random_sparse(seed, size, RING, units=True)
+def test_unit_pivots_leave_the_quotient_as_it_is():
+    size, compared = 5, 0
     goal = ({0: RING.generator("a"), 3: RING.constant(1), size: RING.generator("b")},)
     whole = (1 << size) - 1
-    before = Minors(rows, ring=RING)
-    den = before.determinant(whole)
-    if den.is_zero():
-        pytest.skip("this matrix is singular")
-    num = before.bordered(goal[0], whole | 1 << size)
-    reduced = eliminate_unit_pivots(rows, goal, size)
-    after = Minors(reduced.rows, ring=RING)
-    columns = sum(1 << c for c in reduced.columns)
-    den_after = after.determinant(columns)
-    num_after = after.bordered(reduced.outputs[0], columns | 1 << size)
-    sign = -1 if (size - len(reduced.columns)) % 2 else 1
-    assert num * den_after == sign * num_after * den
+    for seed in range(20):
+        rows = random_sparse(seed, size, RING, units=True)
+        before = Minors(rows, ring=RING)
+        den = before.determinant(whole)
+        if den.is_zero():
+            continue
+        compared += 1
+        num = before.bordered(goal[0], whole | 1 << size)
+        reduced = eliminate_unit_pivots(rows, goal, size)
+        after = Minors(reduced.rows, ring=RING)
+        columns = sum(1 << c for c in reduced.columns)
+        den_after = after.determinant(columns)
+        num_after = after.bordered(reduced.outputs[0], columns | 1 << size)
+        sign = -1 if (size - len(reduced.columns)) % 2 else 1
+        assert num * den_after == sign * num_after * den, seed
+    assert compared > 10
 
 
 def test_no_unit_pivot_is_left():
@@ -197,28 +180,19 @@ def test_minors_are_shared_between_outputs():
     assert minors._known == known
 
 
-def test_more_rows_than_the_limit_are_refused():
-    with pytest.raises(BudgetError) as caught:
-        Minors(tuple({0: RING.constant(1)} for _ in range(701)), ring=RING)
-    assert caught.value.diagnostics[0].code == "SF502"
-
-
-@pytest.mark.slow
 def test_a_chain_may_be_longer_than_calls_may_be_deep():
     # The determinant of tridiagonal (-1, 2, -1) with n rows is n + 1.
-    n = 520
+    n, limit = 150, sys.getrecursionlimit()
     rows = tuple(
         {j: RING.constant(2 if j == i else -1) for j in range(max(i - 1, 0), min(i + 2, n))} for i in range(n)
     )
-    assert Minors(rows, ring=RING).determinant((1 << n) - 1) == RING.constant(n + 1)
-
-
-def test_a_dense_matrix_with_too_many_minors_is_refused(monkeypatch):
-    monkeypatch.setattr("symflex.equations.elimination.determinants.MINOR_LIMIT", 50)
-    rows = tuple({j: RING.generator("a") + i + j for j in range(8)} for i in range(8))
-    with pytest.raises(BudgetError) as caught:
-        Minors(rows, ring=RING).determinant(255)
-    assert caught.value.diagnostics[0].code == "SF502"
+    minors = Minors(rows, ring=RING)
+    sys.setrecursionlimit(len(inspect.stack()) + 60)
+    try:
+        found = minors.determinant((1 << n) - 1)
+    finally:
+        sys.setrecursionlimit(limit)
+    assert found == RING.constant(n + 1)
 
 
 def test_a_closed_sum_opens_to_itself():
@@ -260,7 +234,7 @@ X = "x"
     assert pipeline.bind(tf)(2 + 0j).real == pytest.approx(1 / 106 + 1 / middle, rel=1e-14)
 
 
-@pytest.mark.parametrize("seed", range(10))
-def test_a_solvable_network_is_not_called_singular(seed):
-    text, *_ = random_network(seed)
-    assert not is_singular(pipeline.assemble(pipeline.loads(text)))
+def test_a_solvable_network_is_not_called_singular():
+    for seed in range(10):
+        text, *_ = random_network(seed)
+        assert not is_singular(pipeline.assemble(pipeline.loads(text))), seed

@@ -57,9 +57,8 @@ def in_field(value):
     return value.numerator * pow(value.denominator, -1, PRIME) % PRIME
 
 
-@pytest.mark.parametrize(
-    ("text", "value"),
-    [
+def test_a_constant_has_the_value_of_its_numbers():
+    for text, value in [
         ("3/4", Fraction(3, 4)),
         ("k + 2*m - s", Fraction(0)),
         ("-(k - m)*s/4", Fraction(-11, 2)),
@@ -73,15 +72,12 @@ def in_field(value):
         ("sqrt(k/m)*sqrt(2)", Fraction(13 * 17)),
         ("exp(m - m) + cos(0) + cosh(0*k) + sin(0) + tan(0) + sinh(0) + tanh(k - k)", Fraction(3)),
         ("k + m*(s - s)", Fraction(5)),
-    ],
-)
-def test_a_constant_has_the_value_of_its_numbers(text, value):
-    assert residue(evaluator().constant(parse(text)), POINT) == in_field(value)
+    ]:
+        assert residue(evaluator().constant(parse(text)), POINT) == in_field(value), text
 
 
-@pytest.mark.parametrize(
-    ("text", "terms"),
-    [
+def test_a_linear_form_has_the_coefficients_of_its_numbers():
+    for text, terms in [
         ("x", {"x": 1}),
         ("3*x - u/2 + k*x", {"x": 8, "u": Fraction(-1, 2)}),
         ("-(x - u)*G", {"x": Fraction(-5, 14), "u": Fraction(5, 14)}),
@@ -91,18 +87,15 @@ def test_a_constant_has_the_value_of_its_numbers(text, value):
         ("0", {}),
         ("x*(k - k)", {}),
         ("x + 0*m", {"x": 1}),
-    ],
-)
-def test_a_linear_form_has_the_coefficients_of_its_numbers(text, terms):
-    form = evaluator().linear(parse(text))
-    assert {str(v): residue(c, POINT) for v, c in form.terms} == {
-        n: in_field(Fraction(v)) for n, v in terms.items()
-    }
+    ]:
+        form = evaluator().linear(parse(text))
+        assert {str(v): residue(c, POINT) for v, c in form.terms} == {
+            n: in_field(Fraction(v)) for n, v in terms.items()
+        }, text
 
 
-@pytest.mark.parametrize(
-    ("method", "text", "code", "place", "message"),
-    [
+def test_what_is_not_constant_or_not_linear_is_refused_at_its_place():
+    for method, text, code, place, message in [
         ("constant", "k + x", "SF221", "k + x", "the sum has a term without an unknown"),
         ("constant", "2*x", "SF212", "2*x", "'2*x' must be constant"),
         ("constant", "k/x", "SF212", "x", "'x' must be constant"),
@@ -117,18 +110,15 @@ def test_a_linear_form_has_the_coefficients_of_its_numbers(text, terms):
         ("constant", "sqrt(s)", "SF910", "sqrt(s)", "sqrt of an expression in s is not available yet"),
         ("constant", "exp(G)", "SF910", "exp(G)", "exp of an expression in s is not available yet"),
         ("constant", "exp(s - s)", "SF910", "exp(s - s)", "exp of an expression in s is not available yet"),
-    ],
-)
-def test_what_is_not_constant_or_not_linear_is_refused_at_its_place(method, text, code, place, message):
-    with pytest.raises(ModelError) as caught:
-        getattr(evaluator(), method)(parse(text))
-    (problem,) = caught.value.diagnostics
-    assert (problem.code, problem.message, problem.span.text) == (code, message, place)
+    ]:
+        with pytest.raises(ModelError) as caught:
+            getattr(evaluator(), method)(parse(text))
+        (problem,) = caught.value.diagnostics
+        assert (problem.code, problem.message, problem.span.text) == (code, message, place), (method, text)
 
 
-@pytest.mark.parametrize(
-    ("blocks", "text", "message", "hint"),
-    [
+def test_what_is_not_available_is_said_with_what_is():
+    for blocks, text, message, hint in [
         (
             {"G": K}, "sqrt(s)", "sqrt of an expression in s is not available yet",
             "a dead time is a block of type delay; waves come with rods, beams and [fields]",
@@ -141,14 +131,12 @@ def test_what_is_not_constant_or_not_linear_is_refused_at_its_place(method, text
             {}, "G", "a delay (block 'G') inside a field's equation or a length is not available",
             'a delayed load may come from a signal: [signals] load = "G*..."',
         ),
-    ],
-)  # fmt: skip
-def test_what_is_not_available_is_said_with_what_is(blocks, text, message, hint):
-    with pytest.raises(ModelError) as caught:
-        ExactEvaluator(RING, scope_of(MODEL), blocks, {}, {}, POINT).constant(parse(text))
-    (problem,) = caught.value.diagnostics
-    assert (problem.code, problem.message, problem.hint) == ("SF910", message, hint)
-    assert problem.span.text == text
+    ]:  # fmt: skip
+        with pytest.raises(ModelError) as caught:
+            ExactEvaluator(RING, scope_of(MODEL), blocks, {}, {}, POINT).constant(parse(text))
+        (problem,) = caught.value.diagnostics
+        assert (problem.code, problem.message, problem.hint) == ("SF910", message, hint), blocks
+        assert problem.span.text == text, blocks
 
 
 def coefficients(text):
@@ -158,9 +146,8 @@ def coefficients(text):
     return read_equation(equation, ["w"], inside)
 
 
-@pytest.mark.parametrize(
-    ("text", "terms", "loads"),
-    [
+def test_the_coefficients_of_an_equation_are_those_of_its_left_side_less_its_right():
+    for text, terms, loads in [
         ("w'' + s*w = 3*w - w''", {2: 2, 0: 8}, {}),
         (
             "k*(w'' - u)/m = -(2*w'' - G*u + u)",
@@ -170,33 +157,28 @@ def coefficients(text):
         ("w' - w' + s^2*w = 0", {0: 121}, {}),
         ("(w + w')*(k - k) = 2*w'*k - u", {1: -10}, {"u": 1}),
         ("0 = w''''*pi/2 + 4*u*0 + 0*k", {4: Fraction(-7, 2)}, {}),
-    ],
-)
-def test_the_coefficients_of_an_equation_are_those_of_its_left_side_less_its_right(text, terms, loads):
-    found = coefficients(text)
-    for read, wanted in (
-        (found.terms, {("w", k): c for k, c in terms.items()}),
-        (found.named().loads, loads),
-    ):
-        assert {key: residue(c, POINT) for key, c in read.items()} == {
-            key: in_field(Fraction(c)) for key, c in wanted.items()
-        }
+    ]:
+        found = coefficients(text)
+        for read, wanted in (
+            (found.terms, {("w", k): c for k, c in terms.items()}),
+            (found.named().loads, loads),
+        ):
+            assert {key: residue(c, POINT) for key, c in read.items()} == {
+                key: in_field(Fraction(c)) for key, c in wanted.items()
+            }, text
 
 
-@pytest.mark.parametrize(
-    ("text", "code", "place", "message"),
-    [
+def test_an_equation_with_a_constant_term_or_a_division_by_zero_is_refused():
+    for text, code, place, message in [
         ("w'' = 3*k", "SF221", "3*k", "the equation has a term without an unknown"),
         ("w'' = k", "SF221", "k", "the expression has a term without an unknown"),
         ("w''/(k - k) = w", "SF224", "k - k", "division by zero"),
         ("w''/z = w", "SF224", "z", "division by zero"),
-    ],
-)
-def test_an_equation_with_a_constant_term_or_a_division_by_zero_is_refused(text, code, place, message):
-    with pytest.raises(ModelError) as caught:
-        coefficients(text)
-    (problem,) = caught.value.diagnostics
-    assert (problem.code, problem.message, problem.span.text) == (code, message, place)
+    ]:
+        with pytest.raises(ModelError) as caught:
+            coefficients(text)
+        (problem,) = caught.value.diagnostics
+        assert (problem.code, problem.message, problem.span.text) == (code, message, place), text
 
 
 def test_zero_to_a_positive_power_is_zero():
@@ -226,21 +208,19 @@ def chain(link, last):
     return {"d0": parse("k"), **{f"d{i}": parse(link.format(i - 1)) for i in range(1, last + 1)}}
 
 
-@pytest.mark.parametrize(
-    ("link", "accepted", "refused"),
-    # 200 levels, and there are n + 2; 1000 parts, and there are 2^n + 2: sums stay flat.
-    [("-d{}", 197, 199), ("d{0} + d{0}", 9, 10)],
-)
-def test_definitions_are_opened_in_a_function_up_to_a_size(link, accepted, refused):
-    for last, code in ((accepted, None), (refused, "SF103")):
-        opener = ExactEvaluator(RING, scope_of(MODEL), {}, {}, chain(link, last)).opener
-        call = parse(f"sqrt(d{last})")
-        if code is None:
-            assert not {n.name for n in names(opener.open(call)) if isinstance(n, Name)} - {"k"}
-        else:
-            with pytest.raises(ModelError, match="the argument of sqrt is too large") as caught:
-                opener.open(call)
-            assert [(d.code, d.span.text) for d in caught.value.diagnostics] == [(code, f"sqrt(d{last})")]
+def test_definitions_are_opened_in_a_function_up_to_a_size():
+    for link, accepted, refused in [("-d{}", 197, 199), ("d{0} + d{0}", 9, 10)]:
+        for last, code in ((accepted, None), (refused, "SF103")):
+            opener = ExactEvaluator(RING, scope_of(MODEL), {}, {}, chain(link, last)).opener
+            call = parse(f"sqrt(d{last})")
+            if code is None:
+                assert not {n.name for n in names(opener.open(call)) if isinstance(n, Name)} - {"k"}, link
+            else:
+                with pytest.raises(ModelError, match="the argument of sqrt is too large") as caught:
+                    opener.open(call)
+                assert [(d.code, d.span.text) for d in caught.value.diagnostics] == [
+                    (code, f"sqrt(d{last})")
+                ], link
 
 
 def test_definitions_opened_once_serve_the_next_call():
@@ -250,16 +230,13 @@ def test_definitions_opened_once_serve_the_next_call():
     ]  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("text", "size"), [("k", (1, 1)), ("k + m*s - 2", (7, 3)), ("sqrt(k)", (2, 2)), ("(k + m)^2", (5, 3))]
-)
-def test_the_extent_of_a_tree_is_its_parts_and_levels(text, size):
-    assert extent(parse(text)) == size
+def test_the_extent_of_a_tree_is_its_parts_and_levels():
+    for text, size in [("k", (1, 1)), ("k + m*s - 2", (7, 3)), ("sqrt(k)", (2, 2)), ("(k + m)^2", (5, 3))]:
+        assert extent(parse(text)) == size, text
 
 
-@pytest.mark.parametrize(
-    ("value", "root"),
-    [
+def test_a_square_root_of_a_number_is_exact_or_none():
+    for value, root in [
         (Fraction(0), Fraction(0)),
         (Fraction(1, 4), Fraction(1, 2)),
         (Fraction(49, 9), Fraction(7, 3)),
@@ -267,10 +244,8 @@ def test_the_extent_of_a_tree_is_its_parts_and_levels(text, size):
         (Fraction(4, 3), None),
         (Fraction(3, 4), None),
         (Fraction(-4), None),
-    ],
-)
-def test_a_square_root_of_a_number_is_exact_or_none(value, root):
-    assert exact_root(value) == root
+    ]:
+        assert exact_root(value) == root, value
 
 
 def test_a_point_of_a_field_is_asked_for():

@@ -28,9 +28,8 @@ A, B, NONE, FIVE = (
 )
 
 
-@pytest.mark.parametrize(
-    ("steps", "value"),
-    [
+def test_a_pivot_counts_terms_where_every_name_is_one():
+    for steps, value in [
         ([A, B, (Step.ADD, (0, 1, 1))], 3),
         ([A, FIVE, (Step.ADD, (0, 1))], 2),
         ([A, NONE, (Step.ADD, (0, 0, 1))], 2),
@@ -39,11 +38,8 @@ A, B, NONE, FIVE = (
         ([A, (Step.ADD, (0, 0, 0)), (Step.NEGATE, (1,)), (Step.ADD, (0, 2))], 2),
         ([A, (Step.ADD, (0, 0, 0)), (Step.POWER, (1, 4))], 81),
         ([A, NONE, (Step.ADD, (0, 0)), (Step.DIVIDE, (2, 1))], 1),
-    ],
-    ids=["sum", "number", "zero", "product", "quotient", "difference", "power", "over zero"],
-)
-def test_a_pivot_counts_terms_where_every_name_is_one(steps, value):
-    assert _forests(elimination(steps, len(steps) - 1)) == pytest.approx(log(value))
+    ]:
+        assert _forests(elimination(steps, len(steps) - 1)) == pytest.approx(log(value)), steps
 
 
 def test_a_closed_sum_counts_as_one_name():
@@ -69,9 +65,8 @@ def product(*factors):
     return value
 
 
-@pytest.mark.parametrize(
-    ("entries", "count"),
-    [
+def test_monomials_are_counted_up_to_the_powers_that_rows_reach():
+    for entries, count in [
         # The highest power of each name in a row, added over the rows, and one more for none.
         ([[product((S, 2)), product((S, 1))]], 3),
         ([[product((S, 2))], [product((S, 3))]], 6),
@@ -85,25 +80,23 @@ def product(*factors):
         # What is divided by has no power.
         ([[product((S, -2)), product((K, 1))]], 2),
         ([[product((M, -1))]], 1),
-    ],
-)
-def test_monomials_are_counted_up_to_the_powers_that_rows_reach(entries, count):
-    assert exp(_monomials(rows(*entries))) == pytest.approx(count)
+    ]:
+        assert exp(_monomials(rows(*entries))) == pytest.approx(count), entries
 
 
 DOUBLED = [A, (Step.ADD, (0, 0))]
 
 
-@pytest.mark.parametrize(("pivots", "terms"), [(1, 2), (4, 16), (5, 21), (700, 21)])
-def test_the_smaller_of_both_counts_is_taken(pivots, terms):
-    # A row of power 20 has 21 monomials, and so many pivots of two terms make two to their number.
-    found = expanded_terms(rows([product((S, 20))]), elimination(DOUBLED, *([1] * pivots)))
-    assert found == pytest.approx(terms)
+def test_the_smaller_of_both_counts_is_taken():
+    for pivots, terms in [(1, 2), (4, 16), (5, 21), (700, 21)]:
+        # A row of power 20 has 21 monomials, and so many pivots of two terms make two to their number.
+        found = expanded_terms(rows([product((S, 20))]), elimination(DOUBLED, *([1] * pivots)))
+        assert found == pytest.approx(terms), pivots
 
 
-@pytest.mark.parametrize(("pivots", "is_finite"), [(1009, True), (1011, False)])
-def test_a_count_beyond_doubles_is_infinite(pivots, is_finite):
-    many = rows(*([product((S, 1), (K, 10**200), (M, 10**200))],))
-    found = expanded_terms(many, elimination(DOUBLED, *([1] * pivots)))
-    assert LARGEST == pytest.approx(1010 * log(2), rel=1e-3)
-    assert (found < inf) is is_finite
+def test_a_count_beyond_doubles_is_infinite():
+    for pivots, is_finite in [(1009, True), (1011, False)]:
+        many = rows(*([product((S, 1), (K, 10**200), (M, 10**200))],))
+        found = expanded_terms(many, elimination(DOUBLED, *([1] * pivots)))
+        assert LARGEST == pytest.approx(1010 * log(2), rel=1e-3), pivots
+        assert (found < inf) is is_finite, pivots

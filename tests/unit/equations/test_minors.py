@@ -70,23 +70,23 @@ def bits(columns):
 POINT = (Fraction(3, 2), Fraction(-5, 7), Fraction(11, 3))
 
 
-@pytest.mark.parametrize("size", [1, 2, 3, 5])
-@pytest.mark.parametrize("seed", range(4))
-def test_determinants_over_any_columns_are_those_of_elimination_with_fractions(seed, size):
-    rows = sparse(seed, size, size + 2)
-    minors = Minors(rows, ring=RING)
-    for columns in combinations(range(size + 2), size):
-        expected = bareiss(dense(rows, columns, POINT))
-        assert at(minors.determinant(bits(columns)), POINT) == expected, columns
+def test_determinants_over_any_columns_are_those_of_elimination_with_fractions():
+    for size in [1, 2, 3, 5]:
+        for seed in range(4):
+            rows = sparse(seed, size, size + 2)
+            minors = Minors(rows, ring=RING)
+            for columns in combinations(range(size + 2), size):
+                expected = bareiss(dense(rows, columns, POINT))
+                assert at(minors.determinant(bits(columns)), POINT) == expected, columns
 
 
-@pytest.mark.parametrize("seed", range(6))
-def test_a_row_on_top_goes_before_all_others(seed):
-    *rest, top = sparse(seed, 5, 6)
-    minors = Minors(tuple(rest), ring=RING)
-    for columns in combinations(range(6), 5):
-        expected = bareiss(dense([top, *rest], columns, POINT))
-        assert at(minors.bordered(top, bits(columns)), POINT) == expected, columns
+def test_a_row_on_top_goes_before_all_others():
+    for seed in range(6):
+        *rest, top = sparse(seed, 5, 6)
+        minors = Minors(tuple(rest), ring=RING)
+        for columns in combinations(range(6), 5):
+            expected = bareiss(dense([top, *rest], columns, POINT))
+            assert at(minors.bordered(top, bits(columns)), POINT) == expected, columns
 
 
 def test_the_determinant_without_rows_is_one():
@@ -177,12 +177,12 @@ def test_a_product_that_would_be_too_large_is_refused_before_it_is_made(monkeypa
     )
 
 
-@pytest.mark.parametrize(("count", "is_refused"), [(700, False), (701, True)])
-def test_rows_up_to_the_limit_are_taken(count, is_refused):
-    found = refused(lambda: Minors(({0: RING.constant(1)},) * count, ring=RING))
-    assert (found is not None) is is_refused
-    if found:
-        assert "701 unknowns remain after elimination, more than 700" in found[1]
+def test_rows_up_to_the_limit_are_taken():
+    for count, is_refused in [(700, False), (701, True)]:
+        found = refused(lambda rows=count: Minors(({0: RING.constant(1)},) * rows, ring=RING))
+        assert (found is not None) is is_refused, count
+        if found:
+            assert "701 unknowns remain after elimination, more than 700" in found[1], count
 
 
 def highest_product(rows, columns):
@@ -195,15 +195,15 @@ def highest_product(rows, columns):
     return max(sums, default=-1)
 
 
-@pytest.mark.parametrize("seed", range(12))
-def test_the_degree_bound_is_the_largest_sum_along_a_permutation(seed):
-    random = Random(seed)
-    rows = tuple({c: random.randrange(4) for c in range(5) if random.random() < 0.5} for _ in range(4))
-    bounds = DegreeBounds(rows)
-    top = {c: random.randrange(4) for c in range(5) if random.random() < 0.6}
-    for columns in combinations(range(5), 4):
-        assert bounds.determinant(bits(columns)) == highest_product(rows, columns)
-    assert bounds.bordered(top, 31) == highest_product((top, *rows), range(5))
+def test_the_degree_bound_is_the_largest_sum_along_a_permutation():
+    for seed in range(12):
+        random = Random(seed)
+        rows = tuple({c: random.randrange(4) for c in range(5) if random.random() < 0.5} for _ in range(4))
+        bounds = DegreeBounds(rows)
+        top = {c: random.randrange(4) for c in range(5) if random.random() < 0.6}
+        for columns in combinations(range(5), 4):
+            assert bounds.determinant(bits(columns)) == highest_product(rows, columns), seed
+        assert bounds.bordered(top, 31) == highest_product((top, *rows), range(5)), seed
 
 
 def order_by_hand(patterns):
@@ -218,14 +218,14 @@ def order_by_hand(patterns):
     return tuple(order)
 
 
-@pytest.mark.parametrize("seed", range(20))
-def test_rows_that_reach_fewest_new_columns_come_next(seed):
-    random = Random(seed)
-    size = random.randrange(4, 12)
-    columns = tuple(random.sample(range(size), size - 2))
-    rows = tuple(
-        {c: RING.constant(1) for c in random.sample(range(size), random.randrange(1, min(6, size)))}
-        for _ in range(size)
-    )
-    patterns = [{c for c in row if c in columns} for row in rows]
-    assert expansion_order(rows, columns) == order_by_hand(patterns)
+def test_rows_that_reach_fewest_new_columns_come_next():
+    for seed in range(20):
+        random = Random(seed)
+        size = random.randrange(4, 12)
+        columns = tuple(random.sample(range(size), size - 2))
+        rows = tuple(
+            {c: RING.constant(1) for c in random.sample(range(size), random.randrange(1, min(6, size)))}
+            for _ in range(size)
+        )
+        patterns = [{c for c in row if c in columns} for row in rows]
+        assert expansion_order(rows, columns) == order_by_hand(patterns), seed
