@@ -2,8 +2,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from symflex.expressions.limits import (
@@ -50,18 +49,12 @@ def exponent(value):
 sized = st.recursive(numbers, grown, max_leaves=15)
 
 
-@pytest.mark.slow
+@settings(max_examples=50)
 @given(sized)
-def test_no_value_exceeds_its_bound(pair):
+def test_no_value_exceeds_its_bound_and_a_followed_value_is_the_value(pair):
     value, size = pair
     assert abs(value.numerator) <= 2**size.upper
     assert value.denominator <= 2**size.lower
-
-
-@pytest.mark.slow
-@given(sized)
-def test_a_followed_value_is_the_value(pair):
-    value, size = pair
     assert size.value in (None, value)
 
 

@@ -1,7 +1,0 @@
-from __future__ import annotations
-
-from symflex.errors import Source, Span, Text
-
-
-def text_of(value):
-    return Text(value, Span(Source("a.toml", value), 0, len(value)))
