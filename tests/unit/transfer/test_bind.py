@@ -55,7 +55,7 @@ def responses(s, given):
     return (M * s**2 + w) / determinant, w / determinant
 
 
-def formula(output, s, given):
+def formula(s, output, given):
     x, y = responses(s, given)
     m, k, a = (value_of(given[name]) for name in ("m", "k", "a"))
     return {"Y": y, "V": s * y, "I": -y / s, "W": mpmath.sqrt(k * m) * mpmath.pi * y + a * x}[output]
@@ -88,24 +88,26 @@ GIVEN = (
 POINTS = (mpmath.mpc("0.5", "-1.25"), mpmath.mpc(3, 7), mpmath.mpc("-0.125", "1024"))
 
 
-@pytest.mark.parametrize(("output", "given"), [*combinations("YVIW", GIVEN)])
-def test_balls_hold_what_the_equations_of_motion_give_at_forty_digits(output, given):
-    tf = derive(TWO_MASSES, output)
-    used = {name: value for name, value in given.items() if name != "a" or output == "W"}
-    enclosed = pipeline.bind(tf, used).enclosed(300)
-    for s in POINTS:
-        with mpmath.workdps(80):
-            point, exact = acb(s.real.__float__(), s.imag.__float__()), formula(output, s, DECLARED | given)
-            slope = mpmath.diff(
-                lambda z: mpmath.log(formula(output, z, DECLARED | given)), s, h=mpmath.mpf(10) ** -25
-            )
-        assert holds(enclosed(point), exact)
-        with ctx.workprec(300):
-            error = abs(
-                enclosed.logarithmic_derivative(point)
-                - acb(mpmath.nstr(slope.real, 40), mpmath.nstr(slope.imag, 40))
-            )
-            assert error < 1e-20
+def value_and_slope(law, s, *given):
+    """Return a law's value and, to forty digits, its logarithmic derivative."""
+    with mpmath.workdps(80):
+        slope = mpmath.diff(lambda z: mpmath.log(law(z, *given)), s, h=mpmath.mpf(10) ** -25)
+        value = law(s, *given)
+    with ctx.workprec(300):
+        return value, acb(mpmath.nstr(slope.real, 40), mpmath.nstr(slope.imag, 40))
+
+
+def test_balls_hold_what_the_equations_of_motion_give_at_forty_digits():
+    for output, given in [*combinations("YVIW", GIVEN)]:
+        tf = derive(TWO_MASSES, output)
+        used = {name: value for name, value in given.items() if name != "a" or output == "W"}
+        enclosed = pipeline.bind(tf, used).enclosed(300)
+        for s in POINTS:
+            point = acb(float(s.real), float(s.imag))
+            exact, slope = value_and_slope(formula, s, output, DECLARED | given)
+            assert holds(enclosed(point), exact), output
+            with ctx.workprec(300):
+                assert abs(enclosed.logarithmic_derivative(point) - slope) < 1e-20, output
 
 
 ROD = f"""{HEADER}E = "70 GPa"
@@ -144,34 +146,24 @@ METAL = {
 }
 
 
-@pytest.mark.parametrize(("text", "k"), [(FREE, 0), (HELD, 3)], ids=["free", "held"])
-@pytest.mark.parametrize(
-    "given", [{}, {"l": ExactValue(Fraction(1, 3), 1)}, {"A": ExactValue(Fraction(1, 7), -2)}]
-)
-def test_rods_have_the_values_of_the_wave_equation_at_forty_digits(text, k, given):
-    bound = pipeline.bind(derive(text, "X"), given)
-    assert bound.is_distributed
-    for s in (300 - 400j, 0.5 + 8192j):
-        with mpmath.workdps(80):
-            exact = rod(mpmath.mpc(s), METAL | given, k)
-            slope = mpmath.diff(
-                lambda z: mpmath.log(rod(z, METAL | given, k)), mpmath.mpc(s), h=mpmath.mpf(10) ** -20
-            )
+def test_rods_have_the_values_of_the_wave_equation_at_forty_digits():
+    lengths = [{}, {"l": ExactValue(Fraction(1, 3), 1)}, {"A": ExactValue(Fraction(1, 7), -2)}]
+    for (text, k), given, s in combinations([(FREE, 0), (HELD, 3)], lengths, (300 - 400j, 0.5 + 8192j)):
+        bound = pipeline.bind(derive(text, "X"), given)
+        assert bound.is_distributed, (text, given)
+        exact, slope = value_and_slope(rod, mpmath.mpc(s), METAL | given, k)
         point = acb(s.real, s.imag)
-        assert holds(bound.enclosed(400)(point), exact)
+        assert holds(bound.enclosed(400)(point), exact), (text, given)
         above, below = (bound.enclosed_part(part, 400)(point) for part in (bound.num, bound.den))
         with ctx.workprec(400):
-            assert holds(above / below, exact)
-            error = bound.enclosed(400).logarithmic_derivative(point) - acb(
-                mpmath.nstr(slope.real, 30), mpmath.nstr(slope.imag, 30)
-            )
-            assert abs(error) < 1e-15
-        assert bound(s) == pytest.approx(complex(exact), rel=4e-16)
+            assert holds(above / below, exact), (text, given)
+            error = bound.enclosed(400).logarithmic_derivative(point) - slope
+            assert abs(error) < 1e-15, (text, given)
+        assert bound(s) == pytest.approx(complex(exact), rel=4e-16), (text, given)
 
 
-@pytest.mark.parametrize(
-    ("text", "output", "a", "limit"),
-    [
+def test_the_limit_of_a_rod_at_zero():
+    for text, output, a, limit in [
         # Two metres of rod on a spring of 3 N/m: 1/3 + l/(E A).
         (HELD, "X", 1, 1 / 3 + 2 / 7e6),
         (HELD, "V", 1, 0.0),
@@ -180,21 +172,16 @@ def test_rods_have_the_values_of_the_wave_equation_at_forty_digits(text, k, give
         (FREE, "V", 1, math.inf),
         (FREE, "N", -1, -math.inf),
         (FREE, "N", 0, 0.0),
-    ],
-)
-def test_the_limit_of_a_rod_at_zero(text, output, a, limit):
-    values = {"a": a} if output == "N" else {}
-    assert pipeline.bind(derive(text, output), values).limit_at_zero() == pytest.approx(
-        limit, rel=1e-15, abs=0
-    )
+    ]:
+        found = pipeline.bind(derive(text, output), {"a": a} if output == "N" else {}).limit_at_zero()
+        assert found == pytest.approx(limit, rel=1e-15, abs=0), (text, output, a)
 
 
-@pytest.mark.parametrize(
-    ("output", "limit"), [("Y", 1 / 24), ("V", 0.0), ("I", -math.inf), ("W", 4 * math.pi / 24 - 3 / 24)]
-)
-def test_the_limit_of_masses_and_springs_at_zero(output, limit):
-    # At rest both masses move by F/(3 k).
-    assert pipeline.bind(derive(TWO_MASSES, output)).limit_at_zero() == pytest.approx(limit, rel=1e-15, abs=0)
+def test_the_limit_of_masses_and_springs_at_zero():
+    for output, limit in [("Y", 1 / 24), ("V", 0.0), ("I", -math.inf), ("W", 4 * math.pi / 24 - 3 / 24)]:
+        # At rest both masses move by F/(3 k).
+        found = pipeline.bind(derive(TWO_MASSES, output)).limit_at_zero()
+        assert found == pytest.approx(limit, rel=1e-15, abs=0), output
 
 
 def diagnostic(error, code, values=None, text=TWO_MASSES, output="Y", source="F"):
@@ -205,13 +192,10 @@ def diagnostic(error, code, values=None, text=TWO_MASSES, output="Y", source="F"
     return found
 
 
-@pytest.mark.parametrize(
-    ("name", "hint"),
-    [("MM", "did you mean 'M'?"), ("something", "parameters: m, M, k, b, a")],
-)
-def test_an_unknown_name_is_told_with_the_nearest_or_all(name, hint):
-    found = diagnostic(UsageError, "SF902", {"k": 1, name: 3})
-    assert (found.message, found.hint) == (f"there is no parameter '{name}'", hint)
+def test_an_unknown_name_is_told_with_the_nearest_or_all():
+    for name, hint in [("MM", "did you mean 'M'?"), ("something", "parameters: m, M, k, b, a")]:
+        found = diagnostic(UsageError, "SF902", {"k": 1, name: 3})
+        assert (found.message, found.hint) == (f"there is no parameter '{name}'", hint), name
 
 
 def test_a_very_long_unknown_name_is_shortened():
@@ -236,20 +220,20 @@ Y = "({" + ".join(names)})*U"
 """
 
 
-@pytest.mark.parametrize(("count", "more"), [(2, ""), (40, ""), (41, " and 1 more"), (45, " and 5 more")])
-def test_missing_values_are_told_in_one_line_of_forty_names(count, more):
-    found = diagnostic(ModelError, "SF229", text=many(count), source="U")
-    shown = ", ".join(f"p_{i}" for i in range(min(count, 40)))
-    assert found.message == f"{count} parameters have no value: {shown}{more}"
-    assert found.hint == "give them values in [parameters], or to bind() in Python"
-    assert found.span is None
+def test_missing_values_are_told_in_one_line_of_forty_names():
+    for count, more in [(2, ""), (40, ""), (41, " and 1 more"), (45, " and 5 more")]:
+        found = diagnostic(ModelError, "SF229", text=many(count), source="U")
+        shown = ", ".join(f"p_{i}" for i in range(min(count, 40)))
+        assert found.message == f"{count} parameters have no value: {shown}{more}", count
+        assert found.hint == "give them values in [parameters], or to bind() in Python", count
+        assert found.span is None, count
 
 
-@pytest.mark.parametrize(("name", "assume"), [("k", "positive"), ("b", "nonnegative")])
-def test_a_negative_value_is_refused_where_the_model_excludes_it(name, assume):
-    found = diagnostic(UsageError, "SF209", {name: Fraction(-1, 10**9)})
-    assert found.message == f"parameter '{name}' is negative, but is assumed {assume}"
-    assert found.hint == f'write {name} = {{ value = ..., assume = "real" }} in the model'
+def test_a_negative_value_is_refused_where_the_model_excludes_it():
+    for name, assume in [("k", "positive"), ("b", "nonnegative")]:
+        found = diagnostic(UsageError, "SF209", {name: Fraction(-1, 10**9)})
+        assert found.message == f"parameter '{name}' is negative, but is assumed {assume}", name
+        assert found.hint == f'write {name} = {{ value = ..., assume = "real" }} in the model', name
 
 
 def test_zero_and_real_values_are_taken():
@@ -275,9 +259,12 @@ def test_a_wavenumber_that_vanishes_is_told_with_a_way_out():
     )
 
 
-@pytest.mark.parametrize("given", [math.inf, None, 1j, Decimal("Infinity")])
-def test_what_is_no_number_is_told_by_name(given):
-    assert diagnostic(UsageError, "SF902", {"k": given}).message == "the value of 'k' must be a finite number"
+def test_what_is_no_number_is_told_by_name():
+    for given in [math.inf, None, 1j, Decimal("Infinity")]:
+        assert (
+            diagnostic(UsageError, "SF902", {"k": given}).message
+            == "the value of 'k' must be a finite number"
+        ), given
 
 
 def test_a_wrong_unit_is_told_with_both():
@@ -298,9 +285,8 @@ Z = "U*n/(s + f)"
 """
 
 
-@pytest.mark.parametrize(
-    ("name", "given", "exact"),
-    [
+def test_turns_and_radians_are_converted_to_what_a_parameter_counts():
+    for name, given, exact in [
         ("f", "60 Hz", ExactValue(Fraction(60))),
         ("f", "120 rpm", ExactValue(Fraction(2))),
         ("f", "60 rad/s", ExactValue(Fraction(30), -1)),
@@ -314,12 +300,10 @@ Z = "U*n/(s + f)"
         ("n", "60 Hz", ExactValue(Fraction(120), 1)),
         ("n", "60 N", ExactValue(Fraction(60))),
         ("r", "60 Hz", ExactValue(Fraction(60))),
-    ],
-)
-def test_turns_and_radians_are_converted_to_what_a_parameter_counts(name, given, exact):
-    model = pipeline.loads(TURNING)
-    parameter = next(p for p in model.parameters if p.name == name)
-    assert read_values((parameter,), {name: given}) == ((name, exact),)
+    ]:
+        model = pipeline.loads(TURNING)
+        parameter = next(p for p in model.parameters if p.name == name)
+        assert read_values((parameter,), {name: given}) == ((name, exact),), (name, given)
 
 
 def test_values_read_before_stay_as_they_are_and_all_stand_in_declared_order():
@@ -350,23 +334,20 @@ Z = "(s^2 + d)*s/((s + c)*s^2)*U"
 """
 
 
-@pytest.mark.parametrize(
-    ("values", "factors"),
-    [
+def test_what_values_cancel_is_hidden_with_its_power():
+    for values, factors in [
         ({}, []),
         ({"a": 2}, [("s + 2", 2)]),
         ({"a": 2, "d": 2}, [("s + 2", 3)]),
         ({"d": 5}, [("s + 5", 1)]),
         ({"a": 5, "d": 2}, [("s + 2", 1), ("s + 5", 1)]),
-    ],
-)
-def test_what_values_cancel_is_hidden_with_its_power(values, factors):
-    bound = pipeline.bind(derive(HIDING, "Y", "U"), values)
-    assert sorted((str(h.polynomial), h.multiplicity) for h in bound.hidden) == factors
-    s = mpmath.mpf("1.5")
-    a, c, d = (mpmath.mpf(values.get(n, v)) for n, v in (("a", 1), ("c", 2), ("d", 3)))
-    exact = (s + a) ** 2 * (s + d) / ((s + c) ** 3 * (s + 5))
-    assert bound(1.5 + 0j) == pytest.approx(complex(exact), rel=1e-15)
+    ]:
+        bound = pipeline.bind(derive(HIDING, "Y", "U"), values)
+        assert sorted((str(h.polynomial), h.multiplicity) for h in bound.hidden) == factors, values
+        s = mpmath.mpf("1.5")
+        a, c, d = (mpmath.mpf(values.get(n, v)) for n, v in (("a", 1), ("c", 2), ("d", 3)))
+        exact = (s + a) ** 2 * (s + d) / ((s + c) ** 3 * (s + 5))
+        assert bound(1.5 + 0j) == pytest.approx(complex(exact), rel=1e-15), values
 
 
 def test_polynomials_get_the_values_of_a_function_bound_before():
@@ -376,7 +357,7 @@ def test_polynomials_get_the_values_of_a_function_bound_before():
     found = bind_polynomials(tf, bound, polynomials)
     with mpmath.workdps(80):
         given = DECLARED | dict(bound.values)
-        exact = formula("W", POINTS[0], given)
+        exact = formula(POINTS[0], "W", given)
     point = acb(0.5, -1.25)
     with ctx.workprec(300):
         value = acb(tf.ratio.unit.numerator) / tf.ratio.unit.denominator
@@ -405,15 +386,15 @@ def test_a_denominator_of_a_wavenumber_that_vanishes_is_told_with_a_way_out():
     assert found.hint == "a rigid or massless limit has its own equations"
 
 
-@pytest.mark.parametrize("output", "YVIW")
-def test_deriving_with_numbers_from_the_start_gives_the_same_function(output):
-    tf = derive(TWO_MASSES, output)
-    bound = pipeline.bind(tf, {"k": "5 N/m"})
-    numeric = _derived_with_numbers(tf, bound.values)
-    assert numeric.values == bound.values
-    assert numeric.name == bound.name
-    for s in (0.5 + 2j, -3 + 0.25j):
-        assert numeric(s) == pytest.approx(bound(s), rel=1e-15)
+def test_deriving_with_numbers_from_the_start_gives_the_same_function():
+    for output in "YVIW":
+        tf = derive(TWO_MASSES, output)
+        bound = pipeline.bind(tf, {"k": "5 N/m"})
+        numeric = _derived_with_numbers(tf, bound.values)
+        assert numeric.values == bound.values, output
+        assert numeric.name == bound.name, output
+        for s in (0.5 + 2j, -3 + 0.25j):
+            assert numeric(s) == pytest.approx(bound(s), rel=1e-15), output
 
 
 def test_a_quantity_that_cannot_be_read_is_told_with_its_place():
@@ -436,14 +417,14 @@ class Scalar:
         return self.value
 
 
-@pytest.mark.parametrize(
-    ("given", "is_read"), [(Scalar(0.5), True), (Scalar(0.5, size=1), True), (Scalar(0.5, size=2), False)]
-)
-def test_what_other_libraries_call_a_number_is_one_if_it_is_alone(given, is_read):
-    if is_read:
-        assert dict(pipeline.bind(derive(TWO_MASSES), {"k": given}).values)["k"].rational == Fraction(1, 2)
-    else:
-        diagnostic(UsageError, "SF902", {"k": given})
+def test_what_other_libraries_call_a_number_is_one_if_it_is_alone():
+    for given, is_read in [(Scalar(0.5), True), (Scalar(0.5, size=1), True), (Scalar(0.5, size=2), False)]:
+        if is_read:
+            assert dict(pipeline.bind(derive(TWO_MASSES), {"k": given}).values)["k"].rational == Fraction(
+                1, 2
+            ), given
+        else:
+            diagnostic(UsageError, "SF902", {"k": given})
 
 
 ROOTS = f"""{HEADER}k = 2
@@ -457,18 +438,15 @@ W = "U/(s^2 + sqrt(k/m)*s + sqrt(k/m)^2)"
 """
 
 
-@pytest.mark.parametrize(
-    ("output", "values", "denominator"),
-    [
+def test_even_powers_of_roots_of_rational_numbers_are_rational():
+    for output, values, denominator in [
         ("Y", {}, "9*s^2 + 2"),
         ("Y", {"k": 50, "m": 3}, "3*s^2 + 50"),
         ("Z", {}, "81*s^2 + 4"),
         ("Z", {"k": 5, "m": 2}, "4*s^2 + 25"),
-    ],
-)
-def test_even_powers_of_roots_of_rational_numbers_are_rational(output, values, denominator):
-    ((polynomial, exponent),) = pipeline.bind(derive(ROOTS, output, "U"), values).ratio.factors
-    assert (str(polynomial), exponent) == (denominator, -1)
+    ]:
+        ((polynomial, exponent),) = pipeline.bind(derive(ROOTS, output, "U"), values).ratio.factors
+        assert (str(polynomial), exponent) == (denominator, -1), (output, values)
 
 
 def test_odd_powers_of_roots_stay_what_they_are():

@@ -53,10 +53,6 @@ F = {{}}
     )
 
 
-def q_of(s, length=LENGTH):
-    return length * mp.sqrt(s / (2 * mp.sqrt(EI / RHO_A)))
-
-
 def agrees(tf, formula):
     bound = pipeline.bind(tf)
     for s in POINTS:
@@ -78,29 +74,19 @@ V_tip = "s*q"
 )
 
 
-def test_the_sliding_free_beam_has_the_published_colocated_function_corrected():
-    def formula(s):
-        q = q_of(s)
-        p = s / mp.sqrt(EI / RHO_A)
-        w = mp.exp(-2 * q)
-        si, co = mp.exp(-q) * mp.sin(q), mp.exp(-q) * mp.cos(q)
-        top = w**2 + 2 * si**2 + 6 * co**2 + 1
-        return -mp.sqrt(2 / p) / 2 * top / (w**2 - 4 * co * si - 1) / (RHO_A * mp.sqrt(EI / RHO_A))
+def published(s):
+    """Return the colocated function of Eppinger and Seering 1988, corrected, and that of the tip."""
+    q = LENGTH * mp.sqrt(s / (2 * mp.sqrt(EI / RHO_A)))
+    w = mp.exp(-2 * q)
+    si, co = mp.exp(-q) * mp.sin(q), mp.exp(-q) * mp.cos(q)
+    front = -mp.sqrt(2 * mp.sqrt(EI / RHO_A) / s) / (w**2 - 4 * co * si - 1) / mp.sqrt(EI * RHO_A)
+    return front * (w**2 + 2 * si**2 + 6 * co**2 + 1) / 2, front * 2 * co * (w + 1)
 
+
+def test_the_sliding_free_beam_has_the_published_functions_corrected():
     with mp.workdps(40):
-        agrees(SLIDING["V_act/F"], formula)
-
-
-def test_the_sliding_free_beam_has_the_published_tip_function():
-    def formula(s):
-        q = q_of(s)
-        p = s / mp.sqrt(EI / RHO_A)
-        w = mp.exp(-2 * q)
-        si, co = mp.exp(-q) * mp.sin(q), mp.exp(-q) * mp.cos(q)
-        return -2 * mp.sqrt(2 / p) * co * (w + 1) / (w**2 - 4 * co * si - 1) / (RHO_A * mp.sqrt(EI / RHO_A))
-
-    with mp.workdps(40):
-        agrees(SLIDING["V_tip/F"], formula)
+        agrees(SLIDING["V_act/F"], lambda s: published(s)[0])
+        agrees(SLIDING["V_tip/F"], lambda s: published(s)[1])
 
 
 def test_element_and_field_give_the_same_function():
@@ -123,31 +109,20 @@ def test_the_rigid_body_position_is_hidden_from_the_velocity():
     assert [(str(h.polynomial), h.multiplicity) for h in SLIDING["V_act/F"].hidden] == [("s", 1)]
 
 
-@pytest.mark.parametrize(
-    ("where", "fixed", "wanted"),
-    [
-        ("q", 'f = { type = "fixed", at = "p" }', LENGTH**3 / (3 * EI)),
-        ("q.theta", 'f = { type = "fixed", at = "p" }', LENGTH**2 / (2 * EI)),
-        (
-            "q",
-            'f = { type = "slider", at = "p" }\nk = { type = "spring", between = ["p", "ground"], k = "k" }',
-            LENGTH**3 / (3 * EI) + mp.mpf("1e-4"),
-        ),
-    ],
-)
-def test_the_static_limit_is_that_of_the_tables(where, fixed, wanted):
-    tf = functions(
-        f"""
-[elements]
-arm = {{ {BEAM}, between = ["p", "q"], l = "l" }}
-{fixed}
-[inputs]
-F = {{ force = "q" }}
-[outputs]
-X = "{where}"
-"""
-    )["X/F"]
-    assert abs(pipeline.bind(tf).limit_at_zero() / float(wanted) - 1) < 1e-13
+def test_the_static_limit_is_that_of_the_tables():
+    arm = f'arm = {{ {BEAM}, between = ["p", "q"], l = "l" }}'
+    ends = '[inputs]\nF = { force = "q" }\n[outputs]\nX = "q"\nQ = "q.theta"\n'
+    clamped = functions(f'[elements]\n{arm}\nf = {{ type = "fixed", at = "p" }}\n{ends}')
+    sprung = functions(
+        f'[elements]\n{arm}\nf = {{ type = "slider", at = "p" }}\n'
+        f'k = {{ type = "spring", between = ["p", "ground"], k = "k" }}\n{ends}'
+    )
+    for tf, wanted in [
+        (clamped["X/F"], LENGTH**3 / (3 * EI)),
+        (clamped["Q/F"], LENGTH**2 / (2 * EI)),
+        (sprung["X/F"], LENGTH**3 / (3 * EI) + mp.mpf("1e-4")),
+    ]:
+        assert abs(pipeline.bind(tf).limit_at_zero() / float(wanted) - 1) < 1e-13, wanted
 
 
 def test_a_uniform_load_bends_a_clamped_beam_by_q_l4_over_384_ei():
@@ -316,23 +291,19 @@ def test_conditions_that_follow_from_the_equation_are_named():
     assert "w''''(0)" in problem.message
 
 
-@pytest.mark.parametrize(
-    "equation",
-    [
-        "E*I*w'''' + rho*A*s^2*w = 0",
-        "E*I*w'''' - N*w'' + rho*A*s^2*w = 0",
-        "E*I*w'''' - N*w''*(1 + s*T_d) + k*w' + rho*A*s^2*w = 0",
-    ],
-    ids=["bending", "pair", "general"],
-)
-def test_the_logarithmic_derivative_is_that_of_the_function(equation):
-    tf = field(equation, ["w(0) = 0", "w'(0) = 0", "E*I*w''(l) = 0", "E*I*w'''(l) = F"], 'X = "w(l)"')["X/F"]
-    enclosed = pipeline.bind(tf).enclosed(400)
-    with ctx.workprec(400):
-        s, step = acb(3, 40), acb(2) ** -120
-        wanted = (enclosed(s + step) - enclosed(s - step)) / (2 * step * enclosed(s))
-        found = enclosed.logarithmic_derivative(s)
-        assert abs(found - wanted).abs_upper() < abs(wanted).abs_lower() * 2.0**-150
+def test_the_logarithmic_derivative_is_that_of_the_function():
+    ends = ["w(0) = 0", "w'(0) = 0", "E*I*w''(l) = 0", "E*I*w'''(l) = F"]
+    for kind, equation in {
+        "bending": "E*I*w'''' + rho*A*s^2*w = 0",
+        "pair": "E*I*w'''' - N*w'' + rho*A*s^2*w = 0",
+        "general": "E*I*w'''' - N*w''*(1 + s*T_d) + k*w' + rho*A*s^2*w = 0",
+    }.items():
+        enclosed = pipeline.bind(field(equation, ends, 'X = "w(l)"')["X/F"]).enclosed(400)
+        with ctx.workprec(400):
+            s, step = acb(3, 40), acb(2) ** -120
+            wanted = (enclosed(s + step) - enclosed(s - step)) / (2 * step * enclosed(s))
+            found = enclosed.logarithmic_derivative(s)
+            assert abs(found - wanted).abs_upper() < abs(wanted).abs_lower() * 2.0**-150, kind
 
 
 def test_numerator_and_denominator_are_finite_where_a_wavenumber_is_small():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import product
 from math import inf, isnan, nan
 
 import pytest
@@ -47,11 +48,11 @@ def test_a_value_that_is_right_at_first_is_not_asked_for_again():
     assert function.asked == []
 
 
-@pytest.mark.parametrize(("bits", "asked"), [(DOUBLE_BITS, []), (DOUBLE_BITS - 1, [2 * FIRST_BITS])])
-def test_one_bit_more_than_a_double_has_is_enough(bits, asked):
-    function = Levels(lambda level, s: accurate(0.75, bits if level == FIRST_BITS else 100))
-    assert function(1j) == 0.75
-    assert function.asked == asked
+def test_one_bit_more_than_a_double_has_is_enough():
+    for bits, asked in [(DOUBLE_BITS, []), (DOUBLE_BITS - 1, [2 * FIRST_BITS])]:
+        function = Levels(lambda level, s, bits=bits: accurate(0.75, bits if level == FIRST_BITS else 100))
+        assert function(1j) == 0.75, bits
+        assert function.asked == asked, bits
 
 
 def test_the_precision_is_doubled_up_to_a_last_one_and_then_the_value_counts_as_zero():
@@ -65,18 +66,18 @@ def test_a_value_that_is_never_finite_is_a_pole():
     assert (value.real, isnan(value.imag)) == (inf, True)
 
 
-@pytest.mark.parametrize("bits", [3072, 6144])
-def test_late_accuracy_is_waited_for(bits):
-    function = Levels(lambda level, s: s if level >= bits else FAIL)
-    assert function(0.5 + 0.25j) == 0.5 + 0.25j
-    assert function.asked[-1] == bits
+def test_late_accuracy_is_waited_for():
+    for bits in [3072, 6144]:
+        function = Levels(lambda level, s, bits=bits: s if level >= bits else FAIL)
+        assert function(0.5 + 0.25j) == 0.5 + 0.25j, bits
+        assert function.asked[-1] == bits, bits
 
 
-@pytest.mark.parametrize("s", [complex(nan, 1), complex(1, nan), complex(inf, 1), complex(1, -inf)])
-def test_where_no_number_is_given_no_number_is_returned(s):
-    value = Levels(lambda bits, s: acb(1))(s)
-    assert isnan(value.real)
-    assert isnan(value.imag)
+def test_where_no_number_is_given_no_number_is_returned():
+    for s in [complex(nan, 1), complex(1, nan), complex(inf, 1), complex(1, -inf)]:
+        value = Levels(lambda bits, s: acb(1))(s)
+        assert isnan(value.real), s
+        assert isnan(value.imag), s
 
 
 PLACE = 3 + 4j
@@ -93,22 +94,22 @@ def undefined(at):
     return answer
 
 
-@pytest.mark.parametrize(("patience", "asked"), [(0, []), (1, [192]), (2, [192, 384])])
-def test_a_limit_is_sought_after_as_many_doublings_as_said(patience, asked):
-    function = Levels(undefined(lambda offset: acb(2, 5) + offset))
-    assert function(PLACE, patience) == 2 + 5j
-    assert function.asked[: len(asked)] == asked
-    assert [bits for bits in function.asked[len(asked) :] if bits < 768] == []
+def test_a_limit_is_sought_after_as_many_doublings_as_said():
+    for patience, asked in [(0, []), (1, [192]), (2, [192, 384])]:
+        function = Levels(undefined(lambda offset: acb(2, 5) + offset))
+        assert function(PLACE, patience) == 2 + 5j, patience
+        assert function.asked[: len(asked)] == asked, patience
+        assert [bits for bits in function.asked[len(asked) :] if bits < 768] == [], patience
 
 
 def test_a_function_that_vanishes_at_such_a_point_is_zero_there():
     assert Levels(undefined(lambda offset: offset * acb(2, 5)))(PLACE, 0) == 0
 
 
-@pytest.mark.parametrize("order", [-1, -2])
-def test_a_function_that_grows_towards_such_a_point_has_a_pole_there(order):
-    value = Levels(undefined(lambda offset: acb(1) / offset**-order))(PLACE, 0)
-    assert (value.real, isnan(value.imag)) == (inf, True)
+def test_a_function_that_grows_towards_such_a_point_has_a_pole_there():
+    for order in [-1, -2]:
+        value = Levels(undefined(lambda offset, order=order: acb(1) / offset**-order))(PLACE, 0)
+        assert (value.real, isnan(value.imag)) == (inf, True), order
 
 
 def test_a_function_that_is_no_number_about_such_a_point_has_no_limit():
@@ -122,9 +123,7 @@ def test_a_finite_value_of_few_bits_is_made_better_before_it_is_a_limit():
     assert function.asked == [192, 384, 768]
 
 
-@pytest.mark.parametrize("order", [-3, -1, 0, 1, 2, 5])
-@pytest.mark.parametrize("s", [0j, 0.25j, 300 - 400j])
-def test_orders_are_read_off_beside_a_point(order, s):
+def power(order, s):
     def function(bits):
         def at(z):
             with ctx.workprec(bits):
@@ -132,21 +131,27 @@ def test_orders_are_read_off_beside_a_point(order, s):
 
         return at
 
-    found, value = order_near(function, s)
-    assert found == order
-    with ctx.workprec(LAST_BITS):
-        # The nearer point stands off by 2^-220 of what is larger: the point's size, or one.
-        offset = arb(2) ** -NEAR[1] * max(abs(s), 1.0)
-        assert abs(value / (acb(3, -7) * acb(offset) ** order) - 1) < arb(2) ** -DOUBLE_BITS
+    return function
 
 
-@pytest.mark.parametrize(("least", "found"), [(768, 768), (1536, 1536), (6144, 6144), (6145, None)])
-def test_beside_a_point_the_precision_is_raised_as_far(least, found):
-    function = Levels(lambda bits, s: acb(2) if bits >= least else FAIL)
-    order, value = order_near(function.enclosed, 1j)
-    assert (order, value is None) == (0, found is None)
-    assert function.asked[0] == 768
-    assert max(function.asked) == (found or LAST_BITS)
+def test_orders_are_read_off_beside_a_point():
+    for order, s in product([-3, -1, 0, 1, 2, 5], [0j, 0.25j, 300 - 400j]):
+        found, value = order_near(power(order, s), s)
+        assert found == order, (order, s)
+        with ctx.workprec(LAST_BITS):
+            # The nearer point stands off by 2^-220 of what is larger: the point's size, or one.
+            offset = arb(2) ** -NEAR[1] * max(abs(s), 1.0)
+            error = abs(value / (acb(3, -7) * acb(offset) ** order) - 1)
+        assert error < arb(2) ** -DOUBLE_BITS, (order, s)
+
+
+def test_beside_a_point_the_precision_is_raised_as_far():
+    for least, found in [(768, 768), (1536, 1536), (6144, 6144), (6145, None)]:
+        function = Levels(lambda bits, s, least=least: acb(2) if bits >= least else FAIL)
+        order, value = order_near(function.enclosed, 1j)
+        assert (order, value is None) == (0, found is None), least
+        assert function.asked[0] == 768, least
+        assert max(function.asked) == (found or LAST_BITS), least
 
 
 def test_values_beside_a_point_that_are_finite_and_of_few_bits_do_not_count():

@@ -53,16 +53,14 @@ SHARED = [
 ]
 
 
-@pytest.mark.parametrize(("f", "g"), APART)
-def test_coprime_polynomials_are_proved_apart(f, g, kernels):
+def test_coprime_polynomials_are_proved_apart(kernels):
     named, images = kernels
-    assert images.prove_apart(f(named), g(named))
+    assert [i for i, (f, g) in enumerate(APART) if not images.prove_apart(f(named), g(named))] == []
 
 
-@pytest.mark.parametrize(("f", "g"), SHARED)
-def test_polynomials_with_a_common_factor_are_not(f, g, kernels):
+def test_polynomials_with_a_common_factor_are_not(kernels):
     named, images = kernels
-    assert not images.prove_apart(f(named), g(named))
+    assert [i for i, (f, g) in enumerate(SHARED) if images.prove_apart(f(named), g(named))] == []
 
 
 def test_what_is_of_lower_degree_than_it_seems_proves_nothing(kernels):
