@@ -431,10 +431,10 @@ def test_a_power_of_moderate_size_is_read():
 
 
 def test_a_hostile_text_is_refused_or_read_under_either_limits():
-    many = 10_001  # more than a user may write
+    many = 10_001  # more characters than a user may write
     wrong = ["(" * many, "(" * many + "a" + ")" * many, ")" * many, "-" * many + "a", "+" * many + "a"]
-    wrong += ["a^" * many + "a", "sin(" * many, "a/" * many + "a", "2^" * many + "2"]
-    long = ["9" * 100_000, "a*-" * many + "a"]
+    wrong += [piece * many + "a" for piece in ("a^", "sin(", "a/", "2^")]
+    long = ["9" * 100_000, "a*-" * (many // 3 + 1) + "a"]
     found = {}
     for limits, written in product((USER_LIMITS, PROGRAM_LIMITS), (*wrong, *long)):
         try:
