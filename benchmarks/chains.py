@@ -9,9 +9,18 @@ Times are processor times: other programs on the machine count little.
 
 from __future__ import annotations
 
-from benchmarks.measure import Claim, Measurement, interpreter_with, milliseconds, run_snippet, times_as_fast
+from benchmarks.measure import (
+    Claim,
+    Extent,
+    Measured,
+    Measurement,
+    interpreter_with,
+    milliseconds,
+    run_snippet,
+    times_as_fast,
+)
 
-SIZES = (2, 4, 6, 8, 10, 12)
+SIZES, QUICK_SIZES = (2, 4, 6, 8, 10, 12), (8,)
 COMPARED = 8
 """Masses up to which medians of eleven runs are taken; beyond, of three."""
 
@@ -84,6 +93,8 @@ begin = time.process_time()
 """
 END = "print(time.process_time() - begin)"
 
+FASTEST = "SymPy `DomainMatrix.charpoly()` over ZZ[s, m, k, b]"
+"""Of the other ways, from six masses on; the one that a quick run compares with."""
 SYMPY_WAYS = {
     "SymPy `Matrix.det(method='berkowitz')`": """
 for a in minors:
@@ -97,7 +108,7 @@ for a in minors:
 for a in exact:
     a.det()
 """,
-    "SymPy `DomainMatrix.charpoly()` over ZZ[s, m, k, b]": """
+    FASTEST: """
 for a in exact:
     a.charpoly()[-1]
 """,
@@ -165,17 +176,20 @@ def specification(n: int) -> str:
     )
 
 
-def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
-    """Measure every size and way, each within ``limit`` seconds, and compare with the fastest other way."""
+def measure(extent: Extent) -> Measured:
+    """Measure every size and way, each within the limit, and compare with the fastest other way."""
+    limit = extent.limit
     found: list[Measurement] = []
     claims: list[Claim] = []
     gone: set[str] = set()
-    for n in SIZES:
+    for n in extent.of(SIZES, QUICK_SIZES):
         task = f"chain of {n} masses"
-        ours = [_ours(task, way, n, "tf.ratio", asked, limit) for way, asked in SYMFLEX_WAYS.items()]
-        theirs = []
-        for way, (interpreter, code) in _others(n).items():
+        ways = extent.of(list(SYMFLEX_WAYS), ["symflex"])
+        ours = [_ours(task, way, n, "tf.ratio", SYMFLEX_WAYS[way], limit) for way in ways]
+        theirs, others = [], _others(n)
+        for way in extent.of(list(others), [FASTEST]):
             if way not in gone:
+                interpreter, code = others[way]
                 theirs.append(run_snippet(task, way, code + END, limit, interpreter))
         # What reached the limit once does so at every larger size.
         gone |= {other.way for other in theirs if other.seconds is None}
@@ -183,14 +197,16 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
         if n in FLOORS:
             ratio = times_as_fast(ours[0], *theirs)
             claims.append(Claim(f"{n} masses: times as fast as the fastest other way", FLOORS[n], ratio))
-        if n in CEILINGS:
+        if n in CEILINGS and not extent.is_quick:
             text = f"{n} masses: milliseconds from assembled equations"
             claims.append(milliseconds(text, CEILINGS[n], ours[2]))
+    if extent.is_quick:
+        return Measured(found, claims)
     task = f"chain of {CLOSED} masses, links kept as one symbol"
     way, asked = "symflex, first run of a process", SYMFLEX_WAYS["symflex, first run of a process"]
     closed = _ours(task, way, CLOSED, "tf.closed", asked, limit)
     claims.append(milliseconds(f"{task}: milliseconds", CLOSED_CEILING, closed))
-    return [*found, closed], claims
+    return Measured([*found, closed], claims)
 
 
 def _ours(task: str, way: str, n: int, result: str, asked: dict[str, object], limit: float) -> Measurement:

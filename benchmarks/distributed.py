@@ -18,7 +18,7 @@ import sympy
 
 import symflex
 from benchmarks.generated import imported
-from benchmarks.measure import Claim, Measurement, taking_turns, typical_ratio
+from benchmarks.measure import Claim, Extent, Measured, Measurement, taking_turns, typical_ratio
 from symflex import pipeline
 from symflex.codegen.python.module import NUMPY
 
@@ -31,7 +31,7 @@ SPECIFICATION = Path(__file__).parents[1] / "derivations" / "eppinger1988" / "sl
 POINTS = 1_000_000
 BAND_HZ = (0.1, 1000.0)
 """The band of the model's ``[analysis]``, sampled as a Bode diagram is."""
-ROUNDS = 21
+ROUNDS, QUICK_ROUNDS = 21, 5
 TASK = "sliding-free beam at a million frequencies"
 
 FOUND = np.show_config(mode="dicts")["SIMD Extensions"]["found"]
@@ -45,8 +45,8 @@ AGREEMENT = 1e-13
 """Median of the relative differences between the ways, or they would not do the same."""
 
 
-def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
-    """Measure all ways, as many rounds as fit in ``limit`` seconds, and compare.
+def measure(extent: Extent) -> Measured:
+    """Measure all ways, as many rounds as fit in the limit, and compare.
 
     Raises
     ------
@@ -55,10 +55,11 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
     """
     omega = 2.0 * math.pi * np.geomspace(*BAND_HZ, POINTS)
     ways = _ways(1j * omega, omega)
-    runs = taking_turns(ways, limit, rounds=ROUNDS, agreement=AGREEMENT)
-    found = [Measurement(TASK, name, min(times), limit) for name, times in runs.items()]
+    rounds = extent.of(ROUNDS, QUICK_ROUNDS)
+    runs = taking_turns(ways, extent.limit, rounds=rounds, agreement=AGREEMENT)
+    found = [Measurement(TASK, name, min(times), extent.limit) for name, times in runs.items()]
     ours, real, by_hand, common, plain = runs.values()
-    return found, [
+    claims = [
         Claim(
             "beam in real arithmetic: times as fast as for complex s",
             FASTER_IN_REAL_ARITHMETIC,
@@ -77,6 +78,7 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
         ),
         Claim("beam: times as fast as plain `lambdify`", FASTER_THAN_LAMBDIFY, typical_ratio(plain, ours)),
     ]
+    return Measured(found, claims)
 
 
 def _ways(s: NDArray[Any], omega: NDArray[Any]) -> dict[str, Callable[[], Any]]:

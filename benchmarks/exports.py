@@ -17,9 +17,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from benchmarks.distributed import AGREEMENT, BAND_HZ, POINTS, ROUNDS, SPECIFICATION, exported_module
+from benchmarks.distributed import (
+    AGREEMENT,
+    BAND_HZ,
+    POINTS,
+    QUICK_ROUNDS,
+    ROUNDS,
+    SPECIFICATION,
+    exported_module,
+)
 from benchmarks.generated import FLAGS, loaded, pointer, responding
-from benchmarks.measure import Claim, Measurement, fastest
+from benchmarks.measure import Claim, Extent, Measured, Measurement, fastest
 from symflex import pipeline
 from symflex.codegen.c.module import C99
 
@@ -61,8 +69,8 @@ void by_hand(const double *omega, double *real, double *imag, size_t n,
 """V_act/F = (x/(j omega m)) (1 + cosh x cos x)/(cosh x sin x + sinh x cos x), over cosh x."""
 
 
-def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
-    """Measure all ways, as many rounds as fit in ``limit`` seconds, and compare; nothing without ``cc``.
+def measure(extent: Extent) -> Measured:
+    """Measure all ways, as many rounds as fit in the limit, and compare; nothing without ``cc``.
 
     Raises
     ------
@@ -71,12 +79,13 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
     """
     if shutil.which("cc") is None:
         print("skipped, there is no C compiler `cc`: exported C", file=sys.stderr)
-        return [], []
+        return Measured([], [])
     omega = 2.0 * math.pi * np.geomspace(*BAND_HZ, POINTS)
-    best = fastest(_ways(omega), limit, rounds=ROUNDS, agreement=AGREEMENT)
-    found = [Measurement(TASK, name, seconds, limit) for name, seconds in best.items()]
+    rounds = extent.of(ROUNDS, QUICK_ROUNDS)
+    best = fastest(_ways(omega), extent.limit, rounds=rounds, agreement=AGREEMENT)
+    found = [Measurement(TASK, name, seconds, extent.limit) for name, seconds in best.items()]
     by_numpy, _, ours, by_hand, ours_native, by_hand_native = (m.at_least for m in found)
-    return found, [
+    claims = [
         # Code for any processor has vectors of two numbers only: too near the bound to enforce it.
         Claim(
             "exported C (`-O2`): times as fast as the numpy module",
@@ -102,6 +111,7 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
             larger_is_better=False,
         ),
     ]
+    return Measured(found, claims)
 
 
 def _ways(omega: NDArray[Any]) -> dict[str, Callable[[], NDArray[Any]]]:

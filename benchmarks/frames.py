@@ -7,9 +7,9 @@ and two within one step are missed.
 
 from __future__ import annotations
 
-from benchmarks.measure import OWN, Claim, Measurement, run_snippet
+from benchmarks.measure import OWN, Claim, Extent, Measured, Measurement, run_snippet
 
-STOREYS = (10, 33, 100)
+STOREYS, QUICK_STOREYS = (10, 33, 100), (10,)
 MODES = 10
 SLOWER_THAN_NUMPY = {10: 45.0, 33: 15.0, 100: 6.0}
 """By storeys, times as long as numpy, at most: about three times what docs/benchmarks.md reports, as small
@@ -136,11 +136,12 @@ print(time.process_time() - begin)
 """
 
 
-def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
+def measure(extent: Extent) -> Measured:
     """Measure ten modes of frames of several sizes."""
+    limit = extent.limit
     found: list[Measurement] = []
     claims: list[Claim] = []
-    for storeys in STOREYS:
+    for storeys in extent.of(STOREYS, QUICK_STOREYS):
         task = f"ten modes of a frame of {3 * storeys} members"
         own, dense = (code.format(storeys=storeys, modes=MODES) for code in (SYMFLEX, NUMPY))
         ours = run_snippet(task, "symflex, 20 digits, proved", own, max(limit, OWN))
@@ -151,4 +152,4 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
         claims.append(Claim(text, ceiling, ours.taken, larger_is_better=False, is_ratio=False))
         bound, ratio = SLOWER_THAN_NUMPY[storeys], ours.taken / theirs.at_least
         claims.append(Claim(f"{task}: times as long as numpy", bound, ratio, larger_is_better=False))
-    return found, claims
+    return Measured(found, claims)

@@ -18,7 +18,7 @@ import mpmath
 import numpy as np
 
 import symflex
-from benchmarks.measure import Claim, Measurement, fastest
+from benchmarks.measure import Claim, Extent, Measured, Measurement, fastest
 from symflex.errors.optional import installed
 
 if TYPE_CHECKING:
@@ -32,7 +32,8 @@ CHAIN_LAST, BEAM_LAST = 1.0, 0.02
 """Last times [s]: some periods of the lowest modes."""
 FEW = 5
 """Times that mpmath inverts."""
-ROUNDS = 7
+ROUNDS, QUICK_ROUNDS = 7, 3
+BEAM_ROUNDS, QUICK_BEAM_ROUNDS = 3, 1
 CHAIN, BEAM = "six masses, a step at 1000 times", "sliding-free beam, a step at 1000 times to 1e-9"
 OURS = "symflex, enclosed"
 CONTROL_AGREEMENT = 1e-6
@@ -44,14 +45,15 @@ AS_FAST_AS_MPMATH = {CHAIN: 50.0, BEAM: 5.0}
 BEAM_RADIUS = 1e-9
 
 
-def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
-    """Measure both responses, as many rounds as fit in ``limit`` seconds, and compare.
+def measure(extent: Extent) -> Measured:
+    """Measure both responses, as many rounds as fit in the limit, and compare.
 
     Raises
     ------
     RuntimeError
         When the ways do not compute the same response.
     """
+    limit = extent.limit
     chain = symflex.load(FOLDER / "six_mass.toml").transfer_function("V_tip", "F").bind()
     times = np.linspace(0, CHAIN_LAST, POINTS + 1)[1:]
     ways: dict[str, Callable[[], NDArray[Any]]] = {OURS: lambda: chain.step_response(times).values}
@@ -65,7 +67,7 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
         ways["`control.step_response` of state equations"] = lambda: control.step_response(system, every)[1][
             1:
         ]
-    best = fastest(ways, limit, rounds=ROUNDS, agreement=CONTROL_AGREEMENT)
+    best = fastest(ways, limit, rounds=extent.of(ROUNDS, QUICK_ROUNDS), agreement=CONTROL_AGREEMENT)
     found = [Measurement(CHAIN, way, taken, limit) for way, taken in best.items()]
     claims = [Claim(CHAIN, CHAIN_SECONDS, best[OURS], larger_is_better=False, is_ratio=False)]
     claims += [
@@ -81,7 +83,9 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
     beam = model.transfer_function("V_tip", "F").bind()
     times = np.linspace(0, BEAM_LAST, POINTS + 1)[1:]
     response = beam.ramp_response(times, 9)
-    ours = fastest({OURS: lambda: beam.ramp_response(times, 9).values}, limit, rounds=3, agreement=1.0)[OURS]
+    rounds = extent.of(BEAM_ROUNDS, QUICK_BEAM_ROUNDS)
+    ramp = {OURS: lambda: beam.ramp_response(times, 9).values}
+    ours = fastest(ramp, limit, rounds=rounds, agreement=1.0)[OURS]
     seconds, off = _inverted(_beam(model), times, response.values)
     largest = float(np.max(np.abs(response.values)))
     found.append(Measurement(BEAM, OURS, ours, limit))
@@ -96,7 +100,7 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
         ),
         Claim(f"{BEAM}: times as fast as mpmath", AS_FAST_AS_MPMATH[BEAM], seconds / ours),
     ]
-    return found, claims
+    return Measured(found, claims)
 
 
 def _chain(system: Any) -> Callable[[mpmath.mpc], mpmath.mpc]:  # noqa: ANN401

@@ -22,7 +22,7 @@ import scipy.signal
 
 import symflex
 from benchmarks.generated import FLAGS, imported, loaded, pointer
-from benchmarks.measure import Claim, Measurement, fastest
+from benchmarks.measure import Claim, Extent, Measured, Measurement, fastest
 from symflex import pipeline
 from symflex.codegen.c.module import C99
 from symflex.codegen.program.verify import measure_values
@@ -39,7 +39,7 @@ SPECIFICATION = Path(__file__).parents[1] / "derivations" / "eppinger1988" / "si
 POINTS = 1_000_000
 BAND_HZ = (1.0, 200.0)
 """The band of the model's ``[analysis]``, sampled as a Bode diagram is."""
-ROUNDS = 7
+ROUNDS, QUICK_ROUNDS = 7, 3
 TASK = "six masses at a million frequencies"
 AGREEMENT = 1e-12
 """Median of the relative differences between the ways, or they would not do the same."""
@@ -73,8 +73,8 @@ void by_hand(const double *omega, double *real, double *imag, size_t n,
 """
 
 
-def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
-    """Measure all ways, as many rounds as fit in ``limit`` seconds, and compare.
+def measure(extent: Extent) -> Measured:
+    """Measure all ways, as many rounds as fit in the limit, and compare.
 
     Raises
     ------
@@ -86,9 +86,10 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
     ways = _ways()
     errors = {name: measure_values(tf, _listed(way), name).error or math.inf for name, way in ways.items()}
     runs = {name: _run(way, s) for name, way in ways.items()}
-    best = fastest(runs, limit, rounds=ROUNDS, agreement=AGREEMENT)
+    best = fastest(runs, extent.limit, rounds=extent.of(ROUNDS, QUICK_ROUNDS), agreement=AGREEMENT)
     found = [
-        Measurement(TASK, f"{name}, error {errors[name]:.1e}", taken, limit) for name, taken in best.items()
+        Measurement(TASK, f"{name}, error {errors[name]:.1e}", taken, extent.limit)
+        for name, taken in best.items()
     ]
     claims = []
     for name in (CONTROL, FREQS):
@@ -120,7 +121,7 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
                 larger_is_better=False,
             ),
         ]
-    return found, claims
+    return Measured(found, claims)
 
 
 def _listed(way: Way) -> Callable[[NDArray[Any]], list[complex]]:

@@ -11,7 +11,7 @@ import sys
 import time
 from dataclasses import dataclass
 from importlib.util import find_spec
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -20,10 +20,38 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+T = TypeVar("T")
+
 OTHER_PYTHON = "SYMFLEX_BENCH_PYTHON"
 """Environment variable: an interpreter that has the programs symflex is compared with."""
 OWN = 60.0
 """Seconds symflex may take where less is the limit: beside a run that was stopped no ratio means anything."""
+
+
+@dataclass(frozen=True, slots=True)
+class Extent:
+    """How much of every benchmark is measured.
+
+    Parameters
+    ----------
+    limit : float
+        Seconds each way may take.
+    is_quick : bool
+        Whether to measure only what enforced ratios need, at sizes that take seconds.
+    """
+
+    limit: float
+    is_quick: bool = False
+
+    def of(self, full: T, quick: T) -> T:
+        """Return what a quick run takes in place of the full one's sizes, rounds or ways.
+
+        Examples
+        --------
+        >>> Extent(10.0, is_quick=True).of((100, 1_000, 10_000), (100, 1_000))
+        (100, 1000)
+        """
+        return quick if self.is_quick else full
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,6 +159,19 @@ class Claim:
     def holds(self) -> bool:
         """Whether this run keeps the bound."""
         return self.measured >= self.bound if self.larger_is_better else self.measured <= self.bound
+
+
+class Measured(NamedTuple):
+    """What a benchmark returns: times, bounds, and tables of its own in Markdown."""
+
+    measurements: list[Measurement]
+    claims: list[Claim]
+    tables: tuple[str, ...] = ()
+
+    @property
+    def missed(self) -> int:
+        """The number of ratios that miss their bounds."""
+        return sum(claim.is_ratio and not claim.holds for claim in self.claims)
 
 
 def times_as_fast(ours: Measurement, *theirs: Measurement) -> float:

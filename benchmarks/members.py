@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from benchmarks.generated import imported
-from benchmarks.measure import Claim, Measurement, fastest
+from benchmarks.measure import Claim, Extent, Measured, Measurement, fastest
 from symflex import pipeline
 from symflex.codegen.exporters import EXPORTERS
 from symflex.print.forms import print_form
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 BENDING, MASS = 200.0, 0.78
 """E I [N m^2] and rho A [kg/m]."""
-SIZES = (10, 30, 100, 300)
+SIZES, QUICK_SIZES = (10, 30, 100, 300), (10, 30, 100)
 MODES, DIGITS = 10, 20
 POINTS = 1000
 SEARCHED = 30
@@ -43,6 +43,7 @@ TIMES_BISECTION = 3.0
 """Most that twenty proved digits may take, over ten or so from doubles."""
 TIMES_FASTER = 1.0
 """Than dense solves, at least."""
+ROUNDS, QUICK_ROUNDS = 3, 1
 
 
 def lengths(n: int) -> list[Fraction]:
@@ -110,24 +111,29 @@ def bisected(n: int, modes: int) -> NDArray[Any]:
     return np.array(found)
 
 
-def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
-    """Measure growth, roots and responses."""
+def measure(extent: Extent) -> Measured:
+    """Measure growth, roots and, in a full run, responses: dense matrices take seven seconds for these."""
     found: list[Measurement] = []
     shares = []
-    for n in SIZES:
+    for n in extent.of(SIZES, QUICK_SIZES):
         begin = time.process_time()
         model = chain(n)
         (tf,), _ = pipeline.derive_as(model, model.transfer_functions, "nested")
         print_form(tf)
         taken = time.process_time() - begin
-        found.append(Measurement("a chain of beams read, derived and printed", f"{n} beams", taken, limit))
+        found.append(
+            Measurement("a chain of beams read, derived and printed", f"{n} beams", taken, extent.limit)
+        )
         shares.append(taken / n)
-    text = "chains of 30 to 300 beams derived: largest over smallest time per beam"
+    text = "chains of 30 beams and more derived: largest over smallest time per beam"
     claims = [Claim(text, EVEN, max(shares[1:]) / min(shares[1:]), larger_is_better=False)]
-    return [*found, *_roots(claims, limit), *_responses(claims, limit)], claims
+    found += _roots(claims, extent)
+    if not extent.is_quick:
+        found += _responses(claims, extent)
+    return Measured(found, claims)
 
 
-def _roots(claims: list[Claim], limit: float) -> list[Measurement]:
+def _roots(claims: list[Claim], extent: Extent) -> list[Measurement]:
     model = chain(SEARCHED)
 
     def ours() -> NDArray[Any]:
@@ -137,13 +143,13 @@ def _roots(claims: list[Claim], limit: float) -> list[Measurement]:
 
     task = f"{MODES} frequencies of {SEARCHED} beams"
     way, other = f"symflex, {DIGITS} digits proved, with the zeros", "numpy, bisection in doubles"
-    best = _timed({way: ours, other: lambda: bisected(SEARCHED, MODES)}, limit)
+    best = _timed({way: ours, other: lambda: bisected(SEARCHED, MODES)}, extent)
     text = f"{task}: times as long as bisection in doubles"
     claims.append(Claim(text, TIMES_BISECTION, best[way] / best[other], larger_is_better=False))
-    return [Measurement(task, name, seconds, limit) for name, seconds in best.items()]
+    return [Measurement(task, name, seconds, extent.limit) for name, seconds in best.items()]
 
 
-def _responses(claims: list[Claim], limit: float) -> list[Measurement]:
+def _responses(claims: list[Claim], extent: Extent) -> list[Measurement]:
     model = chain(SOLVED)
     tfs, _ = pipeline.derive_as(model, model.transfer_functions, "nested")
     module: Any = imported(EXPORTERS["numpy"].export(model, tfs, "many_beams").text, "many_beams")
@@ -156,11 +162,11 @@ def _responses(claims: list[Claim], limit: float) -> list[Measurement]:
         return np.linalg.solve(matrix, np.broadcast_to(load, (POINTS, len(load)))[..., None])[:, -2, 0]
 
     task = f"{SOLVED} beams at {POINTS} frequencies"
-    best = _timed({"exported numpy": lambda: module.Y_over_F(1j * omega), "numpy by hand": dense}, limit)
+    best = _timed({"exported numpy": lambda: module.Y_over_F(1j * omega), "numpy by hand": dense}, extent)
     text = f"{task}: times as fast as dense dynamic stiffness"
     claims.append(Claim(text, TIMES_FASTER, best["numpy by hand"] / best["exported numpy"]))
-    return [Measurement(task, name, seconds, limit) for name, seconds in best.items()]
+    return [Measurement(task, name, seconds, extent.limit) for name, seconds in best.items()]
 
 
-def _timed(ways: dict[str, Callable[[], NDArray[Any]]], limit: float) -> dict[str, float]:
-    return fastest(ways, limit, rounds=3, agreement=1e-6)
+def _timed(ways: dict[str, Callable[[], NDArray[Any]]], extent: Extent) -> dict[str, float]:
+    return fastest(ways, extent.limit, rounds=extent.of(ROUNDS, QUICK_ROUNDS), agreement=1e-6)

@@ -12,28 +12,34 @@ import subprocess
 import sys
 from dataclasses import dataclass
 from math import nan
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from benchmarks.measure import OWN, PEAK, Claim, Measurement, fastest
+from benchmarks.measure import OWN, PEAK, Claim, Extent, Measured, Measurement, fastest
 from benchmarks.networks import chain, network
 from symflex import pipeline
 from symflex.transfer import bind_nested
 
-SIZES = {
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+SIZES: Final[Mapping[str, tuple[int, ...]]] = {
     "chain": (100, 1_000, 10_000, 50_000),
     "ring": (100, 1_000, 10_000, 50_000),
     "tree": (127, 1_023, 8_191, 32_767),
     "ladder": (100, 1_000, 10_000, 50_000),
     "grid": (100, 900, 3_600),
 }
+QUICK_SIZES: Final[Mapping[str, tuple[int, ...]]] = {"chain": (500, 1_000), "ladder": (500, 1_000)}
 CEILINGS = {1_000: 0.1, 50_000: 2.0}
 """Per length of a chain, seconds the elimination may take."""
 EVEN = 1.02
 """How far the operations per mass may differ between 1000 masses and the largest number."""
 PER_SECOND = 1_000
 """Masses of the largest networks, per second of the limit: to assemble 50,000 takes half a minute."""
-MASSES, POINTS, ROUNDS = 200, 1_000, 5
+MASSES, POINTS = 200, 1_000
+ROUNDS, QUICK_ROUNDS = 5, 1
 TIMES_FASTER = 30.0
 AGREEMENT = 1e-11
 
@@ -99,6 +105,8 @@ def grow(kind: str, n: int, limit: float) -> Growth | None:
 def growth_table(curve: list[Growth]) -> str:
     """Return the growth curve as a table."""
     lines = [
+        "## growth of the nested form",
+        "",
         "| network | masses | elimination [s] | per mass [us] | operations X_first, X_last "
         "| per mass | assembly [s] | memory [MB] |",
         "|---|---:|---:|---:|---:|---:|---:|---:|",
@@ -112,12 +120,13 @@ def growth_table(curve: list[Growth]) -> str:
     return "\n".join(lines)
 
 
-def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
-    """Measure growth and evaluation; the growth curve is printed to stderr as well."""
+def measure(extent: Extent) -> Measured:
+    """Measure growth and evaluation."""
+    limit = extent.limit
     found: list[Measurement] = []
     claims: list[Claim] = []
     curve: list[Growth] = []
-    for kind, sizes in SIZES.items():
+    for kind, sizes in extent.of(SIZES, QUICK_SIZES).items():
         for n in (n for n in sizes if n <= PER_SECOND * limit):
             grown = grow(kind, n, max(limit, OWN))
             seconds = None if grown is None else grown.seconds
@@ -135,12 +144,11 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
             per_mass = [g.first / g.masses for g in ours]
             text = f"nested form, {kind}: largest over smallest number of operations per mass"
             claims.append(Claim(text, EVEN, max(per_mass) / min(per_mass), larger_is_better=False))
-    print(growth_table(curve), file=sys.stderr)
-    measured, claim = _evaluation(limit)
-    return [*found, *measured], [*claims, claim]
+    measured, claim = _evaluation(limit, extent.of(ROUNDS, QUICK_ROUNDS))
+    return Measured([*found, *measured], [*claims, claim], (growth_table(curve),))
 
 
-def _evaluation(limit: float) -> tuple[list[Measurement], Claim]:
+def _evaluation(limit: float, rounds: int) -> tuple[list[Measurement], Claim]:
     """Compare the evaluation of a damped chain with dense solves.
 
     Raises
@@ -160,7 +168,7 @@ def _evaluation(limit: float) -> tuple[list[Measurement], Claim]:
         message = f"the nested form is accurate to {worst:.1e} only"
         raise RuntimeError(message)
     ways = {"nested form": lambda: bound.at(s), "`numpy.linalg.solve`": lambda: _dense(s, values)}
-    best = fastest(ways, limit, rounds=ROUNDS, agreement=1e-6)
+    best = fastest(ways, limit, rounds=rounds, agreement=1e-6)
     task = f"damped chain of {MASSES} masses at {POINTS} frequencies"
     ratio = best["`numpy.linalg.solve`"] / best["nested form"]
     text = f"{task}: times as fast as dense solves, accurate to {worst:.0e}"

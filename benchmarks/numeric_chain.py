@@ -9,17 +9,26 @@ from __future__ import annotations
 
 import sympy
 
-from benchmarks.measure import Claim, Measurement, interpreter_with, milliseconds, run_snippet, times_as_fast
+from benchmarks.measure import (
+    Claim,
+    Extent,
+    Measured,
+    Measurement,
+    interpreter_with,
+    milliseconds,
+    run_snippet,
+    times_as_fast,
+)
 
-SIZES = (10, 50, 200)
+SIZES, QUICK_SIZES = (10, 50, 200), (30,)
 LARGEST = 200
 CEILING = 1.0
 """Seconds the exact transfer function of the largest chain may take."""
 ROOT_CEILINGS = {"undamped": 1.0, "damped": 4.0}
 """Seconds for all its poles and zeros, proved, at 30 digits."""
 FLOOR = 10.0
-"""Times as fast as the fastest other way, at fifty masses."""
-MEDIUM = 50
+"""Times as fast as the fastest other way, at so many masses."""
+COMPARED = (30, 50)
 
 SYMFLEX = """
 import time
@@ -63,6 +72,9 @@ for a in exact:
 print(time.process_time() - begin)
 """
 SYMPY_METHODS = {"det()": "det()", "charpoly()": "charpoly()[-1]"}
+SYMPY_WAY = "SymPy `DomainMatrix.{}` over ZZ[s]"
+FASTEST = SYMPY_WAY.format("charpoly()")
+"""Of the other ways, the one that a quick run compares with."""
 
 END = "print(time.process_time() - begin)"
 FEW = 6
@@ -74,8 +86,9 @@ from benchmarks.numeric_chain import coefficients
 
 num, den = coefficients({n})
 """
+MPMATH = "mpmath `polyroots`, 30 digits"
 POLE_WAYS = {
-    "mpmath `polyroots`, 30 digits": """
+    MPMATH: """
 import mpmath
 
 mpmath.mp.dps = 30
@@ -156,49 +169,50 @@ def coefficients(n: int) -> tuple[list[int], list[int]]:
     return [int(c) for c in num], [int(c) for c in den]
 
 
-def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
-    """Measure the transfer function at every size, and the roots at the largest."""
+def measure(extent: Extent) -> Measured:
+    """Measure the transfer function at every size, the roots at the largest, and those of a short chain."""
+    limit = extent.limit
     found: list[Measurement] = []
     claims: list[Claim] = []
     gone: set[str] = set()
-    for n in SIZES:
+    for n in extent.of(SIZES, QUICK_SIZES):
         task = f"exact transfer function of {n} masses with numbers"
         ours = run_snippet(task, "symflex", SYMFLEX.format(n=n, damped=True, then=""), limit)
-        theirs = [
-            run_snippet(task, way, code, limit, interpreter)
-            for way, (interpreter, code) in _others(n).items()
-            if way not in gone
-        ]
+        theirs, others = [], _others(n)
+        for way in extent.of(list(others), [FASTEST]):
+            if way not in gone:
+                interpreter, code = others[way]
+                theirs.append(run_snippet(task, way, code, limit, interpreter))
         gone |= {other.way for other in theirs if other.seconds is None}
         found += [ours, *theirs]
-        if n == MEDIUM and theirs:
+        if n in COMPARED and theirs:
             ratio = times_as_fast(ours, *theirs)
             claims.append(
                 Claim(f"{n} masses with numbers: times as fast as the fastest other way", FLOOR, ratio)
             )
         if n == LARGEST:
             claims.append(milliseconds(f"{n} masses with numbers: milliseconds", CEILING, ours))
-    for kind, ceiling in ROOT_CEILINGS.items():
+    for kind, ceiling in extent.of(ROOT_CEILINGS, {}).items():
         task = f"poles and zeros of {LARGEST} masses, {kind}, proved at 30 digits"
         then = ROOTS.format(n=LARGEST)
         code = SYMFLEX.format(n=LARGEST, damped=kind == "damped", then=then)
         ours = run_snippet(task, "symflex", code, limit)
         found.append(ours)
         claims.append(milliseconds(f"{task}: milliseconds", ceiling, ours))
-    ours, *theirs = _pole_ways(limit)
+    ours, *theirs = _pole_ways(limit, extent.of(list(POLE_WAYS), [MPMATH]))
     ratio = times_as_fast(ours, *(other for other in theirs if other.way != UNPROVED))
-    text = f"{FEW} masses, poles and zeros: times as fast as mpmath and sympy.physics.control"
+    text = f"{FEW} masses, poles and zeros: times as fast as the fastest other way with digits or proof"
     claims.append(Claim(text, POLES_FLOOR, ratio))
-    return [*found, ours, *theirs], claims
+    return Measured([*found, ours, *theirs], claims)
 
 
-def _pole_ways(limit: float) -> list[Measurement]:
-    """Return how long poles and zeros of a short chain take each way, ours first."""
+def _pole_ways(limit: float, ways: list[str]) -> list[Measurement]:
+    """Return how long poles and zeros of a short chain take, by symflex and by other ways."""
     task = f"poles and zeros of {FEW} masses, damped"
     code = SYMFLEX.format(n=FEW, damped=True, then=ROOTS.format(n=FEW))
     start = COEFFICIENTS.format(n=FEW)
     ours = run_snippet(task, "symflex, proved, 30 digits", code, limit)
-    return [ours, *(run_snippet(task, way, start + c + END, limit) for way, c in POLE_WAYS.items())]
+    return [ours, *(run_snippet(task, way, start + POLE_WAYS[way] + END, limit) for way in ways)]
 
 
 def _others(n: int) -> dict[str, tuple[str, str]]:
@@ -206,8 +220,7 @@ def _others(n: int) -> dict[str, tuple[str, str]]:
     ways: dict[str, tuple[str, str]] = {}
     if (interpreter := interpreter_with("sympy")) is not None:
         for name, method in SYMPY_METHODS.items():
-            way = f"SymPy `DomainMatrix.{name}` over ZZ[s]"
-            ways[way] = interpreter, SYMPY.format(n=n, method=method)
+            ways[SYMPY_WAY.format(name)] = interpreter, SYMPY.format(n=n, method=method)
     if (interpreter := interpreter_with("lcapy")) is not None:
         ways["Lcapy `Circuit.impedance`"] = interpreter, LCAPY.format(n=n)
     return ways

@@ -20,7 +20,7 @@ import mpmath
 from mpmath import mp, mpc, mpf
 
 import symflex
-from benchmarks.measure import OWN, Claim, Measurement, run_snippet, times_as_fast
+from benchmarks.measure import OWN, Claim, Extent, Measured, Measurement, run_snippet, times_as_fast
 from symflex.roots import Budget, Mode, Modes, Position, Rectangle
 from symflex.roots.distributed.side import Side
 from symflex.roots.locate import locate
@@ -287,8 +287,9 @@ print(taken)
 # ------------------------------------------------------------------------------------------- the report
 
 
-def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
-    """Measure all ways, each with ``limit`` seconds, and compare."""
+def measure(extent: Extent) -> Measured:
+    """Measure all ways, each within the limit, and compare."""
+    limit = extent.limit
     measurements: list[Measurement] = []
     claims: list[Claim] = []
 
@@ -298,17 +299,11 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
         measurements.extend([found] if found else [])
         return found
 
-    for digits in (50, 1000):
+    for digits in extent.of((50, 1000), (50,)):
         task = f"sliding-free beam, {MODES} pairs of poles at {digits} digits"
         ours = run(task, "symflex", f"time_beam({MODES}, {digits})")
         theirs = run(task, "`mpmath.findroot`, guesses given", f"time_findroot({MODES}, {digits})")
         claims.append(_ratio(f"{task}: times as fast as `findroot`", FASTER_THAN_FINDROOT, theirs, ours))
-    task = f"sliding-free beam, pole number {MILLION} at 50 digits"
-    run(task, "symflex", f"time_one({MILLION}, 50)")
-    run(task, "`mpmath.findroot`, guess given", f"time_findroot(1, 50, {MILLION})")
-    task = "sliding-free beam by the general engine, 50 digits"
-    run(task, "50 modes", "time_generally(50, 50)")
-    run(task, "200 modes", "time_generally(200, 50)")
     interpreter = os.environ.get(CXROOTS_PYTHON, sys.executable)
     if _has_cxroots(interpreter):
         task = "sliding-free beam by the general engine, ten poles"
@@ -316,6 +311,14 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
         theirs = _run(task, "cxroots, doubles", CXROOTS, limit, interpreter)
         measurements.extend([theirs] if theirs else [])
         claims.append(_ratio("ten poles: times as fast as cxroots", FASTER_THAN_CXROOTS, theirs, ours))
+    if extent.is_quick:
+        return Measured(measurements, claims)
+    task = f"sliding-free beam, pole number {MILLION} at 50 digits"
+    run(task, "symflex", f"time_one({MILLION}, 50)")
+    run(task, "`mpmath.findroot`, guess given", f"time_findroot(1, 50, {MILLION})")
+    task = "sliding-free beam by the general engine, 50 digits"
+    run(task, "50 modes", "time_generally(50, 50)")
+    run(task, "200 modes", "time_generally(200, 50)")
     task = f"Kelvin-Voigt cantilever with mass and dashpot, box of {DAMPED_POLES} poles at 50 digits"
     run(task, "symflex", "time_damped_box(50)")
     for kind, ceiling in CEILINGS.items():
@@ -331,7 +334,7 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
             is_ratio=False,
         )
     )
-    return measurements, claims
+    return Measured(measurements, claims)
 
 
 def _run(

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import os
 import sys
-import tempfile
 
-from benchmarks.measure import Claim, Measurement, time_commands
+from benchmarks.measure import Claim, Extent, Measured, Measurement, time_commands
 
-REPEATS = 21
+REPEATS, QUICK_REPEATS = 21, 3
 HELP_CEILING = 2.0
 CEILINGS = {"check": 1.2, "derive": 1.2, "roots": 1.8}
 SMALL = "derivations/eppinger1988/rigid_body.toml"
@@ -24,33 +23,32 @@ COMMANDS = {
     "check": ("-m", "symflex", "check", SMALL),
     "derive": ("-m", "symflex", "derive", SMALL),
     "roots": ("-m", "symflex", "roots", SMALL),
-    "derive of a Timoshenko beam": ("-m", "symflex", "derive", DISTRIBUTED),
 }
+NOT_COMPARED = {"derive of a Timoshenko beam": ("-m", "symflex", "derive", DISTRIBUTED)}
 
 
-def measure() -> tuple[list[Measurement], list[Claim]]:
+def measure(extent: Extent) -> Measured:
     """Measure each command and compare it with the import that stands first.
 
-    Times are processor times, medians of runs that take turns. All modules are compiled by a round that does
-    not count, as they are when a package is installed.
+    Times are processor times, medians of runs that take turns. Modules that are not compiled yet are compiled
+    by a round that does not count.
     """
-    with tempfile.TemporaryDirectory() as folder:
-        environment = {k: v for k, v in os.environ.items() if k != "PYTHONDONTWRITEBYTECODE"}
-        environment["PYTHONPYCACHEPREFIX"] = f"{folder}/compiled"
-        found = _time("start-up", HELP, environment)
-        compared = _time("start-up of commands", COMMANDS, environment)
+    repeats = extent.of(REPEATS, QUICK_REPEATS)
+    found = _time("start-up", HELP, repeats)
+    compared = _time("start-up of commands", COMMANDS | extent.of(NOT_COMPARED, {}), repeats)
     ours, click, _ = found
     text = "`symflex --help`: times as long as importing click"
     claims = [Claim(text, HELP_CEILING, ours.at_least / click.at_least, larger_is_better=False)]
-    sympy, *commands = compared
-    for row in commands:
+    sympy, *others = compared
+    for row in others:
         if row.way in CEILINGS:
             text = f"`symflex {row.way}`, of a small model: times as long as importing SymPy"
             ratio = row.at_least / sympy.at_least
             claims.append(Claim(text, CEILINGS[row.way], ratio, larger_is_better=False))
-    return [*found, *compared], claims
+    return Measured([*found, *compared], claims)
 
 
-def _time(task: str, commands: dict[str, tuple[str, ...]], environment: dict[str, str]) -> list[Measurement]:
+def _time(task: str, commands: dict[str, tuple[str, ...]], repeats: int) -> list[Measurement]:
+    environment = {k: v for k, v in os.environ.items() if k != "PYTHONDONTWRITEBYTECODE"}
     arguments = {way: (sys.executable, *words) for way, words in commands.items()}
-    return time_commands(task, arguments, REPEATS, environment)
+    return time_commands(task, arguments, repeats, environment)

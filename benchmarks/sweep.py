@@ -18,14 +18,14 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.measure import OWN, Claim, Measurement, run_snippet, times_as_fast
+from benchmarks.measure import OWN, Claim, Extent, Measured, Measurement, run_snippet, times_as_fast
 from symflex import pipeline
 from symflex.options import SweepOptions
 from symflex.roots import Modes
 from symflex.sweep import Sweep, read_design
 from symflex.sweep.run import open_executor
 
-POINTS = (2500, 5000, 10_000)
+POINTS, QUICK_POINTS = (2500, 5000, 10_000), (10_000,)
 MODES = 10
 WORKERS = 2
 MPMATH_POINTS = 20
@@ -36,6 +36,8 @@ CEILING = 20.0
 """Seconds for all 10,000 on two processors that do nothing else."""
 SEARCHED = 50
 MEBIBYTE = 1024
+LARGEST_MEMORY = 1024.0
+"""[MiB]."""
 BEAM = Path(__file__).parents[1] / "derivations" / "eppinger1988" / "sliding_free_beam.toml"
 OVER = ("E=+-5%", "I=+-10%", "rho=7700:8000", "A=+-10%", "l=+-2%")
 I_NOMINAL, A_NOMINAL = 4000e-12, 480e-6
@@ -149,60 +151,53 @@ def peak_memory(points: int) -> float:
     return max(resource.getrusage(each).ru_maxrss for each in who) / MEBIBYTE
 
 
-def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
-    """Measure the sweeps, each way with ``limit`` seconds."""
+def measure(extent: Extent) -> Measured:
+    """Measure the sweeps, each way within the limit; a quick run has the largest alone."""
+    limit = extent.limit
     measurements: list[Measurement] = []
 
     def run(task: str, way: str, call: str, limit: float = limit) -> Measurement:
-        code = f"from benchmarks import sweep\nif __name__ == '__main__':\n    print(sweep.{call})"
-        found = run_snippet(task, way, code, limit)
-        measurements.append(found)
-        return found
+        result = _run(task, way, call, limit)
+        measurements.append(result)
+        return result
 
     task = f"sweep of sliding-free beams, {MODES} poles each, {WORKERS} processes"
-    ours = [run(task, f"{points} points", f"time_sweep({points})", max(limit, OWN)) for points in POINTS]
-    most = POINTS[-1]
+    points = extent.of(POINTS, QUICK_POINTS)
+    ours = {n: run(task, f"{n} points", f"time_sweep({n})", max(limit, OWN)) for n in points}
+    most = points[-1]
+    whole = ours[most]
     task = f"{MODES} poles of {most} sliding-free beams"
     measurements.append(
-        Measurement(task, f"symflex sweep, certified, {WORKERS} processes", ours[-1].seconds, ours[-1].limit)
+        Measurement(task, f"symflex sweep, certified, {WORKERS} processes", whole.seconds, whole.limit)
     )
+    way = f"`mpmath.findroot` at 20 digits, guesses given (from {MPMATH_POINTS})"
+    findroot = run(task, way, f"time_findroot({most})")
+    way = f"a certified search at every point, one process (from {SEARCHED})"
+    searches = run(task, way, f"time_searches({most})")
+    name = f"sweep of {most} beams"
+    claims = [
+        Claim(f"{name}: times as fast as `findroot`", FASTER_THAN_FINDROOT, times_as_fast(whole, findroot)),
+        Claim(f"{name}: times as fast as searches", FASTER_THAN_SEARCHES, times_as_fast(whole, searches)),
+    ]
+    if extent.is_quick:
+        return Measured(measurements, claims)
     run(task, "scipy `brentq`, brackets given, one process", f"time_brentq({most})")
-    findroot = run(
-        task,
-        f"`mpmath.findroot` at 20 digits, guesses given (from {MPMATH_POINTS})",
-        f"time_findroot({most})",
-    )
-    searches = run(
-        task, f"a certified search at every point, one process (from {SEARCHED})", f"time_searches({most})"
-    )
     # Differences would tell more, but small ones are mostly noise.
-    growth = ours[2].taken / (2 * ours[1].taken)
+    growth = whole.taken / (2 * ours[most // 2].taken)
+    text = f"{name}: time per point over that of half as many"
+    claims.append(Claim(text, LINEAR_WITHIN, growth, larger_is_better=False))
+    claims.append(Claim(f"{name} [s]", CEILING, whole.taken, larger_is_better=False, is_ratio=False))
     try:
-        code = (
-            f"from benchmarks import sweep\nif __name__ == '__main__':\n    print(sweep.peak_memory({most}))"
-        )
-        memory = run_snippet(task, "memory", code, max(limit, OWN)).taken
+        memory = _run(task, "memory", f"peak_memory({most})", max(limit, OWN)).taken
     except subprocess.CalledProcessError as failure:
         print(f"not done: memory of a sweep: {failure.stderr[-200:]}", file=sys.stderr)
         memory = math.nan
-    name = f"sweep of {most} beams"
-    return measurements, [
-        Claim(
-            f"{name}: times as fast as `findroot`", FASTER_THAN_FINDROOT, times_as_fast(ours[-1], findroot)
-        ),
-        Claim(f"{name}: times as fast as searches", FASTER_THAN_SEARCHES, times_as_fast(ours[-1], searches)),
-        Claim(
-            f"{name}: time per point over that of half as many",
-            LINEAR_WITHIN,
-            growth,
-            larger_is_better=False,
-        ),
-        Claim(f"{name} [s]", CEILING, ours[-1].taken, larger_is_better=False, is_ratio=False),
-        Claim(
-            f"{name}: largest memory of a process [MiB]",
-            1024.0,
-            memory,
-            larger_is_better=False,
-            is_ratio=False,
-        ),
-    ]
+    text = f"{name}: largest memory of a process [MiB]"
+    claims.append(Claim(text, LARGEST_MEMORY, memory, larger_is_better=False, is_ratio=False))
+    return Measured(measurements, claims)
+
+
+def _run(task: str, way: str, call: str, limit: float) -> Measurement:
+    """Measure a call of this module; processes that it starts import it again."""
+    code = f"from benchmarks import sweep\nif __name__ == '__main__':\n    print(sweep.{call})"
+    return run_snippet(task, way, code, limit)

@@ -21,7 +21,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from benchmarks.generated import loaded, responding
-from benchmarks.measure import Claim, Measurement, fastest
+from benchmarks.measure import Claim, Extent, Measured, Measurement, fastest
 from symflex import pipeline
 from symflex.codegen.c.module import C99
 from symflex.roots import Modes
@@ -59,6 +59,7 @@ STEPS = 60
 HIGHEST = 90.0
 """Square root of the highest angular frequency sought: above that of the fifth mode, 83.6."""
 FEW_DIGITS = 20
+ROUNDS, QUICK_ROUNDS = 2, 1
 TIMES_COLLOCATION = 5000.0
 """Most that proved digits, with the zeros and a count, may take over one dense eigenvalue problem of 2 ms."""
 TIMES_SHOOTING = 20.0
@@ -150,8 +151,8 @@ def by_series() -> NDArray[Any]:
         return np.array([float(mpmath.findroot(determinant, (339, 342), solver="secant", tol=1e-12))])
 
 
-def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
-    """Measure the frequencies of one beam."""
+def measure(extent: Extent) -> Measured:
+    """Measure the frequencies of one beam, and exported C."""
     found: list[Measurement] = []
     claims: list[Claim] = []
     _compare(
@@ -162,36 +163,38 @@ def measure(limit: float) -> tuple[list[Measurement], list[Claim]]:
             "numpy, collocation in doubles": collocated,
             "scipy, solve_ivp and brentq": shot,
         },
-        limit,
+        extent,
     )
     own, dense, shooting = (m.at_least for m in found)
     text = "5 frequencies of a tapered beam: times as long as collocation in doubles"
     claims.append(Claim(text, TIMES_COLLOCATION, own / dense, larger_is_better=False))
     text = "5 frequencies of a tapered beam: times as long as solve_ivp and brentq"
     claims.append(Claim(text, TIMES_SHOOTING, own / shooting, larger_is_better=False))
+    if extent.is_quick:
+        return Measured(found, claims)
     _compare(
         found,
         f"the first frequency of a tapered beam to {FEW_DIGITS} digits",
         {"symflex, proved, with a zero": lambda: ours(1, FEW_DIGITS), "mpmath, odefun": by_series},
-        limit,
+        extent,
     )
     text = "the first frequency of a tapered beam: times as fast as mpmath's odefun"
     claims.append(Claim(text, TIMES_SERIES, found[-1].at_least / found[-2].at_least))
     if shutil.which("cc") is None:
         print("skipped, there is no C compiler `cc`: exported C of a tapered beam", file=sys.stderr)
-        return found, claims
+        return Measured(found, claims)
     for flag in ("-O2", "-O3"):
         times = []
         for name, text in (("tapered", MODEL), ("uniform", re.sub(r"\*\(1 - .*\)\^[24]", "", MODEL))):
             task = f"exported C ({flag}) of a {name} beam at {POINTS_OF_C} frequencies"
-            best = fastest({name: _in_c(text, flag)}, limit, rounds=20, agreement=1e-7)
-            times += [Measurement(task, way, seconds, limit) for way, seconds in best.items()]
+            best = fastest({name: _in_c(text, flag)}, extent.limit, rounds=20, agreement=1e-7)
+            times += [Measurement(task, way, seconds, extent.limit) for way, seconds in best.items()]
         found += times
         text = f"exported C ({flag}) of a tapered beam: times as long as that of a uniform one"
         ratio = times[0].at_least / times[1].at_least
         # What else shares a processor slows one of them more than the other.
         claims.append(Claim(text, TIMES_UNIFORM, ratio, larger_is_better=False, is_ratio=False))
-    return found, claims
+    return Measured(found, claims)
 
 
 def _in_c(text: str, flag: str) -> Callable[[], NDArray[Any]]:
@@ -203,7 +206,7 @@ def _in_c(text: str, flag: str) -> Callable[[], NDArray[Any]]:
 
 
 def _compare(
-    found: list[Measurement], task: str, ways: dict[str, Callable[[], NDArray[Any]]], limit: float
+    found: list[Measurement], task: str, ways: dict[str, Callable[[], NDArray[Any]]], extent: Extent
 ) -> None:
-    best = fastest(ways, limit, rounds=2, agreement=1e-7)
-    found += [Measurement(task, name, seconds, limit) for name, seconds in best.items()]
+    best = fastest(ways, extent.limit, rounds=extent.of(ROUNDS, QUICK_ROUNDS), agreement=1e-7)
+    found += [Measurement(task, name, seconds, extent.limit) for name, seconds in best.items()]
