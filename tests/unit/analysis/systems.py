@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 from symflex.equations import assemble
-from symflex.errors import Source
+from symflex.errors import Source, SymflexError
 from symflex.model import load_model
 from symflex.transfer import bind, derive_all
 
@@ -16,3 +16,12 @@ def rational(expression):
     """Return y/u, bound, for y = expression * u."""
     (tf,) = derived(f'inputs.u = {{}}\noutputs.y = "({expression})*u"')
     return bind(tf)
+
+
+def words(call, *given, **named):
+    """Return the kind and the words of the error that a call raises; "" for none."""
+    try:
+        call(*given, **named)
+    except SymflexError as error:
+        return f"{type(error).__name__} {error}"
+    return ""

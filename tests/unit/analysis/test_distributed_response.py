@@ -27,11 +27,11 @@ def sliding_free(s):
         return complex((2 + cosh(2 * q) + cos(2 * q)) / below), complex(4 * cosh(q) * cos(q) / below)
 
 
-@pytest.mark.parametrize("number", [0, 1])
-def test_values_are_those_of_the_closed_form(number):
-    values = respond(bound(SLIDING_FREE, number), OMEGA).values
-    expected = [sliding_free(1j * omega)[number] for omega in OMEGA]
-    assert np.abs(values - expected).max() <= 1e-14 * np.abs(expected).max()
+def test_values_are_those_of_the_closed_form():
+    for number in [0, 1]:
+        values = respond(bound(SLIDING_FREE, number), OMEGA).values
+        expected = [sliding_free(1j * omega)[number] for omega in OMEGA]
+        assert np.abs(values - expected).max() <= 1e-14 * np.abs(expected).max(), number
 
 
 def test_the_colocated_phase_alternates_between_lag_and_lead():
@@ -45,9 +45,9 @@ def test_the_phase_at_the_tip_loses_half_a_turn_at_every_pole():
 
 
 def test_the_phase_does_not_depend_on_the_grid():
-    # 24 poles below 5000 rad/s, (n - 1/4)^2 pi^2; the tip's zeros are real.
-    (phase,) = np.degrees(respond(bound(SLIDING_FREE, 1), [5500.0]).phase)
-    poles = sum(1 for n in range(1, 40) if ((n - 0.25) * np.pi) ** 2 < 5500)
+    # 10 poles below 1000 rad/s, (n - 1/4)^2 pi^2; the tip's zeros are real.
+    (phase,) = np.degrees(respond(bound(SLIDING_FREE, 1), [1000.0]).phase)
+    poles = sum(1 for n in range(1, 40) if ((n - 0.25) * np.pi) ** 2 < 1000)
     assert phase == pytest.approx(-90 - 180 * poles)
 
 
@@ -56,24 +56,21 @@ def test_negative_frequencies_have_the_opposite_phase():
     assert response.phase[0] == pytest.approx(-response.phase[1])
 
 
-@pytest.mark.slow
 def test_the_phase_of_a_lossy_beam_is_continuous_through_its_resonances():
-    omega = np.geomspace(1, 300, 4000)
-    phase = respond(bound(KELVIN_VOIGT), omega).phase
+    # It turns by 1/zeta times the logarithmic step at a resonance, at most; zeta = 0.02 at the lowest.
+    phase = respond(bound(KELVIN_VOIGT), np.geomspace(1, 300, 800)).phase
     assert np.abs(np.diff(phase)).max() < 0.5
 
 
-@pytest.mark.slow
 def test_a_delay_outside_a_loop_lags_without_bound():
     # exp(-s/2) times a loop whose phase tends to -90 degrees.
-    phase = respond(bound(DELAY_LOOP, 1), [1000.0]).phase - respond(bound(DELAY_LOOP), [1000.0]).phase
-    assert phase == pytest.approx([-500])
+    phase = respond(bound(DELAY_LOOP, 1), [100.0]).phase - respond(bound(DELAY_LOOP), [100.0]).phase
+    assert phase == pytest.approx([-50])
 
 
-@pytest.mark.slow
 def test_far_up_a_delay_within_a_loop_does_not_matter():
-    phase = np.degrees(respond(bound(DELAY_LOOP), [0.01, 1000.0]).phase)
-    direct = np.degrees(cmath.phase(1 / (1000j + 2 * cmath.exp(-500j))))
+    phase = np.degrees(respond(bound(DELAY_LOOP), [0.01, 100.0]).phase)
+    direct = np.degrees(cmath.phase(1 / (100j + 2 * cmath.exp(-50j))))
     assert phase == pytest.approx([0, direct], abs=1)
 
 
@@ -98,14 +95,6 @@ def test_the_band_shown_ends_a_little_above_the_last_pole():
     last = max(root.frequency_hz() for root in found.poles)
     following = max(root.frequency_hz() for root in locate(bound(ROD), Modes(4)).poles)
     assert last < high < following * 1.1
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("kind", ["bode", "poles_zeros"])
-def test_distributed_systems_are_drawn(kind):
-    bounds = [bound(SLIDING_FREE), bound(SLIDING_FREE, 1)]
-    figure = draw(kind, [each.source for each in bounds], bounds)
-    assert len(figure.axes) == 2
 
 
 def test_a_panel_reaches_up_to_the_highest_of_the_default_poles():

@@ -8,20 +8,22 @@ import pytest
 
 from symflex import pipeline
 from symflex.analysis.response import adaptive_grid, default_band, respond, roots_if_found
-from symflex.errors import UsageError
 from symflex.roots.locate import locate
 from tests.unit.analysis.systems import rational
+from tests.unit.refusals import refusal
 
 TURN = 2 * math.pi
 
 
-@pytest.mark.parametrize("damping", ["0.1", "0.01", "1e-4", "1e-8"])
-def test_the_peak_of_a_resonance_is_on_the_grid(damping):
-    bound = rational(f"1/(s^2 + 2*{damping}*s + 1)")
-    zeta = float(damping)
-    peak = 1 / (2 * zeta * math.sqrt(1 - zeta**2))  # of a single degree of freedom; Ewins 2000, section 2.2
-    grid = adaptive_grid(bound, 0.01, 1)
-    assert respond(bound, grid).magnitude.max() == pytest.approx(peak, rel=1e-3)
+def test_the_peak_of_a_resonance_is_on_the_grid():
+    for damping in ["0.1", "0.01", "1e-4", "1e-8"]:
+        bound = rational(f"1/(s^2 + 2*{damping}*s + 1)")
+        zeta = float(damping)
+        peak = 1 / (
+            2 * zeta * math.sqrt(1 - zeta**2)
+        )  # of a single degree of freedom; Ewins 2000, section 2.2
+        grid = adaptive_grid(bound, 0.01, 1)
+        assert respond(bound, grid).magnitude.max() == pytest.approx(peak, rel=1e-3), damping
 
 
 def test_the_trough_of_a_lightly_damped_zero_is_on_the_grid():
@@ -36,39 +38,27 @@ def test_the_phase_advances_by_small_steps_through_a_resonance():
     assert np.abs(np.diff(phase)).max() < math.radians(10)
 
 
-def test_the_grid_keeps_off_a_pole_on_the_axis():
-    bound = rational("1/(s^2 + 1)")
-    low = 1 / TURN
-    assert np.abs(adaptive_grid(bound, low, 10 * low) - 1).min() == pytest.approx(1e-7, rel=0.02)
-
-
-def test_the_grid_closes_in_on_a_pole_on_the_axis_from_both_sides():
+def test_the_grid_closes_in_on_a_pole_on_the_axis_from_both_sides_and_keeps_off_it():
+    grid = adaptive_grid(rational("1/(s^2 + 1)"), 1 / TURN, 10 / TURN)
+    assert np.abs(grid - 1).min() == pytest.approx(1e-7, rel=0.02)
     grid = adaptive_grid(rational("1/(s^2 + 1)"), 0.01, 1)
     assert {-1, 1} == set(np.sign(grid[np.abs(grid - 1) < 1e-6] - 1))
 
 
-def test_the_grid_increases():
+def test_the_grid_increases_and_ends_at_the_band():
     grid = adaptive_grid(rational("(s^2 + 2)/((s^2 + 1)*(s^2 + 1e-3*s + 2.001))"), 0.01, 1)
     assert (np.diff(grid) > 0).all()
-
-
-def test_the_grid_ends_at_the_band():
-    grid = adaptive_grid(rational("1/(s^2 + 1e-3*s + 1)"), 0.01, 1)
     assert (grid[0], grid[-1]) == pytest.approx((0.01 * TURN, TURN), rel=1e-15)
 
 
-def test_a_function_without_resonances_gets_the_points_asked_for():
-    assert len(adaptive_grid(rational("1/(s + 1)"), 0.01, 1, points=77)) == 77
-
-
 def test_points_are_added_only_around_resonances_in_the_band():
+    assert len(adaptive_grid(rational("1/(s + 1)"), 0.01, 1, points=77)) == 77
     assert len(adaptive_grid(rational("1/(s^2 + 1e-3*s + 1)"), 10, 100, points=77)) == 77
 
 
-@pytest.mark.parametrize(("low", "high"), [(0, 1), (-1, 1), (2, 1), (1, 1), (1, math.inf), (math.nan, 1)])
-def test_a_band_must_be_positive_and_not_empty(low, high):
-    with pytest.raises(UsageError, match="SF227"):
-        adaptive_grid(rational("1/(s + 1)"), low, high)
+def test_a_band_must_be_positive_and_not_empty():
+    for low, high in ((0, 1), (-1, 1), (2, 1), (1, 1), (1, math.inf), (math.nan, 1)):
+        assert refusal(adaptive_grid, rational("1/(s + 1)"), low, high) == "UsageError SF227", (low, high)
 
 
 def test_a_grid_has_two_points_or_more():
@@ -76,18 +66,14 @@ def test_a_grid_has_two_points_or_more():
         adaptive_grid(rational("1/(s + 1)"), 1, 2, points=1)
 
 
-def test_the_default_band_spans_a_decade_beyond_poles_and_zeros():
-    found = locate(rational("s*(s + 200)/(s^2 + 0.1*s + 9)"))
-    assert default_band(found) == pytest.approx((3 / TURN / 10, 200 / TURN * 10), rel=1e-14)
-
-
-def test_the_default_band_of_two_functions_shows_both():
-    maps = [locate(rational("1/(s + 1)")), locate(rational("1/(s + 50)"))]
-    assert default_band(*maps) == pytest.approx((1 / TURN / 10, 50 / TURN * 10), rel=1e-14)
-
-
-def test_the_default_band_of_integrators_alone_is_a_decade_around_one_hertz():
-    assert default_band(locate(rational("1/s^2"))) == (0.1, 10)
+def test_the_default_band_spans_a_decade_beyond_poles_and_zeros_of_all_functions():
+    for expressions, low, high in (
+        (["s*(s + 200)/(s^2 + 0.1*s + 9)"], 3 / TURN / 10, 200 / TURN * 10),
+        (["1/(s + 1)", "1/(s + 50)"], 1 / TURN / 10, 50 / TURN * 10),
+        (["1/s^2"], 0.1, 10),  # integrators alone: a decade around one hertz
+    ):
+        found = default_band(*(locate(rational(each)) for each in expressions))
+        assert found == pytest.approx((low, high), rel=1e-14), expressions
 
 
 def without_roots(bound):
@@ -103,15 +89,9 @@ def test_where_no_root_is_known_the_grid_follows_the_values_through_a_resonance(
     # 1/(s^2 + 2 zeta s + 1) with zeta = 1/100 has its peak 1/(2 zeta sqrt(1 - zeta^2)) at sqrt(1 - 2 zeta^2).
     bound = rational("1/(s^2 + s/50 + 1)")
     omega = adaptive_grid(bound, 0.01, 1.0, 100, roots=without_roots(bound))
-    peak = np.abs(1 / (1 - omega**2 + 1j * omega / 50)).max()
-    assert peak == pytest.approx(50 / math.sqrt(1 - 1e-4), rel=1e-3)
-
-
-def test_where_no_root_is_known_the_values_turn_little_from_point_to_point():
-    bound = rational("1/(s^2 + s/50 + 1)")
-    omega = adaptive_grid(bound, 0.01, 1.0, 100, roots=without_roots(bound))
-    phase = np.unwrap(np.angle(1 / (1 - omega**2 + 1j * omega / 50)))
-    assert np.abs(np.diff(phase)).max() < math.radians(15)
+    values = 1 / (1 - omega**2 + 1j * omega / 50)
+    assert np.abs(values).max() == pytest.approx(50 / math.sqrt(1 - 1e-4), rel=1e-3)
+    assert np.abs(np.diff(np.unwrap(np.angle(values)))).max() < math.radians(15)
 
 
 def test_a_grid_without_roots_ends_where_values_have_no_logarithm():

@@ -13,6 +13,7 @@ from numpy import cos, cosh, exp, pi, sin, sinh
 import symflex
 from symflex.errors import UsageError
 from tests.independent.classics import CLAMPED_CLAMPED, CLAMPED_FREE
+from tests.unit.analysis.systems import words
 
 ROOT = Path(__file__).parents[4]
 CLASSICS = ROOT / "derivations" / "classics"
@@ -72,26 +73,27 @@ def wavenumber(right_side, start):
 # ------------------------------------------------------------------------------------- lumped networks
 
 
-@pytest.mark.parametrize("mode", range(1, 6))
-def test_an_undamped_chain_moves_as_the_eigenvectors_of_mass_and_stiffness(mode):
+def test_an_undamped_chain_moves_as_the_eigenvectors_of_mass_and_stiffness():
     values, vectors = np.linalg.eig(laplacian(SPRINGS) / np.array(MASSES)[:, None])
-    expected = scaled(vectors[:, np.argsort(values)[mode - 1]])
-    shape = chain().mode_shape(mode)
-    assert shape.is_real
-    assert vector(shape) == pytest.approx(expected, abs=1e-12)
+    bound = chain()
+    for mode, place in enumerate(np.argsort(values), start=1):
+        shape = bound.mode_shape(mode)
+        assert shape.is_real, mode
+        assert vector(shape) == pytest.approx(scaled(vectors[:, place]), abs=1e-12), mode
 
 
-@pytest.mark.parametrize("mode", range(1, 6))
-def test_a_damped_chain_moves_as_the_eigenvectors_of_its_state_equations(mode):
+def test_a_damped_chain_moves_as_the_eigenvectors_of_its_state_equations():
     inverse = np.diag(1 / np.array(MASSES))
     state = np.block(
         [[np.zeros((5, 5)), np.eye(5)], [-inverse @ laplacian(SPRINGS), -inverse @ laplacian(DAMPERS)]]
     )
     values, vectors = np.linalg.eig(state)
-    shape = chain(DAMPERS).mode_shape(mode)
-    column = np.argmin(np.abs(values - complex(shape.pole)))
-    assert not shape.is_real
-    assert vector(shape) == pytest.approx(scaled(vectors[:5, column]), abs=1e-10)
+    bound = chain(DAMPERS)
+    for mode in range(1, 6):
+        shape = bound.mode_shape(mode)
+        column = np.argmin(np.abs(values - complex(shape.pole)))
+        assert not shape.is_real, mode
+        assert vector(shape) == pytest.approx(scaled(vectors[:5, column]), abs=1e-10), mode
 
 
 def test_modes_are_orthogonal_with_respect_to_mass_and_stiffness():
@@ -141,62 +143,65 @@ def test_a_node_with_two_components_is_named_by_both_or_by_itself():
 # --------------------------------------------------------------------------------- beams of textbooks
 
 
-@pytest.mark.parametrize("mode", range(1, 6))
-def test_a_cantilever_bends_as_blevins_prints(mode):
-    beta = float(CLAMPED_FREE[:30]) if mode == 1 else wavenumber(-1, (mode - 0.5) * pi)
-    shape = classic("clamped_free", "W_tip", "F").mode_shape(mode)
-    expected = clamped(X, beta)
-    assert shape.along("w", X) == pytest.approx(expected / expected[-1], abs=1e-9)
+def test_a_cantilever_bends_as_blevins_prints():
+    bound = classic("clamped_free", "W_tip", "F")
+    for mode in (1, 2, 5):
+        beta = float(CLAMPED_FREE[:30]) if mode == 1 else wavenumber(-1, (mode - 0.5) * pi)
+        expected = clamped(X, beta)
+        shape = bound.mode_shape(mode)
+        assert shape.along("w", X) == pytest.approx(expected / expected[-1], abs=1e-9), mode
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("mode", range(1, 3))
-def test_a_clamped_beam_bends_as_blevins_prints(mode):
-    beta = float(CLAMPED_CLAMPED[:30]) if mode == 1 else wavenumber(1, 3.5 * pi)  # the symmetric ones
-    shape = classic("clamped_clamped", "W_mid", "p").mode_shape(mode)
-    expected = clamped(X, beta) / clamped(0.5, beta) * shape.along("w", 0.5)
-    assert shape.along("w", X) == pytest.approx(expected, abs=1e-9)
-    assert np.abs(shape.along("w", np.linspace(0, 1, 2001))).max() == pytest.approx(1, abs=1e-5)
+def test_a_clamped_beam_bends_as_blevins_prints():
+    shape = classic("clamped_clamped", "W_mid", "p").mode_shape(1)
+    beta = float(CLAMPED_CLAMPED[:30])
+    assert shape.along("w", X) == pytest.approx(clamped(X, beta) / clamped(0.5, beta), abs=1e-9)
 
 
-@pytest.mark.parametrize("mode", range(1, 5))
-def test_a_pinned_beam_is_a_sine_with_the_forces_of_its_derivatives(mode):
-    shape = classic("pinned_pinned", "theta_far", "tau").mode_shape(mode)
-    q, stiffness = mode * pi, 200e9 * 4e-9
-    assert shape.along("bar", X) == pytest.approx(sin(q * X), abs=1e-9)
-    assert shape.along("bar", X, "theta") == pytest.approx(q * cos(q * X), rel=1e-9, abs=1e-9)
-    assert shape.along("bar", X, "tau") == pytest.approx(-stiffness * q**2 * sin(q * X), rel=1e-9, abs=1e-7)
-    assert shape.along("bar", X, "f") == pytest.approx(stiffness * q**3 * cos(q * X), rel=1e-9, abs=1e-6)
+def test_a_pinned_beam_is_a_sine_with_the_forces_of_its_derivatives():
+    bound, stiffness = classic("pinned_pinned", "theta_far", "tau"), 200e9 * 4e-9
+    for mode in (1, 4):
+        shape, q = bound.mode_shape(mode), mode * pi
+        for quantity, expected, off in (
+            ("y", sin(q * X), 1e-9),
+            ("theta", q * cos(q * X), 1e-9),
+            ("tau", -stiffness * q**2 * sin(q * X), 1e-7),
+            ("f", stiffness * q**3 * cos(q * X), 1e-6),
+        ):
+            found = shape.along("bar", X, quantity)
+            assert found == pytest.approx(expected, rel=1e-9, abs=off), (mode, quantity)
 
 
-@pytest.mark.parametrize("mode", range(1, 4))
-def test_a_beam_whose_ends_slide_is_a_cosine(mode):
-    shape = classic("sliding_sliding", "V_far", "F").mode_shape(mode)
-    assert shape.along("w", X) == pytest.approx(cos(mode * pi * X), abs=1e-9)
+def test_a_beam_whose_ends_slide_is_a_cosine():
+    bound = classic("sliding_sliding", "V_far", "F")
+    for mode in (1, 2):
+        assert bound.mode_shape(mode).along("w", X) == pytest.approx(cos(mode * pi * X), abs=1e-9), mode
 
 
-@pytest.mark.parametrize("mode", range(1, 5))
-def test_a_free_beam_has_neither_moment_nor_force_at_its_ends(mode):
-    shape = classic("free_free", "A_far", "F").mode_shape(mode)
-    ends = [0.0, 1.0]
-    for quantity in ("f", "tau"):
-        largest = np.abs(shape.along("bar", X, quantity)).max()
-        assert np.abs(shape.along("bar", ends, quantity)).max() < 1e-12 * largest
-    assert np.abs(shape.along("bar", ends)) == pytest.approx([1, 1])
+def test_a_free_beam_has_neither_moment_nor_force_at_its_ends():
+    bound = classic("free_free", "A_far", "F")
+    for mode in (1, 2):
+        shape = bound.mode_shape(mode)
+        for quantity in ("f", "tau"):
+            largest = np.abs(shape.along("bar", X, quantity)).max()
+            assert np.abs(shape.along("bar", [0.0, 1.0], quantity)).max() < 1e-12 * largest, (mode, quantity)
+        assert np.abs(shape.along("bar", [0.0, 1.0])) == pytest.approx([1, 1]), mode
 
 
-@pytest.mark.parametrize("mode", range(1, 4))
-def test_a_stocky_cantilever_meets_its_conditions_and_equations(mode):
-    shape = classic("timoshenko_cantilever", "W_tip", "F").mode_shape(mode)
-    assert shape.quantities("beam") == ("w", "w'", "phi", "phi'")
+def test_a_stocky_cantilever_meets_its_conditions_and_equations():
+    bound = classic("timoshenko_cantilever", "W_tip", "F")
     x = np.array([0.0, 0.1, 0.3])
-    w, slope, phi, bend = (shape.along("beam", x, quantity) for quantity in shape.quantities("beam"))
-    assert [w[0], phi[0], bend[2], slope[2] - phi[2]] == pytest.approx([0, 0, 0, 0], abs=1e-10)
     step, shear, density = 1e-5, 0.85 * 77e9 * 2.4e-3, 7850 * 2.4e-3
-    around = shape.along("beam", [0.1 - step, 0.1 + step], "w'")
-    change = (around[1] - around[0]) / (2 * step)
-    square = (complex(shape.pole) ** 2).real
-    assert shear * (change - bend[1]) == pytest.approx(density * square * w[1], rel=1e-6)
+    for mode in (1, 3):
+        shape = bound.mode_shape(mode)
+        assert shape.quantities("beam") == ("w", "w'", "phi", "phi'"), mode
+        w, slope, phi, bend = (shape.along("beam", x, quantity) for quantity in shape.quantities("beam"))
+        conditions = [w[0], phi[0], bend[2], slope[2] - phi[2]]
+        assert conditions == pytest.approx([0, 0, 0, 0], abs=1e-10), mode
+        around = shape.along("beam", [0.1 - step, 0.1 + step], "w'")
+        change = (around[1] - around[0]) / (2 * step)
+        square = (complex(shape.pole) ** 2).real
+        assert shear * (change - bend[1]) == pytest.approx(density * square * w[1], rel=1e-6), mode
 
 
 def test_a_rod_with_a_mass_is_a_sine_from_its_support():
@@ -213,7 +218,7 @@ def test_a_rod_with_a_mass_is_a_sine_from_its_support():
 
 def test_a_shaft_between_discs_turns_with_the_largest_angle_one():
     shape = classic("shaft_discs", "angle_2", "tau").mode_shape(2)
-    dense = shape.along("shaft", np.linspace(0, 1.2, 4001))
+    dense = shape.along("shaft", np.linspace(0, 1.2, 2001))
     assert np.abs(dense).max() == pytest.approx(1, abs=1e-6)
     assert dense[[0, -1]] == pytest.approx([float(shape["theta_1"].real), float(shape["theta_2"].real)])
 
@@ -365,25 +370,19 @@ def test_given_values_take_the_place_of_declared_ones():
     assert complex(drive.bind(r=10).mode_shape(1)["y"]) == pytest.approx(-0.1)
 
 
-@pytest.mark.parametrize(
-    ("path", "source", "outputs", "amplitudes"),
-    [
+def test_near_a_pole_the_outputs_stand_in_the_ratio_of_the_shape():
+    for path, source, outputs, amplitudes in (
         ("eppinger1988/six_mass", "F", ("X_act", "X_tip"), lambda a: (a["x_act"], a["x_tip"])),
-        ("eppinger1988/robot_axis", "V_cmd", ("V_act", "V_tip"), lambda a: (a["x_act"], a["x_tip"])),
         ("classics/one_link_arm", "tau", ("theta_hub", "y_tip"), lambda a: (a["hub.theta"], a["tip"])),
         ("classics/clamped_free", "F", ("W_mid", "W_tip"), lambda a: (a.along("w", 0.5), a.along("w", 1))),
         ("classics/kelvin_voigt_cantilever", "F", ("M_root", "X_tip"), lambda a: (a["bar.tau"], a["tip"])),
-    ],
-)
-@pytest.mark.parametrize("mode", [1, 2, 3, 4])
-@pytest.mark.slow
-def test_near_a_pole_the_outputs_stand_in_the_ratio_of_the_shape(path, source, outputs, amplitudes, mode):
-    model = symflex.load(ROOT / "derivations" / f"{path}.toml")
-    first, second = (model.transfer_function(output, source).bind() for output in outputs)
-    shape = first.mode_shape(mode)
-    a, b = (complex(x) for x in amplitudes(shape))
-    s = complex(shape.pole) * (1 + 1e-12)
-    assert first(s) / second(s) == pytest.approx(a / b, rel=1e-6)
+    ):
+        model = symflex.load(ROOT / "derivations" / f"{path}.toml")
+        first, second = (model.transfer_function(output, source).bind() for output in outputs)
+        shape = first.mode_shape(2)
+        a, b = (complex(x) for x in amplitudes(shape))
+        s = complex(shape.pole) * (1 + 1e-12)
+        assert first(s) / second(s) == pytest.approx(a / b, rel=1e-6), path
 
 
 # ------------------------------------------------------------------------- hidden and multiple modes
@@ -480,18 +479,14 @@ def test_a_hub_with_an_arm_turns_rigidly_at_the_origin():
 
 
 def test_there_are_only_as_many_modes_as_there_are():
-    with pytest.raises(UsageError, match=r"SF902.*has 5 modes other than at 0, not 6"):
-        chain().mode_shape(6)
-
-
-def test_a_structure_that_is_held_has_no_rigid_body_motion():
-    with pytest.raises(UsageError, match=r"SF902.*no pole at 0"):
-        chain().mode_shape(0)
-
-
-def test_modes_are_not_counted_backwards():
-    with pytest.raises(UsageError, match="SF902"):
-        chain().mode_shape(-1)
+    bound = chain()
+    for mode, said in (
+        (6, "has 5 modes other than at 0, not 6"),
+        (0, "no pole at 0"),  # it is held, and has no motion as a rigid body
+        (-1, ""),
+    ):
+        found = words(bound.mode_shape, mode)
+        assert "UsageError" in found and "SF902" in found and said in found, mode
 
 
 def test_a_zero_has_no_shape():
@@ -502,39 +497,27 @@ def test_a_zero_has_no_shape():
         bound.mode_shape(bound.zeros()[0])
 
 
-@pytest.mark.parametrize("output", ["x/(s + 5)", "u/(s + 5)"])
-def test_the_pole_of_a_filter_in_an_output_has_no_shape(output):
-    motion = 'm = { type = "mass", at = "x", m = "1 kg" }' if "x" in output else ""
-    given = '{ force = "x" }' if motion else "{}"
-    model = symflex.loads(
-        f'symflex = 1\n[elements]\n{motion}\n[inputs]\nu = {given}\n[outputs]\nY = "{output}"'
-    )
-    with pytest.raises(UsageError, match=r"SF902.*is not a pole of the model's equations"):
-        model.transfer_function("Y", "u").bind().mode_shape(1)
+def test_the_pole_of_a_filter_in_an_output_has_no_shape():
+    for output in ("x/(s + 5)", "u/(s + 5)"):
+        motion = 'm = { type = "mass", at = "x", m = "1 kg" }' if "x" in output else ""
+        given = '{ force = "x" }' if motion else "{}"
+        model = symflex.loads(
+            f'symflex = 1\n[elements]\n{motion}\n[inputs]\nu = {given}\n[outputs]\nY = "{output}"'
+        )
+        found = words(model.transfer_function("Y", "u").bind().mode_shape, 1)
+        assert "SF902" in found and "is not a pole of the model's equations" in found, output
 
 
-@pytest.mark.parametrize(
-    ("ask", "message"),
-    [
-        (lambda shape: shape["x_9"], "SF902.*nothing is called 'x_9'"),
-        (lambda shape: shape.along("x_0", 0), "SF902.*is not a distributed element"),
-    ],
-)
-def test_what_is_not_there_is_refused(ask, message):
-    with pytest.raises(UsageError, match=message):
-        ask(chain().mode_shape(1))
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (("bars", 0), "(?s)SF902.*did you mean 'bar'"),
-        (("bar", 0, "taw"), "(?s)SF902.*did you mean 'tau'"),
-        (("bar", 1.1), "SF240.*reaches from 0 to 1"),
-        (("bar", float("nan")), "SF240"),
-    ],
-)
-def test_a_place_or_quantity_that_is_not_there_is_refused(arguments, message):
+def test_what_is_not_there_is_refused():
+    lumped = chain().mode_shape(1)
     shape = classic("pinned_pinned", "theta_far", "tau").mode_shape(1)
-    with pytest.raises(UsageError, match=message):
-        shape.along(*arguments)
+    for ask, arguments, code, said in (
+        (lumped.__getitem__, ("x_9",), "SF902", "nothing is called 'x_9'"),
+        (lumped.along, ("x_0", 0), "SF902", "is not a distributed element"),
+        (shape.along, ("bars", 0), "SF902", "did you mean 'bar'"),
+        (shape.along, ("bar", 0, "taw"), "SF902", "did you mean 'tau'"),
+        (shape.along, ("bar", 1.1), "SF240", "reaches from 0 to 1"),
+        (shape.along, ("bar", float("nan")), "SF240", ""),
+    ):
+        found = words(ask, *arguments)
+        assert "UsageError" in found and code in found and said in found, arguments

@@ -39,11 +39,10 @@ def test_residues_are_those_of_the_formula():
         assert one.coefficients[0].rel_accuracy_bits() > 66
 
 
-@pytest.mark.parametrize("form", ["product", pytest.param("modal", marks=pytest.mark.slow)])
-def test_an_approximation_of_three_beams_is_close_to_them_below_its_modes(form):
-    bound = bound_of(3, "nested")
-    found = pipeline.rational(bound, 3, form)
-    assert found.modes == 3
+def test_an_approximation_of_two_beams_is_close_to_them_below_its_modes():
+    bound = bound_of(2, "nested")
+    found = pipeline.rational(bound, 2, "product")
+    assert found.modes == 2
     assert found.leading_coefficient == pytest.approx(bound(0j).real, rel=1e-12)
     omega = 2.5
     assert abs(found(1j * omega) / bound(1j * omega) - 1) < 2e-3
@@ -52,7 +51,9 @@ def test_an_approximation_of_three_beams_is_close_to_them_below_its_modes(form):
 @pytest.mark.slow
 def test_a_step_response_is_that_of_the_formula_and_not_certified():
     times = SampleTimes.evenly(Fraction(1, 5), 9)
-    written, network = (pipeline.time_response(bound_of(1, k), "step", times) for k in ("expanded", "nested"))
+    written, network = (
+        pipeline.time_response(bound_of(1, k), "step", times, 4) for k in ("expanded", "nested")
+    )
     assert not network.certified and "the lowest 25" in network.reason
     assert all(a.overlaps(b) for a, b in zip(network.enclosures, written.enclosures, strict=True))
     largest = max(abs(written.values))

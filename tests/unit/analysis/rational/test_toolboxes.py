@@ -18,16 +18,12 @@ import symflex
 from symflex.errors import ModelError, UsageError
 from symflex.state_space.cascade import cascade
 from symflex.state_space.numeric import response
+from tests.unit.analysis.systems import words
+from tests.unit.refusals import refusal
 
 DERIVATIONS = Path(__file__).parents[4] / "derivations"
 PAPER = DERIVATIONS / "eppinger1988"
-LUMPED = [
-    ("two_mass", "X_tip"),
-    ("six_mass", "V_tip"),
-    ("rigid_body", "A_tip"),
-    ("lumped_bending_beam", "X_tip"),
-]
-LUMPED += [("polynomial_resonance", "A_tip")]
+LUMPED = [("two_mass", "X_tip"), ("rigid_body", "A_tip"), ("polynomial_resonance", "A_tip")]
 
 
 def bound(name, output):
@@ -48,7 +44,7 @@ def beam():
 
 def frequencies(H):
     low, high = H.bound.source.model.analysis.band or (0.1, 1e3)
-    return 2 * math.pi * np.geomspace(float(low), float(high), 200)
+    return 2 * math.pi * np.geomspace(float(low), float(high), 60)
 
 
 # --------------------------------------------------------------------------------------- what is equal
@@ -65,36 +61,25 @@ CONVERSIONS = {
 
 
 @pytest.mark.filterwarnings("ignore::scipy.signal.BadCoefficients")
-@pytest.mark.parametrize("conversion", CONVERSIONS)
 @pytest.mark.parametrize(("name", "output"), LUMPED)
-def test_frequency_responses_are_those_of_the_function(name, output, conversion):
+def test_what_other_programs_get_is_the_function(name, output):
     H = bound(name, output)
     omega = frequencies(H)
-    evaluate, tolerance = CONVERSIONS[conversion]
     exact = np.array([H(1j * w) for w in omega])
-    assert np.max(np.abs(evaluate(H, omega) / exact - 1)) < tolerance
-
-
-@pytest.mark.parametrize(("name", "output"), LUMPED)
-def test_zeros_and_poles_are_the_proved_ones(name, output):
-    H = bound(name, output)
-    system = H.to_scipy()
+    off = {n: np.max(np.abs(act(H, omega) / exact - 1)) / limit for n, (act, limit) in CONVERSIONS.items()}
+    assert max(off.values()) < 1, off
+    # Zeros and poles are the proved ones.
+    system, control_poles = H.to_scipy(), H.to_control().poles()
     for found, roots in ((system.poles, H.poles(digits=25)), (system.zeros, H.zeros(digits=25))):
         expected = [r.value for r in roots for _ in range(r.multiplicity)]
         assert [complex(x) for x in found] == [complex(x) for x in expected]
-    control_poles = H.to_control().poles()
     size = max(map(abs, control_poles))
     assert all(min(abs(control_poles - p)) < 1e-11 * size for p in system.poles)
-
-
-@pytest.mark.parametrize(("name", "output"), LUMPED)
-def test_coefficients_are_the_doubles_nearest_to_the_exact_ones(name, output):
-    H = bound(name, output)
-    system, exact = H.to_control(), H.to_sympy()
-    s = exact.var
-    num, den = (sympy.Poly(part, s) for part in (exact.num, exact.den))
+    # Coefficients are the doubles nearest to the exact ones.
+    plain, precise = H.to_control(), H.to_sympy()
+    num, den = (sympy.Poly(part, precise.var) for part in (precise.num, precise.den))
     with mpmath.workdps(60):
-        for found, part in ((system.num_array[0, 0], num), (system.den_array[0, 0], den)):
+        for found, part in ((plain.num_array[0, 0], num), (plain.den_array[0, 0], den)):
             expected = [float(mpmath.mpf(sympy.N(c / den.LC(), 50))) for c in part.all_coeffs()]
             assert found.tolist() == expected
 
@@ -180,18 +165,18 @@ def test_a_function_that_loses_digits_says_how_many():
 # ------------------------------------------------------------------------- functions out of the ordinary
 
 
-@pytest.mark.filterwarnings("ignore::scipy.signal.BadCoefficients")  # of scipy's own conversions
-@pytest.mark.parametrize("expression", ["3*u", "u - u", "u/(2*s^2)"])
-def test_gains_zeros_and_integrators_are_taken_over(expression):
-    H = rational(expression)
-    assert H.to_control()(2j) == pytest.approx(H(2j))
-    assert H.to_control("state-space")(2j) == pytest.approx(H(2j))
-    for form in ("zeros-poles-gain", "transfer-function", "state-space"):
-        system = H.to_scipy(form)
-        # scipy's own conversions divide by the gain
-        if not H.bound.ratio.is_zero or form == "zeros-poles-gain":
-            assert system.freqresp([2.0])[1] == pytest.approx(H(2j))
-    assert complex(H.to_sympy().to_expr().subs(sympy.Symbol("s"), 2)) == pytest.approx(H(2))
+@pytest.mark.filterwarnings("ignore::scipy.signal.BadCoefficients")
+def test_gains_zeros_and_integrators_are_taken_over():
+    for expression in ["3*u", "u - u", "u/(2*s^2)"]:
+        H = rational(expression)
+        assert H.to_control()(2j) == pytest.approx(H(2j)), expression
+        assert H.to_control("state-space")(2j) == pytest.approx(H(2j)), expression
+        for form in ("zeros-poles-gain", "transfer-function", "state-space"):
+            system = H.to_scipy(form)
+            # scipy's own conversions divide by the gain
+            if not H.bound.ratio.is_zero or form == "zeros-poles-gain":
+                assert system.freqresp([2.0])[1] == pytest.approx(H(2j)), expression
+        assert complex(H.to_sympy().to_expr().subs(sympy.Symbol("s"), 2)) == pytest.approx(H(2)), expression
 
 
 def test_what_grows_with_s_is_a_transfer_function_but_no_state_space():
@@ -205,10 +190,11 @@ def test_what_grows_with_s_is_a_transfer_function_but_no_state_space():
         H.to_control("state-space")
 
 
-@pytest.mark.parametrize("convert", ["to_control", "to_scipy", "to_sympy", "state_space"])
-def test_a_beam_has_to_be_approximated_first(beam, convert):
-    with pytest.raises(ModelError, match=r"SF235(.|\n)*hint: .*in Python, H.rational\(modes=N\)"):
-        getattr(beam, convert)()
+def test_a_beam_has_to_be_approximated_first(beam):
+    for convert in ("to_control", "to_scipy", "to_sympy", "state_space"):
+        found = words(getattr(beam, convert))
+        assert "ModelError" in found and "SF235" in found, convert
+        assert "in Python, H.rational(modes=N)" in found.split("hint: ")[1], convert
 
 
 def test_a_delay_has_to_be_approximated_first():
@@ -220,33 +206,31 @@ def test_a_delay_has_to_be_approximated_first():
     )
 
 
-@pytest.mark.parametrize("convert", ["to_control", "to_scipy"])
-def test_an_unknown_form_is_refused_with_a_hint(convert):
-    with pytest.raises(UsageError, match=r"SF902(.|\n)*did you mean 'state-space'"):
-        getattr(rational("u/(s + 1)"), convert)("state-spaec")
-
-
-@pytest.mark.parametrize(
-    ("package", "call"),
-    [
-        ("control", lambda H: H.to_control()),
-        ("control", lambda H: H.to_control("state-space")),
-        ("control", lambda H: H.to_frd([1.0])),
-        ("scipy.signal", lambda H: H.to_scipy()),
-        ("scipy.signal", lambda H: H.state_space().to_scipy()),
-    ],
-)
-def test_a_program_that_is_not_installed_is_named_with_its_command(package, call, monkeypatch):
+def test_an_unknown_form_is_refused_with_a_hint():
     H = rational("u/(s + 1)")
-    monkeypatch.setitem(sys.modules, package, None)
-    with pytest.raises(UsageError, match=r"is not installed(.|\n)*hint: pip install"):
-        call(H)
+    for convert in (H.to_control, H.to_scipy):
+        found = words(convert, "state-spaec")
+        assert "SF902" in found and "did you mean 'state-space'" in found, convert
 
 
-@pytest.mark.parametrize("omega", [[], [2.0, 1.0], [-1.0, 1.0], [1.0, math.inf], [[1.0, 2.0]]], ids=str)
-def test_frequencies_that_are_none_are_refused(omega):
-    with pytest.raises(UsageError, match="SF902"):
-        rational("u/(s + 1)").to_frd(omega)
+def test_a_program_that_is_not_installed_is_named_with_its_command(monkeypatch):
+    H = rational("u/(s + 1)")
+    for package, call in (
+        ("control", H.to_control),
+        ("control", lambda: H.to_control("state-space")),
+        ("control", lambda: H.to_frd([1.0])),
+        ("scipy.signal", H.to_scipy),
+        ("scipy.signal", H.state_space().to_scipy),
+    ):
+        monkeypatch.setitem(sys.modules, package, None)
+        found = words(call)
+        assert "is not installed" in found and "hint: pip install" in found, call
+
+
+def test_frequencies_that_are_none_are_refused():
+    H = rational("u/(s + 1)")
+    for omega in ([], [2.0, 1.0], [-1.0, 1.0], [1.0, math.inf], [[1.0, 2.0]]):
+        assert refusal(H.to_frd, omega) == "UsageError SF902", omega
 
 
 def test_a_pole_is_no_place_for_frequency_response_data():
@@ -293,9 +277,8 @@ def test_an_approximation_says_up_to_where_it_is_within_one_percent(beam):
     assert R.to_control("state-space").name == system.name
 
 
-@pytest.mark.parametrize(
-    ("zeros", "poles"),
-    [
+def test_sections_in_series_multiply_to_the_function():
+    for zeros, poles in [
         ([], [-1]),
         ([-3], [-1]),
         ([-5, 1 + 2j, 1 - 2j], [-1, -2, -3]),
@@ -303,15 +286,12 @@ def test_an_approximation_says_up_to_where_it_is_within_one_percent(beam):
         ([-2, -8], [3j, -3j, -1]),
         ([0, 0, 0], [-1 + 1j, -1 - 1j, -1 + 1j, -1 - 1j]),
         ([2 + 1j, 2 - 1j, -4, 5], [-1, -2, 300j, -300j, -2, -0.5]),
-    ],
-    ids=str,
-)
-def test_sections_in_series_multiply_to_the_function(zeros, poles):
-    made = cascade([mpmath.mpc(z) for z in zeros], [mpmath.mpc(p) for p in poles], mpmath.mpf(3), "G")
-    assert made.a.shape == (len(poles), len(poles))
-    for s in (0.3 + 1j, 2.5j, -4 + 30j):
-        expected = 3 * math.prod(s - z for z in zeros) / math.prod(s - p for p in poles)
-        assert response(made, [s])[0][0][0] == pytest.approx(expected, rel=1e-14)
+    ]:
+        made = cascade([mpmath.mpc(z) for z in zeros], [mpmath.mpc(p) for p in poles], mpmath.mpf(3), "G")
+        assert made.a.shape == (len(poles), len(poles)), (zeros, poles)
+        for s in (0.3 + 1j, 2.5j, -4 + 30j):
+            expected = 3 * math.prod(s - z for z in zeros) / math.prod(s - p for p in poles)
+            assert response(made, [s])[0][0][0] == pytest.approx(expected, rel=1e-14), (zeros, poles)
 
 
 # --------------------------------------------------------------------------------------- what it is for

@@ -89,14 +89,13 @@ STEPS = {
 }
 
 
-@pytest.mark.parametrize("name", STEPS)
-def test_a_step_response_is_that_of_the_images(name):
-    function, expected = STEPS[name]
-    found = time_response(function(), "step", SampleTimes.of(TIMES))
-    largest = np.max(np.abs(expected))
-    assert found.certified
-    assert np.max(np.abs(found.values - expected)) < 1e-13 * largest
-    assert np.max(found.radius) <= 1e-11 * largest
+def test_a_step_response_is_that_of_the_images():
+    for name, (function, expected) in STEPS.items():
+        found = time_response(function(), "step", SampleTimes.of(TIMES))
+        largest = np.max(np.abs(expected))
+        assert found.certified, name
+        assert np.max(np.abs(found.values - expected)) < 1e-13 * largest, name
+        assert np.max(found.radius) <= 1e-11 * largest, name
 
 
 @pytest.mark.parametrize("kind", ["impulse", "step"])
@@ -143,15 +142,10 @@ def test_what_comes_before_its_input_is_refused():
         time_response(bound(f'{DELAY}"u/D"'), "step", SampleTimes.of([1.0]))
 
 
-def test_too_many_echoes_are_said():
-    with pytest.raises(UncertifiedError, match="too many echoes"):
-        time_response(bound(f'{DELAY}"u/(1 + D/2)"'), "step", SampleTimes.of([5000.0]))
-
-
 @pytest.mark.slow
 def test_a_rod_with_more_echoes_than_can_be_followed_is_a_sum_of_modes():
     mass = 'elements.m = { type = "mass", at = "x", m = "1 kg" }'
-    found = time_response(rod(mass), "step", SampleTimes.of([400.0, 500.5]))
+    found = time_response(rod(mass), "step", SampleTimes.of([400.0, 500.5]), 6)
     assert found.certified
     # Modes of a rod of 1 kg and 4 N with 1 kg at its end: q tan q = 1, omega = 2 q.
     expected = np.zeros(2)
@@ -212,9 +206,10 @@ def roots_of_a_delayed_integrator(gain):
 
 
 # K/(s + K e^-s): at a root its residue is K/(1 + s), and about s = 0 it is 1 - (1 - K) s/K + ...
-@pytest.mark.parametrize("gain", [1.2, 1.7], ids=["stable", "unstable"])
 @pytest.mark.parametrize(
-    ("law", "kind"), [("x", "step"), ("x", "ramp"), ("a*(u - D*x)", "step")], ids=["step", "ramp", "through"]
+    ("gain", "law", "kind"),
+    [(1.2, "x", "step"), (1.2, "a*(u - D*x)", "step"), (1.7, "x", "ramp")],
+    ids=["stable", "through", "unstable"],
 )
 def test_a_loop_run_through_many_times_settles_into_its_residues(gain, law, kind):
     signals = 'signals.x = "k*(u - D*x)/s"\n'
@@ -247,8 +242,8 @@ def test_only_the_first_of_the_times_may_come_before_a_loop_has_settled():
         'signals = { f = "k*u/(m*s^2 + b*s + k)", u = "(P + K/s)*(r - D*f)" }\noutputs.y = "f"\n'
     )
     found = time_response(bound(text, input="r"), "step", SampleTimes.of([0.0, 0.3, 0.6]))
-    # Heun's method with 3 ms as 600 steps of 5 us: force, its rate, and the integral of what it lacks.
-    h, late = 5e-6, 600
+    # Heun's method with 3 ms as 300 steps of 10 us: force, its rate, and the integral of what it lacks.
+    h, late = 1e-5, 300
     state, past = np.zeros(3), [0.0] * (late + 1)
 
     def slopes(z, seen):
@@ -256,11 +251,11 @@ def test_only_the_first_of_the_times_may_come_before_a_loop_has_settled():
         return np.array([z[1], 1e4 * (force - z[0]) - 30 * z[1], 1 - seen])
 
     expected = [0.0]
-    for n in range(1, 120_001):
+    for n in range(1, 60_001):
         first = slopes(state, past[-1 - late])
         state = state + h / 2 * (first + slopes(state + h * first, past[-late]))
         past.append(state[0])
-        if n % 60_000 == 0:
+        if n % 30_000 == 0:
             expected.append(state[0])
     assert found.certified
     assert found.values == pytest.approx(expected, abs=2e-6)

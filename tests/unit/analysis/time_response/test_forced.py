@@ -10,8 +10,8 @@ import scipy.signal
 
 from symflex import loads
 from symflex.analysis.time_response import forced_response
-from symflex.errors import UncertifiedError, UsageError
-from tests.unit.analysis.systems import rational
+from symflex.errors import UncertifiedError
+from tests.unit.analysis.systems import rational, words
 
 TIMES = [Fraction(i, 4) for i in range(9)]
 
@@ -68,16 +68,14 @@ def test_what_differentiates_its_input_is_refused():
         forced_response(rational("s^3/(s + 1)"), [0, 1], [0, 1], [0, 1])
 
 
-@pytest.mark.parametrize(
-    ("times", "values", "said"),
-    [
+def test_samples_that_make_no_sense_are_refused_with_a_sentence():
+    respond = second_order().forced_response
+    for times, values, said in (
         ([0.0, 1.0], [1.0], "two or more finite values"),
         ([0.0, 1.0], [1.0, np.nan], "finite values"),
         ([0.0], [1.0], "two or more"),
         ([1.0, 0.0], [1.0, 2.0], "increase"),
         ([0.0, 1.0, 2.3456789012], [1.0, 2.0, 3.0], "too little in common"),
-    ],
-)
-def test_samples_that_make_no_sense_are_refused_with_a_sentence(times, values, said):
-    with pytest.raises(UsageError, match=said):
-        second_order().forced_response(times, values)
+    ):
+        found = words(respond, times, values)
+        assert found.startswith("UsageError") and said in found, (times, values)

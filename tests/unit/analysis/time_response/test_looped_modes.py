@@ -1,4 +1,7 @@
-"""Beams in loops with delays agree with numerical inversions turn by turn, and with modal sums."""
+"""Beams in loops with delays agree with numerical inversions turn by turn, and with modal sums.
+
+Few digits are asked for where few are compared: with fewer of them fewer modes are found.
+"""
 
 from __future__ import annotations
 
@@ -60,19 +63,18 @@ def proportional(s):
     return 2 * receptance(s, mpmath.mpf("0.02"))
 
 
-LOOPS = {
-    "that measures late": ("k*(r - D*x)", proportional, 0.0),
-    "that acts late": ("D*k*(r - x)", proportional, 0.3),
-    "whose controller is proper": ("D*k*(1 + T_d*s)/(1 + T_f*s)*(r - x)", controlled, 0.3),
-}
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("name", "kind"), [*((name, "step") for name in LOOPS), ("that acts late", "ramp")])
-def test_a_loop_is_what_the_method_of_steps_says(name, kind):
-    force, gain, late = LOOPS[name]
+@pytest.mark.parametrize(
+    ("force", "gain", "late", "kind"),
+    [
+        ("k*(r - D*x)", proportional, 0.0, "step"),
+        ("D*k*(r - x)", proportional, 0.3, "ramp"),
+        pytest.param("D*k*(1 + T_d*s)/(1 + T_f*s)*(r - x)", controlled, 0.3, "step", marks=pytest.mark.slow),
+    ],
+    ids=["that measures late", "that acts late", "whose controller is proper"],
+)
+def test_a_loop_is_what_the_method_of_steps_says(force, gain, late, kind):
     times = [0.1, 0.5, 0.87, 1.3]
-    found = time_response(loop(force), kind, SampleTimes.of(times))
+    found = time_response(loop(force), kind, SampleTimes.of(times), 8)
     order = 1 if kind == "step" else 2
     expected = [stepped(gain, gain, 0.3, t - late, order) if t > late else 0.0 for t in times]
     assert found.certified
@@ -101,14 +103,13 @@ def loaded(s):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("kind", "share"), [("step", 1e-8), ("impulse", 1e-2)])
-def test_a_loop_about_a_beam_with_a_load_is_what_the_method_of_steps_says(kind, share):
+def test_a_loop_about_a_beam_with_a_load_is_what_the_method_of_steps_says():
     times = [0.1, 0.5, 0.87]
-    found = time_response(loop("k*(r - D*x)", load=LOAD), kind, SampleTimes.of(times))
-    expected = [stepped(loaded, loaded, 0.3, t, 1 if kind == "step" else 0) for t in times]
+    found = time_response(loop("k*(r - D*x)", load=LOAD), "step", SampleTimes.of(times), 8)
+    expected = [stepped(loaded, loaded, 0.3, t) for t in times]
     assert found.certified
     assert np.all(np.abs(found.values - expected) <= found.radius)
-    assert found.radius.max() < share * np.max(np.abs(expected))
+    assert found.radius.max() < 1e-8 * np.max(np.abs(expected))
 
 
 def convolved_twice(t):
@@ -128,10 +129,9 @@ def convolved_twice(t):
     return 16.0 * float(np.sum(pairs)), 4.0 * float(np.sum(single))
 
 
-@pytest.mark.slow
 def test_without_loss_the_second_turn_is_a_convolution_of_modes():
     times = [0.1, 0.45, 0.6]
-    found = time_response(loop("k*(r - D*x)", eta="0 s"), "step", SampleTimes.of(times))
+    found = time_response(loop("k*(r - D*x)", eta="0 s"), "step", SampleTimes.of(times), 7)
     expected = [
         2 * convolved_twice(t)[1] - (4 * convolved_twice(t - 0.3)[0] if t > 0.3 else 0.0) for t in times
     ]
@@ -143,7 +143,7 @@ def test_without_loss_the_second_turn_is_a_convolution_of_modes():
 
 @pytest.mark.slow
 def test_a_controller_that_differentiates_leaves_an_estimate():
-    found = time_response(loop("D*k*(1 + T_d*s)*(r - x)"), "step", SampleTimes.of([0.5, 0.8]))
+    found = time_response(loop("D*k*(1 + T_d*s)*(r - x)"), "step", SampleTimes.of([0.5, 0.8]), 3)
 
     def gain(s):
         return 2 * (1 + s / 10) * receptance(s, mpmath.mpf("0.02"))
@@ -162,4 +162,4 @@ def test_a_thousand_turns_are_too_many():
 @pytest.mark.slow
 def test_an_impulse_that_would_only_be_estimated_is_refused():
     with pytest.raises(ModelError, match="SF813"):
-        time_response(loop("D*k*(1 + T_d*s)*(r - x)"), "impulse", SampleTimes.of([0.5]))
+        time_response(loop("D*k*(1 + T_d*s)*(r - x)"), "impulse", SampleTimes.of([0.5]), 3)

@@ -21,7 +21,6 @@ from tests.unit.analysis.time_response.test_passive import (
     inverted,
     of,
     tip_of_clamped,
-    tip_of_hub,
     wave,
 )
 
@@ -74,20 +73,12 @@ def pushed(control):
     return lambda s: control(s) / (1 + control(s) * receptance(s))
 
 
-SERVOS = {
-    "P": ("k", lambda s: 4),
-    "PD": (PD, pd),
-    "ideal PD": (IDEAL, ideal),
-    "PID": (PID, pid),
-    "unstable": ("-8*k", lambda s: -32),
-}
-
-
 @pytest.mark.parametrize(
-    "name", ["PD", *(pytest.param(n, marks=pytest.mark.slow) for n in SERVOS if n != "PD")]
+    ("controller", "control"),
+    [(PD, pd), pytest.param("-8*k", lambda s: -32, marks=pytest.mark.slow)],
+    ids=["PD", "unstable"],
 )
-def test_a_servo_at_the_tip_follows_as_its_inverse_transform(name):
-    controller, control = SERVOS[name]
+def test_a_servo_at_the_tip_follows_as_its_inverse_transform(controller, control):
     found = time_response(servo(controller), "step", SampleTimes.of([0.0, *TIMES]))
     assert found.enclosures[0] == 0
     assert_holds(found, [0.0, *inverted(closed(control), 1, TIMES)], off=1e-14 * np.abs(found.values).max())
@@ -96,7 +87,7 @@ def test_a_servo_at_the_tip_follows_as_its_inverse_transform(name):
 @pytest.mark.slow
 def test_what_is_told_of_a_servos_step_has_many_digits():
     def at(t):
-        return inverted(closed(pd), 1, [t])[0] * 7 / 4
+        return inverted(closed(pd), 1, [t], degree=60)[0] * 7 / 4
 
     def crossed(level, low, high):
         return brentq(lambda t: at(t) - level, low, high, xtol=1e-8)
@@ -116,42 +107,17 @@ def test_what_is_told_of_a_servos_step_has_many_digits():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("name", "share"), [("PD", 1e-9), ("ideal PD", 1e-9)])
-def test_an_impulse_is_held_after_the_first_instant(name, share):
-    controller, control = SERVOS[name]
-    found = time_response(servo(controller), "impulse", SampleTimes.of(TIMES))
-    assert_holds(found, inverted(closed(control), 0, TIMES), share, off=1e-14)
+def test_an_impulse_is_held_after_the_first_instant():
+    found = time_response(servo(IDEAL), "impulse", SampleTimes.of(TIMES))
+    assert_holds(found, inverted(closed(ideal), 0, TIMES), off=1e-14)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["PD", "PID"])
-def test_what_a_servo_pushes_with_begins_at_its_limit(name):
-    controller, control = SERVOS[name]
-    found = time_response(servo(controller, "push.f"), "step", SampleTimes.of([0.0, *TIMES]))
+def test_what_a_servo_pushes_with_begins_at_its_limit():
+    found = time_response(servo(PID, "push.f"), "step", SampleTimes.of([0.0, *TIMES]))
     # 4 + 1.5/0.02 at once, before anything moves.
     assert found.enclosures[0].contains(79)
-    assert_holds(found, [79.0, *inverted(pushed(control), 1, TIMES)], off=1e-12)
-
-
-@pytest.mark.slow
-def test_a_speed_is_held_from_the_first_instants_on():
-    times = [1e-6, 1e-3, *TIMES]
-    found = time_response(servo(PD, "s*x"), "step", SampleTimes.of([0.0, *times]))
-    expected = inverted(closed(pd), 0, times)
-    assert found.enclosures[0] == 0
-    assert_holds(found, [0.0, *expected], share=1e-6, off=1e-12)
-
-
-@pytest.mark.slow
-def test_a_point_between_is_moved_from_the_tip():
-    found = time_response(servo(PD, "arm.y(0.4 m)"), "step", SampleTimes.of([0.0, *TIMES]))
-    place = mpmath.mpf("0.4")
-
-    def between(s):
-        force = pushed(pd)(s)
-        return force * clamped_between(s, place, lambda _: 0, ETA)
-
-    assert_holds(found, [0.0, *inverted(between, 1, TIMES)], off=1e-15)
+    assert_holds(found, [79.0, *inverted(pushed(pid), 1, TIMES)], off=1e-12)
 
 
 @pytest.mark.slow
@@ -163,36 +129,6 @@ def test_a_sensor_away_from_the_motor_is_held_too():
         return 4 * receptance(s) / (1 + 4 * clamped_between(s, place, lambda _: 0, ETA))
 
     assert_holds(found, inverted(follow, 1, TIMES), off=1e-15)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["PD", "PID"])
-def test_an_arm_on_a_hub_is_turned_to_where_it_is_wanted(name):
-    text, control = {
-        "PD": ("k + d*s/(1 + T*s)", lambda s: 2 + s / 2 / (1 + s / 50)),
-        "PID": ("k + i/s + d*s/(1 + T*s)", lambda s: 2 + 1 / s + s / 2 / (1 + s / 50)),
-    }[name]
-    bound = of(
-        f"""
-parameters = {{ k = "2 N*m", d = "0.5 N*m*s", i = "1 N*m/s", T = "20 ms" }}
-elements.arm  = {{ type = "beam", between = ["hub", "tip"], {UNIT}, {WHOLE}, eta = "{ETA} s" }}
-elements.pin  = {{ type = "pin", at = "hub" }}
-elements.J    = {{ type = "inertia", at = "hub.theta", J = "0.1 kg*m^2" }}
-elements.loss = {{ type = "rotary_damper", between = ["hub.theta", "ground"], b = "0.2 N*m*s/rad" }}
-elements.m    = {{ type = "mass", at = "tip", m = "0.3 kg" }}
-elements.turn = {{ type = "torque_source", at = "hub.theta", tau = "({text})*(r - hub.theta)" }}
-inputs.r  = {{ unit = "rad" }}
-outputs.X = "tip"
-""",
-        source="r",
-    )
-    found = time_response(bound, "step", SampleTimes.of([0.0, *TIMES]))
-
-    def tip(s):
-        # The controller's torque on the hub is one of a spring to it, and one that r drives.
-        return control(s) * tip_of_hub(s, control, ETA)
-
-    assert_holds(found, [0.0, *inverted(tip, 1, TIMES)], off=1e-15)
 
 
 @pytest.mark.slow
@@ -217,17 +153,16 @@ outputs.X = "tip"
     assert_holds(found, inverted(follow, 1, TIMES), off=1e-14)
 
 
-@pytest.mark.parametrize("sectors", [SECTORS, TILTED])
-@pytest.mark.parametrize(("controller", "control"), [(PD, pd), (IDEAL, ideal)])
-def test_the_size_far_out_holds_wherever_it_is_said_to(sectors, controller, control):
+@pytest.mark.parametrize(("controller", "control", "sectors"), [(PD, pd, TILTED), (IDEAL, ideal, SECTORS)])
+def test_the_size_far_out_holds_wherever_it_is_said_to(controller, control, sectors):
     bound = servo(controller)
     far_out = FunctionFarOut.of(bound, sectors)
     radius = 10 * far_out.least(1.0)
     size = far_out.size(radius)
     share = 0.0
     with mpmath.workdps(40):
-        for turned in np.linspace(0, sectors / SECTORS * np.pi / 2, 9):
-            for times in (1, 3, 100, 1e6):
+        for turned in np.linspace(0, sectors / SECTORS * np.pi / 2, 5):
+            for times in (1, 3, 1e6):
                 s = radius * times * mpmath.expj(turned)
                 value = abs(closed(control)(s)) / abs(s) ** mpmath.mpf(float(size.power))
                 assert value <= float(size.most)

@@ -13,43 +13,36 @@ from flint import arb, ctx
 from symflex import loads
 from symflex.analysis.time_response import INTEGRATIONS, SampleTimes, time_response
 from symflex.errors import UncertifiedError, UsageError
-from tests.house.repository import one_in
-from tests.unit.analysis.systems import rational
+from tests.unit.analysis.systems import rational, words
 from tests.unit.analysis.time_response.references import expanded, of_quotient, written
 
 QUOTIENTS = {
-    "lag": ([1], [1, 1]),
-    "second order": ([1], [1, 0.5, 4]),
     "critically damped": ([1], expanded([1, 3], [1, 3])),
     "undamped": ([1], [1, 0, 9]),
-    "integrator": ([2], [1, 0]),
     "three integrators": ([1, 1], [1, 0, 0, 0]),
     "rigid body and mode": ([1, 0.2, 5], expanded([1, 0], [1, 0], [1, 0.1, 40])),
-    "zero right of the axis": ([-1, 2], expanded([1, 1], [1, 0.4, 7])),
-    "unstable": ([1], expanded([1, -2], [1, 0.2, 10])),
     "unstable oscillation": ([1, 0], [1, -0.3, 25]),
     "triple pair": ([3], expanded([1, 0.2, 4], [1, 0.2, 4], [1, 0.2, 4])),
     "undamped double pair": ([1, 1], expanded([1, 0, 4], [1, 0, 4])),
     "poles that nearly meet": ([1], expanded([1, 1], [1, 1.0000001])),
-    "pairs that nearly meet": ([1], expanded([1, 0.02, 4], [1, 0.02, 4.000001])),
     "far apart": ([1], expanded([1, 1000], [1, 0.01])),
-    "seven equal lags": ([1], expanded(*[[1, 2]] * 7)),
 }
 TIMES = [0.0, 0.1, 0.37, 1.0, 2.5, 6.0]
 
 
-@pytest.mark.parametrize("kind", INTEGRATIONS)
-@pytest.mark.parametrize("name", one_in(2, QUOTIENTS))
-def test_a_response_holds_what_a_matrix_exponential_gives(name, kind):
+@pytest.mark.parametrize("name", QUOTIENTS)
+def test_a_response_holds_what_a_matrix_exponential_gives(name):
     num, den = QUOTIENTS[name]
-    found = time_response(rational(f"({written(num)})/({written(den)})"), kind, SampleTimes.of(TIMES))
-    expected = of_quotient(num, den, INTEGRATIONS[kind], TIMES)
-    largest = max(abs(y) for y in expected)
-    assert found.certified
-    assert not found.impulses
-    for value, radius, y in zip(found.values.tolist(), found.radius.tolist(), expected, strict=True):
-        assert abs(mpmath.mpf(value) - y) <= mpmath.mpf(radius) + largest * mpmath.mpf(10) ** -35
-        assert radius <= 1e-11 * largest
+    bound = rational(f"({written(num)})/({written(den)})")
+    for kind in INTEGRATIONS:
+        found = time_response(bound, kind, SampleTimes.of(TIMES))
+        expected = of_quotient(num, den, INTEGRATIONS[kind], TIMES)
+        largest = max(abs(y) for y in expected)
+        assert found.certified, kind
+        assert not found.impulses, kind
+        for value, radius, y in zip(found.values.tolist(), found.radius.tolist(), expected, strict=True):
+            assert abs(mpmath.mpf(value) - y) <= mpmath.mpf(radius) + largest * mpmath.mpf(10) ** -35, kind
+            assert radius <= 1e-11 * largest, kind
 
 
 def test_even_times_give_what_single_times_give():
@@ -122,21 +115,17 @@ def test_what_a_power_series_cannot_reach_is_not_certified():
         H.impulse_response([1e6])
 
 
-@pytest.mark.parametrize(
-    ("times", "said"),
-    [
+def test_times_that_are_none_are_refused_with_a_sentence():
+    for times, said in (
         ([-1.0, 0.0], "begins at t = 0"),
         ([0.0, 2.0, 1.0], "1 s stands after 2 s"),
         ([0.0, 0.0], "increase"),
         ([np.nan], "finite"),
         ([np.inf], "finite"),
         ([[0.0, 1.0]], "a list"),
-    ],
-)
-def test_times_that_are_none_are_refused_with_a_sentence(times, said):
-    with pytest.raises(UsageError, match=said) as caught:
-        SampleTimes.of(times)
-    assert caught.value.diagnostics[0].code == "SF811"
+    ):
+        found = words(SampleTimes.of, times)
+        assert found.startswith("UsageError") and "SF811" in found and said in found, times
 
 
 def test_no_times_are_no_values():

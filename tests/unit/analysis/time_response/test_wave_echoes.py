@@ -57,9 +57,7 @@ def assert_holds(found, expected, off=0.0):
     assert found.radius.max() <= 1e-9 * np.abs(found.values).max()
 
 
-@pytest.mark.parametrize(
-    ("kind", "c", "k"), [("rod", 0.5, 0), ("rod", 0.5, 3), ("string", 4, 0), ("string", 0, 2)]
-)
+@pytest.mark.parametrize(("kind", "c", "k"), [("rod", 0.5, 3), ("string", 4, 0), ("string", 0, 2)])
 def test_an_impulse_in_a_rod_or_string_with_losses_or_on_a_foundation_comes_back_as_its_images(kind, c, k):
     found = time_response(clamped(kind, c, k), "impulse", SampleTimes.of(TIMES))
     assert_holds(found, [images(t, c, k) for t in TIMES], off=1e-13)
@@ -143,8 +141,7 @@ def test_timoshenkos_beam_moves_as_one_without_another_end_until_its_first_echo(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("last", [0.01, 0.02])
-def test_modes_of_a_shaft_between_discs_say_what_its_echoes_say(last):
+def test_modes_of_a_shaft_between_discs_say_what_its_echoes_say():
     text = """
 symflex = 1
 elements.near = { type = "inertia", at = "a", J = "3e-4 kg*m^2" }
@@ -155,7 +152,7 @@ inputs.tau = { torque = "a" }
 outputs.phi = "b"
 """
     bound = loads(text).transfer_function("phi", "tau").bind().bound
-    times = SampleTimes.of([last / 3, last / 2, last])
+    times = SampleTimes.of([0.003, 0.005, 0.01])
     modes = proved_modes(bound, 1, times, 12).sampled
     echoes = echoed(delayed_quotient(bound), 1, times, 60)
     assert all(y.overlaps(z) for y, z in zip(modes.values, echoes.values, strict=True))
