@@ -9,11 +9,10 @@ from pathlib import Path
 import pytest
 
 from symflex.cli import run
-from tests.house.repository import specifications
 
 ROOT = Path(__file__).parents[3]
-DERIVATIONS = specifications(ROOT / "derivations", "**/*.toml")
-TWO_MASS = ROOT / "derivations" / "eppinger1988" / "two_mass.toml"
+WORKED = ROOT / "derivations"
+TWO_MASS = WORKED / "eppinger1988" / "two_mass.toml"
 
 # Undamped on purpose: the roots are 0 and +-j sqrt(k/m), that is +-3j.
 OSCILLATOR = """

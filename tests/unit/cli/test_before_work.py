@@ -13,9 +13,8 @@ def _nothing_is_computed(monkeypatch):
         monkeypatch.setattr(pipeline, name, None)
 
 
-@pytest.mark.parametrize(
-    "arguments",
-    [
+def test_a_place_that_cannot_be_written_is_refused_before_anything_is_computed(shell):
+    for arguments in (
         ("export", "x.toml", "--to", "c", "-o", "no/such/a.c"),
         ("export", "x.toml", "--to", "latex", "-o", "x.toml/"),
         ("plot", "x.toml", "bode", "-o", "no/such/a.pdf"),
@@ -24,10 +23,8 @@ def _nothing_is_computed(monkeypatch):
         ("fit", "x.csv", "--plot", "no/such/a.pdf"),
         ("report", "x.toml", "-o", "x.toml/below"),
         ("sweep", "x.toml", "--over", "k=1:2:lin:2", "-o", "no/such/a.npz"),
-    ],
-)
-def test_a_place_that_cannot_be_written_is_refused_before_anything_is_computed(arguments, shell):
-    (shell.folder / "x.csv").write_text("frequency_hz,re,im\n1,1,0\n")
-    done = shell(*arguments)
-    assert done.code == 2
-    assert "SF903" in done.err
+    ):
+        (shell.folder / "x.csv").write_text("frequency_hz,re,im\n1,1,0\n")
+        done = shell(*arguments)
+        assert done.code == 2, arguments
+        assert "SF903" in done.err, arguments

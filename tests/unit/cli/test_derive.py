@@ -7,14 +7,9 @@ import pytest
 from symflex import pipeline
 from symflex.print.forms.printed import RATIONAL, forms_of
 from tests.contract.exact import read
-from tests.house.repository import in_turns
-from tests.unit.cli.commands import DERIVATIONS, TWO_MASS
+from tests.unit.cli.commands import TWO_MASS, WORKED
 from tests.unit.print.residues import point_for
 
-LONG = {"six_mass", "fitted_resonances"}
-"""Their forms take seconds to print and to read."""
-PATHS = [path for path in DERIVATIONS if path.stem not in (*LONG, "polynomial_resonance", "two_link_arm")]
-"""Without models that are like others here, but longer."""
 ENTRY_KEYS = {"tf", "quantity", "unit", "form", "num", "den", "where", "laws", "latex", "hidden", "stability"}
 
 
@@ -30,29 +25,25 @@ def test_text_shows_a_fraction_under_its_name_and_unit(shell):
     ]
 
 
-def test_all_transfer_functions_are_derived_by_default(shell):
-    assert [e["tf"] for e in shell("derive", "x.toml", "--json").json["transfer_functions"]] == ["X/F", "V/F"]
-
-
-def test_tf_may_be_repeated_and_sets_the_order(shell):
-    done = shell("derive", "x.toml", "--json", "--tf", "V/F", "--tf", "X/F")
-    assert [e["tf"] for e in done.json["transfer_functions"]] == ["V/F", "X/F"]
+def test_all_functions_are_derived_by_default_and_tf_may_be_repeated_and_sets_the_order(shell):
+    for arguments, names in (((), ["X/F", "V/F"]), (("--tf", "V/F", "--tf", "X/F"), ["V/F", "X/F"])):
+        done = shell("derive", "x.toml", "--json", *arguments)
+        assert [e["tf"] for e in done.json["transfer_functions"]] == names
 
 
 def test_json_has_the_documented_keys(shell):
-    document = shell("derive", "x.toml", "--format", "json").json
-    assert document["schema"] == "symflex.derive/1"
-    assert all(set(entry) == ENTRY_KEYS for entry in document["transfer_functions"])
+    done = shell("derive", "x.toml", "--format", "json")
+    assert done.json["schema"] == "symflex.derive/1"
+    assert all(set(entry) == ENTRY_KEYS for entry in done.json["transfer_functions"])
+    assert shell("derive", "x.toml", "--json").out == done.out
 
 
-def test_json_and_format_json_are_the_same(shell):
-    assert shell("derive", "x.toml", "--json").out == shell("derive", "x.toml", "--format", "json").out
-
-
-@pytest.mark.parametrize("form", RATIONAL)
-def test_every_form_can_be_asked_for(shell, form):
-    (entry,) = shell("derive", "x.toml", "--tf", "X/F", "--form", form, "--json").json["transfer_functions"]
-    assert entry["form"] == form
+def test_every_form_can_be_asked_for(shell):
+    for form in RATIONAL:
+        (entry,) = shell("derive", "x.toml", "--tf", "X/F", "--form", form, "--json").json[
+            "transfer_functions"
+        ]
+        assert entry["form"] == form, form
 
 
 def test_zpk_of_the_oscillator_has_the_asked_digits(shell):
@@ -72,28 +63,19 @@ def test_latex_is_one_equation_per_transfer_function(shell):
     assert shell("derive", "x.toml", "--format", "latex").out.count(r"\begin{equation}") == 2
 
 
-def test_an_unknown_form_is_a_usage_error_with_a_hint(shell):
-    done = shell("derive", "x.toml", "--form", "polinomial")
-    assert done.code == 2
-    assert "did you mean 'polynomial'?" in done.err
-
-
-def test_an_unknown_transfer_function_is_a_usage_error_with_a_hint(shell):
-    done = shell("derive", "x.toml", "--tf", "X/G")
-    assert done.code == 2
-    assert "did you mean 'X/F'?" in done.err
+def test_an_unknown_form_or_transfer_function_is_a_usage_error_with_a_hint(shell):
+    for option, value, meant in (("--form", "polinomial", "polynomial"), ("--tf", "X/G", "X/F")):
+        done = shell("derive", "x.toml", option, value)
+        assert (done.code, f"did you mean '{meant}'?" in done.err) == (2, True), value
 
 
 def test_what_cancelled_is_named(shell):
     assert "hidden: s cancelled" in shell("derive", TWO_MASS, "--tf", "V_act/F").out
 
 
-@pytest.mark.parametrize(
-    "path",
-    in_turns(PATHS, dear=("robot_axis", "timoshenko_cantilever"))
-    + [pytest.param(path, marks=pytest.mark.slow, id=path.stem) for path in DERIVATIONS if path.stem in LONG],
-)
-def test_json_reads_back_to_the_same_function_exactly(shell, path):
+@pytest.mark.parametrize("name", ["eppinger1988/base_flexure", "classics/rod_tip_mass"])
+def test_json_reads_back_to_the_same_function_exactly(shell, name):
+    path = WORKED / f"{name}.toml"
     model = pipeline.load(path)
     derived = pipeline.derive_all(model)
     for form in (f for f in forms_of(derived[0]) if f != "zpk"):
@@ -121,20 +103,14 @@ car = { type = "mass", at = "x", m = "m" }
 """
 
 
-def test_functions_that_lack_a_form_are_printed_in_their_own_with_a_note(shell, tmp_path):
-    (tmp_path / "mixed.toml").write_text(MIXED, encoding="utf-8")
-    path = str(tmp_path / "mixed.toml")
-    done = shell("derive", path, "--form", "krylov", "--tf", "Q/F", "--tf", "X/G")
+def test_functions_that_lack_a_form_are_printed_in_their_own_with_a_note_unless_all_do(shell):
+    (shell.folder / "mixed.toml").write_text(MIXED, encoding="utf-8")
+    done = shell("derive", "mixed.toml", "--form", "krylov", "--tf", "Q/F", "--tf", "X/G")
     assert done.code == 0
     assert "krylov form" in done.out
     assert done.err.strip() == "X/G has no krylov form: printed in its definitions form"
-
-
-def test_a_form_that_no_function_has_is_a_usage_error(shell, tmp_path):
-    (tmp_path / "mixed.toml").write_text(MIXED, encoding="utf-8")
-    done = shell("derive", str(tmp_path / "mixed.toml"), "--form", "krylov", "--tf", "X/G")
-    assert done.code == 2
-    assert "SF902" in done.err
+    alone = shell("derive", "mixed.toml", "--form", "krylov", "--tf", "X/G")
+    assert (alone.code, "SF902" in alone.err) == (2, True)
 
 
 def chain(count):
@@ -180,12 +156,6 @@ den = """(s^2 + 0.0123456789012345*s + 4567.89012345678)
 """Two factors that differ in coefficients beyond a machine word only."""
 
 
-@pytest.mark.parametrize("form", [None, *RATIONAL])
-def test_factors_whose_coefficients_exceed_a_machine_word_are_printed_in_every_form(shell, form):
-    (shell.folder / "fine.toml").write_text(FINE, encoding="utf-8")
-    assert shell("derive", "fine.toml", *(("--form", form) if form else ())).code == 0
-
-
 def test_factors_whose_coefficients_exceed_a_machine_word_are_printed_exactly(shell):
     (shell.folder / "fine.toml").write_text(FINE, encoding="utf-8")
     (entry,) = shell("derive", "fine.toml", "--form", "factored", "--json").json["transfer_functions"]
@@ -198,8 +168,10 @@ def test_factors_whose_coefficients_exceed_a_machine_word_are_printed_exactly(sh
     assert entry["den"] == "*".join(f"({a}*s^2 + {b}*s + {c})" for a, b, c in lowest)
 
 
-@pytest.mark.parametrize("target", ["numpy", "c", "matlab", "julia", "state-space", "latex"])
-def test_factors_whose_coefficients_exceed_a_machine_word_are_exported(shell, target):
+def test_factors_whose_coefficients_exceed_a_machine_word_have_every_form_and_are_exported(shell):
     (shell.folder / "fine.toml").write_text(FINE, encoding="utf-8")
-    options = ("--no-figures", "-o", "fine.tex") if target == "latex" else ()
-    assert shell("export", "fine.toml", "--to", target, *options).code == 0
+    for form in (None, *RATIONAL):
+        assert shell("derive", "fine.toml", *(("--form", form) if form else ())).code == 0, form
+    for target in ("numpy", "c", "matlab", "julia", "state-space", "latex"):
+        options = ("--no-figures", "-o", "fine.tex") if target == "latex" else ()
+        assert shell("export", "fine.toml", "--to", target, *options).code == 0, target

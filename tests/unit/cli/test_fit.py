@@ -50,19 +50,12 @@ def test_the_fitted_specification_is_the_one_in_the_repository(shell):
 
 
 @pytest.mark.slow
-def test_synthetic_is_said_wherever_the_data_appear(shell):
-    done = shell("fit", DATA, *BASE, "--modes", "5", "--plot", "a.svg", "-o", "a.toml")
-    assert "SYNTHETIC" in done.out
-    assert "SYNTHETIC" in (shell.folder / "a.toml").read_text()
+def test_the_report_says_synthetic_fits_eighty_columns_and_shows_errors_and_phase_test(shell):
+    out = shell("fit", DATA, *BASE, "--modes", "5", "--plot", "a.svg", "-o", "a.toml").out
     assert "SYNTHETIC" in DATA.read_text().splitlines()[0]
-
-
-@pytest.mark.slow
-def test_the_report_fits_eighty_columns_and_shows_errors_and_phase_test(shell):
-    out = shell("fit", DATA, *BASE, "--modes", "5").out
+    assert "SYNTHETIC" in (shell.folder / "a.toml").read_text()
     assert max(map(len, out.splitlines())) <= 80
-    assert "std. error" in out
-    assert "phase test: " in out
+    assert all(said in out for said in ("SYNTHETIC", "std. error", "phase test: "))
 
 
 @pytest.mark.slow
@@ -131,9 +124,8 @@ def test_json_has_the_documented_keys(oscillator):
     assert all(f"`{key}`" in section for key in keys - {"schema"})
 
 
-@pytest.mark.parametrize(
-    ("arguments", "code"),
-    [
+def test_what_cannot_be_meant_has_its_exit_code_and_writes_nothing(oscillator):
+    for arguments, code in (
         ("fit", 2),
         ("fit none.csv", 2),
         ("fit one.csv --tf X/F", 2),
@@ -162,25 +154,24 @@ def test_json_has_the_documented_keys(oscillator):
         ("measure x.toml -o a.csv --band 1 10 --averages 100000000", 2),
         ("measure x.toml -o a.csv --band 0.1 1", 2),  # undamped
         ("measure symbolic.toml -o a.csv --band 1 10", 3),
-    ],
-)
-def test_what_cannot_be_meant_has_its_exit_code_and_writes_nothing(oscillator, arguments, code):
-    (oscillator.folder / "wrong.csv").write_text("f,re,im\n1,2,nan\n")
-    before = sorted(p.name for p in oscillator.folder.iterdir())
-    done = oscillator(*arguments.split())
-    assert (done.code, done.out) == (code, "")
-    assert "Traceback" not in done.err
-    assert sorted(p.name for p in oscillator.folder.iterdir()) == before
+    ):
+        (oscillator.folder / "wrong.csv").write_text("f,re,im\n1,2,nan\n")
+        before = sorted(p.name for p in oscillator.folder.iterdir())
+        done = oscillator(*arguments.split())
+        assert (done.code, done.out) == (code, ""), (arguments, code)
+        assert "Traceback" not in done.err, (arguments, code)
+        assert sorted(p.name for p in oscillator.folder.iterdir()) == before, (arguments, code)
 
 
-@pytest.mark.parametrize(
-    ("option", "value", "named"),
-    [("--noise", "nan", "noise"), ("--noise", "inf", "noise"), ("--rolloff", "nan", "roll-off")],
-)
-def test_measure_names_the_option_that_is_no_number(oscillator, option, value, named):
-    done = oscillator("measure", "x.toml", "-o", "a.csv", "--band", "1", "10", option, value)
-    assert done.code == 2
-    assert f"the {named} is {value}" in done.err
+def test_measure_names_the_option_that_is_no_number(oscillator):
+    for option, value, named in (
+        ("--noise", "nan", "noise"),
+        ("--noise", "inf", "noise"),
+        ("--rolloff", "nan", "roll-off"),
+    ):
+        done = oscillator("measure", "x.toml", "-o", "a.csv", "--band", "1", "10", option, value)
+        assert done.code == 2, (option, value, named)
+        assert f"the {named} is {value}" in done.err, (option, value, named)
 
 
 @pytest.mark.filterwarnings("error")

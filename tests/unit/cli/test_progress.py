@@ -53,27 +53,22 @@ def bar(terminal=True):
     return ProgressBar(screen, clock), screen, clock
 
 
-def test_nothing_is_drawn_in_the_first_second():
+def test_a_bar_is_drawn_after_a_second():
     progress, screen, clock = bar()
     clock.now += 0.99
     progress.report(0.9, "roots")
-    progress.close()
     assert screen.getvalue() == ""
-
-
-def test_a_bar_is_drawn_after_a_second():
-    progress, screen, clock = bar()
-    clock.now += 1.0
+    clock.now += 0.01
     progress.report(0.5, "5 of 10 roots")
     assert screen.shown == "[##########----------]  50 %  5 of 10 roots"
 
 
-@pytest.mark.parametrize(("done", "percent"), [(-1, 0), (0, 0), (1, 100), (7, 100), (float("nan"), 0)])
-def test_parts_outside_are_drawn_at_the_ends(done, percent):
-    progress, screen, clock = bar()
-    clock.now += 2
-    progress.report(done, "")
-    assert screen.shown.split("]")[1].split() == [str(percent), "%"]
+def test_parts_outside_are_drawn_at_the_ends():
+    for done, percent in ((-1, 0), (0, 0), (1, 100), (7, 100), (float("nan"), 0)):
+        progress, screen, clock = bar()
+        clock.now += 2
+        progress.report(done, "")
+        assert screen.shown.split("]")[1].split() == [str(percent), "%"], (done, percent)
 
 
 def test_a_shorter_line_covers_a_longer_one():
@@ -107,18 +102,12 @@ def test_a_line_has_79_columns_at_most_and_is_ascii():
     assert screen.shown.isprintable()
 
 
-def test_nothing_is_drawn_where_nobody_looks():
-    progress, screen, clock = bar(terminal=False)
-    clock.now += 10
-    progress.report(0.5, "roots")
-    progress.close()
-    assert screen.getvalue() == ""
-
-
-@pytest.mark.parametrize(("name", "value"), [("NO_COLOR", "1"), ("TERM", "dumb")])
-def test_nothing_is_drawn_where_lines_are_not_rewritten(monkeypatch, name, value):
+@pytest.mark.parametrize(
+    ("terminal", "name", "value"), [(False, "TERM", "xterm"), (True, "NO_COLOR", "1"), (True, "TERM", "dumb")]
+)
+def test_nothing_is_drawn_where_nobody_looks_or_lines_are_not_rewritten(monkeypatch, terminal, name, value):
     monkeypatch.setenv(name, value)
-    progress, screen, clock = bar()
+    progress, screen, clock = bar(terminal)
     clock.now += 10
     progress.report(0.5, "roots")
     progress.close()

@@ -18,12 +18,11 @@ def rod(shell):
     return shell
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("form", ["product", "modal"])
-def test_json_has_the_documented_keys(rod, form):
-    done = rod("rational", "rod.toml", "--tf", "X/F", "--modes", "2", "--form", form, "--json")
-    assert (done.code, done.err) == (0, "")
-    assert set(done.json) == KEYS
+def test_json_has_the_documented_keys(rod):
+    for form in ("product", "modal"):
+        done = rod("rational", "rod.toml", "--tf", "X/F", "--modes", "1", "--form", form, "--json")
+        assert (done.code, done.err) == (0, ""), form
+        assert set(done.json) == KEYS, form
     page = (ROOT / "docs" / "command-line.md").read_text(encoding="utf-8")
     section = page.partition("### `symflex.rational/1`")[2].partition("\n#")[0]
     assert all(f"`{key}`" in section for key in KEYS - {"schema"})
@@ -51,19 +50,9 @@ def test_text_of_a_lumped_system_says_that_it_is_exact(shell):
     assert done.err == "showing X/F; choose with --tf: V/F\n"
 
 
-@pytest.mark.parametrize("form", ["product", "modal"])
-@pytest.mark.parametrize(
-    "name",
-    [
-        pytest.param("eppinger1988/robot_axis", marks=pytest.mark.slow),
-        "eppinger1988/six_mass",
-        "classics/clamped_free",
-    ],
-)
-def test_text_fits_eighty_columns(shell, name, form):
-    out = shell("rational", ROOT / "derivations" / f"{name}.toml", "--form", form).out
-    assert max(map(len, out.splitlines())) <= 80
-
-
-def test_an_unknown_form_is_a_usage_error(shell):
+def test_text_fits_eighty_columns(shell):
+    for name in ("eppinger1988/six_mass", "classics/clamped_free"):
+        for form in ("product", "modal"):
+            out = shell("rational", ROOT / "derivations" / f"{name}.toml", "--form", form).out
+            assert max(map(len, out.splitlines())) <= 80, (name, form)
     assert shell("rational", "x.toml", "--form", "partial").code == 2

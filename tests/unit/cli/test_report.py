@@ -13,9 +13,8 @@ def _no_tex(monkeypatch):
     monkeypatch.setattr("symflex.report.published.shutil.which", lambda _: None)
 
 
-@pytest.mark.slow
 def test_a_report_is_written_and_its_page_named_last(shell):
-    done = shell("report", "x.toml", "-o", "out", "-j", "1", "--date", "1988-12-31")
+    done = shell("report", "symbolic.toml", "-o", "out", "-j", "1", "--date", "1988-12-31")
     assert done.code == 0
     assert done.out.splitlines()[-1] == "open out/index.html"
     assert "1988-12-31" in (shell.folder / "out" / "index.html").read_text(encoding="utf-8")
@@ -24,30 +23,27 @@ def test_a_report_is_written_and_its_page_named_last(shell):
     }  # fmt: skip
 
 
-@pytest.mark.slow
 def test_without_pdflatex_the_report_says_how_to_get_it(shell):
-    done = shell("report", "x.toml", "-j", "1", "--pdf")
+    done = shell("report", "symbolic.toml", "-j", "1", "--pdf")
     assert done.code == 2
     assert "texlive" in done.err
     assert (shell.folder / "report" / "report.tex").exists()
 
 
-@pytest.mark.slow
 def test_a_pdf_that_does_not_compile_is_said_and_the_page_is_there(shell, monkeypatch):
     def fail(*_):
         raise SymflexError(Diagnostic("SF912", "pdflatex failed"))
 
     monkeypatch.setattr("symflex.report.published.has_compiler", lambda: True)
     monkeypatch.setattr("symflex.report.published.compile_pdf", fail)
-    done = shell("report", "x.toml", "-j", "1")
+    done = shell("report", "symbolic.toml", "-j", "1")
     assert done.code == 3
     assert "SF912" in done.err
     assert (shell.folder / "report" / "index.html").exists()
 
 
-@pytest.mark.parametrize(
-    ("arguments", "code"),
-    [
+def test_exit_codes(shell):
+    for arguments, code in (
         (["nothing.toml"], 2),
         (["wrong.toml"], 3),
         (["floating.toml"], 3),
@@ -56,10 +52,11 @@ def test_a_pdf_that_does_not_compile_is_said_and_the_page_is_there(shell, monkey
         (["x.toml", "--date", "1988-13-31"], 2),
         (["x.toml", "-o", "x.toml"], 2),
         (["x.toml", "-j", "0"], 2),
-    ],
-)
-def test_exit_codes(arguments, code, shell):
-    assert shell("report", *arguments, "-j1" if "-j" not in arguments else "--no-pdf").code == code
+    ):
+        assert shell("report", *arguments, "-j1" if "-j" not in arguments else "--no-pdf").code == code, (
+            arguments,
+            code,
+        )
 
 
 def test_the_date_may_come_from_the_environment(monkeypatch):
@@ -72,10 +69,10 @@ def test_a_wrong_epoch_is_an_error(shell, monkeypatch):
     assert shell("report", "x.toml").code == 2
 
 
-@pytest.mark.parametrize("name", ["d1.csv", "D1.UFF"])
-def test_measured_data_given_as_a_specification_are_told_where_to_go(shell, name):
-    (shell.folder / name).write_text("frequency,re,im\n1,2,3\n")
-    done = shell("report", "x.toml", name, "-j", "1")
-    assert done.code == 2
-    assert "error[SF902]" in done.err and name in done.err
-    assert "measured data" in done.err and "folder" in done.err and "TOML" not in done.err
+def test_measured_data_given_as_a_specification_are_told_where_to_go(shell):
+    for name in ("d1.csv", "D1.UFF"):
+        (shell.folder / name).write_text("frequency,re,im\n1,2,3\n")
+        done = shell("report", "x.toml", name, "-j", "1")
+        assert done.code == 2, name
+        assert "error[SF902]" in done.err and name in done.err, name
+        assert "measured data" in done.err and "folder" in done.err and "TOML" not in done.err, name

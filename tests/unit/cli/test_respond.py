@@ -72,9 +72,8 @@ def test_a_figure_is_written(oscillator, tmp_path):
     assert (tmp_path / "x.svg").read_bytes().startswith(b"<?xml")
 
 
-@pytest.mark.parametrize(
-    "arguments",
-    [
+def test_what_makes_no_sense_is_refused_with_a_sentence(oscillator):
+    for arguments in (
         ["--until", "-1"],
         ["--until", "0"],
         ["--until", "3 kg"],
@@ -85,14 +84,11 @@ def test_a_figure_is_written(oscillator, tmp_path):
         ["--until", "1", "-o", "x.docx"],
         ["--until", "1", "-o", "x.csv", "--json"],
         [],
-    ],
-    ids=" ".join,
-)
-def test_what_makes_no_sense_is_refused_with_a_sentence(oscillator, arguments):
-    done = oscillator("respond", "osc.toml", *arguments)
-    assert done.code == 2
-    assert done.err.strip()
-    assert "Traceback" not in done.err
+    ):
+        done = oscillator("respond", "osc.toml", *arguments)
+        assert done.code == 2, arguments
+        assert done.err.strip(), arguments
+        assert "Traceback" not in done.err, arguments
 
 
 def test_a_file_is_an_input_of_straight_lines(oscillator, tmp_path):
@@ -111,9 +107,8 @@ def test_without_an_end_a_file_is_followed_at_its_own_times(oscillator, tmp_path
     assert oscillator("respond", "osc.toml", "--to", "u.csv", "--json").json["time"] == [0.0, 0.1, 0.3]
 
 
-@pytest.mark.parametrize(
-    ("text", "code"),
-    [
+def test_a_file_that_is_no_input_is_refused_at_its_place(oscillator, tmp_path):
+    for text, code in (
         ("", "SF605"),
         ("time_s,u\n0,1\n", "SF605"),
         ("time_s,u\n0,1\n1,\n2,3\n", "SF603"),
@@ -124,13 +119,11 @@ def test_without_an_end_a_file_is_followed_at_its_own_times(oscillator, tmp_path
         ("frequency,u\n0,1\n1,1\n", "SF602"),
         ("time_h,u\n0,1\n1,1\n", "SF602"),
         ("0,1\n1,1e999\n", "SF603"),
-    ],
-)
-def test_a_file_that_is_no_input_is_refused_at_its_place(oscillator, tmp_path, text, code):
-    (tmp_path / "u.csv").write_text(text, encoding="utf-8")
-    done = oscillator("respond", "osc.toml", "--to", "u.csv")
-    assert done.code == 3
-    assert f"error[{code}]" in done.err
+    ):
+        (tmp_path / "u.csv").write_text(text, encoding="utf-8")
+        done = oscillator("respond", "osc.toml", "--to", "u.csv")
+        assert done.code == 3, (text, code)
+        assert f"error[{code}]" in done.err, (text, code)
 
 
 def test_a_shaper_is_printed_with_its_residual_and_drawn(oscillator, tmp_path):
@@ -177,20 +170,19 @@ def test_a_dead_time_of_the_specification_becomes_states(shell, tmp_path):
     assert "choose functions with one dead time with --tf" in done.err
 
 
-@pytest.mark.parametrize("target", ["c", "numpy"])
-def test_a_controller_is_exported_with_its_poles_and_what_rounding_costs(oscillator, tmp_path, target):
-    done = oscillator(
-        "export", "osc.toml", "--tf", "X/F", "--to", target, "--sample", "1ms", "--method", "tustin"
-    )
-    assert done.code == 0
-    assert "by the bilinear transformation" in done.out
-    assert "Poles in z: 0.9988" in done.out
-    assert "the output is off by at most" in " ".join(done.out.replace(" * ", " ").split())
+def test_a_controller_is_exported_with_its_poles_and_what_rounding_costs(oscillator, tmp_path):
+    for target in ("c", "numpy"):
+        done = oscillator(
+            "export", "osc.toml", "--tf", "X/F", "--to", target, "--sample", "1ms", "--method", "tustin"
+        )
+        assert done.code == 0, target
+        assert "by the bilinear transformation" in done.out, target
+        assert "Poles in z: 0.9988" in done.out, target
+        assert "the output is off by at most" in " ".join(done.out.replace(" * ", " ").split()), target
 
 
-@pytest.mark.parametrize(
-    ("asked", "said"),
-    [
+def test_options_of_sampling_that_do_not_go_together_are_refused(oscillator):
+    for asked, said in (
         (["--to", "julia", "--sample", "1ms"], "--sample is for"),
         (["--to", "c", "--method", "zoh"], "are of --sample"),
         (["--to", "state-space", "--sample", "1ms", "--direct"], "--direct is for"),
@@ -199,33 +191,26 @@ def test_a_controller_is_exported_with_its_poles_and_what_rounding_costs(oscilla
         (["--to", "c", "--sample", "0"], "positive time"),
         (["--to", "c", "--sample", "1ms", "--method", "tustin", "--prewarp", "1kHz"], "that is 500 Hz"),
         (["--to", "c", "--sample", "1ms", "--method", "tustin", "--prewarp", "1kg"], "--prewarp takes"),
-    ],
-    ids=" ".join,
-)
-def test_options_of_sampling_that_do_not_go_together_are_refused(oscillator, asked, said):
-    done = oscillator("export", "osc.toml", "--tf", "X/F", *asked)
-    assert done.code == 2
-    assert said in done.err
+    ):
+        done = oscillator("export", "osc.toml", "--tf", "X/F", *asked)
+        assert done.code == 2, (asked, said)
+        assert said in done.err, (asked, said)
 
 
-@pytest.mark.parametrize(
-    ("asked", "code", "said"),
-    [
+def test_inputs_that_were_broken_by_hand_get_a_sentence(oscillator, tmp_path):
+    for asked, code, said in (
         (["--until", "1e300"], 2, "error[SF103]: --until '1e300': a decimal exponent beyond 60"),
         (["--until", "1", "--modes", "2"], 2, "--modes and --joint are of --shaped"),
         (["--until", "1", "--shaped", "zv", "--modes", "7"], 2, "has 1 modes that oscillate, not 7"),
         (["--to", "gap.csv"], 3, "gap.csv:3:1: error[SF603]: a number is missing"),
         (["--to", "odd.csv"], 2, "times have too little in common"),
         (["--to", "same.csv"], 3, "same.csv:3:1: error[SF604]: times do not increase"),
-    ],
-    ids=lambda value: " ".join(value) if isinstance(value, list) else "",
-)
-def test_inputs_that_were_broken_by_hand_get_a_sentence(oscillator, tmp_path, asked, code, said):
-    (tmp_path / "gap.csv").write_text("time_s,u\n0,0\n1,\n2,1\n", encoding="utf-8")
-    (tmp_path / "odd.csv").write_text("time_s,u\n0,0\n0.1234567890123456,1\n1,1\n", encoding="utf-8")
-    (tmp_path / "same.csv").write_text("time_s,u\n0,0\n0,1\n", encoding="utf-8")
-    done = oscillator("respond", "osc.toml", "--tf", "X/F", *asked)
-    assert (done.code, done.err.count(said)) == (code, 1)
+    ):
+        (tmp_path / "gap.csv").write_text("time_s,u\n0,0\n1,\n2,1\n", encoding="utf-8")
+        (tmp_path / "odd.csv").write_text("time_s,u\n0,0\n0.1234567890123456,1\n1,1\n", encoding="utf-8")
+        (tmp_path / "same.csv").write_text("time_s,u\n0,0\n0,1\n", encoding="utf-8")
+        done = oscillator("respond", "osc.toml", "--tf", "X/F", *asked)
+        assert (done.code, done.err.count(said)) == (code, 1), (asked, code, said)
 
 
 def test_what_grows_beyond_doubles_is_printed_in_decimals_and_not_drawn(shell, tmp_path):

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import pytest
-
-from tests.house.repository import in_turns, uniform
-from tests.unit.cli.commands import DERIVATIONS, TWO_MASS
+from tests.unit.cli.commands import TWO_MASS, WORKED
 
 DAMPED = """
 symflex = 1
@@ -100,10 +97,11 @@ def test_a_model_without_parameters(shell):
     assert (done.code, done.out.splitlines()[-1]) == (0, "  no root depends on a parameter")
 
 
-@pytest.mark.parametrize("spec", in_turns(uniform(DERIVATIONS), dear=("robot_axis", "fitted_resonances")))
-def test_lines_fit_80_columns(spec, shell):
-    out = shell("roots", spec, "--modes", "2", "--sensitivity").out
-    assert [line for line in out.split("sensitivity of", 1)[1].splitlines() if len(line) > 80] == []
+def test_lines_fit_80_columns(shell):
+    for name in ("eppinger1988/base_flexure", "classics/rod_tip_mass"):
+        out = shell("roots", WORKED / f"{name}.toml", "--modes", "2", "--sensitivity").out
+        lines = out.split("sensitivity of", 1)[1].splitlines()
+        assert [line for line in lines if len(line) > 80] == [], name
 
 
 def test_lines_fit_80_columns_but_for_a_name_as_long_as_a_name_may_be(shell):

@@ -8,7 +8,7 @@ from math import pi, sqrt
 import pytest
 
 import symflex
-from symflex.errors import UsageError
+from tests.unit.refusals import refusal
 
 SPEC = """symflex = 1
 [parameters]
@@ -77,11 +77,11 @@ def test_roots_are_those_of_the_value_that_is_set(spec):
     assert max(p.imag for p in found) == pytest.approx(sqrt(50.5 / 2), rel=1e-14)
 
 
-@pytest.mark.parametrize(
-    "text", ["k=50", "k = 50 N/m", "k=50N/m", 'k="50 N/m"', "k='0.05 kN/m'", "k=5e1 N/m"]
-)
-def test_a_value_is_written_in_many_ways(spec, text):
-    assert max(p.imag for p in poles(spec, "--set", text, "--set", "b=0")) == pytest.approx(sqrt(51 / 2))
+def test_a_value_is_written_in_many_ways(spec):
+    for text in ("k=50", "k = 50 N/m", "k=50N/m", 'k="50 N/m"', "k='0.05 kN/m'", "k=5e1 N/m"):
+        assert max(p.imag for p in poles(spec, "--set", text, "--set", "b=0")) == pytest.approx(
+            sqrt(51 / 2)
+        ), text
 
 
 def test_a_frequency_that_is_set_is_read_as_the_one_declared(spec):
@@ -95,9 +95,8 @@ def test_a_parameter_without_value_gets_one(spec):
     assert float(json.loads(done.out)["poles"][0]["im"]) == pytest.approx(3)
 
 
-@pytest.mark.parametrize(
-    ("given", "code", "said"),
-    [
+def test_a_value_that_the_file_could_not_have_is_a_usage_error(spec):
+    for given, code, said in (
         (["k"], "SF902", "found 'k'"),
         (["k="], "SF902", "found 'k='"),
         (["=3"], "SF902", "found '=3'"),
@@ -117,13 +116,11 @@ def test_a_parameter_without_value_gets_one(spec):
         (["b=-1"], "SF209", "'b' is negative"),
         (["f_c=60"], "SF203", "'f_c' is declared in 'Hz', the value given has no unit"),
         (["k=1", "m=-1", "b=3 s"], "SF209", "'m' is negative"),
-    ],
-)
-def test_a_value_that_the_file_could_not_have_is_a_usage_error(spec, given, code, said):
-    done = spec("roots", "spec.toml", *(part for text in given for part in ("--set", text)))
-    assert (done.code, done.out) == (2, "")
-    assert code in done.err
-    assert said in done.err
+    ):
+        done = spec("roots", "spec.toml", *(part for text in given for part in ("--set", text)))
+        assert (done.code, done.out) == (2, ""), (given, code, said)
+        assert code in done.err, (given, code, said)
+        assert said in done.err, (given, code, said)
 
 
 def test_the_unit_of_a_parameter_without_value_is_kept(spec):
@@ -142,25 +139,21 @@ def test_a_length_that_is_set_is_checked_where_it_is_used(spec):
     assert (done.code, "SF209" in done.err) == (2, True)
 
 
-@pytest.mark.parametrize(
-    "command",
-    [
+def test_every_command_that_binds_values_takes_them_and_refuses_wrong_ones(spec):
+    for command in (
         ["check", "spec.toml"],
         ["derive", "spec.toml", "--tf", "X/F", "--form", "zpk"],
         ["rational", "spec.toml", "--tf", "X/F"],
         ["stability", "spec.toml", "--gain", "K"],
         ["colocation", "spec.toml", "--tf", "Y/F", "--with", "X/F"],
         ["export", "spec.toml", "--tf", "X/F", "--to", "numpy"],
-        ["plot", "spec.toml", "bode", "--tf", "X/F", "-o", "a.svg"],
+        ["plot", "spec.toml", "poles_zeros", "--tf", "X/F", "-o", "a.svg"],
         ["measure", "spec.toml", "--tf", "X/F", "-o", "a.csv"],
         ["audit", "spec.toml"],
         ["sweep", "spec.toml", "--over", "m=1:2:lin:2", "--tf", "X/F", "--workers", "1"],
-    ],
-    ids=lambda command: command[0],
-)
-def test_every_command_that_binds_values_takes_them_and_refuses_wrong_ones(spec, command):
-    assert spec(*command, "--set", "k=9 N/m").code == 0
-    assert spec(*command, "--set", "k=9 kg").code == 2
+    ):
+        assert spec(*command, "--set", "k=9 N/m").code == 0, command
+        assert spec(*command, "--set", "k=9 kg").code == 2, command
 
 
 def test_exported_code_has_the_value_that_is_set(spec):
@@ -196,7 +189,6 @@ def test_python_sets_values_as_the_command_does(tmp_path):
     assert max(complex(p).imag for p in G.poles()) == pytest.approx(5)
 
 
-@pytest.mark.parametrize("value", [float("nan"), float("inf"), -1, "3 kg", "two"])
-def test_python_refuses_what_the_command_refuses(value):
-    with pytest.raises(UsageError):
-        symflex.loads(SPEC, values={"k": value})
+def test_python_refuses_what_the_command_refuses():
+    values = (float("nan"), float("inf"), -1, "3 kg", "two")
+    assert [v for v in values if "UsageError" not in refusal(symflex.loads, SPEC, values={"k": v})] == []
