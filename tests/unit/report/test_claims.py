@@ -72,9 +72,8 @@ def test_a_claim_is_a_quotation_with_checks(tmp_path):
     )
 
 
-@pytest.mark.parametrize(
-    ("text", "code", "place"),
-    [
+def test_what_is_wrong_is_said_with_its_place(tmp_path):
+    for text, code, place in (
         (HEAD.replace("symflex-claims = 1\n", ""), "SF200", "1:1"),
         (HEAD.replace("= 1", "= 2"), "SF200", "1:18"),
         (HEAD.replace("title", "titel"), "SF207", "3:1"),
@@ -101,13 +100,11 @@ def test_a_claim_is_a_quotation_with_checks(tmp_path):
         ),
         (HEAD + 2 * (CLAIM + "checks = [{ is = 'colocated', of = 'cart' }]\n"), "SF208", "5:1"),
         (HEAD + "[[claims]", "SF101", "5:"),
-    ],
-)
-def test_what_is_wrong_is_said_with_its_place(tmp_path, text, code, place):
-    with pytest.raises(SpecError) as caught:
-        read(tmp_path, text)
-    found = [(d.code, str(d.span)) for d in caught.value.diagnostics]
-    assert any(c == code and f"claims.toml:{place}" in at for c, at in found), found
+    ):
+        with pytest.raises(SpecError) as caught:
+            read(tmp_path, text)
+        found = [(d.code, str(d.span)) for d in caught.value.diagnostics]
+        assert any(c == code and f"claims.toml:{place}" in at for c, at in found), found
 
 
 def test_a_file_of_claims_is_no_specification_and_another_file_of_its_name_is(tmp_path):
@@ -164,13 +161,12 @@ FREE = replace(LOOP, stable=((0.0, None),), unstable_at_last=0, crossings_hz=())
 APART = ColocationFact("X/F", "Z/F", 10.0, 1.0, 3.0, 100.0, True)
 
 
-def of_loop(stem, loop):
-    return ModelFacts(stem, loops=(loop,))
+def of_loop(loop):
+    return ModelFacts("cart", loops=(loop,))
 
 
-@pytest.mark.parametrize(
-    ("checks", "holds", "fails"),
-    [
+def test_a_predicate_tells_what_is_so_from_what_is_not(tmp_path):
+    for checks, holds, fails in (
         (
             'is = "modes-at", hertz = [2, 4], within = 0.1',
             function(poles=axis(2.0, 4.05)),
@@ -204,12 +200,10 @@ def of_loop(stem, loop):
         ('is = "mirrored-real-zeros", count = 2', function(zeros=MIRRORED), function(zeros=MIRRORED[:1])),
         ('is = "minimum-phase"', function(), function(condition="for these values")),
         ('is = "nonminimum-phase"', function(zeros=MIRRORED), function()),
-    ],
-)
-def test_a_predicate_tells_what_is_so_from_what_is_not(tmp_path, checks, holds, fails):
-    check = f'{{ {checks}, of = "cart: X/F" }}'
-    assert judged(tmp_path, check, cart=holds)[0] == "holds"
-    assert judged(tmp_path, check, cart=fails)[0] == "does not hold"
+    ):
+        check = f'{{ {checks}, of = "cart: X/F" }}'
+        found = [judged(tmp_path, check, cart=each)[0] for each in (holds, fails)]
+        assert found == ["holds", "does not hold"], checks
 
 
 def test_what_dampers_bring_is_a_condition(tmp_path):
@@ -233,14 +227,11 @@ def test_functions_of_two_models_are_compared(tmp_path):
     )
 
 
-@pytest.mark.parametrize(
-    ("name", "yes", "no"), [("unstable-at-high-gain", LOOP, FREE), ("always-stable", FREE, LOOP)]
-)
-def test_loops_are_judged_by_their_gains(tmp_path, name, yes, no):
-    check = f'{{ is = "{name}", of = "cart" }}'
-    assert judged(tmp_path, check, cart=of_loop("cart", yes))[0] == "holds"
-    assert judged(tmp_path, check, cart=of_loop("cart", no))[0] == "does not hold"
-    assert judged(tmp_path, check, cart=function())[0] == "not examined"
+def test_loops_are_judged_by_their_gains(tmp_path):
+    for name, yes, no in (("unstable-at-high-gain", LOOP, FREE), ("always-stable", FREE, LOOP)):
+        check = f'{{ is = "{name}", of = "cart" }}'
+        found = [judged(tmp_path, check, cart=each)[0] for each in (of_loop(yes), of_loop(no), function())]
+        assert found == ["holds", "does not hold", "not examined"], name
 
 
 def test_outputs_that_part_early_are_together_up_to_there(tmp_path):

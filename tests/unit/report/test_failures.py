@@ -57,22 +57,16 @@ def test_problems_of_all_files_are_told_before_anything_is_computed(tmp_path, mo
     ]  # fmt: skip
 
 
-def test_a_model_that_exceeds_a_budget_costs_its_own_chapter_only(models, too_large):
+def test_a_model_that_exceeds_a_budget_costs_its_own_chapter_only_and_the_report_says_why(models, too_large):
     small, symbolic = write_chapters(models, 0, Silent())
     assert (small.failure, small.code) == ("far too large", 5)
     assert (symbolic.failure, symbolic.code) == ("", 0)
-
-
-def test_a_report_says_what_is_not_computed_and_why(models, too_large):
-    report = compose(write_chapters(models, 0, Silent()), "")
+    report = compose([small, symbolic], "")
     assert "Not computed: far too large." in report_page(report)
     assert "Not computed: far too large." in report_article(report)
     assert report.warnings[0] == "small is not computed: far too large"
     assert report.code == 5
-
-
-def test_a_chapter_that_failed_bears_the_title_of_its_model(models, too_large):
-    assert chapter_of(models["small"], "small").section.title == "Two masses"
+    assert small.section.title == "Two masses"
 
 
 def ended(error):
@@ -87,15 +81,10 @@ def test_a_fault_of_the_program_costs_one_chapter_and_is_named(models):
     assert chapter.code == 4
 
 
-def test_a_model_for_which_memory_does_not_suffice_exceeds_a_budget(models):
+def test_what_ended_a_chapter_decides_what_becomes_of_it(models):
     assert report_module._outcome(ended(MemoryError()), models["small"], "small").code == 5
-
-
-def test_a_process_that_ended_gives_no_chapter_yet(models):
+    # A process that ended gives no chapter yet.
     assert report_module._outcome(ended(BrokenProcessPool()), models["small"], "small") is None
-
-
-def test_an_interrupt_is_none_of_a_chapter(models):
     with pytest.raises(KeyboardInterrupt):
         report_module._outcome(ended(KeyboardInterrupt()), models["small"], "small")
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import pytest
-
 from symflex import loads
 from symflex.report.sections.files import figure_section
 from symflex.report.study import Study
@@ -18,6 +16,9 @@ signals.u = "k_p*(r - x) - k_d*s*x"
 outputs = { X = "x" }
 """
 
+# A figure asked for, so that those by default need not be drawn.
+ROOTS = 'figures.roots = { kind = "poles_zeros" }\n'
+
 
 def drawn(folder, text):
     """Return the names of the drawings of a model."""
@@ -27,33 +28,29 @@ def drawn(folder, text):
 
 
 def test_a_stable_closed_loop_shows_the_step_of_its_reference(tmp_path):
-    assert "figures/a_step.svg" in drawn(tmp_path, LOOP.replace("K N", "2 N"))
+    found = drawn(tmp_path, LOOP.replace("K N", "2 N") + ROOTS)
+    assert found == ["figures/a_roots.svg", "figures/a_step.svg"]
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        LOOP.replace('"K N*s/m"', '{ value = "-2 N*s/m", assume = "real" }'),
-        'symflex = 1\ninputs.u = {}\noutputs.y = "u/(s + 1)"',
-        LOOP.replace("K N", "2 N") + 'figures.a = { kind = "impulse", of = ["X/r"], until = "2 s" }',
-    ],
-    ids=["unstable", "open", "asked for another"],
-)
-def test_no_step_is_shown_of_what_is_open_or_grows_or_has_its_own(tmp_path, text):
-    assert not [name for name in drawn(tmp_path, text) if "step" in name]
+def test_no_step_is_shown_of_what_is_open_or_grows_or_has_its_own(tmp_path):
+    unstable = LOOP.replace('"K N*s/m"', '{ value = "-2 N*s/m", assume = "real" }')
+    is_open = 'symflex = 1\ninputs.u = {}\noutputs.y = "u/(s + 1)"\n'
+    has_its_own = LOOP.replace("K N", "2 N") + 'figures.a = { kind = "impulse", of = ["X/r"], until = "2 s" }'
+    assert drawn(tmp_path, unstable + ROOTS) == ["figures/a_roots.svg"]
+    assert drawn(tmp_path, is_open) == ["figures/a_bode.svg", "figures/a_poles_zeros.svg"]
+    assert drawn(tmp_path, has_its_own) == ["figures/a_a.svg"]
 
 
-@pytest.mark.parametrize(
-    ("signals", "is_closed"),
-    [
+def test_a_loop_is_closed_where_a_signal_depends_on_itself():
+    for signals, is_closed in (
         ('u = "r - x"', True),  # by the network
         ('u = "2*v"\nsignals.v = "r - u"', True),  # by another signal
         ('u = "r"\nsignals.v = "x"', False),  # seen, and not fed back
         ('u = "2*v"\nsignals.v = "r"', False),
-    ],
-)
-def test_a_loop_is_closed_where_a_signal_depends_on_itself(signals, is_closed):
-    text = 'symflex = 1\nelements.b = { type = "mass", at = "x", m = "1 kg" }\n'
-    text += 'elements.f = { type = "force_source", at = "x", f = "k*u" }\nparameters.k = "1 N"\n'
-    text += f'inputs.r = {{}}\noutputs.X = "x"\nsignals.{signals}\n'
-    assert loads(text.replace("r - x", 'r - x/l"\nparameters.l = "1 m')).resolved.is_closed_loop is is_closed
+    ):
+        text = 'symflex = 1\nelements.b = { type = "mass", at = "x", m = "1 kg" }\n'
+        text += 'elements.f = { type = "force_source", at = "x", f = "k*u" }\nparameters.k = "1 N"\n'
+        text += f'inputs.r = {{}}\noutputs.X = "x"\nsignals.{signals}\n'
+        assert (
+            loads(text.replace("r - x", 'r - x/l"\nparameters.l = "1 m')).resolved.is_closed_loop is is_closed
+        ), (signals, is_closed)
