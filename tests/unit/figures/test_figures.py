@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import hashlib
 import os
 import subprocess
 import sys
@@ -19,6 +20,7 @@ from symflex.model.analysis import FIGURE_KINDS
 from symflex.model.labels import ACCENTS, FONTS, GREEK, SYMBOLS
 from symflex.transfer import bind
 from tests.unit.analysis.systems import derived, rational
+from tests.unit.refusals import refusal
 
 ROOT = Path(__file__).parents[3]
 TWO_MASSES = """
@@ -32,22 +34,17 @@ outputs.X_tip = "y"
 outputs.V_act = "s*x"
 analysis.band = ["0.2 Hz", "5 Hz"]
 """
-DRAW_ALL = f"""
-import hashlib
-from symflex.figures import FIGURES, FORMATS, draw, render
-from symflex.transfer import bind
-from tests.unit.analysis.systems import derived
-tfs = derived({TWO_MASSES.replace("DAMPING", "0.1")!r})
-for kind in FIGURES:
-    figure = draw(kind, tfs, [bind(tf) for tf in tfs], title="a title")
-    for format in FORMATS:
-        print(kind, format, hashlib.sha256(render(figure, format)).hexdigest())
+DRAW_ALL = """
+import sys
+from tests.unit.figures.test_figures import DAMPED, hashes
+print(hashes(), "matplotlib.pyplot" in sys.modules)
 """
+DAMPED = TWO_MASSES.replace("DAMPING", "0.1")
 
 
 @pytest.fixture(scope="module")
 def tfs():
-    return derived(TWO_MASSES.replace("DAMPING", "0.1"))
+    return derived(DAMPED)
 
 
 @pytest.fixture(scope="module")
@@ -68,16 +65,12 @@ def texts(axes):
     return [text.get_text() for text in axes.texts]
 
 
-def python(code, **environment):
-    result = subprocess.run(
-        [sys.executable, "-c", code],
-        env={**os.environ, **environment},
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    return result.stdout
+def hashes():
+    """Return what tells the files of every kind of figure apart, and those of every format."""
+    tfs = derived(DAMPED)[:1]
+    figures = {kind: drawn(kind, tfs, title="a title") for kind in FIGURES}
+    files = [*((kind, "svg") for kind in FIGURES), ("poles_zeros", "pdf"), ("poles_zeros", "pgf")]
+    return {file: hashlib.sha256(render(figures[file[0]], file[1])).hexdigest() for file in files}
 
 
 # ------------------------------------------------------------------------------------------ every kind
@@ -92,117 +85,102 @@ def test_an_unknown_kind_names_the_nearest(tfs):
         drawn("bodee", tfs)
 
 
-@pytest.mark.parametrize("kind", FIGURES)
-def test_a_figure_of_nothing_is_refused(kind):
-    with pytest.raises(ValueError, match="as many bound as symbolic"):
-        draw(kind, [], [])
+def test_a_figure_of_nothing_is_refused():
+    for kind in FIGURES:
+        with pytest.raises(ValueError, match="as many bound as symbolic"):
+            draw(kind, [], [])
 
 
-@pytest.mark.parametrize("kind", FIGURES)
-def test_a_function_that_is_zero_has_no_figure(kind):
-    with pytest.raises(ModelError, match="SF402"):
-        drawn_rational(kind, "s - s")
+def test_a_function_that_is_zero_has_no_figure():
+    assert {kind: refusal(drawn_rational, kind, "s - s") for kind in FIGURES} == dict.fromkeys(
+        FIGURES, "ModelError SF402"
+    )
 
 
-@pytest.mark.parametrize("kind", FIGURES)
-def test_a_figure_of_one_function_is_a_column_wide(kind, tfs):
-    assert drawn(kind, tfs[:1]).get_size_inches()[0] == 3.5
+def test_a_figure_of_one_function_is_a_column_wide(tfs):
+    for kind in FIGURES:
+        assert drawn(kind, tfs[:1]).get_size_inches()[0] == 3.5, kind
 
 
-@pytest.mark.parametrize(
-    ("kind", "format"),
-    [
-        pytest.param(kind, format, marks=[] if kind == "bode" or format == "svg" else [pytest.mark.slow])
-        for kind in FIGURES
-        for format in FORMATS
-    ],
-)
-def test_two_drawings_have_the_same_bytes(kind, format, tfs):
-    assert render(drawn(kind, tfs), format) == render(drawn(kind, tfs), format)
+def test_two_drawings_have_the_same_bytes(tfs):
+    one, other = (drawn("poles_zeros", tfs[:1]) for _ in range(2))
+    assert [f for f in FORMATS if render(one, f) != render(other, f)] == []
 
 
 @pytest.mark.slow
-def test_the_bytes_do_not_depend_on_the_hash_seed():
-    assert python(DRAW_ALL, PYTHONHASHSEED="1") == python(DRAW_ALL, PYTHONHASHSEED="2")
+def test_bytes_do_not_depend_on_the_hash_seed_and_pyplot_is_never_imported():
+    seed = "2" if os.environ.get("PYTHONHASHSEED") != "2" else "1"
+    environment = {**os.environ, "PYTHONHASHSEED": seed}
+    command = [sys.executable, "-c", DRAW_ALL]
+    done = subprocess.run(command, env=environment, cwd=ROOT, capture_output=True, text=True, check=True)
+    assert done.stdout == f"{hashes()} False\n"
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("kind", FIGURES)
-def test_the_user_s_own_settings_do_not_matter(kind, tfs):
-    expected = render(drawn(kind, tfs), "svg")
+def test_the_user_s_own_settings_do_not_matter_and_are_left_as_they_were(tfs):
+    """One context sets the style of all kinds."""
+    expected = render(drawn("poles_zeros", tfs), "svg")
     with matplotlib.rc_context(
         {"font.size": 20, "axes.grid": True, "lines.linewidth": 9, "svg.fonttype": "none"}
     ):
-        assert render(drawn(kind, tfs), "svg") == expected
+        before = dict(matplotlib.rcParams)
+        assert render(drawn("poles_zeros", tfs), "svg") == expected
+        assert dict(matplotlib.rcParams) == before
 
 
-@pytest.mark.parametrize("kind", FIGURES)
-def test_global_settings_are_left_as_they_were(kind, tfs):
-    before = dict(matplotlib.rcParams)
-    render(drawn(kind, tfs), "pdf")
-    assert dict(matplotlib.rcParams) == before
-
-
-@pytest.mark.slow
-def test_pyplot_is_never_imported():
-    code = f"{DRAW_ALL}\nimport sys\nprint('matplotlib.pyplot' in sys.modules)"
-    assert python(code).splitlines()[-1] == "False"
-
-
-@pytest.mark.parametrize("kind", FIGURES)
-def test_a_title_is_printed_as_it_is(kind, tfs):
+def test_a_title_is_printed_as_it_is(tfs):
     title = "Costs $5 or $\\frac{x$ & <b>"
-    figure = drawn(kind, tfs, title=title)
-    render(figure, "svg")
-    found = [text for text in figure.findobj(matplotlib.text.Text) if title in text.get_text().splitlines()]
-    assert [text.get_parse_math() for text in found] == [False]
+    for kind in FIGURES:
+        figure = drawn(kind, tfs, title=title)
+        texts_of_it = figure.findobj(matplotlib.text.Text)
+        found = [text for text in texts_of_it if title in text.get_text().splitlines()]
+        assert [text.get_parse_math() for text in found] == [False], kind
 
 
-@pytest.mark.parametrize("kind", FIGURES)
-def test_control_characters_of_a_title_do_not_reach_the_file(kind, tfs):
-    assert b"\x1b" not in render(drawn(kind, tfs, title="a\x1b[31m\ud800b"), "svg")
+def test_control_characters_of_a_title_do_not_reach_the_file(tfs):
+    assert b"\x1b" not in render(drawn("poles_zeros", tfs, title="a\x1b[31m\ud800b"), "svg")
 
 
-def test_an_unknown_format_is_refused(tfs):
+@pytest.fixture(scope="module")
+def sketch(tfs):
+    """A figure to be written."""
+    return drawn("poles_zeros", tfs[:1])
+
+
+def test_an_unknown_format_is_refused(sketch):
     with pytest.raises(UsageError, match="SF208"):
-        render(drawn("bode", tfs), "jpg")
+        render(sketch, "jpg")
 
 
-@pytest.mark.parametrize(("format", "start"), [("pdf", b"%PDF-"), ("png", b"\x89PNG"), ("svg", b"<?xml")])
-def test_save_writes_the_format_asked_for(format, start, tfs, tmp_path):
-    save(drawn("bode", tfs), tmp_path / "figure", format)
-    assert (tmp_path / "figure").read_bytes().startswith(start)
+def test_save_writes_the_format_asked_for_without_a_date(sketch, tmp_path):
+    for format, start in (("pdf", b"%PDF-"), ("png", b"\x89PNG"), ("svg", b"<?xml")):
+        save(sketch, tmp_path / "figure", format)
+        content = (tmp_path / "figure").read_bytes()
+        assert content.startswith(start), format
+        assert b"CreationDate" not in content, format
+        assert b"<dc:date>" not in content, format
 
 
-def test_the_name_of_the_file_tells_the_format(tfs, tmp_path):
-    save(drawn("bode", tfs), tmp_path / "figure.PNG")
+def test_the_name_of_the_file_tells_the_format(sketch, tmp_path):
+    save(sketch, tmp_path / "figure.PNG")
     assert (tmp_path / "figure.PNG").read_bytes().startswith(b"\x89PNG")
 
 
-def test_a_name_that_tells_no_format_is_refused(tfs, tmp_path):
+def test_a_name_that_tells_no_format_is_refused(sketch, tmp_path):
     with pytest.raises(UsageError, match="SF208"):
-        save(drawn("bode", tfs), tmp_path / "figure")
+        save(sketch, tmp_path / "figure")
 
 
-def test_save_does_not_write_through_a_link(tfs, tmp_path):
+def test_save_does_not_write_through_a_link(sketch, tmp_path):
     (tmp_path / "a.svg").symlink_to(tmp_path / "b.svg")
     with pytest.raises(UsageError, match="SF903"):
-        save(drawn("bode", tfs), tmp_path / "a.svg", "svg")
-
-
-@pytest.mark.slow
-def test_no_date_is_in_the_file(tfs):
-    figure = drawn("bode", tfs)
-    assert b"CreationDate" not in render(figure, "pdf")
-    assert b"<dc:date>" not in render(figure, "svg")
+        save(sketch, tmp_path / "a.svg", "svg")
 
 
 # ---------------------------------------------------------------------------------------------- labels
 
 
-@pytest.mark.parametrize(
-    ("name", "label"),
-    [
+def test_a_name_becomes_a_label():
+    for name, label in (
         ("F", "F"),
         ("X_tip", r"X_{\mathrm{tip}}"),
         ("theta_1", r"\theta_{1}"),
@@ -210,18 +188,16 @@ def test_no_date_is_in_the_file(tfs):
         ("speed", r"\mathrm{speed}"),
         ("a_b_max", r"a_{b,\mathrm{max}}"),
         ("x_", "x"),
-    ],
-)
-def test_a_name_becomes_a_label(name, label):
-    assert label_of_name(name) == label
+    ):
+        assert label_of_name(name) == label, (name, label)
 
 
-@pytest.mark.parametrize("command", sorted({*GREEK, *ACCENTS, *FONTS, *SYMBOLS}))
-def test_every_command_a_label_may_use_is_drawn(command):
-    argument = "{x}" if command in ACCENTS or command in FONTS else ""
-    output = Output("y", None, latex=f"\\{command}{argument}")
+def test_every_command_a_label_may_use_is_drawn():
     figure = matplotlib.figure.Figure()
-    figure.text(0, 0, f"${label_of(output)}$")
+    for command in sorted({*GREEK, *ACCENTS, *FONTS, *SYMBOLS}):
+        argument = "{x}" if command in ACCENTS or command in FONTS else ""
+        output = Output("y", None, latex=f"\\{command}{argument}")
+        figure.text(0, 0, f"${label_of(output)}$")
     figure.savefig(os.devnull, format="svg")
 
 
@@ -229,37 +205,31 @@ def test_the_model_s_own_label_comes_first():
     assert label_of(Output("X_tip", None, latex=r"\hat{x}")) == r"{\hat{x}}"
 
 
-@pytest.mark.parametrize("latex", ["$", "{", r"\nonsense", "a^{b}^{c}"])
-def test_a_label_that_cannot_be_set_gives_way_to_the_name(latex):
-    assert label_of(Output("X_tip", None, latex=latex)) == r"X_{\mathrm{tip}}"
+def test_a_label_that_cannot_be_set_gives_way_to_the_name():
+    for latex in ("$", "{", r"\nonsense", "a^{b}^{c}"):
+        assert label_of(Output("X_tip", None, latex=latex)) == r"X_{\mathrm{tip}}", latex
 
 
 def test_a_transfer_function_is_labelled_output_over_input(tfs):
     assert label_of_tf(tfs[0]) == r"$X_{\mathrm{tip}}/F$"
 
 
-@pytest.mark.parametrize(
-    ("unit", "label"),
-    [
+def test_a_unit_becomes_a_label():
+    for unit, label in (
         ("", ""),
         ("1", ""),
         ("m/N", r"$\mathrm{m/N}$"),
         ("1/(N*m*s^2)", r"$\mathrm{1/(N\,m\,s^{2})}$"),
         ("kg^(1/2)*Ohm", r"$\mathrm{kg^{1/2}\,\Omega}$"),
-    ],
-)
-def test_a_unit_becomes_a_label(unit, label):
-    assert label_of_unit(unit) == label
+    ):
+        assert label_of_unit(unit) == label, (unit, label)
 
 
 # ------------------------------------------------------------------------------------------------ bode
 
 
-def test_the_level_is_relative_to_the_unit(tfs):
+def test_the_level_is_relative_to_the_unit_and_different_units_stand_in_the_legend(tfs):
     assert drawn("bode", tfs[:1]).axes[0].get_ylabel() == r"Magnitude [dB, 0 dB = 1 $\mathrm{m/N}$]"
-
-
-def test_different_units_stand_in_the_legend(tfs):
     labels = [text.get_text() for text in drawn("bode", tfs).axes[0].get_legend().get_texts()]
     assert labels == [
         r"$X_{\mathrm{tip}}/F$ [$\mathrm{m/N}$]",
@@ -267,36 +237,30 @@ def test_different_units_stand_in_the_legend(tfs):
     ]
 
 
-def test_the_band_is_the_model_s(tfs):
-    assert drawn("bode", tfs).axes[0].get_xlim() == pytest.approx((0.2, 5))
+def test_the_band_is_the_model_s_or_the_one_asked_for_in_any_numbers(tfs):
+    for asked, band in ((None, (0.2, 5)), ((1, 3), (1, 3)), ((Fraction(1, 2), Fraction(3)), (0.5, 3))):
+        assert drawn("bode", tfs, band_hz=asked).axes[0].get_xlim() == pytest.approx(band), asked
 
 
-def test_a_band_may_be_given_in_exact_numbers(tfs):
-    assert drawn("bode", tfs, band_hz=(Fraction(1, 2), Fraction(3))).axes[0].get_xlim() == pytest.approx(
-        (0.5, 3)
-    )
+def test_a_band_that_is_none_is_refused(tfs):
+    for band in ((3, 1), (2, 2), (-1, 2), (np.nan, 2), (1, np.nan), (1, np.inf)):
+        for kind in FIGURES:
+            assert refusal(drawn, kind, tfs, band_hz=band) == "UsageError SF227", (kind, band)
 
 
-def test_a_band_asked_for_comes_first(tfs):
-    assert drawn("bode", tfs, band_hz=(1, 3)).axes[0].get_xlim() == pytest.approx((1, 3))
-
-
-@pytest.mark.parametrize("band", [(3, 1), (2, 2), (-1, 2), (np.nan, 2), (1, np.nan), (1, np.inf)], ids=str)
-@pytest.mark.parametrize("kind", FIGURES)
-def test_a_band_that_is_none_is_refused(kind, band, tfs):
-    with pytest.raises(UsageError, match="SF227"):
-        drawn(kind, tfs, band_hz=band)
-
-
-@pytest.mark.parametrize(
-    "ends",
-    [(1, 0), (2, 2), (np.nan, 1), (0, np.nan), (-np.inf, 0), (0, np.inf), (-1e300, 1e300), (1, 1 + 1e-12)],
-    ids=str,
-)
-@pytest.mark.parametrize("axis", ["x", "y", "phase"])
-def test_limits_of_an_axis_that_are_none_are_refused(axis, ends):
-    with pytest.raises(UsageError, match="SF902"):
-        AxisLimits(**{axis: ends})
+def test_limits_of_an_axis_that_are_none_are_refused():
+    for ends in (
+        (1, 0),
+        (2, 2),
+        (np.nan, 1),
+        (0, np.nan),
+        (-np.inf, 0),
+        (0, np.inf),
+        (-1e300, 1e300),
+        (1, 1 + 1e-12),
+    ):
+        for axis in ("x", "y", "phase"):
+            assert refusal(AxisLimits, **{axis: ends}) == "UsageError SF902", (axis, ends)
 
 
 def test_a_bode_plot_has_the_limits_asked_for(undamped):
@@ -308,16 +272,16 @@ def test_a_bode_plot_has_the_limits_asked_for(undamped):
     assert max(line.get_ydata().max() for line in top.lines) > 40
 
 
-@pytest.mark.parametrize("ends", [(-1.0, 1.0), (0.0, 1e-9), (-1e30, 1e30), (-400.0, 0.0)], ids=str)
-def test_phases_have_a_few_ticks_whatever_their_limits_are(ends, tfs):
-    figure = drawn("bode", tfs, frame=AxisLimits(phase=ends))
-    assert 2 <= len(figure.axes[1].get_yticks()) <= 12
+def test_phases_have_a_few_ticks_whatever_their_limits_are(tfs):
+    for ends in ((-1.0, 1.0), (0.0, 1e-9), (-1e30, 1e30), (-400.0, 0.0)):
+        figure = drawn("bode", tfs[:1], frame=AxisLimits(phase=ends))
+        assert 2 <= len(figure.axes[1].get_yticks()) <= 12, ends
 
 
-@pytest.mark.parametrize("kind", ["nyquist", "poles_zeros"])
-def test_a_plane_has_the_limits_asked_for(kind, tfs):
-    for axes in drawn(kind, tfs, frame=AxisLimits(x=(-3.0, 1.0), y=(0.0, 2.0))).axes:
-        assert (axes.get_xlim(), axes.get_ylim()) == ((-3, 1), (0, 2))
+def test_a_plane_has_the_limits_asked_for(tfs):
+    for kind in ("nyquist", "poles_zeros"):
+        for axes in drawn(kind, tfs, frame=AxisLimits(x=(-3.0, 1.0), y=(0.0, 2.0))).axes:
+            assert (axes.get_xlim(), axes.get_ylim()) == ((-3, 1), (0, 2)), kind
 
 
 def test_one_axis_may_be_left_as_it_is(tfs):
@@ -334,18 +298,15 @@ def test_roots_outside_the_limits_asked_for_are_counted():
     assert any(text.endswith(": 1 pole and 1 zero outside") for text in said)
 
 
-@pytest.mark.parametrize(
-    ("kind", "limits", "said"),
-    [
+def test_limits_of_an_axis_that_a_figure_has_not_are_refused(tfs):
+    for kind, limits, said in (
         ("nyquist", {"phase": (0, 1)}, "for 'bode'"),
         ("poles_zeros", {"phase": (0, 1)}, "for 'bode'"),
         ("bode", {"x": (0, 1)}, "its band"),
         ("modes", {"y": (0, 1)}, "mode shapes"),
-    ],
-)
-def test_limits_of_an_axis_that_a_figure_has_not_are_refused(kind, limits, said, tfs):
-    with pytest.raises(UsageError, match=f"SF902.*{said}"):
-        drawn(kind, tfs, frame=AxisLimits(**limits))
+    ):
+        with pytest.raises(UsageError, match=f"SF902.*{said}"):
+            drawn(kind, tfs, frame=AxisLimits(**limits))
 
 
 def test_a_band_chooses_among_all_modes():
@@ -357,14 +318,12 @@ def test_a_band_chooses_among_all_modes():
         drawn("modes", tfs, band_hz=(1.7, 2))
 
 
-@pytest.mark.parametrize(
-    "band", [(9, 11), (12, 18), (1, 3), (2e6, 2.1e6), (1000, 1000.01), (0.001, 0.0012)], ids=str
-)
-def test_a_narrow_band_has_frequencies_that_differ_below_it(band, tfs):
-    figure = drawn("bode", tfs, band_hz=band)
-    figure.canvas.draw()
-    labels = [t.get_text() for t in figure.axes[1].get_xticklabels() if t.get_text()]
-    assert len(set(labels)) == len(labels) >= 3
+def test_a_narrow_band_has_frequencies_that_differ_below_it(tfs):
+    for band in ((9, 11), (2e6, 2.1e6), (1000, 1000.01), (0.001, 0.0012)):
+        figure = drawn("bode", tfs[:1], band_hz=band)
+        figure.canvas.draw()
+        labels = [t.get_text() for t in figure.axes[1].get_xticklabels() if t.get_text()]
+        assert len(set(labels)) == len(labels) >= 3, band
 
 
 def test_a_nyquist_plot_of_a_band_ends_with_it():
@@ -386,33 +345,23 @@ def test_the_curve_shows_the_peak_of_the_resonance():
     assert level.max() == pytest.approx(20 * np.log10(1 / 0.0002), abs=0.01)
 
 
-def test_the_phase_of_an_undamped_pole_falls_from_0_to_minus_180_degrees():
-    phase = drawn_rational("bode", "1/(s^2 + 1)").axes[1].lines[0].get_ydata()
-    assert sorted(set(phase)) == [-180, 0]
-
-
-def test_an_undamped_peak_is_cut_off_near_what_surrounds_it():
+def test_an_undamped_peak_runs_to_the_frame_which_is_near_what_surrounds_it():
+    top, bottom = drawn_rational("bode", "1/(s^2 + 1)").axes
     # 1 % from the pole the level is 20 log10(1/0.02) = 34 dB; the peak itself has no end.
-    assert 34 < drawn_rational("bode", "1/(s^2 + 1)").axes[0].get_ylim()[1] < 60
+    assert 34 < top.get_ylim()[1] < 60
+    assert top.lines[0].get_ydata().max() > top.get_ylim()[1]
+    assert sorted(set(bottom.lines[0].get_ydata())) == [-180, 0]
+    trough = drawn_rational("bode", "s^2 + 1").axes[0]
+    assert trough.lines[0].get_ydata().min() < trough.get_ylim()[0]
 
 
-def test_an_undamped_peak_runs_to_the_frame():
-    axes = drawn_rational("bode", "1/(s^2 + 1)").axes[0]
-    assert axes.lines[0].get_ydata().max() > axes.get_ylim()[1]
-
-
-def test_an_undamped_trough_runs_to_the_frame():
-    axes = drawn_rational("bode", "s^2 + 1").axes[0]
-    assert axes.lines[0].get_ydata().min() < axes.get_ylim()[0]
-
-
-@pytest.mark.parametrize("expression", ["1/(s + 1)", "1/(s + 1)^4", "1/(s + 1)^30", "7"])
-def test_phase_ticks_are_multiples_of_45_degrees(expression):
-    axes = drawn_rational("bode", expression).axes[1]
-    low, high = axes.get_ylim()
-    ticks = [tick for tick in axes.get_yticks() if low <= tick <= high]
-    assert 2 <= len(ticks) <= 9
-    assert all(tick % 45 == 0 for tick in ticks)
+def test_phase_ticks_are_multiples_of_45_degrees():
+    for expression in ("1/(s + 1)", "1/(s + 1)^4", "1/(s + 1)^30", "7"):
+        axes = drawn_rational("bode", expression).axes[1]
+        low, high = axes.get_ylim()
+        ticks = [tick for tick in axes.get_yticks() if low <= tick <= high]
+        assert 2 <= len(ticks) <= 9, expression
+        assert all(tick % 45 == 0 for tick in ticks), expression
 
 
 def test_curves_differ_in_colour_and_in_dashes(undamped):
@@ -424,46 +373,29 @@ def test_curves_differ_in_colour_and_in_dashes(undamped):
 # ----------------------------------------------------------------------------------------- poles and zeros
 
 
-def test_there_is_one_panel_per_function(tfs):
-    assert len(drawn("poles_zeros", tfs).axes) == 2
-
-
-def test_both_axes_have_the_same_scale(tfs):
-    for axes in drawn("poles_zeros", tfs).axes:
+def test_panels_one_per_function_show_the_same_part_of_the_plane_in_the_same_scale(tfs):
+    first, second = drawn("poles_zeros", tfs).axes
+    assert (first.get_xlim(), first.get_ylim()) == (second.get_xlim(), second.get_ylim())
+    for axes in (first, second):
         box = axes.get_window_extent()
         per_pixel = np.diff(axes.get_xlim())[0] / box.width, np.diff(axes.get_ylim())[0] / box.height
         assert per_pixel[0] == pytest.approx(per_pixel[1], rel=1e-9)
         assert axes.get_aspect() == 1
 
 
-def test_all_panels_show_the_same_part_of_the_plane(tfs):
-    first, second = drawn("poles_zeros", tfs).axes
-    assert (first.get_xlim(), first.get_ylim()) == (second.get_xlim(), second.get_ylim())
-
-
-def test_poles_are_crosses_where_they_are():
+def test_poles_are_crosses_and_zeros_circles_where_they_are():
     axes = drawn_rational("poles_zeros", "(s + 2)/(s^2 + 2*s + 10)").axes[0]
-    crosses = next(line for line in axes.lines if line.get_marker() == "x")
-    assert sorted(zip(*crosses.get_data(), strict=True)) == [(-1, -3), (-1, 3)]
+    found = {line.get_marker(): sorted(zip(*line.get_data(), strict=True)) for line in axes.lines}
+    assert (found["x"], found["o"]) == ([(-1, -3), (-1, 3)], [(-2, 0)])
 
 
-def test_zeros_are_circles_where_they_are():
-    axes = drawn_rational("poles_zeros", "(s + 2)/(s^2 + 2*s + 10)").axes[0]
-    circles = next(line for line in axes.lines if line.get_marker() == "o")
-    assert list(zip(*circles.get_data(), strict=True)) == [(-2, 0)]
+DISTANT = "1/((s + 5000)*(s^2 + 4*s + 4900))"
 
 
-def test_a_multiple_root_carries_its_multiplicity():
-    assert texts(drawn_rational("poles_zeros", "1/(s + 1)^3").axes[0]) == ["3"]
-
-
-def test_a_root_far_away_is_named_at_the_border():
-    axes = drawn_rational("poles_zeros", "1/((s + 5000)*(s^2 + 4*s + 4900))").axes[0]
-    assert r"$\times$ $-5000$" in texts(axes)
-
-
-def test_a_function_without_poles_and_zeros_has_an_empty_panel():
-    assert texts(drawn_rational("poles_zeros", "7").axes[0]) == []
+def test_a_root_that_is_multiple_or_far_away_is_named():
+    said = {e: texts(drawn_rational("poles_zeros", e).axes[0]) for e in ("7", "1/(s + 1)^3", DISTANT)}
+    assert (said["7"], said["1/(s + 1)^3"]) == ([], ["3"])
+    assert r"$\times$ $-5000$" in said[DISTANT]
 
 
 def test_many_functions_take_the_page_and_several_rows(tfs):
@@ -480,32 +412,18 @@ def seen(marks, high_hz=None):
     return [mark.s for mark in marks if view.shows(mark)]
 
 
-def test_neighbouring_resonances_are_shown_together():
-    assert len(seen(RESONANT)) == 4
+FAR = [RootMark("pole", 20000j), RootMark("pole", -20000j)]
 
 
-def test_a_far_real_root_does_not_squash_the_resonances():
-    marks = [*RESONANT, RootMark("pole", -5000 + 0j)]
-    assert len(seen(marks)) == 4
-
-
-def test_a_far_resonance_does_not_squash_the_near_ones():
-    marks = [*RESONANT, RootMark("pole", 20000j), RootMark("pole", -20000j)]
-    assert len(seen(marks)) == 4
-
-
-def test_a_real_root_of_the_size_of_the_resonances_is_shown():
-    marks = [*RESONANT, RootMark("zero", 400 + 0j)]
-    assert 400 in seen(marks)
-
-
-def test_real_roots_alone_are_shown_from_the_lowest():
+def test_neighbouring_resonances_are_shown_and_not_squashed_by_what_is_far():
+    near = [mark.s for mark in RESONANT]
+    assert seen(RESONANT) == near
+    assert seen([*RESONANT, RootMark("pole", -5000 + 0j)]) == near
+    assert seen([*RESONANT, RootMark("zero", 400 + 0j)]) == [*near, 400]
+    assert seen([*RESONANT, *FAR]) == near
+    assert seen([*RESONANT, *FAR], high_hz=5000) == [*near, *(mark.s for mark in FAR)]
+    # Real roots alone are shown from the lowest.
     assert seen([RootMark("pole", -50 + 0j), RootMark("pole", -5000 + 0j)]) == [-50]
-
-
-def test_a_band_decides_what_is_shown():
-    marks = [*RESONANT, RootMark("pole", 20000j), RootMark("pole", -20000j)]
-    assert len(seen(marks, high_hz=5000)) == 6
 
 
 def test_the_view_has_the_shape_asked_for():
