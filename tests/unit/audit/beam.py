@@ -22,14 +22,16 @@ VAUGHAN = {
 }
 KRYLOV = {"mu": "(rho*A*s^2/(4*E*I))^(1/4)", "q": "mu*l"}
 
+VALUES = {
+    "E": "200 GPa",
+    "I": "4000 mm^4",
+    "rho": "7850 kg/m^3",
+    "A": "480 mm^2",
+    "l": "1.086 m",
+}
 _BEAM = """
 symflex = 1
-[parameters]
-E   = "200 GPa"
-I   = "4000 mm^4"
-rho = "7850 kg/m^3"
-A   = "480 mm^2"
-l   = "1.086 m"
+parameters = { %s }
 [elements]
 arm   = { type = "beam", between = ["act", "tip"], E = "E", I = "I", rho = "rho", A = "A", l = "l" }
 slide = { type = "slider", at = "act" }
@@ -43,16 +45,23 @@ band = ["0.1 Hz", "1 kHz"]
 """
 
 
-def specification(output, expr, where=None, scale=None):
+def specification(output, expr, where=None, scale=None, *, has_values=True):
     lines = [f'[published."{output}/F"]', f'expr = "{expr}"']
     if where:
         lines += ["where = { " + ", ".join(f'{n} = "{e}"' for n, e in where.items()) + " }"]
     if scale:
         lines += [f'scale = "{scale}"']
-    return _BEAM + "\n".join(lines) + "\n"
+    parameters = ", ".join(f'{n} = "{value}"' if has_values else f"{n} = {{}}" for n, value in VALUES.items())
+    return _BEAM % parameters + "\n".join(lines) + "\n"
 
 
 def audited(output, expr, where=None, scale=None):
+    """Return what is found without values: nothing is measured, which takes most of the time."""
+    return _audited(specification(output, expr, where, scale, has_values=False))
+
+
+def measured(output, expr, where=None, scale=None):
+    """Return what is found with values, deviations and laws of the imaginary axis included."""
     return _audited(specification(output, expr, where, scale))
 
 

@@ -80,7 +80,6 @@ def test_a_formula_in_definitions_of_its_own_is_read():
     assert audited("1/(m*((s + b/(2*m))^2 + k/m - (b/(2*m))^2))").verdict == "equal"
 
 
-@pytest.mark.slow
 def test_without_losses_a_wrong_factor_is_measured_too_and_a_wrong_sign_is_half_a_turn():
     lossless = OSCILLATOR.replace('damper = {{ type = "damper", between = ["x", "ground"], b = "b" }}\n', "")
 
