@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import re
 
-import pytest
-
 from symflex.cli import run
 
 HEAD = """symflex = 1
@@ -269,26 +267,19 @@ BROKEN = {
 }
 
 
-@pytest.mark.parametrize("name", BROKEN)
-def test_a_broken_taper_is_refused_at_its_place_in_a_sentence(name, tmp_path, monkeypatch, capsys):
-    marked, code, sentence = BROKEN[name]
-    before, _, after = marked.partition("«")
-    line, column = before.count("\n") + 1, len(before) - before.rfind("\n")
-    marked_text = after.partition("»")[0]
+def test_a_broken_taper_is_refused_at_its_place_in_a_sentence(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "taper.toml").write_text(re.sub("[«»]", "", marked), encoding="utf-8")
-    assert run(["check", "taper.toml"]) == 3
-    printed = capsys.readouterr().err
-    headline, source, carets, *_ = printed.splitlines()
-    assert headline.startswith(f"taper.toml:{line}:{column}: error[{code}]: ")
-    assert sentence in headline
-    assert carets.count("^") == len(marked_text)
-    assert marked_text in source
-    assert printed.count("error[") == 1
-
-
-def test_a_quantity_in_a_formula_is_to_get_a_name(tmp_path, capsys):
-    path = tmp_path / "taper.toml"
-    path.write_text(BROKEN["a_quantity_in_a_formula"][0].replace("«", "").replace("»", ""))
-    assert run(["check", str(path)]) == 3
-    assert "declare it in [parameters]" in capsys.readouterr().err
+    for name, (marked, code, sentence) in BROKEN.items():
+        before, _, after = marked.partition("«")
+        line, column = before.count("\n") + 1, len(before) - before.rfind("\n")
+        marked_text = after.partition("»")[0]
+        (tmp_path / "taper.toml").write_text(re.sub("[«»]", "", marked), encoding="utf-8")
+        assert run(["check", "taper.toml"]) == 3, name
+        printed = capsys.readouterr().err
+        headline, source, carets, *_ = printed.splitlines()
+        assert headline.startswith(f"taper.toml:{line}:{column}: error[{code}]: "), name
+        assert sentence in headline, name
+        assert carets.count("^") == len(marked_text), name
+        assert marked_text in source, name
+        assert printed.count("error[") == 1, name
+        assert ("declare it in [parameters]" in printed) is (name == "a_quantity_in_a_formula"), name

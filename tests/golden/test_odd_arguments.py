@@ -88,31 +88,32 @@ MISTAKES = [
 ]
 
 
-@pytest.mark.parametrize("arguments", MISTAKES)
-def test_an_argument_that_cannot_be_meant_is_a_usage_error_and_changes_no_file(arguments, folder, capsys):
-    before = {path: path.is_file() and path.read_bytes() for path in sorted(folder.rglob("*"))}
-    assert run(arguments.split()) == USAGE
-    printed = capsys.readouterr()
-    assert printed.out == ""
-    assert printed.err
-    assert {path: path.is_file() and path.read_bytes() for path in sorted(folder.rglob("*"))} == before
+def test_an_argument_that_cannot_be_meant_is_a_usage_error_and_changes_no_file(folder, capsys):
+    for arguments in MISTAKES:
+        before = {path: path.is_file() and path.read_bytes() for path in sorted(folder.rglob("*"))}
+        assert run(arguments.split()) == USAGE, arguments
+        printed = capsys.readouterr()
+        assert printed.out == "", arguments
+        assert printed.err, arguments
+        assert {path: path.is_file() and path.read_bytes() for path in sorted(folder.rglob("*"))} == before, (
+            arguments
+        )
 
 
-@pytest.mark.parametrize(
-    "arguments", ["roots symbolic.toml", "derive symbolic.toml --form zpk", "plot symbolic.toml bode"]
-)
-def test_a_parameter_without_value_is_invalid_where_numbers_are_needed(arguments, folder, capsys):
-    assert run(arguments.split()) == INVALID
-    assert "SF229" in capsys.readouterr().err
+def test_a_parameter_without_value_is_invalid_where_numbers_are_needed(folder, capsys):
+    for arguments in ["roots symbolic.toml", "derive symbolic.toml --form zpk", "plot symbolic.toml bode"]:
+        assert run(arguments.split()) == INVALID, arguments
+        assert "SF229" in capsys.readouterr().err, arguments
 
 
-@pytest.mark.parametrize(
-    ("mistake", "meant"),
-    [("chekc good.toml", "check"), ("export good.toml --to nunpy", "numpy"), ("elements sprnig", "spring")],
-)
-def test_the_nearest_command_target_or_element_is_named(mistake, meant, folder, capsys):
-    assert run(mistake.split()) == USAGE
-    assert f"id you mean '{meant}'?" in capsys.readouterr().err
+def test_the_nearest_command_target_or_element_is_named(folder, capsys):
+    for mistake, meant in [
+        ("chekc good.toml", "check"),
+        ("export good.toml --to nunpy", "numpy"),
+        ("elements sprnig", "spring"),
+    ]:
+        assert run(mistake.split()) == USAGE, mistake
+        assert f"id you mean '{meant}'?" in capsys.readouterr().err, mistake
 
 
 def test_a_band_in_radians_per_second_is_the_same_band_in_hertz(folder, capsys):
