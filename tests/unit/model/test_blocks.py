@@ -8,7 +8,6 @@ import symflex
 from symflex import pipeline
 from symflex.cli import run
 from symflex.errors import SpecError
-from tests.house.repository import slow_ones
 
 INNER = 'symflex = 1\n[inputs]\nF = {}\n[outputs]\nX = "F/(s + 2)"\n'
 SECRET = "tresor"
@@ -45,55 +44,56 @@ def place(tmp_path, monkeypatch):
     return tmp_path
 
 
-@pytest.mark.parametrize(
-    "path", ["../beside/inner.toml", "below/../../beside/inner.toml", "link.toml", "away/inner.toml"]
-)
-def test_a_block_does_not_read_a_file_outside_the_folder_of_the_specification(place, path):
-    (place / "beside" / "inner.toml").write_text(INNER)
-    (place / "work" / "below").mkdir()
-    (place / "work" / "link.toml").symlink_to(place / "beside" / "inner.toml")
-    (place / "work" / "away").symlink_to(place / "beside")
-    (place / "work" / "outer.toml").write_text(outer(path))
-    with pytest.raises(SpecError) as raised:
-        pipeline.load("outer.toml")
-    assert [d.code for d in raised.value.diagnostics] == ["SF258"]
-
-
-@pytest.mark.parametrize(
-    "text", [INNER, f"{SECRET}:x:0", f"symflex = {SECRET}\n", f'symflex = 1\nk = "{SECRET}"\n']
-)
-def test_a_file_outside_is_the_same_to_messages_as_one_that_is_not_there(place, text, capsys):
+@pytest.fixture
+def beside(place):
+    """A file in the folder beside, of which a block of the specification is made."""
     (place / "work" / "outer.toml").write_text(outer("../beside/inner.toml"))
-    (place / "beside" / "inner.toml").unlink(missing_ok=True)
+    (place / "beside" / "inner.toml").write_text(INNER)
+    return place / "beside" / "inner.toml"
+
+
+def test_a_block_does_not_read_a_file_outside_the_folder_of_the_specification(place, beside):
+    (place / "work" / "below").mkdir()
+    (place / "work" / "link.toml").symlink_to(beside)
+    (place / "work" / "away").symlink_to(place / "beside")
+    for path in ["../beside/inner.toml", "below/../../beside/inner.toml", "link.toml", "away/inner.toml"]:
+        (place / "work" / "outer.toml").write_text(outer(path))
+        with pytest.raises(SpecError) as raised:
+            pipeline.load("outer.toml")
+        assert [d.code for d in raised.value.diagnostics] == ["SF258"], path
+
+
+def test_a_file_outside_is_the_same_to_messages_as_one_that_is_not_there(beside, capsys):
+    beside.unlink()
     run(["check", "outer.toml"])
     without = capsys.readouterr()
-    (place / "beside" / "inner.toml").write_text(text)
-    run(["check", "outer.toml"])
-    assert capsys.readouterr() == without
+    for text in [INNER, f"{SECRET}:x:0", f"symflex = {SECRET}\n", f'symflex = 1\nk = "{SECRET}"\n']:
+        beside.write_text(text)
+        run(["check", "outer.toml"])
+        assert capsys.readouterr() == without, text
 
 
-@pytest.mark.parametrize(
-    "content",
-    [b"tresor:x:0\n", b"[symflex]\ntresor = 1\n", b"\xff\xfetresor", b"a = 1\n[x]\nsymflex = 1 # tresor\n"],
-)
-def test_nothing_is_shown_of_a_file_that_does_not_declare_the_format(place, content, capsys):
-    (place / "work" / "inner.txt").write_bytes(content)
+def test_nothing_is_shown_of_a_file_that_does_not_declare_the_format(place, capsys):
     (place / "work" / "outer.toml").write_text(outer("inner.txt"))
-    assert run(["check", "outer.toml"]) == 3
-    printed = capsys.readouterr()
-    assert SECRET not in printed.out + printed.err
+    for content in [
+        b"tresor:x:0\n",
+        b"[symflex]\ntresor = 1\n",
+        b"\xff\xfetresor",
+        b"a = 1\n[x]\nsymflex = 1 # tresor\n",
+    ]:
+        (place / "work" / "inner.txt").write_bytes(content)
+        assert run(["check", "outer.toml"]) == 3, content
+        printed = capsys.readouterr()
+        assert SECRET not in printed.out + printed.err, content
 
 
-@pytest.mark.parametrize(
-    "text", [f'symflex = 1\n[outputs]\nX = "{SECRET}*"\n', f"symflex = 1\n{SECRET} = 3 4\n"]
-)
-def test_nothing_is_shown_of_an_invalid_file_outside_that_may_be_read(place, text, capsys):
-    (place / "beside" / "inner.toml").write_text(text)
-    (place / "work" / "outer.toml").write_text(outer("../beside/inner.toml"))
-    assert run(["check", "outer.toml", "--allow-outside", "../beside"]) == 3
-    printed = capsys.readouterr()
-    assert "SF258" in printed.err
-    assert SECRET not in printed.out + printed.err
+def test_nothing_is_shown_of_an_invalid_file_outside_that_may_be_read(beside, capsys):
+    for text in [f'symflex = 1\n[outputs]\nX = "{SECRET}*"\n', f"symflex = 1\n{SECRET} = 3 4\n"]:
+        beside.write_text(text)
+        assert run(["check", "outer.toml", "--allow-outside", "../beside"]) == 3, text
+        printed = capsys.readouterr()
+        assert "SF258" in printed.err, text
+        assert SECRET not in printed.out + printed.err, text
 
 
 def test_a_block_inside_a_block_is_held_to_the_folder_of_the_outermost_file(place):
@@ -106,26 +106,32 @@ def test_a_block_inside_a_block_is_held_to_the_folder_of_the_outermost_file(plac
         pipeline.load("below/middle.toml")
 
 
-@pytest.mark.parametrize(("command", "options"), COMMANDS.items(), ids=COMMANDS)
-def test_every_command_that_reads_a_specification_refuses_a_file_outside(place, command, options, capsys):
-    (place / "beside" / "inner.toml").write_text(INNER)
-    (place / "work" / "outer.toml").write_text(outer("../beside/inner.toml"))
-    assert run([command, "outer.toml", *options]) == 3
-    assert "SF258" in capsys.readouterr().err
+def assert_taken(commands, capsys):
+    for command in commands:
+        run([command, "outer.toml", "--allow-outside", "../beside", *COMMANDS[command]])
+        assert "SF258" not in capsys.readouterr().err, command
 
 
-@pytest.mark.parametrize("command", slow_ones(COMMANDS, lambda command: command in ("sweep", "report")))
-def test_every_command_that_reads_a_specification_takes_a_folder_outside(place, command, capsys):
-    (place / "beside" / "inner.toml").write_text(INNER)
-    (place / "work" / "outer.toml").write_text(outer("../beside/inner.toml"))
-    run([command, "outer.toml", "--allow-outside", "../beside", *COMMANDS[command]])
-    assert "SF258" not in capsys.readouterr().err
+DEAR = {"sweep", "report"}
 
 
-def test_python_is_allowed_a_folder_outside_by_name(place):
-    (place / "beside" / "inner.toml").write_text(INNER)
-    (place / "work" / "outer.toml").write_text(outer("../beside/inner.toml"))
+@pytest.mark.usefixtures("beside")
+def test_every_command_that_reads_a_specification_refuses_a_file_outside(capsys):
+    for command, options in COMMANDS.items():
+        assert run([command, "outer.toml", *options]) == 3, command
+        assert "SF258" in capsys.readouterr().err, command
+
+
+@pytest.mark.usefixtures("beside")
+def test_every_command_that_reads_a_specification_takes_a_folder_outside(capsys):
+    assert_taken(sorted(COMMANDS.keys() - DEAR), capsys)
     assert symflex.load("outer.toml", allow_outside=["../beside"]).outputs == ("X",)
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("beside")
+def test_a_sweep_and_a_report_take_a_folder_outside(capsys):
+    assert_taken(sorted(DEAR), capsys)
 
 
 @pytest.mark.slow
@@ -138,8 +144,7 @@ def test_a_report_of_a_folder_lets_its_specifications_read_all_of_it(place, caps
     assert "SF258" not in capsys.readouterr().err
 
 
-def test_a_report_of_a_folder_follows_no_link_out_of_it(place, capsys):
-    (place / "beside" / "inner.toml").write_text(INNER)
-    (place / "work" / "link.toml").symlink_to(place / "beside" / "inner.toml")
+def test_a_report_of_a_folder_follows_no_link_out_of_it(place, beside, capsys):
+    (place / "work" / "link.toml").symlink_to(beside)
     assert run(["report", ".", "-o", "../report", "--no-pdf", "-j", "1"]) == 2
     assert "leads out of the folder" in capsys.readouterr().err

@@ -58,21 +58,19 @@ def moved():
     return link / (2 * S**2 + link)
 
 
-@pytest.mark.parametrize(("kind", "rate"), [("displacement", 1), ("velocity", S), ("acceleration", S**2)])
-def test_a_body_follows_its_moved_base_as_newton_says(kind, rate):
-    model = suspended(f'{kind} = "base"')
-    assert value(model, "X") == pytest.approx(moved() / rate, rel=1e-13)
-    assert value(model, "A") == pytest.approx(moved() * S**2 / rate, rel=1e-13)
+def test_a_body_follows_its_moved_base_as_newton_says():
+    for kind, rate in [("displacement", 1), ("velocity", S), ("acceleration", S**2)]:
+        model = suspended(f'{kind} = "base"')
+        assert value(model, "X") == pytest.approx(moved() / rate, rel=1e-13), kind
+        assert value(model, "A") == pytest.approx(moved() * S**2 / rate, rel=1e-13), kind
 
 
-@pytest.mark.parametrize(
-    ("kind", "rate"), [("angle", 1), ("angular_velocity", S), ("angular_acceleration", S**2)]
-)
-def test_a_disc_follows_its_turned_shaft_as_newton_says(kind, rate):
-    model = symflex.loads(TURNED.replace("INPUT", f'{kind} = "drive"'))
-    turned = 50 / (2 * S**2 + 50)
-    assert value(model, "X") == pytest.approx(turned / rate, rel=1e-13)
-    assert value(model, "F") == pytest.approx(50 * (1 - turned) / rate, rel=1e-13)
+def test_a_disc_follows_its_turned_shaft_as_newton_says():
+    for kind, rate in [("angle", 1), ("angular_velocity", S), ("angular_acceleration", S**2)]:
+        model = symflex.loads(TURNED.replace("INPUT", f'{kind} = "drive"'))
+        turned = 50 / (2 * S**2 + 50)
+        assert value(model, "X") == pytest.approx(turned / rate, rel=1e-13), kind
+        assert value(model, "F") == pytest.approx(50 * (1 - turned) / rate, rel=1e-13), kind
 
 
 def test_transmissibility_at_a_frequency_ratio_is_that_of_the_textbook():
@@ -114,15 +112,15 @@ def test_a_force_elsewhere_finds_an_imposed_node_at_rest():
     assert complex(G(S)) == pytest.approx(1 / (2 * S**2 + 3 * S + 50), rel=1e-13)
 
 
-@pytest.mark.parametrize("place", ["p", "p.y"])
-def test_a_bare_planar_node_moves_in_y(place):
-    model = symflex.loads(
-        'symflex = 1\n[elements]\nbody = { type = "rigid_body", at = "p", m = 2, J = 3, cg = "0.5 m" }\n'
-        f'[inputs]\nu = {{ displacement = "{place}" }}\n[outputs]\nY = "p"\nQ = "p.theta"\nF = "u.f"\n'
-    )
-    assert value(model, "Y") == pytest.approx(1)
-    # Free to turn about the moved point: (J + m c^2) theta + m c y = 0.
-    assert value(model, "Q") == pytest.approx(-2 * 0.5 / (3 + 2 * 0.25))
+def test_a_bare_planar_node_moves_in_y():
+    for place in ["p", "p.y"]:
+        model = symflex.loads(
+            'symflex = 1\n[elements]\nbody = { type = "rigid_body", at = "p", m = 2, J = 3, cg = "0.5 m" }\n'
+            f'[inputs]\nu = {{ displacement = "{place}" }}\n[outputs]\nY = "p"\nQ = "p.theta"\nF = "u.f"\n'
+        )
+        assert value(model, "Y") == pytest.approx(1), place
+        # Free to turn about the moved point: (J + m c^2) theta + m c y = 0.
+        assert value(model, "Q") == pytest.approx(-2 * 0.5 / (3 + 2 * 0.25)), place
 
 
 def test_the_end_of_a_rod_is_moved():
@@ -155,39 +153,32 @@ def test_an_element_of_a_voltage_inputs_name_keeps_its_current():
     assert value(model, "I") == pytest.approx(0.25)  # of the motor alone; both together take 0.5
 
 
-@pytest.mark.parametrize(
-    ("given", "units"),
-    [
+def test_transfer_functions_of_a_motion_have_its_unit_below():
+    for given, units in [
         ('displacement = "base"', ["1", "1/s^2", "1", "N/m"]),
         ('velocity = "base"', ["s", "1/s", "s", "N*s/m"]),
         ('acceleration = "base"', ["s^2", "1", "s^2", "N*s^2/m"]),
-    ],
-)
-def test_transfer_functions_of_a_motion_have_its_unit_below(given, units):
-    model = suspended(given)
-    assert [model.transfer_function(o, "u").unit for o in "XARF"] == units
+    ]:
+        model = suspended(given)
+        assert [model.transfer_function(o, "u").unit for o in "XARF"] == units, given
 
 
-@pytest.mark.parametrize(
-    ("given", "names"),
-    [
+def test_transfer_functions_of_a_motion_are_called_as_in_the_field():
+    for given, names in [
         ('displacement = "base"', ("transmissibility", "dynamic stiffness")),
         ('velocity = "base"', ("transfer function", "mechanical impedance")),
         ('acceleration = "base"', ("transfer function", "apparent mass")),
-    ],
-)
-def test_transfer_functions_of_a_motion_are_called_as_in_the_field(given, names):
-    model = suspended(given)
-    assert tuple(model.transfer_function(o, "u").quantity for o in "XF") == names
+    ]:
+        model = suspended(given)
+        assert tuple(model.transfer_function(o, "u").quantity for o in "XF") == names, given
 
 
 def test_acceleration_per_imposed_acceleration_is_a_transmissibility():
     assert suspended('acceleration = "base"').transfer_function("A", "u").quantity == "transmissibility"
 
 
-@pytest.mark.parametrize(
-    ("inputs", "code", "position"),
-    [
+def test_a_motion_that_cannot_be_is_refused_where_it_stands():
+    for inputs, code, position in [
         ('u = { displacement = "base" }\nv = { velocity = "base" }', "SF302", "12:1"),
         ('u = { displacement = "x" }\nv = { displacement = ["x", "ground"] }', "SF302", "12:1"),
         ('u = { displacement = "ground" }', "SF218", "11:22"),
@@ -203,14 +194,12 @@ def test_acceleration_per_imposed_acceleration_is_a_transmissibility():
         ('u = { displacement = "base", unit = "mm" }', "SF203", "11:38"),
         ('u = { velocity = "base", unit = "m" }', "SF203", "11:34"),
         ('u = { speed = "base" }', "SF207", "11:7"),
-    ],
-)  # fmt: skip
-def test_a_motion_that_cannot_be_is_refused_where_it_stands(inputs, code, position):
-    text = SUSPENDED[1:].replace("u = { INPUT }", inputs).replace('F = "u.f"', "")
-    with pytest.raises(SymflexError) as caught:
-        pipeline.check_solvable(pipeline.assemble(pipeline.loads(text)))
-    found = caught.value.diagnostics[0]
-    assert (found.code, str(found.span).removeprefix("<string>:")) == (code, position)
+    ]:  # fmt: skip
+        text = SUSPENDED[1:].replace("u = { INPUT }", inputs).replace('F = "u.f"', "")
+        with pytest.raises(SymflexError) as caught:
+            pipeline.check_solvable(pipeline.assemble(pipeline.loads(text)))
+        found = caught.value.diagnostics[0]
+        assert (found.code, str(found.span).removeprefix("<string>:")) == (code, position), inputs
 
 
 def test_a_motion_and_a_support_at_one_node_are_refused():

@@ -19,79 +19,45 @@ def refusal(path: str | Path) -> Diagnostic:
     return raised.value.diagnostics[0]
 
 
-def test_the_text_is_read_with_its_line_ends(tmp_path: Path) -> None:
-    path = tmp_path / "a.toml"
-    path.write_bytes("é = 1\r\n".encode())
-    assert read(path).text == "é = 1\r\n"
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    return tmp_path / "a.toml"
 
 
-def test_the_source_is_named_as_its_path(tmp_path: Path) -> None:
-    path = tmp_path / "a.toml"
-    path.write_bytes(b"")
-    assert read(path).name == str(path)
+def test_a_text_is_read_with_its_line_ends_without_a_byte_order_mark_and_through_a_link(path: Path) -> None:
+    path.with_name("link.toml").symlink_to(path)
+    for data, text in [("é = 1\r\n".encode(), "é = 1\r\n"), (b"\xef\xbb\xbfa = 1", "a = 1")]:
+        path.write_bytes(data)
+        assert (read(path).text, read(path).name) == (text, str(path))
+        assert read(path.with_name("link.toml")).text == text
 
 
-def test_a_byte_order_mark_is_no_part_of_the_text(tmp_path: Path) -> None:
-    path = tmp_path / "a.toml"
-    path.write_bytes(b"\xef\xbb\xbfa = 1")
-    assert read(path).text == "a = 1"
-
-
-def test_a_symbolic_link_to_a_file_is_read(tmp_path: Path) -> None:
-    (tmp_path / "a.toml").write_bytes(b"a = 1")
-    (tmp_path / "b.toml").symlink_to("a.toml")
-    assert read(tmp_path / "b.toml").text == "a = 1"
-
-
-def test_bytes_that_are_not_utf8_are_named_with_their_offset(tmp_path: Path) -> None:
-    path = tmp_path / "a.toml"
+def test_bytes_that_are_not_utf8_are_named_with_their_place(path: Path) -> None:
     path.write_bytes("é = 1\nb = ".encode() + b"\xe9\n")
     problem = refusal(path)
     assert problem.message == "not UTF-8: byte 0xe9 at byte offset 11"
+    assert problem.span is not None
+    assert (problem.span.line, problem.span.column) == (2, 5)
+    with pytest.raises(SpecError):
+        read(path)
 
 
-def test_bytes_that_are_not_utf8_have_a_line_and_column(tmp_path: Path) -> None:
-    path = tmp_path / "a.toml"
-    path.write_bytes("é = 1\nb = ".encode() + b"\xe9\n")
-    span = refusal(path).span
-    assert span is not None
-    assert (span.line, span.column) == (2, 5)
-
-
-def test_utf16_is_recognised(tmp_path: Path) -> None:
-    path = tmp_path / "a.toml"
+def test_utf16_is_recognised(path: Path) -> None:
     path.write_bytes("a = 1\n".encode("utf-16"))
     assert refusal(path).hint == "this is UTF-16; save the file as UTF-8"
 
 
-def test_a_file_of_one_megabyte_is_read(tmp_path: Path) -> None:
-    path = tmp_path / "a.toml"
+def test_a_file_of_one_megabyte_is_read_and_a_larger_one_refused(path: Path) -> None:
     path.write_bytes(b"#" * 1_000_000)
     assert len(read(path).text) == 1_000_000
-
-
-def test_a_larger_file_is_refused(tmp_path: Path) -> None:
-    path = tmp_path / "a.toml"
     path.write_bytes(b"#" * 1_000_001)
     assert "larger than 1000000 bytes" in refusal(path).message
-
-
-def test_a_file_larger_than_memory_is_refused(tmp_path: Path) -> None:
-    path = tmp_path / "a.toml"
-    path.touch()
-    os.truncate(path, 1 << 40)
+    os.truncate(path, 1 << 40)  # larger than memory
     assert "larger than" in refusal(path).message
 
 
-def test_a_missing_file_is_a_usage_error(tmp_path: Path) -> None:
+def test_a_missing_file_is_a_usage_error(path: Path) -> None:
     with pytest.raises(UsageError, match="No such file"):
-        read(tmp_path / "a.toml")
-
-
-def test_a_file_with_wrong_bytes_is_a_spec_error(tmp_path: Path) -> None:
-    path = tmp_path / "a.toml"
-    path.write_bytes(b"\xff")
-    with pytest.raises(SpecError, match="not UTF-8"):
         read(path)
 
 

@@ -56,21 +56,7 @@ def exact(value: object) -> object:
 
 
 texts = st.text(st.characters(exclude_categories=["Cs"]), max_size=12) | st.sampled_from(
-    [
-        "V_act/F",
-        r"\beta",
-        '"',
-        "'",
-        "'\"",
-        "\\\"'",
-        '"""',
-        "a\nb",
-        "\r\n",
-        "\x00\x7f\x85",
-        "é😀",
-        "\ufeff",
-        "",
-    ]
+    'V_act/F|\\beta|"|\'|\'"|\\"\'|"""|a\nb|\r\n|\x00\x7f\x85|é😀|\ufeff|'.split("|")
 )
 names = texts | st.sampled_from(["parameters", "elements", "fields", "published", "a.b", "inf", "1e3"])
 
@@ -95,14 +81,13 @@ values = st.recursive(
 )
 
 
-@pytest.mark.slow
-@settings(max_examples=300)
+@settings(max_examples=60)
 @given(mappings(values))
 def test_what_is_written_is_read_back(mapping: dict[str, object]) -> None:
     assert plain(parse(Source("<python>", write(mapping))).root) == exact(mapping)
 
 
-@settings(max_examples=100)
+@settings(max_examples=40)
 @given(mappings(texts | mappings(texts)))
 def test_tomllib_reads_what_is_written(mapping: dict[str, object]) -> None:
     assert tomllib.loads(write(mapping)) == mapping
@@ -133,9 +118,8 @@ def test_the_text_is_canonical() -> None:
     )
 
 
-@pytest.mark.parametrize(
-    ("value", "written"),
-    [
+def test_a_value_is_written_as() -> None:
+    for value, written in [
         (Fraction(1, 3), '"1/3"'),
         (Fraction(-22, 7), '"-22/7"'),
         (Fraction(-1, 8), "-0.125"),
@@ -152,21 +136,19 @@ def test_the_text_is_canonical() -> None:
         ("\\'", '"\\\\\'"'),
         ("\x1b[0m\n", '"\\u001b[0m\\n"'),
         ((), "[]"),
-    ],
-)
-def test_a_value_is_written_as(value: object, written: str) -> None:
-    assert write({"a": value}) == f"a = {written}\n"
+    ]:
+        assert write({"a": value}) == f"a = {written}\n", value
 
 
 def test_a_string_cannot_add_a_statement() -> None:
     assert tomllib.loads(write({"a": '"\nb = 1\n[c]'})) == {"a": '"\nb = 1\n[c]'}
 
 
-@pytest.mark.parametrize("value", [None, 1j, object(), {1, 2}, b"x", "\ud800", [1, None]])
-def test_a_value_that_cannot_be_written_is_refused_by_its_path(value: object) -> None:
-    with pytest.raises(SpecError, match=r"error\[SF104\]: parameters\.k(\.1)?: ") as raised:
-        write({"parameters": {"k": value}})
-    assert raised.value.diagnostics[0].code == "SF104"
+def test_a_value_that_cannot_be_written_is_refused_by_its_path() -> None:
+    for value in [None, 1j, object(), {1, 2}, b"x", "\ud800", [1, None]]:
+        with pytest.raises(SpecError, match=r"error\[SF104\]: parameters\.k(\.1)?: ") as raised:
+            write({"parameters": {"k": value}})
+        assert raised.value.diagnostics[0].code == "SF104", value
 
 
 def test_a_key_that_is_no_text_is_refused() -> None:
@@ -174,21 +156,17 @@ def test_a_key_that_is_no_text_is_refused() -> None:
         write({"parameters": {3: 1}})
 
 
-@pytest.mark.parametrize(
-    "value",
-    [
+def test_a_number_past_the_limits_is_refused() -> None:
+    for value in [
         10**400,
         -(10**100_000),
         Fraction(1, 3**2000),
         Decimal("1E+401"),
         Decimal("1" * 500),
         Fraction(1, 2**401),
-    ],
-    ids=lambda value: type(value).__name__,
-)
-def test_a_number_past_the_limits_is_refused(value: object) -> None:
-    with pytest.raises(SpecError, match="SF103"):
-        write({"a": value})
+    ]:
+        with pytest.raises(SpecError, match="SF103"):
+            write({"a": value})
 
 
 def test_a_number_of_four_hundred_digits_is_written() -> None:

@@ -235,9 +235,9 @@ def test_a_quantity_of_the_wrong_unit_at_a_port_is_refused():
     assert "SF203" in codes(text + '[inputs]\nF = { force = "x" }\n[outputs]\nX = "x"\n')
 
 
-@pytest.mark.parametrize("argument", ["f", "f^2"])
-def test_the_argument_of_a_sine_must_be_a_pure_number(argument):
-    assert codes(with_output('"3 m"', f"sin({argument})*U")) == ["SF203"]
+def test_the_argument_of_a_sine_must_be_a_pure_number():
+    for argument in ["f", "f^2"]:
+        assert codes(with_output('"3 m"', f"sin({argument})*U")) == ["SF203"], argument
 
 
 def test_the_root_of_a_quotient_has_half_the_exponents():
@@ -246,8 +246,8 @@ def test_the_root_of_a_quotient_has_half_the_exponents():
     assert pipeline.bind(tf)(2 + 0j) == 0.5
 
 
-@pytest.mark.parametrize("where", ["2*pi*f", "f"], ids=["2 pi written", "2 pi entered"])
-@pytest.mark.parametrize("declared", ['"30 Hz"', '"1800 rpm"', '{ unit = "Hz" }'])
-def test_a_frequency_that_counts_cycles_is_in_hertz_wherever_its_2_pi_comes_from(declared, where):
-    (parameter,) = resolve(with_output(declared, f"U/(s + {where})")).parameters
-    assert parameter.unit == "Hz"
+def test_a_frequency_that_counts_cycles_is_in_hertz_wherever_its_2_pi_comes_from():
+    for where in ["2*pi*f", "f"]:
+        for declared in ['"30 Hz"', '"1800 rpm"', '{ unit = "Hz" }']:
+            (parameter,) = resolve(with_output(declared, f"U/(s + {where})")).parameters
+            assert parameter.unit == "Hz", (where, declared)
