@@ -44,10 +44,10 @@ def test_memory_is_that_of_the_process():
 
 
 def test_memory_given_back_counts_no_longer():
-    room = memory_held() + 150_000_000
+    room = memory_held() + 50_000_000
     with Budget(memory=room).entered():
         spend()
-        block = bytearray(b"x") * 300_000_000
+        block = bytearray(b"x") * 100_000_000
         assert code_of(spend) == "SF504"
         del block
         spend()

@@ -109,6 +109,5 @@ def test_every_arrow_is_there_and_listed_once():
     assert all(callable(getattr(pipeline, name)) for name in pipeline.__all__)
 
 
-@pytest.mark.parametrize("name", pipeline.LATER)
-def test_an_arrow_that_is_imported_later_is_the_one_that_types_are_checked_with(name):
-    assert pipeline.LATER[name] == imported_for_types()[name]
+def test_an_arrow_that_is_imported_later_is_the_one_that_types_are_checked_with():
+    assert pipeline.LATER.items() <= imported_for_types().items()
