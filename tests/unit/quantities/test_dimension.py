@@ -4,7 +4,7 @@ from dataclasses import FrozenInstanceError
 from fractions import Fraction
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from symflex.quantities import DIMENSIONLESS, Dimension, dimension_name, unit_of
@@ -103,7 +103,7 @@ def test_a_preferred_unit_is_coherent():
         assert unit_of(unit).scale == 1, unit
 
 
-@pytest.mark.slow
+@settings(max_examples=50)
 @given(dimensions)
 def test_any_printed_dimension_reads_back_as_itself(dimension):
     assert unit_of(str(dimension)).dimension == dimension
