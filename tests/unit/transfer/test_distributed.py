@@ -37,19 +37,16 @@ def functions(body):
     return {t.name: t for t in pipeline.derive_all(pipeline.loads(HEAD + body))}
 
 
-def field(equation, conditions, outputs, name="w"):
+def members(*elements, inputs='F = { force = "q" }', outputs='X = "q"'):
+    body = "\n".join(elements)
+    return functions(f"[elements]\n{body}\n[inputs]\n{inputs}\n[outputs]\n{outputs}\n")
+
+
+def field(equation, conditions, outputs):
     listed = ", ".join(f'"{c}"' for c in conditions)
     return functions(
-        f"""
-[fields.{name}]
-domain = ["0", "l"]
-equation = "{equation}"
-conditions = [{listed}]
-[inputs]
-F = {{}}
-[outputs]
-{outputs}
-"""
+        f'[fields.w]\ndomain = ["0", "l"]\nequation = "{equation}"\nconditions = [{listed}]\n'
+        f"[inputs]\nF = {{}}\n[outputs]\n{outputs}\n"
     )
 
 
@@ -60,18 +57,11 @@ def agrees(tf, formula):
         assert abs(bound(complex(s)) - wanted) <= 1e-13 * abs(wanted)
 
 
-SLIDING = functions(
-    f"""
-[elements]
-arm = {{ {BEAM}, between = ["p", "q"], l = "l" }}
-slide = {{ type = "slider", at = "p" }}
-[inputs]
-F = {{ force = "p" }}
-[outputs]
-V_act = "s*p"
-V_tip = "s*q"
-"""
-)
+ARM = f'arm = {{ {BEAM}, between = ["p", "q"], l = "l" }}'
+RIGHT = f'right = {{ {BEAM}, between = ["q", "r"], l = "l" }}'
+FIXED = 'f = { type = "fixed", at = "p" }'
+SLIDE = 'slide = { type = "slider", at = "p" }'
+SLIDING = members(ARM, SLIDE, inputs='F = { force = "p" }', outputs='V_act = "s*p"\nV_tip = "s*q"')
 
 
 def published(s):
@@ -110,13 +100,8 @@ def test_the_rigid_body_position_is_hidden_from_the_velocity():
 
 
 def test_the_static_limit_is_that_of_the_tables():
-    arm = f'arm = {{ {BEAM}, between = ["p", "q"], l = "l" }}'
-    ends = '[inputs]\nF = { force = "q" }\n[outputs]\nX = "q"\nQ = "q.theta"\n'
-    clamped = functions(f'[elements]\n{arm}\nf = {{ type = "fixed", at = "p" }}\n{ends}')
-    sprung = functions(
-        f'[elements]\n{arm}\nf = {{ type = "slider", at = "p" }}\n'
-        f'k = {{ type = "spring", between = ["p", "ground"], k = "k" }}\n{ends}'
-    )
+    clamped = members(ARM, FIXED, outputs='X = "q"\nQ = "q.theta"')
+    sprung = members(ARM, SLIDE, 'k = { type = "spring", between = ["p", "ground"], k = "k" }')
     for tf, wanted in [
         (clamped["X/F"], LENGTH**3 / (3 * EI)),
         (clamped["Q/F"], LENGTH**2 / (2 * EI)),
@@ -135,17 +120,7 @@ def test_a_uniform_load_bends_a_clamped_beam_by_q_l4_over_384_ei():
 
 
 def test_a_beam_driven_in_its_middle_hides_its_antisymmetric_modes():
-    tf = functions(
-        f"""
-[elements]
-left = {{ {BEAM}, between = ["p", "q"], l = "l" }}
-right = {{ {BEAM}, between = ["q", "r"], l = "l" }}
-[inputs]
-F = {{ force = "q" }}
-[outputs]
-X = "q"
-"""
-    )["X/F"]
+    tf = members(ARM, RIGHT)["X/F"]
     # Free-free beam of length 2l: its antisymmetric modes are those of a pinned-free beam of length l.
     transcendental = [h for h in tf.hidden if len(h.polynomial) > 1]
     assert len(transcendental) == 1
@@ -168,17 +143,9 @@ X = "q"
 
 
 def test_a_rod_driven_in_its_middle_loses_a_trigonometric_factor():
-    tf = functions(
-        """
-[elements]
-left = { type = "rod", E = "E", A = "A", rho = "rho", l = "l", between = ["p", "q"] }
-right = { type = "rod", E = "E", A = "A", rho = "rho", l = "l", between = ["q", "r"] }
-[inputs]
-F = { force = "q" }
-[outputs]
-X = "q"
-"""
-    )["X/F"]
+    rod = 'type = "rod", E = "E", A = "A", rho = "rho", l = "l"'
+    left, right = f'a = {{ {rod}, between = ["p", "q"] }}', f'b = {{ {rod}, between = ["q", "r"] }}'
+    tf = members(left, right)["X/F"]
 
     def formula(s):
         c = mp.sqrt(mp.mpf("70e9") / 2700)
@@ -203,19 +170,12 @@ def test_a_common_half_angle_factor_is_cancelled():
 
 
 def test_a_delay_is_one_generator():
-    tf = functions(
-        """
-[blocks]
-D = { type = "delay", T = "T_d" }
-[elements]
-car = { type = "mass", at = "x", m = "m" }
-drag = { type = "damper", between = ["x", "ground"], b = "b" }
-push = { type = "force_source", at = "x", f = "k*D*(r - x)" }
-[inputs]
-r = {}
-[outputs]
-X = "x"
-"""
+    tf = members(
+        'car = { type = "mass", at = "x", m = "m" }',
+        'drag = { type = "damper", between = ["x", "ground"], b = "b" }',
+        'push = { type = "force_source", at = "x", f = "k*D*(r - x)" }',
+        inputs="r = {}",
+        outputs='X = "x"\n[blocks]\nD = { type = "delay", T = "T_d" }',
     )["X/r"]
 
     def formula(s):
@@ -245,38 +205,18 @@ def test_without_inertia_there_is_no_kernel():
 
 
 def test_what_a_beam_does_not_touch_stays_rational():
-    tf = functions(
-        f"""
-[elements]
-arm = {{ {BEAM}, between = ["p", "q"], l = "l" }}
-f = {{ type = "fixed", at = "p" }}
-car = {{ type = "mass", at = "x", m = "m" }}
-rope = {{ type = "spring", between = ["x", "ground"], k = "k" }}
-[inputs]
-F = {{ force = "x" }}
-[outputs]
-X = "x"
-"""
-    )["X/F"]
+    car, rope = (
+        'c = { type = "mass", at = "x", m = "m" }',
+        'r = { type = "spring", between = ["x", "ground"], k = "k" }',
+    )
+    tf = members(ARM, FIXED, car, rope, inputs='F = { force = "x" }', outputs='X = "x"')["X/F"]
     assert not tf.is_distributed
     agrees(tf, lambda s: 1 / (10**4 + s**2 / 5))
 
 
 def test_an_output_that_feels_nothing_is_zero():
-    tf = functions(
-        f"""
-[elements]
-left = {{ {BEAM}, between = ["p", "q"], l = "l" }}
-right = {{ {BEAM}, between = ["q", "r"], l = "l" }}
-f = {{ type = "fixed", at = "p" }}
-g = {{ type = "fixed", at = "r" }}
-[inputs]
-M = {{ torque = "q" }}
-[outputs]
-X = "q"
-"""
-    )["X/M"]
-    assert tf.ratio.is_zero
+    far = 'g = { type = "fixed", at = "r" }'
+    assert members(ARM, RIGHT, FIXED, far, inputs='M = { torque = "q" }')["X/M"].ratio.is_zero
 
 
 def test_conditions_that_follow_from_the_equation_are_named():
