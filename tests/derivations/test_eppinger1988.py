@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 import math
 import tomllib
@@ -36,8 +37,14 @@ CLOSED_FORMS = {
 }
 
 
+@functools.cache
 def derive(model, output, input_name):
     return symflex.load(FOLDER / f"{model}.toml").transfer_function(output, input_name)
+
+
+def roots(kind, model, output, input_name="F", **given):
+    """Return poles or zeros of a model's transfer function."""
+    return getattr(derive(model, output, input_name).bind(**given), kind)()
 
 
 def by_name(expr):
@@ -68,13 +75,13 @@ def numbered(values, letter):
     return [values[name] for name in itertools.takewhile(values.__contains__, names)]
 
 
-def count(roots):
-    return sum(root.multiplicity for root in roots)
+def count(found):
+    return sum(root.multiplicity for root in found)
 
 
-def numbers(roots):
+def numbers(found):
     """Return the roots as complex numbers, each as often as it is multiple."""
-    return [complex(float(r.re), float(r.im)) for r in roots for _ in range(r.multiplicity)]
+    return [complex(float(r.re), float(r.im)) for r in found for _ in range(r.multiplicity)]
 
 
 def assert_same_roots(found, expected, relative):
@@ -88,24 +95,9 @@ def assert_same_roots(found, expected, relative):
 
 
 @pytest.fixture(scope="module")
-def six_mass():
-    return symflex.load(FOLDER / "six_mass.toml")
-
-
-@pytest.fixture(scope="module")
-def six_mass_tip(six_mass):
-    return six_mass.transfer_function("X_tip", "F").bind()
-
-
-@pytest.fixture(scope="module")
 def six_mass_values():
     values = parameters("six_mass")
     return [numbered(values, letter) for letter in "mkb"]
-
-
-@pytest.fixture(scope="module")
-def fitted():
-    return symflex.load(FOLDER / "polynomial_resonance.toml").transfer_function("A_tip", "V_cmd").bind()
 
 
 # ------------------------------------------------------------------------------------------- closed forms
@@ -113,28 +105,32 @@ def fitted():
 
 @pytest.mark.parametrize("case", tuple(CLOSED_FORMS), ids="-".join)
 def test_the_closed_form_equals_the_independent_derivation(case):
-    assert sympy.cancel(sympy.together(written_out(derive(*case)) - CLOSED_FORMS[case]())) == 0
-
-
-@pytest.mark.parametrize("case", tuple(CLOSED_FORMS), ids="-".join)
-def test_num_over_den_equals_the_closed_form(case):
     G = derive(*case)
+    assert sympy.cancel(sympy.together(written_out(G) - CLOSED_FORMS[case]())) == 0
     assert sympy.cancel(sympy.together(G.num / G.den - G.expr)) == 0
 
 
-# ------------------------------------------------------------------------------- figure 4: the rigid body
+# (model, output, input): how many poles and zeros there are.
+COUNTS = {
+    ("rigid_body", "V_tip", "V_cmd"): (2, 0),  # figure 4: of second order, without zeros
+    ("rigid_body", "A_tip", "V_cmd"): (2, 1),
+    # Figures 8a and 8b: each mode adds two poles, two zeros at the driving point, and one at the tip.
+    ("two_mass", "X_tip", "F"): (4, 1),
+    ("six_mass", "X_tip", "F"): (12, 5),
+    ("two_mass", "X_act", "F"): (4, 2),
+    ("six_mass", "X_act", "F"): (12, 10),
+    ("base_flexure", "V_tip", "F"): (3, 2),  # figure 8c
+    ("base_flexure", "V_motor", "F"): (3, 2),
+    ("lumped_bending_beam", "X_act", "F"): (6, 4),  # figures 12 and 13: a rigid body and two modes
+    ("lumped_bending_beam", "X_tip", "F"): (6, 2),
+}
 
 
-def test_the_rigid_body_velocity_is_of_second_order():
-    assert count(derive("rigid_body", "V_tip", "V_cmd").bind().poles()) == 2
-
-
-def test_the_rigid_body_velocity_has_no_zeros():
-    assert count(derive("rigid_body", "V_tip", "V_cmd").bind().zeros()) == 0
-
-
-def test_the_acceleration_adds_one_zero_at_the_origin():
-    assert numbers(derive("rigid_body", "A_tip", "V_cmd").bind().zeros()) == [0]
+def test_there_are_as_many_poles_and_zeros_as_the_paper_says():
+    found = {case: tuple(count(roots(kind, *case)) for kind in ("poles", "zeros")) for case in COUNTS}
+    assert found == COUNTS
+    assert numbers(roots("zeros", "rigid_body", "A_tip", "V_cmd")) == [0]
+    assert numbers(roots("poles", "six_mass", "X_tip")).count(0) == 2  # one rigid body mode
 
 
 # ------------------------------------------------------------ figures 6 and 7: the polynomial resonance model
@@ -151,27 +147,23 @@ def pair(omega, zeta):
     return [root, root.conjugate()]
 
 
-def test_the_polynomial_model_has_the_rigid_body_poles_and_a_pair_per_resonance(fitted):
-    expected = [*rigid_body_poles(), *(p for omega in MODES for p in pair(omega, 0.05))]
-    assert_same_roots(numbers(fitted.poles()), expected, 1e-9)
+def test_the_polynomial_model_has_the_rigid_body_poles_and_a_pair_of_poles_and_zeros_per_resonance():
+    fitted = ("polynomial_resonance", "A_tip", "V_cmd")
+    poles = [*rigid_body_poles(), *(p for omega in MODES for p in pair(omega, 0.05))]
+    assert_same_roots(numbers(roots("poles", *fitted)), poles, 1e-9)
+    zeros = [0, *(z for omega in MODES for z in pair(1.1 * omega, 0.05))]
+    assert_same_roots(numbers(roots("zeros", *fitted)), zeros, 1e-9)
 
 
-def test_the_polynomial_model_has_a_pair_of_zeros_per_resonance_and_one_at_the_origin(fitted):
-    expected = [0, *(z for omega in MODES for z in pair(1.1 * omega, 0.05))]
-    assert_same_roots(numbers(fitted.zeros()), expected, 1e-9)
-
-
-@pytest.mark.parametrize("frequency", [1, 11, 40, 60, 150])
-def test_the_polynomial_model_is_the_printed_cascade(fitted, frequency):
-    at = 1j * eppinger1988.radians_per_second(frequency)
+def test_the_polynomial_model_is_the_printed_cascade_and_leaves_low_frequencies_alone():
+    fitted = derive("polynomial_resonance", "A_tip", "V_cmd").bind()
     printed = eppinger1988.printed_rigid_body().subs(parameters("rigid_body"))
-    expected = at * complex(printed.subs(s, at))
-    for omega in MODES:
-        expected *= eppinger1988.simple_resonance(omega, 0.05, 1.1 * omega, 0.05, at)
-    assert abs(complex(fitted(at)) - expected) < 1e-11 * abs(expected)
-
-
-def test_the_polynomial_model_leaves_low_frequencies_alone(fitted):
+    for frequency in (1, 11, 40, 60, 150):
+        at = 1j * eppinger1988.radians_per_second(frequency)
+        expected = at * complex(printed.subs(s, at))
+        for omega in MODES:
+            expected *= eppinger1988.simple_resonance(omega, 0.05, 1.1 * omega, 0.05, at)
+        assert abs(complex(fitted(at)) - expected) < 1e-11 * abs(expected), frequency
     at = 1j * eppinger1988.radians_per_second(0.01)
     rigid = derive("rigid_body", "A_tip", "V_cmd").bind()
     assert abs(complex(fitted(at)) / complex(rigid(at)) - 1) < 1e-3
@@ -180,82 +172,44 @@ def test_the_polynomial_model_leaves_low_frequencies_alone(fitted):
 # -------------------------------------------------------------------- figures 8a and 8b: masses in series
 
 
-def test_two_masses_vibrate_at_the_lowest_measured_mode():
-    poles = numbers(derive("two_mass", "X_tip", "F").bind().poles())
-    assert max(map(abs, poles)) == pytest.approx(MODES[0], rel=1e-4)
+def test_two_and_six_masses_vibrate_at_the_measured_modes():
+    assert max(map(abs, numbers(roots("poles", "two_mass", "X_tip")))) == pytest.approx(MODES[0], rel=1e-4)
+    poles = numbers(roots("poles", "six_mass", "X_tip"))
+    for mode in MODES:
+        assert min(abs(abs(pole) - mode) for pole in poles) < 0.005 * mode
+    flexible = [p for p in poles if p.imag > 0]
+    assert [-p.real / abs(p) for p in flexible] == pytest.approx([0.015] * 5, rel=0.02)
 
 
-@pytest.mark.parametrize("mode", MODES)
-def test_the_six_masses_have_poles_at_each_measured_mode(six_mass_tip, mode):
-    frequencies = [abs(pole) for pole in numbers(six_mass_tip.poles())]
-    assert min(abs(frequency - mode) for frequency in frequencies) < 0.005 * mode
-
-
-def test_the_poles_of_six_masses_are_the_eigenvalues_of_the_state_matrix(six_mass, six_mass_values):
-    found = numbers(six_mass.transfer_function("X_act", "F").bind().poles())
+def test_the_poles_of_six_masses_are_the_eigenvalues_of_the_state_matrix(six_mass_values):
+    found = numbers(roots("poles", "six_mass", "X_act"))
     flexible = [p for p in eppinger1988.chain_poles(*six_mass_values) if abs(p) > 1.0]
     # The eigenvalue solver splits the double pole at the origin; it is exact here.
     assert_same_roots([p for p in found if p != 0], flexible, 1e-8)
 
 
-def test_the_six_masses_have_one_rigid_body_mode_at_the_origin(six_mass_tip):
-    assert numbers(six_mass_tip.poles()).count(0) == 2
-
-
-def test_every_damping_ratio_of_the_six_masses_is_about_one_and_a_half_percent(six_mass_tip):
-    flexible = [p for p in numbers(six_mass_tip.poles()) if p.imag > 0]
-    assert [-p.real / abs(p) for p in flexible] == pytest.approx([0.015] * 5, rel=0.02)
-
-
-@pytest.mark.parametrize(("model", "modes"), [("two_mass", 1), ("six_mass", 5)])
-def test_each_mode_between_actuator_and_tip_adds_two_poles(model, modes):
-    assert count(derive(model, "X_tip", "F").bind().poles()) == 2 + 2 * modes
-
-
-@pytest.mark.parametrize(("model", "modes"), [("two_mass", 1), ("six_mass", 5)])
-def test_each_mode_between_actuator_and_tip_adds_only_one_zero(model, modes):
-    assert count(derive(model, "X_tip", "F").bind().zeros()) == modes
-
-
-@pytest.mark.parametrize(("model", "modes"), [("two_mass", 1), ("six_mass", 5)])
-def test_each_mode_adds_two_zeros_at_the_driving_point(model, modes):
-    assert count(derive(model, "X_act", "F").bind().zeros()) == 2 * modes
-
-
-def test_the_tip_zeros_of_six_masses_are_those_of_the_links(six_mass_tip, six_mass_values):
+def test_the_tip_zeros_of_six_masses_are_those_of_the_links_and_proved_real(six_mass_values):
     _, stiffnesses, dampings = six_mass_values
+    zeros = roots("zeros", "six_mass", "X_tip")
     expected = [-k / b for k, b in zip(stiffnesses, dampings, strict=True)]
-    assert_same_roots(numbers(six_mass_tip.zeros()), expected, 1e-12)
+    assert_same_roots(numbers(zeros), expected, 1e-12)
+    assert all(zero.is_real for zero in zeros)
 
 
-def test_the_tip_zeros_of_six_masses_are_proved_real(six_mass_tip):
-    assert all(zero.is_real for zero in six_mass_tip.zeros())
-
-
-@pytest.mark.parametrize(("output", "position"), [("X_act", 0), ("X_tip", 1)])
-@pytest.mark.parametrize("at", [3 + 1j, 20j, 200 + 350j, 480j])
-def test_six_masses_respond_as_shooting_says(six_mass, six_mass_values, output, position, at):
-    found = complex(six_mass.transfer_function(output, "F").bind()(at))
-    expected = eppinger1988.chain(*six_mass_values, at)[position]
-    assert abs(found - expected) < 1e-11 * abs(expected)
+def test_six_masses_respond_as_shooting_says(six_mass_values):
+    for position, output in enumerate(("X_act", "X_tip")):
+        bound = derive("six_mass", output, "F").bind()
+        for at in (3 + 1j, 20j, 200 + 350j, 480j):
+            expected = eppinger1988.chain(*six_mass_values, at)[position]
+            assert abs(complex(bound(at)) - expected) < 1e-11 * abs(expected), (output, at)
 
 
 # ------------------------------------------------------------------------------ figure 8c: base flexure
 
 
-@pytest.mark.parametrize("output", ["V_tip", "V_motor"])
-def test_the_flexible_base_makes_three_poles(output):
-    assert count(derive("base_flexure", output, "F").bind().poles()) == 3
-
-
-@pytest.mark.parametrize("output", ["V_tip", "V_motor"])
-def test_the_flexible_base_makes_two_zeros(output):
-    assert count(derive("base_flexure", output, "F").bind().zeros()) == 2
-
-
-@pytest.mark.parametrize("output", ["V_tip", "V_motor"])
-def test_a_flexible_base_keeps_actuator_and_tip_minimum_phase(output):
-    assert all(zero.real < 0 for zero in numbers(derive("base_flexure", output, "F").bind().zeros()))
+def test_a_flexible_base_keeps_actuator_and_tip_minimum_phase():
+    for output in ("V_tip", "V_motor"):
+        assert all(zero.real < 0 for zero in numbers(roots("zeros", "base_flexure", output))), output
 
 
 def test_the_base_hides_from_the_tip_when_the_carriage_does_not_rub_on_it():
@@ -265,12 +219,7 @@ def test_the_base_hides_from_the_tip_when_the_carriage_does_not_rub_on_it():
     G = symflex.loads(text.replace(rubbing, 'between = ["x_tip", "ground"]')).transfer_function("V_tip", "F")
     m, b = sympy.symbols("m b")
     assert sympy.cancel(written_out(G) - 1 / (m * s + b)) == 0
-
-
-def test_the_hidden_mode_of_the_base_is_reported():
-    text = (FOLDER / "base_flexure.toml").read_text("utf-8")
-    text = text.replace('between = ["x_tip", "x_base"]', 'between = ["x_tip", "ground"]')
-    assert symflex.loads(text).transfer_function("V_tip", "F").hidden
+    assert G.hidden
 
 
 # ----------------------------------------------------------------- figures 12 and 13: the lumped bending beam
@@ -284,37 +233,18 @@ def beam_values(h):
     return {"m_2": values["m_2"], "J": values["J"], "c": values["c"], "h": h, "length": values["l"]}
 
 
-def test_the_two_tips_stand_on_either_side_of_the_condition():
+def test_the_zeros_of_the_bending_beam_are_proved_where_the_bracket_says():
     assert eppinger1988.bracket(**beam_values(NEAR_TIP)) > 0 > eppinger1988.bracket(**beam_values(FAR_TIP))
-
-
-def test_the_colocated_zeros_of_the_bending_beam_are_proved_on_the_imaginary_axis():
-    assert all(z.on_imaginary_axis for z in derive("lumped_bending_beam", "X_act", "F").bind().zeros())
-
-
-def test_the_colocated_function_of_the_bending_beam_has_two_zeros_per_mode():
-    assert count(derive("lumped_bending_beam", "X_act", "F").bind().zeros()) == 4
-
-
-def test_the_bending_beam_has_a_rigid_body_mode_and_two_flexible_modes():
-    assert count(derive("lumped_bending_beam", "X_act", "F").bind().poles()) == 6
-
-
-def test_the_noncolocated_zeros_of_the_bending_beam_are_a_pair():
-    assert count(derive("lumped_bending_beam", "X_tip", "F").bind().zeros()) == 2
-
-
-def test_the_noncolocated_zeros_of_the_bending_beam_are_proved_real():
-    assert all(zero.is_real for zero in derive("lumped_bending_beam", "X_tip", "F").bind().zeros())
-
-
-@pytest.mark.slow
-def test_the_noncolocated_zeros_of_the_bending_beam_have_equal_magnitude():
-    values = parameters("lumped_bending_beam")
-    B = eppinger1988.bracket(**beam_values(values["h"]))
-    size = math.sqrt(-2 * values["EI"] / (values["l"] * B))
-    found = numbers(derive("lumped_bending_beam", "X_tip", "F").bind().zeros())
-    assert_same_roots(found, [size, -size], 1e-12)
+    assert all(zero.on_imaginary_axis for zero in roots("zeros", "lumped_bending_beam", "X_act"))
+    near, far = (roots("zeros", "lumped_bending_beam", "X_tip", h=h) for h in (NEAR_TIP, FAR_TIP))
+    assert all(zero.on_imaginary_axis for zero in near)
+    assert all(zero.is_real for zero in far)
+    assert max(zero.real for zero in numbers(far)) > 0
+    # Noncolocated zeros are a real pair of equal magnitude.
+    values, found = parameters("lumped_bending_beam"), roots("zeros", "lumped_bending_beam", "X_tip")
+    size = math.sqrt(-2 * values["EI"] / (values["l"] * eppinger1988.bracket(**beam_values(values["h"]))))
+    assert all(zero.is_real for zero in found)
+    assert_same_roots(numbers(found), [size, -size], 1e-12)
 
 
 def test_the_symbolic_zeros_of_the_tip_hold_the_bracket():
@@ -322,18 +252,3 @@ def test_the_symbolic_zeros_of_the_tip_hold_the_bracket():
     EI, length = sympy.symbols("EI l")
     expected = 2 * EI + length * eppinger1988.tip_bracket() * s**2
     assert not sympy.cancel(num / expected).has(s)
-
-
-def test_a_tip_beyond_the_condition_is_nonminimum_phase():
-    zeros = numbers(derive("lumped_bending_beam", "X_tip", "F").bind(h=FAR_TIP).zeros())
-    assert max(zero.real for zero in zeros) > 0
-
-
-def test_a_tip_short_of_the_condition_has_its_zeros_on_the_imaginary_axis():
-    zeros = derive("lumped_bending_beam", "X_tip", "F").bind(h=NEAR_TIP).zeros()
-    assert all(zero.on_imaginary_axis for zero in zeros)
-
-
-def test_a_tip_beyond_the_condition_has_real_zeros():
-    zeros = derive("lumped_bending_beam", "X_tip", "F").bind(h=FAR_TIP).zeros()
-    assert all(zero.is_real for zero in zeros)

@@ -64,24 +64,21 @@ def published(tf, s):
     return evaluate(entries["expr"], v, where) * evaluate(entries["scale"], v, where)
 
 
-@pytest.mark.parametrize("tf", tuple(RIGHT))
-@pytest.mark.parametrize("s", POINTS)
-def test_the_sliding_free_beam_is_the_formula_in_the_manner_of_vaughan(tf, s):
-    expected = complex(evaluate(RIGHT[tf], values("sliding_free_beam") | {"s": mpc(s)}, WHERE))
-    assert abs(beam_value(tf, s) - expected) < 1e-12 * abs(expected)
+def test_the_sliding_free_beam_is_the_formula_in_the_manner_of_vaughan():
+    v = values("sliding_free_beam")
+    for tf, formula in RIGHT.items():
+        for s in POINTS:
+            expected = complex(evaluate(formula, v | {"s": mpc(s)}, WHERE))
+            assert abs(beam_value(tf, s) - expected) < 1e-12 * abs(expected), (tf, s)
 
 
-@pytest.mark.parametrize("s", POINTS)
-def test_the_printed_tip_formula_is_right(s):
-    expected = complex(published("V_tip/F", s))
-    assert abs(beam_value("V_tip/F", s) - expected) < 1e-12 * abs(expected)
-
-
-@pytest.mark.parametrize("s", POINTS)
-def test_the_printed_colocated_formula_is_wrong(s):
-    printed = complex(published("V_act/F", s))
-    # At low frequency it tends to the same rigid body: S = 0 and C = 1 give 4 either way.
-    assert abs(beam_value("V_act/F", s) - printed) > 1e-2 * abs(printed)
+def test_the_printed_tip_formula_is_right_and_the_colocated_one_is_wrong():
+    for s in POINTS:
+        expected = complex(published("V_tip/F", s))
+        assert abs(beam_value("V_tip/F", s) - expected) < 1e-12 * abs(expected), s
+        printed = complex(published("V_act/F", s))
+        # At low frequency it tends to the same rigid body: S = 0 and C = 1 give 4 either way.
+        assert abs(beam_value("V_act/F", s) - printed) > 1e-2 * abs(printed), s
 
 
 def test_the_printed_colocated_formula_has_a_perfect_square_as_numerator():
@@ -106,32 +103,20 @@ def laplace(q):
     return 2 * sqrt(v["E"] * v["I"] / (v["rho"] * v["A"])) * (q / v["l"]) ** 2
 
 
-@pytest.mark.parametrize("tf", tuple(RIGHT))
-@pytest.mark.parametrize("k", [1, 2, 3, 4, 5])
-def test_the_poles_are_those_of_the_sliding_free_beam(tf, k):
-    omega = classics.beam_frequency(classics.sliding_free(k), values("sliding_free_beam"))
-    assert newton_step(tf, "den", mpc(0, omega)) < RELATIVE
-
-
-@pytest.mark.parametrize("k", [1, 2, 3, 4, 5])
-def test_the_colocated_zeros_are_the_modes_with_the_actuator_held(k):
-    omega = classics.beam_frequency(classics.clamped_free(k), values("sliding_free_beam"))
-    assert newton_step("V_act/F", "num", mpc(0, omega)) < RELATIVE
-
-
-@pytest.mark.parametrize("k", [1, 2, 3, 4, 5])
-def test_the_colocated_zeros_solve_the_equation_in_q(k):
-    # 2 + cosh 2q + cos 2q = 0 is cos x cosh x = -1 in x = q (1 - j).
-    q = classics.clamped_free(k) / mpc(1, -1)
-    assert abs(2 + cosh(2 * q) + cos(2 * q)) < mpf(10) ** -30
-
-
-@pytest.mark.parametrize("sign", [1, -1])
-@pytest.mark.parametrize("k", [1, 2, 3, 4, 5])
-def test_the_tip_zeros_are_real_pairs(k, sign):
-    # cos q = 0 gives s > 0, cosh q = 0 the same with s < 0.
-    s = sign * laplace((k - mpf(1) / 2) * pi)
-    assert newton_step("V_tip/F", "num", mpc(s)) < RELATIVE
+def test_printed_poles_and_zeros_of_the_beam_are_those_of_its_equations():
+    v = values("sliding_free_beam")
+    for k in range(1, 6):
+        pole = mpc(0, classics.beam_frequency(classics.sliding_free(k), v))
+        assert all(newton_step(tf, "den", pole) < RELATIVE for tf in RIGHT), k
+        # Colocated zeros are modes with the actuator held: 2 + cosh 2q + cos 2q = 0 is cos x cosh x = -1 in
+        # x = q (1 - j).
+        held = classics.clamped_free(k)
+        q = held / mpc(1, -1)
+        assert abs(2 + cosh(2 * q) + cos(2 * q)) < mpf(10) ** -30
+        assert newton_step("V_act/F", "num", mpc(0, classics.beam_frequency(held, v))) < RELATIVE, k
+        # Those of the tip are real pairs: cos q = 0 gives s > 0, cosh q = 0 the same with s < 0.
+        for sign in (1, -1):
+            assert newton_step("V_tip/F", "num", mpc(sign * laplace((k - mpf(1) / 2) * pi))) < RELATIVE, k
 
 
 def test_poles_and_colocated_zeros_alternate():
@@ -183,12 +168,15 @@ def robot_axis(v, s):
     return solution(w) * s, solution(w_tip) * s
 
 
-@pytest.mark.parametrize(("tf", "position"), [("V_act/V_cmd", 0), ("V_tip/V_cmd", 1)])
-@pytest.mark.parametrize("s", (*POINTS, 20 + 68j, -3000 + 1000j))
-def test_the_robot_axis_is_what_its_laws_and_its_field_give(tf, position, s):
-    expected = complex(robot_axis(values("robot_axis"), mpc(s))[position])
-    found = complex(derived("robot_axis", tf).bind()(s))
-    assert abs(found - expected) < 1e-11 * abs(expected)
+def test_the_robot_axis_is_what_its_laws_and_its_field_give():
+    for s in (*POINTS, 20 + 68j, -3000 + 1000j):
+        for tf, expected in zip(
+            ("V_act/V_cmd", "V_tip/V_cmd"),
+            map(complex, robot_axis(values("robot_axis"), mpc(s))),
+            strict=True,
+        ):
+            found = complex(derived("robot_axis", tf).bind()(s))
+            assert abs(found - expected) < 1e-11 * abs(expected), (tf, s)
 
 
 def test_the_robot_axis_with_a_stiff_link_is_the_rigid_body():
@@ -199,10 +187,10 @@ def test_the_robot_axis_with_a_stiff_link_is_the_rigid_body():
     assert stiff(3 + 40j) == pytest.approx(rigid(3 + 40j), rel=1e-9)
 
 
-@pytest.mark.parametrize("tf", ["V_act/V_cmd", "V_tip/V_cmd"])
-def test_slowly_the_robot_axis_is_the_rigid_body(tf):
+def test_slowly_the_robot_axis_is_the_rigid_body():
     rigid = derived("rigid_body", "V_tip/V_cmd").bind().dcgain()
-    assert derived("robot_axis", tf).bind().dcgain() == pytest.approx(rigid, rel=1e-12)
+    for tf in ("V_act/V_cmd", "V_tip/V_cmd"):
+        assert derived("robot_axis", tf).bind().dcgain() == pytest.approx(rigid, rel=1e-12), tf
 
 
 def test_the_link_vibrates_near_the_lowest_measured_mode_when_the_carriage_is_held():

@@ -56,7 +56,7 @@ def reference(beams, s):
         return complex(value(ends[-1][0])), complex(value(ends[0][0]))
 
 
-@pytest.mark.parametrize("count", [2, 3, pytest.param(4, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [2, pytest.param(3, marks=pytest.mark.slow)])
 def test_a_chain_of_different_beams_has_the_response_of_its_boundary_value_problem(count):
     text, beams = chain(count)
     model = symflex.loads(text)
@@ -71,13 +71,3 @@ def test_a_chain_of_five_different_beams_is_refused_in_seconds():
     text, _ = chain(5)
     with pytest.raises(BudgetError, match=r"SF502.*200000 terms"):
         symflex.loads(text).transfer_function("X", "F")
-
-
-@pytest.mark.parametrize("count", [6, pytest.param(12, marks=pytest.mark.slow)])
-def test_the_nested_form_of_a_chain_has_the_response_of_its_boundary_value_problem(count):
-    text, beams = chain(count)
-    model = symflex.loads(text)
-    found = [model.nested(output, "F").bind() for output in ("X", "Y")]
-    for s in POINTS[:2]:
-        for function, expected in zip(found, reference(beams, s), strict=True):
-            assert abs(function(s) / expected - 1) < 1e-12

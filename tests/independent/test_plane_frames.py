@@ -45,16 +45,13 @@ def is_response(functions, outputs, members, held, force="c.y", added=lambda s: 
     )
 
 
-@pytest.mark.parametrize(
-    ("written", "angle"),
-    [('"90 deg"', pi / 2), ('"45 deg"', pi / 4), ('"-120 deg"', -2 * pi / 3), (0.3, mpf("0.3"))],
-)
-def test_an_l_frame_has_the_response_of_its_dynamic_stiffness(written, angle):
+def test_an_l_frame_has_the_response_of_its_dynamic_stiffness():
     outputs = ("c.y", "b.x", "b.theta")
     wall = 'wall = { type = "fixed", at = "a" }\n'
-    found = bound(wall + frame("column", "a", "b", written) + frame("boom", "b", "c", 0), outputs)
-    members = [Member("a", "b", **STEEL, l=HALF, angle=angle), Member("b", "c", **STEEL, l=HALF)]
-    assert is_response(found, outputs, members, clamped("a"))
+    for written, angle in (('"90 deg"', pi / 2), ('"-120 deg"', -2 * pi / 3), (0.3, mpf("0.3"))):
+        found = bound(wall + frame("column", "a", "b", written) + frame("boom", "b", "c", 0), outputs)
+        members = [Member("a", "b", **STEEL, l=HALF, angle=angle), Member("b", "c", **STEEL, l=HALF)]
+        assert is_response(found, outputs, members, clamped("a")), written
 
 
 def on(joint, **values):

@@ -6,11 +6,11 @@ import functools
 import math
 
 import pytest
-from mpmath import cosh, mp, mpc, mpf, sinh, sqrt
+from mpmath import cosh, mp, mpc, mpf
 
 import symflex
 from tests.independent.boundary_value import Problem, bending, rod
-from tests.independent.distributed.span import clamped, free, free_with_force
+from tests.independent.distributed.span import clamped, free
 from tests.independent.published_roots import WAVENUMBERS
 from tests.independent.winding import Frame, Member, OnTheContourError, count_inside, determinant
 
@@ -49,16 +49,15 @@ def test_a_pair_is_counted_however_near_to_each_other():
     assert count_inside(lambda s: (s - 2) * (s - 2 - near), 1 - 1j, 3 + 1j) == 2
 
 
-@pytest.mark.parametrize("ends", WAVENUMBERS, ids="-".join)
-def test_the_frequencies_of_a_beam_are_counted(ends):
-    held = {(kind, joint) for joint, end in enumerate(ends) for kind in HELD[end]}
-    frame = Frame([Member(0, 1, 1.0, 1.0, 1.0)], held=held)
+def test_the_frequencies_of_a_beam_are_counted():
     rigid = {("free", "free"): 2, ("free", "sliding"): 1, ("free", "pinned"): 1, ("sliding", "sliding"): 1}
-    for k, entry in enumerate(WAVENUMBERS[ends]):
-        number, _, factor = entry.partition(" ")
-        omega = (float(number) * (math.pi / 2 if factor else 1.0)) ** 2
-        before = rigid.get(ends, 0) + k
-        assert (frame.count(omega * (1 - 1e-6)), frame.count(omega * (1 + 1e-6))) == (before, before + 1)
+    for ends, entries in WAVENUMBERS.items():
+        held = {(kind, joint) for joint, end in enumerate(ends) for kind in HELD[end]}
+        frame = Frame([Member(0, 1, 1.0, 1.0, 1.0)], held=held)
+        for k, entry in enumerate(entries, rigid.get(ends, 0)):
+            number, _, factor = entry.partition(" ")
+            omega = (float(number) * (math.pi / 2 if factor else 1.0)) ** 2
+            assert [frame.count(omega * (1 + off)) for off in (-1e-6, 1e-6)] == [k, k + 1], ends
 
 
 def test_cutting_a_beam_changes_no_count():
@@ -121,17 +120,9 @@ def damped_cantilever(s, load=True):
     return determinant(problem)
 
 
-@pytest.mark.parametrize(
-    ("low", "high"),
-    [
-        pytest.param(-60 + 1j, 1 + 150j, marks=pytest.mark.slow),
-        (-5 - 40j, 5 + 40j),
-        pytest.param(-200 + 30j, -10 + 600j, marks=pytest.mark.slow),
-        pytest.param(-800 + 400j, -30 + 950j, marks=pytest.mark.slow),
-    ],
-)
 @pytest.mark.slow
-def test_the_program_finds_as_many_poles_and_zeros_as_the_argument_turns(low, high):
+def test_the_program_finds_as_many_poles_and_zeros_as_the_argument_turns():
+    low, high = -60 + 1j, 1 + 150j
     bound = symflex.loads(KELVIN_VOIGT).transfer_function("X", "F").bind()
     found = bound.pole_zero_map(digits=20, region=(low.real, high.real, low.imag, high.imag))
     poles = count_inside(damped_cantilever, low, high)
@@ -139,34 +130,3 @@ def test_the_program_finds_as_many_poles_and_zeros_as_the_argument_turns(low, hi
     assert poles > 0
     assert sum(root.multiplicity for root in found.poles) == poles
     assert sum(root.multiplicity for root in found.zeros) == zeros
-
-
-@pytest.mark.slow
-def test_the_sliding_free_beam_turns_as_often_as_its_printed_equation():
-    # sinh 2q + sin 2q over q is even in q, hence a function of s = 2 q^2 without branches.
-    def printed(s):
-        q = sqrt(s / 2)
-        return (sinh(2 * q) + mp.sin(2 * q)) / q / cosh(2 * q.real)
-
-    values = {name: mpf(1) for name in ("E", "I", "rho", "A")}
-
-    def sliding(s):
-        problem = Problem()
-        line = problem.line(bending(values, s))
-        problem.require(line.start[1], line.start[3], *free(*line.at(mpf(1))))
-        return determinant(problem)
-
-    assert count_inside(printed, -7 + 1j, 7 + 320j) == count_inside(sliding, -7 + 1j, 7 + 320j) == 5
-
-
-@pytest.mark.slow
-def test_a_load_at_the_tip_does_not_change_the_homogeneous_problem():
-    values = {name: mpf(1) for name in ("E", "I", "rho", "A")}
-
-    def loaded(s):
-        problem = Problem()
-        line = problem.line(bending(values, s))
-        problem.require(*clamped(*line.start), *free_with_force(*line.at(mpf(1)), values, s))
-        return determinant(problem)
-
-    assert count_inside(loaded, -3 + 1j, 3 + 65j) == 3
