@@ -15,7 +15,7 @@ from symflex.expressions import Bessel, fold, format_expression
 from symflex.print.forms import print_form
 
 DIGITS = 45
-PLACES = (3 + 40j, -20 + 30j, 0.5j)
+PLACES = (3 + 40j, -20 + 30j)
 FUNCTIONS = {"J": mpmath.besselj, "Y": mpmath.bessely, "I": mpmath.besseli, "K": mpmath.besselk}
 
 PARAMETERS = """
@@ -136,6 +136,14 @@ def printed_value(tf, form, values, s):
 
 
 SLOW = (
+    "a rod of the third power",
+    "a rod of the fourth power with losses",
+    "a string of stiffer ends",
+    "a string, exponentially thick",
+    "a hanging string, divided",
+    "a rod of the fourth power to its tip",
+    "a cubic rod to its edge",
+    "a wedge to its edge with losses",
     "a beam that is a wedge",
     "a beam that is a cone",
     "an exponential horn's",

@@ -8,7 +8,7 @@ from __future__ import annotations
 import random
 from fractions import Fraction
 from functools import cache, partial
-from itertools import cycle, pairwise
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -44,8 +44,6 @@ TAPERS = {
 }
 GROUND = ', k_f = "k_f*(1 + x/l)", c_f = "c_f"'
 MORE = {"none": "", "eta": ', eta = "eta"', "foundation": GROUND, "tension": ', N = "N*(2 - x/l)"'}
-THEORIES = ("euler-bernoulli", "rayleigh", "timoshenko")
-LOSSES = ("none", "eta", "foundation", "tension")
 MODEL = """
 symflex = 1
 [parameters]
@@ -69,20 +67,22 @@ y = "%s"
 """
 TIP = 'load = { type = "mass", at = "tip", m = "1.5 kg" }'
 HUB = 'pin = { type = "pin", at = "base" }\nhub = { type = "inertia", at = "base.theta", J = "0.25 kg*m^2" }'
-# Where functions are not rational foundations and tensions take seconds a point: others stand in.
-MORE_AT_REST = ("foundation", "tension")
-RATIONAL = {"exponential": "quotient", "root": "double"}
-BEAMS = list(
-    dict.fromkeys(
-        (theory, RATIONAL.get(taper, taper) if loss in MORE_AT_REST else taper, loss, ends)
-        for theory in THEORIES
-        for taper, loss, ends in zip(
-            list(TAPERS) * 2,
-            cycle(LOSSES[:3] if theory == "timoshenko" else LOSSES),
-            cycle(["tip", "hub"]),
-            strict=False,
-        )
-    )
+# Each theory, taper, loss and pair of ends, not each with each; foundations and tensions along functions that
+# are not rational take seconds a point.
+BEAMS = (
+    ("euler-bernoulli", "exponential", "none", "tip"),
+    ("euler-bernoulli", "double", "foundation", "tip"),
+    ("euler-bernoulli", "quotient", "tension", "hub"),
+    ("euler-bernoulli", "root", "none", "tip"),
+    ("rayleigh", "wedge", "eta", "hub"),
+    ("timoshenko", "wedge", "eta", "hub"),
+    ("timoshenko", "quotient", "foundation", "tip"),
+)
+BARS = (
+    ("rod", "exponential", "none"),
+    ("rod", "wedge", "foundation"),
+    ("shaft", "root", "eta"),
+    ("string", "quotient", "foundation"),
 )
 
 
@@ -184,20 +184,7 @@ def bar_slopes(kind, taper, loss):
     return slopes
 
 
-BARS = list(
-    dict.fromkeys(
-        (kind, RATIONAL.get(taper, taper) if loss in MORE_AT_REST else taper, loss)
-        for kind, losses in (
-            ("rod", ["none", "foundation", "eta"]),
-            ("shaft", ["eta", "none"]),
-            ("string", ["foundation", "none"]),
-        )
-        for taper, loss in zip(TAPERS, cycle(losses))
-    )
-)
-
-
-def points(seed, fastest, count=20):
+def points(seed, fastest, count=6):
     """Return complex frequencies, of which most are far from the imaginary axis."""
     chance = random.Random(seed)
     return [
@@ -339,10 +326,9 @@ def uniform_frequencies():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("slope", ["0", "1e-40"])
-def test_a_taper_of_no_slope_has_the_frequencies_of_the_uniform_beam_to_all_digits(slope):
+def test_a_taper_of_no_slope_has_the_frequencies_of_the_uniform_beam_to_all_digits():
     with mp.workdps(40):
-        for found, (_, expected) in zip(lowest_frequencies(slope), uniform_frequencies(), strict=True):
+        for found, (_, expected) in zip(lowest_frequencies("1e-40"), uniform_frequencies(), strict=True):
             assert abs(found - expected) < mpf(10) ** -28 * expected
 
 

@@ -9,7 +9,6 @@ from symflex import pipeline
 from symflex.errors import ModelError, SpecError
 from symflex.roots.locate import locate
 from symflex.roots.region import Modes
-from tests.house.repository import one_in
 
 HEAD = """
 symflex = 1
@@ -71,11 +70,11 @@ ANSWERS = {
 }
 
 
-@pytest.mark.parametrize("name", FIELDS)
-def test_what_a_tip_answers_is_what_bessel_functions_say(name):
-    found = field(name)
-    for s in (3 + 4j, -2 + 30j, 25 - 1j):
-        assert found(s) == pytest.approx(complex(ANSWERS[name](mpc(s))), rel=1e-13)
+def test_what_a_tip_answers_is_what_bessel_functions_say():
+    for name, answer in ANSWERS.items():
+        found = field(name)
+        for s in (3 + 4j, -2 + 30j, 25 - 1j):
+            assert found(s) == pytest.approx(complex(answer(mpc(s))), rel=1e-13), name
 
 
 @pytest.mark.slow
@@ -201,8 +200,8 @@ y = "root"
 """
 
 
-@pytest.mark.parametrize("s", one_in(4, [mpc(-400, 9000), mpc(0, 3000), mpc(0, 40000), mpc(2500, 0)]))
-def test_a_rod_that_thins_out_faster_than_its_taper_is_a_power_series_about_its_tip(s):
+def test_a_rod_that_thins_out_faster_than_its_taper_is_a_power_series_about_its_tip():
+    s = mpc(-400, 9000)
     # With t from the tip on the section is t exp(2 t/l): t u'' + (1 + 2 t/l) u' = k^2 t u.
     with mp.workdps(40):
         squared, terms = s**2 * 7800 / mpf("210e9"), [mpf(1), mpf(0)]
