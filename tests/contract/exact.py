@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from math import prod
 from random import Random
+from typing import TYPE_CHECKING
 
+from symflex.algebra.ring import terms_of
 from symflex.errors import Source, Span, Text
 from symflex.expressions import (
     PROGRAM_LIMITS,
@@ -20,6 +23,11 @@ from symflex.expressions import (
     format_expression,
     parse,
 )
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from symflex.algebra import Factored
 
 
 def read(text: str) -> Expression:
@@ -66,6 +74,16 @@ def value_of(expression: Expression, point: Point) -> Fraction:
             assert power.denominator == 1
             return value_of(base, point) ** int(power)
     raise TypeError(type(expression).__name__)
+
+
+def value_in_ring(factored: Factored, values: Mapping[str, Fraction]) -> Fraction:
+    """Return what a product of powers of polynomials is where every name of their ring has its value."""
+    names = factored.ring.names
+    found = Fraction(factored.unit)
+    for polynomial, exponent in factored.factors:
+        terms = (c * prod(values[names[i]] ** e for i, e in powers) for powers, c in terms_of(polynomial))
+        found *= Fraction(sum(terms)) ** exponent
+    return found
 
 
 def solve(matrix: list[list[Fraction]], right: list[Fraction]) -> list[Fraction]:

@@ -10,12 +10,12 @@ from flint import fmpq, fmpq_mat
 
 from benchmarks.networks import NETWORKS, chain, ladder, network, ring, tree
 from symflex import pipeline
-from symflex.algebra.ring import terms_of
 from symflex.algebra.straight_line import ONE, ZERO, Step, Workbench
 from symflex.equations import assemble
 from symflex.equations.elimination import expanded_terms, is_singular
 from symflex.equations.elimination.star_mesh import eliminate
 from symflex.errors import ModelError
+from tests.contract.exact import value_in_ring
 
 
 def value(program, step, given):
@@ -215,31 +215,16 @@ def test_a_large_singular_system_names_what_floats(monkeypatch):
 # ------------------------------------------------------------- against the equations solved as they stand
 
 
-def number(coefficient, given):
-    """Return a coefficient in exact arithmetic."""
-    names = coefficient.ring.names
-    found = coefficient.unit
-    for factor, exponent in coefficient.factors:
-        total = Fraction(0)
-        for monomial, c in terms_of(factor):
-            term = Fraction(c)
-            for i, e in monomial:
-                term *= given[names[i]] ** e
-            total += term
-        found *= total**exponent
-    return found
-
-
 def solved(equations, given):
     """Return every output per input, and the determinant, from the dense matrix in exact arithmetic."""
     for name, value_of_it in equations.definitions:
-        given[name] = number(value_of_it, given)
+        given[name] = value_in_ring(value_of_it, given)
     columns = {v: i for i, v in enumerate((*equations.unknowns, *equations.inputs))}
     size = len(equations.unknowns)
     table = [[Fraction(0)] * len(columns) for _ in range(size + len(equations.outputs))]
     for row, form in zip(table, [r.form for r in (*equations.rows, *equations.outputs)], strict=True):
         for variable, coefficient in form.terms:
-            row[columns[variable]] += number(coefficient, given)
+            row[columns[variable]] += value_in_ring(coefficient, given)
     a = fmpq_mat(size, size, [fmpq(x.numerator, x.denominator) for row in table[:size] for x in row[:size]])
     found = {}
     for source in equations.inputs:
@@ -250,7 +235,7 @@ def solved(equations, given):
         states = [Fraction(int(x[i, 0].p), int(x[i, 0].q)) for i in range(size)]
         for out, row in zip(equations.outputs, table[size:], strict=True):
             total = sum((c * y for c, y in zip(row, states, strict=False)), row[at])
-            found[out.name, source.owner] = total / number(out.divisor, given)
+            found[out.name, source.owner] = total / value_in_ring(out.divisor, given)
     det = a.det()
     return found, Fraction(int(det.p), int(det.q))
 
