@@ -26,6 +26,7 @@ E = "E"
 rho = "rho"
 l = "l"
 """
+UNIFORM = 'I = "I_0"\nA = "A_0"\n'
 SQUARE = 'I = "I_0*(1 - c*x/l)^4"\nA = "A_0*(1 - c*x/l)^2"\n'
 FIELD = """
 symflex = 1
@@ -104,21 +105,15 @@ def markups(drawing):
 
 
 def test_a_beam_is_drawn_as_thick_as_a_square_one_of_its_section():
-    """The side of a square whose second moment is (1 - c x/l)^4 I_0: a quarter is left where c = 0.75."""
-    thick, thin = depths(sound(TAPERED + SQUARE), "element", "arm")
-    assert thin / thick == pytest.approx(0.25)
+    """The side of a square whose second moment is (1 - c x/l)^4 I_0: a quarter is left where c = 0.75.
 
-
-def test_a_beam_that_loses_width_alone_is_drawn_tapered_too():
-    """I/A, which tells its depth, is the same everywhere, and a quarter of its width is left."""
-    section = 'I = "I_0*(1 - c*x/l)"\nA = "A_0*(1 - c*x/l)"\n'
-    thick, thin = depths(sound(TAPERED + section), "element", "arm")
-    assert thin / thick == pytest.approx(0.25)
-
-
-def test_a_uniform_beam_is_drawn_uniform():
-    thick, thin = depths(sound(TAPERED + 'I = "I_0"\nA = "A_0"\n'), "element", "arm")
-    assert thick == thin
+    Of one that loses width alone I/A, which tells its depth, is the same everywhere: a quarter of its width
+    is left.
+    """
+    width_alone = 'I = "I_0*(1 - c*x/l)"\nA = "A_0*(1 - c*x/l)"\n'
+    for section, left in ((SQUARE, 0.25), (width_alone, 0.25), (UNIFORM, 1)):
+        thick, thin = depths(sound(TAPERED + section), "element", "arm")
+        assert thin / thick == pytest.approx(left), section
 
 
 def test_a_string_whose_tension_varies_is_a_line():
@@ -126,24 +121,24 @@ def test_a_string_whose_tension_varies_is_a_line():
     assert depths(drawing, "field", "w") == pytest.approx([0.0, 0.0])
 
 
-@pytest.mark.parametrize(("stiffness", "unit", "mass"), [("E*A", "GPa", "kg/m"), ("GJ", "N*m^2", "kg*m")])
-def test_a_field_of_second_order_with_a_modulus_or_torsion_is_as_thick_as_a_beam(stiffness, unit, mass):
-    name = stiffness.partition("*")[0]
-    drawing = drawing_of(
-        symflex.Model(
-            parameters={name: f"2 {unit}", "A": "1 cm^2", "l": "1 m", "mu": f"1 {mass}"},
-            fields={
-                "u": {
-                    "domain": ["0", "l"],
-                    "equation": f"{stiffness}*u'' = mu*s^2*u",
-                    "conditions": ["u(0) = 0", "u'(l) = p"],
-                }
-            },
-            inputs={"p": {}},
-            outputs={"tip": "u(l)"},
-        ).resolved
-    )
-    assert all(depth > 1.0 for depth in depths(drawing, "field", "u"))
+def test_a_field_of_second_order_with_a_modulus_or_torsion_is_as_thick_as_a_beam():
+    for stiffness, unit, mass in (("E*A", "GPa", "kg/m"), ("GJ", "N*m^2", "kg*m")):
+        name = stiffness.partition("*")[0]
+        drawing = drawing_of(
+            symflex.Model(
+                parameters={name: f"2 {unit}", "A": "1 cm^2", "l": "1 m", "mu": f"1 {mass}"},
+                fields={
+                    "u": {
+                        "domain": ["0", "l"],
+                        "equation": f"{stiffness}*u'' = mu*s^2*u",
+                        "conditions": ["u(0) = 0", "u'(l) = p"],
+                    }
+                },
+                inputs={"p": {}},
+                outputs={"tip": "u(l)"},
+            ).resolved
+        )
+        assert all(depth > 1.0 for depth in depths(drawing, "field", "u")), (stiffness, unit, mass)
 
 
 def test_a_cone_is_drawn_straight_to_its_tip_and_its_driven_root_in_a_guide():
@@ -173,18 +168,24 @@ def test_a_field_with_an_equation_without_derivatives_is_drawn():
     assert thick == thin
 
 
-def test_the_length_of_a_link_runs_from_node_to_node():
+def test_the_length_of_a_link_runs_from_node_to_node_and_mass_centres_lie_beside_these():
     drawing = sound(LINKED)
     length, left, right = (
         item(drawing, *n).box for n in (("length", "link"), ("element", "body"), ("element", "end"))
     )
     assert length.x0 == pytest.approx((left.x0 + left.x1) / 2)
     assert length.x1 == pytest.approx((right.x0 + right.x1) / 2)
+    for name, sign in (("body", 1), ("end", -1)):
+        body = item(drawing, "element", name)
+        circle = body.strokes[-3].points  # before its cross
+        offset = sum(x for x, _ in circle) / len(circle) - (body.box.x0 + body.box.x1) / 2
+        assert offset * sign > 5, name
+    assert "$c$" in markups(drawing)
 
 
 def test_the_length_of_a_beam_is_a_dimension_and_stands_in_its_label_no_more():
     text = TAPERED.replace("elements.load", "elements.hub = { type = 'pin', at = 'a' }\nelements.load")
-    drawing = sound(text.replace('"ground"', '"a"') + 'I = "I_0"\nA = "A_0"\n')
+    drawing = sound(text.replace('"ground"', '"a"') + UNIFORM)
     length, arm, load = (item(drawing, *n).box for n in (("length", "arm"), *ARM_AND_LOAD))
     assert (length.x0, length.x1) == (pytest.approx(arm.x0), pytest.approx((load.x0 + load.x1) / 2))
     assert length.y0 > arm.y1
@@ -205,15 +206,15 @@ def test_parallel_beams_keep_their_lengths_in_their_labels():
     assert markups(drawing).count(r"$B,\,l$") == 2
 
 
-@pytest.mark.parametrize(("second", "arrows"), [('["q", "r"]', 1), ('["r", "q"]', 2)])
-def test_beams_in_line_share_one_coordinate_where_x_runs_on(second, arrows):
-    section = "E = 1, I = 1, rho = 1, A = 1, l = 1"
-    drawing = sound(
-        f'symflex = 1\n[elements]\na = {{ type = "beam", between = ["p", "q"], {section} }}\n'
-        f'b = {{ type = "beam", between = {second}, {section} }}\n'
-        '[inputs]\nF = { force = "p" }\n[outputs]\nY = "r"\n'
-    )
-    assert count(drawing, "axis", "x") == arrows
+def test_beams_in_line_share_one_coordinate_where_x_runs_on():
+    for second, arrows in (('["q", "r"]', 1), ('["r", "q"]', 2)):
+        section = "E = 1, I = 1, rho = 1, A = 1, l = 1"
+        drawing = sound(
+            f'symflex = 1\n[elements]\na = {{ type = "beam", between = ["p", "q"], {section} }}\n'
+            f'b = {{ type = "beam", between = {second}, {section} }}\n'
+            '[inputs]\nF = { force = "p" }\n[outputs]\nY = "r"\n'
+        )
+        assert count(drawing, "axis", "x") == arrows, (second, arrows)
 
 
 def test_what_hangs_where_a_beam_begins_leaves_room_for_its_coordinate():
@@ -228,28 +229,18 @@ def test_what_hangs_where_a_beam_begins_leaves_room_for_its_coordinate():
     assert axis.x0 == pytest.approx(beam.x0)
 
 
-@pytest.mark.parametrize("kind", ["pin", "slider", "fixed"])
-def test_a_support_is_called_what_its_latex_says(kind):
-    text = TAPERED + 'I = "I_0"\nA = "A_0"\n[elements.held]\ntype = "' + kind + '"\nat = "end"\n'
-    text = text.replace('"ground", "tip"', '"end", "tip"')
-    assert r"${\text{bearing}}$" in markups(sound(text + "latex = '\\text{bearing}'\n"))
-    assert not [t for i in sound(text).of_kind("label") if i.name == "held" for t in i.texts]
+def test_a_support_is_called_what_its_latex_says():
+    for kind in ("pin", "slider", "fixed"):
+        text = TAPERED + 'I = "I_0"\nA = "A_0"\n[elements.held]\ntype = "' + kind + '"\nat = "end"\n'
+        text = text.replace('"ground", "tip"', '"end", "tip"')
+        assert r"${\text{bearing}}$" in markups(sound(text + "latex = '\\text{bearing}'\n")), kind
+        assert not [t for i in sound(text).of_kind("label") if i.name == "held" for t in i.texts], kind
 
 
 def test_an_element_is_called_what_its_latex_says_besides_its_parameters():
     text = FREE.replace('m = "1 kg" }\nb', "m = \"1 kg\", latex = '\\text{motor}' }\nb")
     box = item(sound(text), "label", "a")
     assert [t.markup for t in box.texts] == [r"$1\,\mathrm{kg}$", r"${\text{motor}}$"]
-
-
-def test_a_mass_centre_lies_beyond_its_node_or_before_it():
-    drawing = sound(LINKED)
-    for name, sign in (("body", 1), ("end", -1)):
-        body = item(drawing, "element", name)
-        circle = body.strokes[-3].points  # before its cross
-        offset = sum(x for x, _ in circle) / len(circle) - (body.box.x0 + body.box.x1) / 2
-        assert offset * sign > 5
-    assert "$c$" in markups(drawing)
 
 
 def test_x_begins_at_the_first_node_of_a_beam():
@@ -261,15 +252,11 @@ def test_x_begins_at_the_first_node_of_a_beam():
         assert (axis.x0 if sign > 0 else axis.x1) == pytest.approx(start)
 
 
-@pytest.mark.parametrize(("text", "wheels"), [(FREE, 2), (FREE + "[drawing]\nrollers = false\n", 0)])
-def test_free_masses_stand_on_rollers_unless_the_specification_says_no(text, wheels):
-    assert len(sound(text).of_kind("ground")) == wheels
-
-
-def test_rollers_are_drawn_where_the_specification_wants_them():
-    text = f'{FREE}[elements.wall]\ntype = "damper"\nbetween = ["x", "ground"]\nb = "1 N*s/m"\n'
-    for rollers, grounds in (("", 1), ("[drawing]\nrollers = true\n", 3)):
-        assert len(sound(text + rollers).of_kind("ground")) == grounds
+def test_free_masses_stand_on_rollers_unless_the_specification_wants_it_otherwise():
+    held = f'{FREE}[elements.wall]\ntype = "damper"\nbetween = ["x", "ground"]\nb = "1 N*s/m"\n'
+    no, yes = "[drawing]\nrollers = false\n", "[drawing]\nrollers = true\n"
+    for text, grounds in ((FREE, 2), (FREE + no, 0), (held, 1), (held + yes, 3)):
+        assert len(sound(text).of_kind("ground")) == grounds, text
 
 
 def test_nodes_stand_in_the_order_that_the_specification_wants():
@@ -280,15 +267,10 @@ def test_nodes_stand_in_the_order_that_the_specification_wants():
 
 
 def test_a_transformer_is_drawn_with_the_symbol_that_the_specification_wants():
-    plain = item(sound(TURNING), "element", "pinion")
-    assert plain == item(sound(f'{TURNING}[drawing.symbols]\npinion = "screw"\n'), "element", "pinion")
-    for name in TRANSFORMER_SYMBOLS:
-        sound(f'{TURNING}[drawing.symbols]\npinion = "{name}"\n')
-    assert plain != item(sound(f'{TURNING}[drawing.symbols]\npinion = "rack"\n'), "element", "pinion")
-
-
-def test_every_symbol_that_a_specification_may_name_is_drawn():
     assert tuple(TRANSFORMER_SYMBOLS) == model_room.TRANSFORMER_SYMBOLS
+    chosen = f"{TURNING}[drawing.symbols]\npinion = "
+    drawn = {name: item(sound(f'{chosen}"{name}"\n'), "element", "pinion") for name in TRANSFORMER_SYMBOLS}
+    assert item(sound(TURNING), "element", "pinion") == drawn["screw"] != drawn["rack"]
 
 
 def test_values_of_members_and_fields_stand_once_below():

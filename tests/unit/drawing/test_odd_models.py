@@ -11,7 +11,6 @@ from symflex import pipeline
 from symflex.cli import run
 from symflex.drawing import drawing_of
 from symflex.errors import SpecError
-from tests.house.repository import one_in
 from tests.unit.drawing.geometry_checks import count, outside, overlaps, struck_texts, wrongly_counted
 
 LONG = "a" * 64
@@ -88,9 +87,7 @@ def labelled(latex):
 
 ODD = {
     "a star": joined_masses([(0, i) for i in range(1, 9)], 9),
-    "a tree": joined_masses([((i - 1) // 2, i) for i in range(1, 12)], 12),
     "a wheel": joined_masses([(0, i) for i in range(1, 7)] + [(i, i % 6 + 1) for i in range(1, 7)], 7),
-    "a ladder": joined_masses([(i, i + 2) for i in range(8)] + [(2 * i, 2 * i + 1) for i in range(5)], 10),
     "a ring of two": joined_masses([(0, 1), (1, 0)], 2),
     "all joined to all": joined_masses(list(combinations(range(6), 2)), 6),
     "no springs at all": joined_masses([], 5),
@@ -98,7 +95,6 @@ ODD = {
         "", " + ".join(f"u_{i}" for i in range(30)), "\n".join(f"u_{i} = {{}}" for i in range(30))
     ),
     "an algebraic loop": signals('a = "u - b"\nb = "2*a"', "b"),
-    "an algebraic loop without a solution": signals('a = "u + b"\nb = "a"', "b"),
     "a signal of itself": signals('a = "u - a"', "a"),
     "signals that lead nowhere": signals('a = "2*u"\nb = "3*u"', "u"),
     "twenty gains in a row": signals(
@@ -130,8 +126,6 @@ ODD = {
     "a millimetre and a kilometre": driven(
         frame("ground", "p", "1 mm", 0) + frame("p", "x", "1 km", 90), "x.x"
     ),
-    "a frame there and back": driven(frame("p", "x", "1 m", 0) + frame("x", "p", "1 m", 0), "x.x"),
-    "two members at an angle": driven(frame("ground", "p", "1 m", 0) + frame("p", "x", "1 m", 60), "x.x"),
     "two members clamped in one place": driven(
         frame("ground", "x", "1 m", 45)
         + frame("ground", "q", "1 m", 135)
@@ -144,18 +138,12 @@ ODD = {
     "twelve members at a node": driven(
         "".join(frame("x", f"p_{i}", "1 m", 30 * i) for i in range(12)), "x.x"
     ),
-    "no ground": chain(2),
-    "a ring": chain(5, closed=True),
-    "two hundred masses": chain(200),
     "two hundred masses in a ring": chain(200, closed=True),
-    "nine masses": chain(9),
     "two parts": chain(2) + 'Y = "y"\n[elements.alone]\ntype = "mass"\nat = "y"\nm = "3 kg"\n',
-    "parallel masses": chain(2) + '[elements.more]\ntype = "mass"\nat = "x_0"\nm = "3 kg"\n',
     "ten masses at a node": driven(many(10, 'type = "mass", at = "x", m = "{j} kg"')),
     "twelve branches at a node": driven(
         MASS + many(12, 'type = "spring", between = ["x", "y_{i}"], k = 1').replace("y_5", "ground")
     ),
-    "thirty springs to the ground": driven(many(30, 'type = "spring", between = ["x", "ground"], k = 1')),
     "long names": f"""
 [parameters]
 {LONG[1:]}b = "1 kg"
@@ -170,21 +158,15 @@ ODD = {
     "names that TeX has": driven(
         'frac = { type = "mass", at = "sqrt_x", m = 1 }\nbegin = { type = "fixed", at = "int_y" }\n', "sqrt_x"
     ),
-    "right to left": 'title = "\u05de\u05e1\u05d4"\ndoc = "\u202e"\n' + chain(1),
-    "combining characters": f'title = "a\u0301\u0302 x\u0338 \U0001f468\u200d\U0001f469"\n{driven(MASS)}',
     "a title of another language": f'title = "</title><script>$x^{{$ %&#"\n{driven(MASS)}',
     "a sentence as a label": labelled(r"\text{the front part of the carriage, upper side}"),
     "no elements": '[inputs]\nu = {}\n[outputs]\ny = "3*u"\n',
     "a motion of nothing": '[inputs]\nz = { displacement = "x" }\n[outputs]\nX = "x"\n',
     "a long formula": driven(MASS.replace("1", f'"{" + ".join(["m"] * 40)}"'), more="[parameters]\nm = 1\n"),
-    "a tower of fractions": driven(
-        MASS.replace("1", f'"{"m/(1 + " * 20}1{")" * 20}"'), more="[parameters]\nm = 1\n"
-    ),
     "forty digits": driven(MASS.replace("1", f'"1.{"234567890" * 4} kg"')),
     "many inputs at a node": driven(MASS, more='V = "s*x"\nA = "s^2*x"\n').replace(
         "[outputs]", 'G = { force = "x" }\nz = { displacement = "x" }\n[outputs]'
     ),
-    "twenty outputs at a node": driven(MASS, more="".join(f'Y_{i} = "s^{i}*x"\n' for i in range(1, 20))),
     "the difference of any two": driven(
         many(5, 'type = "spring", between = ["x_{i}", "x_{j}"], k = 1'),
         "x_0",
@@ -201,11 +183,6 @@ ODD = {
     "six motors on a shaft": circuit(
         many(6, 'type = "dc_motor", terminals = ["v", "w_{i}"], shaft = "r", k_t = 1'), "r"
     ),
-    "gears in a ring": circuit(
-        many(3, 'type = "transformer", from = "r_{i}", to = "r_{j}", ratio = 2').replace("r_3", "r_0")
-        + 'g = { type = "gyrator", from = "v", to = "r_0", ratio = 2 }\n',
-        "r_0",
-    ),
     "a gear to the ground": circuit(
         'g = { type = "transformer", from = "r", to = "ground", ratio = 2 }\n'
         'J = { type = "inertia", at = "r", J = 1 }\n'
@@ -216,6 +193,16 @@ ODD = {
         "w'''''''''''' + s^2*w = 0",
     ),
 }
+VALUED = (
+    "all joined to all",
+    "thirty points of a beam",
+    "twelve members at a node",
+    "long names",
+    "forty digits",
+    "a bridge",
+    "twelve conditions",
+)
+"""Those that have many values, or long ones."""
 REFUSED = {
     "empty": ("SF214", ""),
     "only outputs": ("SF214", '[inputs]\n[outputs]\nX = "x"\n'),
@@ -250,22 +237,33 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("values", [False, True])
-@pytest.mark.parametrize("name", one_in(3, ODD))
-def test_odd_models_are_drawn(name, values):
-    model = pipeline.loads(f"symflex = 1\n{ODD[name]}")
+def wrong(text, values):
+    """Say what is wrong with the drawing of a model."""
+    model = pipeline.loads(f"symflex = 1\n{text}")
     drawing = drawing_of(model, values=values)
-    assert (overlaps(drawing), struck_texts(drawing), outside(drawing)) == ([], [], [])
-    assert wrongly_counted(model, drawing) == []
+    said = overlaps(drawing), struck_texts(drawing), outside(drawing), wrongly_counted(model, drawing)
+    return [one for one in said if one]
 
 
-@pytest.mark.parametrize("name", REFUSED)
-def test_broken_models_are_refused_with_a_sentence_and_its_place(name, tmp_path, capsys):
-    code, text = REFUSED[name]
-    (tmp_path / "odd.toml").write_text(f"symflex = 1\n{text}", "utf-8")
-    assert run(["draw", str(tmp_path / "odd.toml"), "-o", str(tmp_path / "odd.svg")]) == SpecError.exit_code
-    assert re.match(rf".*odd\.toml:\d+:\d+: error\[{code}\]: \S", capsys.readouterr().err)
-    assert not (tmp_path / "odd.svg").exists()
+@pytest.mark.parametrize("half", [0, 1])
+def test_odd_models_are_drawn(half):
+    found = {name: wrong(ODD[name], values=False) for name in [*ODD][half::2]}
+    assert {name: said for name, said in found.items() if said} == {}
+
+
+def test_odd_models_are_drawn_with_values():
+    found = {name: wrong(ODD[name], values=True) for name in VALUED}
+    assert {name: said for name, said in found.items() if said} == {}
+
+
+def test_broken_models_are_refused_with_a_sentence_and_its_place(tmp_path, capsys):
+    for name, (code, text) in REFUSED.items():
+        (tmp_path / "odd.toml").write_text(f"symflex = 1\n{text}", "utf-8")
+        assert (
+            run(["draw", str(tmp_path / "odd.toml"), "-o", str(tmp_path / "odd.svg")]) == SpecError.exit_code
+        ), name
+        assert re.match(rf".*odd\.toml:\d+:\d+: error\[{code}\]: \S", capsys.readouterr().err), name
+        assert not (tmp_path / "odd.svg").exists(), name
 
 
 def test_of_a_long_chain_the_ends_and_the_number_are_drawn():
