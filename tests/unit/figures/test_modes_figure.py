@@ -44,14 +44,11 @@ def test_there_is_a_row_per_mode_with_its_frequency_and_damping():
     assert titles == [r"$11.00$ Hz, $\zeta = 0.0149$", r"$38.01$ Hz, $\zeta = 0.0149$"]
 
 
-def test_without_a_number_the_model_s_analysis_decides():
+def test_hidden_modes_are_drawn_in_their_place_and_as_many_as_the_analysis_says():
     model = pipeline.load(CLASSICS / "clamped_clamped.toml")
+    assert model.analysis.modes == 3
     (bound,) = pipeline.derive_bound(model, model.transfer_functions[:1])
-    assert len(draw("modes", [bound.source], [bound]).axes) == 3
-
-
-def test_hidden_modes_are_drawn_in_their_place():
-    titles = [a.get_title(loc="left") for a in drawn(pipeline.load(CLASSICS / "clamped_clamped.toml")).axes]
+    titles = [axes.get_title(loc="left") for axes in draw("modes", [bound.source], [bound]).axes]
     assert titles == ["$51.88$ Hz", "$143.0$ Hz", "$280.4$ Hz"]
 
 
@@ -102,19 +99,42 @@ def test_nodes_with_inertia_at_the_ends_are_marked():
     assert [tuple(map(float, mark.get_xydata()[0])) for mark in marks] == [pytest.approx((0, 1))]
 
 
-@pytest.mark.slow
-def test_what_lags_is_drawn_apart_and_explained():
-    figure = drawn(pipeline.load(EPPINGER / "robot_axis.toml"), modes=2)
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["in phase", "in quadrature"]
-    assert not drawn(pipeline.load(EPPINGER / "six_mass.toml")).legends
-
-
-@pytest.mark.slow
 def test_a_link_driven_by_a_motor_has_a_panel_each():
-    run, stems = panels(pipeline.load(EPPINGER / "robot_axis.toml"))
+    model = model_of(
+        'rotor = { type = "inertia", at = "shaft", J = "1 kg*m^2" }\n'
+        'screw = { type = "transformer", from = "shaft", to = "x_act", ratio = "1 m/rad" }\n'
+        'slide = { type = "mass", at = "x_act", m = "1 kg" }\n'
+        f'link = {{ type = "rod", between = ["x_act", "x_tip"], {BAR}, l = "1 m" }}\n'
+        'tool = { type = "mass", at = "x_tip", m = "1 kg" }',
+        "x_tip",
+    )
+    run, stems = panels(model)
     assert [segment.name for segment in run.segments] == ["link"]
     assert [node for node, _ in run.loaded] == ["x_act", "x_tip"]
     assert stems == Stems(("shaft",), "rad")
+
+
+DAMPED = """
+m = { type = "mass", at = "x", m = "1 kg" }
+k = { type = "spring", between = ["x", "ground"], k = "1 N/m" }
+b = { type = "damper", between = ["x", "ground"], b = "3 N*s/m" }
+"""
+COUPLED = """
+n = { type = "mass", at = "y", m = "1 kg" }
+c = { type = "spring", between = ["x", "y"], k = "1 N/m" }
+"""
+
+
+def test_what_lags_is_drawn_apart_and_explained():
+    figure = drawn(model_of(DAMPED.replace("3 N", "0.5 N") + COUPLED, "y"), modes=2)
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["in phase", "in quadrature"]
+    assert not drawn(pipeline.load(EPPINGER / "six_mass.toml"), modes=2).legends
+
+
+def test_a_real_pole_is_named_by_its_place():
+    # s^2 + 3 s + 1 = 0
+    (bound,) = pipeline.derive_bound(model := model_of(DAMPED), model.transfer_functions[:1])
+    assert heading(lowest_modes(bound, 1)[0][0].shape) == "$s = -0.3820$ rad/s"
 
 
 def test_what_never_moves_is_left_out():
@@ -205,22 +225,12 @@ def test_a_model_without_modes_has_nothing_to_draw():
         drawn(model_of('a = { type = "mass", at = "x", m = "1 kg" }'))
 
 
-@pytest.mark.slow
-def test_a_real_pole_is_named_by_its_place():
-    model = pipeline.load(EPPINGER / "robot_axis.toml")
-    (bound,) = pipeline.derive_bound(model, model.transfer_functions[:1])
-    assert heading(lowest_modes(bound, 1)[0][0].shape) == "$s = -51.67$ rad/s"
-
-
-@pytest.mark.parametrize(
-    ("value", "label"),
-    [
+def test_numbers_keep_four_digits():
+    for value, label in (
         (0, "0"),
         (-51.6712, "-51.67"),
         (99999.0, "99999"),
         (3e7, r"3.000\cdot 10^{7}"),
         (2.5e-8, r"2.500\cdot 10^{-8}"),
-    ],
-)
-def test_numbers_keep_four_digits(value, label):
-    assert label_of_value(value, 4) == label
+    ):
+        assert label_of_value(value, 4) == label, (value, label)

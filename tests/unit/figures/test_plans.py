@@ -60,9 +60,9 @@ def test_the_largest_displacement_of_a_frame_is_that_along_x_or_y():
 
 
 def test_along_a_member_the_shape_is_given_along_the_axes_of_the_plane():
-    _, (sway, _) = shapes(PORTAL)
-    left = sway.along("left")
+    _, (bending,) = shapes(member("left", "ground", "p", 90) + member("arm", "p", "q"), 1)
+    left = bending.along("left")
     assert left.states == ("x", "y", "theta", "f_x", "f_y", "tau")
     end = left.state_at_share(1)
-    assert end[0].overlaps(sway.motion("p.x").value)
-    assert end[1].overlaps(sway.motion("p.y").value)
+    assert end[0].overlaps(bending.motion("p.x").value)
+    assert end[1].overlaps(bending.motion("p.y").value)
