@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import runpy
 from decimal import Decimal
 from fractions import Fraction
 
@@ -388,9 +389,9 @@ def test_the_zero_transfer_function_has_no_poles_and_hides_all_modes(nothing, co
     )
 
 
-def test_the_exported_numpy_module_agrees(model):
-    space = {}
-    exec(compile(model.export_numpy(), "exported", "exec"), space)  # noqa: S102
+def test_the_exported_numpy_module_agrees(model, tmp_path):
+    (tmp_path / "exported.py").write_text(model.export_numpy())
+    space = runpy.run_path(str(tmp_path / "exported.py"))
     s = 1j * np.geomspace(0.1, 1e3, 20)
     np.testing.assert_allclose(space["X_act_over_F"](s), receptance(s), rtol=1e-13)
 

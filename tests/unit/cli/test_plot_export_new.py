@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import runpy
 import tomllib
 from importlib.resources import files
 
@@ -128,8 +129,7 @@ def test_an_exported_module_computes_the_receptance(shell):
         shell("export", "x.toml", "--to", "numpy", "--tf", "X/F", "-o", "x_over_f.py").err
         == "wrote x_over_f.py\n"
     )
-    space = {}
-    exec(compile((shell.folder / "x_over_f.py").read_text(), "x_over_f.py", "exec"), space)  # noqa: S102
+    space = runpy.run_path(str(shell.folder / "x_over_f.py"))
     # 1/(m s^2 + k) at s = j, with m = 2 and k = 18
     assert space["X_over_F"](1j) == pytest.approx(1 / 16)
 
@@ -157,8 +157,7 @@ def test_the_name_of_a_file_that_belongs_beside_is_refused(shell):
 
 def test_state_equations_are_written_and_run(shell):
     assert shell("export", "x.toml", "--to", "state-space", "-o", "states.py").err == "wrote states.py\n"
-    space = {}
-    exec(compile((shell.folder / "states.py").read_text(), "states.py", "exec"), space)  # noqa: S102
+    space = runpy.run_path(str(shell.folder / "states.py"))
     a, b, c, _ = space["state_space"]()
     # m x'' + k x = F with m = 2 and k = 18
     assert (a.tolist(), b.tolist()) == ([[0, 1], [-9, 0]], [[0], [0.5]])
