@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-import pytest
-
 from symflex.algebra import Factored, Ring
 from symflex.algebra.propagators import length_base
 
@@ -20,9 +18,8 @@ def recombined(found, i):
     return total
 
 
-@pytest.mark.parametrize(
-    "lengths",
-    [
+def test_every_length_is_the_combination_its_coordinates_say():
+    for lengths in [
         [L],
         [L, X],
         [L, X, L - X],
@@ -34,24 +31,25 @@ def recombined(found, i):
         [L / D / 2, X / D**2 * Fraction(5, 3), L / D / 3],
         [L * 5, L * 3, X],
         [L - X, X - D, L - D],
-    ],
-)
-def test_every_length_is_the_combination_its_coordinates_say(lengths):
-    found = length_base(lengths)
-    for i, length in enumerate(lengths):
-        assert (recombined(found, i) - length).is_zero
+    ]:
+        found = length_base(lengths)
+        for i, length in enumerate(lengths):
+            assert (recombined(found, i) - length).is_zero, lengths
 
 
-def test_halves_and_thirds_need_a_sixth():
-    found = length_base([L / 3, L / 2])
-    assert [str(b) for b in found.base] == ["1/6*l"]
-    assert sorted(found.coordinates) == [(2,), (3,)]
-
-
-def test_quotients_that_no_given_length_divides_have_a_base_of_their_own():
-    found = length_base([L / D / 2, L / D / 3, L / D])
-    assert [str(b) for b in found.base] == ["1/6*l*d^-1"]
-    assert found.coordinates == ((3,), (2,), (6,))
+def test_a_base_is_as_short_as_it_can_be():
+    for lengths, base in [
+        ([L / 3, L / 2], ["1/6*l"]),
+        # Quotients that no given length divides have a base of their own.
+        ([L / D / 2, L / D / 3, L / D], ["1/6*l*d^-1"]),
+        # Given lengths are kept when they suffice.
+        ([L, X, L - X], ["l", "x"]),
+    ]:
+        assert [str(b) for b in length_base(lengths).base] == base
+    assert sorted(length_base([L / 3, L / 2]).coordinates) == [(2,), (3,)]
+    assert length_base([L / D / 2, L / D / 3, L / D]).coordinates == ((3,), (2,), (6,))
+    # It is independent.
+    assert len(length_base([L - X, X - D, L - D]).base) == 2
 
 
 def test_a_base_is_made_where_too_many_subsets_would_have_to_be_tried(monkeypatch):
@@ -63,28 +61,13 @@ def test_a_base_is_made_where_too_many_subsets_would_have_to_be_tried(monkeypatc
     assert len(found.base) == 2
 
 
-def test_where_some_coordinate_is_negative_in_every_base_the_first_serves():
-    found = length_base([L - X, X - L], positive=True)
-    assert [str(b) for b in found.base] == ["(l - x)"]
-    assert found.coordinates == ((1,), (-1,))
-
-
-def test_a_later_base_is_taken_where_the_first_has_negative_coordinates():
-    lengths = [L, X, L - X, X * 2 - L]
-    assert [str(b) for b in length_base(lengths).base] == ["l", "x"]
-    # l = 2 (l - x) + (2 x - l)
-    assert length_base(lengths, positive=True).coordinates[0] == (2, 1)
-
-
-def test_given_lengths_are_kept_when_they_suffice():
-    found = length_base([L, X, L - X])
-    assert [str(b) for b in found.base] == ["l", "x"]
-
-
-def test_no_coordinate_is_negative_when_that_is_asked_for():
+def test_no_coordinate_is_negative_when_that_is_asked_for_and_can_be():
     found = length_base([L, X, L - X], positive=True)
     assert all(n >= 0 for c in found.coordinates for n in c)
-
-
-def test_the_base_is_independent():
-    assert len(length_base([L - X, X - D, L - D]).base) == 2
+    # A later base is taken where the first has negative coordinates: l = 2 (l - x) + (2 x - l).
+    lengths = [L, X, L - X, X * 2 - L]
+    assert [str(b) for b in length_base(lengths).base] == ["l", "x"]
+    assert length_base(lengths, positive=True).coordinates[0] == (2, 1)
+    # Where some are negative in every base, the first serves.
+    found = length_base([L - X, X - L], positive=True)
+    assert ([str(b) for b in found.base], found.coordinates) == (["(l - x)"], ((1,), (-1,)))

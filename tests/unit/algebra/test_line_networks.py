@@ -19,21 +19,15 @@ def rod_network(length):
     return entries, (3, 3, 3, lumped, (rods,))
 
 
-def test_a_rod_has_its_tangent():
+def test_a_rod_has_its_tangent_to_the_digits_that_its_length_has_and_decays_without_overflow():
     # u'' = -1.5 u, u(0) = 0, 2 u'(l) = 1 (Graff 1975, section 2.1).
     entries, table = rod_network(0.7)
     wave = np.sqrt(1.5)
     assert network_value(entries, table, 0, 0)[0] == pytest.approx(np.tan(wave * 0.7) / (2 * wave), rel=1e-14)
-
-
-def test_a_rod_of_a_thousand_wavelengths_keeps_the_digits_that_its_length_has():
     entries, table = rod_network(5e3)
     wave = np.sqrt(1.5)
     expected = np.tan(wave * 5e3) / (2 * wave)
     assert network_value(entries, table, 0, 0)[0] == pytest.approx(expected, rel=1e-10)
-
-
-def test_a_decaying_field_does_not_overflow():
     entries, table = rod_network(1e5)
     entries[3] = np.array([3.0 + 0j])
     assert network_value(entries, table, 0, 0)[0] == pytest.approx(1 / (2 * np.sqrt(1.5)), rel=1e-14)

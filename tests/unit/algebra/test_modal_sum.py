@@ -112,10 +112,13 @@ def test_a_wronskian_is_right_where_its_terms_are_far_larger():
     assert mp.almosteq(summed(sums, polynomial, long), expected, 1e-25)
 
 
-def test_a_sum_is_made_once():
+def test_a_sum_is_made_once_and_told_from_a_polynomial_without_functions():
     found, sums = sums_of((L,))
     polynomial = wronskian(kernels(found, 0))
     assert sums.of(polynomial) is sums.of(polynomial)
+    found, sums = sums_of((L,))
+    assert sums.has_functions(kernels(found, 0)[2])
+    assert not sums.has_functions(found.kernel_ring.generator("s"))
 
 
 def test_too_many_products_are_refused(monkeypatch):
@@ -123,9 +126,3 @@ def test_too_many_products_are_refused(monkeypatch):
     found, sums = sums_of((L,))
     with pytest.raises(BudgetError, match="more than 9 products of exponentials"):
         sums.of(kernels(found, 0)[0] ** 2)
-
-
-def test_a_polynomial_without_functions_is_told_apart():
-    found, sums = sums_of((L,))
-    assert sums.has_functions(kernels(found, 0)[2])
-    assert not sums.has_functions(found.kernel_ring.generator("s"))

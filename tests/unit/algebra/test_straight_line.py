@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import product
 from random import Random
 
 import pytest
@@ -50,25 +51,25 @@ def made(bench, kind, given, n):
     return None
 
 
-@pytest.mark.parametrize("seed", range(15))
-def test_whatever_is_done_steps_have_the_values_of_fractions(seed):
-    random, bench = Random(seed), Workbench(NAMES)
-    steps = [(bench.generator(i), GIVEN[name]) for i, name in enumerate(NAMES)]
-    steps += [(bench.number(x), Fraction(x)) for x in (0, 1, -1, 3, Fraction(-2, 7))]
-    for _ in range(40):
-        kind = random.choice(("add", "pair", "less", "times", "over", "minus", "power"))
-        given, n = [random.choice(steps) for _ in range(3)], random.randrange(4)
-        found = made(bench, kind, given, n)
-        if found is None or found[1].denominator.bit_length() > 3000:
-            continue
-        count = len(bench.kinds)
-        assert made(bench, kind, given, n) == found
-        assert len(bench.kinds) == count
-        step, exact = found
-        assert value(bench.finished(), step, GIVEN) == exact
-        assert (step == ZERO) is (exact == 0)
-        steps.append(found)
-    assert_consistent(bench)
+def test_whatever_is_done_steps_have_the_values_of_fractions():
+    for seed in range(15):
+        random, bench = Random(seed), Workbench(NAMES)
+        steps = [(bench.generator(i), GIVEN[name]) for i, name in enumerate(NAMES)]
+        steps += [(bench.number(x), Fraction(x)) for x in (0, 1, -1, 3, Fraction(-2, 7))]
+        for _ in range(40):
+            kind = random.choice(("add", "pair", "less", "times", "over", "minus", "power"))
+            given, n = [random.choice(steps) for _ in range(3)], random.randrange(4)
+            found = made(bench, kind, given, n)
+            if found is None or found[1].denominator.bit_length() > 3000:
+                continue
+            count = len(bench.kinds)
+            assert made(bench, kind, given, n) == found, seed
+            assert len(bench.kinds) == count, seed
+            step, exact = found
+            assert value(bench.finished(), step, GIVEN) == exact, seed
+            assert (step == ZERO) is (exact == 0), seed
+            steps.append(found)
+        assert_consistent(bench)
 
 
 def test_the_order_of_terms_and_factors_does_not_matter():
@@ -120,31 +121,26 @@ RING = Ring(NAMES)
 S, K, B = (RING.generator(name) for name in NAMES)
 
 
-@pytest.mark.parametrize(
-    "polynomial",
-    [S + K, 3 * S**2 * K - B, S**3 * B**2 - 2 * K + 7, K, -S * K, 0 * S - 5, S - S + B * 4],
-    ids=str,
-)
-def test_polynomials_are_made_of_steps_with_their_value(polynomial):
-    bench = Workbench(NAMES)
-    step = bench.polynomial(polynomial)
-    assert bench.polynomial(polynomial) == step
-    assert value(bench.finished(), step, GIVEN) == at(polynomial, tuple(GIVEN.values()))
-    assert (bench.roles.get(step) == "w") is (len(polynomial) > 1)
-    assert_consistent(bench)
-
-
-@pytest.mark.parametrize("sign", [1, -1])
-@pytest.mark.parametrize("unit", [Fraction(1), Fraction(-1), Fraction(5, 3), Fraction(-2, 7)])
-@pytest.mark.parametrize("exponents", [(1,), (-1,), (2, -3), (1, 1, -1), ()])
-def test_factored_functions_are_made_of_steps_with_their_value(unit, exponents, sign):
-    bench = Workbench(NAMES)
-    factored, exact = Factored.number(RING, unit), unit * sign
-    for polynomial, exponent in zip((B * S + K, K - 3 * S, S), exponents, strict=False):
-        factored = factored * Factored.polynomial(RING, polynomial) ** exponent
-        exact *= at(polynomial, tuple(GIVEN.values())) ** exponent
-    assert value(bench.finished(), bench.factored(factored, sign), GIVEN) == exact
-    assert_consistent(bench)
+def test_polynomials_and_factored_functions_are_made_of_steps_with_their_value():
+    for polynomial in [S + K, 3 * S**2 * K - B, S**3 * B**2 - 2 * K + 7, K, -S * K, 0 * S - 5, S - S + B * 4]:
+        bench = Workbench(NAMES)
+        step = bench.polynomial(polynomial)
+        assert bench.polynomial(polynomial) == step
+        assert value(bench.finished(), step, GIVEN) == at(polynomial, tuple(GIVEN.values()))
+        assert (bench.roles.get(step) == "w") is (len(polynomial) > 1)
+        assert_consistent(bench)
+    for sign, unit, exponents in product(
+        [1, -1],
+        [Fraction(1), Fraction(-1), Fraction(5, 3), Fraction(-2, 7)],
+        [(1,), (-1,), (2, -3), (1, 1, -1), ()],
+    ):
+        bench = Workbench(NAMES)
+        factored, exact = Factored.number(RING, unit), unit * sign
+        for polynomial, exponent in zip((B * S + K, K - 3 * S, S), exponents, strict=False):
+            factored = factored * Factored.polynomial(RING, polynomial) ** exponent
+            exact *= at(polynomial, tuple(GIVEN.values())) ** exponent
+        assert value(bench.finished(), bench.factored(factored, sign), GIVEN) == exact, (unit, exponents)
+        assert_consistent(bench)
 
 
 def test_a_definition_stands_for_its_value_under_its_name():
