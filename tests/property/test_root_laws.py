@@ -10,13 +10,11 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
-from mpmath import mp, mpc, mpf
 
 import symflex
 from symflex.errors import BudgetError
 from symflex.roots.root import exact_fraction
-from tests.independent.boundary_value import Problem, bending
-from tests.independent.winding import Frame, Member, OnTheContourError, count_inside, determinant
+from tests.independent.winding import Frame, Member
 
 DIGITS = 20
 SUPPORTS = {"free": (), "pin": ("y",), "slider": ("theta",), "fixed": ("y", "theta")}
@@ -132,8 +130,8 @@ def driven_point(elements: str, node: str) -> str:
 
 
 @st.composite
-def beams(draw, most=2):
-    number = draw(whole(1, most))
+def beams(draw):
+    number = draw(whole(1, 3))
     joints = number + 1
 
     def sometimes():
@@ -216,23 +214,16 @@ def alternate(poles, zeros):
 
 @pytest.mark.slow
 @given(beams())
-@quiet(6)
+@quiet(5)
 def test_a_driving_point_of_beams_has_as_many_poles_and_zeros_as_wittrick_and_williams_count(model):
     check_beams(model, 60.0)
-
-
-@pytest.mark.slow
-@given(beams(most=3))
-@quiet(5)
-def test_driving_points_of_many_beams_have_as_many_poles_and_zeros_as_are_counted(model):
-    check_beams(model, 400.0)
 
 
 # ------------------------------------------------------------------------------------------------- chains
 
 
 @st.composite
-def chains(draw, most=8):
+def chains(draw, most=10):
     """Draw masses and springs in tenths: spring k before mass k, the last after all masses or missing."""
     count = draw(whole(1, most))
     masses = [draw(tenths()) for _ in range(count)]
@@ -273,70 +264,6 @@ def check_chain(drawn):
 
 
 @given(chains())
-@quiet(30)
+@quiet(12)
 def test_a_driving_point_of_a_chain_has_as_many_poles_and_zeros_as_are_counted(drawn):
     check_chain(drawn)
-
-
-@pytest.mark.slow
-@given(chains(most=30))
-@quiet(80)
-def test_driving_points_of_long_chains_have_as_many_poles_and_zeros_as_are_counted(drawn):
-    check_chain(drawn)
-
-
-# --------------------------------------------------------------------------------------------- with losses
-
-
-@st.composite
-def damped(draw):
-    """Draw a Kelvin-Voigt cantilever with mass and dashpot at its tip, and a rectangle, in tenths."""
-    values = {name: draw(tenths(2, 30)) for name in ("m", "b")}
-    values["eta"] = draw(tenths(1, 9))  # thousandths of a second, tenfold
-    low = draw(whole(-1200, -10)) / 7
-    floor = draw(whole(-300, 800)) / 7
-    height = draw(whole(70, 2000)) / 7
-    return values, complex(low, floor), complex(draw(st.sampled_from([-0.003, 1.0])), floor + height)
-
-
-def check_damped(drawn):
-    values, low, high = drawn
-    m, b, eta = mpf(values["m"]) / 10, mpf(values["b"]) / 10, mpf(values["eta"]) / 10000
-    parameters = {name: mpf(1) for name in ("E", "I", "rho", "A")} | {"eta": eta}
-
-    def characteristic(load):
-        def at(s):
-            problem = Problem()
-            line = problem.line(bending(parameters, mpc(s)))
-            w, _, moment, shear = line.at(mpf(1))
-            problem.require(
-                line.start[0], line.start[1], moment, (m * s**2 + b * s) * w - shear if load else w
-            )
-            return determinant(problem)
-
-        return at
-
-    elements = (
-        f'bar = {{ type = "beam", between = ["ground", "x"], E = "1 Pa", I = "1 m^4", rho = "1 kg/m^3", '
-        f'A = "1 m^2", l = "1 m", eta = "0.000{values["eta"]} s" }}\n'
-        f'tip = {{ type = "mass", at = "x", m = "{tenth(values["m"])} kg" }}\n'
-        f'loss = {{ type = "damper", between = ["x", "ground"], b = "{tenth(values["b"])} N*s/m" }}\n'
-    )
-    bound = symflex.loads(driven_point(elements, "x")).transfer_function("X", "F").bind()
-    with mp.workdps(15):
-        try:
-            poles = count_inside(characteristic(load=True), low, high)
-            zeros = count_inside(characteristic(load=False), low, high)
-        except OnTheContourError:
-            assume(False)
-    found = bound.pole_zero_map(digits=DIGITS, region=(low.real, high.real, low.imag, high.imag))
-    hidden = sum(h.root.multiplicity for h in found.hidden)
-    assert sum(root.multiplicity for root in found.poles) + hidden == poles
-    assert sum(root.multiplicity for root in found.zeros) + hidden == zeros
-
-
-@pytest.mark.slow
-@given(damped())
-@quiet(4)
-def test_damped_beams_have_as_many_poles_and_zeros_as_their_determinants_turn(drawn):
-    check_damped(drawn)
