@@ -9,8 +9,7 @@ import pytest
 
 from symflex.budget import Budget
 from symflex.errors import BudgetError, ModelError
-from symflex.roots import Band, Modes
-from symflex.roots.engines import SEARCHES
+from symflex.roots import Modes
 from symflex.roots.functions.simplified import _value, without_lengths_of_zero
 from symflex.roots.locate import locate
 from tests.unit.roots.distributed_models import DELAY_LOOP, ROD, bound
@@ -25,21 +24,18 @@ def places(roots):
     return sorted((round(float(r.re), 9), round(float(r.im), 9), r.multiplicity) for r in roots)
 
 
-@pytest.mark.parametrize(
-    ("formula", "poles", "zeros"),
-    [
+def test_roots_are_those_of_the_formula():
+    for formula, poles, zeros in [
         ("u*(s + 3)/((s + 1)*(s + 2)^2)", [(-2, 0, 2), (-1, 0, 1)], [(-3, 0, 1)]),
         # f is 1 Hz, 2 pi rad/s
         ("u*s^2/((s + f)*(s + 2))", [(-round(2 * pi, 9), 0, 1), (-2, 0, 1)], [(0, 0, 2)]),
         ("u/(s^2 + 2)", [(0, -round(sqrt(2), 9), 1), (0, round(sqrt(2), 9), 1)], []),
         ("7*u", [], []),
-    ],
-)
-def test_roots_are_those_of_the_formula(formula, poles, zeros):
-    found = locate(of(formula, signals='parameters.f = "1 Hz"\n' if "f" in formula else ""), digits=12)
-    assert places(found.poles) == poles
-    assert places(found.zeros) == zeros
-    assert (found.tf, found.certificate.certified, found.digits) == ("y/u", True, 12)
+    ]:
+        found = locate(of(formula, signals='parameters.f = "1 Hz"\n' if "f" in formula else ""), digits=12)
+        assert places(found.poles) == poles
+        assert places(found.zeros) == zeros, (formula, poles)
+        assert (found.tf, found.certificate.certified, found.digits) == ("y/u", True, 12), (formula, poles)
 
 
 def test_what_cancels_is_hidden_with_its_multiplicity():
@@ -71,17 +67,8 @@ def test_an_engine_heeds_its_budget():
         poles_by("guess-and-prove", source, Modes(3), 15, Budget(seconds=1, clock=clock))
 
 
-@pytest.mark.parametrize("engine", SEARCHES)
-def test_an_engine_returns_what_lies_in_a_band(engine):
-    # x tan x = 2: 1.08, 3.64, 6.58 rad/s
-    source = bound(ROD)
-    found = poles_by(engine, source, Band(0, 1), 15)
-    assert [round(abs(float(r.im)), 2) for r in found] == [1.08, 1.08, 3.64, 3.64]
-
-
-@pytest.mark.parametrize(
-    ("function", "order", "value"),
-    [
+def test_kernels_of_length_zero_are_numbers():
+    for function, order, value in [
         ("cosh", 0, 1),
         ("cos", 0, 1),
         ("exp", 0, 1),
@@ -92,11 +79,9 @@ def test_an_engine_returns_what_lies_in_a_band(engine):
         ("fundamental", 2, 0),
         ("fundamental", 3, 1),
         ("fundamental", 5, 0),
-    ],
-)
-def test_kernels_of_length_zero_are_numbers(function, order, value):
-    kernel = SimpleNamespace(function=function, order=order, dispersion=SimpleNamespace(order=4))
-    assert _value(kernel) == value
+    ]:
+        kernel = SimpleNamespace(function=function, order=order, dispersion=SimpleNamespace(order=4))
+        assert _value(kernel) == value, (function, order)
 
 
 WITHOUT_LENGTH = """
@@ -108,13 +93,10 @@ outputs.y = "{formula}"
 """
 
 
-def test_a_delay_of_no_time_is_none():
+def test_a_delay_of_no_time_is_none_and_a_denominator_that_vanishes_without_it_refused():
     found = locate(bound(WITHOUT_LENGTH.format(formula="u*(s + 2*D)/((s + 3*D)*(s + 5))")))
     assert places(found.poles) == [(-5, 0, 1), (-3, 0, 1)]
     assert places(found.zeros) == [(-2, 0, 1)]
-
-
-def test_a_denominator_that_vanishes_without_a_length_is_refused():
     with pytest.raises(ModelError, match="SF231") as failed:
         without_lengths_of_zero(bound(WITHOUT_LENGTH.format(formula="u/(1 - D)")))
     (diagnostic,) = failed.value.diagnostics
@@ -132,14 +114,11 @@ signals.x = "u/(s - 3)^2"
 """
 
 
-def test_what_cancels_stays_hidden_where_a_length_is_zero():
+def test_what_cancels_stays_hidden_where_one_or_all_lengths_are_zero():
     source = bound(HIDING + 'outputs.y = "(s - 3)^2*x*(s + 2*D)/((s + 3*D)*(s + 5))"')
     found = locate(source)
     assert [(float(h.root.re), h.root.multiplicity) for h in found.hidden] == [(3, 2)]
     assert places(found.poles) == [(-5, 0, 1), (-3, 0, 1)]
-
-
-def test_what_cancels_stays_hidden_where_only_one_of_two_lengths_is_zero():
     source = without_lengths_of_zero(bound(HIDING + 'outputs.y = "(s - 3)^2*x/((s + 3*D)*(s + 5*L))"'))
     assert source.is_distributed
     ((hidden, times),) = [(h.polynomial, h.multiplicity) for h in source.hidden]

@@ -15,7 +15,6 @@ from symflex.roots import (
     Mode,
     Modes,
     PolynomialInS,
-    Rectangle,
     RootProblem,
     find_pole_zero_map,
     pole_zero_map,
@@ -29,47 +28,29 @@ POLES = problem(0, 0, 9, 0, 1)  # s^2 (s^2 + 9)
 ZEROS = problem(4, 0, 1)
 
 
-def test_json_has_the_keys_of_the_schema():
-    data = find_pole_zero_map("x_tip/F", POLES, ZEROS).to_json_dict()
+def test_json_has_the_keys_of_the_schema_and_survives_a_round_trip():
+    data = find_pole_zero_map("x_tip/F", POLES, ZEROS, Band(Fraction(0), Fraction(1)), 5).to_json_dict()
     assert {"schema", "tf", "region", "certified", "poles", "zeros", "hidden"} <= set(data)
     assert (data["schema"], data["tf"], data["certified"]) == ("symflex.roots/1", "x_tip/F", True)
-
-
-def test_json_of_a_root_has_the_keys_of_the_schema():
-    (root, *_) = find_pole_zero_map("x/F", POLES, ZEROS).to_json_dict()["zeros"]
-    keys = {"re", "im", "radius", "multiplicity", "frequency_hz", "damping_ratio"}
-    assert keys <= set(root)
-    assert [type(root[key]) for key in ("re", "im", "radius")] == [str, str, str]
-
-
-def test_json_survives_a_round_trip():
-    data = find_pole_zero_map("x/F", POLES, ZEROS, Band(Fraction(0), Fraction(1))).to_json_dict()
+    (zero, *_) = data["zeros"]
+    assert {"re", "im", "radius", "multiplicity", "frequency_hz", "damping_ratio"} <= set(zero)
+    assert [type(zero[key]) for key in ("re", "im", "radius")] == [str, str, str]
     assert json.loads(json.dumps(data, allow_nan=False)) == data
+    # Both members of a pair are listed; the rigid body has no damping ratio.
+    assert [(p["im"], p["multiplicity"], p["damping_ratio"]) for p in data["poles"]] == [
+        ("0", 2, None),
+        ("3.0000", 1, 0.0),
+        ("-3.0000", 1, 0.0),
+    ]
 
 
-def test_both_members_of_a_pair_are_listed():
-    poles = find_pole_zero_map("x/F", POLES, ZEROS, digits=5).to_json_dict()["poles"]
-    assert [(p["im"], p["multiplicity"]) for p in poles] == [("0", 2), ("3.0000", 1), ("-3.0000", 1)]
-
-
-def test_the_rigid_body_has_no_damping_ratio():
-    poles = find_pole_zero_map("x/F", POLES, ZEROS).to_json_dict()["poles"]
-    assert [p["damping_ratio"] for p in poles] == [None, 0.0, 0.0]
-
-
-def test_regions_are_named_in_the_json():
-    unit = [Fraction(x) for x in (-1, 0, -5, 5)]
-    regions = [None, Band(Fraction(1), Fraction(2)), Rectangle(*unit), Modes(3)]
-    kinds = [find_pole_zero_map("x/F", POLES, ZEROS, r).to_json_dict()["region"]["kind"] for r in regions]
-    assert kinds == ["everything", "band", "rectangle", "modes"]
-
-
-def test_the_certificate_counts_every_degree():
+def test_the_certificate_counts_every_degree_and_a_numerator_without_s_has_no_zeros():
     certificate = find_pole_zero_map("x/F", POLES, ZEROS, Modes(0)).certificate
     assert (certificate.certified, certificate.counted, certificate.found) == (True, 6, 6)
+    assert find_pole_zero_map("x/F", POLES, RootProblem(((PolynomialInS.from_integers([7]), 1),))).zeros == ()
 
 
-def test_hidden_modes_are_reported_with_their_cause():
+def test_hidden_modes_in_the_region_are_reported_with_their_cause():
     hidden = ((problem(25, 0, 1), "unobservable"),)
     found = find_pole_zero_map("x/F", POLES, ZEROS, Modes(1), 3, hidden)
     assert [(h.root.decimal(3).im, h.cause) for h in found.hidden] == [
@@ -77,10 +58,6 @@ def test_hidden_modes_are_reported_with_their_cause():
         ("-5.00", "unobservable"),
     ]
     assert found.certificate.counted == 8
-
-
-def test_hidden_modes_outside_a_band_are_left_out():
-    hidden = ((problem(25, 0, 1), "cancelled"),)
     assert find_pole_zero_map("x/F", POLES, ZEROS, Band(Fraction(2), Fraction(9)), 3, hidden).hidden == ()
 
 
@@ -91,13 +68,10 @@ def test_a_cluster_makes_the_map_uncertified_and_says_why():
     assert "told apart" in certificate.reason
 
 
-def test_a_numerator_without_s_has_no_zeros():
-    assert find_pole_zero_map("x/F", POLES, RootProblem(((PolynomialInS.from_integers([7]), 1),))).zeros == ()
-
-
 # ------------------------------------------------------- what is said of roots that a stand-in has found
 
 SPENT = Diagnostic("SF505", "too many steps")
+BAND, EDGE = Band(Fraction(0), Fraction(1)), 2 * 3.141592653589793
 
 
 def real(*places, certified=True):
@@ -135,32 +109,26 @@ def mapped(*answers, degrees=(2, 1), hidden=(), region=None, budget=None):
     return shown, finder
 
 
-def test_all_found_and_apart_is_certified():
+def test_all_found_and_apart_is_certified_and_zeros_right_of_the_axis_make_nothing_unstable():
     shown, _ = mapped(real(-1, 2), real(-3))
     assert shown.certificate == Certificate("polynomial", True, 3, 3)
     assert (shown.verdict.word, shown.verdict.right) == ("unstable", 1)
-
-
-@pytest.mark.parametrize("missing", [0, 1])
-def test_a_root_that_is_not_found_is_counted(missing):
-    answers = [real(-1, -2), real(-3)]
-    answers[missing] = answers[missing][1:]
-    shown, _ = mapped(*answers)
-    assert shown.certificate == Certificate("polynomial", False, 3, 2, "3 roots exist, 2 were found")
-    assert shown.verdict.reason == "3 roots exist, 2 were found"
-
-
-@pytest.mark.parametrize("blurred", [0, 1])
-def test_roots_that_are_not_apart_are_not_certified(blurred):
-    answers = [real(-1, -2), real(-3)]
-    answers[blurred] = real(*(root.re for root in answers[blurred]), certified=False)
-    certificate = mapped(*answers)[0].certificate
-    assert (certificate.certified, certificate.counted, certificate.found) == (False, 3, 3)
-    assert certificate.reason == "some roots could not be told apart; each such group is enclosed as one"
-
-
-def test_zeros_in_the_right_half_plane_make_nothing_unstable():
     assert mapped(real(-1, -2), real(3))[0].verdict.word == "stable"
+
+
+def test_a_root_that_is_missing_or_not_told_apart_is_no_certificate():
+    for which in (0, 1):
+        answers = [real(-1, -2), real(-3)]
+        blurred = list(answers)
+        blurred[which] = real(*(root.re for root in answers[which]), certified=False)
+        answers[which] = answers[which][1:]
+        shown, _ = mapped(*answers)
+        why = "3 roots exist, 2 were found"
+        assert shown.certificate == Certificate("polynomial", False, 3, 2, why), which
+        assert shown.verdict.reason == why, which
+        found = mapped(*blurred)[0].certificate
+        why = "some roots could not be told apart; each such group is enclosed as one"
+        assert (found.certified, found.counted, found.found, found.reason) == (False, 3, 3, why), which
 
 
 def test_hidden_factors_have_their_causes_and_count_for_stability():
@@ -188,20 +156,19 @@ def test_roots_beyond_are_those_right_of_the_axis_that_are_not_shown():
     assert right_beyond(roots, ()) == roots[1:]
 
 
-def test_digits_are_doubled_until_every_root_has_its_side():
-    band = Band(Fraction(0), Fraction(1))
-    edge = 2 * 3.141592653589793
-    wide, narrow = real((edge, 1e-3)), real((edge - 0.1, 1e-9))
-    shown, finder = mapped(wide, wide, narrow, (), degrees=(1, 0), region=band)
+def test_digits_are_doubled_until_every_root_has_its_side_and_an_unknown_side_is_on_the_boundary():
+    wide, narrow = real((EDGE, 1e-3)), real((EDGE - 0.1, 1e-9))
+    shown, finder = mapped(wide, wide, narrow, (), degrees=(1, 0), region=BAND)
     assert finder.digits == [10, 20, 40, 10]
     assert [root.on_boundary for root in shown.poles] == [False]
-
-
-def test_a_root_whose_side_stays_unknown_is_on_the_boundary():
-    wide = real((2 * 3.141592653589793, 1e-3))
-    shown, finder = mapped(*[wide] * 4, (), degrees=(1, 0), region=Band(Fraction(0), Fraction(1)))
+    shown, finder = mapped(*[wide] * 4, (), degrees=(1, 0), region=BAND)
     assert finder.digits == [10, 20, 40, 80, 10]
     assert [root.on_boundary for root in shown.poles] == [True]
+    # What the first search proved outlasts a second one.
+    shown, finder = mapped(wide, BudgetError(SPENT, found=()), degrees=(1, 0), region=BAND)
+    assert finder.digits == [10, 20]
+    assert [root.on_boundary for root in shown.poles] == [True]
+    assert shown.certificate.is_exceeded
 
 
 def test_what_was_proved_until_the_budget_was_spent_is_shown_with_its_code():
@@ -212,20 +179,11 @@ def test_what_was_proved_until_the_budget_was_spent_is_shown_with_its_code():
     expected = Certificate("polynomial", False, 4, 1, "too many steps", is_exceeded=True, code="SF505")
     assert shown.certificate == expected
     assert shown.verdict.reason == "too many steps"
-
-
-def test_of_a_mode_by_its_number_nothing_is_shown_where_some_may_be_missing():
     assert mapped(BudgetError(SPENT, found=real(-1)), region=Mode(1))[0].poles == ()
     assert mapped(BudgetError(SPENT))[0].poles == ()
-
-
-def test_what_the_first_search_proved_outlasts_a_second_one():
-    wide = real((2 * 3.141592653589793, 1e-3))
-    band = Band(Fraction(0), Fraction(1))
-    shown, finder = mapped(wide, BudgetError(SPENT, found=()), degrees=(1, 0), region=band)
-    assert finder.digits == [10, 20]
-    assert [root.on_boundary for root in shown.poles] == [True]
-    assert shown.certificate.is_exceeded
+    clock = iter(range(100)).__next__
+    shown, _ = mapped(real(-1, -2), budget=Budget(seconds=0, clock=clock))
+    assert (shown.poles, shown.certificate.code) == ((), "SF506")
 
 
 def test_progress_is_told_by_polynomials():
@@ -243,25 +201,19 @@ def test_progress_is_told_by_polynomials():
     assert told.said == [(i / 4, f"polynomial {i + 1} of 4") for i in range(4)]
 
 
-def test_a_budget_without_time_is_spent_at_once():
-    clock = iter(range(100)).__next__
-    shown, _ = mapped(real(-1, -2), budget=Budget(seconds=0, clock=clock))
-    assert (shown.poles, shown.certificate.code) == ((), "SF506")
-
-
-@pytest.mark.parametrize(
-    ("reason", "code", "said", "coded"),
-    [("too many", "SF505", "too many", "SF505"), (None, None, "the budget was exceeded", "SF506")],
-)
-def test_an_exceeded_budget_is_an_error_that_holds_the_map(reason, code, said, coded):
-    certificate = Certificate("e", False, 3, 1, reason, is_exceeded=True, code=code)
-    shown = PoleZeroMap("x/F", Everything(), (), (), (), certificate)
-    with pytest.raises(BudgetError) as failed:
-        shown.complete()
-    (diagnostic,) = failed.value.diagnostics
-    assert (diagnostic.message, diagnostic.code) == (said, coded)
-    assert diagnostic.hint == "what was proved until then is in the attribute 'found' of this error"
-    assert failed.value.found is shown
+def test_an_exceeded_budget_is_an_error_that_holds_the_map():
+    for reason, code, said, coded in [
+        ("too many", "SF505", "too many", "SF505"),
+        (None, None, "the budget was exceeded", "SF506"),
+    ]:
+        certificate = Certificate("e", False, 3, 1, reason, is_exceeded=True, code=code)
+        shown = PoleZeroMap("x/F", Everything(), (), (), (), certificate)
+        with pytest.raises(BudgetError) as failed:
+            shown.complete()
+        (diagnostic,) = failed.value.diagnostics
+        assert (diagnostic.message, diagnostic.code) == (said, coded)
+        assert diagnostic.hint == "what was proved until then is in the attribute 'found' of this error", code
+        assert failed.value.found is shown, (reason, code)
 
 
 def test_all_of_a_map_is_in_its_data():

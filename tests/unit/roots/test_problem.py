@@ -1,4 +1,4 @@
-"""Exact polynomials with constants as coefficients."""
+"""Exact polynomials with constants as coefficients, and their splitting into coprime square-free parts."""
 
 from __future__ import annotations
 
@@ -9,51 +9,43 @@ from flint import arb, fmpz_mpoly_ctx
 
 from symflex.errors import ModelError, UncertifiedError
 from symflex.roots import PolynomialInS, RootProblem, find_polynomial_roots, precision
-from tests.unit.roots.root_problems import problem, with_pi, with_root_of_two
+from symflex.roots.problem import split
+from tests.unit.roots.root_problems import from_roots, problem, with_pi, with_root_of_two
 
 
-def test_rationals_are_scaled_to_integers():
+def test_rationals_are_scaled_to_integers_leading_zeros_dropped_and_degrees_count_multiplicity():
     assert PolynomialInS.from_rationals([Fraction(1, 6), Fraction(1, 4)]).integers() == (2, 3)
-
-
-def test_leading_zeros_are_dropped():
     assert PolynomialInS.from_integers([1, 2, 0, 0]).degree == 1
-
-
-@pytest.mark.parametrize("coefficients", [[], [0], [0, 0]])
-def test_the_zero_polynomial_is_refused(coefficients):
-    with pytest.raises(ModelError, match=r"SF403.*: the polynomial is zero: every s is a root of it$"):
-        PolynomialInS.from_integers(coefficients)
-
-
-def test_every_generator_needs_its_constant():
-    context = fmpz_mpoly_ctx.get(["pi"], "lex")
-    with pytest.raises(ValueError, match=r"^1 generators but 0 constants$"):
-        PolynomialInS((context.constant(1),), context, ())
-
-
-def test_exponents_are_positive():
-    with pytest.raises(ValueError, match=r"^exponents of factors are positive$"):
-        RootProblem(((PolynomialInS.from_integers([1, 1]), 0),))
-
-
-def test_degree_counts_multiplicity():
     assert RootProblem(((PolynomialInS.from_integers([1, 0, 1]), 3),)).degree == 6
 
 
-def test_enclosure_evaluates_constants_at_the_current_precision():
+def test_polynomials_that_are_zero_lack_constants_or_contain_some_are_refused():
+    for coefficients in [[], [0], [0, 0]]:
+        with pytest.raises(ModelError, match=r"SF403.*: the polynomial is zero: every s is a root of it$"):
+            PolynomialInS.from_integers(coefficients)
+    context = fmpz_mpoly_ctx.get(["pi"], "lex")
+    with pytest.raises(ValueError, match=r"^1 generators but 0 constants$"):
+        PolynomialInS((context.constant(1),), context, ())
+    with pytest.raises(ValueError, match=r"^exponents of factors are positive$"):
+        RootProblem(((PolynomialInS.from_integers([1, 1]), 0),))
+    with pytest.raises(ValueError, match=r"^the coefficients contain constants$"):
+        with_pi(lambda pi, one: (pi, one)).integers()
+    with pytest.raises(ValueError, match="at least 1"):
+        find_polynomial_roots(problem(1, 1), 0)
+
+
+def test_enclosure_evaluates_every_term_with_constants_at_the_current_precision():
     polynomial = with_pi(lambda pi, one: (pi**2, one))
     with precision(300):
         assert polynomial.enclosure()[0].overlaps(arb.pi() ** 2)
         assert polynomial.enclosure()[0].rel_accuracy_bits() > 290
+    polynomial = with_pi(lambda pi, one: (3 * pi**2 - 5 * pi + 7, one))
+    with precision(100):
+        expected = 3 * arb.pi() ** 2 - 5 * arb.pi() + 7
+        assert abs(polynomial.enclosure()[0] - expected) < arb(2) ** -90
 
 
-def test_coefficients_with_constants_are_not_integers():
-    with pytest.raises(ValueError, match=r"^the coefficients contain constants$"):
-        with_pi(lambda pi, one: (pi, one)).integers()
-
-
-def test_a_leading_coefficient_that_may_vanish_is_refused():
+def test_a_leading_coefficient_that_may_vanish_is_refused_and_one_that_is_small_told_from_zero():
     polynomial = with_root_of_two(lambda root, one: (one, one, root**2 - 2))
     with pytest.raises(UncertifiedError, match="SF401") as failed:
         find_polynomial_roots(RootProblem(((polynomial, 1),)), 10)
@@ -61,21 +53,58 @@ def test_a_leading_coefficient_that_may_vanish_is_refused():
     assert diagnostic.message.startswith("cannot tell whether the coefficient ")
     assert diagnostic.message.endswith(" of s^2 is zero")
     assert diagnostic.hint == "its constants seem to satisfy a relation; write the coefficient without it"
-
-
-def test_a_leading_coefficient_that_is_small_is_told_from_zero():
     # pi^2 - 9.8696044010893586 is 2e-17
     polynomial = with_pi(lambda pi, one: (one, 10**16 * pi**2 - 98696044010893586))
     polynomial.require_leading_coefficient()
 
 
-def test_every_term_of_a_coefficient_counts():
-    polynomial = with_pi(lambda pi, one: (3 * pi**2 - 5 * pi + 7, one))
-    with precision(100):
-        expected = 3 * arb.pi() ** 2 - 5 * arb.pi() + 7
-        assert abs(polynomial.enclosure()[0] - expected) < arb(2) ** -90
+# ------------------------------------------------------ Exact splitting into coprime square-free parts
 
 
-def test_at_least_one_digit_is_asked_for():
-    with pytest.raises(ValueError, match="at least 1"):
-        find_polynomial_roots(problem(1, 1), 0)
+def parts_of(problem):
+    return sorted((p.polynomial.integers(), p.multiplicity, p.in_square) for p in split(problem).parts)
+
+
+def test_powers_of_s_are_counted_over_all_factors():
+    factors = ((PolynomialInS.from_integers([0, 0, 1]), 2), (PolynomialInS.from_integers([0, 1, 1]), 3))
+    assert split(RootProblem(factors)).zeros == 7
+
+
+def test_equal_roots_of_different_factors_merge():
+    # (s + 1)(s + 2) and (s + 2)^2 (s + 3), the second cubed
+    factors = (
+        (PolynomialInS.from_rationals(from_roots([-1, -2])), 1),
+        (PolynomialInS.from_rationals(from_roots([-2, -2, -3])), 3),
+    )
+    assert parts_of(RootProblem(factors)) == [
+        ((1, 1), 1, False),
+        ((2, 1), 7, False),
+        ((3, 1), 3, False),
+    ]
+
+
+def test_the_even_part_holds_axis_pairs_and_mirrored_roots_only():
+    # (s^2 + 9)(s - 2)(s + 2)(s + 5)
+    coefficients = [-180, -36, 25, 5, 5, 1]
+    assert parts_of(problem(*coefficients)) == [((-36, 5, 1), 1, True), ((5, 1), 1, False)]
+
+
+def test_content_is_dropped_and_repeated_factors_are_found_with_constants_in_them():
+    polynomial = with_pi(lambda pi, one: (pi * 2, pi * 4))
+    (part,) = split(RootProblem(((polynomial, 1),))).parts
+    assert [str(c) for c in part.polynomial.coefficients] == ["1", "2"]
+    # (s + pi)^2
+    polynomial = with_pi(lambda pi, one: (pi**2, 2 * pi, one))
+    (part,) = split(RootProblem(((polynomial, 1),))).parts
+    assert (part.polynomial.degree, part.multiplicity) == (1, 2)
+
+
+def test_factors_with_different_constants_share_a_ring():
+    first = with_pi(lambda pi, one: (pi, one))
+    second = with_root_of_two(lambda root, one: (root, one))
+    splitting = split(RootProblem(((first, 1), (second, 1), (first, 1))))
+    assert sorted(part.multiplicity for part in splitting.parts) == [1, 2]
+
+
+def test_a_constant_polynomial_has_no_parts():
+    assert split(problem(7)).parts == ()

@@ -45,51 +45,50 @@ def test_everything_is_inside_the_plane():
     assert set(Everything().classify(roots)) == {Position.INSIDE}
 
 
-def test_a_band_selects_by_natural_frequency_in_hz():
-    # 6, 7 and 63 rad/s are 0.95, 1.11 and 10.03 Hz
-    found = poles_in(Band(Fraction(1), Fraction(10)), axis_pairs(6, 7, 63))
-    assert found == [("0", "7.000", False), ("0", "-7.000", False)]
+def pair(omega, on_boundary=False):
+    return [("0", f"{omega:.3f}", on_boundary), ("0", f"-{omega:.3f}", on_boundary)]
 
 
-def test_a_root_at_a_bands_end_is_on_the_boundary():
-    polynomial = with_pi(lambda pi, one: (484 * pi**2, 0 * one, one))  # 11 Hz
-    found = poles_in(Band(Fraction(1), Fraction(11)), RootProblem(((polynomial, 1),)))
-    assert [flag for *_, flag in found] == [True, True]
+AT_11_HZ = RootProblem(((with_pi(lambda pi, one: (484 * pi**2, 0 * one, one)), 1),))
+RIGID, AT_ZERO = problem(0, 0, 1), ("0", "0", False)
 
 
-@pytest.mark.parametrize(("shift", "count"), [(1, 0), (-1, 2)])
-def test_a_root_1e_40_from_a_bands_end_is_decided(shift, count):
-    # (2 pi f)^2 with f = 11 (1 +- 1e-40) Hz
-    f = Fraction(11) * (1 + shift * Fraction(1, 10**40))
-    polynomial = with_pi(lambda pi, one: (4 * f.numerator**2 * pi**2, 0 * one, one * f.denominator**2))
-    found = poles_in(Band(Fraction(1), Fraction(11)), RootProblem(((polynomial, 1),)), digits=15)
-    assert [flag for *_, flag in found] == [False] * count
+def test_a_region_holds_what_lies_in_it_and_says_what_lies_on_its_boundary():
+    for region, polynomial, expected in [
+        # 6, 7 and 63 rad/s are 0.95, 1.11 and 10.03 Hz
+        (Band(Fraction(1), Fraction(10)), axis_pairs(6, 7, 63), pair(7)),
+        (Band(Fraction(1), Fraction(11)), AT_11_HZ, [("0", "69.12", True), ("0", "-69.12", True)]),
+        # The rigid body belongs to bands from zero on.
+        (Band(Fraction(0), Fraction(1)), RIGID, [AT_ZERO]),
+        (Band(Fraction(1), Fraction(2)), RIGID, []),
+        # A rectangle is closed, its edge exact on either axis, and may be a line or a point.
+        (rectangle(-5, 0, -10, 10), axis_pairs(2, 20), pair(2, True)),
+        (rectangle(-5, 0, 0, 10), problem(*from_roots([-1, -7])), [("-1.000", "0", True)]),
+        (rectangle(0, 1, 0, 1), problem(0, 1), [("0", "0", True)]),
+        (rectangle(1, 2, 0, 1), problem(0, 1), []),
+        (rectangle(Fraction(1, 10), 1, -1, 1), problem(-1, 10), [("0.1000", "0", True)]),
+        (rectangle(0, 0, -3, 3), axis_pairs(2, 5), pair(2, True)),
+        (rectangle(0, 0, 2, 2), axis_pairs(2, 5), [("0", "2.000", True)]),
+        # Modes count a conjugate pair once, a real root once, and rigid bodies not at all.
+        (Modes(2), axis_pairs(1, 2, 3), pair(1) + pair(2)),
+        (Modes(2), problem(*from_roots([-1, -2, -3])), [("-1.000", "0", False), ("-2.000", "0", False)]),
+        (Modes(1), problem(0, 0, 36, 0, 13, 0, 1), [AT_ZERO, *pair(2)]),
+        (Modes(0), problem(0, 0, 4, 0, 1), [AT_ZERO]),
+        # Two of one frequency lie across the limit.
+        (Modes(1), problem(-4, 0, 1), [("-2.000", "0", True), ("2.000", "0", True)]),
+    ]:
+        assert poles_in(region, polynomial) == expected, region
 
 
-def test_a_band_from_zero_has_the_rigid_body_inside():
-    assert poles_in(Band(Fraction(0), Fraction(1)), problem(0, 0, 1)) == [("0", "0", False)]
-
-
-def test_a_band_above_zero_leaves_the_rigid_body_out():
-    assert poles_in(Band(Fraction(1), Fraction(2)), problem(0, 0, 1)) == []
-
-
-def test_a_rectangle_is_closed_and_its_edge_exact_on_the_imaginary_axis():
-    found = poles_in(rectangle(-5, 0, -10, 10), axis_pairs(2, 20))
-    assert found == [("0", "2.000", True), ("0", "-2.000", True)]
-
-
-def test_a_rectangle_is_closed_and_its_edge_exact_on_the_real_axis():
-    found = poles_in(rectangle(-5, 0, 0, 10), problem(*from_roots([-1, -7])))
-    assert found == [("-1.000", "0", True)]
-
-
-def test_a_corner_root_is_on_the_boundary():
-    assert poles_in(rectangle(0, 1, 0, 1), problem(0, 1)) == [("0", "0", True)]
-
-
-def test_a_root_beyond_one_side_and_on_another_is_outside():
-    assert poles_in(rectangle(1, 2, 0, 1), problem(0, 1)) == []
+def test_a_root_1e_40_from_a_bands_end_is_decided():
+    for shift, count in [(1, 0), (-1, 2)]:
+        # (2 pi f)^2 with f = 11 (1 +- 1e-40) Hz
+        f = Fraction(11) * (1 + shift * Fraction(1, 10**40))
+        polynomial = with_pi(
+            lambda pi, one, f=f: (4 * f.numerator**2 * pi**2, 0 * one, one * f.denominator**2)
+        )
+        found = poles_in(Band(Fraction(1), Fraction(11)), RootProblem(((polynomial, 1),)), digits=15)
+        assert [flag for *_, flag in found] == [False] * count, shift
 
 
 def test_an_irrational_root_at_no_representable_distance_is_inside():
@@ -99,41 +98,9 @@ def test_an_irrational_root_at_no_representable_distance_is_inside():
     assert len(poles_in(rectangle(edge, 2, -1, 1), problem(-2, 0, 1), 10)) == 0
 
 
-def test_a_root_on_a_side_that_is_not_dyadic_is_on_the_boundary():
-    assert poles_in(rectangle(Fraction(1, 10), 1, -1, 1), problem(-1, 10)) == [("0.1000", "0", True)]
-
-
-def test_modes_counts_a_conjugate_pair_once():
-    found = poles_in(Modes(2), axis_pairs(1, 2, 3))
-    assert [im for _, im, _ in found] == ["1.000", "-1.000", "2.000", "-2.000"]
-
-
-def test_modes_counts_a_real_root_as_one():
-    found = poles_in(Modes(2), problem(*from_roots([-1, -2, -3])))
-    assert [re for re, *_ in found] == ["-1.000", "-2.000"]
-
-
-def test_modes_keeps_rigid_body_roots_beside_the_count():
-    factors = ((PolynomialInS.from_integers([0, 0, 4, 0, 1]), 1), (PolynomialInS.from_integers([9, 0, 1]), 1))
-    found = poles_in(Modes(1), RootProblem(factors))
-    assert found == [("0", "0", False), ("0", "2.000", False), ("0", "-2.000", False)]
-
-
-def test_modes_of_zero_keeps_the_rigid_body_only():
-    assert poles_in(Modes(0), problem(0, 0, 4, 0, 1)) == [("0", "0", False)]
-
-
-def test_modes_counts_multiplicity_and_keeps_a_multiple_root_whole():
+def test_modes_count_multiplicity_and_apply_to_zeros_as_well():
     found = find_pole_zero_map("y/u", problem(*from_roots([-1, -1, -1, -2])), NOTHING, Modes(2))
     assert [root.multiplicity for root in found.poles] == [3]
-
-
-def test_roots_of_equal_frequency_across_the_limit_are_on_the_boundary():
-    found = poles_in(Modes(1), problem(-4, 0, 1))
-    assert found == [("-2.000", "0", True), ("2.000", "0", True)]
-
-
-def test_modes_applies_to_zeros_as_well():
     found = find_pole_zero_map("y/u", axis_pairs(1, 3, 5), axis_pairs(2, 4), Modes(1))
     assert [root.decimal(2).im for root in found.zeros] == ["2.0", "-2.0"]
 
@@ -146,16 +113,11 @@ def classified(region, *roots):
     return "".join(position.name[0] for position in region.classify(roots))
 
 
-@pytest.mark.parametrize(
-    ("number", "positions"), [(1, "OIIOOOO"), (2, "OOOIOOO"), (3, "OOOIOOO"), (4, "OOOOIIO"), (5, "OOOOOOI")]
-)
-def test_the_mode_of_one_number_is_inside_and_no_other(number, positions):
-    # Twice 0, a pair, a double root, a pair, a root.
-    roots = [axis_root(w) for w in (0, 1, -1)] + [axis_root(2, 2)] + [axis_root(w) for w in (3, -3, 4)]
-    assert classified(Mode(number), *roots) == positions
-
-
-def test_modes_are_inside_up_to_their_number():
+def test_modes_and_the_mode_of_one_number_are_inside_and_no_others():
+    for number, positions in [(1, "OIIOOOO"), (2, "OOOIOOO"), (3, "OOOIOOO"), (4, "OOOOIIO"), (5, "OOOOOOI")]:
+        # Twice 0, a pair, a double root, a pair, a root.
+        roots = [axis_root(w) for w in (0, 1, -1)] + [axis_root(2, 2)] + [axis_root(w) for w in (3, -3, 4)]
+        assert classified(Mode(number), *roots) == positions
     roots = [axis_root(w) for w in (0, 1, -1)] + [axis_root(2, 2)] + [axis_root(w) for w in (3, -3)]
     found = [classified(Modes(count), *roots) for count in range(6)]
     assert found == ["IOOOOO", "IIIOOO", "IIIIOO", "IIIIOO", "IIIIII", "IIIIII"]
@@ -172,37 +134,25 @@ def test_two_roots_of_one_frequency_across_the_limit_are_on_it_where_they_mirror
     assert classified(Modes(1), *blurred) == "UU"
 
 
-@pytest.mark.parametrize(
-    ("region", "data"),
-    [
+def test_regions_have_these_keys_as_data():
+    for region, data in [
         (Everything(), {"kind": "everything"}),
         (Band(Fraction(1, 2), Fraction(3)), {"kind": "band", "low_hz": 0.5, "high_hz": 3.0}),
         (rectangle(-1, 2, -3, 4), {"kind": "rectangle", "re": [-1.0, 2.0], "im": [-3.0, 4.0]}),
         (Modes(7), {"kind": "modes", "count": 7}),
         (Mode(9), {"kind": "mode", "number": 9}),
-    ],
-    ids=lambda each: type(each).__name__,
-)
-def test_regions_have_these_keys_as_data(region, data):
-    assert region.to_json_dict() == data
+    ]:
+        assert region.to_json_dict() == data
 
 
-def test_a_rectangle_may_be_a_line_or_a_point():
-    assert poles_in(rectangle(0, 0, -3, 3), axis_pairs(2, 5)) == [("0", "2.000", True), ("0", "-2.000", True)]
-    assert poles_in(rectangle(0, 0, 2, 2), axis_pairs(2, 5)) == [("0", "2.000", True)]
-
-
-@pytest.mark.parametrize(
-    ("make", "message"),
-    [
+def test_impossible_regions_are_refused():
+    for make, message in [
         (lambda: Band(Fraction(2), Fraction(1)), "band"),
         (lambda: Band(Fraction(-1), Fraction(1)), "band"),
         (lambda: rectangle(1, 0, 0, 1), "^a rectangle is given as RE0 <= RE1, IM0 <= IM1$"),
         (lambda: rectangle(0, 1, 1, 0), "^a rectangle is given as RE0 <= RE1, IM0 <= IM1$"),
         (lambda: Modes(-1), "^the number of modes cannot be -1$"),
         (lambda: Mode(0), "^modes are numbered from 1, not 0$"),
-    ],
-)
-def test_impossible_regions_are_refused(make, message):
-    with pytest.raises(ValueError, match=message):
-        make()
+    ]:
+        with pytest.raises(ValueError, match=message):
+            make()

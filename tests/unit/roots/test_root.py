@@ -1,34 +1,38 @@
-"""One root: its frequency and damping, its mirror images, and its decimals by hand."""
+"""One root: frequency and damping, mirror images, decimals with a rigorous radius, and precision."""
 
 from __future__ import annotations
 
 from dataclasses import replace
+from fractions import Fraction
 from math import hypot, pi
 
+import flint
+import hypothesis
 import pytest
-from flint import arb
+from flint import arb, fmpz_poly
+from hypothesis import strategies as st
 
-from symflex.roots import Root, precision
-from symflex.roots.root import FLOAT_BITS, decimals, mirror_images, overlap
+from symflex.roots import Modes, Root, find_pole_zero_map, find_polynomial_roots, precision
+from symflex.roots.precision import bits_for_digits
+from symflex.roots.root import FLOAT_BITS, decimals, exact_fraction, mirror_images, overlap
+from tests.unit.roots.root_problems import problem, problem_of
 from tests.unit.roots.stand_ins import root
 
 
-@pytest.mark.parametrize(
-    ("given", "hertz", "zeta"),
-    [
+def test_a_root_has_a_frequency_and_a_damping_ratio():
+    for given, hertz, zeta in [
         (root(-3, 4), 5 / (2 * pi), 0.6),
         (root(3, -4), 5 / (2 * pi), -0.6),
         (root(0, -7), 7 / (2 * pi), 0.0),
         (root(-2, 0), 1 / pi, 1.0),
+        (root(3, 0), 1.5 / pi, -1.0),
         (root(0, 0), 0.0, None),
         # not told from the axis, and not told from 0
         (root(0, 7, size=0.5), 7 / (2 * pi), 0.0),
         (root(0, 0, size=0.5), 0.0, None),
-    ],
-)
-def test_a_root_has_a_frequency_and_a_damping_ratio(given, hertz, zeta):
-    assert given.frequency_hz() == pytest.approx(hertz, abs=0.3 if given.re.rad() else 1e-15)
-    assert given.damping_ratio() == (zeta if zeta is None else pytest.approx(zeta))
+    ]:
+        assert given.frequency_hz() == pytest.approx(hertz, abs=0.3 if given.re.rad() else 1e-15)
+        assert given.damping_ratio() == (zeta if zeta is None else pytest.approx(zeta))
 
 
 def test_a_frequency_is_known_as_well_as_both_parts():
@@ -55,21 +59,20 @@ def test_arithmetic_with_a_root_loses_nothing():
     assert root(1, 1).working_bits() > FLOAT_BITS
 
 
-@pytest.mark.parametrize(
-    ("given", "even", "images"),
-    [
+def test_roots_come_with_their_mirror_images():
+    for given, even, images in [
         (root(-3, 4), False, [(-3, 4), (-3, -4)]),
         (root(-3, 4), True, [(-3, 4), (-3, -4), (3, 4), (3, -4)]),
         (root(-3, 0), False, [(-3, 0)]),
         (root(-3, 0), True, [(-3, 0), (3, 0)]),
         (root(0, 4), True, [(0, 4), (0, -4)]),
         (root(0, 0), True, [(0, 0)]),
-    ],
-)
-def test_roots_come_with_their_mirror_images(given, even, images):
-    found = mirror_images([given], even=even)
-    assert [(float(r.re), float(r.im)) for r in found] == images
-    assert all((r.is_real, r.on_imaginary_axis) == (given.is_real, given.on_imaginary_axis) for r in found)
+    ]:
+        found = mirror_images([given], even=even)
+        assert [(float(r.re), float(r.im)) for r in found] == images, (given, even)
+        assert all(
+            (r.is_real, r.on_imaginary_axis) == (given.is_real, given.on_imaginary_axis) for r in found
+        ), (given, even)
 
 
 def test_a_mirror_image_is_as_certain_as_the_root():
@@ -81,14 +84,13 @@ def test_a_mirror_image_is_as_certain_as_the_root():
     assert mirror_images([], even=True) == []
 
 
-@pytest.mark.parametrize(("re", "im", "same"), [(0.15, 0.15, True), (0.25, 0, False), (0, 0.25, False)])
-def test_roots_may_be_the_same_where_both_parts_may(re, im, same):
-    assert overlap(root(1, 1, size=0.1), root(1 + re, 1 + im, size=0.1)) is same
+def test_roots_may_be_the_same_where_both_parts_may():
+    for re, im, same in [(0.15, 0.15, True), (0.25, 0, False), (0, 0.25, False)]:
+        assert overlap(root(1, 1, size=0.1), root(1 + re, 1 + im, size=0.1)) is same
 
 
-@pytest.mark.parametrize(
-    ("value", "digits", "text", "radius"),
-    [
+def test_a_part_is_printed_with_its_digits_and_what_they_are_off_by():
+    for value, digits, text, radius in [
         (arb("0.00001"), 3, "0.0000100", "0"),
         (arb(2) ** -17, 2, "7.6e-6", "3.0e-8"),
         (arb(1024), 2, "1.0e3", "2.4e+1"),
@@ -98,10 +100,124 @@ def test_roots_may_be_the_same_where_both_parts_may(re, im, same):
         (arb(99.96875), 3, "100", "3.2e-2"),
         (arb(-0.5), 1, "-0.5", "0"),
         (arb(1000000, 2), 9, "1.00000e6", "2.1e+0"),
-    ],
+    ]:
+        found = decimals(value, arb(0), digits)
+        assert found.im == "0", (value, digits)
+        assert found.re == text
+        assert float(found.radius) == pytest.approx(float(radius), rel=0.1, abs=1e-19), (value, digits)
+
+
+# --------------------------------------------------------- Decimal print: digits and a rigorous radius
+
+
+def box(re, im):
+    return Root(re, im, 1, on_imaginary_axis=False, is_real=False)
+
+
+def farthest_square(root, decimals):
+    """Square of the distance from the printed point to the farthest corner of the box, exactly."""
+    total = Fraction(0)
+    for ball, text in ((root.re, decimals.re), (root.im, decimals.im)):
+        total += (abs(exact_fraction(ball) - Fraction(text)) + exact_fraction(ball.rad())) ** 2
+    return total
+
+
+def significant(text):
+    return len(text.lstrip("-").split("e")[0].replace(".", "").lstrip("0"))
+
+
+def test_each_component_carries_the_digits_asked_for_and_the_radius_reaches_the_whole_enclosure():
+    for digits in (1, 2, 15, 30):
+        for found in find_polynomial_roots(problem_of(fmpz_poly([3, 1, 4, 1, 5, 9, 2])), digits):
+            decimals = found.decimal(digits)
+            expected = (digits, 0 if found.is_real else digits)
+            assert (significant(decimals.re), significant(decimals.im)) == expected, digits
+            assert Fraction(decimals.radius) ** 2 >= farthest_square(found, decimals), digits
+
+
+def test_exact_prints_have_radius_zero_and_others_about_one_unit_of_the_last_digit():
+    upper, _ = find_polynomial_roots(problem(3, 2, 7), 30)
+    decimals = upper.decimal(30)
+    assert Fraction(decimals.radius) <= Fraction(1, 10**30)
+    assert box(arb("1.23456789", 1e-4), arb(0)).decimal(30).re == "1.235"
+    (root,) = find_polynomial_roots(problem(3, 2), 10)
+    decimals = root.decimal(10)
+    assert (decimals.re, decimals.im, decimals.radius) == ("-1.500000000", "0", "0")
+
+
+def test_three_digits_of_a_dyadic_number():
+    for value, text in [
+        (Fraction(12345), "1.23e4"),
+        (Fraction(123), "123"),
+        (Fraction(-5, 4), "-1.25"),
+        (Fraction(1, 32), "0.0312"),  # 0.03125 is a tie and goes to the even digit
+        (Fraction(1, 2**40), "9.09e-13"),
+        (Fraction(9999), "1.00e4"),
+    ]:
+        with precision(100):
+            ball = arb(value.numerator) / value.denominator
+        assert box(ball, arb(0)).decimal(3).re == text, value
+
+
+@hypothesis.settings(max_examples=60)
+@hypothesis.given(
+    st.fractions(min_value=-(10**6), max_value=10**6),
+    st.fractions(min_value=-(10**6), max_value=10**6),
+    st.integers(min_value=0, max_value=120),
+    st.integers(min_value=1, max_value=40),
 )
-def test_a_part_is_printed_with_its_digits_and_what_they_are_off_by(value, digits, text, radius):
-    found = decimals(value, arb(0), digits)
-    assert found.im == "0"
-    assert found.re == text
-    assert float(found.radius) == pytest.approx(float(radius), rel=0.1, abs=1e-19)
+def test_the_print_is_rigorous_for_any_box(re, im, exponent, digits):
+    with precision(200):
+        radius = arb(2) ** -exponent
+        root = box(
+            arb((arb(re.numerator) / re.denominator).mid(), radius),
+            arb((arb(im.numerator) / im.denominator).mid(), radius),
+        )
+    decimals = root.decimal(digits)
+    reached = Fraction(decimals.radius) ** 2
+    assert farthest_square(root, decimals) <= reached
+
+
+@hypothesis.settings(max_examples=60)
+@hypothesis.given(st.integers(min_value=-(10**9), max_value=10**9), st.integers(min_value=1, max_value=60))
+def test_the_radius_is_at_most_a_tenth_too_large(middle, exponent):
+    root = box(arb(arb(middle), arb(2) ** -exponent), arb(0))
+    decimals = root.decimal(12)
+    assert Fraction(decimals.radius) ** 2 <= farthest_square(root, decimals) * Fraction(122, 100)
+
+
+# ------------------------------------------------------------------- The working precision never leaks
+
+
+def test_precision_holds_inside_a_block_and_is_restored():
+    before = flint.ctx.prec
+    with precision(100):
+        with precision(777):
+            assert flint.ctx.prec == 777
+        assert flint.ctx.prec == 100
+    with pytest.raises(RuntimeError), precision(777):
+        raise RuntimeError
+    assert flint.ctx.prec == before
+
+
+def test_finding_roots_and_asking_them_leaves_the_precision_as_it_was():
+    before = flint.ctx.prec
+    (root, *_) = find_polynomial_roots(problem(5, 1, 3, 2, 7), 200)
+    assert flint.ctx.prec == before
+    root.natural_frequency(), root.frequency_hz(), root.damping_ratio(), root.decimal(40)
+    assert flint.ctx.prec == before
+    find_pole_zero_map("a/b", problem(4, 0, 1), problem(1), Modes(1)).to_json_dict()
+    assert flint.ctx.prec == before
+
+
+def test_bits_cover_the_digits():
+    assert 2 ** bits_for_digits(40) > 10**40
+
+
+def test_the_callers_precision_does_not_change_the_result():
+    polynomial = flint.fmpz_poly([9, 2, 5, 3, 8, 1])
+    wanted = [root.decimal(60) for root in find_polynomial_roots(problem_of(polynomial), 60)]
+    for bits in (4, 53, 1000):
+        with precision(bits):
+            roots = find_polynomial_roots(problem_of(polynomial), 60)
+            assert [root.decimal(60) for root in roots] == wanted

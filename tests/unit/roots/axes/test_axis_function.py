@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import inf, pi, sqrt
+
 import mpmath
 import numpy as np
 import pytest
@@ -17,12 +19,13 @@ from symflex.roots.axes.axis_function import (
     AxisFunction,
     AxisNewton,
     Enclosures,
+    _level,
     _products,
     bits_of,
     bracketed,
     changes_sign,
 )
-from symflex.roots.precision import precision
+from symflex.roots.precision import bits_for_digits, precision
 
 BITS = 300
 P, Q = mpf("1.25"), mpf("0.5")
@@ -74,33 +77,33 @@ def value_and_slope(t):
         return mp.nstr(value, 75), mp.nstr(slope, 60)
 
 
-@pytest.mark.parametrize("t", TIMES)
-def test_values_and_slopes_are_those_of_the_formula(t):
-    values = every_kind().values(BITS)
-    with precision(BITS):
-        value, slope = (arb(text) for text in value_and_slope(t))
-        x = arb(t)
-        for found, expected, digits in (
-            (values.value(x), value, 70),
-            (values.slope(x), slope, 50),
-            (values.value_and_slope(x)[0], value, 70),
-            (values.value_and_slope(x)[1], slope, 50),
-        ):
-            assert abs(found - expected) < abs(expected) * arb(10) ** -digits
+def test_values_and_slopes_are_those_of_the_formula():
+    for t in TIMES:
+        values = every_kind().values(BITS)
+        with precision(BITS):
+            value, slope = (arb(text) for text in value_and_slope(t))
+            x = arb(t)
+            for found, expected, digits in (
+                (values.value(x), value, 70),
+                (values.slope(x), slope, 50),
+                (values.value_and_slope(x)[0], value, 70),
+                (values.value_and_slope(x)[1], slope, 50),
+            ):
+                assert abs(found - expected) < abs(expected) * arb(10) ** -digits, t
 
 
-@pytest.mark.parametrize("t", TIMES)
-def test_values_of_a_ball_are_in_the_ball_of_values(t):
-    values = every_kind().values(FLOAT_BITS)
-    with precision(FLOAT_BITS):
-        ball = arb(t, "0.01")
-        value, slope = values.value_and_slope(ball)
-        for k in range(-4, 5):
-            expected = value_and_slope(mpf(t) + mpf(k) / 400)
-            assert value.contains(arb(expected[0]).mid())
-            assert slope.contains(arb(expected[1]).mid())
-        # Not much wider than the way that the slope leads.
-        assert value.rad() < 100 * abs(slope).upper() * ball.rad()
+def test_values_of_a_ball_are_in_the_ball_of_values():
+    for t in TIMES:
+        values = every_kind().values(FLOAT_BITS)
+        with precision(FLOAT_BITS):
+            ball = arb(t, "0.01")
+            value, slope = values.value_and_slope(ball)
+            for k in range(-4, 5):
+                expected = value_and_slope(mpf(t) + mpf(k) / 400)
+                assert value.contains(arb(expected[0]).mid()), t
+                assert slope.contains(arb(expected[1]).mid()), t
+            # Not much wider than the way that the slope leads.
+            assert value.rad() < 100 * abs(slope).upper() * ball.rad(), t
 
 
 def test_samples_in_doubles_are_scaled_alike():
@@ -115,18 +118,15 @@ def test_samples_in_doubles_are_scaled_alike():
         assert sizes[i] == pytest.approx(float(sum(map(abs, terms(x))) / scale), rel=1e-12)
 
 
-def test_the_fastest_phase_is_that_of_the_largest_derivative():
+def test_s_is_the_square_of_t_or_twice_that_and_the_fastest_phase_has_the_largest_derivative():
+    for axis, frequency in [(REAL, 9.0), (IMAGINARY, 18.0)]:
+        # s = t^2, and s = ((1 + j) t)^2.
+        source = polynomial(1, axis=axis)
+        assert source.natural_frequency(3.0) == frequency, axis
+        assert source.at_frequency(frequency) == 3.0, axis
     # Phases p t, q t^2, p t - q t^2 and none: 1.25, t, abs(1.25 - t).
     source = every_kind()
     assert [source.fastest(t) for t in (0.5, 3.0)] == [1.25, 3.0]
-
-
-@pytest.mark.parametrize(("axis", "frequency"), [(REAL, 9.0), (IMAGINARY, 18.0)])
-def test_s_is_the_square_of_t_or_twice_that(axis, frequency):
-    # s = t^2, and s = ((1 + j) t)^2.
-    source = polynomial(1, axis=axis)
-    assert source.natural_frequency(3.0) == frequency
-    assert source.at_frequency(frequency) == 3.0
 
 
 def decay():
@@ -162,71 +162,145 @@ def polynomial(*coefficients, axis=REAL):
     return AxisFunction((AxisWave((0,), (0,), even, {}),), axis, Enclosures(2000, (), (arb(1),), (1,)))
 
 
-@pytest.mark.parametrize("digits", [5, 40, 300])
-@pytest.mark.parametrize("guess", [1.9999999, 2.0, 2 + 1e-12])
-def test_a_root_next_to_a_guess_is_enclosed(digits, guess):
-    # (t - 2)(t - 3)(t + 5)
-    source = polynomial(30, -19, 0, 1)
-    found = AxisNewton(digits).frequency(source, guess)
-    assert found.contains(4)
-    with precision(bits_of(digits)):
-        assert found.rad() < 4 * arb(10) ** -digits
+def test_a_root_next_to_a_guess_is_enclosed():
+    for digits in [5, 40, 300]:
+        for guess in [1.9999999, 2.0, 2 + 1e-12]:
+            # (t - 2)(t - 3)(t + 5)
+            source = polynomial(30, -19, 0, 1)
+            found = AxisNewton(digits).frequency(source, guess)
+            assert found.contains(4), (digits, guess)
+            with precision(bits_of(digits)):
+                assert found.rad() < 4 * arb(10) ** -digits, guess
 
 
-@pytest.mark.parametrize(("axis", "square"), [(REAL, 1), (IMAGINARY, 2)])
-@pytest.mark.parametrize("sign", [1, -1])
-def test_of_two_roots_close_together_the_one_next_to_the_guess_is_enclosed(sign, axis, square):
-    # (t - 1)^2 - 2^-60, times 2^60: 1 +- 2^-30.
-    source = polynomial(2**60 - 1, -(2**61), 2**60, axis=axis)
-    found = AxisNewton(30).frequency(source, 1 + sign * 2.0**-30)
-    with precision(400):
-        roots = [square * (1 + s * arb(2) ** -30) ** 2 for s in (sign, -sign)]
-        assert [found.contains(root) for root in roots] == [True, False]
+def test_of_two_roots_close_together_the_one_next_to_the_guess_is_enclosed():
+    for axis, square in [(REAL, 1), (IMAGINARY, 2)]:
+        for sign in [1, -1]:
+            # (t - 1)^2 - 2^-60, times 2^60: 1 +- 2^-30.
+            source = polynomial(2**60 - 1, -(2**61), 2**60, axis=axis)
+            found = AxisNewton(30).frequency(source, 1 + sign * 2.0**-30)
+            with precision(400):
+                roots = [square * (1 + s * arb(2) ** -30) ** 2 for s in (sign, -sign)]
+                assert [found.contains(root) for root in roots] == [True, False], (axis, sign)
 
 
-@pytest.mark.parametrize(
-    "coefficients",
-    [
+def test_no_root_is_enclosed_where_none_is_single_or_the_guess_too_large_for_doubles():
+    for coefficients in [
         (4, -4, 1),  # (t - 2)^2
         (5, -4, 1),  # (t - 2)^2 + 1
         (2**62 + 1, -(2**62), 2**60),  # (t - 2)^2 + 2^-60
         (-8, 12, -6, 1),  # (t - 2)^3
         (1,),
-    ],
-)
-@pytest.mark.parametrize("guess", [2.0, 2 + 2.0**-30, 2.001])
-def test_no_root_is_enclosed_where_none_is_single(coefficients, guess):
-    assert AxisNewton(20).frequency(polynomial(*coefficients), guess) is None
-
-
-def test_a_guess_too_large_for_doubles_encloses_nothing():
+    ]:
+        for guess in [2.0, 2 + 2.0**-30, 2.001]:
+            assert AxisNewton(20).frequency(polynomial(*coefficients), guess) is None
     one = Enclosures(64, (), (arb(1),), (2,))
     source = AxisFunction((AxisWave((0,), (1,), {}, {0: {(): 1}}),), REAL, one)
     assert AxisNewton(20).frequency(source, 1e200) is None
 
 
-@pytest.mark.parametrize(
-    ("low", "high", "changes"),
-    [(1.0, 2.5, True), (2.5, 4.0, True), (1.0, 4.0, False), (2.1, 2.9, False), (2.0, 2.5, False)],
-)
-def test_signs_are_opposite_about_one_root(low, high, changes):
-    # (t - 2)(t - 3); at a root there is no sign.
-    assert changes_sign(polynomial(6, -5, 1), low, high) is changes
+def test_signs_are_opposite_about_one_root():
+    for low, high, changes in [
+        (1.0, 2.5, True),
+        (2.5, 4.0, True),
+        (1.0, 4.0, False),
+        (2.1, 2.9, False),
+        (2.0, 2.5, False),
+    ]:
+        # (t - 2)(t - 3); at a root there is no sign.
+        assert changes_sign(polynomial(6, -5, 1), low, high) is changes
 
 
-@pytest.mark.parametrize("sign", [1, -1])
-@pytest.mark.parametrize(("low", "high", "root"), [(0.5, 2.9, 2), (2.1, 30.0, 3), (0.0, 2.0001, 2)])
-def test_newton_steps_between_two_places_end_at_the_root(low, high, root, sign):
-    source = polynomial(6 * sign, -5 * sign, sign)
-    assert bracketed(source, low, high) == pytest.approx(root, rel=10 * CLOSER)
-
-
-def test_newton_steps_that_lead_away_are_bisected():
+def test_newton_steps_between_two_places_end_at_the_root():
+    for sign in (1, -1):
+        for low, high, root in ((0.5, 2.9, 2), (2.1, 30.0, 3), (0.0, 2.0001, 2)):
+            source = polynomial(6 * sign, -5 * sign, sign)
+            assert bracketed(source, low, high) == pytest.approx(root, rel=10 * CLOSER), sign
     # t^7 - 1 from 1e-3 to 2e3: from the middle Newton's are short, and from next to 0 one leads far away.
     assert bracketed(polynomial(-1, 0, 0, 0, 0, 0, 0, 1), 1e-3, 2e3) == pytest.approx(1, rel=10 * CLOSER)
-
-
-def test_a_slope_of_zero_ends_no_search_for_a_root():
     # t^3 - 5 t^2 + 7 t - 1, stationary at 1 and at 7/3; its only root between 0 and 2 lies below 1.
     (root,) = (float(r.real) for r in np.roots([1, -5, 7, -1]) if abs(r.imag) < 1e-9 and 0 < r.real < 1)
     assert bracketed(polynomial(-1, 7, -5, 1), 0.0, 2.0) == pytest.approx(root, rel=10 * CLOSER)
+
+
+# ------------------------------------------------------------------- functions given by their formulas
+
+
+class Real:
+    """A function of t in balls, with its derivative; abs(s) is twice t."""
+
+    def __init__(self, value, slope, fastest=1.0):
+        self.value, self.slope, self.speed, self.asked = value, slope, fastest, []
+
+    def values(self, bits):
+        self.asked.append(bits)
+        return self
+
+    def value_and_slope(self, t):
+        return self.value(t), self.slope(t)
+
+    def fastest(self, t):
+        return self.speed
+
+    def natural_frequency(self, t):
+        return 2 * t
+
+
+COSINE = Real(lambda t: t.cos(), lambda t: -t.sin())
+SQUARE = Real(lambda t: t * t - 2, lambda t: 2 * t)
+
+
+def test_a_root_next_to_a_guess_is_enclosed_to_the_digits_wanted():
+    for digits in [5, 15, 30, 100, 400]:
+        for source, guess, root in [
+            (COSINE, 1.5707963267949, lambda: arb.pi() / 2),
+            (SQUARE, 1.41421356237309, lambda: arb(2).sqrt()),
+        ]:
+            found = AxisNewton(digits).frequency(source, guess)
+            with precision(3000):
+                assert found.contains(2 * root()) or abs(found.mid() - 2 * root()) <= found.rad() * 1.001, (
+                    digits
+                )
+                assert found.rad() < abs(found) * arb(10) ** -(digits + 1), (source, guess)
+
+
+def test_where_doubles_do_not_reach_nothing_is_known():
+    source = Real(lambda t: t - 1, lambda t: arb(1), fastest=inf)
+    assert AxisNewton(20).frequency(source, 1.0) is None
+    assert source.asked == []
+
+
+def test_no_more_precision_is_asked_for_than_the_digits_take():
+    source = Real(lambda t: t.cos(), lambda t: -t.sin())
+    AxisNewton(50).frequency(source, pi / 2)
+    assert max(source.asked) <= bits_of(50) < bits_for_digits(52) + 200
+    assert min(source.asked) >= 53
+
+
+def test_a_value_not_told_from_zero_has_no_sign():
+    assert not changes_sign(Real(lambda t: (t - 1) * (t - 3), lambda t: 2 * t - 4), 1.0, 2.0)
+    assert not changes_sign(Real(lambda t: arb(0, 1), lambda t: arb(1)), 1.0, 2.0)
+
+
+def test_a_root_between_two_places_of_opposite_sign_is_met():
+    for sign in [1, -1]:
+        for value, slope, low, high, root in [
+            (lambda t: t * t - 2, lambda t: 2 * t, 1.0, 2.0, sqrt(2)),
+            (lambda t: t.cos(), lambda t: -t.sin(), 0.1, 3.0, pi / 2),
+            # Newton's method alone leaves the interval.
+            (lambda t: (20 * (t - 1.1)).atan(), lambda t: 20 / (1 + 400 * (t - 1.1) ** 2), 0.5, 9.0, 1.1),
+            (lambda t: (t - 2) ** 2 - 0.25, lambda t: 2 * (t - 2), 1.0, 2.4, 1.5),
+            # No slope in the middle.
+            (lambda t: (t - 2) ** 3 + 0.125, lambda t: 3 * (t - 2) ** 2, 1.0, 3.0, 1.5),
+        ]:
+            source = Real(
+                lambda t, f=value, sign=sign: sign * f(t), lambda t, f=slope, sign=sign: sign * f(t)
+            )
+            assert bracketed(source, low, high) == pytest.approx(root, rel=1e-11), sign
+
+
+def test_precisions_are_few_and_enough():
+    for bits, most in [(10, 900), (64, 900), (65, 900), (700, 900), (880, 900), (1000, 900)]:
+        level = _level(bits, most)
+        assert min(bits, most) <= level <= most
+        assert len({_level(k, most) for k in range(1, 1000)}) < 12, bits

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import product
 from math import log, pi, sqrt
 
 import mpmath
@@ -66,75 +67,66 @@ FUNCTIONS = {
 }
 
 
-@pytest.mark.parametrize("axis", [REAL, IMAGINARY])
-@pytest.mark.parametrize("name", FUNCTIONS)
-def test_on_an_axis_it_is_the_same_function_but_for_one_exponential_and_one_number(name, axis):
-    sums = FUNCTIONS[name]
-    source = function_of((sums, 1)).on_axis(0, axis)
-    with mp.workdps(60), precision(200):
-        times = [mpf(k) / 8 for k in (3, 7, 11, 17, 29)]
-        unit = mpc(1, axis)
-        ratios = []
-        for t in times:
-            found = source.values(200).value(arb(float(t)))
-            ratios.append(value(sums, unit * t) / mpf(found.mid().str(50, radius=False)))
-        # exp(c t + d t^2) times a number: the logarithms of three differences are the same line.
-        logs = [mpmath.log(abs(ratio)) for ratio in ratios]
-        (a, b, c) = mpmath.lu_solve([[1, t, t * t] for t in times[:3]], logs[:3])
-        for t, each in zip(times, logs, strict=True):
-            assert abs(a + b * t + c * t * t - each) < 1e-20
-        # That number is the same for all, and real or not: it has one direction.
-        assert all(abs(mpmath.im(ratio / ratios[0])) < 1e-20 * abs(ratio / ratios[0]) for ratio in ratios)
-        assert all(mpmath.re(ratio / ratios[0]) > 0 for ratio in ratios)
+def test_on_an_axis_it_is_the_same_function_but_for_one_exponential_and_one_number():
+    for axis, name in product([REAL, IMAGINARY], FUNCTIONS):
+        sums = FUNCTIONS[name]
+        source = function_of((sums, 1)).on_axis(0, axis)
+        with mp.workdps(60), precision(200):
+            times = [mpf(k) / 8 for k in (3, 7, 11, 17, 29)]
+            unit = mpc(1, axis)
+            ratios = []
+            for t in times:
+                found = source.values(200).value(arb(float(t)))
+                ratios.append(value(sums, unit * t) / mpf(found.mid().str(50, radius=False)))
+            # exp(c t + d t^2) times a number: the logarithms of three differences are the same line.
+            logs = [mpmath.log(abs(ratio)) for ratio in ratios]
+            (a, b, c) = mpmath.lu_solve([[1, t, t * t] for t in times[:3]], logs[:3])
+            for t, each in zip(times, logs, strict=True):
+                assert abs(a + b * t + c * t * t - each) < 1e-20, (axis, name)
+            # That number is the same for all, and real or not: it has one direction.
+            assert all(
+                abs(mpmath.im(ratio / ratios[0])) < 1e-20 * abs(ratio / ratios[0]) for ratio in ratios
+            ), (axis, name)
+            assert all(mpmath.re(ratio / ratios[0]) > 0 for ratio in ratios), (axis, name)
 
 
-@pytest.mark.parametrize("axis", [REAL, IMAGINARY])
-@pytest.mark.parametrize("name", FUNCTIONS)
-def test_nothing_grows_on_an_axis_and_something_does_not_decay(name, axis):
-    source = function_of((FUNCTIONS[name], 1)).on_axis(0, axis)
-    assert any(not any(wave.growth) for wave in source.waves)
-    with precision(64):
-        rates = [source.enclosures.rate(wave.growth) for wave in source.waves]
-        assert all(linear * 50 + square * 2500 <= 0 for linear, square in rates)
+def test_nothing_grows_on_an_axis_wherever_the_fastest_exponential_stands():
+    for axis, name in product([REAL, IMAGINARY], FUNCTIONS):
+        source = function_of((FUNCTIONS[name], 1)).on_axis(0, axis)
+        assert any(not any(wave.growth) for wave in source.waves), (axis, name)
+        with precision(64):
+            rates = [source.enclosures.rate(wave.growth) for wave in source.waves]
+            assert all(linear * 50 + square * 2500 <= 0 for linear, square in rates), (axis, name)
+    for fastest in [(1, "cosh"), (2, "cosh")]:
+        # cosh(0.75 x)^2 and cosh(x^2/2) grow faster than cosh(1.25 x).
+        sums = ((1, 0, 0, ((0, "cosh"),)), (1, 0, 0, (fastest, fastest)))
+        source = function_of((sums, 1)).on_axis(0, REAL)
+        with precision(64):
+            rates = [source.enclosures.rate(wave.growth) for wave in source.waves]
+            assert all(linear * 50 + square * 2500 <= 0 for linear, square in rates), fastest
 
 
-@pytest.mark.parametrize(
-    ("sums", "axis"),
-    [
+def test_what_is_not_real_on_an_axis_is_none():
+    for sums, axis in [
         (((1, 0, 0, ((0, "cosh"),)), (1, 0, 0, ((0, "sin"),))), IMAGINARY),
         (((1, 0, 0, ()), (1, 1, 0, ())), IMAGINARY),
         (((1, 0, 0, ()), (1, 2, 0, ())), IMAGINARY),
         (((1, 0, 0, ((2, "cosh"),)), (1, 0, 0, ((2, "sinh"),))), IMAGINARY),
         (((1j, 0, 0, ()), (1, 0, 0, ((0, "cosh"),))), REAL),
-    ],
-)
-def test_what_is_not_real_on_an_axis_is_none(sums, axis):
-    # cosh((1 + j) t) + sin((1 + j) t), 1 + (1 + j) t, 1 + 2 j t^2, exp(j t^2), j + cosh(t)
-    assert function_of((sums, 1)).on_axis(0, axis) is None
-
-
-def test_what_turns_one_way_only_is_not_real():
+    ]:
+        # cosh((1 + j) t) + sin((1 + j) t), 1 + (1 + j) t, 1 + 2 j t^2, exp(j t^2), j + cosh(t)
+        assert function_of((sums, 1)).on_axis(0, axis) is None
     # exp(j x), with the smallest coefficient there is.
     alone = LosslessFunction(((ExponentialSum({((0, 0, 1),): {(): (1, 0)}}), 1),), function_of().enclosures)
     assert alone.on_axis(0, REAL) is None
 
 
-@pytest.mark.parametrize("fastest", [(1, "cosh"), (2, "cosh")])
-def test_the_fastest_exponential_is_taken_out_wherever_it_stands(fastest):
-    # cosh(0.75 x)^2 and cosh(x^2/2) grow faster than cosh(1.25 x).
-    sums = ((1, 0, 0, ((0, "cosh"),)), (1, 0, 0, (fastest, fastest)))
-    source = function_of((sums, 1)).on_axis(0, REAL)
-    with precision(64):
-        rates = [source.enclosures.rate(wave.growth) for wave in source.waves]
-        assert all(linear * 50 + square * 2500 <= 0 for linear, square in rates)
-
-
-@pytest.mark.parametrize(("argument", "turned"), [(0, 1.25 * 3 / sqrt(2)), (2, 0.5 * 9)])
-def test_a_growing_exponential_turns_forward(argument, turned):
-    # exp(1.25 x) at x = 3 exp(j pi/4), and exp(x^2/2)
-    growing = tuple((1, 0, 0, ((argument, name),)) for name in ("cosh", "sinh"))
-    function = function_of((growing, 1))
-    assert float(function.turn(log(9))) == pytest.approx(turned)
+def test_a_growing_exponential_turns_forward():
+    for argument, turned in [(0, 1.25 * 3 / sqrt(2)), (2, 0.5 * 9)]:
+        # exp(1.25 x) at x = 3 exp(j pi/4), and exp(x^2/2)
+        growing = tuple((1, 0, 0, ((argument, name),)) for name in ("cosh", "sinh"))
+        function = function_of((growing, 1))
+        assert float(function.turn(log(9))) == pytest.approx(turned), argument
 
 
 def test_each_factor_stands_by_itself_on_an_axis():
@@ -143,20 +135,17 @@ def test_each_factor_stands_by_itself_on_an_axis():
     assert waves == [3, 2]
 
 
-@pytest.mark.parametrize("radius", [3.2, 60.7])
-def test_turns_of_factors_add_up_by_their_exponents(radius):
-    alone = [function_of((each, 1)).turn(log(radius)) for each in (BENT, WAVE)]
-    together = function_of((BENT, 3), (WAVE, -2)).turn(log(radius))
-    assert abs(together - 3 * alone[0] + 2 * alone[1]) < 1e-12
-
-
-@pytest.mark.parametrize("z", [2.1, 4.3])
-def test_the_turn_is_that_from_the_real_to_the_imaginary_axis_of_s(z):
-    # s^2 + 9/3: roots +-j sqrt(3), each seen from the arc; and arg(s^2 + 3) itself.
-    function = function_of((POWER, 1))
-    radius = mpmath.exp(z)
-    turned = mpmath.arg((9 * (1j * radius) ** 2 + 9) / (9 * radius**2 + 9))
-    assert abs(abs(function.turn(z)) - abs(turned)) < 1e-9
+def test_turns_of_factors_add_up_by_their_exponents_from_the_real_to_the_imaginary_axis():
+    for radius in [3.2, 60.7]:
+        alone = [function_of((each, 1)).turn(log(radius)) for each in (BENT, WAVE)]
+        together = function_of((BENT, 3), (WAVE, -2)).turn(log(radius))
+        assert abs(together - 3 * alone[0] + 2 * alone[1]) < 1e-12, radius
+    for z in [2.1, 4.3]:
+        # s^2 + 9/3: roots +-j sqrt(3), each seen from the arc; and arg(s^2 + 3) itself.
+        function = function_of((POWER, 1))
+        radius = mpmath.exp(z)
+        turned = mpmath.arg((9 * (1j * radius) ** 2 + 9) / (9 * radius**2 + 9))
+        assert abs(abs(function.turn(z)) - abs(turned)) < 1e-9
 
 
 def test_estimates_add_up_by_exponents_and_are_off_by_less_than_a_turn_each():
@@ -180,6 +169,6 @@ def kernel_function(text):
     return KernelFunction(source, source.den)
 
 
-@pytest.mark.parametrize("text", [KELVIN_VOIGT, ON_A_FOUNDATION, DELAY_LOOP])
-def test_losses_foundations_and_delays_have_no_such_function(text):
-    assert lossless_function(kernel_function(text), 100) is None
+def test_losses_foundations_and_delays_have_no_such_function():
+    for text in [KELVIN_VOIGT, ON_A_FOUNDATION, DELAY_LOOP]:
+        assert lossless_function(kernel_function(text), 100) is None

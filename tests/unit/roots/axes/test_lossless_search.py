@@ -10,11 +10,14 @@ import pytest
 from flint import acb, arb
 from mpmath import mp, mpf
 
-from symflex.roots import precision
+from symflex.roots import Mode, Modes, precision
 from symflex.roots.axes.axis_function import IMAGINARY, REAL
 from symflex.roots.axes.lossless import LosslessSearch
 from symflex.roots.counting.winding import RootOnPathError
+from tests.unit.roots.distributed_models import FREE, SLIDING_FREE, bound
+from tests.unit.roots.distributed_models import ROD as ROD_WITH_A_MASS
 from tests.unit.roots.lossless_functions import RATES, function_of
+from tests.unit.roots.stand_ins import poles_by
 
 DIGITS = 20
 
@@ -58,13 +61,13 @@ def test_the_lowest_modes_are_found_up_to_between_the_last_and_the_next():
     assert all(root.on_imaginary_axis and not root.is_real and root.multiplicity == 1 for root in roots)
 
 
-@pytest.mark.parametrize("modes", [1, 3, 40])
-def test_so_many_modes_of_two_factors_are_the_lowest_of_both(modes):
-    every = sorted([clamped(n) for n in range(1, 60)] + [rod(n) for n in range(1, 60)])
-    roots, reached = search((CLAMPED, 1), (ROD, 1), order=2).lowest(modes)
-    assert len(roots) == modes
-    assert all(holds(root, value) for root, value in zip(roots, every, strict=False))
-    assert every[modes - 1] < exp(reached) < every[modes]
+def test_so_many_modes_of_two_factors_are_the_lowest_of_both():
+    every = sorted([clamped(n) for n in range(1, 25)] + [rod(n) for n in range(1, 25)])
+    for modes in (1, 3, 20):
+        roots, reached = search((CLAMPED, 1), (ROD, 1), order=2).lowest(modes)
+        assert len(roots) == modes
+        assert all(holds(root, value) for root, value in zip(roots, every, strict=False)), modes
+        assert every[modes - 1] < exp(reached) < every[modes]
 
 
 def test_a_multiple_root_is_as_many_modes():
@@ -92,43 +95,32 @@ def test_roots_on_the_real_axis_are_modes_too():
     assert (other.is_real, other.on_imaginary_axis, other.im > 0, other.re == 0) == (False, True, True, True)
 
 
-def test_modes_of_a_polynomial_end():
-    found = search((PAIR, 1), (REAL_PAIR, 2))
-    roots, reached = found.lowest(9)
+def test_modes_of_a_polynomial_end_and_a_denominator_has_none():
+    roots, reached = search((PAIR, 1), (REAL_PAIR, 2)).lowest(9)
     assert sorted((root.multiplicity, root.is_real) for root in roots) == [(1, False), (2, True)]
     assert exp(reached) > 9
+    alone = search((PAIR, -1))
+    assert alone.lowest(3) == ([], alone.smallest())
+    assert [root.is_real for root in search((PAIR, -1), (REAL_PAIR, 1)).lowest(3)[0]] == [True]
 
 
-def test_a_denominator_alone_has_nothing_to_find():
-    found = search((PAIR, -1))
-    assert found.lowest(3) == ([], found.smallest())
-
-
-def test_a_denominator_has_no_modes():
-    roots, _ = search((PAIR, -1), (REAL_PAIR, 1)).lowest(3)
-    assert [root.is_real for root in roots] == [True]
-
-
-@pytest.mark.parametrize("n", [1, 2, 7, 30])
-def test_a_circle_about_0_holds_both_roots_of_every_mode_below(n):
-    found = search((CLAMPED, 1), order=2)
-    between = (log(clamped(n)) + log(clamped(n + 1))) / 2
-    assert found.count(between) == 2 * n
-    close = 1e-6
-    assert found.count(log(clamped(n)) - close) == 2 * n - 2
-    assert found.count(log(clamped(n)) + close) == 2 * n
+def test_a_circle_about_0_holds_both_roots_of_every_mode_below_and_passes_through_none():
+    for n in [1, 2, 7, 30]:
+        found = search((CLAMPED, 1), order=2)
+        between = (log(clamped(n)) + log(clamped(n + 1))) / 2
+        assert found.count(between) == 2 * n
+        close = 1e-6
+        assert found.count(log(clamped(n)) - close) == 2 * n - 2
+        assert found.count(log(clamped(n)) + close) == 2 * n
+    for n in [1, 5]:
+        with pytest.raises(RootOnPathError):
+            search((CLAMPED, 1), order=2).count(float(log(clamped(n))))
 
 
 def test_roots_of_a_denominator_are_taken_away_and_those_at_0_left_out():
     found = search((PAIR, -1), (REAL_PAIR, 2), order=0)
     assert [found.count(log(radius)) for radius in (1, 2.5, 4)] == [0, -2, 2]
     assert search((PAIR, 1), order=2).count(log(3)) == 0
-
-
-@pytest.mark.parametrize("n", [1, 5])
-def test_a_circle_through_a_root_is_refused(n):
-    with pytest.raises(RootOnPathError):
-        search((CLAMPED, 1), order=2).count(float(log(clamped(n))))
 
 
 @dataclass(frozen=True)
@@ -141,56 +133,45 @@ class Turned:
         return self.quarters * arb.pi() / 2
 
 
-@pytest.mark.parametrize(("middle", "radius"), [(10, 0.1), (10, 0.49), (10.3, 0.1), (9.7, 0.1)])
-def test_a_turn_known_to_less_than_half_a_quarter_is_a_count(middle, radius):
-    assert LosslessSearch(Turned(arb(middle, radius)), 3, DIGITS).count(1.0) == 7
+def test_a_turn_is_a_count_where_it_is_known_to_less_than_half_a_quarter():
+    for middle, radius in ((10, 0.1), (10, 0.49), (10.3, 0.1), (9.7, 0.1)):
+        assert LosslessSearch(Turned(arb(middle, radius)), 3, DIGITS).count(1.0) == 7, (middle, radius)
+    for quarters in (arb(10, 0.51), arb(10.3, 0.3), arb(10.5, 0.01), arb("nan"), arb(0, "inf")):
+        with pytest.raises(RootOnPathError):
+            LosslessSearch(Turned(quarters), 3, DIGITS).count(1.0)
 
 
-@pytest.mark.parametrize(
-    "quarters", [arb(10, 0.51), arb(10.3, 0.3), arb(10.5, 0.01), arb("nan"), arb(0, "inf")]
-)
-def test_a_turn_known_less_well_is_none(quarters):
-    with pytest.raises(RootOnPathError):
-        LosslessSearch(Turned(quarters), 3, DIGITS).count(1.0)
-
-
-def test_between_two_radii_all_roots_are_found():
+def test_between_two_radii_all_roots_are_found_in_batches_without_a_gap():
     found = search((CLAMPED, 1), (ROD, 1), order=2)
     low, high = 30.0, 200.0
     every = sorted(w for n in range(1, 60) for w in (clamped(n), rod(n)) if low < w < high)
     roots = found.on_axes(log(low), log(high))
     assert len(roots) == len(every) > 20
     assert all(holds(root, value) for root, value in zip(roots, every, strict=True))
-
-
-def test_a_long_grid_is_sampled_in_batches_without_a_gap():
     found = search((ROD, 1))
     # One little above every odd multiple of pi, the last 1081 pi = 3396.
     assert len(found.between(0.5, 3400.0)) == 541
 
 
-@pytest.mark.parametrize("modes", [0, 3])
-def test_a_scan_finds_modes_and_all_up_to_a_radius(modes):
-    found = search((CLAMPED, 1), order=2)
-    asked = []
+def test_a_scan_finds_modes_or_all_up_to_a_radius_and_says_whether_they_are_all():
+    for modes in [0, 3]:
+        found = search((CLAMPED, 1), order=2)
+        asked = []
 
-    def is_complete():
-        asked.append(len(found.roots))
-        return True
+        def is_complete(asked=asked, found=found):
+            asked.append(len(found.roots))
+            return True
 
-    assert found.scan(modes, log(1000.0), is_complete) is True
-    assert len(found.roots) == sum(clamped(n) < 1000 for n in range(1, 30)) == asked[0] > 3
-    assert found.reached == log(1000.0)
-
-
-def test_a_scan_for_modes_beyond_a_radius_holds_these_and_says_whether_they_are_all():
+        assert found.scan(modes, log(1000.0), is_complete) is True
+        assert len(found.roots) == sum(clamped(n) < 1000 for n in range(1, 30)) == asked[0] > 3, modes
+        assert found.reached == log(1000.0), modes
     found = search((CLAMPED, 1), order=2)
     assert found.scan(20, log(1000.0), lambda: False) is False
     assert len(found.roots) == 20
     assert clamped(20) < exp(found.reached) < clamped(21)
 
 
-def test_before_a_scan_nothing_is_known():
+def test_before_a_scan_nothing_is_known_or_sought_far_below_the_first_frequency():
     found = search((CLAMPED, 1), order=2)
     assert (found.roots, found.reached, found.missing, found.excluded, found.holes) == (
         [],
@@ -201,34 +182,28 @@ def test_before_a_scan_nothing_is_known():
     )
     assert (found.is_even, found.left) == (True, pi / 2)
     assert found.passing(3.0) == 3.0
-
-
-def test_nothing_is_sought_far_below_the_first_frequency():
     found = search((CLAMPED, 1), order=2)
     assert found.smallest() == pytest.approx(log(found.function.first_frequency) - 30)
     assert found.smallest() < log(clamped(1)) - 25
 
 
-@pytest.mark.parametrize("number", [1, 2, 3, 10, 4000])
-def test_a_mode_by_its_number_is_that_one(number):
-    root = search((CLAMPED, 1), order=2).numbered(number)
-    assert holds(root, clamped(number))
-    assert (root.multiplicity, root.on_imaginary_axis) == (1, True)
+def test_a_mode_by_its_number_is_that_one_counted_by_multiplicity_on_both_axes():
+    for number in [1, 2, 3, 10, 4000]:
+        root = search((CLAMPED, 1), order=2).numbered(number)
+        assert holds(root, clamped(number))
+        assert (root.multiplicity, root.on_imaginary_axis) == (1, True), number
+    for number in [1, 2, 3, 4]:
+        # The rod's first mode lies between.
+        root = search((PAIR, 1), (REAL_PAIR, 2), (ROD, 1)).numbered(number)
+        every = sorted([(2, 1), (3, 2), (3, 2), (float(rod(1)), 1)])
+        assert (float(root.natural_frequency()), root.multiplicity) == pytest.approx(every[number - 1])
 
 
-@pytest.mark.parametrize("number", [1, 2, 3, 4])
-def test_numbers_count_by_multiplicity_on_both_axes(number):
-    # The rod's first mode lies between.
-    root = search((PAIR, 1), (REAL_PAIR, 2), (ROD, 1)).numbered(number)
-    every = sorted([(2, 1), (3, 2), (3, 2), (float(rod(1)), 1)])
-    assert (float(root.natural_frequency()), root.multiplicity) == pytest.approx(every[number - 1])
-
-
-@pytest.mark.parametrize(("axis", "count"), [(REAL, 3), (IMAGINARY, 2)])
-def test_factors_are_searched_on_the_axis_where_they_are_real(axis, count):
-    # exp(p x) is real on the real axis only, and a denominator has no roots.
-    growing = ((1, 0, 0, ((0, "cosh"),)), (1, 0, 0, ((0, "sinh"),)))
-    assert len(search((CLAMPED, 1), (PAIR, 1), (growing, 1), (REAL_PAIR, -1))._factors_on(axis)) == count
+def test_factors_are_searched_on_the_axis_where_they_are_real():
+    for axis, count in [(REAL, 3), (IMAGINARY, 2)]:
+        # exp(p x) is real on the real axis only, and a denominator has no roots.
+        growing = ((1, 0, 0, ((0, "cosh"),)), (1, 0, 0, ((0, "sinh"),)))
+        assert len(search((CLAMPED, 1), (PAIR, 1), (growing, 1), (REAL_PAIR, -1))._factors_on(axis)) == count
 
 
 def test_a_root_is_proved_where_a_guess_is_close_and_nowhere_else():
@@ -239,3 +214,25 @@ def test_a_root_is_proved_where_a_guess_is_close_and_nowhere_else():
     assert holds(root, clamped(3))
     assert root.enclosure().overlaps(acb(arb(0), arb(float(clamped(3)), 1e-9)))
     assert found._proved_at(source, source.at_frequency(float(clamped(3) + clamped(4)) / 2), exponent) is None
+
+
+# ------------------------------------------------------------------------ whole models
+
+
+def test_modes_by_number_are_those_of_the_list():
+    for text in (ROD_WITH_A_MASS, FREE, SLIDING_FREE):
+        source = bound(text, 0)
+        listed = [root for root in poles_by("lossless", source, Modes(6), DIGITS) if root.im > 0]
+        assert len(listed) == 6
+        for number, root in enumerate(listed, 1):
+            alone = [root for root in poles_by("lossless", source, Mode(number), DIGITS) if root.im > 0]
+            assert [r.decimal(15).im for r in alone] == [root.decimal(15).im], number
+
+
+def test_a_very_high_mode_of_a_rod_with_a_tip_mass():
+    # x tan x = 2, and omega = x.
+    with mp.workdps(50):
+        number = 10**9
+        (root, _) = poles_by("lossless", bound(ROD_WITH_A_MASS, 0), Mode(number), 30)
+        x = mpmath.findroot(lambda x: x * mp.sin(x) - 2 * mp.cos(x), (number - 1) * mp.pi + mpf(2) / number)
+        assert abs(mpf(root.decimal(30).im) - x) < mpf(10) ** -18

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
+from itertools import product
 from math import comb, prod
 
 import pytest
@@ -36,18 +37,19 @@ def taylor(values):
 FOUR = (Fraction(1, 2), Fraction(-1, 4), Fraction(3), Fraction(-5))
 
 
-@pytest.mark.parametrize(("points", "terms"), [(20, 16), (8, 8), (5, 16), (6, 3)])
-@pytest.mark.parametrize("shrunk", [0.25, 2.0**-6])
-def test_coefficients_are_enclosed_however_few_values_there_are(points, terms, shrunk):
-    function = known(*offsets(*(float(v) for v in FOUR)))
-    reach = arb(8)
-    bound = bound_on_circle(function, CENTRE, reach, 32)
-    series = sampled_series(function, CENTRE, reach, bound, 200, points, terms, shrunk)
-    assert len(series.coefficients) == min(points, terms)
-    expected = [*taylor(FOUR), *([0] * 20)]
-    with precision(200):
-        for found, exact in zip(series.coefficients, expected, strict=False):
-            assert found.contains(acb(arb(int(Fraction(exact).numerator)) / int(Fraction(exact).denominator)))
+def test_coefficients_are_enclosed_however_few_values_there_are():
+    for (points, terms), shrunk in product([(20, 16), (8, 8), (5, 16), (6, 3)], [0.25, 2.0**-6]):
+        function = known(*offsets(*(float(v) for v in FOUR)))
+        reach = arb(8)
+        bound = bound_on_circle(function, CENTRE, reach, 32)
+        series = sampled_series(function, CENTRE, reach, bound, 200, points, terms, shrunk)
+        assert len(series.coefficients) == min(points, terms), shrunk
+        expected = [*taylor(FOUR), *([0] * 20)]
+        with precision(200):
+            for found, exact in zip(series.coefficients, expected, strict=False):
+                assert found.contains(
+                    acb(arb(int(Fraction(exact).numerator)) / int(Fraction(exact).denominator))
+                ), (points, shrunk)
 
 
 def test_the_error_of_few_values_is_cauchys():
@@ -73,21 +75,18 @@ def test_no_series_is_made_of_values_that_are_no_numbers():
     assert bound_on_circle(function, CENTRE, arb(1), 8) is None
 
 
-@pytest.mark.parametrize("arcs", [1, 2, 16, 32])
-def test_the_bound_on_a_circle_is_at_least_the_largest_value_and_close_to_it(arcs):
-    # Of (s - c + 1/2)^3 on the unit circle about c: (3/2)^3, at the right.
-    function = known(*offsets(-0.5, -0.5, -0.5))
-    bound = float(bound_on_circle(function, CENTRE, arb(1), arcs))
-    assert bound >= 1.5**3
-    if arcs == 32:
-        assert bound < 1.5**3 * 1.6
-
-
-@pytest.mark.parametrize("direction", [(1, 0), (-1, 0), (0, 1), (0, -1), (-0.6, 0.8), (0.8, -0.6)])
-def test_the_largest_value_counts_wherever_it_lies(direction):
-    opposite = (arb(2) - arb(direction[0]) * 0.9, arb(3) - arb(direction[1]) * 0.9)
-    bound = bound_on_circle(known(*[opposite] * 6), CENTRE, arb(1), 16)
-    assert float(bound) >= 1.9**6 * (1 - 1e-9)
+def test_the_bound_on_a_circle_is_at_least_the_largest_value_wherever_it_lies_and_close_to_it():
+    for arcs in [1, 2, 16, 32]:
+        # Of (s - c + 1/2)^3 on the unit circle about c: (3/2)^3, at the right.
+        function = known(*offsets(-0.5, -0.5, -0.5))
+        bound = float(bound_on_circle(function, CENTRE, arb(1), arcs))
+        assert bound >= 1.5**3, arcs
+        if arcs == 32:
+            assert bound < 1.5**3 * 1.6, arcs
+    for direction in [(1, 0), (-1, 0), (0, 1), (0, -1), (-0.6, 0.8), (0.8, -0.6)]:
+        opposite = (arb(2) - arb(direction[0]) * 0.9, arb(3) - arb(direction[1]) * 0.9)
+        bound = bound_on_circle(known(*[opposite] * 6), CENTRE, arb(1), 16)
+        assert float(bound) >= 1.9**6 * (1 - 1e-9), direction
 
 
 def test_where_values_are_no_numbers_on_arcs_these_are_cut():
@@ -101,23 +100,24 @@ def test_where_values_are_no_numbers_on_arcs_these_are_cut():
     assert 25 * 0.9 < float(bound_on_circle(function, acb(0), arb(5), 4)) < 25 * 1.5
 
 
-@pytest.mark.parametrize("arcs", [1, 3, 16])
-@pytest.mark.parametrize("narrow", [1.0, 0.1])
-def test_the_circle_is_covered_whatever_arcs_it_is_cut_into(arcs, narrow):
-    seen = []
-
+def test_the_circle_is_covered_whatever_arcs_it_is_cut_into():
     @dataclass(frozen=True, eq=False)
     class Recorded(KnownFunction):
+        narrow: float = 1.0
+        seen: list = field(default_factory=list)
+
         def value(self, s, bits):
-            if max(s.real.rad(), s.imag.rad()) > 5 * narrow:
+            if max(s.real.rad(), s.imag.rad()) > 5 * self.narrow:
                 return acb("nan")
-            seen.append(s)
+            self.seen.append(s)
             return acb(1)
 
-    assert float(bound_on_circle(Recorded((((0,), 1),)), CENTRE, arb(5), arcs)) == 1
-    for k in range(720):
-        point = CENTRE + 5 * (acb(0, arb(k) / 720) * 2 * arb.pi()).exp()
-        assert any(ball.contains(point.mid()) for ball in seen), k
+    for narrow, arcs in ((1.0, 1), (1.0, 16), (0.1, 3)):
+        function = Recorded((((0,), 1),), narrow=narrow)
+        assert float(bound_on_circle(function, CENTRE, arb(5), arcs)) == 1
+        for k in range(720):
+            point = CENTRE + 5 * (acb(0, arb(k) / 720) * 2 * arb.pi()).exp()
+            assert any(ball.contains(point.mid()) for ball in function.seen), (narrow, arcs, k)
 
 
 def test_nothing_is_bounded_where_a_function_branches():
@@ -135,9 +135,8 @@ def told(*sizes, reach=8.0, bound=0.0):
     return LocalSeries(CENTRE, tuple(acb(size) for size in sizes), arb(reach), arb(bound))
 
 
-@pytest.mark.parametrize(
-    ("sizes", "radius", "count"),
-    [
+def test_one_term_has_to_outweigh_all_others():
+    for sizes, radius, count in [
         ([3, 1, 1], 1, 0),
         ([1, 3, 1], 1, 1),
         ([-1, 1, 2.5], 1, 2),
@@ -149,34 +148,33 @@ def told(*sizes, reach=8.0, bound=0.0):
         ([1, 2.5, 1], 2, None),
         ([1, 1, 1], 2, 2),
         ([0, 0, 0], 1, None),
-    ],
-)
-def test_one_term_has_to_outweigh_all_others(sizes, radius, count):
-    assert told(*sizes).count(arb(radius)) == count
+    ]:
+        assert told(*sizes).count(arb(radius)) == count
 
 
-@pytest.mark.parametrize(("bound", "count"), [(0.99, 1), (1.01, None)])
-def test_what_is_missing_of_a_series_weighs_by_cauchys_estimate(bound, count):
-    # Three terms: bound * (1/8)^3 / (1 - 1/8) on the unit circle, here as much as 1 at bound = 448.
-    assert told(1, 3, 1, bound=448 * bound).count(arb(1)) == count
+def test_one_term_and_what_is_missing_have_to_be_weighed_within_the_reach():
+    for bound, count in [(0.99, 1), (1.01, None)]:
+        # Three terms: bound * (1/8)^3 / (1 - 1/8) on the unit circle, here as much as 1 at bound = 448.
+        assert told(1, 3, 1, bound=448 * bound).count(arb(1)) == count
+    for radius, count in [(7.99, 0), (8, None), (9, None)]:
+        assert told(1).count(arb(radius)) == count
 
 
-@pytest.mark.parametrize(("radius", "count"), [(7.99, 0), (8, None), (9, None)])
-def test_nothing_is_counted_beyond_the_reach(radius, count):
-    assert told(1).count(arb(radius)) == count
+def test_roots_closer_than_a_radius_are_counted():
+    for power, (radius, inside) in product([1, 2], [(0.4, 0), (0.7, 1), (1.6, 2), (5, 3)]):
+        # Far enough apart for one term to tell: at 0.5 (1 - 1/64), 1 / 8, ...
+        values = {
+            0.4: (2.0, 40.0, 90.0),
+            0.7: (0.05, 40.0, 90.0),
+            1.6: (0.05, -0.1, 90.0),
+            5: (0.05, -0.1, 0.5),
+        }
+        function = known(*offsets(*values[radius]), power=power)
+        series = local_series(function, CENTRE, arb(100), 300, 40)
+        assert series.count(arb(radius)) == inside * power
 
 
-@pytest.mark.parametrize("power", [1, 2])
-@pytest.mark.parametrize(("radius", "inside"), [(0.4, 0), (0.7, 1), (1.6, 2), (5, 3)])
-def test_roots_closer_than_a_radius_are_counted(radius, inside, power):
-    # Far enough apart for one term to tell: at 0.5 (1 - 1/64), 1 / 8, ...
-    values = {0.4: (2.0, 40.0, 90.0), 0.7: (0.05, 40.0, 90.0), 1.6: (0.05, -0.1, 90.0), 5: (0.05, -0.1, 0.5)}
-    function = known(*offsets(*values[radius]), power=power)
-    series = local_series(function, CENTRE, arb(100), 300, 40)
-    assert series.count(arb(radius)) == inside * power
-
-
-def test_a_series_about_another_point_is_taylors():
+def test_a_series_about_another_point_within_its_reach_is_taylors():
     values = (Fraction(1, 2), Fraction(-1), Fraction(3, 4))
     coefficients = taylor(values)
     series = told(*(float(c) for c in coefficients), reach=8.0, bound=700.0)
@@ -186,35 +184,29 @@ def test_a_series_about_another_point_is_taylors():
     )
     # Terms from the fourth on, at 0.75 of 8.
     assert float(rest) == pytest.approx(700 * (0.75 / 8) ** 4 / (1 - 0.75 / 8), rel=1e-9)
+    for radius, is_told in [(6.9, True), (7.1, False)]:
+        assert (told(1, 2, 3).around(CENTRE + acb(0, 1), arb(radius)) is not None) is is_told
 
 
-@pytest.mark.parametrize(("radius", "is_told"), [(6.9, True), (7.1, False)])
-def test_a_series_is_not_moved_out_of_its_reach(radius, is_told):
-    assert (told(1, 2, 3).around(CENTRE + acb(0, 1), arb(radius)) is not None) is is_told
-
-
-@pytest.mark.parametrize("values", [(0.01,), (0.01, -0.03), (0.01, 0.02, -0.06)])
-def test_the_middle_of_some_roots_is_their_mean(values):
-    near = [Fraction(v).limit_denominator(100) for v in values]
-    coefficients = taylor([*near])
-    mean = 2 + float(sum(near)) / len(near)
-    found = told(*(float(c) for c in coefficients)).middle(len(values))
-    assert complex(found) == pytest.approx(mean + 3j)
-    assert float(found.real.rad()) == 0
-
-
-def test_there_is_no_middle_where_the_highest_term_is_unknown():
+def test_the_middle_of_some_roots_is_their_mean_if_the_highest_term_is_known():
+    for values in [(0.01,), (0.01, -0.03), (0.01, 0.02, -0.06)]:
+        near = [Fraction(v).limit_denominator(100) for v in values]
+        coefficients = taylor([*near])
+        mean = 2 + float(sum(near)) / len(near)
+        found = told(*(float(c) for c in coefficients)).middle(len(values))
+        assert complex(found) == pytest.approx(mean + 3j), values
+        assert float(found.real.rad()) == 0, values
     assert told(1, 1, 0).middle(2) is None
 
 
-@pytest.mark.parametrize("points", [10, 30])
-def test_a_series_of_a_function_has_the_reach_and_the_bound_it_was_made_with(points):
-    function = known(*offsets(3.0))
-    series = local_series(function, CENTRE, arb(2), 128, points)
-    assert float(series.reach) == 2
-    assert 5 <= float(series.bound) < 6
-    assert series.centre == CENTRE
-    assert len(series.coefficients) == min(16, points)
+def test_a_series_of_a_function_has_the_reach_and_the_bound_it_was_made_with():
+    for points in [10, 30]:
+        function = known(*offsets(3.0))
+        series = local_series(function, CENTRE, arb(2), 128, points)
+        assert float(series.reach) == 2, points
+        assert 5 <= float(series.bound) < 6, points
+        assert series.centre == CENTRE, points
+        assert len(series.coefficients) == min(16, points)
 
 
 def test_binomials_come_out():

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from math import pi, sqrt
+from math import pi
 
 import mpmath
 import numpy as np
 import pytest
 
-from symflex.roots import Modes, Rectangle
+from symflex.roots import Modes
 from symflex.roots.locate import locate
 from tests.unit.roots.distributed_models import bound
 
@@ -71,17 +71,10 @@ def sine_modes(e, c, most):
     return sorted(map(complex, found), key=abs)
 
 
-@pytest.mark.parametrize("damping", [0.0, pytest.param(2.0, marks=pytest.mark.slow)])
 @pytest.mark.slow
-def test_pinned_coupled_bending_and_torsion_solves_a_quartic_per_mode(damping):
-    found = upper(blade(PINNED, c=f"{damping} N*s/m^2"), Modes(6))
-    assert found == pytest.approx(sine_modes(0.008, damping, 12)[:6], rel=1e-9, abs=1e-7)
-
-
-@pytest.mark.slow
-def test_undamped_poles_of_coupled_fields_lie_exactly_on_the_axis():
-    poles = locate(bound(blade(CLAMPED, output="w(l)")), Modes(3)).poles
-    assert all(root.on_imaginary_axis for root in poles)
+def test_pinned_coupled_bending_and_torsion_solves_a_quartic_per_mode():
+    found = upper(blade(PINNED, c="2 N*s/m^2"), Modes(3))
+    assert found == pytest.approx(sine_modes(0.008, 2.0, 12)[:3], rel=1e-9, abs=1e-7)
 
 
 def moments_and_force(s):
@@ -98,24 +91,14 @@ def moments_and_force(s):
 
 @pytest.mark.slow
 def test_a_clamped_blade_against_shooting():
-    found = upper(blade(CLAMPED, output="w(l)"), Modes(5))
+    found = locate(bound(blade(CLAMPED, output="w(l)")), Modes(3), 12)
+    assert found.certificate.certified
+    assert all(root.on_imaginary_axis for root in found.poles)
+    omega = [float(root.im.mid()) for root in found.poles if root.im > 0]
     with mpmath.workdps(30):
-        expected = [complex(mpmath.findroot(moments_and_force, s)) for s in found]
-    assert len(found) == 5
-    assert [s.imag for s in found] == pytest.approx([s.imag for s in expected], rel=1e-9)
-
-
-@pytest.mark.slow
-@pytest.mark.slow
-def test_a_blade_that_is_hardly_coupled_bends_and_twists_by_itself():
-    # Blevins 1979: cos x cosh x = -1, and (2 n - 1) pi/2 of a clamped-free shaft.
-    bending = [
-        x**2 * sqrt(BENDING / MASS) / LENGTH**2
-        for x in (1.8751040687119611, 4.694091132974175, 7.854757438237613, 10.995540734875467)
-    ]
-    torsion = [(2 * n - 1) * pi / 2 * sqrt(TORSION / POLAR) / LENGTH for n in (1, 2)]
-    found = upper(blade(CLAMPED, e="1 nm", output="w(l) + l*phi(l)"), Modes(4))
-    assert [s.imag for s in found] == pytest.approx(sorted(bending + torsion)[:4], rel=1e-7)
+        expected = [complex(mpmath.findroot(moments_and_force, 1j * w)).imag for w in omega]
+    assert len(omega) == 3
+    assert omega == pytest.approx(expected, rel=1e-9)
 
 
 SANDWICH = """
@@ -140,13 +123,6 @@ slope = "w'(l)"
 @pytest.mark.slow
 def test_a_simply_supported_sandwich_beam_has_modes_of_sines():
     # Mead and Markus 1969: D k^6 + D g (1 + Y) k^4 = m omega^2 (k^2 + g), k = n pi.
-    k = np.arange(1, 6) * pi
+    k = np.arange(1, 4) * pi
     expected = np.sqrt((50 * k**6 + 50 * 40 * 4 * k**4) / (1.2 * (k**2 + 40)))
-    assert [s.imag for s in upper(SANDWICH, Modes(5))] == pytest.approx(list(expected), rel=1e-9)
-
-
-@pytest.mark.slow
-def test_a_region_of_coupled_bending_and_torsion_is_certified():
-    expected = [s for s in sine_modes(0.008, 2.0, 12) if 500 < s.imag < 2000]
-    found = upper(blade(PINNED, c="2 N*s/m^2"), Rectangle(-50, 0, 500, 2000))
-    assert found == pytest.approx(expected, rel=1e-9)
+    assert [s.imag for s in upper(SANDWICH, Modes(3))] == pytest.approx(list(expected), rel=1e-9)

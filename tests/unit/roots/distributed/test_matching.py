@@ -54,24 +54,21 @@ def matched(poles, zeros):
     return places(shared), places(sides[0].roots), places(sides[1].roots)
 
 
-def test_what_poles_and_zeros_do_not_share_stays():
+def test_what_poles_and_zeros_share_is_neither_and_all_else_stays():
     assert matched([root(-1, 2)], [root(-1, 3), root(-2, 2)]) == (
         [],
         [(-1, 2, 1)],
         [(-1, 3, 1), (-2, 2, 1)],
     )
-
-
-def test_a_shared_root_is_neither_pole_nor_zero():
     poles, zeros = [root(-1, 2), root(-3, 0)], [root(-4, 0), root(-1, 2)]
     assert matched(poles, zeros) == ([(-1, 2, 1)], [(-3, 0, 1)], [(-4, 0, 1)])
 
 
-@pytest.mark.parametrize(("pole", "zero"), [(3, 1), (1, 3), (2, 2)])
-def test_of_a_multiple_root_the_smaller_multiplicity_is_shared(pole, zero):
-    both = min(pole, zero)
-    left = [[(-1, 2, n - both)] if n > both else [] for n in (pole, zero)]
-    assert matched([root(-1, 2, pole)], [root(-1, 2, zero)]) == ([(-1, 2, both)], *left)
+def test_of_a_multiple_root_the_smaller_multiplicity_is_shared():
+    for pole, zero in [(3, 1), (1, 3), (2, 2)]:
+        both = min(pole, zero)
+        left = [[(-1, 2, n - both)] if n > both else [] for n in (pole, zero)]
+        assert matched([root(-1, 2, pole)], [root(-1, 2, zero)]) == ([(-1, 2, both)], *left)
 
 
 def test_enclosures_that_overlap_and_centre_elsewhere_are_not_shared():
@@ -80,10 +77,10 @@ def test_enclosures_that_overlap_and_centre_elsewhere_are_not_shared():
     assert len(matched([root(-1, 2, size=0.1)], [root(-1, 2, size=0.01)])[0]) == 1
 
 
-@pytest.mark.parametrize(("one", "other"), [(True, False), (False, True), (True, True)])
-def test_what_is_shared_is_certified_where_both_are(one, other):
-    sides = StandIn([root(-1, 2, certified=one)]), StandIn([root(-1, 2, certified=other)])
-    assert [r.certified for r in _match(*sides)] == [one and other]
+def test_what_is_shared_is_certified_where_both_are():
+    for one, other in [(True, False), (False, True), (True, True)]:
+        sides = StandIn([root(-1, 2, certified=one)]), StandIn([root(-1, 2, certified=other)])
+        assert [r.certified for r in _match(*sides)] == [one and other]
 
 
 def test_modes_are_asked_for_until_enough_are_left():
@@ -95,12 +92,15 @@ def test_modes_are_asked_for_until_enough_are_left():
     assert zeros.asked == poles.asked
 
 
-def test_so_many_modes_are_lacking_that_it_is_given_up():
-    class Sharing(StandIn):
-        def extend(self, modes, radius=-inf):
-            super().extend(modes, radius)
-            self.roots = [root(-1, 2)]
+class Sharing(StandIn):
+    """A side that finds the same root in every round."""
 
+    def extend(self, modes, radius=-inf):
+        super().extend(modes, radius)
+        self.roots = [root(-1, 2)]
+
+
+def test_so_many_modes_are_lacking_that_it_is_given_up():
     poles, zeros = Sharing([], modes=1), Sharing([], modes=1)
     with pytest.raises(
         BudgetError, match=r"SF505.*: too many poles and zeros coincide to tell the modes"
@@ -111,25 +111,15 @@ def test_so_many_modes_are_lacking_that_it_is_given_up():
 
 
 def test_zeros_may_be_fewer_than_modes_asked_for():
-    class Sharing(StandIn):
-        def extend(self, modes, radius=-inf):
-            super().extend(modes, radius)
-            self.roots = [root(-1, 2)]
-
     shared = _find((Sharing([], modes=3), Sharing([], modes=0)), Modes(3))
     assert places(shared) == [(-1, 2, 1)]
 
 
-@pytest.mark.parametrize("modes", [3, 4])
-def test_modes_left_that_are_enough_are_not_asked_for_again(modes):
-    class Sharing(StandIn):
-        def extend(self, modes, radius=-inf):
-            super().extend(modes, radius)
-            self.roots = [root(-1, 2)]
-
-    sides = Sharing([], modes=modes), Sharing([], modes=modes)
-    assert places(_find(sides, Modes(3))) == [(-1, 2, 1)]
-    assert [asked for asked, _ in sides[0].asked] == [3, 0]
+def test_modes_left_that_are_enough_are_not_asked_for_again():
+    for modes in (3, 4):
+        sides = Sharing([], modes=modes), Sharing([], modes=modes)
+        assert places(_find(sides, Modes(3))) == [(-1, 2, 1)]
+        assert [asked for asked, _ in sides[0].asked] == [3, 0], modes
 
 
 def test_a_region_is_searched_once_on_both_sides():
@@ -145,13 +135,10 @@ def test_a_region_is_searched_once_on_both_sides():
 FIVE = [root(0, 0, 2), root(0, 4), root(0, -4), root(-7, 0, 2), root(0, 9), root(0, -9)]
 
 
-@pytest.mark.parametrize(("count", "upto"), [(0, 1), (1, 3), (2, 4), (3, 4), (4, 6), (9, 6)])
-def test_the_lowest_modes_come_with_their_mirror_images_and_the_roots_at_0(count, upto):
-    assert places(_lowest(FIVE, count)) == places(FIVE[:upto])
-    assert places(_chosen(FIVE[::-1], Modes(count))) == places(_lowest(FIVE, count))
-
-
-def test_of_a_mode_by_its_number_all_that_was_found_is_chosen():
+def test_the_lowest_modes_come_with_their_mirror_images_and_a_numbered_one_with_all_that_was_found():
+    for count, upto in [(0, 1), (1, 3), (2, 4), (3, 4), (4, 6), (9, 6)]:
+        assert places(_lowest(FIVE, count)) == places(FIVE[:upto])
+        assert places(_chosen(FIVE[::-1], Modes(count))) == places(_lowest(FIVE, count))
     assert sorted(places(_chosen(FIVE, Mode(3)))) == sorted(places(FIVE))
 
 
@@ -160,43 +147,35 @@ def test_of_a_rectangle_what_lies_outside_is_left_out_and_what_lies_on_it_marked
     assert [(float(r.im), r.on_boundary) for r in found] == [(0, False), (4, False), (-4, True)]
 
 
-@pytest.mark.parametrize(
-    ("analysis", "region"),
-    [
+def test_without_a_region_the_models_own_is_searched():
+    for analysis, region in [
         ("", Modes(5)),
         ("[analysis]\nmodes = 3", Modes(3)),
         ('[analysis]\nband = ["1 Hz", "9 Hz"]', Band(Fraction(1), Fraction(9))),
-    ],
-)
-def test_without_a_region_the_models_own_is_searched(analysis, region):
-    model = pipeline.loads(ROD + analysis)
-    assert default_region(pipeline.derive_bound(model, model.transfer_functions)[0]) == region
+    ]:
+        model = pipeline.loads(ROD + analysis)
+        assert default_region(pipeline.derive_bound(model, model.transfer_functions)[0]) == region, analysis
 
 
-@pytest.mark.parametrize(
-    ("text", "points"),
-    [
+def test_wavenumbers_vanish_where_their_law_does():
+    for text, points in (
         # gamma = s; q^4 = s^2/4; gamma^2 = s^2 + 1
         (ROD, [(0, 0, 2)]),
         (SLIDING_FREE, [(0, 0, 2)]),
         (ON_A_FOUNDATION, [(0, -1, 1), (0, 1, 1)]),
         (KELVIN_VOIGT, [(0, 0, 2)]),
-    ],
-)
-def test_wavenumbers_vanish_where_their_law_does(text, points):
-    assert sorted(places(_degenerate_points(bound(text)))) == points
+    ):
+        assert sorted(places(_degenerate_points(bound(text)))) == points
 
 
-@pytest.mark.parametrize(
-    ("point", "re", "im"), [(2j, 0.0, 2.0), (-5 + 0j, -5.0, 0.0), (3 + 4j, 3.0, 4.0), (5 + 0j, 5.0, 0.0)]
-)
-def test_a_neighbourhood_left_out_is_said_as_a_disc_about_its_point(point, re, im):
-    z = complex(log(abs(point)), phase(point))
-    found = _exclusion(Cell(z.real - 0.05, z.real + 0.05, z.imag - 0.05, z.imag + 0.05))
-    assert (found.re, found.im) == pytest.approx((re, im), abs=1e-12)
-    # What lies on an axis lies on it exactly.
-    assert all(x == y for x, y in ((found.re, re), (found.im, im)) if y == 0)
-    assert found.reason == "infinitely many roots accumulate there"
-    # All of the neighbourhood is in it, its farthest corner on its edge.
-    farthest = abs(point) * abs(cexp(0.05 + 0.05j) - 1)
-    assert found.radius == pytest.approx(farthest)
+def test_a_neighbourhood_left_out_is_said_as_a_disc_about_its_point():
+    for point, re, im in [(2j, 0.0, 2.0), (-5 + 0j, -5.0, 0.0), (3 + 4j, 3.0, 4.0), (5 + 0j, 5.0, 0.0)]:
+        z = complex(log(abs(point)), phase(point))
+        found = _exclusion(Cell(z.real - 0.05, z.real + 0.05, z.imag - 0.05, z.imag + 0.05))
+        assert (found.re, found.im) == pytest.approx((re, im), abs=1e-12)
+        # What lies on an axis lies on it exactly.
+        assert all(x == y for x, y in ((found.re, re), (found.im, im)) if y == 0), (point, re)
+        assert found.reason == "infinitely many roots accumulate there", (point, re)
+        # All of the neighbourhood is in it, its farthest corner on its edge.
+        farthest = abs(point) * abs(cexp(0.05 + 0.05j) - 1)
+        assert found.radius == pytest.approx(farthest), (point, re)

@@ -166,7 +166,7 @@ def test_what_cancelled_is_searched_for_with_its_multiplicity(world):
     assert (shown.certificate.counted, shown.certificate.found) == (2, 2)
 
 
-def test_what_poles_and_zeros_share_is_hidden_and_said(world):
+def test_what_poles_and_zeros_share_is_hidden_and_said_once(world):
     world.sides["poles"] = Known([*pair(-1, 9), root(-2, 0)])
     world.sides["zeros"] = Known(pair(-1, 9))
     shown = world.locate()
@@ -175,9 +175,6 @@ def test_what_poles_and_zeros_share_is_hidden_and_said(world):
         ((-1, 9, 1), "coincident"),
         ((-1, -9, 1), "coincident"),
     ]
-
-
-def test_what_cancelled_is_not_told_twice(world):
     world.sides["poles"], world.sides["zeros"] = Known(pair(-1, 9)), Known(pair(-1, 9))
     world.sides["hidden"] = Known(pair(-1, 9))
     assert [h.cause for h in world.locate().hidden] == ["cancelled", "cancelled"]
@@ -193,7 +190,7 @@ def test_where_wavenumbers_meet_or_vanish_nothing_is_hidden_but_at_0(world):
     assert world.locate(ON_A_FOUNDATION).hidden == ()
 
 
-def test_what_cancelled_belongs_to_modes_up_to_the_highest_pole(world):
+def test_what_cancelled_belongs_to_modes_up_to_the_highest_pole_or_has_its_own(world):
     world.sides["poles"] = Known([*pair(0, 9), *pair(0, 20), *pair(0, 30)])
     world.sides["hidden"] = Known([*pair(0, 15), *pair(0, 25)])
     shown = world.locate(region=Modes(2))
@@ -205,9 +202,6 @@ def test_what_cancelled_belongs_to_modes_up_to_the_highest_pole(world):
     assert float(search[1].high) == pytest.approx(20 / (2 * pi))
     # Poles and zeros are counted where they were searched.
     assert world.sides["poles"].asked[-1] == ("prove", Modes(2))
-
-
-def test_without_any_pole_what_cancelled_has_modes_of_its_own(world):
     world.sides["poles"] = Known([root(0, 0)])
     world.sides["hidden"] = Known([*pair(0, 15), *pair(0, 25)])
     shown = world.locate(region=Modes(1))
@@ -226,38 +220,32 @@ def test_a_function_that_is_zero_has_hidden_modes_only(world):
     assert shown.verdict.word == "unstable"
 
 
-def test_a_search_of_polynomials_only_says_so(world):
-    for side in world.sides.values():
-        side.is_finite = True
-    assert world.locate().certificate.engine == POLYNOMIAL
-
-
-def test_neighbourhoods_left_out_are_told_once_from_the_inside_outwards(world):
+def test_neighbourhoods_left_out_are_told_once_and_a_search_of_polynomials_only_says_so(world):
     near, far = Cell(log(2) - 0.1, log(2) + 0.1, 3.0, 3.3), Cell(log(8) - 0.1, log(8) + 0.1, 3.0, 3.3)
     world.sides["poles"] = Known([], holes=(far, near))
     world.sides["zeros"] = Known([], holes=(far,))
     shown = world.locate()
     assert [round(hole.re) for hole in shown.excluded] == [-2, -8]
+    for side in world.sides.values():
+        side.is_finite = True
+    assert world.locate().certificate.engine == POLYNOMIAL
 
 
 # ------------------------------------------------------------ what was not proved
 
 
-@pytest.mark.parametrize(
-    ("proofs", "reason"),
-    [
+def test_why_it_is_not_proved_is_said_once(world):
+    for proofs, reason in [
         ([Proof(5, 3), Proof(0, 0), Proof(0, 0)], "2 roots were counted but not found"),
         ([Proof(0, 0), Proof(3, 5), Proof(0, 0)], "2 roots were counted but not found"),
         ([Proof(0, 0), Proof(4, 4, "why"), Proof(1, 1, "how")], "why; how"),
         ([Proof(0, 0, "why"), Proof(0, 0), Proof(0, 0, "why")], "why"),
-    ],
-)
-def test_why_it_is_not_proved_is_said_once(world, proofs, reason):
-    for side, proof in zip(world.sides.values(), proofs, strict=True):
-        side.proof = proof
-    told = world.locate().certificate
-    assert (told.certified, told.reason) == (False, reason)
-    assert (told.is_exceeded, told.code) == (False, None)
+    ]:
+        for side, proof in zip(world.sides.values(), proofs, strict=True):
+            side.proof = proof
+        told = world.locate().certificate
+        assert (told.certified, told.reason) == (False, reason), proofs
+        assert (told.is_exceeded, told.code) == (False, None), proofs
 
 
 def test_roots_missing_are_counted(world):
@@ -267,11 +255,13 @@ def test_roots_missing_are_counted(world):
     assert (told.counted, told.found) == (5, 2)
 
 
-@pytest.mark.parametrize("name", ["poles", "zeros", "hidden"])
-def test_roots_that_are_not_told_apart_are_no_certificate(world, name):
-    world.sides[name] = Known([root(-1, 9, 2, 0.1, certified=False), root(-2, 0)])
-    told = world.locate().certificate
-    assert (told.certified, told.reason) == (False, "some roots could not be told apart")
+def test_roots_that_are_not_told_apart_are_no_certificate(world):
+    for name in ["poles", "zeros", "hidden"]:
+        before = world.sides[name]
+        world.sides[name] = Known([root(-1, 9, 2, 0.1, certified=False), root(-2, 0)])
+        told = world.locate().certificate
+        world.sides[name] = before
+        assert (told.certified, told.reason) == (False, "some roots could not be told apart"), name
 
 
 def test_after_a_search_repeated_with_proof_what_is_shared_is_taken_out_anew(world):
@@ -290,11 +280,11 @@ def test_a_repeated_search_does_not_hide_what_is_not_proved(world):
     assert world.locate().certificate.reason == "why"
 
 
-@pytest.mark.parametrize(("modes", "reason"), [(1, True), (2, None)])
-def test_too_few_modes_left_after_a_repeated_search_are_said(world, modes, reason):
-    world.sides["poles"] = Known([], modes=modes, engine_after="subdivision")
-    told = world.locate(region=Modes(2)).certificate
-    assert told.reason == (reason and "too many poles and zeros coincide to tell the modes")
+def test_too_few_modes_left_after_a_repeated_search_are_said(world):
+    for modes, reason in [(1, True), (2, None)]:
+        world.sides["poles"] = Known([], modes=modes, engine_after="subdivision")
+        told = world.locate(region=Modes(2)).certificate
+        assert told.reason == (reason and "too many poles and zeros coincide to tell the modes"), modes
 
 
 # ------------------------------------------------------------ one mode by its number
@@ -328,84 +318,70 @@ def test_the_number_of_a_lossless_mode_needs_no_other_proof(world):
     assert all(("prove", Modes(3)) not in side.asked for side in world.sides.values())
 
 
-@pytest.mark.parametrize(
-    ("proof", "reason"), [(Proof(3, 1), "roots were counted but not found"), (Proof(1, 1, "why"), "why")]
-)
-def test_the_number_of_a_mode_that_is_not_proved_is_said_once(world, proof, reason):
-    for name in ("poles", "zeros"):
-        world.sides[name].proof = proof
-    assert world.locate(region=Mode(3)).certificate.reason == reason
+def test_the_number_of_a_mode_that_is_not_proved_is_said_once(world):
+    for proof, reason in [(Proof(3, 1), "roots were counted but not found"), (Proof(1, 1, "why"), "why")]:
+        for name in ("poles", "zeros"):
+            world.sides[name].proof = proof
+        assert world.locate(region=Mode(3)).certificate.reason == reason, proof
 
 
 # ------------------------------------------------------------ searches broken off
 
 
-@pytest.mark.parametrize(
-    ("modes", "said"), [(1, "1 mode was found up to 2 Hz"), (4, "4 modes were found up to 2 Hz")]
-)
-def test_a_search_broken_off_says_how_far_it_came(world, modes, said):
-    world.sides["poles"] = Known(pair(-1, 9), modes=modes, reached=log(4 * pi), fails=OVER)
-    shown = world.locate(region=Modes(9))
-    told = shown.certificate
-    assert told.reason == f"the time given is over; {said}"
-    assert (told.certified, told.is_exceeded, told.code) == (False, True, "SF506")
-    assert len(shown.poles) == 2
-    assert shown.verdict.reason == told.reason
+def test_a_search_broken_off_says_how_far_it_came(world):
+    for modes, said in [(1, "1 mode was found up to 2 Hz"), (4, "4 modes were found up to 2 Hz")]:
+        world.sides["poles"] = Known(pair(-1, 9), modes=modes, reached=log(4 * pi), fails=OVER)
+        shown = world.locate(region=Modes(9))
+        told = shown.certificate
+        assert told.reason == f"the time given is over; {said}", modes
+        assert (told.certified, told.is_exceeded, told.code) == (False, True, "SF506"), modes
+        assert len(shown.poles) == 2, modes
+        assert shown.verdict.reason == told.reason, modes
 
 
-@pytest.mark.parametrize("reached", [-inf, inf])
-def test_how_far_is_not_said_where_it_came_nowhere(world, reached):
-    world.sides["poles"] = Known(pair(-1, 9), reached=reached, fails=OVER)
-    assert world.locate(region=Modes(9)).certificate.reason == "the time given is over"
-
-
-def test_of_a_band_it_is_not_said_how_many_modes_were_found(world):
+def test_how_far_is_not_said_of_a_band_or_where_it_came_nowhere(world):
+    for reached in [-inf, inf]:
+        world.sides["poles"] = Known(pair(-1, 9), reached=reached, fails=OVER)
+        assert world.locate(region=Modes(9)).certificate.reason == "the time given is over", reached
     world.sides["poles"] = Known(pair(-1, 9), fails=OVER)
     assert world.locate().certificate.reason == "the time given is over"
 
 
-@pytest.mark.parametrize("known", [[], [root(0, 0, 2)]])
-def test_a_search_that_found_nothing_but_the_origin_fails(world, known):
-    world.sides["poles"] = Known(known, fails=OVER)
-    with pytest.raises(BudgetError, match="SF506"):
-        world.locate()
-
-
-def test_zeros_alone_are_something(world):
-    world.sides["zeros"] = Known(pair(-1, 9), fails=OVER)
+def test_a_search_that_found_nothing_but_the_origin_fails_and_zeros_alone_are_something(world):
+    for known in [[], [root(0, 0, 2)]]:
+        world.sides["poles"] = Known(known, fails=OVER)
+        with pytest.raises(BudgetError, match="SF506"):
+            world.locate()
+    world.sides["poles"], world.sides["zeros"] = Known([]), Known(pair(-1, 9), fails=OVER)
     assert len(world.locate().zeros) == 2
 
 
-def test_a_proof_broken_off_takes_out_what_is_shared(world):
+def test_proofs_or_searches_broken_off_put_back_what_was_found_but_of_no_numbered_mode(world):
     both = [*pair(-1, 9), root(-2, 0)]
     world.sides["poles"] = Known(both, restored=both, proof=OVER)
     world.sides["zeros"] = Known(pair(-1, 9), restored=pair(-1, 9))
     shown = world.locate()
     assert (places(shown.poles), shown.zeros) == ([(-2, 0, 1)], ())
     assert [h.cause for h in shown.hidden] == ["coincident"] * 2
+    world.sides["poles"] = Known(pair(-1, 9), restored=pair(-1, 8), proof=OVER)
+    world.sides["zeros"] = Known([])
+    assert places(world.locate(region=Mode(2)).poles) == [(-1, 9, 1), (-1, -9, 1)]
 
 
-@pytest.mark.parametrize(
-    ("reached", "is_finite", "kept"), [(-1.0, False, False), (0.5, False, True), (-1.0, True, True)]
-)
-def test_where_wavenumbers_vanish_a_root_counts_only_if_the_other_side_was_searched_there(
-    world, reached, is_finite, kept
-):
-    # +-j, at ln(1) = 0; what is elsewhere or at 0 stays.
-    mine = [*pair(0, 1), *pair(0, 3), root(0, 0)]
-    world.sides["poles"] = Known(mine, restored=mine, proof=OVER, reached=9.0)
-    world.sides["zeros"] = Known([], reached=reached, is_finite=is_finite)
-    shown = world.locate(ON_A_FOUNDATION)
-    assert ((0, 1, 1) in places(shown.poles)) is kept
-    assert {(0, 3, 1), (0, 0, 1)} <= set(places(shown.poles))
-
-
-@pytest.mark.parametrize(("reached", "kept"), [(-1.0, False), (0.5, True)])
-def test_so_does_a_zero(world, reached, kept):
-    mine = [*pair(0, 1), *pair(0, 3)]
-    world.sides["poles"] = Known(pair(0, 5), restored=pair(0, 5), proof=OVER, reached=reached)
-    world.sides["zeros"] = Known(mine, restored=mine, reached=9.0)
-    assert ((0, 1, 1) in places(world.locate(ON_A_FOUNDATION).zeros)) is kept
+def test_where_wavenumbers_vanish_a_root_counts_only_if_the_other_side_was_searched_there(world):
+    for reached, is_finite, kept in [(-1.0, False, False), (0.5, False, True), (-1.0, True, True)]:
+        # +-j, at ln(1) = 0; what is elsewhere or at 0 stays.
+        mine = [*pair(0, 1), *pair(0, 3), root(0, 0)]
+        world.sides["poles"] = Known(mine, restored=mine, proof=OVER, reached=9.0)
+        world.sides["zeros"] = Known([], reached=reached, is_finite=is_finite)
+        shown = world.locate(ON_A_FOUNDATION)
+        assert ((0, 1, 1) in places(shown.poles)) is kept, (reached, is_finite)
+        assert {(0, 3, 1), (0, 0, 1)} <= set(places(shown.poles)), (reached, is_finite)
+    for reached, kept in [(-1.0, False), (0.5, True)]:
+        mine = [*pair(0, 1), *pair(0, 3)]
+        world.sides["poles"] = Known(pair(0, 5), restored=pair(0, 5), proof=OVER, reached=reached)
+        world.sides["zeros"] = Known(mine, restored=mine, reached=9.0)
+        assert ((0, 1, 1) in places(world.locate(ON_A_FOUNDATION).zeros)) is kept, reached
 
 
 def test_all_that_was_exceeded_is_said(world):
@@ -421,11 +397,6 @@ def test_an_unstable_pole_of_a_search_broken_off_is_no_hidden_mode(world):
     assert (places(shown.poles), shown.hidden, shown.unstable) == ([(2, 0, 1)], (), ())
     assert (shown.verdict.word, shown.verdict.right, shown.verdict.found) == ("unstable", None, 1)
     assert world.judged == []
-
-
-def test_of_a_mode_by_its_number_nothing_is_put_back(world):
-    world.sides["poles"] = Known(pair(-1, 9), restored=pair(-1, 8), proof=OVER)
-    assert places(world.locate(region=Mode(2)).poles) == [(-1, 9, 1), (-1, -9, 1)]
 
 
 def test_a_budget_that_ends_on_the_right_leaves_what_is_proved_of_the_region(world):
@@ -453,22 +424,19 @@ def test_poles_to_the_right_of_a_band_are_a_part_of_their_own(world):
     assert (shown.verdict.word, shown.verdict.right) == ("unstable", 1 + 4 + 3)
 
 
-@pytest.mark.parametrize("region", [None, Everything()])
-def test_where_nothing_was_asked_for_they_are_among_the_poles(world, region):
-    world.sides["poles"] = Known(pair(-1, 9))
-    world.beyond["poles"] = RightHalfPlane((root(2, 0),))
-    shown = world.locate(region=region)
-    assert (places(shown.poles)[-1], shown.unstable) == ((2, 0, 1), ())
-    assert (shown.region, shown.is_default_region) == (Modes(5), True)
+def test_where_nothing_was_asked_for_they_are_among_the_poles(world):
+    for region in [None, Everything()]:
+        world.sides["poles"] = Known(pair(-1, 9))
+        world.beyond["poles"] = RightHalfPlane((root(2, 0),))
+        shown = world.locate(region=region)
+        assert (places(shown.poles)[-1], shown.unstable) == ((2, 0, 1), ()), region
+        assert (shown.region, shown.is_default_region) == (Modes(5), True), region
 
 
-def test_modes_that_were_asked_for_have_no_others_among_them(world):
+def test_modes_or_a_band_that_were_asked_for_have_no_others_among_them(world):
     world.beyond["poles"] = RightHalfPlane((root(2, 0),))
     shown = world.locate(region=Modes(5))
     assert (shown.poles, places(shown.unstable)) == ((), [(2, 0, 1)])
-
-
-def test_a_band_of_the_model_is_no_choice_of_modes(world):
     world.beyond["poles"] = RightHalfPlane((root(2, 0),))
     shown = world.locate(bound(DELAY_LOOP + '[analysis]\nband = ["1 Hz", "2 Hz"]\n'), region=None)
     assert (shown.poles, places(shown.unstable), shown.is_default_region) == ((), [(2, 0, 1)], True)
@@ -481,33 +449,28 @@ def test_what_coincides_is_known_as_a_pole(world):
     assert [known for _, known, *_ in world.judged] == [[(-2, 0, 1), (-1, 0, 1)], [(-3, 0, 1)]]
 
 
-@pytest.mark.parametrize(
-    ("region", "reached"),
-    [
+def test_up_to_where_all_poles_are_known_is_told(world):
+    for region, reached in [
         (BAND, 10 * pi),
         (Band(Fraction(1), Fraction(5)), 0),
         (Rectangle(Fraction(-1), Fraction(1), Fraction(0), Fraction(2)), 0),
         (Modes(2), exp(3.0)),
         (Mode(1), 0),
-    ],
-    ids=str,
-)
-def test_up_to_where_all_poles_are_known_is_told(world, region, reached):
-    world.locate(region=region)
-    assert [given for _, _, given, _ in world.judged] == pytest.approx([reached] * 2)
-    assert {digits for *_, digits in world.judged} == {15}
+    ]:
+        world.judged.clear()
+        world.locate(region=region)
+        assert [given for _, _, given, _ in world.judged] == pytest.approx([reached] * 2), region
+        assert {digits for *_, digits in world.judged} == {15}, region
 
 
-def test_without_proof_of_the_region_nothing_is_known_up_to_anywhere(world):
-    world.sides["poles"].proof = Proof(2, 1)
-    world.locate()
-    assert [given for _, _, given, _ in world.judged] == [0, 0]
-
-
-def test_a_side_searched_to_infinity_is_known_as_far_as_doubles_go(world):
+def test_without_proof_nothing_is_known_up_to_anywhere_and_else_as_far_as_doubles_go(world):
     world.sides["poles"].reached = inf
     world.locate(region=Modes(2))
     assert world.judged[0][2] == exp(HIGHEST)
+    world.judged.clear()
+    world.sides["poles"].proof = Proof(2, 1)
+    world.locate()
+    assert [given for _, _, given, _ in world.judged] == [0, 0]
 
 
 def test_why_poles_to_the_right_are_not_known_is_said(world):
@@ -525,7 +488,7 @@ def test_where_the_poles_to_the_right_cannot_be_searched_the_hidden_modes_are(wo
     assert places(h.root for h in shown.hidden) == [(3, 0, 1)]
 
 
-def test_a_passive_model_is_stable_without_a_search(world):
+def test_a_passive_model_is_stable_without_a_search_unless_it_is_another_function(world):
     world.sides["poles"] = Known(pair(0, 9))
     shown = world.locate(ROD)
     assert world.judged == []
@@ -535,9 +498,6 @@ def test_a_passive_model_is_stable_without_a_search(world):
     shown = world.locate(ROD)
     assert shown.verdict.word == "stable"
     assert shown.verdict.reason == f"{PASSIVE}; none of those found lies on the imaginary axis"
-
-
-def test_what_is_not_of_the_model_is_not_passive_by_it(world):
     world.locate(replace(bound(ROD), is_of_model=False))
     assert [name for name, *_ in world.judged] == ["poles", "hidden"]
 
@@ -560,12 +520,9 @@ def test_hidden_modes_known_are_not_told_again_for_being_unstable(world):
     assert shown.hidden == (HiddenRoot(world.sides["hidden"].roots[0]),)
 
 
-def test_where_both_conditions_of_a_line_vanish_wavenumbers_do():
+def test_wavenumbers_of_one_or_two_waves_vanish_or_meet():
     # gamma^2 = (s + 1)(s + 3)
     assert sorted(places(_degenerate_points(bound(LINE)))) == [(-3, 0, 1), (-1, 0, 1)]
-
-
-def test_wavenumbers_of_two_waves_vanish_alone_or_meet():
     # q^4 - (s + 5) q^2 + s + 4: none at -4, opposite at -5, and both the same where (s + 3)^2 = 0.
     text = """
 symflex = 1

@@ -54,51 +54,40 @@ def delays(count):
 ENGINES = [LOSSLESS, GUESS_AND_PROVE, SUBDIVISION]
 
 
-@pytest.fixture(params=ENGINES)
-def found(request):
-    """A rod whose three lowest modes were found, and proved to be all."""
-    one = side(ROD, engines=(request.param,))
+def three_modes(engine):
+    """Return a rod whose three lowest modes were found, and proved to be all."""
+    one = side(ROD, engines=(engine,))
     one.extend(3)
     return one
 
 
-def test_modes_found_are_those_of_the_closed_form(found):
-    sizes = sorted(float(r.im) for r in found.roots if r.im > 0)
-    assert sizes == pytest.approx([rod(n) for n in (1, 2, 3)])
-    assert all(r.on_imaginary_axis and r.multiplicity == 1 for r in found.roots)
-    assert found.prove(Modes(3)) == Proof(6, 6)
-    assert (found.modes, found.missing) == (3, 0)
-    assert rod(3) < mpmath.exp(found.reached) < rod(4)
+def test_modes_found_are_those_of_the_closed_form_and_one_met_twice_is_no_proof():
+    for engine in ENGINES:
+        found = three_modes(engine)
+        sizes = sorted(float(r.im) for r in found.roots if r.im > 0)
+        assert sizes == pytest.approx([rod(n) for n in (1, 2, 3)]), engine
+        assert all(r.on_imaginary_axis and r.multiplicity == 1 for r in found.roots), engine
+        assert found.prove(Modes(3)) == Proof(6, 6), engine
+        assert (found.modes, found.missing) == (3, 0), engine
+        assert rod(3) < mpmath.exp(found.reached) < rod(4), engine
+        found._located.append(found._located[0])
+        found._known = None
+        assert found.counted() == Proof(7, 7, TOUCHING), engine
 
 
-@pytest.mark.parametrize("engine", [LOSSLESS, GUESS_AND_PROVE])
-@pytest.mark.parametrize("n", [0, 1, 2, 3, 4, 5])
-def test_a_root_taken_away_is_missed(engine, n):
-    one = side(ROD, engines=(engine,))
-    one.extend(3)
-    del one._located[n]
-    one._known = None
-    assert one.counted() == Proof(6, 5)
-    assert not one.counted().is_complete
-
-
-@pytest.mark.parametrize("engine", [LOSSLESS, GUESS_AND_PROVE])
-def test_a_root_too_many_is_noticed(engine):
-    one = side(ROD, engines=(engine,))
-    one.extend(3)
-    one._located.append(root(-0.5, 0.5))
-    one._known = None
-    assert one.counted() == Proof(6, 7)
-    # One beyond the domain is none of it.
-    one._located[-1] = root(0, 100)
-    one._known = None
-    assert one.counted() == Proof(6, 6)
-
-
-def test_roots_that_touch_are_no_proof(found):
-    found._located.append(found._located[0])
-    found._known = None
-    assert found.counted() == Proof(7, 7, TOUCHING)
+def test_a_root_taken_away_is_missed_and_one_too_many_is_noticed():
+    for engine in (LOSSLESS, GUESS_AND_PROVE):
+        one = three_modes(engine)
+        located = list(one._located)
+        for n in (0, 3, 5):
+            one._located, one._known = located[:n] + located[n + 1 :], None
+            assert one.counted() == Proof(6, 5), (engine, n)
+            assert not one.counted().is_complete, (engine, n)
+        one._located, one._known = [*located, root(-0.5, 0.5)], None
+        assert one.counted() == Proof(6, 7), engine
+        # One beyond the domain is none of it.
+        one._located, one._known = [*located, root(0, 100)], None
+        assert one.counted() == Proof(6, 6), engine
 
 
 def test_a_root_on_the_circle_is_no_proof():
@@ -113,68 +102,64 @@ def test_a_root_on_the_circle_is_no_proof():
     assert one.counted() == Proof(0, 0, UNPROVED)
 
 
-def test_before_a_search_nothing_is_proved():
-    assert side(ROD).counted() == Proof(0, 0, "nothing was searched")
-
-
-def test_a_count_is_kept_until_other_roots_are_set():
+def test_a_count_is_kept_until_other_roots_are_set_and_nothing_is_proved_before_a_search():
     one = side(ROD)
     one.extend(2)
     assert one.counted() is one.counted()
     one._set([])
     assert one.counted() == Proof(4, 0)
+    assert side(ROD).counted() == Proof(0, 0, "nothing was searched")
 
 
-@pytest.mark.parametrize(("proof", "is_complete"), [((3, 3), True), ((3, 2), False), ((3, 3, "why"), False)])
-def test_a_proof_is_complete_when_all_counted_are_found_and_nothing_speaks_against_it(proof, is_complete):
-    assert Proof(*proof).is_complete is is_complete
+def test_a_proof_is_complete_when_all_counted_are_found_and_nothing_speaks_against_it():
+    for given, is_complete in [((3, 3), True), ((3, 2), False), ((3, 3, "why"), False)]:
+        assert Proof(*given).is_complete is is_complete
 
 
-@pytest.mark.parametrize("engine", [GUESS_AND_PROVE, SUBDIVISION])
-def test_roots_of_a_delay_are_lamberts(engine):
-    one = side(DELAY_LOOP, engines=(engine,))
-    one.extend(4)
-    found = sorted((complex(r.re, r.im) for r in one.roots if r.im >= 0), key=abs)
-    assert found[:4] == pytest.approx(delays(4))
-    assert one.prove(Modes(4)).is_complete
+def test_roots_of_a_delay_are_lamberts():
+    for engine in (GUESS_AND_PROVE, SUBDIVISION):
+        one = side(DELAY_LOOP, engines=(engine,))
+        one.extend(4)
+        found = sorted((complex(r.re, r.im) for r in one.roots if r.im >= 0), key=abs)
+        assert found[:4] == pytest.approx(delays(4)), engine
+        assert one.prove(Modes(4)).is_complete, engine
 
 
-@pytest.mark.parametrize("engine", [GUESS_AND_PROVE, SUBDIVISION])
-def test_a_rectangle_holds_the_roots_that_lie_in_it(engine):
-    one = side(DELAY_LOOP, engines=(engine,))
-    region = Rectangle(Fraction(-8), Fraction(-3), Fraction(5), Fraction(30))
-    one.search(region)
-    assert one.prove(region).is_complete
-    inside = [s for s in delays(9) if -8 < s.real < -3 and 5 < s.imag < 30]
-    assert len(inside) == 2
-    known = [complex(r.re, r.im) for r in one.roots]
-    assert all(min(abs(s - each) for each in known) < 1e-9 for s in inside)
+def test_a_rectangle_holds_the_roots_that_lie_in_it():
+    for engine in [GUESS_AND_PROVE, SUBDIVISION]:
+        one = side(DELAY_LOOP, engines=(engine,))
+        region = Rectangle(Fraction(-8), Fraction(-3), Fraction(5), Fraction(30))
+        one.search(region)
+        assert one.prove(region).is_complete, engine
+        inside = [s for s in delays(9) if -8 < s.real < -3 and 5 < s.imag < 30]
+        assert len(inside) == 2, engine
+        known = [complex(r.re, r.im) for r in one.roots]
+        assert all(min(abs(s - each) for each in known) < 1e-9 for s in inside), engine
 
 
-@pytest.mark.parametrize("engine", ENGINES)
-def test_a_band_holds_the_modes_between_its_ends(engine):
-    one = side(ROD, engines=(engine, SUBDIVISION))
+def test_a_band_holds_the_modes_between_its_ends():
     region = Band(Fraction(1, 2), Fraction(3, 2))
-    one.search(region)
-    assert one.prove(region).is_complete
     expected = [rod(n) for n in range(1, 9) if pi < rod(n) < 3 * pi]
-    sizes = [float(r.im) for r in one.roots if r.im > 0]
-    assert [x for x in sorted(sizes) if pi < x < 3 * pi] == pytest.approx(expected)
-    # The engine asked first proved it.
-    assert one.engine == engine
+    for engine in ENGINES:
+        one = side(ROD, engines=(engine, SUBDIVISION))
+        one.search(region)
+        assert one.prove(region).is_complete, engine
+        sizes = [float(r.im) for r in one.roots if r.im > 0]
+        assert [x for x in sorted(sizes) if pi < x < 3 * pi] == pytest.approx(expected), engine
+        # The engine asked first proved it.
+        assert one.engine == engine
 
 
-@pytest.mark.parametrize("engine", ENGINES)
-def test_a_band_from_0_holds_all_modes_below_its_end(engine):
-    one = side(FREE, engines=(engine, SUBDIVISION))
-    region = Band(Fraction(0), Fraction(10))
-    one.search(region)
-    proof = one.prove(region)
-    # 22.4 and 61.7 rad/s (Blevins 1979), both signs, and two poles at 0
-    assert sorted(round(float(r.im), 1) for r in one.roots if 0 < r.im < 20 * pi) == [22.4, 61.7]
-    assert proof.is_complete
-    assert one.engine == engine
-    assert sum(r.multiplicity for r in one.roots if r.is_zero) == 2
+def test_a_band_from_0_holds_all_modes_below_its_end_and_the_poles_at_0():
+    region = Band(Fraction(0), Fraction(5))
+    for engine in ENGINES:
+        one = side(FREE, engines=(engine, SUBDIVISION))
+        one.search(region)
+        # 22.4 rad/s (Blevins 1979), both signs, and two poles at 0
+        assert one.prove(region).is_complete, engine
+        assert sorted(round(float(r.im), 1) for r in one.roots if 0 < r.im < 10 * pi) == [22.4]
+        assert one.engine == engine
+        assert sum(r.multiplicity for r in one.roots if r.is_zero) == 2, engine
 
 
 def test_a_free_beam_has_a_double_pole_at_0_that_is_counted():
@@ -189,11 +174,11 @@ def test_a_free_beam_has_a_double_pole_at_0_that_is_counted():
     assert not one.counted().is_complete
 
 
-@pytest.mark.parametrize(("n", "engine"), [(1, LOSSLESS), (4, LOSSLESS), (2, GUESS_AND_PROVE)])
-def test_a_mode_by_number_is_that_one(n, engine):
-    one = side(ROD, engines=(engine,))
-    assert float(one.numbered(n).im) == pytest.approx(rod(n))
-    assert [abs(float(r.im)) for r in one.roots] == pytest.approx([rod(n)] * 2)
+def test_a_mode_by_number_is_that_one():
+    for n, engine in [(1, LOSSLESS), (4, LOSSLESS), (2, GUESS_AND_PROVE)]:
+        one = side(ROD, engines=(engine,))
+        assert float(one.numbered(n).im) == pytest.approx(rod(n))
+        assert [abs(float(r.im)) for r in one.roots] == pytest.approx([rod(n)] * 2)
 
 
 def test_a_polynomial_has_all_its_roots_at_once():
@@ -240,15 +225,12 @@ def test_a_root_is_refined_to_more_than_twice_its_digits():
     assert one.refined(blurred) is blurred
 
 
-@pytest.mark.parametrize(("high", "count"), [(3.0, 2), (20.0, 2), (0.5, 0)])
-def test_roots_right_of_the_axis_are_counted_up_to_a_radius(high, count):
-    # s + 3 exp(-s), whose roots are W_k(-3).
-    text = 'symflex = 1\nblocks.D = { type = "delay", T = 1 }\ninputs.u = {}\noutputs.y = "u/(s + 3*D)"'
-    right = [s for k in range(-4, 5) if (s := complex(mpmath.lambertw(-3, k))).real > 0]
-    assert side(text).count_right(log(high)) == sum(abs(s) < high for s in right) == count
-
-
-def test_a_root_on_the_axis_is_not_counted_past():
+def test_roots_right_of_the_axis_are_counted_up_to_a_radius_but_not_past_one_on_the_axis():
+    for high, count in [(3.0, 2), (20.0, 2), (0.5, 0)]:
+        # s + 3 exp(-s), whose roots are W_k(-3).
+        text = 'symflex = 1\nblocks.D = { type = "delay", T = 1 }\ninputs.u = {}\noutputs.y = "u/(s + 3*D)"'
+        right = [s for k in range(-4, 5) if (s := complex(mpmath.lambertw(-3, k))).real > 0]
+        assert side(text).count_right(log(high)) == sum(abs(s) < high for s in right) == count
     with pytest.raises(RootOnPathError):
         side(ROD).count_right(log(5.0))
 
@@ -261,9 +243,8 @@ def test_poles_accumulate_where_a_lossy_beam_no_longer_resists():
     assert (hole.low + hole.high) / 2 == pytest.approx(log(250))
 
 
-@pytest.mark.parametrize(
-    ("roots", "apart"),
-    [
+def test_enclosures_are_apart_when_none_meets_another():
+    for roots, apart in [
         ([], True),
         ([root(0, 3), root(0, 4)], True),
         ([root(0, 3), root(0, 3)], False),
@@ -275,10 +256,8 @@ def test_poles_accumulate_where_a_lossy_beam_no_longer_resists():
         # a large one holds what lies between
         ([root(3, 4, size=0.5), root(3, 3.2), root(3.1, 4.2, size=0.01)], False),
         ([root(3, 9), root(3, 4, size=0.5), root(5, 5), root(3.2, 4.4)], False),
-    ],
-)
-def test_enclosures_are_apart_when_none_meets_another(roots, apart):
-    assert are_apart(roots) is apart
+    ]:
+        assert are_apart(roots) is apart
 
 
 def test_roots_that_mirror_each_other_are_one_group():
@@ -359,73 +338,58 @@ class Circles:
         return count
 
 
-@pytest.mark.parametrize(
-    ("counts", "power", "found"),
-    [
+def test_the_smallest_circle_that_could_be_counted_tells_the_roots_next_to_0_or_there_is_an_error():
+    for counts, power, found in [
         ((0,), 1, (-1.0, 0)),
         ((2, 2, 2, 2), 1, (-64.0, 2)),
         ((2, 1, None, None), 1, (-4.0, 1)),
         ((None, 4, 4, 4), 2, (-64.0, 2)),
         ((4, 3, 3, 3), 2, (-1.0, 2)),
         ((2, 0), 1, (-4.0, 0)),
-    ],
-)
-def test_the_smallest_circle_that_could_be_counted_tells_the_roots_next_to_0(counts, power, found):
-    assert turns_about_zero(Circles(*counts, power=power), pi / 2, ()) == found
-
-
-def test_an_order_at_0_that_cannot_be_told_is_an_error():
+    ]:
+        assert turns_about_zero(Circles(*counts, power=power), pi / 2, ()) == found
     with pytest.raises(
         UncertifiedError, match=r"SF404.*the order of the root of \S+ at s = 0 cannot be told"
     ):
         turns_about_zero(Circles(None, 3, None, 5, power=2), pi / 2, ())
 
 
-@pytest.mark.parametrize(
-    ("turns", "hidden", "expected"),
-    [
+def test_roots_next_to_0_of_functions_without_a_formula_are_in_a_small_box(monkeypatch):
+    one = side(ROD)
+    monkeypatch.setattr(OriginSeries, "order", lambda self, part: None)
+    for turns, hidden, expected in (
         (0, False, []),
         (1, False, [(1, True, True)]),
         (2, False, [(2, False, True)]),
         (2, True, []),
-    ],
-)
-def test_roots_next_to_0_of_functions_without_a_formula_are_in_a_small_box(
-    monkeypatch, turns, hidden, expected
-):
-    one = side(ROD)
-    monkeypatch.setattr(OriginSeries, "order", lambda self, part: None)
-    monkeypatch.setattr(proof, "turns_about_zero", lambda *given: (-5.0, turns))
-    roots, order = roots_at_zero(one._winding, bound(ROD).den, pi / 2, (), is_hidden=hidden)
-    assert order == turns
-    assert [(r.multiplicity, r.certified, r.re.contains(0) and r.im.contains(0)) for r in roots] == expected
-    for each in roots:
-        assert (each.is_real, each.on_imaginary_axis) == (False, False)
-        assert exp(-5) <= float(each.re.rad()) == float(each.im.rad()) < 1.001 * exp(-5)
-
-
-def test_a_power_of_s_alone_is_a_root_at_0_whatever_lies_next_to_it(monkeypatch):
-    one = side(ROD)
-    monkeypatch.setattr(OriginSeries, "order", lambda self, part: None)
+    ):
+        monkeypatch.setattr(proof, "turns_about_zero", lambda *given, turns=turns: (-5.0, turns))
+        roots, order = roots_at_zero(one._winding, bound(ROD).den, pi / 2, (), is_hidden=hidden)
+        assert order == turns
+        held = [(r.multiplicity, r.certified, r.re.contains(0) and r.im.contains(0)) for r in roots]
+        assert held == expected, (turns, hidden)
+        for each in roots:
+            assert (each.is_real, each.on_imaginary_axis) == (False, False)
+            assert exp(-5) <= float(each.re.rad()) == float(each.im.rad()) < 1.001 * exp(-5)
+    # A power of s alone is a root at 0 whatever lies next to it.
     monkeypatch.setattr(proof, "turns_about_zero", lambda *given: (-5.0, 0))
     part = bound(ROD).den
     s = part.ring.context.gen(0)
-    ((zero,), order) = roots_at_zero(
-        one._winding, part * Factored.polynomial(part.ring, s**3), pi / 2, (), is_hidden=False
-    )
+    power = Factored.polynomial(part.ring, s**3)
+    ((zero,), order) = roots_at_zero(one._winding, part * power, pi / 2, (), is_hidden=False)
     assert (zero.is_zero, zero.multiplicity, zero.certified, order) == (True, 3, True, 0)
 
 
-@pytest.mark.parametrize("engine", ENGINES)
-def test_what_kernels_vanish_like_at_0_is_a_root_there(engine):
-    # cosh(s) - 1, with double roots at 0 and at every 2 pi j n.
-    source = bound(ROD)
-    ring = source.ratio.ring
-    (cosh,) = (ring.generator(k.generator) for k in source.kernels.kernels if k.function == "cosh")
-    one = Side(source, Factored.polynomial(ring, cosh - 1), 20, Budget(), engines=(engine,))
-    one.extend(4)
-    (zero,) = (r for r in one.roots if r.is_zero)
-    assert zero.multiplicity == 2
-    found = sorted((float(r.im), r.multiplicity) for r in one.roots if r.im > 0)[:2]
-    assert found == [(pytest.approx(2 * pi), 2), (pytest.approx(4 * pi), 2)]
-    assert one.prove(Modes(4)).is_complete
+def test_what_kernels_vanish_like_at_0_is_a_root_there():
+    for engine in ENGINES:
+        # cosh(s) - 1, with double roots at 0 and at every 2 pi j n.
+        source = bound(ROD)
+        ring = source.ratio.ring
+        (cosh,) = (ring.generator(k.generator) for k in source.kernels.kernels if k.function == "cosh")
+        one = Side(source, Factored.polynomial(ring, cosh - 1), 20, Budget(), engines=(engine,))
+        one.extend(4)
+        (zero,) = (r for r in one.roots if r.is_zero)
+        assert zero.multiplicity == 2, engine
+        found = sorted((float(r.im), r.multiplicity) for r in one.roots if r.im > 0)[:2]
+        assert found == [(pytest.approx(2 * pi), 2), (pytest.approx(4 * pi), 2)], engine
+        assert one.prove(Modes(4)).is_complete, engine

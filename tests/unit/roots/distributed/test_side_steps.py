@@ -112,22 +112,27 @@ def test_searches_come_in_the_order_of_the_engines():
     assert one._search._winding is one._winding
 
 
-@pytest.mark.parametrize("text", [DELAY_LOOP, KELVIN_VOIGT])
-def test_what_does_not_mirror_is_not_scanned_along_axes(text):
-    one = side(text)
-    assert (one.engine, one._scans) == (GUESS_AND_PROVE, False)
-    assert type(one._search._winding) is Winding
-    assert (one._search.holes, one._search.digits) == (one.holes, 20)
-    one._next_search()
-    assert (one.engine, one._scans) == (SUBDIVISION, False)
-    assert type(one._search._winding) is CertifiedWinding
+def test_what_does_not_mirror_is_not_scanned_along_axes():
+    for text in [DELAY_LOOP, KELVIN_VOIGT]:
+        one = side(text)
+        assert (one.engine, one._scans) == (GUESS_AND_PROVE, False), text
+        assert type(one._search._winding) is Winding, text
+        assert (one._search.holes, one._search.digits) == (one.holes, 20), text
+        one._next_search()
+        assert (one.engine, one._scans) == (SUBDIVISION, False), text
+        assert type(one._search._winding) is CertifiedWinding, text
 
 
-def test_a_scan_that_is_complete_ends_the_search():
+def test_a_scan_that_is_complete_ends_the_search_and_a_domain_where_doubles_do():
     first = InPlane([root(0, 2)], scans=[True])
     one = with_searches(first, scans=[True])
     one.extend(3, 1.5)
     assert first.asked == [("scan", 3, 1.5)]
+    first = InPlane()
+    first.reached = inf
+    one = with_searches(first, scans=[False])
+    one.extend(1)
+    assert one._domain == Cell(-inf, HIGHEST, 0.0, pi)
 
 
 def test_a_scan_that_is_not_leads_to_the_next_search():
@@ -162,21 +167,13 @@ def test_whether_a_scan_is_complete_is_counted():
     assert one._search is not first
 
 
-@pytest.mark.parametrize("scans", [True, False])
-def test_what_was_found_until_a_search_was_broken_off_is_kept(scans):
-    one = with_searches(InPlane([root(0, 2)], fails=OVER), scans=[scans])
-    with pytest.raises(BudgetError):
-        one.extend(1)
-    assert places(one.roots) == [(0, 2), (0, -2)]
-    assert one.missing == 2
-
-
-def test_a_domain_ends_where_doubles_do():
-    first = InPlane()
-    first.reached = inf
-    one = with_searches(first, scans=[False])
-    one.extend(1)
-    assert one._domain == Cell(-inf, HIGHEST, 0.0, pi)
+def test_what_was_found_until_a_search_was_broken_off_is_kept():
+    for scans in [True, False]:
+        one = with_searches(InPlane([root(0, 2)], fails=OVER), scans=[scans])
+        with pytest.raises(BudgetError):
+            one.extend(1)
+        assert places(one.roots) == [(0, 2), (0, -2)], scans
+        assert one.missing == 2, scans
 
 
 # ------------------------------------------------ regions
@@ -207,7 +204,7 @@ def many(one, count=1000, smallest=-2.0):
     return one._winding
 
 
-def test_axes_are_scanned_a_little_beyond_a_band():
+def test_axes_are_scanned_a_little_beyond_a_band_and_from_0_on_in_a_disc():
     first = InPlane(axes=[[root(0, 5)]])
     one = with_searches(first, scans=[True])
     many(one)
@@ -218,9 +215,6 @@ def test_axes_are_scanned_a_little_beyond_a_band():
     assert (one._domain.right, one._domain.left) == (0.0, pi)
     assert places(one.roots) == [(0, 5), (0, -5)]
     assert one._innermost is None
-
-
-def test_from_0_on_a_domain_is_a_disc():
     first = InPlane(axes=[[]])
     one = with_searches(first, scans=[True])
     many(one)
@@ -282,15 +276,12 @@ def test_a_rectangle_off_the_axes_is_not_scanned_along_axes():
     assert one._scans is False
 
 
-def test_a_lossless_search_leaves_the_plane_to_the_next():
+def test_a_lossless_search_leaves_the_plane_to_the_next_and_modes_are_searched_by_number():
     first, second = Lossless(), InPlane(ring=Found((), 1, None))
     one = with_searches(first, second, scans=[False, False])
     many(one)
     one.search(BAND)
     assert (first.asked, len(second.asked)) == ([], 1)
-
-
-def test_modes_are_searched_by_their_number():
     first = InPlane()
     one = with_searches(first, scans=[False])
     one.search(Modes(7))
@@ -310,23 +301,23 @@ def test_a_mode_by_number_of_a_lossless_search_comes_with_its_image_only():
     assert first.asked == [("numbered", 3)]
 
 
-@pytest.mark.parametrize("answer", [None, RootOnPathError()])
-def test_without_it_all_modes_below_are_found(answer):
-    known = [root(0, 2, 2), root(0, 5), root(0, 9)]
-    one = with_searches(Lossless(known, scans=[True], numbered=answer), scans=[True])
-    one._origin = [root(0, 0, 2)]
-    one._take(one._search)
-    assert places([one.numbered(3)]) == [(0, 5)]
-    assert one._search.asked == [("numbered", 3), ("scan", 3, -inf)]
-    assert places(one.roots) == [(0, 5), (0, -5)]
+def test_without_it_all_modes_below_are_found():
+    for answer in [None, RootOnPathError()]:
+        known = [root(0, 2, 2), root(0, 5), root(0, 9)]
+        one = with_searches(Lossless(known, scans=[True], numbered=answer), scans=[True])
+        one._origin = [root(0, 0, 2)]
+        one._take(one._search)
+        assert places([one.numbered(3)]) == [(0, 5)], answer
+        assert one._search.asked == [("numbered", 3), ("scan", 3, -inf)], answer
+        assert places(one.roots) == [(0, 5), (0, -5)], answer
 
 
-@pytest.mark.parametrize(("number", "im"), [(1, 2), (2, 2), (3, 5), (4, 9), (5, None)])
-def test_a_double_mode_has_two_numbers(number, im):
-    one = with_searches(InPlane([root(0, 5), root(0, 2, 2), root(0, 9)]), scans=[False])
-    found = one.numbered(number)
-    assert (found and float(found.im)) == im
-    assert places(one.roots) == ([(0, im), (0, -im)] if im else [])
+def test_a_double_mode_has_two_numbers():
+    for number, im in [(1, 2), (2, 2), (3, 5), (4, 9), (5, None)]:
+        one = with_searches(InPlane([root(0, 5), root(0, 2, 2), root(0, 9)]), scans=[False])
+        found = one.numbered(number)
+        assert (found and float(found.im)) == im, number
+        assert places(one.roots) == ([(0, im), (0, -im)] if im else []), number
 
 
 def test_a_proof_that_lacks_something_is_left_to_subdivision():
@@ -369,14 +360,11 @@ def test_neighbourhoods_not_met_are_not_left_out():
     assert one.excluded() == ()
 
 
-def test_what_could_not_be_told_apart_is_kept_once():
+def test_blurred_roots_are_kept_once_and_exact_ones_put_in_their_place():
     one = with_searches(InPlane(), scans=[False])
     blurred = [root(0, 3, 2, 0.1, certified=False), root(0, 3.05, 2, 0.1, certified=False)]
     one._set([*blurred, root(0, 9)])
     assert sorted({abs(im) for _, im in places(one.roots)}) == [3, 9]
-
-
-def test_roots_of_a_polynomial_factor_are_put_in_their_place():
     one = with_searches(InPlane(), scans=[False])
     exact = root(0, 3)
     one._exact = [exact, root(0, -3), root(0, 7, 2)]
@@ -398,31 +386,26 @@ class Right(Circle):
         return self.right
 
 
-@pytest.mark.parametrize(
-    ("within", "right", "power", "smallest", "count"),
-    [
+def test_the_right_half_plane_is_counted_between_two_half_circles(monkeypatch):
+    for within, right, power, smallest, count in (
         (0, 4, 1, -2.0, 4),
         (0, 4, 2, -2.0, 2),
         (0, 3, 2, -2.0, None),
         (1, 4, 1, -2.0, None),
         (0, 4, 1, 5.0, 4),
-    ],
-)
-def test_the_right_half_plane_is_counted_between_two_half_circles(
-    monkeypatch, within, right, power, smallest, count
-):
-    one, used = side(DELAY_LOOP), Right(within, right, smallest)
-    used.function = one.function
-    monkeypatch.setattr(proof, "CertifiedWinding", lambda *given, tries_series: used)
-    one.function.power, one._order = power, 0
-    if count is None:
-        with pytest.raises(RootOnPathError):
-            one.count_right(3.0)
-        return
-    assert one.count_right(3.0) == count
-    low = min(smallest, 2.0)
-    assert used.cells == [Cell(low, 3.0, -pi / 2, pi / 2)]
-    assert used.asked == [(pi, one.holes), (low, pi)]
+    ):
+        one, used = side(DELAY_LOOP), Right(within, right, smallest)
+        used.function = one.function
+        monkeypatch.setattr(proof, "CertifiedWinding", lambda *given, tries_series, used=used: used)
+        one.function.power, one._order = power, 0
+        if count is None:
+            with pytest.raises(RootOnPathError):
+                one.count_right(3.0)
+            continue
+        assert one.count_right(3.0) == count
+        low = min(smallest, 2.0)
+        assert used.cells == [Cell(low, 3.0, -pi / 2, pi / 2)]
+        assert used.asked == [(pi, one.holes), (low, pi)]
 
 
 def test_a_ring_holds_what_its_outer_circle_does_but_for_its_inner_circle_and_holes(monkeypatch):

@@ -28,9 +28,8 @@ LEFT, RIGHT, TWICE = pole(-1), pole(2, 3), pole(1, times=2)
 ON, ZERO, DOUBLE_ZERO, NEAR = pole(0, 5), pole(0), pole(0, times=2), pole(0, 5, size=0.1)
 
 
-@pytest.mark.parametrize(
-    ("roots", "unproved", "proof", "expected"),
-    [
+def test_poles_allow_this_verdict_and_no_other():
+    for roots, unproved, proof, expected in [
         ([], "", "", ("stable", 0, True, "", 0)),
         ([LEFT], "", "", ("stable", 0, True, "", 0)),
         ([LEFT], "no end", "", ("unknown", None, False, "no end", 0)),
@@ -50,16 +49,13 @@ ON, ZERO, DOUBLE_ZERO, NEAR = pole(0, 5), pole(0), pole(0, times=2), pole(0, 5, 
         ([ZERO], "no end", "", ("unknown", None, False, "a pole at 0; no end", 0)),
         ([ZERO], "", "passive", ("marginal", 0, True, "a pole at 0; passive", 0)),
         ([DOUBLE_ZERO], "no end", "passive", ("marginal", 0, True, "2 poles at 0; passive", 0)),
-    ],
-)
-def test_poles_allow_this_verdict_and_no_other(roots, unproved, proof, expected):
-    found = judge(roots, unproved, proof)
-    assert (found.word, found.right, found.certified, found.reason, found.found) == expected
+    ]:
+        found = judge(roots, unproved, proof)
+        assert (found.word, found.right, found.certified, found.reason, found.found) == expected, roots
 
 
-@pytest.mark.parametrize(
-    ("given", "sentence", "headline", "brief"),
-    [
+def test_a_verdict_is_said_in_a_sentence_a_headline_and_a_word():
+    for given, sentence, headline, brief in [
         (("stable", 0, True), "stable", "stable", "stable"),
         (("stable", 0, True, "passive"), "stable: passive", "stable", "stable"),
         (
@@ -86,11 +82,9 @@ def test_poles_allow_this_verdict_and_no_other(roots, unproved, proof, expected)
             "stability not known",
             "stability not known",
         ),
-    ],
-)
-def test_a_verdict_is_said_in_a_sentence_a_headline_and_a_word(given, sentence, headline, brief):
-    verdict = StabilityVerdict(*given)
-    assert (verdict.sentence, verdict.headline, verdict.brief) == (sentence, headline, brief)
+    ]:
+        verdict = StabilityVerdict(*given)
+        assert (verdict.sentence, verdict.headline, verdict.brief) == (sentence, headline, brief)
 
 
 def test_a_verdict_has_these_keys_as_data():
@@ -101,15 +95,6 @@ def test_a_verdict_has_these_keys_as_data():
         "reason": "no end",
         "right_half_plane_found": 3,
     }
-
-
-@pytest.mark.parametrize("given", [("unstable", None, True), ("stable", 0, False)])
-def test_what_is_not_proved_or_not_counted_has_a_reason(given):
-    with pytest.raises(ValueError, match=r"^what is not proved needs a reason$"):
-        StabilityVerdict(*given)
-
-
-def test_what_was_not_examined_is_not_known():
     assert NOT_EXAMINED.to_json_dict() == {
         "verdict": "unknown",
         "right_half_plane": None,
@@ -117,6 +102,12 @@ def test_what_was_not_examined_is_not_known():
         "reason": "not examined",
         "right_half_plane_found": 0,
     }
+
+
+def test_what_is_not_proved_or_not_counted_has_a_reason():
+    for given in [("unstable", None, True), ("stable", 0, False)]:
+        with pytest.raises(ValueError, match=r"^what is not proved needs a reason$"):
+            StabilityVerdict(*given)
 
 
 # ------------------------------------------------------------------- what is made of a count, by stand-ins
@@ -191,21 +182,18 @@ def up_to(radius, reason):
     return f"known up to {radius / (2 * pi):.4g} Hz only: {reason}"
 
 
-def test_all_roots_of_a_polynomial_are_known(searching):
+def test_all_roots_of_a_polynomial_and_as_many_as_are_counted_need_no_search(searching):
     assert searching(Half(5, is_finite=True), [LEFT, RIGHT]) == RightHalfPlane((LEFT, RIGHT))
-
-
-@pytest.mark.parametrize(("right", "unproved"), [(1.5, ACCUMULATING), (1.6, "")])
-def test_roots_accumulate_right_of_the_axis_where_a_hole_begins_there(searching, right, unproved):
-    side = Half(0, holes=(SimpleNamespace(right=right),))
-    assert searching(side) == RightHalfPlane((), unproved)
-
-
-def test_as_many_as_are_counted_need_no_search(searching):
     side = Half(3)
     assert searching(side, [LEFT, RIGHT, TWICE, NEAR]) == RightHalfPlane((RIGHT, TWICE, NEAR))
     # A little beyond the end, so that the path's corners meet no root.
     assert side.counted_to == [pytest.approx(7 * 1.01)]
+
+
+def test_roots_accumulate_right_of_the_axis_where_a_hole_begins_there(searching):
+    for right, unproved in [(1.5, ACCUMULATING), (1.6, "")]:
+        side = Half(0, holes=(SimpleNamespace(right=right),))
+        assert searching(side) == RightHalfPlane((), unproved), right
 
 
 def test_the_count_goes_as_far_as_the_last_factors_tail(searching):
@@ -217,19 +205,19 @@ def test_the_count_goes_as_far_as_the_last_factors_tail(searching):
     assert side.counted_to == [pytest.approx(9 * 1.01)]
 
 
-@pytest.mark.parametrize("reached", [0.0, 29.0])
-def test_without_an_end_poles_are_counted_as_far_as_kernels_have_few_waves(searching, reached):
-    side = Half(0)
-    found = searching(side, reached=reached, tails=ENDLESS)
-    assert found == RightHalfPlane((), up_to(30.0, "poles have no end"))
-    assert side.counted_to == [pytest.approx(30 * 1.01)]
+def test_without_an_end_poles_are_counted_as_far_as_kernels_have_few_waves(searching):
+    for reached in [0.0, 29.0]:
+        side = Half(0)
+        found = searching(side, reached=reached, tails=ENDLESS)
+        assert found == RightHalfPlane((), up_to(30.0, "poles have no end")), reached
+        assert side.counted_to == [pytest.approx(30 * 1.01)], reached
 
 
-@pytest.mark.parametrize(("tails", "unproved"), [(ENDLESS, up_to(40.0, "poles have no end")), (ENDING, "")])
-def test_where_all_roots_are_known_none_is_counted_again(searching, tails, unproved):
-    side = Half(0)
-    assert searching(side, [RIGHT], reached=40.0, tails=tails) == RightHalfPlane((RIGHT,), unproved)
-    assert side.counted_to == []
+def test_where_all_roots_are_known_none_is_counted_again(searching):
+    for tails, unproved in [(ENDLESS, up_to(40.0, "poles have no end")), (ENDING, "")]:
+        side = Half(0)
+        assert searching(side, [RIGHT], reached=40.0, tails=tails) == RightHalfPlane((RIGHT,), unproved)
+        assert side.counted_to == [], tails
 
 
 def test_where_some_are_missing_the_half_disc_is_searched(searching):
@@ -239,28 +227,26 @@ def test_where_some_are_missing_the_half_disc_is_searched(searching):
     assert (region.re_low, region.re_high, region.im_low, region.im_high) == (0, 7, -7, 7)
 
 
-@pytest.mark.parametrize(
-    ("proof", "unproved"),
-    [(Proof(3, 1, "two were not found"), "two were not found"), (Proof(3, 1), NOT_COUNTED)],
-)
-def test_where_they_are_not_found_it_is_said_why(searching, proof, unproved):
-    again = Half(0, roots=(RIGHT,), proof=proof)
-    assert searching(Half(3), again=again) == RightHalfPlane((RIGHT,), unproved)
+def test_where_they_are_not_found_it_is_said_why(searching):
+    for proof, unproved in [
+        (Proof(3, 1, "two were not found"), "two were not found"),
+        (Proof(3, 1), NOT_COUNTED),
+    ]:
+        again = Half(0, roots=(RIGHT,), proof=proof)
+        assert searching(Half(3), again=again) == RightHalfPlane((RIGHT,), unproved), proof
 
 
-@pytest.mark.parametrize(
-    ("reached", "said"), [(0.0, "poles have no end"), (20.0, up_to(20.0, "poles have no end"))]
-)
-def test_where_they_have_no_end_either_all_are_known_as_far_as_before(searching, reached, said):
-    again = Half(0, roots=(RIGHT,), proof=Proof(3, 1))
-    found = searching(Half(3), reached=reached, tails=ENDLESS, again=again)
-    assert found == RightHalfPlane((RIGHT,), said)
+def test_where_they_have_no_end_either_all_are_known_as_far_as_before(searching):
+    for reached, said in [(0.0, "poles have no end"), (20.0, up_to(20.0, "poles have no end"))]:
+        again = Half(0, roots=(RIGHT,), proof=Proof(3, 1))
+        found = searching(Half(3), reached=reached, tails=ENDLESS, again=again)
+        assert found == RightHalfPlane((RIGHT,), said), reached
 
 
-@pytest.mark.parametrize(("proof", "unproved"), [(Proof(1, 1), ""), (Proof(2, 1), NOT_COUNTED)])
-def test_with_a_root_on_the_path_the_search_is_proved_by_itself(searching, proof, unproved):
-    again = Half(0, roots=(RIGHT, ON), proof=proof)
-    assert searching(Half(RootOnPathError()), again=again) == RightHalfPlane((RIGHT, ON), unproved)
+def test_with_a_root_on_the_path_the_search_is_proved_by_itself(searching):
+    for proof, unproved in [(Proof(1, 1), ""), (Proof(2, 1), NOT_COUNTED)]:
+        again = Half(0, roots=(RIGHT, ON), proof=proof)
+        assert searching(Half(RootOnPathError()), again=again) == RightHalfPlane((RIGHT, ON), unproved), proof
 
 
 def test_a_budget_spent_by_the_count_is_said(searching):
@@ -269,32 +255,23 @@ def test_a_budget_spent_by_the_count_is_said(searching):
     assert found == RightHalfPlane((RIGHT,), up_to(20.0, "poles have no end"))
 
 
-@pytest.mark.parametrize(
-    ("count", "said"),
-    [
+def test_a_budget_spent_by_the_search_is_said_with_what_was_counted(searching):
+    for count, said in [
         (3, "3 are counted, and not all found: the budget is spent"),
         (RootOnPathError(), "the budget is spent"),
-    ],
-)
-def test_a_budget_spent_by_the_search_is_said_with_what_was_counted(searching, count, said):
-    again = Half(0, roots=(RIGHT, TWICE), proof=SPENT)
-    assert searching(Half(count), [RIGHT], again=again) == RightHalfPlane((RIGHT,), said)
+    ]:
+        again = Half(0, roots=(RIGHT, TWICE), proof=SPENT)
+        assert searching(Half(count), [RIGHT], again=again) == RightHalfPlane((RIGHT,), said)
 
 
-def test_roots_that_mirror_each_other_are_not_counted_along_the_axis(searching):
+def test_roots_that_mirror_each_other_are_not_counted_along_the_axis_but_where_they_end(searching):
     side, again = Half(9, is_even=True), Half(0, roots=(RIGHT, ON, LEFT))
     found = searching(side, [ON], reached=20.0, tails=ENDLESS, again=again)
     assert found == RightHalfPlane((RIGHT, ON), up_to(20.0, "poles have no end"))
     assert side.counted_to == []
     assert again.searched
-
-
-def test_nor_beyond_what_was_asked_for_where_that_reaches_farther(searching):
     found = searching(Half(9, is_even=True), [ON, LEFT], reached=31.0, tails=ENDLESS)
     assert found == RightHalfPlane((ON, LEFT), up_to(31.0, "poles have no end"))
-
-
-def test_a_function_that_mirrors_and_ends_is_counted_like_any_other(searching):
     assert searching(Half(1, is_even=True), [RIGHT]) == RightHalfPlane((RIGHT,))
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+from itertools import product
 from types import SimpleNamespace
 
 import mpmath
@@ -80,11 +82,14 @@ MODELS = {
 }
 
 
-@pytest.fixture(params=MODELS)
-def model(request):
-    make, wavenumber, length = MODELS[request.param]
-    made = make()
-    return made, lambda s: made.exact(mpmath.mpmathify(s), wavenumber(mpmath.mpmathify(s)), length)
+@cache
+def models():
+    """Return the polynomials of every model, and what they are by mpmath."""
+
+    def exactly(made, wavenumber, length):
+        return lambda s: made.exact(mpmath.mpmathify(s), wavenumber(mpmath.mpmathify(s)), length)
+
+    return [(made := make(), exactly(made, *more)) for make, *more in MODELS.values()]
 
 
 def close(found, expected, digits=25):
@@ -93,54 +98,45 @@ def close(found, expected, digits=25):
     ) < (abs(expected) * mpmath.mpf(10) ** -digits)
 
 
-@pytest.mark.parametrize("s", PLACES)
-def test_sums_have_the_values_of_polynomials_in_kernels(model, s):
-    made, exact = model
-    with mp.workdps(50), precision(120):
-        place = made.values.at(acb(s))
-        for i, expected in enumerate(exact(s)):
-            assert close(made.values.value(i, place), expected)
+def test_sums_have_the_values_and_slopes_of_polynomials_in_kernels():
+    for (made, exact), s in product(models(), PLACES):
+        with mp.workdps(80), precision(120):
+            place, series = made.values.at(acb(s)), made.values.at(expansion(acb(s)))
+            for i, expected in enumerate(exact(s)):
+                assert close(made.values.value(i, place), expected), (i, s)
+                slope = mpmath.diff(
+                    lambda x, f=exact, i=i: f(x)[i], mpmath.mpmathify(s), h=mpmath.mpf(10) ** -35
+                )
+                found = made.values.value(i, series)
+                found = found[1] if isinstance(found, acb_series) else acb(0)
+                assert close(found, slope) if slope else found.contains(0), (i, s)
 
 
-@pytest.mark.parametrize("s", PLACES)
-def test_series_have_the_slopes_of_polynomials_in_kernels(model, s):
-    made, exact = model
-    with mp.workdps(80), precision(120):
-        place = made.values.at(expansion(acb(s)))
-        for i in range(len(made.sums)):
-            slope = mpmath.diff(lambda x, i=i: exact(x)[i], mpmath.mpmathify(s), h=mpmath.mpf(10) ** -35)
-            series = made.values.value(i, place)
-            found = series[1] if isinstance(series, acb_series) else acb(0)
-            assert close(found, slope) if slope else found.contains(0)
+def test_divided_by_one_exponential_the_sum_is_smaller_by_it():
+    for (made, _), s in product(models(), PLACES):
+        with precision(120):
+            place = made.values.at(acb(s))
+            for i, terms in enumerate(made.sums):
+                own = made.values.exponents(i, place)
+                whole = made.values.value(i, place)
+                for k, exponent in enumerate(terms.terms):
+                    factor = acb(1) if own[k] is None else own[k].exp()
+                    assert (made.values.value(i, place, exponent) * factor - whole).contains(0), (i, s)
+                    assert made.values.exponents(i, place, exponent)[k] is None, (i, s)
 
 
-@pytest.mark.parametrize("s", PLACES)
-def test_divided_by_one_exponential_the_sum_is_smaller_by_it(model, s):
-    made, _ = model
-    with precision(120):
-        place = made.values.at(acb(s))
-        for i, terms in enumerate(made.sums):
-            own = made.values.exponents(i, place)
-            whole = made.values.value(i, place)
-            for k, exponent in enumerate(terms.terms):
-                factor = acb(1) if own[k] is None else own[k].exp()
-                assert (made.values.value(i, place, exponent) * factor - whole).contains(0)
-                assert made.values.exponents(i, place, exponent)[k] is None
-
-
-@pytest.mark.parametrize("s", [5.0, 4 + 9j, 40j])
-def test_the_largest_term_is_the_largest(model, s):
-    made, _ = model
-    with precision(120):
-        place = made.values.at(acb(s))
-        for i in range(len(made.sums)):
-            exponents = made.values.exponents(i, place)
-            sizes = [
-                float((abs(c) * (1 if e is None else abs(e.exp()))).mid())
-                for c, e in zip(made.values.amplitudes(i, place), exponents, strict=True)
-            ]
-            largest = list(made.sums[i].terms).index(made.values.largest([i], place))
-            assert sizes[largest] == pytest.approx(max(sizes))
+def test_the_largest_term_is_the_largest():
+    for (made, _), s in product(models(), (5.0, 4 + 9j, 40j)):
+        with precision(120):
+            place = made.values.at(acb(s))
+            for i in range(len(made.sums)):
+                exponents = made.values.exponents(i, place)
+                sizes = [
+                    float((abs(c) * (1 if e is None else abs(e.exp()))).mid())
+                    for c, e in zip(made.values.amplitudes(i, place), exponents, strict=True)
+                ]
+                largest = list(made.sums[i].terms).index(made.values.largest([i], place))
+                assert sizes[largest] == pytest.approx(max(sizes)), (i, s)
 
 
 def test_a_place_near_another_has_wavenumbers_of_the_same_branch():
@@ -155,15 +151,14 @@ def test_a_place_near_another_has_wavenumbers_of_the_same_branch():
         assert around.values[name].overlaps(left)
 
 
-def test_a_ball_of_places_has_a_ball_of_values(model):
-    made, exact = model
-    with mp.workdps(50), precision(120):
-        place = made.values.at(acb(arb(2, 0.01), arb(3, 0.01)))
-        for i in range(len(made.sums)):
-            ball = made.values.value(i, place)
-            for s in (2 + 3j, 2.009 + 3.009j, 1.991 + 3.009j):
+def test_a_ball_of_places_has_a_ball_of_values():
+    for made, exact in models():
+        with mp.workdps(50), precision(120):
+            place = made.values.at(acb(arb(2, 0.01), arb(3, 0.01)))
+            for i, s in product(range(len(made.sums)), (2 + 3j, 2.009 + 3.009j, 1.991 + 3.009j)):
                 expected = exact(s)[i]
-                assert ball.contains(acb(float(expected.real), float(mpmath.im(expected))))
+                exactly = acb(float(expected.real), float(mpmath.im(expected)))
+                assert made.values.value(i, place).contains(exactly), (i, s)
 
 
 def test_too_many_exponentials_are_not_written():
@@ -176,80 +171,75 @@ def test_too_many_exponentials_are_not_written():
     assert exponential_sum(ring, table, arguments, polynomial + decay**MOST_EXPONENTIALS) is None
 
 
-@pytest.mark.parametrize(
-    ("even", "odd", "expected"),
-    [
+def test_powers_of_hyperbolic_functions_are_multiplied_out():
+    for even, odd, expected in [
         (0, 0, {0: 1}),
         (2, 0, {2: 1, 0: 2, -2: 1}),
         (0, 2, {2: 1, 0: -2, -2: 1}),
         (1, 1, {2: 1, -2: -1}),
         (2, 1, {3: 1, 1: 1, -1: -1, -3: -1}),
         (1, 2, {3: 1, 1: -1, -1: -1, -3: 1}),
-    ],
-)
-def test_powers_of_hyperbolic_functions_are_multiplied_out(even, odd, expected):
-    assert spread(even, odd) == expected
+    ]:
+        assert spread(even, odd) == expected
 
 
 # ----------------------------------------------------------------------------------------------- in doubles
 
 
-def test_samples_in_doubles_are_those_of_mpmath(model):
-    made, exact = model
-    with precision(64):
-        sums = DoubleSums(made.values)
-    radii = np.array([0.7, 2.0, 5.5])
-    for angle in (0.0, 1.1, np.pi / 2 - 0.01):
-        order = list(reversed(range(len(made.sums))))
-        for i, sample in zip(order, sums.sampled(np.log(radii), angle, order), strict=True):
-            for k, radius in enumerate(radii):
-                s = acb(radius * np.exp(1j * angle))
-                expected = exact(complex(s))[i]
-                assert sample.size[k] == pytest.approx(float(mpmath.log(abs(expected))), abs=1e-9)
-                assert np.exp(1j * sample.phase[k]) == pytest.approx(
-                    complex(expected / abs(expected)), abs=1e-9
-                )
-                with precision(64):
-                    place = made.values.at(s)
-                    parts = [
-                        abs(complex(c) * (1 if e is None else complex(e.exp())))
-                        for c, e in zip(
-                            made.values.amplitudes(i, place), made.values.exponents(i, place), strict=True
-                        )
-                    ]
-                assert sample.share[k] == pytest.approx(float(abs(expected)) / sum(parts), rel=1e-6)
+def test_samples_in_doubles_are_those_of_mpmath():
+    for made, exact in models():
+        with precision(64):
+            sums = DoubleSums(made.values)
+        radii = np.array([0.7, 2.0, 5.5])
+        for angle in (0.0, 1.1, np.pi / 2 - 0.01):
+            order = list(reversed(range(len(made.sums))))
+            for i, sample in zip(order, sums.sampled(np.log(radii), angle, order), strict=True):
+                for k, radius in enumerate(radii):
+                    s = acb(radius * np.exp(1j * angle))
+                    expected = exact(complex(s))[i]
+                    assert sample.size[k] == pytest.approx(float(mpmath.log(abs(expected))), abs=1e-9)
+                    assert np.exp(1j * sample.phase[k]) == pytest.approx(
+                        complex(expected / abs(expected)), abs=1e-9
+                    )
+                    with precision(64):
+                        place = made.values.at(s)
+                        parts = [
+                            abs(complex(c) * (1 if e is None else complex(e.exp())))
+                            for c, e in zip(
+                                made.values.amplitudes(i, place), made.values.exponents(i, place), strict=True
+                            )
+                        ]
+                    assert sample.share[k] == pytest.approx(float(abs(expected)) / sum(parts), rel=1e-6)
 
 
-def test_the_fastest_exponent_is_that_of_the_highest_power_of_kernels():
+def test_the_fastest_exponent_is_that_of_the_highest_power_of_kernels_if_there_are_any():
     with precision(64):
         of_beam, of_rod, of_delay = (DoubleSums(make().values) for make in (beam, rod, delay))
     # cosh^3 sin^2 cos and sin^3 sinh^3 of q = sqrt(s/2): abs(3 + 3 j) abs(q)
     assert of_beam.fastest(complex(np.log(32.0))) == pytest.approx(4 * 3 * np.sqrt(2))
     assert of_rod.fastest(np.log(32.0) + 1j) == pytest.approx(3 * 32)
     assert of_delay.fastest(complex(np.log(32.0))) == pytest.approx(3 * 16)
-
-
-def test_without_exponentials_nothing_is_fast():
     with precision(64):
         sums = DoubleSums(Polynomials(ROD, lambda s, q, cosh, sinh: [s + 3]).values)
     assert sums.fastest(1 + 0j) == 0.0
     assert DoubleSums(Polynomials(ROD, lambda s, q, cosh, sinh: []).values).fastest(1 + 0j) == 0.0
 
 
-@pytest.mark.parametrize(
-    ("kind", "c", "names"),
-    [("wave", [3 - 2j], "a"), ("bending", [5 + 1j], "a"), ("pair", [3 + 1j, 0, -7 + 2j], "ab")],
-)
-def test_wavenumbers_in_doubles_solve_their_equations(kind, c, names):
-    law = SimpleNamespace(kind=kind, wavenumbers=tuple(names))
-    found = Dispersion.roots(law, [np.array([each], dtype=complex) for each in c], np.sqrt)
-    assert list(found) == list(names)
-    # q^2 + c = 0, 4 q^4 = c, q^4 + c_2 q^2 + c_0 = 0
-    for (q,) in found.values():
-        rest = {
-            "wave": q**2 + c[0],
-            "bending": 4 * q**4 - c[0],
-            "pair": q**4 + c[-1] * q**2 + c[0],
-        }[kind]
-        assert abs(rest) < 1e-12
-    assert len({complex(np.round(q[0] ** 2, 9)) for q in found.values()}) == len(names)
+def test_wavenumbers_in_doubles_solve_their_equations():
+    for kind, c, names in [
+        ("wave", [3 - 2j], "a"),
+        ("bending", [5 + 1j], "a"),
+        ("pair", [3 + 1j, 0, -7 + 2j], "ab"),
+    ]:
+        law = SimpleNamespace(kind=kind, wavenumbers=tuple(names))
+        found = Dispersion.roots(law, [np.array([each], dtype=complex) for each in c], np.sqrt)
+        assert list(found) == list(names), (kind, c)
+        # q^2 + c = 0, 4 q^4 = c, q^4 + c_2 q^2 + c_0 = 0
+        for (q,) in found.values():
+            rest = {
+                "wave": q**2 + c[0],
+                "bending": 4 * q**4 - c[0],
+                "pair": q**4 + c[-1] * q**2 + c[0],
+            }[kind]
+            assert abs(rest) < 1e-12, (kind, c)
+        assert len({complex(np.round(q[0] ** 2, 9)) for q in found.values()}) == len(names), (kind, c)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pytest
 from flint import acb
 
 from symflex.algebra import Factored
@@ -45,13 +44,16 @@ SQUARES = {
 }
 
 
-@pytest.mark.parametrize("name", SQUARES)
-def test_squares_are_found_with_their_multiplicity(name):
-    text, make, exponents = SQUARES[name]
-    function, part = without_squares(*product_of(text, make))
-    kernels = [function.ratio.ring.index[g] for g in function.kernels.generators]
-    found = [e for f, e in part.factors if any(f.degrees()[i] for i in kernels)]
-    assert sorted(found) == exponents
+def test_squares_are_found_with_their_multiplicity_and_change_the_product_by_one_number():
+    for name, (text, make, exponents) in SQUARES.items():
+        before = product_of(text, make)
+        function, part = after = without_squares(*before)
+        kernels = [function.ratio.ring.index[g] for g in function.kernels.generators]
+        assert sorted(e for f, e in part.factors if any(f.degrees()[i] for i in kernels)) == exponents, name
+        with precision(160):
+            ratios = [value(*after, s) / value(*before, s) for s in PLACES]
+            assert all((ratio / ratios[0] - 1).contains(0) for ratio in ratios), name
+            assert all(ratio.rel_accuracy_bits() > 80 for ratio in ratios), name
 
 
 def value(function, part, s):
@@ -60,41 +62,25 @@ def value(function, part, s):
         return kernels.value(part, kernels.at(acb(s)))
 
 
-@pytest.mark.parametrize("name", SQUARES)
-def test_the_product_keeps_its_values_but_for_one_number(name):
-    text, make, _ = SQUARES[name]
-    before = product_of(text, make)
-    after = without_squares(*before)
-    with precision(160):
-        ratios = [value(*after, s) / value(*before, s) for s in PLACES]
-        assert all((ratio / ratios[0] - 1).contains(0) for ratio in ratios)
-        assert all(ratio.rel_accuracy_bits() > 80 for ratio in ratios)
-
-
-@pytest.mark.parametrize(
-    ("text", "make"),
-    [
+def test_without_a_hidden_square_values_are_the_same():
+    for text, make in [
         (ROD, lambda s, cosh, sinh: [(cosh + s * sinh, 1)]),
         (ROD, lambda s, cosh, sinh: [(cosh + s * sinh, 2)]),
         (ROD, lambda s, cosh, sinh: [(cosh, 2), (s, 1)]),
         (DELAY_LOOP, lambda s, exp: [(s + 2 * exp, 1)]),
-    ],
-)
-def test_without_a_hidden_square_values_are_the_same(text, make):
-    source, part = product_of(text, make)
-    after = without_squares(source, part)
-    with precision(160):
-        assert all((value(source, part, s) - value(*after, s)).contains(0) for s in PLACES)
-
-
-def test_nothing_is_changed_where_no_square_is_hidden():
+    ]:
+        source, part = product_of(text, make)
+        after = without_squares(source, part)
+        with precision(160):
+            assert all((value(source, part, s) - value(*after, s)).contains(0) for s in PLACES), text
+    # Nothing at all is changed where no square may be hidden.
     source, part = product_of(ROD, lambda s, cosh, sinh: [(cosh + s * sinh, 1)])
     assert without_squares(source, part) == (source, part)
 
 
-@pytest.mark.parametrize(("most", "count"), [(3, [2]), (1, [1])])
-def test_squares_of_long_polynomials_are_not_sought(monkeypatch, most, count):
+def test_squares_of_long_polynomials_are_not_sought(monkeypatch):
     # cosh - 1 has two terms, (E - 1)^2 three.
-    monkeypatch.setattr(simplified, "MOST_TERMS", most)
-    _, part = without_squares(*product_of(ROD, lambda s, cosh, sinh: [(cosh - 1, 1)]))
-    assert [e for _, e in part.factors] == count
+    for most, count in ((3, [2]), (1, [1])):
+        monkeypatch.setattr(simplified, "MOST_TERMS", most)
+        _, part = without_squares(*product_of(ROD, lambda s, cosh, sinh: [(cosh - 1, 1)]))
+        assert [e for _, e in part.factors] == count, most

@@ -67,44 +67,43 @@ def values(roots):
     return sorted(found, key=lambda s: (round(abs(s), 6), s.real))
 
 
-@pytest.mark.parametrize("kind", [Winding, CertifiedWinding])
-@pytest.mark.parametrize(("make", "roots"), [(mixed, MIXED), (even, EVEN)])
-def test_a_ring_holds_all_roots_in_the_upper_half_plane(make, roots, kind):
-    found = search(make, kind=kind).ring(log(0.1), log(10))
-    assert values(found.roots) == pytest.approx(
-        sorted(roots, key=lambda s: (round(abs(s), 6), complex(s).real))
-    )
-    assert found.missing == 0
-    assert all(root.certified and root.multiplicity == 1 for root in found.roots)
+def test_a_ring_holds_all_roots_in_the_upper_half_plane():
+    for make, roots, kind in (
+        (mixed, MIXED, Winding),
+        (mixed, MIXED, CertifiedWinding),
+        (even, EVEN, Winding),
+    ):
+        found = search(make, kind=kind).ring(log(0.1), log(10))
+        assert values(found.roots) == pytest.approx(
+            sorted(roots, key=lambda s: (round(abs(s), 6), complex(s).real))
+        )
+        assert found.missing == 0, kind
+        assert all(root.certified and root.multiplicity == 1 for root in found.roots), kind
 
 
-@pytest.mark.parametrize(("low", "high"), [(0.1, 1.0), (1.0, 2.9), (2.5, 3.5), (3.5, 9), (5, 9)])
-def test_a_narrower_ring_holds_those_between_its_circles(low, high):
-    found = search(mixed).ring(log(low), log(high))
-    assert values(found.roots) == pytest.approx(sorted((s for s in MIXED if low < abs(s) < high), key=abs))
-    # A little beyond is searched too, and said.
-    assert found.cell.low < log(low)
-    assert found.cell.high > log(high)
+def test_rings_and_sectors_hold_those_between_their_circles_and_rays():
+    for low, high in [(0.1, 1.0), (1.0, 2.9), (2.5, 3.5), (3.5, 9), (5, 9)]:
+        found = search(mixed).ring(log(low), log(high))
+        assert values(found.roots) == pytest.approx(
+            sorted((s for s in MIXED if low < abs(s) < high), key=abs)
+        ), low
+        # A little beyond is searched too, and said.
+        assert found.cell.low < log(low)
+        assert found.cell.high > log(high), low
+    for right, left in [(0.0, 1.0), (1.0, 2.2), (2.2, pi), (1.9, 2.5)]:
+        found = search(mixed).ring(log(0.1), log(10), right, left)
+        inside = [s for s in MIXED if right - 0.03 <= phase(s) <= left + 0.03]
+        assert values(found.roots) == pytest.approx(sorted(inside, key=abs)), right
+        assert (found.cell.right, found.cell.left) == pytest.approx((right - 0.03, left + 0.03))
 
 
-@pytest.mark.parametrize(("right", "left"), [(0.0, 1.0), (1.0, 2.2), (2.2, pi), (1.9, 2.5)])
-def test_a_sector_holds_those_between_its_rays(right, left):
-    found = search(mixed).ring(log(0.1), log(10), right, left)
-    inside = [s for s in MIXED if right - 0.03 <= phase(s) <= left + 0.03]
-    assert values(found.roots) == pytest.approx(sorted(inside, key=abs))
-    assert (found.cell.right, found.cell.left) == pytest.approx((right - 0.03, left + 0.03))
-
-
-@pytest.mark.parametrize(("other", "on_axis"), [(lambda s: s**4 + 2, True), (lambda s: s + 1, False)])
-def test_of_an_even_function_roots_next_to_the_axis_lie_on_it(other, on_axis):
-    # j sqrt(10), of which no box about it tells more than that it is close to the axis.
-    found = search(lambda s: [(s**2 + 10, 1), (other(s), 1)]).ring(log(0.1), log(10))
-    (root,) = (root for root in found.roots if root.im > 3)
-    assert root.on_imaginary_axis is bool(root.re == 0) is on_axis
-    assert root.re.contains(0)
-
-
-def test_of_an_even_function_a_quarter_is_searched():
+def test_of_an_even_function_a_quarter_is_searched_and_roots_next_to_the_axis_lie_on_it():
+    for other, on_axis in [(lambda s: s**4 + 2, True), (lambda s: s + 1, False)]:
+        # j sqrt(10), of which no box about it tells more than that it is close to the axis.
+        found = search(lambda s, other=other: [(s**2 + 10, 1), (other(s), 1)]).ring(log(0.1), log(10))
+        (root,) = (root for root in found.roots if root.im > 3)
+        assert root.on_imaginary_axis is bool(root.re == 0) is on_axis, other
+        assert root.re.contains(0), other
     one = search(even)
     assert (one.is_even, one.left) == (True, pi / 2)
     assert one.ring(log(0.1), log(10)).cell.left < 2
@@ -112,22 +111,22 @@ def test_of_an_even_function_a_quarter_is_searched():
     assert (other.is_even, other.left) == (False, pi)
 
 
-@pytest.mark.parametrize("times", [2, 3])
-def test_a_root_of_a_power_has_its_exponent(times):
-    found = search(lambda s: [(s + 2, times), (s**2 + s + 9, 1)]).ring(log(0.1), log(10))
-    assert sorted((r.multiplicity, r.is_real) for r in found.roots) == [(1, False), (times, True)]
+def test_a_root_of_a_power_has_its_exponent():
+    for times in [2, 3]:
+        found = search(lambda s, times=times: [(s + 2, times), (s**2 + s + 9, 1)]).ring(log(0.1), log(10))
+        assert sorted((r.multiplicity, r.is_real) for r in found.roots) == [(1, False), (times, True)]
 
 
-@pytest.mark.parametrize("apart", [10**3, 10**9, 10**14, 10**25])
-def test_two_roots_close_together_are_told_apart(apart):
+def test_two_roots_close_together_are_told_apart():
     # 2 + 1/apart, and 2; and beside them one at -5
-    found = search(lambda s: [((apart * s - 2 * apart - 1) * (s - 2), 1), (s + 5, 1)]).ring(log(0.1), log(10))
-    assert found.missing == 0
-    assert len(found.roots) == 3
-    with precision(400):
-        for value in (arb(2), 2 + arb(1) / apart, arb(-5)):
-            assert [root.enclosure().contains(acb(value)) for root in found.roots].count(True) == 1
-    assert all(root.certified for root in found.roots)
+    for apart in (10**3, 10**14, 10**25):
+        found = search(close(apart)).ring(log(0.1), log(10))
+        assert found.missing == 0, apart
+        assert len(found.roots) == 3
+        with precision(400):
+            expected = (arb(2), 2 + arb(1) / apart, arb(-5))
+        assert contained(found.roots, *expected) == [1, 1, 1], apart
+        assert all(root.certified for root in found.roots), apart
 
 
 def test_two_pairs_close_together_are_told_apart():
@@ -138,15 +137,15 @@ def test_two_pairs_close_together_are_told_apart():
 
 
 def test_a_root_that_two_factors_share_is_one_of_two_that_are_not_told_apart():
-    found = search(lambda s: [(s - 2, 1), (s**2 - 4, 1), (s**2 + s + 9, 1)]).ring(log(0.1), log(10))
-    shared = [root for root in found.roots if root.re.contains(2)]
-    assert sum(root.multiplicity for root in shared) == 2
-    assert not any(root.certified for root in shared if root.multiplicity == 2)
+    found = search(shared).ring(log(0.1), log(10))
+    both = [root for root in found.roots if root.re.contains(2)]
+    assert sum(root.multiplicity for root in both) == 2
+    assert not any(root.certified for root in both if root.multiplicity == 2)
     assert found.missing == 0
     assert sum(root.multiplicity for root in found.roots) == 4
 
 
-def test_modes_are_found_outwards_until_there_are_enough():
+def test_modes_are_found_outwards_until_there_are_enough_or_to_a_radius():
     one = search(mixed)
     one.extend(1)
     assert values(one.roots)[0] == pytest.approx(MIXED[0])
@@ -158,23 +157,25 @@ def test_modes_are_found_outwards_until_there_are_enough():
         [s for s in sorted(MIXED, key=abs) if abs(s) < exp(one.reached)]
     )
     assert one.missing == 0
-
-
-def test_to_a_radius_all_are_found_whatever_the_number():
     one = search(mixed)
     one.extend(0, log(3.5))
     assert [s for s in values(one.roots) if abs(s) < 3.5] == pytest.approx(sorted(MIXED[:3], key=abs))
     assert one.reached >= log(3.5)
 
 
-def test_modes_located_are_reported():
+def test_modes_located_are_reported_and_a_scan_for_more_than_there_are_ends():
     told = Told()
     search(even, budget=Budget(progress=told)).extend(3)
     assert told.said
     assert all(text == f"{round(3 * done)} of 3 modes located" for done, text in told.said)
+    told = Told()
+    one = search(lambda s: [(4 * s**2 + 25, 1)], budget=Budget(progress=told))
+    assert one.scan(2, -inf, lambda: True) is True
+    assert one.reached == inf
+    assert {text for _, text in told.said} == {"0 of 2 modes located", "1 of 2 modes located"}
 
 
-def test_roots_on_the_axes_are_scanned():
+def test_roots_on_both_axes_are_scanned_and_met_once():
     one = search(lambda s: [(4 * s**2 + 25, 1), (s**2 - 9, 1), (s**2 + 49, 2)])
     asked = []
 
@@ -187,26 +188,14 @@ def test_roots_on_the_axes_are_scanned():
     assert sum(root.multiplicity for root in one.roots) == 4
     assert one.reached >= log(7)
     assert [root.multiplicity for root in one.roots if root.im > 5] == [2]
-
-
-@pytest.mark.parametrize("complete", [True, False])
-def test_a_scan_says_whether_these_are_all(complete):
-    assert search(even).scan(1, log(9), lambda: complete) is complete
-
-
-def test_a_scan_for_more_modes_than_there_are_ends():
-    told = Told()
-    one = search(lambda s: [(4 * s**2 + 25, 1)], budget=Budget(progress=told))
-    assert one.scan(2, -inf, lambda: True) is True
-    assert one.reached == inf
-    assert told.said
-    assert {text for _, text in told.said} == {"0 of 2 modes located", "1 of 2 modes located"}
-
-
-def test_on_both_axes_roots_between_two_radii_are_met_once():
     one = search(lambda s: [(s**2 + 4, 1), (s**2 - 9, 1), (s**2 + 49, 1), (s**2 - 900, 1)])
     found = one.on_axes(log(1), log(10))
     assert values(found) == pytest.approx([2j, 3, 7j])
+
+
+def test_a_scan_says_whether_these_are_all():
+    for complete in [True, False]:
+        assert search(even).scan(1, log(9), lambda complete=complete: complete) is complete
 
 
 HOLE = Cell(log(2) - 0.05, log(2) + 0.3, 1.8, 2.3)
@@ -220,20 +209,14 @@ def test_what_lies_in_a_hole_is_left_out_and_said():
     assert one.excluded == {HOLE}
 
 
-@pytest.mark.parametrize(
-    ("radius", "passed"),
-    [
+def test_circles_pass_by_one_hole_and_the_next():
+    for radius, passed in [
         (HOLE.low - 0.5, None),
         (HOLE.low - 0.1, HOLE.high + 0.03),
         (HOLE.high, HOLE.high + 0.03),
         (HOLE.high + 0.1, None),
-    ],
-)
-def test_circles_pass_by_holes(radius, passed):
-    assert search(mixed, holes=(HOLE,)).passing(radius) == pytest.approx(passed or radius)
-
-
-def test_passing_one_hole_the_next_is_passed_too():
+    ]:
+        assert search(mixed, holes=(HOLE,)).passing(radius) == pytest.approx(passed or radius)
     other = Cell(HOLE.high + 0.1, HOLE.high + 0.4, 0.5, 1.0)
     for holes in ((HOLE, other), (other, HOLE)):
         assert search(mixed, holes=holes).passing(HOLE.low) == pytest.approx(other.high + 0.03)
@@ -276,34 +259,16 @@ def contained(roots, *expected):
         return [sum(bool(root.enclosure().contains(acb(value))) for root in roots) for value in expected]
 
 
-@pytest.mark.parametrize("size", [1e-10, 9e-10])
-def test_in_a_small_cell_roots_are_told_apart_by_their_moments(size):
-    found = search(close(10**14))._cluster(cell_about(2, size), 2)
-    with precision(600):
-        assert contained(found, arb(2), 2 + arb(10) ** -14) == [1, 1]
-    assert [(root.multiplicity, root.certified) for root in found] == [(1, True), (1, True)]
-
-
-def test_a_cell_that_is_not_small_is_not_looked_at_closer():
+def test_in_a_small_cell_of_a_multiple_of_the_power_roots_are_told_apart_by_their_moments():
+    for size in [1e-10, 9e-10]:
+        found = search(close(10**14))._cluster(cell_about(2, size), 2)
+        with precision(600):
+            assert contained(found, arb(2), 2 + arb(10) ** -14) == [1, 1], size
+        assert [(root.multiplicity, root.certified) for root in found] == [(1, True), (1, True)], size
     assert search(close(10**14))._cluster(cell_about(2, 1.1e-9), 2) is None
-
-
-def test_what_is_no_multiple_of_the_power_counted_is_no_cluster():
     one = search(close(10**14))
     one.function.power = 2
     assert one._cluster(cell_about(2, 1e-10), 3) is None
-
-
-def test_moments_that_do_not_tell_roots_apart_leave_them_together():
-    (found,) = search(shared)._cluster(cell_about(2, 1e-10), 2)
-    assert (found.multiplicity, found.certified) == (2, False)
-    assert contained([found], arb(2)) == [1]
-    assert found.re.rad() < 1e-13
-
-
-@pytest.mark.parametrize("count", [1, 3])
-def test_another_number_than_the_cells_is_no_cluster(count):
-    assert search(shared)._cluster(cell_about(2, 1e-10), count) is None
 
 
 def together(size, times, place=2.0):
@@ -340,12 +305,9 @@ def test_of_a_power_that_is_counted_so_many_roots_are_told_apart_at_once():
         assert contained(found, arb(2), 2 + arb(10) ** -9) == [1, 1]
 
 
-@pytest.mark.parametrize("times", [1, 3])
-def test_roots_of_another_number_are_not_told_apart(times):
-    assert search(close(10**25))._apart(together(1e-20, times)) is None
-
-
-def test_one_root_of_two_factors_stays_together():
+def test_roots_of_another_number_or_of_two_factors_are_not_told_apart():
+    for times in [1, 3]:
+        assert search(close(10**25))._apart(together(1e-20, times)) is None
     assert search(shared)._apart(together(1e-20, 2)) is None
 
 
@@ -354,22 +316,17 @@ def test_the_only_root_in_a_circle_is_found_from_beside_it():
     assert contained([found], arb(4)) == [1]
     assert (found.multiplicity, found.certified, found.is_real) == (1, True, True)
     assert found.re.rad() < 1e-12
+    for place in [3.9, 1.0]:
+        assert search(mixed)._about(acb(place), 1) is None
 
 
-@pytest.mark.parametrize("place", [3.9, 1.0])
-def test_where_there_is_no_root_none_is_found_about_it(place):
-    assert search(mixed)._about(acb(place), 1) is None
-
-
-@pytest.mark.parametrize(
-    ("size", "count", "found"), [(0.1, 1, 1), (0.1, 2, None), (0.01, 1, None), (0.05, 1, None)]
-)
-def test_a_disc_holds_as_many_as_are_counted_on_its_circle(size, count, found):
-    # 4 is 0.05 away: inside, outside, and on the circle.
-    roots = search(mixed)._in_disc(acb(4.05), arb(size), count)
-    assert (roots and roots[0].multiplicity) == found
-    if roots:
-        assert contained(roots, arb(4)) == [1]
+def test_a_disc_holds_as_many_as_are_counted_on_its_circle():
+    for size, count, found in [(0.1, 1, 1), (0.1, 2, None), (0.01, 1, None), (0.05, 1, None)]:
+        # 4 is 0.05 away: inside, outside, and on the circle.
+        roots = search(mixed)._in_disc(acb(4.05), arb(size), count)
+        assert (roots and roots[0].multiplicity) == found, (size, count)
+        if roots:
+            assert contained(roots, arb(4)) == [1], (size, count)
 
 
 def test_without_a_series_the_smallest_disc_that_holds_a_cluster_is_taken(monkeypatch):
@@ -388,9 +345,9 @@ def test_without_a_series_the_smallest_disc_that_holds_a_cluster_is_taken(monkey
     assert float(simple.re.rad()) == pytest.approx(4e-4, rel=1e-3)
 
 
-@pytest.mark.parametrize(("count", "power", "lost"), [(-2, 1, 2), (-4, 2, 2), (-1, 2, 1)])
-def test_a_cell_with_fewer_roots_than_none_has_lost_some(count, power, lost):
-    # Where poles lie, which an entire function has not.
-    one = search(mixed)
-    one.function.power = power
-    assert one._separate(cell_about(4, 0.1), count) == ([], lost)
+def test_a_cell_with_fewer_roots_than_none_has_lost_some():
+    for count, power, lost in [(-2, 1, 2), (-4, 2, 2), (-1, 2, 1)]:
+        # Where poles lie, which an entire function has not.
+        one = search(mixed)
+        one.function.power = power
+        assert one._separate(cell_about(4, 0.1), count) == ([], lost)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from cmath import exp
+from itertools import product
 from math import log, pi
 from types import SimpleNamespace
 
@@ -84,36 +85,32 @@ def is_here(s):
     return abs(complex(s) - HERE) < 1e-9
 
 
-@pytest.mark.parametrize("is_even", [True, False])
-def test_one_root_is_proved_where_newtons_method_ends(known, is_even):
-    known.simple = root(HERE)
-    one = search(is_even=is_even)
-    assert together(one, 0.3, 1) == [known.simple]
-    (function, s, digits), options = known.asked["prove_simple"]
-    assert function is one.function
-    assert is_here(s)
-    assert (digits, options) == (DIGITS, {"even": is_even})
+def test_one_root_is_proved_where_newtons_method_ends(known):
+    for is_even in [True, False]:
+        known.simple = root(HERE)
+        one = search(is_even=is_even)
+        assert together(one, 0.3, 1) == [known.simple], is_even
+        (function, s, digits), options = known.asked["prove_simple"]
+        assert function is one.function, is_even
+        assert is_here(s), is_even
+        assert (digits, options) == (DIGITS, {"even": is_even})
 
 
-def test_a_root_has_the_multiplicity_counted_by_the_power_of_the_function(known):
+def test_a_root_has_the_multiplicity_counted_by_the_power_and_lies_in_the_cell(known):
     known.simple = root(HERE, 2)
     assert together(search(power=3), 0.3, 6) == [known.simple]
     assert together(search(power=3), 0.3, 3) is None
-
-
-def test_a_root_elsewhere_is_none_of_the_cell(known):
     known.simple = root(exp(PLACE + 1))
     assert together(search(), 0.3, 1) is None
     assert together(search(), NEAR / 2, 1) is None
 
 
-@pytest.mark.parametrize(("size", "asked"), [(NEAR * 0.99, True), (NEAR * 1.01, False)])
-@pytest.mark.parametrize("power", [1, 2])
-def test_about_a_place_without_a_box_a_circle_is_drawn_if_the_cell_is_small(known, size, asked, power):
-    one, given = search(power=power), []
-    one._about = lambda s, count: given.append((is_here(s), count)) or ["found"]
-    assert together(one, size, power) == (["found"] if asked else None)
-    assert given == [(True, power)] * asked
+def test_about_a_place_without_a_box_a_circle_is_drawn_if_the_cell_is_small(known):
+    for (size, asked), power in product([(NEAR * 0.99, True), (NEAR * 1.01, False)], [1, 2]):
+        one, given = search(power=power), []
+        one._about = lambda s, count, given=given: given.append((is_here(s), count)) or ["found"]
+        assert together(one, size, power) == (["found"] if asked else None)
+        assert given == [(True, power)] * asked
 
 
 def test_newtons_method_that_leaves_the_cell_finds_nothing(known):
@@ -134,7 +131,7 @@ def test_newtons_method_that_leaves_the_cell_finds_nothing(known):
 NEIGHBOUR = exp(PLACE + 1e-3j)
 
 
-def test_several_roots_are_told_apart_within_the_cell(known):
+def test_several_roots_are_told_apart_if_all_lie_within_the_cell(known):
     known.resolved = [root(HERE), root(NEIGHBOUR)]
     one = search(is_even=True)
     assert together(one, 0.3, 2) == known.resolved
@@ -143,32 +140,29 @@ def test_several_roots_are_told_apart_within_the_cell(known):
     assert is_here(s)
     assert float(radius) == pytest.approx(abs(HERE) * 1e-4, rel=1e-6)
     assert (digits, bits, options) == (DIGITS, 256, {"even": True})
-
-
-def test_of_several_roots_one_outside_of_the_cell_is_not_taken(known):
     known.resolved = [root(HERE), root(exp(PLACE + 1))]
     assert together(search(), 0.3, 2) is None
 
 
-@pytest.mark.parametrize("resolved", [None, [root(HERE)]])
-def test_several_roots_that_are_not_all_told_apart_are_together_only_next_to_a_branch(known, resolved):
-    known.resolved, known.together = resolved, root(HERE, 2)
-    one = search(is_even=True)
-    one._apart = lambda given: None
-    assert together(one, 0.3, 2) is None
-    (function, s, radius), _ = known.asked["is_branched"]
-    assert function is one.function
-    assert is_here(s)
-    assert float(radius) == pytest.approx(abs(HERE) * 1e-4, rel=1e-6)
-    known.branched = True
-    assert together(one, 0.3, 2) == [known.together]
-    given, options = known.asked["prove_together"]
-    assert given[0] is one.function
-    assert is_here(given[1])
-    assert (float(given[2]), *given[3:]) == (float(radius), DIGITS, 2)
-    assert options == {"even": True, "is_close": True}
-    known.together = None
-    assert together(one, 0.3, 2) is None
+def test_several_roots_that_are_not_all_told_apart_are_together_only_next_to_a_branch(known):
+    for resolved in [None, [root(HERE)]]:
+        known.resolved, known.together, known.branched = resolved, root(HERE, 2), False
+        one = search(is_even=True)
+        one._apart = lambda given: None
+        assert together(one, 0.3, 2) is None, resolved
+        (function, s, radius), _ = known.asked["is_branched"]
+        assert function is one.function, resolved
+        assert is_here(s), resolved
+        assert float(radius) == pytest.approx(abs(HERE) * 1e-4, rel=1e-6), resolved
+        known.branched = True
+        assert together(one, 0.3, 2) == [known.together], resolved
+        given, options = known.asked["prove_together"]
+        assert given[0] is one.function, resolved
+        assert is_here(given[1]), resolved
+        assert (float(given[2]), *given[3:]) == (float(radius), DIGITS, 2), resolved
+        assert options == {"even": True, "is_close": True}, resolved
+        known.together = None
+        assert together(one, 0.3, 2) is None, resolved
 
 
 def test_next_to_a_branch_more_digits_may_tell_them_apart(known):
@@ -182,9 +176,8 @@ def test_next_to_a_branch_more_digits_may_tell_them_apart(known):
 # ------------------------------------------------------------------------------------------------- cells
 
 
-@pytest.mark.parametrize(
-    ("cell", "first"),
-    [
+def test_the_first_cut_is_made_where_roots_are_rare():
+    for cell, first in [
         # A half plane and more is cut to the right of lightly damped roots.
         (Cell(0.0, 1.0, -0.03, pi + 0.03), RIGHT_HALF),
         (Cell(0.0, 3.1, -0.03, pi + 0.03), RIGHT_HALF),
@@ -193,16 +186,14 @@ def test_next_to_a_branch_more_digits_may_tell_them_apart(known):
         (Cell(0.0, 1.0, 0.0, pi), SHARES[0] * pi),
         (Cell(0.0, 1.0, 0.5, pi), 0.5 + SHARES[0] * (pi - 0.5)),
         (Cell(0.0, 3.3, -0.03, pi + 0.03), None),
-    ],
-)
-def test_the_first_cut_is_made_where_roots_are_rare(cell, first):
-    one = search()
-    (lower, counted), (upper, rest) = one._split(cell, 5)
-    assert (counted, rest) == (1, 4)
-    if first is None:
-        assert (lower.high, upper.low) == pytest.approx((SHARES[0] * 3.3,) * 2)
-    else:
-        assert (lower.left, upper.right) == pytest.approx((first, first))
+    ]:
+        one = search()
+        (lower, counted), (upper, rest) = one._split(cell, 5)
+        assert (counted, rest) == (1, 4), cell
+        if first is None:
+            assert (lower.high, upper.low) == pytest.approx((SHARES[0] * 3.3,) * 2), cell
+        else:
+            assert (lower.left, upper.right) == pytest.approx((first, first)), cell
 
 
 def test_a_cut_through_a_root_is_made_elsewhere():
@@ -226,21 +217,29 @@ def test_a_ring_whose_border_meets_a_root_is_widened_until_none_does():
     assert (found.roots, found.missing, found.cell) == ((root(HERE),), 2, one._winding.counted[-1])
 
 
-@pytest.mark.parametrize("is_even", [True, False])
-def test_mirror_images_and_what_is_no_root_are_left_out(is_even):
-    kept = [root(2 + 1j), root(3 + 0j)]
-    others = [root(-2 + 1j), root(1 - 1j), root(1 + 2j, 0)]
-    one = search(is_even=is_even)
-    one._together = lambda cell, count: [*kept, *others]
-    found, missing = one._separate(cell_about(PLACE, 1), 5)
-    assert found == (kept if is_even else [*kept, others[0]])
-    assert missing == 0
+def test_mirror_images_and_what_is_no_root_are_left_out():
+    for is_even in [True, False]:
+        kept = [root(2 + 1j), root(3 + 0j)]
+        others = [root(-2 + 1j), root(1 - 1j), root(1 + 2j, 0)]
+        one = search(is_even=is_even)
+        one._together = lambda cell, count, roots=(*kept, *others): [*roots]
+        found, missing = one._separate(cell_about(PLACE, 1), 5)
+        assert found == (kept if is_even else [*kept, others[0]])
+        assert missing == 0, is_even
 
 
-def test_a_cell_without_roots_is_not_looked_at():
+def test_a_cell_without_roots_is_not_looked_at_and_one_that_is_too_small_not_cut():
     one = search()
     one._together = one._split = one._cluster = None
     assert one._separate(cell_about(PLACE, 1), 0) == ([], 0)
+    one, given = search(), []
+    one._together = lambda cell, count: None
+    one._split = lambda cell, count: given.append(cell)
+    one._cluster = lambda cell, count: [root(HERE)]
+    one._separate(cell_about(PLACE, 0.5e-11), 1)
+    assert given == []
+    one._separate(cell_about(PLACE, 2e-11), 1)
+    assert len(given) == 1
 
 
 def test_a_cell_that_cannot_be_cut_is_looked_at_closer():
@@ -253,17 +252,6 @@ def test_a_cell_that_cannot_be_cut_is_looked_at_closer():
     assert given == [(cell, 2)]
     one._cluster = lambda cell, count: None
     assert one._separate(cell, 2) == ([], 2)
-
-
-def test_a_cell_that_is_too_small_is_not_cut():
-    one, given = search(), []
-    one._together = lambda cell, count: None
-    one._split = lambda cell, count: given.append(cell)
-    one._cluster = lambda cell, count: [root(HERE)]
-    one._separate(cell_about(PLACE, 0.5e-11), 1)
-    assert given == []
-    one._separate(cell_about(PLACE, 2e-11), 1)
-    assert len(given) == 1
 
 
 def test_on_the_axes_a_root_met_twice_in_a_row_is_one(monkeypatch):
@@ -286,9 +274,8 @@ def test_on_the_axes_a_root_met_twice_in_a_row_is_one(monkeypatch):
     assert asked == [(one.function, DIGITS, True)] * 5
 
 
-@pytest.mark.parametrize(
-    ("s", "inside"),
-    [
+def test_a_root_is_in_a_cell_by_its_logarithm_whatever_the_turn_and_a_hair_outside():
+    for s, inside in [
         (exp(1 + 3.1j), True),
         # Beyond the negative axis arguments begin anew.
         (exp(1 - 3.1j), True),
@@ -296,14 +283,9 @@ def test_on_the_axes_a_root_met_twice_in_a_row_is_one(monkeypatch):
         (exp(1 + 2.9j), False),
         (exp(1.2 + 3.1j), False),
         (exp(0.8 - 3.1j), False),
-    ],
-)
-def test_a_root_is_in_a_cell_by_its_logarithm_whatever_the_turn(s, inside):
-    assert _is_in(Cell(0.9, 1.1, pi - 0.2, pi + 0.2), root(s)) is inside
-    assert _is_in(Cell(0.9, 1.1, -pi - 0.2, -pi + 0.2), root(s)) is inside
-
-
-def test_a_hair_outside_is_inside():
+    ]:
+        assert _is_in(Cell(0.9, 1.1, pi - 0.2, pi + 0.2), root(s)) is inside
+        assert _is_in(Cell(0.9, 1.1, -pi - 0.2, -pi + 0.2), root(s)) is inside
     for beside, inside in ((0.5e-11, True), (1e-10, False)):
         assert _is_in(Cell(0.5, 1.0, -0.1, 0.1), root(exp(1.0 + beside + 0j))) is inside
 
@@ -316,8 +298,10 @@ def test_a_cluster_keeps_to_what_is_counted(known):
     assert abs(complex(given[1]) - HERE) < 1e-12
     assert float(given[2]) == pytest.approx(abs(HERE) * 2e-10, rel=1e-6)
     assert (given[3:], options) == ((DIGITS, 256), {"even": True})
-    known.together = root(HERE, 3)
-    assert one._cluster(cell_about(PLACE, 1e-10), 6) == [known.together]
+    # Others than are counted, fewer or more, are left together.
+    for count in (2, 6):
+        known.together = root(HERE, count // 2)
+        assert one._cluster(cell_about(PLACE, 1e-10), count) == [known.together]
     # Precision was doubled before.
     assert known.asked["resolve"][0][4] == 256 * 2**3
     given, options = known.asked["prove_together"]

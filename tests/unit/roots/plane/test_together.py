@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import pytest
 from flint import acb, arb
 
@@ -33,45 +35,38 @@ def holds(found, roots):
         return all(found.enclosure().contains(acb(*root)) for root in roots)
 
 
-@pytest.mark.parametrize("digits", [3, 12, 60])
-@pytest.mark.parametrize("count", [1, 2, 3])
-def test_a_root_of_any_multiplicity_is_enclosed_to_the_digits_wanted(count, digits):
-    roots = beside(*[0] * count)
-    found = together(roots, count, digits=digits)
-    assert holds(found, roots)
-    assert (found.multiplicity, found.certified) == (count, count == 1)
-    with precision(BITS):
-        assert found.re.rad() < 4 * arb(10) ** -digits
-        assert found.im.rad() < 4 * arb(10) ** -digits
+def test_a_root_of_any_multiplicity_is_enclosed_to_the_digits_wanted():
+    for digits, count in product([3, 12, 60], [1, 2, 3]):
+        roots = beside(*[0] * count)
+        found = together(roots, count, digits=digits)
+        assert holds(found, roots), (digits, count)
+        assert (found.multiplicity, found.certified) == (count, count == 1), digits
+        with precision(BITS):
+            assert found.re.rad() < 4 * arb(10) ** -digits, count
+            assert found.im.rad() < 4 * arb(10) ** -digits, count
 
 
-def test_close_roots_are_enclosed_together():
+def test_close_roots_are_enclosed_together_unless_they_have_to_agree():
     roots = beside(1e-6, -1e-6j)
     found = together(roots, 2)
     assert holds(found, roots)
     assert (found.multiplicity, found.certified) == (2, False)
     # Not much more than they take.
     assert 1e-7 < found.re.rad() < 1e-3
-
-
-def test_close_roots_that_have_to_agree_are_none():
     assert together(beside(1e-6, -1e-6j), 2, is_close=True) is None
     assert together(beside(0, 0), 2, is_close=True) is not None
     assert together(beside(0, 1e-30), 2, is_close=True) is not None
 
 
-@pytest.mark.parametrize("count", [1, 3])
-def test_another_number_of_roots_is_not_proved(count):
-    assert together(beside(0, 0), count) is None
-
-
-def test_roots_farther_apart_than_allowed_are_none():
+def test_another_number_of_roots_or_roots_too_far_apart_are_not_proved():
+    for count in [1, 3]:
+        assert together(beside(0, 0), count) is None
     assert together(beside(1e-4, -1e-4), 2, within=1e-5) is None
     assert together(beside(1e-4, -1e-4), 2, within=1e-2) is not None
-
-
-def test_without_a_root_nothing_is_proved():
     assert together((), 1) is None
+    # 1e-11 away: a disc of 12 digits holds one alone, the next one too.
+    found = together(beside(0, 1e-11), 1)
+    assert found is None
 
 
 def test_of_a_function_whose_power_is_counted_a_root_counts_once():
@@ -81,27 +76,20 @@ def test_of_a_function_whose_power_is_counted_a_root_counts_once():
     assert type(together(beside(1e-6, -1e-6j), 4, power=2).multiplicity) is int
 
 
-def test_a_root_is_not_taken_with_one_ten_times_as_far_as_its_disc():
-    # 1e-11 away: a disc of 12 digits holds one alone, the next one too.
-    found = together(beside(0, 1e-11), 1)
-    assert found is None
+def test_a_root_next_to_the_axis_lies_on_it_where_roots_mirror_each_other():
+    for even, on_axis in [(True, True), (False, False)]:
+        with precision(BITS):
+            roots = ((arb(0), arb(10).sqrt()), (arb(0), -arb(10).sqrt()))
+            start = acb(arb(10) ** -20, arb(10).sqrt().mid())
+        function = KnownFunction(((roots, 1),), is_even=even)
+        found = prove_together(function, start, arb(0.01), DIGITS, 1, even=even)
+        assert found.on_imaginary_axis is on_axis, even
+        assert found.im.overlaps(arb(10).sqrt()), even
+        assert found.re.contains(0), even
 
 
-@pytest.mark.parametrize(("even", "on_axis"), [(True, True), (False, False)])
-def test_a_root_next_to_the_axis_lies_on_it_where_roots_mirror_each_other(even, on_axis):
-    with precision(BITS):
-        roots = ((arb(0), arb(10).sqrt()), (arb(0), -arb(10).sqrt()))
-        start = acb(arb(10) ** -20, arb(10).sqrt().mid())
-    function = KnownFunction(((roots, 1),), is_even=even)
-    found = prove_together(function, start, arb(0.01), DIGITS, 1, even=even)
-    assert found.on_imaginary_axis is on_axis
-    assert found.im.overlaps(arb(10).sqrt())
-    assert found.re.contains(0)
-
-
-@pytest.mark.parametrize(
-    ("s", "even", "expected"),
-    [
+def test_a_point_closer_to_an_axis_of_symmetry_than_a_distance_is_moved_onto_it():
+    for s, even, expected in [
         (acb(0.1, 5), True, (0, 5)),
         (acb(0.1, 5), False, (0.1, 5)),
         (acb(-0.1, 5), True, (0, 5)),
@@ -109,16 +97,13 @@ def test_a_root_next_to_the_axis_lies_on_it_where_roots_mirror_each_other(even, 
         (acb(5, 0.1), True, (5, 0)),
         (acb(5, -0.1), False, (5, 0)),
         (acb(5, 0.3), False, (5, 0.3)),
-    ],
-)
-def test_a_point_closer_to_an_axis_of_symmetry_than_a_distance_is_moved_onto_it(s, even, expected):
-    found = snapped(s, arb(0.2), even=even)
-    assert (float(found.real), float(found.imag)) == expected
+    ]:
+        found = snapped(s, arb(0.2), even=even)
+        assert (float(found.real), float(found.imag)) == expected, (s, even)
 
 
-@pytest.mark.parametrize(
-    ("centre", "times", "even", "expected"),
-    [
+def test_one_root_alone_in_a_disc_that_mirrors_itself_lies_on_the_axis():
+    for centre, times, even, expected in [
         (acb(0, 5), 1, True, (True, False, True)),
         (acb(0, 5), 1, False, (False, False, True)),
         (acb(0, 5), 2, True, (False, False, False)),
@@ -126,23 +111,22 @@ def test_a_point_closer_to_an_axis_of_symmetry_than_a_distance_is_moved_onto_it(
         (acb(5, 0), 2, True, (False, False, False)),
         (acb(0), 1, True, (True, True, True)),
         (acb(4, 5), 1, True, (False, False, True)),
-    ],
-)
-def test_one_root_alone_in_a_disc_that_mirrors_itself_lies_on_the_axis(centre, times, even, expected):
-    found = in_disc(centre, arb(0.5), times, even=even)
-    assert (found.on_imaginary_axis, found.is_real, found.certified) == expected
-    assert found.multiplicity == times
-    assert float(found.re.rad()) == pytest.approx(0 if expected[0] else 0.5)
-    assert float(found.im.rad()) == pytest.approx(0 if expected[1] else 0.5)
-    assert found.re.contains(centre.real)
-    assert found.im.contains(centre.imag)
+    ]:
+        found = in_disc(centre, arb(0.5), times, even=even)
+        assert (found.on_imaginary_axis, found.is_real, found.certified) == expected, (centre, times)
+        assert found.multiplicity == times
+        assert float(found.re.rad()) == pytest.approx(0 if expected[0] else 0.5), (centre, times)
+        assert float(found.im.rad()) == pytest.approx(0 if expected[1] else 0.5), (centre, times)
+        assert found.re.contains(centre.real)
+        assert found.im.contains(centre.imag)
 
 
-@pytest.mark.parametrize(("within", "branched"), [(0.9, False), (1.1, True)])
-def test_a_disc_is_branched_where_a_value_in_it_is_no_number(within, branched):
-    class Root(KnownFunction):
-        def value_and_slope(self, i, s):
-            return 1 / s, acb(1)
+def test_a_disc_is_branched_where_a_value_in_it_is_no_number():
+    for within, branched in [(0.9, False), (1.1, True)]:
 
-    assert is_branched(Root((((1,), 1),)), acb(1), arb(within)) is branched
-    assert is_branched(Root((((1,), 1),)), acb(0, 1), arb(within)) is branched
+        class Root(KnownFunction):
+            def value_and_slope(self, i, s):
+                return 1 / s, acb(1)
+
+        assert is_branched(Root((((1,), 1),)), acb(1), arb(within)) is branched
+        assert is_branched(Root((((1,), 1),)), acb(0, 1), arb(within)) is branched

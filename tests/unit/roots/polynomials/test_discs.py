@@ -42,50 +42,59 @@ def test_touching_discs_count_as_overlapping():
     assert overlapping_pairs([Disc(acb(0), arb(1)), Disc(acb(2), arb(1))]) == [(0, 1)]
 
 
-@pytest.mark.parametrize("scale", [0, 1, 10**6])
-@pytest.mark.parametrize("hair", [-70, -40])
-def test_discs_a_hair_apart_are_told_apart_beyond_double_precision(hair, scale):
-    with precision(200):
-        gap = arb(2) ** hair
-        apart, near = acb(scale, 2 * scale), acb(scale, 2 * scale) + acb(3, 4) / 5
-        # Centres one apart, radii a half each but for a hair.
-        assert overlapping_pairs([Disc(apart.mid(), arb(0.5)), Disc(near.mid(), (0.5 - gap).mid())]) == []
-        assert overlapping_pairs([Disc(apart.mid(), arb(0.5)), Disc(near.mid(), (0.5 + gap).mid())]) == [
-            (0, 1)
-        ]
+def test_discs_a_hair_apart_are_told_apart_beyond_double_precision():
+    for scale in [0, 1, 10**6]:
+        for hair in [-70, -40]:
+            with precision(200):
+                gap = arb(2) ** hair
+                apart, near = acb(scale, 2 * scale), acb(scale, 2 * scale) + acb(3, 4) / 5
+                # Centres one apart, radii a half each but for a hair.
+                assert (
+                    overlapping_pairs([Disc(apart.mid(), arb(0.5)), Disc(near.mid(), (0.5 - gap).mid())])
+                    == []
+                ), (scale, hair)
+                assert overlapping_pairs(
+                    [Disc(apart.mid(), arb(0.5)), Disc(near.mid(), (0.5 + gap).mid())]
+                ) == [(0, 1)], (scale, hair)
 
 
-def test_a_set_of_discs_that_misses_a_root_is_not_complete():
+def test_discs_that_prove_nothing_are_not_complete():
     assert not complete([Disc(acb(0), arb(1))], 2)
-
-
-def test_an_infinite_disc_proves_nothing():
     assert not complete([Disc(acb(0), arb("inf"))], 1)
-
-
-def test_a_disc_that_meets_its_mirror_image_is_not_complete():
     assert not complete([Disc(acb(0, 1), arb(2))], 2)
-
-
-def test_mirrors_are_added_off_the_real_axis_only():
+    discs = [Disc(acb(0), arb(1), 2), Disc(acb(5, 3), arb(1), 1)]
+    assert complete(discs, 4)
+    assert not complete(discs, 3)
+    assert not complete(discs, 5)
+    assert not complete([*discs, Disc(acb(1.5), arb(1))], 5)
+    assert not complete([Disc(acb(0), arb("inf"), 2)], 2)
+    disc = Disc(acb(5, 3), arb(1), 2)
+    assert disc.mirrored() == Disc(acb(5, -3), arb(1), 2)
+    assert complete([disc, Disc(acb(0), arb(1))], 5)
     assert len(with_mirrors([Disc(acb(1), arb(1)), Disc(acb(0, 3), arb(1))])) == 3
 
 
-def test_pellet_surrounds_a_double_root():
+def test_pellet_surrounds_a_double_root_and_refuses_a_count_that_is_wrong():
     level = LevelPolynomial.of(acb_poly([1, -2, 1]) * acb_poly([5, 1]))
     disc = level.surround(acb(1), 2)
     assert disc.count == 2
     assert disc.radius < arb(10) ** -5
-
-
-def test_pellet_refuses_a_count_that_is_wrong():
     level = LevelPolynomial.of(acb_poly([1, -2, 1]) * acb_poly([-1.001, 1]))
     assert level.surround(acb(1), 1) is None
 
 
-def test_groups_follow_chains_of_touching_discs():
+def test_groups_follow_chains_of_touching_discs_and_closeness_where_these_have_no_radius():
     row = [Disc(acb(3 * i), arb(1.6)) for i in range(3)] + [Disc(acb(50), arb(1))]
     assert [len(group) for group in groups(row)] == [3, 1]
+    far = arb("inf")
+    row = [
+        Disc(acb(1), far),
+        Disc(acb(1 + 2.0**-31), far),
+        Disc(acb(1 + 2.0**-20), far),
+        Disc(acb(3), arb(1.5)),
+    ]
+    assert [len(group) for group in groups(row)] == [2, 1, 1]
+    assert groups(row)[0] == (row[0], row[1])
 
 
 def monic(*roots):
@@ -105,16 +114,18 @@ def test_a_newton_disc_is_as_many_times_the_step_as_there_are_roots():
     assert (disc.centre, float(disc.radius)) == (acb(10), pytest.approx(4 * 2.496))
 
 
-@pytest.mark.parametrize("start", [2.2, -3.2, 0.4, 1.1 + 1.7j, 1.2 + 2.3j])
-def test_a_polished_disc_is_as_small_as_wanted_or_as_digits_allow(start):
-    roots = [2, -3, 1 + 2j, 1 - 2j, Fraction(1, 3)]
-    with precision(300):
-        exact = [acb(arb(r.numerator) / r.denominator) if isinstance(r, Fraction) else acb(r) for r in roots]
-        for goal in (lambda centre: arb(10) ** -30, nothing):
-            disc = monic(*exact).polish(acb(start), goal)
-            assert disc.radius < arb(10) ** (-30 if goal is not nothing else -70)
-            assert sum(bool(abs(root - disc.centre) <= disc.radius) for root in exact) == 1
-            assert disc.is_real is (complex(start).imag == 0)
+def test_a_polished_disc_is_as_small_as_wanted_or_as_digits_allow():
+    for start in [2.2, -3.2, 0.4, 1.1 + 1.7j, 1.2 + 2.3j]:
+        roots = [2, -3, 1 + 2j, 1 - 2j, Fraction(1, 3)]
+        with precision(300):
+            exact = [
+                acb(arb(r.numerator) / r.denominator) if isinstance(r, Fraction) else acb(r) for r in roots
+            ]
+            for goal in (lambda centre: arb(10) ** -30, nothing):
+                disc = monic(*exact).polish(acb(start), goal)
+                assert disc.radius < arb(10) ** (-30 if goal is not nothing else -70), start
+                assert sum(bool(abs(root - disc.centre) <= disc.radius) for root in exact) == 1, start
+                assert disc.is_real is (complex(start).imag == 0)
 
 
 def test_a_guess_where_the_slope_vanishes_is_left_unproved():
@@ -122,17 +133,21 @@ def test_a_guess_where_the_slope_vanishes_is_left_unproved():
     assert (disc.centre, disc.radius.is_finite()) == (acb(0), False)
 
 
-def test_polishing_spends_its_budget_and_ends():
-    spent = []
-
+def test_polishing_and_looking_for_a_centre_spend_their_budget_and_end():
     class Counted(Budget):
+        spent = 0
+
         def spend(self):
-            spent.append(1)
+            self.spent += 1
 
     with precision(10000):
-        level = LevelPolynomial.of(acb_poly([-2, 0, 1]), Counted())
-        level.polish(acb(10) ** 900, nothing)
-    assert len(spent) == NEWTON_STEPS
+        budget = Counted()
+        LevelPolynomial.of(acb_poly([-2, 0, 1]), budget).polish(acb(10) ** 900, nothing)
+        assert budget.spent == NEWTON_STEPS
+    with precision(30000):
+        budget = Counted()
+        LevelPolynomial.of(acb_poly([-2, 0, 0, 1]), budget).surround(acb(10) ** 4000, 1)
+        assert budget.spent == CENTRE_STEPS
 
 
 def test_pairs_are_those_whose_exact_distance_is_not_more_than_both_radii():
@@ -159,27 +174,20 @@ def test_pairs_are_those_whose_exact_distance_is_not_more_than_both_radii():
         assert together is (j in reached)
 
 
-def test_discs_that_hold_all_roots_and_are_disjoint_are_complete():
-    discs = [Disc(acb(0), arb(1), 2), Disc(acb(5, 3), arb(1), 1)]
-    assert complete(discs, 4)
-    assert not complete(discs, 3)
-    assert not complete(discs, 5)
-    assert not complete([*discs, Disc(acb(1.5), arb(1))], 5)
-    assert not complete([Disc(acb(0), arb("inf"), 2)], 2)
-
-
-@pytest.mark.parametrize("scale", [1, 1e-12, 1e9])
-@pytest.mark.parametrize("count", [1, 2, 3])
-def test_pellets_disc_holds_exactly_as_many_roots_as_asked_for(count, scale):
-    near = [Fraction(1, 2) + Fraction(k, 10**7) for k in range(count)]
-    others = [Fraction(4), Fraction(-3), Fraction(5)]
-    with precision(300):
-        exact = [acb(arb(r.numerator) / r.denominator * scale) for r in near + others]
-        disc = monic(*exact).surround((exact[0] * (1 + arb(10) ** -9)).mid(), count)
-        assert disc.count == count
-        assert [bool(abs(root - disc.centre) < disc.radius) for root in exact] == [True] * count + [False] * 3
-        assert disc.radius < abs(exact[0]) * 1e-3
-        assert disc.is_real
+def test_pellets_disc_holds_exactly_as_many_roots_as_asked_for():
+    for scale in [1, 1e-12, 1e9]:
+        for count in [1, 2, 3]:
+            near = [Fraction(1, 2) + Fraction(k, 10**7) for k in range(count)]
+            others = [Fraction(4), Fraction(-3), Fraction(5)]
+            with precision(300):
+                exact = [acb(arb(r.numerator) / r.denominator * scale) for r in near + others]
+                disc = monic(*exact).surround((exact[0] * (1 + arb(10) ** -9)).mid(), count)
+                assert disc.count == count, scale
+                assert [bool(abs(root - disc.centre) < disc.radius) for root in exact] == [True] * count + [
+                    False
+                ] * 3, scale
+                assert disc.radius < abs(exact[0]) * 1e-3, (scale, count)
+                assert disc.is_real, (scale, count)
 
 
 def test_pellets_disc_off_the_real_axis_stays_there():
@@ -190,14 +198,11 @@ def test_pellets_disc_off_the_real_axis_stays_there():
     assert (disc.count, disc.is_real, float(disc.centre.imag.mid())) == (2, False, 2)
 
 
-def test_pellets_disc_about_two_of_three_close_roots_leaves_the_third_out():
+def test_pellets_disc_leaves_the_third_of_three_close_roots_out_or_gives_up():
     with precision(200):
         roots = [acb(1), acb(1 + arb(10) ** -9), acb(1 + 2 * arb(10) ** -9)]
         disc = monic(*roots).surround(acb(1), 2)
         assert [bool(abs(root - disc.centre) < disc.radius) for root in roots] == [True, True, False]
-
-
-def test_pellet_gives_up_where_no_two_of_three_roots_are_closer():
     with precision(200):
         # The second derivative of s^3 - s vanishes in the middle of the three.
         assert monic(1, 0, -1).surround(acb(0), 2) is None
@@ -230,25 +235,10 @@ def test_an_exactly_multiple_root_is_not_separated():
         assert monic(1, 1, -4).separate(acb(1), 2, nothing, [all_roots]) is None
 
 
-def test_looking_for_a_clusters_centre_ends():
-    spent = []
-
-    class Counted(Budget):
-        def spend(self):
-            spent.append(1)
-
-    with precision(30000):
-        LevelPolynomial.of(acb_poly([-2, 0, 0, 1]), Counted()).surround(acb(10) ** 4000, 1)
-    assert len(spent) == CENTRE_STEPS
-
-
-def test_roots_are_listed_in_the_closed_upper_half_plane():
+def test_roots_are_listed_in_the_closed_upper_half_plane_if_they_separate():
     found = real_symmetric_roots(acb_poly([-25, 19, 5, 1]))
     assert sorted((round(float(r.real), 6), round(float(r.imag), 6)) for r in found) == [(-3, 4), (1, 0)]
     assert found[0].imag == 0
-
-
-def test_roots_that_do_not_separate_are_not_listed():
     double = acb_poly([arb(1, 1e-3), -2, 1])
     assert real_symmetric_roots(double) is None
     assert all_roots(double) is None
@@ -256,45 +246,24 @@ def test_roots_that_do_not_separate_are_not_listed():
     assert real_symmetric_roots(acb_poly([-2, acb(0, -3), 1])) is None
 
 
-def test_discs_without_a_radius_are_grouped_by_closeness():
-    far = arb("inf")
-    row = [
-        Disc(acb(1), far),
-        Disc(acb(1 + 2.0**-31), far),
-        Disc(acb(1 + 2.0**-20), far),
-        Disc(acb(3), arb(1.5)),
-    ]
-    assert [len(group) for group in groups(row)] == [2, 1, 1]
-    assert groups(row)[0] == (row[0], row[1])
-
-
-@pytest.mark.parametrize(
-    ("centres", "middle", "symmetric"),
-    [
+def test_the_middle_of_a_group_is_real_where_the_group_mirrors_itself():
+    for centres, middle, symmetric in [
         ([acb(1, 2), acb(1, 4)], acb(1, 3), False),
         ([acb(1, 2), acb(3, -2)], acb(2, 0), False),
         ([acb(1, 2), acb(1, -2), acb(4, 1)], acb(2), True),
         ([acb(1, 2), acb(4), acb(1, 1)], acb(2), True),
-    ],
-)
-def test_the_middle_of_a_group_is_real_where_the_group_mirrors_itself(centres, middle, symmetric):
-    discs = [Disc(c, arb(1)) for c in centres]
-    assert is_symmetric(discs) is symmetric
-    assert middle_of(discs) == middle
-    assert middle_of(discs).imag == middle.imag
+    ]:
+        discs = [Disc(c, arb(1)) for c in centres]
+        assert is_symmetric(discs) is symmetric, (centres, middle)
+        assert middle_of(discs) == middle
+        assert middle_of(discs).imag == middle.imag
 
 
-def test_a_mirror_image_holds_as_many_roots():
-    disc = Disc(acb(5, 3), arb(1), 2)
-    assert disc.mirrored() == Disc(acb(5, -3), arb(1), 2)
-    assert complete([disc, Disc(acb(0), arb(1))], 5)
-
-
-@pytest.mark.parametrize("wide", [1e-4, 1e-20])
-def test_pellets_disc_is_for_every_polynomial_in_the_balls_of_its_coefficients(wide):
-    # s^2 - c with abs(c) up to a small number, whose root is the distance.
-    with precision(200):
-        level = LevelPolynomial.of(acb_poly([acb(arb(0, wide)), 0, 1, arb("0.001")]))
-        disc = level.surround(acb(0), 2)
-        assert disc.radius >= arb(wide).sqrt()
-        assert disc.radius < 3 * arb(wide).sqrt()
+def test_pellets_disc_is_for_every_polynomial_in_the_balls_of_its_coefficients():
+    for wide in [1e-4, 1e-20]:
+        # s^2 - c with abs(c) up to a small number, whose root is the distance.
+        with precision(200):
+            level = LevelPolynomial.of(acb_poly([acb(arb(0, wide)), 0, 1, arb("0.001")]))
+            disc = level.surround(acb(0), 2)
+            assert disc.radius >= arb(wide).sqrt()
+            assert disc.radius < 3 * arb(wide).sqrt()

@@ -48,33 +48,31 @@ def numbers(guesses):
     return sorted((complex(g) for g in guesses), key=lambda z: (abs(z), z.real))
 
 
-@pytest.mark.parametrize("leading", [1, -3, 1e-30])
-@pytest.mark.parametrize(
-    "roots",
-    [
-        (5.0,),
-        (-1 + 2j,),
-        (1.0, -2.0, 3 + 4j),
-        (1e-6, 1.0, 1e6, -1e3 + 1e-2j),
-        (-0.01 + 1j, -0.02 + 2j, -0.03 + 3j, -0.04 + 4j, -7.0),
-        (1j, 2j, 3j),
-        (0.0, 0.0, 2j),
-    ],
-    ids=str,
-)
-def test_every_root_of_the_upper_half_plane_is_guessed_once(roots, leading):
-    found = numbers(propose_by_laguerre(made_of(*roots, leading=leading)))
-    wanted = numbers(roots)
-    assert len(found) == len(wanted)
-    for one, other in zip(found, wanted, strict=True):
-        assert abs(one - other) <= 1e-6 if other == 0 else abs(one - other) <= 1e-11 * abs(other)
-    assert [z.imag == 0 for z in found] == [z.imag == 0 for z in wanted]
+def test_every_root_of_the_upper_half_plane_is_guessed_once():
+    for leading in [1, -3, 1e-30]:
+        for roots in [
+            (5.0,),
+            (-1 + 2j,),
+            (1.0, -2.0, 3 + 4j),
+            (1e-6, 1.0, 1e6, -1e3 + 1e-2j),
+            (-0.01 + 1j, -0.02 + 2j, -0.03 + 3j, -0.04 + 4j, -7.0),
+            (1j, 2j, 3j),
+            (0.0, 0.0, 2j),
+        ]:
+            found = numbers(propose_by_laguerre(made_of(*roots, leading=leading)))
+            wanted = numbers(roots)
+            assert len(found) == len(wanted), (leading, roots)
+            for one, other in zip(found, wanted, strict=True):
+                assert abs(one - other) <= 1e-6 if other == 0 else abs(one - other) <= 1e-11 * abs(other), (
+                    leading
+                )
+            assert [z.imag == 0 for z in found] == [z.imag == 0 for z in wanted], (leading, roots)
 
 
-@pytest.mark.parametrize("scale", [1e-150, 1e150, 1e250])
-def test_roots_far_from_1_are_guessed_as_well(scale):
-    found = numbers(propose_by_laguerre(made_of(scale * (1 + 2j), 3 * scale)))
-    assert [z / scale for z in found] == pytest.approx([1 + 2j, 3], rel=1e-11)
+def test_roots_far_from_1_are_guessed_as_well():
+    for scale in [1e-150, 1e150, 1e250]:
+        found = numbers(propose_by_laguerre(made_of(scale * (1 + 2j), 3 * scale)))
+        assert [z / scale for z in found] == pytest.approx([1 + 2j, 3], rel=1e-11), scale
 
 
 def test_of_a_double_root_both_are_guessed():
@@ -83,12 +81,9 @@ def test_of_a_double_root_both_are_guessed():
     assert [z.real for z in found] == pytest.approx([2.0] * (len(found) - 1) + [-5.0], rel=1e-6)
 
 
-def test_one_guess_comes_after_the_other():
+def test_guesses_come_one_after_the_other_and_heed_the_time_before_each_step():
     guesses = guess_by_laguerre(made_of(1.0, 100.0, 1e4), Budget())
     assert [float(g.real) for g in guesses] == pytest.approx([1, 100, 1e4])
-
-
-def test_the_time_is_heeded_before_each_step():
     asked = []
 
     def clock():
@@ -100,19 +95,21 @@ def test_the_time_is_heeded_before_each_step():
     assert len(asked) > 6
 
 
-@pytest.mark.parametrize(
-    ("roots", "exponent"),
-    [((2.0**10, 2.0**12), 11), ((2.0**-7,), -7), ((8.0, 8.0, 0.0), 3), ((0.0, 0.0), 0), ((1j, 4.0, 4.0), 1)],
-)
-@pytest.mark.parametrize("leading", [1, 1e5])
-def test_roots_are_scaled_by_their_geometric_mean(roots, exponent, leading):
-    polynomial = made_of(*roots, leading=leading)
-    assert _central_exponent(polynomial, polynomial.degree()) == exponent
+def test_roots_are_scaled_by_their_geometric_mean():
+    for roots, exponent in [
+        ((2.0**10, 2.0**12), 11),
+        ((2.0**-7,), -7),
+        ((8.0, 8.0, 0.0), 3),
+        ((0.0, 0.0), 0),
+        ((1j, 4.0, 4.0), 1),
+    ]:
+        for leading in [1, 1e5]:
+            polynomial = made_of(*roots, leading=leading)
+            assert _central_exponent(polynomial, polynomial.degree()) == exponent, leading
 
 
-@pytest.mark.parametrize(
-    ("coefficients", "moduli"),
-    [
+def test_the_newton_polygon_tells_the_moduli_within_doubles():
+    for coefficients, moduli in [
         ([16, 0, 0, 0, 1], [2, 2, 2, 2]),
         # sides from 0 to 1, 1 to 2, 2 to 3
         ([1e-3, 1, 1, 1e-4], [1e-3, 1, 1e4]),
@@ -124,49 +121,40 @@ def test_roots_are_scaled_by_their_geometric_mean(roots, exponent, leading):
         ([0, 0, 1], [1, 1]),
         # sides from 0 to 1, 1 to 3, 3 to 4
         ([1, 100, 1, 1, 1e-6], [0.01, 10, 10, 1e6]),
-    ],
-)
-def test_the_newton_polygon_tells_the_moduli(coefficients, moduli):
-    found = _polygon_moduli(acb_poly(coefficients), len(coefficients) - 1)
-    assert found == pytest.approx(moduli)
-
-
-def test_moduli_beyond_doubles_are_bounded():
+    ]:
+        found = _polygon_moduli(acb_poly(coefficients), len(coefficients) - 1)
+        assert found == pytest.approx(moduli), coefficients
     tiny = arb(10) ** -900
     assert _polygon_moduli(acb_poly([tiny, 1]), 1) == [math.exp(-LARGEST_LOGARITHM)]
     assert _polygon_moduli(acb_poly([1, tiny]), 1) == [math.exp(LARGEST_LOGARITHM)]
 
 
-@pytest.mark.parametrize(("height", "up"), [(1.0, True), (0.5, True), (0.49, False), (-1.0, False)])
-def test_a_point_below_or_on_the_line_from_the_first_to_the_last_is_no_corner(height, up):
-    # From (1, 0) by (2, 1/2 + ...) to (5, 4 height): the line is at height in the middle.
-    assert _turns_up((1, 0.0), (2, 0.5), (5, 4 * height)) is up
+def test_a_point_below_or_on_the_line_from_the_first_to_the_last_is_no_corner():
+    for height, up in [(1.0, True), (0.5, True), (0.49, False), (-1.0, False)]:
+        # From (1, 0) by (2, 1/2 + ...) to (5, 4 height): the line is at height in the middle.
+        assert _turns_up((1, 0.0), (2, 0.5), (5, 4 * height)) is up
 
 
-@pytest.mark.parametrize("z", [0.3 + 0.7j, -4 + 0.1j, 10.0 + 0j])
-def test_derivatives_of_the_logarithm_are_sums_over_the_roots(z):
-    roots = [1, -2, 3 + 4j, 3 - 4j]
-    found = _log_derivatives(*with_derivatives(made_of(1.0, -2.0, 3 + 4j)), z)
-    assert found == pytest.approx((sum(1 / (z - r) for r in roots), sum(1 / (z - r) ** 2 for r in roots)))
-
-
-def test_at_a_root_there_are_none():
+def test_derivatives_of_the_logarithm_are_sums_over_the_roots_and_none_at_a_root():
+    for z in [0.3 + 0.7j, -4 + 0.1j, 10.0 + 0j]:
+        roots = [1, -2, 3 + 4j, 3 - 4j]
+        found = _log_derivatives(*with_derivatives(made_of(1.0, -2.0, 3 + 4j)), z)
+        assert found == pytest.approx(
+            (sum(1 / (z - r) for r in roots), sum(1 / (z - r) ** 2 for r in roots))
+        ), z
     assert _log_derivatives(*with_derivatives(made_of(1.0, -2.0)), 1 + 0j) is None
 
 
-@pytest.mark.parametrize(
-    ("found", "start", "expected"),
-    [
+def test_a_root_that_is_found_already_is_not_found_again():
+    for found, start, expected in [
         ([], 0.9, {1}),
         ([1], 1.001, {3, 2 + 4j, 2 - 4j}),
         ([1, 3], 1.001, {2 + 4j, 2 - 4j}),
         ([1, 2 + 4j, 2 - 4j], 2.002 + 4j, {3}),
-    ],
-)
-def test_a_root_that_is_found_already_is_not_found_again(found, start, expected):
-    polynomial = made_of(1.0, 3.0, 2 + 4j)
-    root = _find_one(with_derivatives(polynomial), np.array(found, complex), complex(start), Budget())
-    assert min(abs(root - other) for other in expected) < 1e-11
+    ]:
+        polynomial = made_of(1.0, 3.0, 2 + 4j)
+        root = _find_one(with_derivatives(polynomial), np.array(found, complex), complex(start), Budget())
+        assert min(abs(root - other) for other in expected) < 1e-11, (found, start)
 
 
 def test_what_is_nearly_real_is_real():
@@ -204,9 +192,9 @@ def test_guesses_are_exact_points_in_the_upper_half_plane():
         assert guess.imag >= 0
 
 
-@pytest.mark.parametrize("degree", [8, 15])
-def test_roots_of_one_are_guessed(degree):
-    found = numbers(propose_by_laguerre(acb_poly([-1, *[0] * (degree - 1), 1])))
-    assert all(abs(z**degree - 1) < 1e-10 for z in found)
-    angles = sorted(round(cmath.phase(z) * degree / (2 * math.pi)) for z in found)
-    assert angles == list(range(degree // 2 + 1))
+def test_roots_of_one_are_guessed():
+    for degree in [8, 15]:
+        found = numbers(propose_by_laguerre(acb_poly([-1, *[0] * (degree - 1), 1])))
+        assert all(abs(z**degree - 1) < 1e-10 for z in found), degree
+        angles = sorted(round(cmath.phase(z) * degree / (2 * math.pi)) for z in found)
+        assert angles == list(range(degree // 2 + 1))
