@@ -39,8 +39,12 @@ class Drawn(Random):
         # ``st.integers`` would prefer constants of whatever modules are imported by then.
         return self.draw(st.sampled_from(range(n)))
 
+    def random(self) -> float:
+        """Return a number from 0 to 1, as all others from one below."""
+        return self._randbelow(1000) / 1000
 
-class Bytes(Random):
+
+class Bytes(Drawn):
     """Bytes as choices; when they end, always the first."""
 
     def __init__(self, data: bytes) -> None:
@@ -76,6 +80,7 @@ TWO_TERMINAL = {
     "inductor": ("electrical", "L", "H", "i"),
     "capacitor": ("electrical", "C", "F", "i"),
 }
+CARRYING = {kind: entry[::3] for kind, entry in TWO_TERMINAL.items()} | {"dc_motor": ("electrical", "i")}
 ONE_TERMINAL = {"mass": ("translation", "m", "kg"), "inertia": ("rotation", "J", "kg*m^2")}
 SOURCES = {
     "force_source": ("translation", "f", "N"),
@@ -86,7 +91,25 @@ SOURCES = {
 PLANAR = ("rigid_body", "rigid_link", "massless_beam", "fixed", "slider", "pin")
 COUPLINGS = ("dc_motor", "transformer", "gyrator")
 ELEMENTS = (*TWO_TERMINAL, *ONE_TERMINAL, *SOURCES, *PLANAR, *COUPLINGS)
-BLOCKS = ("resonance", "tf", "integrator", "lead_lag", "pid")
+UNITS_OF = {
+    **{kind: {entry[1]: entry[2]} for kind, entry in (TWO_TERMINAL | ONE_TERMINAL).items()},
+    "rigid_body": {"m": "kg", "J": "kg*m^2"},
+    "massless_beam": {"EI": "N*m^2", "l": "m"},
+    "dc_motor": {"R": "ohm", "k_t": "N*m/A"},
+}
+"""Of kinds of elements, the units of the values they must have."""
+TIMES = {"T_1": "s", "T_2": "s"}
+BLOCKS = {
+    "resonance": ({"omega_p": "rad/s", "zeta_p": "", "omega_z": "rad/s", "zeta_z": ""},),
+    "tf": ({**TIMES, "T_3": "s"},),
+    "integrator": ({"k": "1/s"}, {}),
+    "lead_lag": (TIMES, {**TIMES, "k": ""}),
+    "pid": tuple(
+        {"k_p": "", **more}
+        for more in ({}, {"k_i": "1/s"}, {"k_d": "s", "T_f": "s"}, {"k_i": "1/s", "k_d": "s"})
+    ),
+}
+"""Of kinds of blocks, the values they may have; all but an integrator without a gain are dimensionless."""
 LISTED_PORTS = ("between", "terminals")
 
 
@@ -322,12 +345,13 @@ class _Builder:
     def of(self, *domains: str) -> list[str]:
         return [name for name, domain in self.coordinates.items() if domain in domains]
 
-    def add(self, kind: str, ports: dict, values: dict, source: tuple[Term, ...] = ()) -> Element:
+    def add(self, kind: str, ports: dict, *source: Term, **values: Parameter) -> None:
+        """Add an element with the values it must have and those given."""
         number = 1 + sum(element.kind == kind for element in self.elements)
         ports = {key: (nodes,) if isinstance(nodes, str) else tuple(nodes) for key, nodes in ports.items()}
+        values = {key: self.parameter(unit) for key, unit in UNITS_OF.get(kind, {}).items()} | values
         new = Element(kind, f"{kind}_{number}", tuple(ports.items()), tuple(values.items()), source)
         self.elements.append(new)
-        return new
 
     def constrain(self, *rows: dict[str, complex]) -> bool:
         """Keep the rows if they are independent of those kept before; say whether they are."""
@@ -356,28 +380,22 @@ class _Builder:
             self.add_two_terminal(self.pick(("torsion_spring", "rotary_damper")), theta, GROUND)
         elif way == "support":
             self.constrain({y: 1}, {theta: 1})
-            self.add("fixed", {"at": name}, {})
+            self.add("fixed", {"at": name})
             self.add_body(name)
         elif way == "beam":
-            self.add_beam(self.pick(self.planar), name)
+            self.add("massless_beam", {"between": (self.pick(self.planar), name)})
         else:
             other, length = self.pick(self.planar), self.parameter("m")
             self.constrain(
                 {y: 1, f"{other}.y": -1, f"{other}.theta": -float(length.value)},
                 {theta: 1, f"{other}.theta": -1},
             )
-            self.add("rigid_link", {"between": (other, name)}, {"length": length})
+            self.add("rigid_link", {"between": (other, name)}, length=length)
         self.planar.append(name)
 
     def add_body(self, name: str) -> None:
-        values = {"m": self.parameter("kg"), "J": self.parameter("kg*m^2")}
-        if self.chance(2):
-            values["cg"] = self.parameter("m")
-        self.add("rigid_body", {"at": name}, values)
-
-    def add_beam(self, a: str, b: str) -> None:
-        values = {"EI": self.parameter("N*m^2"), "l": self.parameter("m")}
-        self.add("massless_beam", {"between": (a, b)}, values)
+        more = {"cg": self.parameter("m")} if self.chance(2) else {}
+        self.add("rigid_body", {"at": name}, **more)
 
     def add_scalar(self, domain: str) -> None:
         letter = {"translation": "x", "rotation": "a", "electrical": "v"}[domain]
@@ -386,25 +404,19 @@ class _Builder:
         reached = [GROUND] if not others or self.chance(4) else others
         self.coordinates[name] = domain
         if domain != "electrical" and self.chance(4):
-            self.add_one_terminal({"translation": "mass", "rotation": "inertia"}[domain], name)
+            self.add({"translation": "mass", "rotation": "inertia"}[domain], {"at": self.port(name)})
         else:
             kinds = [kind for kind, entry in TWO_TERMINAL.items() if entry[0] == domain]
             self.add_two_terminal(self.pick(kinds), name, self.pick(reached))
 
     def add_two_terminal(self, kind: str, a: str, b: str) -> None:
-        _, key, unit, _ = TWO_TERMINAL[kind]
-        ends = [self.port(node) for node in ((a, b) if self.chance(2) else (b, a))]
-        self.add(kind, {"between": ends}, {key: self.parameter(unit)})
-
-    def add_one_terminal(self, kind: str, node: str) -> None:
-        _, key, unit = ONE_TERMINAL[kind]
-        self.add(kind, {"at": self.port(node)}, {key: self.parameter(unit)})
+        self.add(kind, {"between": [self.port(node) for node in ((a, b) if self.chance(2) else (b, a))]})
 
     def add_extra(self) -> None:
         """Add an element between coordinates that are there."""
         kind = self.pick((*TWO_TERMINAL, *ONE_TERMINAL, "rigid_body", "massless_beam"))
         if kind in ONE_TERMINAL and self.of(ONE_TERMINAL[kind][0]):
-            self.add_one_terminal(kind, self.pick(self.of(ONE_TERMINAL[kind][0])))
+            self.add(kind, {"at": self.port(self.pick(self.of(ONE_TERMINAL[kind][0])))})
         elif kind in TWO_TERMINAL and self.of(TWO_TERMINAL[kind][0]):
             nodes = self.of(TWO_TERMINAL[kind][0])
             a = self.pick(nodes)
@@ -412,7 +424,7 @@ class _Builder:
         elif kind == "rigid_body" and self.planar:
             self.add_body(self.pick(self.planar))
         elif kind == "massless_beam" and len(self.planar) > 1:
-            self.add_beam(*self.random.sample(self.planar, 2))
+            self.add("massless_beam", {"between": self.random.sample(self.planar, 2)})
 
     # -- couplings and supports
 
@@ -422,13 +434,11 @@ class _Builder:
             return
         a = self.pick(terminals)
         b = self.pick([GROUND, *(n for n in terminals if n != a)])
-        values = {"R": self.parameter("ohm"), "k_t": self.parameter("N*m/A")}
-        if self.chance(2):
-            values["L"] = self.parameter("H")
+        more = {"L": self.parameter("H")} if self.chance(2) else {}
         if not reciprocal and self.chance(2):
-            values["k_e"] = self.parameter("V*s/rad")
+            more["k_e"] = self.parameter("V*s/rad")
         ends = (a, b) if self.chance(2) else (b, a)
-        self.add("dc_motor", {"terminals": ends, "shaft": self.pick(shafts)}, values)
+        self.add("dc_motor", {"terminals": ends, "shaft": self.pick(shafts)}, **more)
 
     def add_transformer(self) -> None:
         groups = (("translation", "rotation"), ("electrical",))
@@ -442,7 +452,7 @@ class _Builder:
         above, below = (ACROSS[self.coordinates[name]] for name in (target, source))
         ratio = self.parameter("" if above == below else f"{above}/{below}")
         if self.constrain({target: 1, source: -float(ratio.value)}):
-            self.add("transformer", {"from": source, "to": target}, {"ratio": ratio})
+            self.add("transformer", {"from": source, "to": target}, ratio=ratio)
 
     def add_geared_tip(self) -> None:
         """Add a node that only a transformer reaches."""
@@ -468,7 +478,7 @@ class _Builder:
             voltage, motion = (source, target) if domains[0] == "electrical" else (target, source)
             if not self.constrain({voltage: 1, motion: -float(ratio.value) * (0.83 + 0.47j)}):
                 return
-        self.add("gyrator", {"from": source, "to": target}, {"ratio": ratio})
+        self.add("gyrator", {"from": source, "to": target}, ratio=ratio)
 
     def add_support(self) -> None:
         kind = self.pick(("fixed", "slider", "pin"))
@@ -482,38 +492,25 @@ class _Builder:
         else:
             return
         if self.constrain(*rows):
-            self.add(kind, {"at": node}, {})
+            self.add(kind, {"at": node})
 
     # -- signals
 
     def add_block(self) -> tuple[str, tuple[Parameter, ...]]:
         """Return a new dimensionless block, with the gain that makes it so."""
-        kind, gains = self.pick(BLOCKS), ()
-        if kind == "resonance":
-            units = {"omega_p": "rad/s", "zeta_p": "", "omega_z": "rad/s", "zeta_z": ""}
-        elif kind == "tf":
-            units = {"T_1": "s", "T_2": "s", "T_3": "s"}
-        elif kind == "lead_lag":
-            units = {"T_1": "s", "T_2": "s"} | ({"k": ""} if self.chance(2) else {})
-        elif kind == "pid":
-            given = self.pick(({}, {"k_i": "1/s"}, {"k_d": "s", "T_f": "s"}, {"k_i": "1/s", "k_d": "s"}))
-            units = {"k_p": "", **given}
-        elif self.chance(2):
-            units = {"k": "1/s"}
-        else:
-            units, gains = {}, (self.parameter("1/s"),)
+        kind = self.pick(BLOCKS)
+        units = self.pick(BLOCKS[kind])
+        gains = () if units else (self.parameter("1/s"),)
         values = tuple((key, self.parameter(unit)) for key, unit in units.items())
         self.blocks.append(Element(kind, f"B_{len(self.blocks) + 1}", values=values))
         return self.blocks[-1].name, gains
 
     def measured(self, unit: str, sign: int) -> Term:
         """Return a coordinate, velocity, or through quantity times a gain that gives it ``unit``."""
-        carried = [e for e in self.elements if e.kind in TWO_TERMINAL or e.kind == "dc_motor"]
+        carried = [e for e in self.elements if e.kind in CARRYING]
         if carried and self.chance(3):
             element = self.pick(carried)
-            domain, quantity = "electrical", "i"
-            if element.kind in TWO_TERMINAL:
-                domain, _, _, quantity = TWO_TERMINAL[element.kind]
+            domain, quantity = CARRYING[element.kind]
             per = {"translation": "N", "rotation": "N/m", "electrical": "A"}[domain]  # dividing by N*m
             gain = self.parameter(f"{unit}/{per}")
             return Term(f"{element.name}.{quantity}", sign, (gain,))
@@ -550,7 +547,7 @@ class _Builder:
                 return False
         elif self.chance(2):
             terms.append(self.measured(unit, -1))
-        self.add(kind, {"at": self.port(node)}, {}, tuple(terms))
+        self.add(kind, {"at": self.port(node)}, *terms)
         return True
 
     def add_input(self, number: int) -> Input:
@@ -567,12 +564,10 @@ class _Builder:
         """Return what an output shows, mostly of what ``driven`` is connected to."""
         near = list(self.coordinates) if self.chance(8) else self.linked(driven)
         nodes = {name.partition(".")[0] for name in near}
-        carried = [e for e in self.elements if e.kind in TWO_TERMINAL or e.kind == "dc_motor"]
-        carried = [e for e in carried if e.nodes & nodes]
+        carried = [e for e in self.elements if e.kind in CARRYING and e.nodes & nodes]
         if carried and self.chance(4):
             element = self.pick(carried)
-            quantity = TWO_TERMINAL[element.kind][3] if element.kind in TWO_TERMINAL else "i"
-            return (Term(f"{element.name}.{quantity}"),)
+            return (Term(f"{element.name}.{CARRYING[element.kind][1]}"),)
         name = self.pick(self.moving(near))
         power = self.random.randint(0, 2)
         others = [other for other in self.of(self.coordinates[name]) if other != name]
@@ -594,7 +589,7 @@ class _Builder:
 def _passive_part(random: Random, *, reciprocal: bool) -> _Builder:
     builder = _Builder(random)
     planar = random.randint(0, 2)
-    domains = random.choices(sorted(ACROSS), k=random.randint(planar == 0, 4))
+    domains = [random.choice(sorted(ACROSS)) for _ in range(random.randint(planar == 0, 4))]
     for _ in range(planar):
         builder.add_planar()
     for domain in domains[: MAX_COORDINATES - 2 * planar]:

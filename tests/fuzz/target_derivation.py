@@ -87,7 +87,7 @@ def seeds():
 def changed(data):
     """Return the text of a model that was changed as bytes say."""
     choices = Bytes(data)
-    model = _one(choices, models())
+    model = choices.choice(models())
     model = tomllib.loads(write(model))  # a copy
     model.pop("published", None)
     for _ in range(choices.randrange(4)):
@@ -95,62 +95,62 @@ def changed(data):
     return write(model)
 
 
-def _one(choices, items):
-    return choices.choice([*items])
-
-
 def _section(model, choices):
-    return _one(choices, [s for s in model.values() if isinstance(s, dict) and s] or [{"_": 0}])
+    return choices.choice([s for s in model.values() if isinstance(s, dict) and s] or [{"_": 0}])
+
+
+def _element(model, choices):
+    return choices.choice([*(model.get("elements") or {"_": {}}).values()])
 
 
 def _value(model, choices):
     """Give a parameter another number, in its unit."""
     parameters = model.get("parameters") or {"k": "1"}
-    name = _one(choices, parameters)
+    name = choices.choice([*parameters])
     old = parameters[name]
     unit = str(old.get("value", "") if isinstance(old, dict) else old).partition(" ")[2]
-    parameters[name] = f"{_one(choices, NUMBERS)} {unit}".strip()
+    parameters[name] = f"{choices.choice(NUMBERS)} {unit}".strip()
 
 
 def _leave_out(model, choices):
     section = _section(model, choices)
-    section.pop(_one(choices, section), None)
+    section.pop(choices.choice([*section]), None)
 
 
 def _repeat(model, choices):
     section = _section(model, choices)
-    name = _one(choices, section)
+    name = choices.choice([*section])
     section[f"{name}_2"] = section[name]
 
 
 def _connect(model, choices):
     """Put an element to other nodes."""
-    element = _one(choices, (model.get("elements") or {"_": {}}).values())
+    element = _element(model, choices)
     lists = [v for e in model.get("elements", {}).values() for v in e.values() if isinstance(v, list)]
     nodes = [node for nodes in lists for node in nodes]
     for key, value in element.items() if isinstance(element, dict) else ():
         if isinstance(value, list):
-            element[key] = [_one(choices, [*nodes, *NODES]) for _ in value]
+            element[key] = [choices.choice([*nodes, *NODES]) for _ in value]
         elif key == "at":
-            element[key] = _one(choices, [*nodes, *NODES])
+            element[key] = choices.choice([*nodes, *NODES])
 
 
 def _kind(model, choices):
-    element = _one(choices, (model.get("elements") or {"_": {}}).values())
+    element = _element(model, choices)
     if isinstance(element, dict):
-        element["type"] = _one(choices, KINDS)
+        element["type"] = choices.choice(KINDS)
 
 
 def _expression(model, choices):
     section = _section(model, choices)
-    name = _one(choices, section)
+    name = choices.choice([*section])
     entry = section[name]
     if isinstance(entry, dict) and entry:
-        key = _one(choices, entry)
+        key = choices.choice([*entry])
         if isinstance(entry[key], str) and key != "type":
-            entry[key] = _one(choices, EXPRESSIONS).format(entry[key])
+            entry[key] = choices.choice(EXPRESSIONS).format(entry[key])
     elif isinstance(entry, str):
-        section[name] = _one(choices, EXPRESSIONS).format(entry)
+        section[name] = choices.choice(EXPRESSIONS).format(entry)
 
 
 CHANGE = (_value, _leave_out, _repeat, _connect, _kind, _expression)
