@@ -49,12 +49,13 @@ def test_hertz_added_to_s_is_an_angular_frequency():
     assert pipeline.bind(tf)(0j).real == pytest.approx(1 / (22 * math.pi), rel=1e-15)
 
 
-def test_hertz_at_a_resonance_is_an_angular_frequency():
-    text = (
-        f'{HEADER}f = "11 Hz"\n[blocks]\nR = {{ type = "resonance", omega_p = "f", zeta_p = 0.1, '
-        f'omega_z = "2*f", zeta_z = 0.1 }}\n' + SIGNAL.format("R*U")
-    )
-    assert undamped_at(text, 22 * math.pi)
+RESONANCE = 'R = { type = "resonance", omega_p = "f", zeta_p = 0.1, omega_z = "2*f", zeta_z = 0.1 }\n'
+
+
+def test_a_frequency_or_a_speed_at_a_resonance_is_angular():
+    for declared, omega in [("11 Hz", 22 * math.pi), ("60 rpm", 2 * math.pi)]:
+        text = f'{HEADER}f = "{declared}"\n[blocks]\n{RESONANCE}' + SIGNAL.format("R*U")
+        assert undamped_at(text, omega), declared
 
 
 def test_hertz_times_two_pi_stays_in_cycles():
@@ -71,14 +72,6 @@ def test_hertz_inverted_to_a_time_stays_in_cycles():
 
 def test_both_readings_of_one_parameter_are_refused():
     assert codes(with_output('"11 Hz"', "U*f/(s + f) + U*2*pi*f/(s + 2*pi*f)")) == ["SF204"]
-
-
-def test_revolutions_per_minute_at_a_resonance_are_radians_per_second():
-    text = (
-        f'{HEADER}f = "60 rpm"\n[blocks]\nR = {{ type = "resonance", omega_p = "f", zeta_p = 0.1, '
-        f'omega_z = "2*f", zeta_z = 0.1 }}\n' + SIGNAL.format("R*U")
-    )
-    assert undamped_at(text, 2 * math.pi)
 
 
 SCREW = (
@@ -107,31 +100,22 @@ def test_a_pitch_written_at_the_port_itself_is_metres_per_radian_too():
     assert pipeline.bind(tf)(1 + 1j) == pipeline.bind(by_name)(1 + 1j)
 
 
-def test_a_speed_constant_in_volts_per_thousand_revolutions_is_volt_seconds_per_radian():
+MOTOR = f"""{HEADER}k = "50 V/krpm"
+[elements]
+motor = {{ type = "dc_motor", terminals = ["v", "ground"], shaft = "z", R = 1, CONSTANTS }}
+rotor = {{ type = "inertia", at = "z", J = "1 kg*m^2" }}
+[inputs]
+V = {{ voltage = "v" }}
+[outputs]
+W = "s*z"
+"""
+
+
+def test_a_motor_s_constant_in_volts_per_thousand_revolutions_is_volt_seconds_per_radian():
     # 50 V per 1000/60 rev/s = 50*60/(1000*2*pi) = 3/(2 pi) V s/rad.
-    text = f"""{HEADER}k_e = "50 V/krpm"
-[elements]
-motor = {{ type = "dc_motor", terminals = ["v", "ground"], shaft = "z", R = 1, k_t = 1, k_e = "k_e" }}
-rotor = {{ type = "inertia", at = "z", J = "1 kg*m^2" }}
-[inputs]
-V = {{ voltage = "v" }}
-[outputs]
-W = "s*z"
-"""
-    assert value_of(text, "k_e") == ExactValue(Fraction(3, 2), -1)
-
-
-def test_a_speed_constant_given_as_the_torque_constant_is_per_radian_without_a_word():
-    text = f"""{HEADER}k_m = "50 V/krpm"
-[elements]
-motor = {{ type = "dc_motor", terminals = ["v", "ground"], shaft = "z", R = 1, k_t = "k_m" }}
-rotor = {{ type = "inertia", at = "z", J = "1 kg*m^2" }}
-[inputs]
-V = {{ voltage = "v" }}
-[outputs]
-W = "s*z"
-"""
-    assert value_of(text, "k_m") == ExactValue(Fraction(3, 2), -1)
+    for constants in ('k_t = 1, k_e = "k"', 'k_t = "k"'):
+        text = MOTOR.replace("CONSTANTS", constants)
+        assert value_of(text, "k") == ExactValue(Fraction(3, 2), -1), constants
     assert resolve(text).warnings == ()
     (tf,) = pipeline.derive_all(resolve(text))
     # k/(s + k^2) with k = 3/(2 pi) is 2 pi/3 at 0.
@@ -166,11 +150,11 @@ E = "e"
     assert str(output.dimension) == "V/s"
 
 
-def test_a_free_input_s_unit_follows_from_where_it_enters():
-    text = f"""{HEADER}g = "2 N/V"
+DRIVEN = f"""{HEADER}g = "2 N/V"
 [elements]
 M = {{ type = "mass", at = "x", m = "1 kg" }}
-D = {{ type = "force_source", at = "x", f = "g*(u - v)" }}
+D = {{ type = "force_source", at = "x", f = "g*FIRST" }}
+E = {{ type = "force_source", at = "x", f = "SECOND" }}
 [signals]
 v = "w"
 [inputs]
@@ -179,21 +163,12 @@ w = {{}}
 [outputs]
 X = "x"
 """
-    assert [i.unit for i in resolve(text).inputs] == ["V", "V"]
 
 
-def test_a_signal_used_in_two_units_is_refused():
-    text = f"""{HEADER}g = "2 N/V"
-[elements]
-M = {{ type = "mass", at = "x", m = "1 kg" }}
-D = {{ type = "force_source", at = "x", f = "g*u" }}
-E = {{ type = "force_source", at = "x", f = "u" }}
-[inputs]
-u = {{}}
-[outputs]
-X = "x"
-"""
-    assert codes(text) == ["SF203"]
+def test_a_free_input_s_unit_follows_from_where_it_enters_and_is_one():
+    model = resolve(DRIVEN.replace("FIRST", "(u - v)").replace("SECOND", "3*g*u"))
+    assert [i.unit for i in model.inputs] == ["V", "V"]
+    assert codes(DRIVEN.replace("FIRST", "u").replace("SECOND", "u")) == ["SF203"]
 
 
 def test_terms_of_a_sum_must_agree():

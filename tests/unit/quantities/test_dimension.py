@@ -103,7 +103,7 @@ def test_a_preferred_unit_is_coherent():
         assert unit_of(unit).scale == 1, unit
 
 
-@settings(max_examples=50)
+@settings(max_examples=20)
 @given(dimensions)
 def test_any_printed_dimension_reads_back_as_itself(dimension):
     assert unit_of(str(dimension)).dimension == dimension
