@@ -57,16 +57,10 @@ AT = {
 }
 
 
-@pytest.mark.parametrize("output", ["near", "far"])
-@pytest.mark.parametrize("n", [4, 8, 16])
-@pytest.mark.parametrize("where", tuple(AT))
-def test_a_chain_of_masses_tends_to_the_rod_at_second_order(where, n, output):
-    s = AT[where]
-    order = math.log2(error(n, output, s) / error(2 * n, output, s))
-    assert order == pytest.approx(2, abs=0.1)
-
-
-def test_thirty_two_masses_are_close_to_the_rod():
+def test_a_chain_of_masses_tends_to_the_rod_at_second_order():
+    for (where, s), output in itertools.product(AT.items(), ("near", "far")):
+        errors = [error(n, output, s) for n in (4, 8, 16, 32)]
+        assert orders(errors) == pytest.approx([2, 2, 2], abs=0.1), (where, output)
     assert error(32, "far", AT["on the imaginary axis"]) < 1e-3
 
 
@@ -113,37 +107,23 @@ def orders(errors):
     return [math.log2(a / b) for a, b in itertools.pairwise(errors)]
 
 
-@pytest.mark.parametrize("output", ["y", "theta"])
-@pytest.mark.parametrize("s", PLACES)
-def test_a_timoshenko_beam_tends_to_euler_and_bernoulli_at_first_order(s, output):
-    # E I stays; rho I falls and kappa G A grows together.
-    plain = theory("euler-bernoulli", output).bind()
-    errors = [
-        distance(theory("timoshenko", output).bind(E=70e9 * g, I=6.75e-8 / g, G=26e9 * g), plain, s)
-        for g in (256, 512, 1024, 2048)
-    ]
-    assert orders(errors) == pytest.approx([1, 1, 1], abs=0.02)
+LIMITS = {
+    # E I stays; rho I falls, and kappa G A grows together with it.
+    ("timoshenko", "euler-bernoulli"): lambda g: {"E": 70e9 * g, "I": 6.75e-8 / g, "G": 26e9 * g},
+    ("rayleigh", "euler-bernoulli"): lambda g: {"E": 70e9 * g, "I": 6.75e-8 / g},
+    ("timoshenko", "rayleigh"): lambda g: {"G": 26e9 * g},
+}
+"""Of a theory and the one it tends to, at first order in 1/g: the values that lead there."""
 
 
-@pytest.mark.parametrize("output", ["y", "theta"])
-@pytest.mark.parametrize("s", PLACES)
-def test_a_timoshenko_beam_tends_to_rayleigh_at_first_order_in_the_shear_flexibility(s, output):
-    rayleigh = theory("rayleigh", output).bind()
-    errors = [
-        distance(theory("timoshenko", output).bind(G=26e9 * g), rayleigh, s) for g in (256, 512, 1024, 2048)
-    ]
-    assert orders(errors) == pytest.approx([1, 1, 1], abs=0.02)
-
-
-@pytest.mark.parametrize("output", ["y", "theta"])
-@pytest.mark.parametrize("s", PLACES)
-def test_a_rayleigh_beam_tends_to_euler_and_bernoulli_at_first_order_in_the_rotary_inertia(s, output):
-    plain = theory("euler-bernoulli", output).bind()
-    errors = [
-        distance(theory("rayleigh", output).bind(E=70e9 * g, I=6.75e-8 / g), plain, s)
-        for g in (256, 512, 1024, 2048)
-    ]
-    assert orders(errors) == pytest.approx([1, 1, 1], abs=0.02)
+@pytest.mark.parametrize(("full", "plain"), LIMITS, ids=" to ".join)
+def test_theories_of_beams_tend_to_each_other_at_first_order(full, plain):
+    for output in ("y", "theta"):
+        limit = theory(plain, output).bind()
+        closer = [theory(full, output).bind(**LIMITS[full, plain](g)) for g in (256, 512, 1024, 2048)]
+        for s in PLACES:
+            errors = [distance(each, limit, s) for each in closer]
+            assert orders(errors) == pytest.approx([1, 1, 1], abs=0.02), (output, s)
 
 
 # -------------------------------------------------------------------------------------- a stiffened string

@@ -15,7 +15,7 @@ from symflex.model import with_numbers
 from symflex.state_space import realise
 
 DERIVATIONS = Path(__file__).parents[3] / "derivations" / "eppinger1988"
-LUMPED = ["two_mass", "six_mass", "rigid_body", "lumped_bending_beam", "polynomial_resonance"]
+LUMPED = ["two_mass", "rigid_body", "lumped_bending_beam", "polynomial_resonance"]
 
 TWO_MASSES = """
 symflex = 1
@@ -143,7 +143,7 @@ def test_blocks_in_series_have_the_states_of_each():
     assert found.A[blocks["R_4"] + 6, blocks["R_5"]] != 0
 
 
-@pytest.mark.parametrize("text", [TWO_MASSES, MOTOR, RLC, BASE, PID], ids=range(5))
+@pytest.mark.parametrize("text", [MOTOR, RLC, BASE, PID], ids=["motor", "circuit", "base", "controller"])
 def test_the_resolvent_is_the_transfer_function_symbolically(text):
     model = symflex.loads(text)
     found = model.state_space()
@@ -160,16 +160,15 @@ def response(a, b, c, d, s):
 
 
 @pytest.mark.parametrize("name", LUMPED)
-@pytest.mark.parametrize("minimal", [False, True])
-def test_numbers_give_the_values_of_every_transfer_function(name, minimal):
+def test_numbers_give_the_values_of_every_transfer_function(name):
     model = symflex.load(DERIVATIONS / f"{name}.toml")
-    found = model.state_space(minimal=minimal).bind()
-    for s in (40 + 300j, -25 + 60j, 900 + 0j):
-        values = response(found.A, found.B, found.C, found.D, s)
-        for i, output in enumerate(model.outputs):
-            for j, source in enumerate(model.inputs):
-                H = model.transfer_function(output, source).bind()
-                assert values[i, j] == pytest.approx(H(s), rel=1e-10)
+    pairs = [(output, source) for output in model.outputs for source in model.inputs]
+    functions = [model.transfer_function(*pair).bind() for pair in pairs]
+    for minimal in (False, True):
+        found = model.state_space(minimal=minimal).bind()
+        for s in (40 + 300j, -25 + 60j, 900 + 0j):
+            values = response(found.A, found.B, found.C, found.D, s).ravel()
+            assert values == pytest.approx([H(s) for H in functions], rel=1e-10), (minimal, s)
 
 
 @pytest.mark.parametrize("name", LUMPED)
@@ -212,21 +211,21 @@ def test_a_limit_that_divides_by_zero_has_its_own_equations():
     assert massless.A.tolist() == [[0, 0, 1], [6, -6, 1], [0, 0, 0]]
 
 
-@pytest.mark.parametrize(
-    ("expression", "gain"), [("3*u", [[3.0]]), ("u - u", [[0.0]]), ("u/4 + u/4", [[0.5]])], ids=str
-)
-def test_a_static_gain_has_no_states(expression, gain):
-    found = symflex.loads(f'symflex = 1\ninputs.u = {{}}\noutputs.y = "{expression}"').state_space().bind()
-    assert (found.A.shape, found.B.shape, found.C.shape) == ((0, 0), (0, 1), (1, 0))
-    assert found.D.tolist() == gain
+def test_a_static_gain_has_no_states():
+    for expression, gain in [("3*u", [[3.0]]), ("u - u", [[0.0]]), ("u/4 + u/4", [[0.5]])]:
+        found = (
+            symflex.loads(f'symflex = 1\ninputs.u = {{}}\noutputs.y = "{expression}"').state_space().bind()
+        )
+        assert (found.A.shape, found.B.shape, found.C.shape) == ((0, 0), (0, 1), (1, 0)), (expression, gain)
+        assert found.D.tolist() == gain, (expression, gain)
 
 
-@pytest.mark.parametrize("expression", ["s*u", "(s^2 + 1)/(s + 1)*u"])
-def test_what_grows_with_s_has_no_state_equations(expression):
-    model = symflex.loads(f'symflex = 1\ninputs.u = {{}}\noutputs = {{ y = "{expression}", z = "u" }}')
-    with pytest.raises(ModelError, match=r"SF236.*y/u has more zeros than poles"):
-        model.state_space()
-    assert model.state_space(outputs=["z"]).states == ()
+def test_what_grows_with_s_has_no_state_equations():
+    for expression in ["s*u", "(s^2 + 1)/(s + 1)*u"]:
+        model = symflex.loads(f'symflex = 1\ninputs.u = {{}}\noutputs = {{ y = "{expression}", z = "u" }}')
+        with pytest.raises(ModelError, match=r"SF236.*y/u has more zeros than poles"):
+            model.state_space()
+        assert model.state_space(outputs=["z"]).states == (), expression
 
 
 def test_a_beam_has_no_state_equations_but_its_approximation_has():
