@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 
 from symflex import pipeline
@@ -108,6 +109,19 @@ def _chain(count):
     return "\n".join([*lines, "[analysis]", 'band = ["0.1 Hz", "100 Hz"]', ""])
 
 
+def free_chain(count, m="2 kg", k="3 kN/m", b="", outputs=None):
+    """Return a chain of equal masses that a force drives at one end, with dampers where they have a value."""
+    parameters = {"m": m, "k": k} | ({"b": b} if b else {})
+    lines = ["symflex = 1", "[parameters]", *(f'{name} = "{value}"' for name, value in parameters.items())]
+    lines += ["[elements]", *(f'M{i} = {{ type = "mass", at = "x{i}", m = "m" }}' for i in range(count))]
+    for i in range(count - 1):
+        between = f'between = ["x{i}", "x{i + 1}"]'
+        lines.append(f'K{i} = {{ type = "spring", {between}, k = "k" }}')
+        lines += [f'B{i} = {{ type = "damper", {between}, b = "b" }}'] if b else []
+    lines += ["[inputs]", 'F = { force = "x0" }', "[outputs]", outputs or f'X = "x{count - 1}"']
+    return "\n".join([*lines, ""])
+
+
 SPECS = {
     "two_beams": TWO_BEAMS,
     "tension": TENSION,
@@ -118,6 +132,7 @@ SPECS = {
 }
 
 
+@cache
 def derived(name):
     """Return a model and its transfer functions."""
     model = pipeline.load(DERIVATIONS[name]) if name in DERIVATIONS else pipeline.loads(SPECS[name])

@@ -95,17 +95,17 @@ def closed_loop(controller, late, count, h=0.01):
 
 
 @pytest.mark.needs_tool("gcc")
-@pytest.mark.parametrize("samples", [0.0, 0.3, 1.0, 2.7])
+@pytest.mark.parametrize("samples", [0.0, 2.7])
 def test_a_compiled_controller_in_the_loop_moves_the_plant_as_the_sampled_model_says(tmp_path, samples):
     library = compiled(tmp_path, exported("c"))
-    moved = closed_loop(stepper(library, "pid_u_over_e"), samples * 0.01, 120)
+    moved = closed_loop(stepper(library, "pid_u_over_e"), samples * 0.01, 60)
     # The same loop in z: C P/(1 + C P), of both sampled functions.
     sampled = sampled_transfer_function(plant(samples * 0.01), Sampling(Fraction(1, 100)))
     pid = loads(CONTROLLER).transfer_function("u", "e").bind().discretise("10 ms", "tustin")
     (above, below), (num, den) = pid.coefficients(), sampled.coefficients()
     forward, back = np.polymul(above, num), np.polymul(below, den)
     whole = np.polyadd(forward, back)
-    expected = lfilter(np.concatenate([np.zeros(len(whole) - len(forward)), forward]), whole, np.ones(120))
+    expected = lfilter(np.concatenate([np.zeros(len(whole) - len(forward)), forward]), whole, np.ones(60))
     assert np.max(np.abs(moved - expected)) < 1e-9
     assert 0.5 < moved[-1] < 1.5
 

@@ -9,12 +9,10 @@ import pytest
 from symflex.codegen.program.series import LocalBasis, series_length, taylor_term
 
 
-@pytest.mark.parametrize(
-    ("size", "order"), [(3.0, 0), (3.0, 1), (3.0, 40), (0.5, 300), (700.0, 500), (0.0, 0)]
-)
-def test_the_logarithm_of_a_taylor_term_is_that_of_its_quotient(size, order):
-    expected = mpmath.log(mpmath.mpf(size) ** order / mpmath.factorial(order))
-    assert taylor_term(size, order) == pytest.approx(float(expected), rel=1e-13, abs=1e-12)
+def test_the_logarithm_of_a_taylor_term_is_that_of_its_quotient():
+    for size, order in ((3.0, 0), (3.0, 1), (3.0, 40), (0.5, 300), (700.0, 500), (0.0, 0)):
+        expected = mpmath.log(mpmath.mpf(size) ** order / mpmath.factorial(order))
+        assert taylor_term(size, order) == pytest.approx(float(expected), rel=1e-13, abs=1e-12)
 
 
 def test_a_taylor_term_of_nothing_is_nothing():

@@ -59,7 +59,7 @@ def test_without_values_a_few_missing_ones_are_named():
 
 
 def test_a_docstring_names_the_command_that_prints_a_formula_nobody_would_read():
-    (tf,) = pipeline.derive_nested(network(chain(200)), [("X_first", "F")])
+    (tf,) = pipeline.derive_nested(network(chain(150)), [("X_first", "F")])
     (sentence,) = formula_of(tf)
     assert sentence.endswith("in s, which symflex derive --tf X_first/F prints.")
 

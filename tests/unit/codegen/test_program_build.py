@@ -16,7 +16,6 @@ from symflex.codegen.program.build import available_forms, build_program
 from symflex.codegen.program.evaluate import evaluate, nearest_double
 from symflex.codegen.program.nodes import Assigned, Laplace, RealNumber, lumped
 from symflex.errors import BudgetError, ModelError
-from tests.house.repository import one_in, specifications
 
 MASSES = [Fraction(11 + i, 2) for i in range(8)]
 SPRINGS = [Fraction(100_000 + 7_000 * i) for i in range(7)]
@@ -25,6 +24,7 @@ DAMPERS = [Fraction(20 + i) for i in range(7)]
 DERIVATIONS = Path(__file__).parents[3] / "derivations" / "eppinger1988"
 
 
+@cache
 def chain(number):
     lines = ["symflex = 1", "[parameters]"]
     lines += [f'm_{i} = "{float(MASSES[i])} kg"' for i in range(number)]
@@ -61,46 +61,44 @@ def values_of(tf):
     return {p.name: nearest_double(p.value.rational, p.value.pi_power) for p in tf.parameters}
 
 
-SIX = chain(6)
-EIGHT = chain(8)
-
-
 @cache
-def program_of(number, which, form):
-    return build_program({6: SIX, 8: EIGHT}[number][which], form)
+def program_of(number, which, *form):
+    return build_program(chain(number)[which], *form)
 
 
-@pytest.mark.parametrize("form", ["closed", "closed in s", "nested", "factors"])
-@pytest.mark.parametrize("s", one_in(3, [1e-9j, 3 + 40j, -2 + 1e3j, 1e12j, 1e8 + 1e8j, 1e10j]))
-@pytest.mark.parametrize("which", [0, 1])
-def test_eight_masses_agree_with_a_linear_solve_from_1e_minus_9_to_1e12(form, s, which):
+FORMS = ("closed", "closed in s", "nested", "factors")
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_eight_masses_agree_with_a_linear_solve_from_1e_minus_9_to_1e12(form):
     number = 6 if form == "factors" else 8
-    expected = solved_chain(number, s)[which]
-    computed = evaluate(program_of(number, which, form), s, values_of({6: SIX, 8: EIGHT}[number][which]))
-    assert abs(computed - expected) <= 1e-11 * abs(expected)
+    for which, tf in enumerate(chain(number)):
+        program = program_of(number, which, form)
+        for s in (1e-9j, -2 + 1e3j, 1e8 + 1e8j, 1e12j):
+            expected = solved_chain(number, s)[which]
+            assert abs(evaluate(program, s, values_of(tf)) - expected) <= 1e-11 * abs(expected), (which, s)
 
 
 def test_recurrences_lose_no_digit_between_the_resonances_of_eight_masses():
     s = 2j * np.pi * np.geomspace(0.5, 60, 40)
-    computed = evaluate(build_program(EIGHT[1], "closed"), s, values_of(EIGHT[1]))
+    computed = evaluate(program_of(8, 1, "closed"), s, values_of(chain(8)[1]))
     expected = np.array([solved_chain(8, complex(z))[1] for z in s])
     assert np.max(abs(computed - expected) / abs(expected)) < 2e-14
 
 
 def test_recurrences_grow_linearly_with_the_chain():
-    sizes = [build_program(chain(n)[1], "closed").size for n in (4, 5, 6, 7)]
+    sizes = [program_of(n, 1, "closed").size for n in (4, 5, 6, 7)]
     steps = np.diff(sizes)
     assert max(steps) <= 25
 
 
 def test_a_program_of_high_degree_has_a_far_branch_and_one_of_low_degree_has_none():
-    assert build_program(EIGHT[0]).far is not None
+    assert program_of(8, 0).far is not None
     assert build_program(chain(2)[0]).far is None
 
 
 def test_near_and_far_branch_agree_where_they_meet():
-    tf = EIGHT[1]
-    program = build_program(tf)
+    tf, program = chain(8)[1], program_of(8, 1)
     far = lumped(program.parameters, program.near, program.far, 0.0)
     s = np.array([1e3j, 5 + 70j, -1e5 + 1j, 3e7 + 2e6j])
     near_values, far_values = (evaluate(p, s, values_of(tf)) for p in (program, far))
@@ -108,18 +106,18 @@ def test_near_and_far_branch_agree_where_they_meet():
 
 
 def test_no_warning_is_raised_by_overflow_or_division_by_zero():
-    tf = EIGHT[0]
+    tf = chain(8)[0]
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        values = evaluate(build_program(tf), np.array([0, 1e200, 1e-200j, 1e13]), values_of(tf))
+        values = evaluate(program_of(8, 0), np.array([0, 1e200, 1e-200j, 1e13]), values_of(tf))
     assert np.isfinite(values[3])
 
 
 def test_elements_of_one_array_choose_their_branch_one_by_one():
-    tf = EIGHT[1]
+    tf, program = chain(8)[1], program_of(8, 1)
     s = np.array([10j, 1e14j, 20j, 1e13])
-    together = evaluate(build_program(tf), s, values_of(tf))
-    alone = [complex(evaluate(build_program(tf), complex(z), values_of(tf))) for z in s]
+    together = evaluate(program, s, values_of(tf))
+    alone = [complex(evaluate(program, complex(z), values_of(tf))) for z in s]
     assert np.allclose(together, alone, rtol=1e-14, atol=0)
 
 
@@ -135,7 +133,7 @@ def test_what_depends_on_parameters_only_is_kept_apart_from_what_depends_on_s():
 
 
 def test_every_reference_is_to_an_earlier_assignment():
-    program = build_program(EIGHT[0])
+    program = program_of(8, 0)
     known = set()
     for assignment in (*program.near.constants, *program.far.assignments):
         pending = [assignment.value]
@@ -196,10 +194,10 @@ def test_zero_is_the_constant_zero():
     assert evaluate(build_program(tfs["y/u"]), np.ones((2, 3)), {}).tolist() == [[3] * 3] * 2
 
 
-@pytest.mark.parametrize("spec", specifications(DERIVATIONS, "*.toml"), ids=lambda p: p.stem)
-def test_every_form_of_every_derivation_agrees_with_ball_arithmetic_off_the_axis(spec):
+@pytest.mark.parametrize("name", ["two_mass", "rigid_body", "lumped_bending_beam"])
+def test_every_form_agrees_with_ball_arithmetic_off_the_axis(name):
     s = np.array([0.1 - 3j, 5 + 70j, -30 + 400j, 1e4 - 2e3j, 17.0, -0.2])
-    for tf in pipeline.derive_all(pipeline.load(spec)):
+    for tf in pipeline.derive_all(pipeline.load(DERIVATIONS / f"{name}.toml")):
         bound = pipeline.bind(tf)
         expected = np.array([bound(complex(z)) for z in s])
         for form in available_forms(tf):
@@ -208,15 +206,13 @@ def test_every_form_of_every_derivation_agrees_with_ball_arithmetic_off_the_axis
 
 
 def test_the_same_program_is_built_every_time():
-    assert build_program(EIGHT[0], "closed") == build_program(chain(8)[0], "closed")
+    assert program_of(6, 0, "closed") == build_program(chain.__wrapped__(6)[0], "closed")
 
 
-@pytest.mark.parametrize(
-    ("value", "pi_power"), [(Fraction(10) ** 400, 0), (Fraction(1, 10**400), 0), (Fraction(10) ** 308, 2)]
-)
-def test_a_number_beyond_double_precision_is_refused(value, pi_power):
-    with pytest.raises(ModelError, match="SF233"):
-        nearest_double(value, pi_power)
+def test_a_number_beyond_double_precision_is_refused():
+    for value, pi_power in ((Fraction(10) ** 400, 0), (Fraction(1, 10**400), 0), (Fraction(10) ** 308, 2)):
+        with pytest.raises(ModelError, match="SF233"):
+            nearest_double(value, pi_power)
 
 
 def test_a_multiple_of_pi_is_rounded_once():
@@ -228,12 +224,10 @@ def test_a_multiple_of_pi_is_rounded_once():
 def test_a_program_that_would_fill_megabytes_is_refused(monkeypatch):
     monkeypatch.setattr("symflex.codegen.program.build.TERM_LIMIT", 10)
     with pytest.raises(BudgetError, match="SF503"):
-        build_program(EIGHT[0])
+        build_program(chain(8)[0])
 
 
-@pytest.mark.parametrize("s", [0, 0.5, 3j, 1e6j, 1e12j, 1e12])
-@pytest.mark.parametrize("form", ["closed", "closed in s", "nested", "factors"])
-def test_a_ratio_of_degree_180_over_180_does_not_overflow(form, s):
+def test_a_ratio_of_degree_180_over_180_does_not_overflow():
     text = """
     symflex = 1
     parameters = { T_1 = "1.01 s", T_2 = "1 s" }
@@ -242,14 +236,17 @@ def test_a_ratio_of_degree_180_over_180_does_not_overflow(form, s):
     outputs.y = "H^60*H^60*H^60*u"
     """
     (tf,) = pipeline.derive_all(pipeline.loads(text))
-    with mpmath.workdps(40):
-        z = mpmath.mpc(s)
-        expected = complex(((mpmath.mpf(101) / 100 * z + 1) / (z + 1)) ** 180)
-    computed = complex(evaluate(build_program(tf, form), s, values_of(tf)))
-    assert abs(computed - expected) <= 1e-13 * abs(expected)
+    for form in FORMS:
+        program = build_program(tf, form)
+        for s in (0, 0.5, 3j, 1e6j, 1e12j, 1e12):
+            with mpmath.workdps(40):
+                z = mpmath.mpc(s)
+                expected = complex(((mpmath.mpf(101) / 100 * z + 1) / (z + 1)) ** 180)
+            computed = complex(evaluate(program, s, values_of(tf)))
+            assert abs(computed - expected) <= 1e-13 * abs(expected), (form, s)
 
 
 def test_recurrences_give_up_on_a_polynomial_nested_too_deeply(monkeypatch):
     monkeypatch.setattr("symflex.codegen.program.polynomials.DEPTH_LIMIT", 3)
     with pytest.raises(BudgetError, match="structure"):
-        build_program(EIGHT[0], "closed")
+        build_program(chain(8)[0], "closed")

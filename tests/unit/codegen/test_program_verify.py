@@ -22,7 +22,6 @@ from symflex.codegen.program.verify import (
     frequency_text,
     sample_frequencies,
 )
-from tests.house.repository import one_in, specifications
 
 DERIVATIONS = Path(__file__).parents[3] / "derivations" / "eppinger1988"
 BAND = (Fraction(1, 10), Fraction(1000))
@@ -32,7 +31,9 @@ def transfer_functions(name):
     return pipeline.derive_all(pipeline.load(DERIVATIONS / f"{name}.toml"))
 
 
-TWO_MASS = transfer_functions("two_mass")[0]
+@pytest.fixture(scope="module")
+def two_mass():
+    return transfer_functions("two_mass")[0]
 
 
 def spoiled(program, factor):
@@ -41,40 +42,33 @@ def spoiled(program, factor):
     return lumped(program.parameters, replace(program.near, values=(value,)))
 
 
-MANY_DECIMALS = ("fitted_resonances",)
-"""Rounding one by one of some twenty parameters with nine digits each shows."""
-
-
-@pytest.mark.parametrize("spec", one_in(2, specifications(DERIVATIONS, "*.toml")), ids=lambda p: p.stem)
-def test_the_error_of_every_derivation_is_of_the_size_of_rounding(spec):
-    for tf in pipeline.derive_all(pipeline.load(spec)):
+@pytest.mark.parametrize("name", ["two_mass", "rigid_body", "lumped_bending_beam"])
+def test_the_error_of_every_form_is_of_the_size_of_rounding_and_the_best_is_taken(name):
+    for tf in transfer_functions(name)[:2]:
+        references = References(pipeline.bind(tf), DEFAULT_BAND)
+        errors = {f: references.worst_error(build_program(tf, f)) for f in available_forms(tf)}
+        assert len(errors) > 2
+        assert max(errors.values()) < 1e-13
+        # A lossless resonance inside the band, of the bending beam, does not spoil the measure.
         _, verification = choose_programs(tf)[0]
-        assert 0 < verification.error < (2e-15 if spec.stem in MANY_DECIMALS else 1e-15)
+        assert 0 < verification.error < 1e-15
 
 
-@pytest.mark.parametrize("spec", one_in(2, specifications(DERIVATIONS, "*.toml")), ids=lambda p: p.stem)
-def test_the_error_of_every_form_of_every_derivation_is_below_1e_minus_13(spec):
-    for tf in pipeline.derive_all(pipeline.load(spec)):
-        for form in available_forms(tf):
-            references = References(pipeline.bind(tf), DEFAULT_BAND)
-            assert references.worst_error(build_program(tf, form)) < 1e-13
-
-
-def test_an_error_in_the_ninth_digit_is_measured_as_such():
-    bound = pipeline.bind(TWO_MASS)
-    program = spoiled(build_program(TWO_MASS), 1 + Fraction(1, 10**9))
+def test_an_error_in_the_ninth_digit_is_measured_as_such(two_mass):
+    bound = pipeline.bind(two_mass)
+    program = spoiled(build_program(two_mass), 1 + Fraction(1, 10**9))
     # Where |s G'/G| = 2, at low frequencies, the measure divides by 3.
     assert 1e-9 / 3.1 < References(bound, BAND).worst_error(program) < 1.01e-9
 
 
-def test_a_value_that_is_not_finite_is_an_infinite_error():
-    bound = pipeline.bind(TWO_MASS)
-    program = build_program(TWO_MASS)
+def test_a_value_that_is_not_finite_is_an_infinite_error(two_mass):
+    bound = pipeline.bind(two_mass)
+    program = build_program(two_mass)
     assert References(bound, BAND).worst_error(spoiled(spoiled(program, 10**300), 10**300)) == np.inf
 
 
-def test_samples_stand_at_every_pole_and_zero():
-    bound = pipeline.bind(TWO_MASS)
+def test_samples_stand_at_every_pole_and_zero(two_mass):
+    bound = pipeline.bind(two_mass)
     frequencies = sample_frequencies(bound, BAND, 400)
     # 11 Hz pole and 59.85 rad/s zero of the two-mass model, from its own closed forms.
     pole = np.sqrt(71653 * 80 / (60 * 20)) / (2 * np.pi)
@@ -96,9 +90,9 @@ def test_recurrences_are_taken_for_the_six_masses_because_they_are_the_most_accu
     assert errors["factors"] > 10 * errors["closed"]
 
 
-def test_the_band_of_the_analysis_is_the_default():
-    assert choose_programs(TWO_MASS)[0][1].band == (Fraction(1, 10), Fraction(100))
-    assert choose_programs(TWO_MASS, BAND)[0][1].band == BAND
+def test_the_band_of_the_analysis_is_the_default(two_mass):
+    assert choose_programs(two_mass)[0][1].band == (Fraction(1, 10), Fraction(100))
+    assert choose_programs(two_mass, BAND)[0][1].band == BAND
 
 
 def test_a_parameter_without_value_is_named_as_the_reason():
@@ -124,16 +118,9 @@ def test_the_sentence_says_error_and_band():
     assert "3.14e-16" in verification.text(3)
 
 
-def test_a_lossless_resonance_inside_the_band_does_not_spoil_the_measure():
-    for tf in transfer_functions("lumped_bending_beam"):
-        assert choose_programs(tf)[0][1].error < 1e-15
-
-
-@pytest.mark.parametrize(
-    ("hertz", "text"), [("0.1", "0.1 Hz"), ("1000", "1 kHz"), ("1500", "1.5 kHz"), ("2e9", "2 GHz")]
-)
-def test_a_frequency_is_printed_with_a_prefix(hertz, text):
-    assert frequency_text(Fraction(hertz)) == text
+def test_a_frequency_is_printed_with_a_prefix():
+    for hertz, text in (("0.1", "0.1 Hz"), ("1000", "1 kHz"), ("1500", "1.5 kHz"), ("2e9", "2 GHz")):
+        assert frequency_text(Fraction(hertz)) == text
 
 
 def test_rough_roots_are_found_where_quotients_of_coefficients_are_beyond_doubles():

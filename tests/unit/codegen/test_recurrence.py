@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import pytest
-
 from symflex import pipeline
 from symflex.codegen.program.polynomials import SumStep, plan_recurrences
 
@@ -20,12 +18,12 @@ def chain(count):
     return pipeline.derive_all(pipeline.loads("\n".join(lines)))
 
 
-@pytest.mark.parametrize("count", [2, 3, 6, 10])
-def test_a_chain_takes_two_sums_of_two_terms_for_each_mass(count):
+def test_a_chain_takes_two_sums_of_two_terms_for_each_mass():
     """As Holzer (1921) does it from the far end: one sum for a force, one for a displacement."""
-    colocated, _ = chain(count)
-    closed = colocated.closed
-    plan = plan_recurrences(closed.closure.ring, (closed.num, closed.den))
-    assert all(isinstance(step, SumStep) and len(step.parts) == 2 for step in plan.steps)
-    # The last mass alone has no sum but that with its spring, and the first one no spring before it.
-    assert len(plan.steps) == 2 * (count - 1)
+    for count in (2, 3, 6):
+        colocated, _ = chain(count)
+        closed = colocated.closed
+        plan = plan_recurrences(closed.closure.ring, (closed.num, closed.den))
+        assert all(isinstance(step, SumStep) and len(step.parts) == 2 for step in plan.steps)
+        # The last mass alone has no sum but that with its spring, and the first one no spring before it.
+        assert len(plan.steps) == 2 * (count - 1)
