@@ -83,7 +83,7 @@ def complaints_of_parts(folder, parts, opening, column=None):
     log = settled("pdflatex", folder)
     first, *others = log.split("\nPART ")
     assert len(others) == len(parts), log[-2000:]
-    assert "Output written" in log
+    assert "Output written" in log, log[-2000:]
     return [(part.split("\n")[0], found) for part in (first, *others) for found in COMPLAINT.findall(part)]
 
 

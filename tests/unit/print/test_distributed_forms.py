@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from itertools import product
 from pathlib import Path
 
 import mpmath
@@ -10,17 +11,7 @@ import pytest
 
 from symflex import pipeline
 from symflex.errors import UsageError
-from symflex.expressions import (
-    Call,
-    Name,
-    Negative,
-    Number,
-    Power,
-    Product,
-    Quotient,
-    Sum,
-    format_expression,
-)
+from symflex.expressions import Call, Name, format_expression, quotient
 from symflex.print import forms
 from symflex.print.forms import FORMS, hidden_expressions, print_form, with_hidden
 from symflex.print.forms.arrange import Arranged
@@ -31,6 +22,7 @@ from symflex.print.latex import transfer_function_latex
 from symflex.print.sympy import to_sympy
 from symflex.print.text import derive_text, form_text
 from tests.contract.exact import read
+from tests.independent.spec_expressions import evaluate
 from tests.unit.codegen.models_with_kernels import MODELS, derived, spec
 from tests.unit.print.residues import PRIME, point_for
 
@@ -53,9 +45,8 @@ def printed(name, number, form):
     return print_form(of_case(name)[number], form)
 
 
-@cache
 def reread(form):
-    """Return what a form prints, read back once by the specification's own parser."""
+    """Return what a form prints, read back by the specification's own parser."""
     num, den = (read(format_expression(e)) for e in (form.num, form.den))
     return num, den, [(name, read(format_expression(e))) for name, e in form.where]
 
@@ -99,56 +90,30 @@ def test_a_form_with_a_wrong_sign_is_told_apart():
     assert point.truth < PRIME
 
 
-def value_of(expression, values):
-    """Return the value of an expression to mpmath's precision, by principal branches."""
-    match expression:
-        case Number(value):
-            return mpmath.mpf(value.numerator) / value.denominator
-        case Name(name):
-            return values(name)
-        case Negative(operand):
-            return -value_of(operand, values)
-        case Sum(terms):
-            return mpmath.fsum(value_of(t, values) for t in terms)
-        case Product(factors):
-            return mpmath.fprod(value_of(f, values) for f in factors)
-        case Quotient(above, below):
-            return value_of(above, values) / value_of(below, values)
-        case Power(base, exponent):
-            return value_of(base, values) ** value_of(exponent, values)
-        case Call(name, argument):
-            return getattr(mpmath, name)(value_of(argument, values))
-    raise TypeError(type(expression).__name__)
-
-
-def value_at(form, known):
-    num, den, where = reread(form)
-    where = dict(where)
-
-    def values(name):
-        return value_of(where[name], values) if name in where else known[name]
-
-    return value_of(num, values) / value_of(den, values)
+def value_of(expression, known, where=()):
+    """Return the value of a print by principal branches, to mpmath's precision."""
+    return evaluate(format_expression(expression), known, [(n, format_expression(e)) for n, e in where])
 
 
 def test_all_forms_agree_to_45_digits_at_complex_points():
     # By principal branches, which residues know nothing of.
-    points = (mpmath.mpc(1, 2) / 3, mpmath.mpc(-2, 1) / 5)
-    for name in (
+    names = (
         "sliding_free_beam",
         "lossy beam on a foundation",
         "rayleigh beam",
         "thermoelastic rod",
         "delay and rod",
-    ):
-        (tf, *_) = of_case(name)
-        forms_ = [printed(name, 0, form) for form in forms_of(tf)]
-        with mpmath.workdps(60):
-            parameters = {p.name: mpmath.mpf(3 + i) / (4 + i % 5) for i, p in enumerate(tf.model.parameters)}
-            for s in points:
-                known = {**parameters, "s": s, "pi": mpmath.pi}
-                first, *others = (value_at(form, known) for form in forms_)
-                assert max(abs(v / first - 1) for v in others) < mpmath.mpf(10) ** -45, (name, s)
+    )
+    with mpmath.workdps(60):
+        points = (mpmath.mpc(1, 2) / 3, mpmath.mpc(-2, 1) / 5)
+        for name, s in product(names, points):
+            (tf, *_) = of_case(name)
+            known = {p.name: mpmath.mpf(3 + i) / (4 + i % 5) for i, p in enumerate(tf.model.parameters)}
+            known["s"] = s
+            values = []
+            for form in (printed(name, 0, form) for form in forms_of(tf)):
+                values.append(value_of(quotient(form.num, form.den), known, form.where))
+            assert max(abs(v / values[0] - 1) for v in values) < mpmath.mpf(10) ** -45, (name, s)
 
 
 VAUGHAN = (
@@ -178,38 +143,77 @@ def test_vaughans_forms_of_the_mobilities_are_the_papers_with_two_misprints_corr
         assert expected + VAUGHAN_WHERE in derive_text(tf, print_form(tf, "vaughan"))
 
 
-def test_the_frequency_form_of_the_sliding_free_beam_is_real_but_for_one_factor():
+# A fact: the function of a case in a form, and what is printed above and below where it says so.
+SHOWN = {
     # Krylov-Duncan theory: free poles at tan + tanh = 0, colocated zeros at cos cosh = -1.
-    assert shown(case("sliding_free_beam", "V_act/F"), "frequency") == (
+    "the frequency form is real but for one factor": (
+        ("sliding_free_beam", "V_act/F", "frequency"),
         "-beta*j*(cosh(beta*l)*cos(beta*l) + 1)",
         "rho*A*omega*(cosh(beta*l)*sin(beta*l) + sinh(beta*l)*cos(beta*l))",
-    )
-
-
-def test_the_tip_receptance_of_a_cantilever_has_the_textbook_denominator():
+    ),
     # 1 + cos cosh, Rao 2007, table 11.1
-    assert shown(case("clamped_free", "W_tip/F"), "frequency") == (
+    "the receptance of a cantilever has the textbook denominator": (
+        ("clamped_free", "W_tip/F", "frequency"),
         "cosh(beta*l)*sin(beta*l) - sinh(beta*l)*cos(beta*l)",
         "E*I*beta^3*(cosh(beta*l)*cos(beta*l) + 1)",
-    )
+    ),
+    "which stays whole where the numerator needs half the length": (
+        ("clamped_free", "W_mid/F", "frequency"), None, "E*I*beta^3*(cosh(beta*l)*cos(beta*l) + 1)",
+    ),
+    # K_0 of l is the numerator: the tip and the slider move alike where cos cosh = 0.
+    "Krylov-Duncan functions of the free beam": (
+        ("sliding_free_beam", "V_tip/F", "krylov"), "K_0", "rho*A*s*(4*mu^4*K_2*K_3 + K_0*K_1)",
+    ),
+    "trigonometric factors are found": (
+        ("free_free", "A_near/F", "factored"), None, "rho*A*(sinh(q_1) - sin(q_1))*(sinh(q_1) + sin(q_1))",
+    ),
+    "a twofold delay is one exponential": (
+        ("delay and rod", "X_late/u", None), "K*sinh(q)*exp(-2*T*s)", None
+    ),
+}  # fmt: skip
+WAVENUMBER = ["mu = sqrt(s/(2*a))", "a = sqrt(E*I/(rho*A))"]
+LINES = {
+    "arguments are explained by the wavenumber and that by the speed": (
+        ("sliding_free_beam", "V_tip/F"),
+        ["q = mu*l", *WAVENUMBER],
+    ),
+    "a rod's wavenumber is taken out of its root": (
+        ("rod_tip_mass", "X_tip/F"),
+        ["q = gamma*l", "gamma = s*sqrt(rho/E)"],
+    ),
+    "losses stay under the root": (
+        ("lossy beam on a foundation", "X/F"),
+        ["q_1 = mu*l", "mu = sqrt(sqrt((rho*A*s^2 + c_f*s + k_f)/(E*I*(eta*s + 1)))/2)"],
+    ),
+    # The model's other output is at midspan.
+    "a function of whole lengths is not printed in halves": (
+        ("clamped_free", "W_tip/F"),
+        ["q = mu*l", *WAVENUMBER],
+    ),
+    "a function of half a length is": (("clamped_free", "W_mid/F"), ["q = mu*l/2", *WAVENUMBER]),
+}
 
 
-def test_the_textbook_denominator_stays_whole_where_the_numerator_needs_half_the_length():
-    _, den = shown(case("clamped_free", "W_mid/F"), "frequency")
-    assert den == "E*I*beta^3*(cosh(beta*l)*cos(beta*l) + 1)"
+@pytest.mark.parametrize("fact", SHOWN)
+def test_functions_print_as_books_and_authors_write_them(fact):
+    (name, pair, form), *expected = SHOWN[fact]
+    found = shown(case(name, pair), form)
+    assert [f for f, e in zip(found, expected, strict=True) if e] == [e for e in expected if e]
 
 
-def test_the_left_side_of_the_frequency_form_is_a_function_of_the_frequency():
+@pytest.mark.parametrize("fact", LINES)
+def test_names_of_the_hyperbolic_form_are_explained_in_lines(fact):
+    (name, pair), expected = LINES[fact]
+    assert lines(case(name, pair), "hyperbolic") == expected
+
+
+def test_the_left_side_of_the_frequency_form_alone_is_a_function_of_the_frequency():
     tf = case("pinned_pinned", "theta_near/tau")
     form = print_form(tf, "frequency")
     assert derive_text(tf, form).startswith("theta_near(j*omega)/tau(j*omega)   ")
     assert form_text(tf, form).startswith("theta_near(j*omega)/tau(j*omega) = ")
     latex = transfer_function_latex(tf, form, width_mm=None)
     assert r"\frac{\theta_{\mathrm{near}}(j \omega)}{\tau(j \omega)}" in latex
-
-
-def test_other_forms_are_functions_of_s_on_their_left_side():
-    tf = case("pinned_pinned", "theta_near/tau")
     assert r"\frac{\theta_{\mathrm{near}}(s)}{\tau(s)}" in transfer_function_latex(
         tf, print_form(tf), width_mm=None
     )
@@ -219,16 +223,11 @@ def hidden_lines(tf, form):
     return [line for line in derive_text(tf, print_form(tf, form)).splitlines() if "hidden: " in line]
 
 
-def test_hidden_factors_bear_the_arguments_of_the_form():
+def test_hidden_factors_bear_the_arguments_of_the_form_or_twice_these():
     # Antisymmetric modes of a beam clamped at both ends, which a uniform load does not drive.
-    assert hidden_lines(case("clamped_clamped", "M_end/p"), "hyperbolic") == [
-        "  hidden: sinh(q) - sin(q) cancelled"
-    ]
-
-
-def test_hidden_factors_of_twice_the_length_of_a_form_bear_twice_its_argument():
     tf = case("clamped_clamped", "M_end/p")
-    assert ("q", "mu*l/2") in [(n, format_expression(e)) for n, e in print_form(tf, "krylov").where]
+    assert hidden_lines(tf, "hyperbolic") == ["  hidden: sinh(q) - sin(q) cancelled"]
+    assert "q = mu*l/2" in lines(tf, "krylov")
     assert hidden_lines(tf, "krylov") == ["  hidden: sinh(2*q) - sin(2*q) cancelled"]
 
 
@@ -242,25 +241,18 @@ def test_hidden_factors_bring_the_lines_of_names_that_a_form_lacks():
 @pytest.mark.parametrize("pair", ["W_mid/p", "W_quarter/p", "M_end/p"])
 def test_hidden_factors_in_a_form_s_names_are_those_spelled_out(pair):
     tf = case("clamped_clamped", pair)
-    known = dict(zip(("E", "I", "rho", "A", "l"), (3, 2, mpmath.mpf(5) / 3, 1.75, 1.125), strict=True))
-    known |= {"s": mpmath.mpc(1, 2) / 3, "pi": mpmath.pi}
-    spelled_out = [(value_of(e, known.__getitem__), times) for e, times in hidden_expressions(tf)]
+    known = {"E": 3, "I": 2, "rho": mpmath.mpf(5) / 3, "A": 1.75, "l": 1.125, "s": mpmath.mpc(1, 2) / 3}
+    spelled_out = [(value_of(e, known), times) for e, times in hidden_expressions(tf)]
     for form in (*forms_of(tf), "definitions"):
         named, factors = with_hidden(tf, print_form(tf, form))
-        where = dict(named.where)
-
-        def values(name, where=where):
-            return value_of(where[name], values) if name in where else known[name]
-
         for (factor, times), (spelled, again) in zip(factors, spelled_out, strict=True):
             assert times == again
-            assert mpmath.almosteq(value_of(factor, values), spelled, 1e-12), form
+            assert mpmath.almosteq(value_of(factor, known, named.where), spelled, 1e-12), form
 
 
 def test_long_hidden_factors_are_printed_to_their_end_within_80_columns():
-    text = derive_text(
-        case("clamped_clamped", "W_quarter/p"), print_form(case("clamped_clamped", "W_quarter/p"))
-    )
+    tf = case("clamped_clamped", "W_quarter/p")
+    text = derive_text(tf, print_form(tf))
     (start,) = [i for i, line in enumerate(text.splitlines()) if "hidden: " in line]
     shown_ = " ".join(line.strip() for line in text.splitlines()[start:]).strip()
     assert shown_.endswith("cancelled")
@@ -284,14 +276,6 @@ def test_names_of_the_model_are_left_alone():
     assert names == ["S_1", "C_1", "S_2", "C_2", "p_1", "a_1", "T_1", "T_2"]
 
 
-def test_arguments_are_explained_by_the_wavenumber_and_that_by_the_speed():
-    assert lines(case("sliding_free_beam", "V_tip/F"), "hyperbolic") == [
-        "q = mu*l",
-        "mu = sqrt(s/(2*a))",
-        "a = sqrt(E*I/(rho*A))",
-    ]
-
-
 def test_a_wavenumber_that_stands_nowhere_else_is_written_into_the_argument():
     # Transmission of force through a rod fixed at its end: 1/cosh, Rao 2007, chapter 9.
     text = """[elements]
@@ -306,41 +290,6 @@ wall = "bar.f"
     assert lines(tf, "hyperbolic") == ["q = s*l*sqrt(rho/E)"]
 
 
-def test_a_rods_wavenumber_is_taken_out_of_its_root():
-    assert lines(case("rod_tip_mass", "X_tip/F"), "hyperbolic") == ["q = gamma*l", "gamma = s*sqrt(rho/E)"]
-
-
-def test_losses_stay_under_the_root():
-    assert lines(case("lossy beam on a foundation", "X/F"), "hyperbolic") == [
-        "q_1 = mu*l",
-        "mu = sqrt(sqrt((rho*A*s^2 + c_f*s + k_f)/(E*I*(eta*s + 1)))/2)",
-    ]
-
-
-def test_krylov_duncan_functions_of_the_free_beam():
-    # K_0 of l is the numerator: the tip and the slider move alike where cos cosh = 0.
-    assert shown(case("sliding_free_beam", "V_tip/F"), "krylov") == (
-        "K_0",
-        "rho*A*s*(4*mu^4*K_2*K_3 + K_0*K_1)",
-    )
-
-
-def test_trigonometric_factors_are_found():
-    assert shown(case("free_free", "A_near/F"), "factored")[1] == (
-        "rho*A*(sinh(q_1) - sin(q_1))*(sinh(q_1) + sin(q_1))"
-    )
-
-
-def test_a_function_of_whole_lengths_is_not_printed_in_halves():
-    # The model's other output is at midspan.
-    assert lines(case("clamped_free", "W_tip/F"), "hyperbolic")[0] == "q = mu*l"
-    assert lines(case("clamped_free", "W_mid/F"), "hyperbolic")[0] == "q = mu*l/2"
-
-
-def test_a_twofold_delay_is_one_exponential():
-    assert shown(case("delay and rod", "X_late/u"))[0] == "K*sinh(q)*exp(-2*T*s)"
-
-
 def test_exponents_without_a_formula_leave_solutions_with_their_law():
     (tf,) = of_case("third order")
     assert form_text(tf, print_form(tf)).split("\n") == [
@@ -348,10 +297,6 @@ def test_exponents_without_a_formula_leave_solutions_with_their_law():
         "  where h''' + b*s*h' + (s^2 + k)*h = 0",
         "  where h(0) = h'(0) = 0, h''(0) = 1",
     ]
-
-
-def test_a_law_is_in_the_json():
-    (tf,) = of_case("third order")
     assert derive_json(tf, print_form(tf))["laws"] == [["h", "h''' + b*s*h' + (s^2 + k)*h = 0"]]
 
 
@@ -400,7 +345,7 @@ def test_a_hidden_factor_of_kernels_is_written_out():
 
 
 def test_text_keeps_to_80_columns():
-    for name in ("clamped_clamped", "lossy beam on a foundation", "propped beam of two fields"):
+    for name in KINDS:
         for number, tf in enumerate(of_case(name)):
             for form in forms_of(tf):
                 rows = derive_text(tf, printed(name, number, form)).split("\n")

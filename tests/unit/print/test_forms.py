@@ -23,11 +23,7 @@ ROOT = Path(__file__).parents[3]
 FOLDER = ROOT / "derivations" / "eppinger1988"
 
 TWO_MASS = """symflex = 1
-[parameters]
-m_1 = {}
-m_2 = {}
-k = {}
-b = {}
+parameters = { m_1 = {}, m_2 = {}, k = {}, b = {} }
 [elements]
 M_1 = { type = "mass", at = "x", m = "m_1" }
 M_2 = { type = "mass", at = "y", m = "m_2" }
@@ -39,6 +35,24 @@ F = { force = "x" }
 X = "x"
 Y = "y"
 """
+SPRING = 'K = { type = "spring", between = ["x", "y"], k = "k" }\n'
+DAMPER = 'B = { type = "damper", between = ["x", "y"], b = "b" }\n'
+
+
+def with_definitions(text):
+    return TWO_MASS.replace("[elements]", f"[definitions]\n{text}\n[elements]")
+
+
+def one_spring(definitions, k):
+    """Return the compliance of one spring."""
+    text = f"""symflex = 1
+parameters = {{ m = {{}}, b = {{}}, k = {{}}, q = {{}}, k_2 = {{}} }}
+definitions = {{ {definitions} }}
+elements.part = {{ type = "spring", between = ["x", "ground"], k = "{k}" }}
+inputs.F = {{ force = "x" }}
+outputs.X = "x"
+"""
+    return tf_of(text, "X", "F")
 
 
 def tf_of(text, output, source):
@@ -79,44 +93,25 @@ def test_the_monic_form_s_denominator_begins_with_a_bare_power_of_s():
     assert num == "b/(m_1*m_2)*s + k/(m_1*m_2)"
 
 
-@pytest.mark.parametrize("form", RATIONAL)
-def test_a_zero_function_prints_as_zero_over_one(form):
-    text = TWO_MASS.replace('K = { type = "spring", between = ["x", "y"], k = "k" }\n', "").replace(
-        'B = { type = "damper", between = ["x", "y"], b = "b" }\n', ""
-    )
-    text = text.replace("m_1 = {}", "m_1 = 1").replace("m_2 = {}", "m_2 = 1")
-    assert printed(tf_of(text, "Y", "F"), form) == ("0", "1")
+def test_a_zero_function_prints_as_zero_over_one():
+    text = TWO_MASS.replace(SPRING, "").replace(DAMPER, "")
+    tf = tf_of(text.replace("m_1 = {}", "m_1 = 1").replace("m_2 = {}", "m_2 = 1"), "Y", "F")
+    assert {printed(tf, form) for form in RATIONAL} == {("0", "1")}
 
 
 def test_a_definition_is_used_where_it_shortens_and_stands_in_the_where_list():
-    text = TWO_MASS.replace("[elements]", '[definitions]\nZ = "b*s + k"\nunused = "m_1 + m_2"\n[elements]')
+    text = with_definitions('Z = "b*s + k"\nunused = "m_1 + m_2"')
     form = print_form(tf_of(text, "Y", "F"), "definitions")
     assert format_expression(form.num) == "Z"
     assert [(n, format_expression(e)) for n, e in form.where if n == "Z"] == [("Z", "b*s + k")]
 
 
 def test_a_where_list_brings_the_definitions_of_its_definitions_in_dependency_order():
-    text = """symflex = 1
-[parameters]
-m = {}
-b = {}
-k = {}
-[definitions]
-Z = "m*s^2 + Y"
-Y = "b*s + k"
-[elements]
-part = { type = "spring", between = ["x", "ground"], k = "Z" }
-[inputs]
-F = { force = "x" }
-[outputs]
-X = "x"
-"""
-    form = print_form(tf_of(text, "X", "F"), "definitions")
+    form = print_form(one_spring('Z = "m*s^2 + Y", Y = "b*s + k"', "Z"), "definitions")
     assert (format_expression(form.num), format_expression(form.den)) == ("1", "Z")
     assert [n for n, _ in form.where] == ["Y", "Z"]
 
 
-MASSES = TWO_MASS.replace("[elements]", '[definitions]\nM = "m_1 + m_2"\nmu = "m_1*m_2"\n[elements]')
 CLOSED = {
     "polynomial": "mu*s^4 + M*b*s^3 + M*k*s^2",
     "monic": "s^4 + M*b/mu*s^3 + M*k/mu*s^2",
@@ -126,47 +121,29 @@ CLOSED = {
 }
 
 
-@pytest.mark.parametrize("name", CLOSED)
-def test_definitions_stay_closed_in_every_form_of_two_masses(name):
+def test_definitions_stay_closed_in_every_form_of_two_masses():
     # s^2 (m_1 m_2 s^2 + (m_1 + m_2)(b s + k)), by hand; factors of a product may stand in any order.
-    form = print_form(tf_of(MASSES, "Y", "F"), name)
-    shown = format_expression(form.den)
-    for above, below in (("k*M", "M*k"), ("b*M", "M*b")):
-        shown = shown.replace(above, below)
-    assert shown == CLOSED[name]
-    assert {"M", "mu"} <= {n for n, _ in form.where}
+    tf = tf_of(with_definitions('M = "m_1 + m_2"\nmu = "m_1*m_2"'), "Y", "F")
+    for name, expected in CLOSED.items():
+        form = print_form(tf, name)
+        assert format_expression(form.den).replace("k*M", "M*k").replace("b*M", "M*b") == expected
+        assert {"M", "mu"} <= {n for n, _ in form.where}
 
 
 def test_a_factor_that_is_a_definition_with_s_bears_its_name():
-    text = TWO_MASS.replace("[elements]", '[definitions]\nZ = "b*s + k"\n[elements]')
-    form = print_form(tf_of(text, "Y", "F"), "factored")
+    form = print_form(tf_of(with_definitions('Z = "b*s + k"'), "Y", "F"), "factored")
     assert format_expression(form.num) == "Z"
 
 
 def test_a_definition_that_shortens_one_coefficient_only_is_used_there():
-    text = TWO_MASS.replace("[elements]", '[definitions]\nM = "m_1 + m_2"\n[elements]')
-    form = print_form(tf_of(text, "Y", "F"), "definitions")
+    form = print_form(tf_of(with_definitions('M = "m_1 + m_2"'), "Y", "F"), "definitions")
     assert format_expression(form.den).replace("*M", "").count("M") == 0
     assert "m_1*m_2*s^4" in format_expression(form.den)
 
 
 def test_a_reciprocal_definition_is_not_lost():
     """k_2 + k/q: a definition 1/q once counted as zero there."""
-    text = """symflex = 1
-[parameters]
-k = {}
-q = {}
-k_2 = {}
-[definitions]
-c = "1/q"
-[elements]
-part = { type = "spring", between = ["x", "ground"], k = "c*k + k_2" }
-[inputs]
-F = { force = "x" }
-[outputs]
-X = "x"
-"""
-    tf = tf_of(text, "X", "F")
+    tf = one_spring('c = "1/q"', "c*k + k_2")
     at = Point(3)
     for name in ("polynomial", "monic", "factored", "definitions"):
         form = print_form(tf, name)
@@ -175,28 +152,25 @@ X = "x"
         assert value_of(form.num, at) / value_of(form.den, at) == 1 / (at["k"] / at["q"] + at["k_2"])
 
 
-def numeric(k="8 N/m", b="1 N*s/m"):
-    return (
-        TWO_MASS.replace("m_1 = {}", 'm_1 = "2 kg"')
-        .replace("m_2 = {}", 'm_2 = "3 kg"')
-        .replace("k = {}", f'k = "{k}"')
-        .replace("b = {}", f'b = "{b}"')
-    )
+NUMERIC = TWO_MASS.replace(
+    "m_1 = {}, m_2 = {}, k = {}, b = {}", 'm_1 = "2 kg", m_2 = "3 kg", k = "8 N/m", b = "1 N*s/m"'
+)
 
 
 def test_zpk_prints_gain_and_real_quadratic_factors():
     # X/F = (3 s^2 + s + 8)/(s^2 (6 s^2 + 5 s + 40)): 1/2 (s^2 + s/3 + 8/3)/(s^2 (s^2 + 5/6 s + 20/3)).
-    num, den = printed(tf_of(numeric(), "X", "F"), "zpk", 4)
+    num, den = printed(tf_of(NUMERIC, "X", "F"), "zpk", 4)
     assert num == "0.5*(s^2 + 0.3333*s + 2.667)"
     assert den == "s^2*(s^2 + 0.8333*s + 6.667)"
 
 
-@pytest.mark.parametrize("digits", [1, 3, 17, 30])
-def test_zpk_prints_as_many_digits_as_asked_for(digits):
-    _, den = printed(tf_of(numeric(), "X", "F"), "zpk", digits)
-    constant = den.removesuffix(")").rpartition(" + ")[2]
-    assert abs(Fraction(constant) - Fraction(20, 3)) <= Fraction(1, 2 * 10 ** (digits - 1))
-    assert len(constant.replace(".", "")) == digits
+def test_zpk_prints_as_many_digits_as_asked_for():
+    tf = tf_of(NUMERIC, "X", "F")
+    for digits in (1, 3, 17, 30):
+        _, den = printed(tf, "zpk", digits)
+        constant = den.removesuffix(")").rpartition(" + ")[2]
+        assert abs(Fraction(constant) - Fraction(20, 3)) <= Fraction(1, 2 * 10 ** (digits - 1))
+        assert len(constant.replace(".", "")) == digits
 
 
 def test_zpk_needs_every_value():
@@ -206,18 +180,13 @@ def test_zpk_needs_every_value():
 
 
 def test_an_undamped_pair_has_no_term_in_s():
-    text = numeric().replace('B = { type = "damper", between = ["x", "y"], b = "b" }\n', "")
+    text = NUMERIC.replace(DAMPER, "")
     # Without b: (3 s^2 + 8)/(s^2 (6 s^2 + 40)), and 40/6 = 6.667.
     assert printed(tf_of(text, "X", "F"), "zpk", 4) == ("0.5*(s^2 + 2.667)", "s^2*(s^2 + 6.667)")
 
 
 def test_what_cancelled_prints_by_descending_powers():
-    text = TWO_MASS.replace(
-        'K = { type = "spring", between = ["x", "y"]', 'K = { type = "spring", between = ["y", "ground"]'
-    )
-    text = text.replace(
-        'B = { type = "damper", between = ["x", "y"]', 'B = { type = "damper", between = ["y", "ground"]'
-    )
+    text = TWO_MASS.replace('between = ["x", "y"]', 'between = ["y", "ground"]')
     tf = tf_of(text, "X", "F")
     assert [(format_expression(e), m) for e, m in hidden_expressions(tf)] == [("m_2*s^2 + b*s + k", 1)]
 
@@ -239,10 +208,11 @@ from symflex import pipeline
 from symflex.print.forms import print_form
 from symflex.print.forms.printed import forms_of
 from symflex.expressions import format_expression
-for tf in pipeline.derive_all(pipeline.load("derivations/eppinger1988/lumped_bending_beam.toml")):
-    for name in (*forms_of(tf), None):
-        form = print_form(tf, name)
-        print(*(format_expression(e) for e in (form.num, form.den)), form.where)
+for stem in ("lumped_bending_beam", "sliding_free_beam"):
+    for tf in pipeline.derive_all(pipeline.load(f"derivations/eppinger1988/{stem}.toml")):
+        for name in (*forms_of(tf), None):
+            form = print_form(tf, name)
+            print(*(format_expression(e) for e in (form.num, form.den)), form.where)
 """
 
 
@@ -257,7 +227,7 @@ def test_the_forms_do_not_depend_on_the_hash_seed():
             check=True,
             text=True,
         ).stdout
-        for seed in ("0", "1", "77")
+        for seed in ("0", "1")
     }
     assert len(seen) == 1
 

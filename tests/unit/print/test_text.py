@@ -32,40 +32,36 @@ def expression(text):
     return parse(Text(text, Span(Source("", text), 0, len(text))), limits=PROGRAM_LIMITS)
 
 
-def test_what_fits_stays_on_one_line():
-    assert wrapped(expression("m*s^2 + b*s + k"), 15) == ["m*s^2 + b*s + k"]
+WRAPPED = {
+    "what fits stays on one line": ("m*s^2 + b*s + k", 15, ["m*s^2 + b*s + k"]),
+    "simple terms fill the lines": ("a + b + c + d + e + f", 12, ["a + b + c", "  + d + e", "  + f"]),
+    "terms with parentheses stand one to a line": (
+        "(a + b)*(c + d) + (e + f)*(g + h) - (i + j)*k",
+        40,
+        ["(a + b)*(c + d)", "  + (e + f)*(g + h)", "  - (i + j)*k"],
+    ),
+    "products break after a times": (
+        "(a_1 + b_1)*(a_2 + b_2)*(a_3 + b_3)",
+        26,
+        ["(a_1 + b_1)*(a_2 + b_2)*", "    (a_3 + b_3)"],
+    ),
+    "a long sum stands to the right of a short factor": (
+        "s^2*((a + b)*(c + d) + (e + f)*(g + h))",
+        30,
+        ["s^2*((a + b)*(c + d)", "     + (e + f)*(g + h))"],
+    ),
+    "a long sum stands below a long factor": (
+        "(alpha + beta)*((a + b)*(c + d) + (e + f)*(g + h))",
+        30,
+        ["(alpha + beta)*(", "    (a + b)*(c + d)", "    + (e + f)*(g + h))"],
+    ),
+    "a name too long for the line is not broken": ("x" * 60, 40, ["x" * 60]),
+}
 
 
-def test_simple_terms_fill_the_lines():
-    assert wrapped(expression("a + b + c + d + e + f"), 12) == ["a + b + c", "  + d + e", "  + f"]
-
-
-def test_terms_with_parentheses_stand_one_to_a_line():
-    text = "(a + b)*(c + d) + (e + f)*(g + h) - (i + j)*k"
-    assert wrapped(expression(text), 40) == ["(a + b)*(c + d)", "  + (e + f)*(g + h)", "  - (i + j)*k"]
-
-
-def test_products_break_after_a_times():
-    text = "(a_1 + b_1)*(a_2 + b_2)*(a_3 + b_3)"
-    assert wrapped(expression(text), 26) == ["(a_1 + b_1)*(a_2 + b_2)*", "    (a_3 + b_3)"]
-
-
-def test_a_long_sum_stands_to_the_right_of_a_short_factor():
-    text = "s^2*((a + b)*(c + d) + (e + f)*(g + h))"
-    assert wrapped(expression(text), 30) == ["s^2*((a + b)*(c + d)", "     + (e + f)*(g + h))"]
-
-
-def test_a_long_sum_stands_below_a_long_factor():
-    text = "(alpha + beta)*((a + b)*(c + d) + (e + f)*(g + h))"
-    assert wrapped(expression(text), 30) == [
-        "(alpha + beta)*(",
-        "    (a + b)*(c + d)",
-        "    + (e + f)*(g + h))",
-    ]
-
-
-def test_a_name_too_long_for_the_line_is_not_broken():
-    assert wrapped(expression("x" * 60), 40) == ["x" * 60]
+def test_formulas_are_broken_as_a_person_would():
+    for fact, (text, width, expected) in WRAPPED.items():
+        assert wrapped(expression(text), width) == expected, fact
 
 
 def test_a_nested_sum_keeps_to_the_width():
