@@ -67,28 +67,28 @@ FILES = {
 }
 
 
-@pytest.mark.parametrize(("read", "data"), FILES.values(), ids=FILES)
-def test_a_flipped_bit_is_answered_or_refused(read, data):
-    for place in range(len(data)):
-        for bit in range(0, 8, 3):
-            assert answered(read, data[:place] + bytes([data[place] ^ 1 << bit]) + data[place + 1 :])
+def test_a_flipped_bit_is_answered_or_refused():
+    for read, data in FILES.values():
+        for place in range(0, len(data), 2):
+            for bit in range(place % 3, 8, 3):
+                assert answered(read, data[:place] + bytes([data[place] ^ 1 << bit]) + data[place + 1 :])
 
 
-@pytest.mark.parametrize(("read", "data"), FILES.values(), ids=FILES)
-def test_a_file_cut_anywhere_is_refused_or_answered(read, data):
-    for place in range(len(data)):
-        assert answered(read, data[:place])
+def test_a_file_cut_anywhere_is_refused_or_answered():
+    for read, data in FILES.values():
+        for place in range(len(data)):
+            assert answered(read, data[:place])
 
 
-@pytest.mark.parametrize("form", ["4", "5"])
-def test_numbers_of_every_kind_are_read_as_scipy_wrote_them(form):
-    kinds = ["f8", "f4", "i4", "i2", "u2", "u1"] + ["i8", "u8", "u4", "i1"] * (form == "5")
-    arrays = {f"a_{kind}": np.array([[1, 2, 3], [4, 5, 6]], kind) for kind in kinds}
-    arrays["z"] = np.array([[1 + 2j, 3], [4j, -5]])
-    found = read_variables(mat(form, arrays), 10_000)
-    assert {name: value.tolist() for name, value in found.items()} == {
-        name: value.tolist() for name, value in arrays.items()
-    }
+def test_numbers_of_every_kind_are_read_as_scipy_wrote_them():
+    for form in ["4", "5"]:
+        kinds = ["f8", "f4", "i4", "i2", "u2", "u1"] + ["i8", "u8", "u4", "i1"] * (form == "5")
+        arrays = {f"a_{kind}": np.array([[1, 2, 3], [4, 5, 6]], kind) for kind in kinds}
+        arrays["z"] = np.array([[1 + 2j, 3], [4j, -5]])
+        found = read_variables(mat(form, arrays), 10_000)
+        assert {name: value.tolist() for name, value in found.items()} == {
+            name: value.tolist() for name, value in arrays.items()
+        }, form
 
 
 def test_cells_of_text_are_read_as_texts():
@@ -118,14 +118,14 @@ CLAIMS = {
 }
 
 
-@pytest.mark.parametrize(("read", "data", "limits"), CLAIMS.values(), ids=CLAIMS)
-def test_what_a_small_file_claims_is_not_allocated(read, data, limits):
-    tracemalloc.start()
-    with pytest.raises((ValueError, OverflowError)):
-        read(data, *limits)
-    peak = tracemalloc.get_traced_memory()[1]
-    tracemalloc.stop()
-    assert peak < 1_000_000
+def test_what_a_small_file_claims_is_not_allocated():
+    for name, (read, data, limits) in CLAIMS.items():
+        tracemalloc.start()
+        with pytest.raises((ValueError, OverflowError)):
+            read(data, *limits)
+        peak = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+        assert peak < 1_000_000, name
 
 
 def test_an_archive_that_grows_beyond_the_limit_is_refused():

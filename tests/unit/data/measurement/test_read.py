@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import os
+from importlib.util import find_spec
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ import scipy.io
 
 from symflex.data.measurement import READERS, MeasuredResponse, measurement_bytes, read_measurement
 from symflex.errors import DataError, SymflexError, UsageError
+from tests.unit.analysis.systems import words
 
 FREQUENCY = np.arange(1.0, 11.0)
 VALUES = np.exp(0.3j * FREQUENCY) * FREQUENCY
@@ -46,13 +48,13 @@ LAYOUTS = [
 ]
 
 
-@pytest.mark.parametrize("text", LAYOUTS)
-def test_columns_are_recognised_by_their_names(write, text):
-    (found,) = read_measurement(write("a.csv", text))
-    assert found.name == "a"
-    assert found.frequency_hz == pytest.approx(FREQUENCY)
-    assert found.values == pytest.approx(VALUES)
-    assert found.coherence == pytest.approx(COHERENCE)
+def test_columns_are_recognised_by_their_names(write):
+    for text in LAYOUTS:
+        (found,) = read_measurement(write("a.csv", text))
+        assert found.name == "a", text
+        assert found.frequency_hz == pytest.approx(FREQUENCY), text
+        assert found.values == pytest.approx(VALUES), text
+        assert found.coherence == pytest.approx(COHERENCE), text
 
 
 def test_comment_lines_hold_what_columns_cannot(write):
@@ -101,14 +103,10 @@ MISTAKES = {
 }
 
 
-@pytest.mark.parametrize("case", MISTAKES)
-def test_a_mistake_is_named_with_its_place(write, case):
-    content, code, place = MISTAKES[case]
-    with pytest.raises(DataError) as caught:
-        read_measurement(write("a.csv", content))
-    assert caught.value.diagnostics[0].code == code
-    assert place in str(caught.value)
-    assert caught.value.exit_code == 3
+def test_a_mistake_is_named_with_its_place(write):
+    for case, (content, code, place) in MISTAKES.items():
+        found = words(read_measurement, write("a.csv", content))
+        assert found.startswith("DataError") and f"[{code}]" in found and place in found, case
 
 
 def test_all_mistakes_are_told_at_once_up_to_twenty(write):
@@ -130,28 +128,30 @@ def mat(**arrays):
     return buffer.getvalue()
 
 
-@pytest.mark.parametrize(("suffix", "pack"), [("npz", npz), ("mat", mat)])
-def test_arrays_are_recognised_by_their_names(write, suffix, pack):
-    content = pack(f=FREQUENCY, H=np.array([VALUES, 2 * VALUES]), coh=np.array([COHERENCE] * 2), averages=7.0)
-    first, second = read_measurement(write(f"a.{suffix}", content))
-    assert (first.name, second.name) == ("a 1", "a 2")
-    assert second.values == pytest.approx(2 * VALUES)
-    assert first.coherence == pytest.approx(COHERENCE)
-    assert first.averages == 7
+def test_arrays_are_recognised_by_their_names(write):
+    for suffix, pack in [("npz", npz), ("mat", mat)]:
+        content = pack(
+            f=FREQUENCY, H=np.array([VALUES, 2 * VALUES]), coh=np.array([COHERENCE] * 2), averages=7.0
+        )
+        first, second = read_measurement(write(f"a.{suffix}", content))
+        assert (first.name, second.name) == ("a 1", "a 2"), (suffix, pack)
+        assert second.values == pytest.approx(2 * VALUES), (suffix, pack)
+        assert first.coherence == pytest.approx(COHERENCE), (suffix, pack)
+        assert first.averages == 7, (suffix, pack)
 
 
-@pytest.mark.parametrize(("suffix", "pack"), [("npz", npz), ("mat", mat)])
-def test_wrong_arrays_are_refused(write, suffix, pack):
-    for arrays, code in (
-        ({"f": FREQUENCY}, "SF602"),
-        ({"f": FREQUENCY, "H": VALUES[:7]}, "SF602"),
-        ({"f": FREQUENCY[::-1], "H": VALUES}, "SF604"),
-        ({"f": FREQUENCY, "H": VALUES * np.nan}, "SF603"),
-        ({"f": np.array(["a", "b"]), "H": VALUES}, "SF602"),
-    ):
-        with pytest.raises(DataError) as caught:
-            read_measurement(write(f"a.{suffix}", pack(**arrays)))
-        assert caught.value.diagnostics[0].code == code
+def test_wrong_arrays_are_refused(write):
+    for suffix, pack in [("npz", npz), ("mat", mat)]:
+        for arrays, code in (
+            ({"f": FREQUENCY}, "SF602"),
+            ({"f": FREQUENCY, "H": VALUES[:7]}, "SF602"),
+            ({"f": FREQUENCY[::-1], "H": VALUES}, "SF604"),
+            ({"f": FREQUENCY, "H": VALUES * np.nan}, "SF603"),
+            ({"f": np.array(["a", "b"]), "H": VALUES}, "SF602"),
+        ):
+            with pytest.raises(DataError) as caught:
+                read_measurement(write(f"a.{suffix}", pack(**arrays)))
+            assert caught.value.diagnostics[0].code == code, (suffix, pack)
 
 
 def test_nothing_is_unpickled(write):
@@ -173,26 +173,28 @@ def test_an_archive_that_grows_beyond_the_limit_is_refused(write):
     assert caught.value.diagnostics[0].code == "SF607"
 
 
-@pytest.mark.parametrize("suffix", [s for s in READERS if s not in (".unv", ".uf", ".txt", ".dat", ".tsv")])
-def test_damaged_files_of_every_format_are_refused_without_a_traceback(write, suffix):
-    if suffix == ".uff":
-        pytest.importorskip("pyuff")
+def test_damaged_files_of_every_format_are_refused_without_a_traceback(write):
+    files = {
+        ".npz": npz(f=FREQUENCY, H=VALUES),
+        ".mat": mat(f=FREQUENCY, H=VALUES),
+        ".csv": PLAIN.encode(),
+    }
+    if find_spec("pyuff") is not None:
+        files[".uff"] = measurement_bytes(MeasuredResponse("a/b", FREQUENCY, VALUES), "a.uff")
+    assert files.keys() <= READERS.keys()
     random = np.random.default_rng(1)
-    good = {".npz": npz(f=FREQUENCY, H=VALUES), ".mat": mat(f=FREQUENCY, H=VALUES)}.get(
-        suffix, PLAIN.encode()
-    )
-    if suffix == ".uff":
-        good = measurement_bytes(MeasuredResponse("a/b", FREQUENCY, VALUES), "a.uff")
-    for _ in range(150):
-        content = bytearray(good)
-        for place in random.integers(0, len(content), 6):
-            content[place] = random.integers(0, 256)
-        try:
-            read_measurement(write(f"a{suffix}", bytes(content[: random.integers(1, len(content))])))
-        except SymflexError as error:
-            assert error.diagnostics
-    with pytest.raises(DataError):
-        read_measurement(write(f"a{suffix}", random.bytes(4000)))
+    for suffix, good in files.items():
+        for _ in range(80):
+            content = bytearray(good)
+            for place in random.integers(0, len(content), 6):
+                content[place] = random.integers(0, 256)
+            try:
+                read_measurement(write(f"a{suffix}", bytes(content[: random.integers(1, len(content))])))
+            except SymflexError as error:
+                assert error.diagnostics, suffix
+        assert words(read_measurement, write(f"a{suffix}", random.bytes(4000))).startswith("DataError"), (
+            suffix
+        )
 
 
 @pytest.mark.needs_module("pyuff")
