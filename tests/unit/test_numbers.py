@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from symflex import pipeline
-from symflex.errors import ModelError, UsageError
+from symflex.errors import ModelError
 
 MODELS = ("eppinger1988/two_mass", "classics/quarter_car", "classics/rod_tip_mass")
 
@@ -91,15 +91,3 @@ outputs = { y = "B*u" }
 B = { type = "tf", num = 1, den = [1, "2 1/s"] }
 """)
     assert pipeline.derive_bound(model, [("y", "u")])[0](0.0) == pytest.approx(0.5)
-
-
-def test_binding_a_negative_value_needs_a_real_parameter():
-    text = (
-        "symflex = 1\nparameters = {{ m = {{ value = 2{} }} }}\n"
-        'inputs = {{ u = {{}} }}\noutputs = {{ y = "m*u" }}'
-    )
-    (tf,) = pipeline.derive_all(pipeline.loads(text.format("")))
-    with pytest.raises(UsageError, match="SF209"):
-        pipeline.bind(tf, {"m": -1})
-    (tf,) = pipeline.derive_all(pipeline.loads(text.format(', assume = "real"')))
-    assert pipeline.bind(tf, {"m": -1})(0.0) == -1

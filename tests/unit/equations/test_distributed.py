@@ -95,12 +95,6 @@ X = "u1(l)"
     assert caught.value.diagnostics[0].span is not None
 
 
-def test_a_division_by_zero_in_an_equation_is_found_at_its_place():
-    with pytest.raises(ModelError) as caught:
-        derived(FIELD, equation="E*I*w''''/(2 - 2) + rho*A*s^2*w = 0")
-    assert [d.code for d in caught.value.diagnostics] == ["SF224"]
-
-
 def test_common_factors_are_found_where_only_s_is_linear_in_the_dispersion_relation():
     text = """
 symflex = 1

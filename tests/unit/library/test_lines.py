@@ -83,10 +83,3 @@ def test_a_kelvin_voigt_rod_on_a_foundation_answers_with_a_hyperbolic_tangent():
     part = 'part = { type = "rod", between = ["ground", "b"], E = "E", A = "A", rho = "rho", l = "l"'
     found = response(part + ", eta = 0.1, c_f = 0.2, k_f = 0.7 }\n", '{ force = "b" }', "b", s)
     assert found == pytest.approx(cmath.tanh(2 * g) / (stiffness * g), rel=1e-12)
-
-
-def test_a_delay_is_an_exponential():
-    text = 'symflex = 1\n[blocks]\nD = { type = "delay", T = 0.25 }\n'
-    text += '[inputs]\nU = {}\n[outputs]\nX = "3*D*U"\n'
-    (tf,) = pipeline.derive_all(pipeline.loads(text))
-    assert complex(pipeline.bind(tf)(2 + 1j)) == pytest.approx(3 * cmath.exp(-0.25 * (2 + 1j)), rel=1e-14)

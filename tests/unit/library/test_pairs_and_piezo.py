@@ -54,16 +54,13 @@ def test_a_source_between_two_nodes_reacts_on_the_second():
         assert value(text, "Through/u") == pytest.approx(1), source
 
 
-def test_a_current_between_two_nodes_leaves_the_second():
-    text = CIRCUIT.replace("SOURCE", 'type = "current_source", between = ["x", "y"], i = "u"')
-    assert (value(text, "X/u"), value(text, "Y/u")) == (pytest.approx(2), pytest.approx(-3))
-
-
-def test_a_voltage_between_two_nodes_is_that_of_the_first_over_the_second():
-    text = CIRCUIT.replace("SOURCE", 'type = "voltage_source", between = ["x", "y"], v = "u"')
-    # One current round both resistors: 1/(2 + 3).
-    assert value(text, "Through/u") == pytest.approx(0.2)
-    assert (value(text, "X/u"), value(text, "Y/u")) == (pytest.approx(0.4), pytest.approx(-0.6))
+def test_a_current_between_two_nodes_leaves_the_second_and_a_voltage_is_the_first_over_the_second():
+    # One current round both resistors: of a voltage 1/(2 + 3).
+    for source, x, y, through in [("current_source", 2, -3, 1), ("voltage_source", 0.4, -0.6, 0.2)]:
+        value_name = "i" if source.startswith("current") else "v"
+        text = CIRCUIT.replace("SOURCE", f'type = "{source}", between = ["x", "y"], {value_name} = "u"')
+        found = [value(text, f"{output}/u") for output in ("X", "Y", "Through")]
+        assert found == pytest.approx([x, y, through]), source
 
 
 def test_a_source_has_one_node_or_two():
@@ -123,13 +120,11 @@ MOBILE = 2 * S**2 + 40
 """m s^2 + k, the mechanical stiffness with the terminals short-circuited."""
 
 
-def test_a_voltage_stretches_a_transducer():
-    assert value(piezo(VOLTAGE), "X/u") == pytest.approx(12 / MOBILE)
-
-
-def test_the_admittance_of_a_transducer_is_that_of_the_textbook():
+def test_a_voltage_stretches_a_transducer_whose_admittance_is_that_of_the_textbook():
     # Preumont 2006, section 4.4: I = s [C + alpha^2/(m s^2 + k)] V.
+    assert value(piezo(VOLTAGE), "X/u") == pytest.approx(12 / MOBILE)
     assert value(piezo(VOLTAGE), "I/u") == pytest.approx(S * (3 + 144 / MOBILE))
+    assert symflex.loads(piezo(VOLTAGE)).transfer_function("Sensed", "u").unit == "1"
 
 
 def test_a_transducer_with_open_terminals_is_stiffer_by_alpha_squared_over_c():
@@ -154,10 +149,6 @@ def test_a_transducer_needs_neither_capacitance_nor_stiffness():
     text = piezo(VOLTAGE, "k = 0")
     assert value(text, "X/u") == pytest.approx(12 / (2 * S**2))
     assert value(text, "I/u") == pytest.approx(S * 144 / (2 * S**2))
-
-
-def test_sensors_may_be_given_in_volts_per_metre():
-    assert symflex.loads(piezo(VOLTAGE)).transfer_function("Sensed", "u").unit == "1"
 
 
 def test_the_coefficient_is_a_force_per_voltage():

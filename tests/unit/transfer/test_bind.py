@@ -8,6 +8,7 @@ from fractions import Fraction
 from itertools import product as combinations
 
 import mpmath
+import numpy as np
 import pytest
 from flint import acb, ctx
 
@@ -260,11 +261,10 @@ def test_a_wavenumber_that_vanishes_is_told_with_a_way_out():
 
 
 def test_what_is_no_number_is_told_by_name():
-    for given in [math.inf, None, 1j, Decimal("Infinity")]:
-        assert (
-            diagnostic(UsageError, "SF902", {"k": given}).message
-            == "the value of 'k' must be a finite number"
-        ), given
+    floats = [math.inf, -math.inf, math.nan, np.float64("nan"), np.array([1.0, 2.0])]
+    for given in [*floats, None, 1j, Decimal("Infinity"), Decimal("NaN")]:
+        found = diagnostic(UsageError, "SF902", {"k": given})
+        assert found.message == "the value of 'k' must be a finite number", given
 
 
 def test_a_wrong_unit_is_told_with_both():

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import mpmath as mp
-import pytest
 from flint import acb, ctx
 
 from symflex import pipeline
 from symflex.algebra import degree_in
 from symflex.algebra.vanishing import OriginSeries
-from symflex.errors import ModelError
 from symflex.transfer import bind
 
 HEAD = """
@@ -219,18 +217,6 @@ def test_an_output_that_feels_nothing_is_zero():
     assert members(ARM, RIGHT, FIXED, far, inputs='M = { torque = "q" }')["X/M"].ratio.is_zero
 
 
-def test_conditions_that_follow_from_the_equation_are_named():
-    with pytest.raises(ModelError) as caught:
-        field(
-            "E*I*w'''' + rho*A*s^2*w = 0",
-            ["w(0) = 0", "w'(0) = 0", "w''(0) = 0", "E*I*w''''(0) = F"],
-            'X = "w(l)"',
-        )
-    (problem,) = caught.value.diagnostics
-    assert problem.code == "SF302"
-    assert "w''''(0)" in problem.message
-
-
 def test_the_logarithmic_derivative_is_that_of_the_function():
     ends = ["w(0) = 0", "w'(0) = 0", "E*I*w''(l) = 0", "E*I*w'''(l) = F"]
     for kind, equation in {
@@ -324,24 +310,3 @@ def test_wavenumbers_of_almost_equal_size_are_told_apart():
     (tf,) = pipeline.derive_all(pipeline.loads(ARCH))
     found = bind(tf)
     assert abs(found(4737689.687559328j) / found(4737689.7j) - 1) < 1e-3
-
-
-def test_a_wavenumber_that_is_zero_at_every_s_is_refused():
-    text = """
-symflex = 1
-[parameters]
-E = "70 GPa"
-I = "2e-9 m^4"
-rho = { value = "0 kg/m^3", assume = "nonnegative" }
-A = "6e-5 m^2"
-l = "0.8 m"
-[elements]
-arm = { type = "beam", between = ["ground", "tip"], E = "E", I = "I", rho = "rho", A = "A", l = "l" }
-[inputs]
-F = { force = "tip" }
-[outputs]
-Y = "tip"
-"""
-    (tf,) = pipeline.derive_all(pipeline.loads(text))
-    with pytest.raises(ModelError, match="SF231"):
-        bind(tf)

@@ -26,7 +26,7 @@ from symflex.print.forms.nested import nested_form
 from symflex.print.json_format import derive_json
 from symflex.transfer import bind, bind_nested
 from symflex.transfer.of_model import derive_with_numbers
-from tests.property.networks import networks, reciprocal_networks, to_toml
+from tests.property.networks import networks, to_toml
 from tests.property.test_random_networks import POINTS, assert_close, pairs, quiet, reference
 
 CHAIN = """
@@ -206,22 +206,6 @@ def test_random_networks_agree_with_the_dense_tableau_and_with_their_strings(net
         value = bind_nested(tf)(POINTS[0])
         assert_close(value, reference(network, output, source, POINTS[0]))
         assert abs(read_back(tf, POINTS[0])[0] - value) <= 1e-6 * max(abs(value), 1e-4)
-
-
-@given(network=reciprocal_networks())
-@quiet(10)
-def test_a_passive_network_is_reciprocal(network):
-    found = {tf.name: tf for tf in pipeline.derive_nested(pipeline.loads(to_toml(network)))}
-    there, back = (bind_nested(found[name]) for name in ("Y_2/U_1", "Y_1/U_2"))
-    for at in POINTS[:2]:
-        assert abs(there(at) - back(at)) <= 1e-9 * reference(network, "Y_2", "U_1", at).scale
-
-
-def test_both_representations_are_the_same_function():
-    model = pipeline.load("derivations/eppinger1988/six_mass.toml")
-    values = {p.name: 1 + i for i, p in enumerate(model.parameters)}
-    for one, other in zip(pipeline.derive_all(model), pipeline.derive_nested(model), strict=True):
-        assert bind_nested(other, values)(0.3 + 2j) == pytest.approx(bind(one, values)(0.3 + 2j), rel=1e-13)
 
 
 DELAYED = """
