@@ -13,19 +13,14 @@ import pytest
 
 from symflex.budget import Silent
 from symflex.report.article import report_article
+from symflex.report.claims.claim import claims_json, judge_all
 from symflex.report.claims.read import read_claims
-from symflex.report.facts import DataFact, ModelFacts
+from symflex.report.facts import DataFact, LoopFacts, ModelFacts
 from symflex.report.page import report_page
-from symflex.report.report import (
-    compose,
-    find_claims,
-    find_measurements,
-    find_specifications,
-    name_specifications,
-    write_chapters,
-)
-from tests.house.repository import specifications
+from symflex.report.report import compose, find_measurements, name_specifications, write_chapters
+from symflex.report.study import Study
 from tests.independent import eppinger1988
+from tests.unit.report.models import SMALL, SYMBOLIC
 from tests.unit.report.pages import Page
 
 ROOT = Path(__file__).parents[2]
@@ -50,111 +45,137 @@ CONDITION = (
 FAIL = ["printed-colocated", "fifth-mode"]
 
 
+SHOWN = (
+    "rigid_body",
+    "polynomial_resonance",
+    "sliding_free_beam",
+    "lumped_bending_beam",
+    "loops/two_mass_force",
+)
+"""The models of the report: those of the paper's figures, one of them beside data, and a loop."""
+JUDGED = (
+    "two_mass", "six_mass", "base_flexure", "loops/base_flexure_force", "loops/rigid_body_force",
+    "loops/lumped_bending_beam_position", "loops/lumped_bending_beam_force",
+)  # fmt: skip
+"""What claims are about besides."""
+SLIDING = {
+    "sliding_free_beam_force": LoopFacts(
+        "K", "", ((0.0, 2.20546),), 2, (9.67351,), True, True, 4.56668, True
+    ),
+    "sliding_free_beam_position": LoopFacts("K", "N/m", ((0.0, 1e5),), 0, (), True, True, 6.59133, False),
+}
+"""Loops about the beam, as docs/tutorial-force-loop.md prints them: its sessions are run by tests/docs/."""
+
 pytestmark = pytest.mark.slow
 
 
-def reported(paths):
-    named = name_specifications(find_specifications(paths))
-    measured, _ = find_measurements(paths)
-    return compose(write_chapters(named, 2, Silent(), measured), DAY, find_claims(named.values()))
+@pytest.fixture(scope="module")
+def chapters():
+    measured, _ = find_measurements([FOLDER])
+    named = name_specifications([FOLDER / f"{name}.toml" for name in SHOWN])
+    return write_chapters(named, 0, Silent(), measured)
 
 
 @pytest.fixture(scope="module")
-def report():
-    return reported([FOLDER])
+def report(chapters):
+    return compose(chapters, DAY, [PUBLICATION])
 
 
 @pytest.fixture(scope="module")
-def claims(report):
-    return {c["key"]: c for c in json.loads(report.files["data/claims.json"])["claims"]}
+def models(chapters):
+    """The facts about each model; chapters hold them already."""
+    paths = [FOLDER / f"{name}.toml" for name in JUDGED]
+    found = {c.stem: c.facts for c in chapters} | {p.stem: Study.of(p, p.stem).facts for p in paths}
+    return found | {
+        stem: ModelFacts(stem, source=PUBLICATION.name, loops=(loop,)) for stem, loop in SLIDING.items()
+    }
+
+
+def verdicts(models):
+    document = claims_json(PUBLICATION, judge_all(PUBLICATION, [*models.values()]))
+    return {claim["key"]: claim for claim in document["claims"]}
 
 
 @pytest.fixture(scope="module")
-def facts(report):
-    found = {}
-    for path in specifications(FOLDER, "*.toml"):
-        document = json.loads(report.files[f"data/{path.stem}_facts.json"])
-        found[path.stem] = {f["tf"]: f for f in document["transfer_functions"]}
-    return found
+def claims(models):
+    return verdicts(models)
 
 
-def roots(report, stem, tf, kind):
-    document = json.loads(report.files[f"data/{stem}_roots.json"])
-    (found,) = (r for r in document["roots"] if r["tf"] == tf)
-    return [complex(float(r["re"]), float(r["im"])) for r in found[kind] for _ in range(r["multiplicity"])]
+def function(models, stem, tf):
+    return next(f for f in models[stem].functions if f.tf == tf)
 
 
-def test_everything_is_certified(report):
+def test_everything_is_certified(report, models):
     assert report.code == 0
     assert report.warnings == ()
+    assert [stem for stem, facts in models.items() if not all(f.certified for f in facts.functions)] == []
 
 
-@pytest.mark.parametrize("name", FIGURES)
-def test_every_figure_of_the_paper_is_drawn(name, report):
-    stem = FIGURES[name]
-    number = name.removeprefix("fig")
-    assert report.files[f"figures/{stem}_{name}.pdf"].startswith(b"%PDF")
-    assert f"Figure {number}:" in report_page(report)
+def test_every_figure_of_the_paper_is_drawn(report):
+    page = report_page(report)
+    for name, stem in FIGURES.items():
+        assert report.files[f"figures/{stem}_{name}.pdf"].startswith(b"%PDF"), name
+        assert f"Figure {name.removeprefix('fig')}:" in page
 
 
-@pytest.mark.parametrize(("stem", "tf"), [("polynomial_resonance", "A_tip/V_cmd"), ("six_mass", "X_tip/F")])
-def test_the_measured_modes_are_in_the_report(stem, tf, report):
-    found = sorted(abs(s) for s in roots(report, stem, tf, "poles") if s.imag > 0)
+def test_the_measured_modes_are_in_the_facts(models):
     expected = [eppinger1988.radians_per_second(f) for f in eppinger1988.MODES_HZ]
-    assert found == pytest.approx(expected, rel=2e-3)
+    for stem, tf in (("polynomial_resonance", "A_tip/V_cmd"), ("six_mass", "X_tip/F")):
+        found = sorted(abs(complex(p.re, p.im)) for p in function(models, stem, tf).poles if p.im > 0)
+        assert found == pytest.approx(expected, rel=2e-3), stem
 
 
-@pytest.mark.parametrize(
-    ("stem", "tf", "zeros", "poles"),
-    [
+def test_the_files_of_a_report_hold_the_facts_and_their_roots(report, models):
+    document = json.loads(report.files["data/sliding_free_beam_facts.json"])
+    assert document == json.loads(json.dumps(models["sliding_free_beam"].to_json_dict()))
+    for entry in json.loads(report.files["data/sliding_free_beam_roots.json"])["roots"]:
+        found = function(models, "sliding_free_beam", entry["tf"])
+        for kind, roots in (("poles", found.poles), ("zeros", found.zeros)):
+            assert [(float(r["re"]), float(r["im"])) for r in entry[kind]] == [(r.re, r.im) for r in roots]
+
+
+def test_the_counts_are_the_paper_s(models):
+    for stem, tf, zeros, poles in (
         ("rigid_body", "V_tip/V_cmd", 0, 2),  # "a second-order transfer function"
         ("polynomial_resonance", "A_tip/V_cmd", 11, 12),  # "five pairs of poles and five pairs of zeros"
         ("base_flexure", "V_tip/F", 2, 3),  # "two zeros and three poles"
         ("base_flexure", "V_motor/F", 2, 3),
         ("lumped_bending_beam", "X_tip/F", 2, 6),  # 'a "pair" of real zeros'
-    ],
-)
-def test_the_counts_are_the_paper_s(stem, tf, zeros, poles, facts):
-    found = facts[stem][tf]
-    assert (found["zeros"], found["poles"]) == (zeros, poles)
+    ):
+        assert function(models, stem, tf).counts == (zeros, poles), (stem, tf)
 
 
-@pytest.mark.parametrize(
-    ("stem", "tf", "zeros", "poles"),
-    [
+def test_what_modes_add_is_the_paper_s(models):
+    for stem, tf, zeros, poles in (
         ("two_mass", "X_tip/F", 1, 2),  # "two poles are added while only one zero is added"
         ("six_mass", "X_tip/F", 5, 10),
         ("base_flexure", "V_tip/F", 2, 2),  # "two poles and two zeros have now been added"
         ("polynomial_resonance", "A_tip/V_cmd", 10, 10),  # "two poles and two zeros for each flexible mode"
-    ],
-)
-def test_what_modes_add_is_the_paper_s(stem, tf, zeros, poles, facts):
-    found = facts[stem][tf]
-    assert (found["zeros_added"], found["poles_added"]) == (zeros, poles)
+    ):
+        found = function(models, stem, tf).to_json_dict()
+        assert (found["zeros_added"], found["poles_added"]) == (zeros, poles), (stem, tf)
 
 
-def test_the_beam_s_zeros_are_arranged_as_in_figure_11(report, facts):
-    colocated, tip = (facts["sliding_free_beam"][tf] for tf in ("V_act/F", "V_tip/F"))
-    assert colocated["alternates"]
-    assert tip["mirrored_real_zeros"]
-    on_axis = roots(report, "sliding_free_beam", "V_act/F", "zeros")
-    real = roots(report, "sliding_free_beam", "V_tip/F", "zeros")
-    assert all(z.real == 0 for z in on_axis)
-    assert all(z.imag == 0 for z in real)
-    assert sorted(z.real for z in real) == sorted(-z.real for z in real)
+def test_the_beam_s_zeros_are_arranged_as_in_figure_11(models):
+    colocated, tip = (function(models, "sliding_free_beam", tf) for tf in ("V_act/F", "V_tip/F"))
+    assert colocated.alternates
+    assert tip.has_mirrored_real_zeros
+    assert all(z.re == 0 for z in colocated.zeros)
+    assert all(z.im == 0 for z in tip.zeros)
+    assert sorted(z.re for z in tip.zeros) == sorted(-z.re for z in tip.zeros)
 
 
-@pytest.mark.parametrize(
-    ("key", "verdict"),
-    [
-        *((key, "holds") for key in HOLD),
-        *((key, "holds with a condition") for key in CONDITION),
-        *((key, "does not hold") for key in FAIL),
-    ],
-)
-def test_claims_are_judged(key, verdict, claims):
-    assert claims[key]["verdict"] == verdict
-    assert claims[key]["evidence"]
+def test_claims_are_judged(claims):
+    expected = dict.fromkeys(HOLD, "holds") | dict.fromkeys(CONDITION, "holds with a condition")
+    expected |= dict.fromkeys(FAIL, "does not hold")
+    assert {key: claims[key]["verdict"] for key in expected} == expected
+    assert all(claims[key]["evidence"] for key in expected)
+
+
+def test_claims_of_a_report_are_judged_by_its_models_alone(report):
+    found = {c["key"]: c["verdict"] for c in json.loads(report.files["data/claims.json"])["claims"]}
+    assert (found["printed-colocated"], found["lumped-pair"]) == ("does not hold", "holds with a condition")
+    assert found["high-gain"] == "not examined"
 
 
 def test_every_claim_is_expected_here_or_not_examined(claims):
@@ -168,13 +189,13 @@ def told(stem, decibels, *, is_synthetic=False):
     return ModelFacts(stem, "", "", (), False, False, (), (), data=(fact,))
 
 
-@pytest.mark.parametrize("key", ["rigid-matches", "only-fit"])
-def test_claims_about_the_experiment_are_not_judged_by_the_synthetic_stand_in(key):
-    (claim,) = [c for c in PUBLICATION.claims if c.key == key]
+def test_claims_about_the_experiment_are_not_judged_by_the_synthetic_stand_in():
     models = [told(stem, 0.1, is_synthetic=True) for stem in ("polynomial_resonance", "rigid_body")]
-    found = claim.judge({m.stem: m for m in models})
-    assert found.verdict == "not examined"
-    assert "synthetic and was computed from polynomial_resonance" in "".join(map(str, found.evidence))
+    for key in ("rigid-matches", "only-fit"):
+        (claim,) = [c for c in PUBLICATION.claims if c.key == key]
+        found = claim.judge({m.stem: m for m in models})
+        assert found.verdict == "not examined", key
+        assert "synthetic and was computed from polynomial_resonance" in "".join(map(str, found.evidence))
 
 
 def test_only_the_model_fitted_by_hand_is_said_to_match_measured_data():
@@ -186,28 +207,25 @@ def test_only_the_model_fitted_by_hand_is_said_to_match_measured_data():
     assert claim.judge({synthetic.stem: synthetic}).verdict == "not examined"
 
 
-@pytest.mark.parametrize(
-    ("stem", "hertz"),
-    [("two_mass_force", 4.7585), ("base_flexure_force", 6.9054), ("rigid_body_force", None)],
-)
-def test_the_bandwidth_of_each_loop_is_that_of_the_loops_readme(stem, hertz, report):
-    (loop,) = json.loads(report.files[f"data/{stem}_facts.json"])["loops"]
-    assert loop["is_bandwidth_unlimited"] is (hertz is None)
-    assert loop["bandwidth_hz"] == (None if hertz is None else pytest.approx(hertz, rel=1e-4))
-
-
-def test_stable_gains_are_those_of_the_loops_readme(report):
+def test_bandwidth_and_stable_gains_of_each_loop_are_those_of_the_loops_readme(models):
     # tests/derivations/test_loops.py and tests/independent/test_stability_boundaries.py judge the numbers.
+    for stem, hertz in (
+        ("two_mass_force", 4.7585),
+        ("base_flexure_force", 6.9054),
+        ("rigid_body_force", None),
+    ):
+        (loop,) = models[stem].to_json_dict()["loops"]
+        assert loop["is_bandwidth_unlimited"] is (hertz is None), stem
+        assert loop["bandwidth_hz"] == (None if hertz is None else pytest.approx(hertz, rel=1e-4)), stem
     for stem, end in (
         ("two_mass_force", 5.4510),
         ("lumped_bending_beam_force", 4.7665),
         ("rigid_body_force", None),
     ):
-        (loop,) = json.loads(report.files[f"data/{stem}_facts.json"])["loops"]
-        ((low, high),) = loop["stable"]
-        assert low == 0
-        assert high is None if end is None else high == pytest.approx(end, rel=1e-4)
-        assert report.files[f"figures/{stem}_locus.pdf"].startswith(b"%PDF")
+        (loop,) = models[stem].loops
+        ((low, high),) = loop.stable
+        assert low == 0, stem
+        assert high is None if end is None else high == pytest.approx(end, rel=1e-4), stem
 
 
 def test_quotations_are_short_and_keys_unique():
@@ -220,9 +238,8 @@ def test_a_claim_is_refuted_where_the_model_is_another(tmp_path):
     # With the tip at the joint, Newton's law on the body puts the zeros on the imaginary axis.
     text = (FOLDER / "lumped_bending_beam.toml").read_text("utf-8")
     (tmp_path / "lumped_bending_beam.toml").write_text(text.replace('"150 mm"', '"1 mm"'), encoding="utf-8")
-    named = name_specifications([tmp_path / "lumped_bending_beam.toml"])
-    files = compose(write_chapters(named, 1, Silent()), "", [PUBLICATION]).files
-    judged = {c["key"]: c["verdict"] for c in json.loads(files["data/claims.json"])["claims"]}
+    study = Study.of(tmp_path / "lumped_bending_beam.toml", "lumped_bending_beam")
+    judged = {key: claim["verdict"] for key, claim in verdicts({study.stem: study.facts}).items()}
     assert judged["lumped-noncolocated"] == "does not hold"
     assert judged["lumped-pair"] == "does not hold"
     assert judged["lumped-colocated"] == "holds"
@@ -259,28 +276,32 @@ def written(report, tmp_path_factory):
 
 @pytest.mark.needs_tool("pdflatex")
 def test_the_command_line_writes_the_same_bytes_under_another_hash_seed(tmp_path):
-    paths = [FOLDER / f"{stem}.toml" for stem in ("rigid_body", "two_mass")]
-    command = [sys.executable, "-m", "symflex", "report", *paths, "-o", tmp_path, "-j", "2", "--date", DAY]
+    """Two models, each in a process of its own, against the same ones in this process."""
+    paths = []
+    for name, text in (("small", SMALL), ("symbolic", SYMBOLIC)):
+        paths.append(tmp_path / f"{name}.toml")
+        paths[-1].write_text(text, encoding="utf-8")
+    out = tmp_path / "out"
+    command = [sys.executable, "-m", "symflex", "report", *paths, "-o", out, "-j", "2", "--date", DAY]
     environment = {**os.environ, "PYTHONHASHSEED": "2025"}
     done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
-    assert done.stdout.splitlines()[-1] == f"open {tmp_path / 'index.html'}"
-    found = {str(p.relative_to(tmp_path)): p.read_bytes() for p in tmp_path.rglob("*") if p.is_file()}
+    assert done.stdout.splitlines()[-1] == f"open {out / 'index.html'}"
+    found = {str(p.relative_to(out)): p.read_bytes() for p in out.rglob("*") if p.is_file()}
     assert found.pop("report.pdf").startswith(b"%PDF")
-    expected = all_files(reported(paths))
+    expected = all_files(compose(write_chapters(name_specifications(paths), 0, Silent()), DAY))
     assert found.keys() == expected.keys()
     assert [name for name in expected if expected[name] != found[name]] == []
 
 
 @pytest.mark.needs_tool("chromium")
-@pytest.mark.parametrize("width", [390, 1200])
-def test_a_browser_shows_the_page_without_a_complaint(width, written, tmp_path):
+def test_a_browser_shows_the_page_without_a_complaint(written, tmp_path):
     shot = tmp_path / "shot.png"
     log = tmp_path / "net.json"
     command = [
         "chromium", "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={tmp_path / 'profile'}",
         "--disable-component-update", "--disable-background-networking", "--no-first-run", "--disable-sync",
-        "--enable-logging=stderr", "--v=0", f"--log-net-log={log}", f"--window-size={width},1000",
+        "--enable-logging=stderr", "--v=0", f"--log-net-log={log}", "--window-size=390,1000",
         f"--screenshot={shot}", (written / "index.html").as_uri(),
     ]  # fmt: skip
     done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
