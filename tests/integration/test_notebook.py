@@ -6,6 +6,7 @@ import importlib.util
 import json
 import math
 import os
+import shutil
 import subprocess
 import sys
 
@@ -28,42 +29,46 @@ CELLS = (
 # In a process of its own: what runs a kernel warns of much that is not ours.
 RUN = """
 import sys, nbclient, nbformat
-notebook = nbformat.read("shown.ipynb", as_version=4)
-where = {"metadata": {"path": sys.argv[1]}}
-nbclient.NotebookClient(notebook, timeout=120, kernel_name="python3", resources=where).execute()
-nbformat.write(notebook, "shown.ipynb")
+for name in sys.argv[2:]:
+    notebook = nbformat.read(name, as_version=4)
+    where = {"metadata": {"path": sys.argv[1]}}
+    nbclient.NotebookClient(notebook, timeout=120, kernel_name="python3", resources=where).execute()
+    nbformat.write(notebook, name)
 """
-
-
 NOTEBOOKS = sorted((ROOT / "docs" / "notebooks").glob("*.ipynb"))
 
 
-def executed(notebook, folder):
-    """Run a notebook in a kernel, with the repository as its folder, and return its cells."""
+@pytest.fixture(scope="module")
+def executed(tmp_path_factory):
+    """The cells of the notebook above and of those of the documentation, each run in a kernel, by name."""
     lacking = [name for name in PACKAGES if importlib.util.find_spec(name) is None]
     if lacking and os.environ.get(REQUIRE_TOOLS) == "1":
         pytest.fail(f"{REASON} {lacking[0]}, which is not installed, and {REQUIRE_TOOLS}=1", pytrace=False)
     if lacking:
         pytest.skip(f"{REASON} {lacking[0]}, which is not installed")
-    (folder / "shown.ipynb").write_text(notebook, encoding="utf-8")
+    folder = tmp_path_factory.mktemp("notebooks")
+    cell = {"cell_type": "code", "metadata": {}, "execution_count": None, "outputs": []}
+    cells = [{**cell, "id": f"c{i}", "source": source} for i, source in enumerate(CELLS)]
+    notebook = {"nbformat": 4, "nbformat_minor": 5, "metadata": {}, "cells": cells}
+    (folder / "shown.ipynb").write_text(json.dumps(notebook), encoding="utf-8")
+    for path in NOTEBOOKS:
+        shutil.copy(path, folder)
+    names = ["shown.ipynb", *(path.name for path in NOTEBOOKS)]
     own = {"PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "ignore", "IPYTHONDIR": str(folder)}
-    command = [sys.executable, "-c", RUN, str(ROOT)]
+    command = [sys.executable, "-c", RUN, str(ROOT), *names]
     done = subprocess.run(
         command, cwd=folder, env={**os.environ, **own}, capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
-    return json.loads((folder / "shown.ipynb").read_text(encoding="utf-8"))["cells"]
+    return {name: json.loads((folder / name).read_text(encoding="utf-8"))["cells"] for name in names}
 
 
 @pytest.fixture(scope="module")
-def outputs(tmp_path_factory):
+def outputs(executed):
     """The data of each cell's result, by MIME type."""
-    cell = {"cell_type": "code", "metadata": {}, "execution_count": None, "outputs": []}
-    cells = [{**cell, "id": f"c{i}", "source": source} for i, source in enumerate(CELLS)]
-    notebook = {"nbformat": 4, "nbformat_minor": 5, "metadata": {}, "cells": cells}
-    shown = executed(json.dumps(notebook), tmp_path_factory.mktemp("notebook"))
     return [
-        next(o["data"] for o in cell["outputs"] if o["output_type"] == "execute_result") for cell in shown
+        next(o["data"] for o in cell["outputs"] if o["output_type"] == "execute_result")
+        for cell in executed["shown.ipynb"]
     ]
 
 
@@ -108,9 +113,9 @@ def test_a_response_shows_as_a_drawing_and_a_long_one_as_a_raster(outputs):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
-def test_every_cell_of_a_notebook_of_the_documentation_shows_something(path, tmp_path):
+def test_every_cell_of_a_notebook_of_the_documentation_shows_something(path, executed):
     rich = {"image/png", "image/svg+xml", "text/html", "text/latex"}
-    cells = [cell for cell in executed(path.read_text(encoding="utf-8"), tmp_path) if "outputs" in cell]
+    cells = [cell for cell in executed[path.name] if "outputs" in cell]
     shown = [{kind for output in cell["outputs"] for kind in output.get("data", ())} for cell in cells]
     assert all(shown)
     plain = [text(cell["source"]) for cell, kinds in zip(cells, shown, strict=True) if not rich & kinds]
