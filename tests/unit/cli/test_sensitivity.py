@@ -25,24 +25,18 @@ def rows(text):
     return [line.split() for line in text.splitlines()]
 
 
-def test_without_the_option_nothing_is_added(shell):
+def test_all_parameters_by_default_or_those_named_and_nothing_without_the_option(shell):
     assert "sensitivity" not in shell("roots", "x.toml").out
     assert "sensitivity" not in shell("roots", "x.toml", "--json").json
-
-
-def test_all_parameters_by_default(shell):
     done = shell("roots", "x.toml", "--tf", "X/F", "--sensitivity")
     assert done.code == 0
     # omega = sqrt(k/m)
     assert ["0", "+-3.00000", "m", "-0.500000", "0"] in rows(done.out)
     assert ["k", "0.500000", "0"] in rows(done.out)
     assert "every digit is proved" in done.out
-
-
-def test_only_the_parameters_named(shell):
-    done = shell("roots", "x.toml", "--tf", "X/F", "--sensitivity", "k")
-    assert "0.500000" in done.out
-    assert "-0.500000" not in done.out
+    of_k = shell("roots", "x.toml", "--tf", "X/F", "--sensitivity", "k").out
+    assert "0.500000" in of_k
+    assert "-0.500000" not in of_k
 
 
 def test_an_unknown_parameter_is_a_usage_error(shell):
@@ -72,11 +66,14 @@ def test_a_root_that_leaves_zero(shell):
     assert "k: ds/dp = -0.250000" in shell("roots", "free.toml", "--sensitivity").out
 
 
-def test_multiple_roots_that_part(shell):
+def test_multiple_roots_that_part_have_no_numbers(shell):
     text = DAMPED.replace('{ value = "0 N*s/m", assume = "nonnegative" }', '"12 N*s/m"')
     (shell.folder / "critical.toml").write_text(text)
     out = shell("roots", "critical.toml", "--sensitivity").out
     assert "-3.00000           0  no derivative: multiple roots part" in out
+    (entry, *_) = shell("roots", "critical.toml", "--sensitivity", "--json").json["sensitivity"]
+    assert entry["status"] == "multiple"
+    assert [entry[k] for k in ("derivative", "normalised", "frequency_hz", "damping_ratio")] == [None] * 4
 
 
 def test_what_is_not_decided_ends_with_code_4(shell):
@@ -132,11 +129,3 @@ def test_json(shell):
     assert first["frequency_hz"]["value"] == "0.013263"
     assert float(first["damping_ratio"]["value"]) == 0
     assert float(first["derivative"]["radius"]) < 1e-6
-
-
-def test_json_of_a_multiple_root_has_no_numbers(shell):
-    text = DAMPED.replace('{ value = "0 N*s/m", assume = "nonnegative" }', '"12 N*s/m"')
-    (shell.folder / "critical.toml").write_text(text)
-    (entry, *_) = shell("roots", "critical.toml", "--sensitivity", "--json").json["sensitivity"]
-    assert entry["status"] == "multiple"
-    assert [entry[k] for k in ("derivative", "normalised", "frequency_hz", "damping_ratio")] == [None] * 4

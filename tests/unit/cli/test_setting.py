@@ -123,20 +123,13 @@ def test_a_value_that_the_file_could_not_have_is_a_usage_error(spec):
         assert said in done.err, (given, code, said)
 
 
-def test_the_unit_of_a_parameter_without_value_is_kept(spec):
-    done = spec("roots", "disc.toml", "--set", "J=3 kg")
-    assert (done.code, "SF203" in done.err) == (2, True)
-
-
-def test_all_that_is_wrong_with_values_is_said_at_once(spec):
-    done = spec("check", "spec.toml", "--set", "m=-1", "--set", "k=3 kg")
-    assert done.code == 2
-    assert done.err.count("error[") == 2
-
-
-def test_a_length_that_is_set_is_checked_where_it_is_used(spec):
-    done = spec("roots", "rod.toml", "--set", "l=-1 m")
-    assert (done.code, "SF209" in done.err) == (2, True)
+def test_what_is_wrong_with_values_is_said_where_they_are_used_and_all_at_once(spec):
+    unit = spec("roots", "disc.toml", "--set", "J=3 kg")
+    assert (unit.code, "SF203" in unit.err) == (2, True)  # the unit of a parameter without value is kept
+    length = spec("roots", "rod.toml", "--set", "l=-1 m")
+    assert (length.code, "SF209" in length.err) == (2, True)
+    both = spec("check", "spec.toml", "--set", "m=-1", "--set", "k=3 kg")
+    assert (both.code, both.err.count("error[")) == (2, 2)
 
 
 def test_every_command_that_binds_values_takes_them_and_refuses_wrong_ones(spec):

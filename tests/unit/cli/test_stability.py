@@ -49,16 +49,13 @@ def files(shell):
     return shell
 
 
-def test_a_stable_range_is_printed(files):
-    done = files("stability", "loop.toml", "--gain", "K", "--range", "0", "20")
+def test_a_stable_range_is_printed_and_is_in_the_json(files):
+    command = ("stability", "loop.toml", "--gain", "K", "--range", "0", "20")
+    done = files(*command)
     assert (done.code, done.err) == (0, "")
     assert "0 < K < 3.14159265358979" in done.out
     assert max(map(len, done.out.splitlines())) <= 80
-
-
-def test_json_has_a_schema(files):
-    done = files("stability", "loop.toml", "--gain", "K", "--range", "0", "20", "--digits", "30", "--json")
-    document = json.loads(done.out)
+    document = files(*command, "--digits", "30", "--json").json
     assert document["schema"] == "symflex.stability/1"
     assert document["boundaries"][0]["gain"]["value"] == "3.14159265358979323846264338328"
 
