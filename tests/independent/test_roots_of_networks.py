@@ -49,16 +49,19 @@ def is_quick(network):
     return not any(e.kind == "shaft" and dict(e.values).get("eta") for e in network.elements)
 
 
-def seeds(most):
-    """Return numbers of networks with roots that can be compared."""
-    networks = ((seed, random_members(seed, most)) for seed in range(100))
-    return [seed for seed, network in networks if is_quick(network) and is_seen(network)]
+def networks(most, chosen):
+    """Return networks with roots that can be compared, the first of up to two members, the others slow."""
+
+    def comparable(size):
+        every = (random_members(seed, size) for seed in range(60))
+        return [network for network in every if is_quick(network) and is_seen(network)]
+
+    larger = [pytest.param(network, marks=pytest.mark.slow) for network in comparable(most)[chosen]]
+    return pytest.mark.parametrize("network", [comparable(2)[1], *larger], ids=lambda n: str(len(n.elements)))
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", seeds(6)[::24])
-def test_responses_grow_and_vanish_where_roots_are(seed):
-    network = random_members(seed, 6)
+@networks(6, slice(0, 40, 20))
+def test_responses_grow_and_vanish_where_roots_are(network):
     found = located(network, Modes(2))
     for roots, expected in ((found.poles, 2), (found.zeros, 0.5)):
         for root in roots:
@@ -67,9 +70,8 @@ def test_responses_grow_and_vanish_where_roots_are(seed):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", seeds(4)[:16:8])
-def test_as_many_are_counted_as_the_response_winds(seed):
-    network = random_members(seed, 4)
+@networks(4, slice(0, 8, 8))
+def test_as_many_are_counted_as_the_response_winds(network):
     near = located(network, Modes(2))
     radius = float(max(abs(complex(float(p.re), float(p.im))) for p in near.poles)) * 1.1
     found = located(network, Band(Fraction(0), Fraction(radius) / Fraction(2 * pi)))
@@ -100,10 +102,9 @@ def frequencies(roots, top):
     return sorted(x for x in found if x <= top)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", seeds(7)[:3])
-def test_counts_of_eigenvalues_and_winding_numbers_find_the_same(seed):
-    network = lossless(random_members(seed, 7))
+@networks(7, slice(0, 2))
+def test_counts_of_eigenvalues_and_winding_numbers_find_the_same(network):
+    network = lossless(network)
     counted = located(network, Modes(4))
     top = max(frequencies(counted.poles, inf)) * 1.05
     region = Band(Fraction(0), Fraction(top) / Fraction(2 * pi))

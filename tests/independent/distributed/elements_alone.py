@@ -30,7 +30,6 @@ from tests.independent.distributed.span import (
     free_with_force,
     rayleigh,
     second_end,
-    sliding_with_force,
     span,
 )
 
@@ -111,33 +110,12 @@ ELEMENTS_IN_BENDING = (
         source='{ force = "tip" }',
     ),
     Case(
-        "sliding-free beam element",
-        BEAM,
-        elements(
-            guide='type = "slider", at = "act"',
-            arm=f'{BEAM_ELEMENT}, between = ["act", "tip"], l = "l"',
-        ),
-        "s*act",
-        *SLENDER,
-        lambda v, s: s * span(sliding_with_force, free, first_end(0))(v, s),
-        source='{ force = "act" }',
-    ),
-    Case(
         "one-link arm, tip",
         ARM,
         ARM_ELEMENTS,
         "tip",
         *SLENDER,
         span(hub, payload, second_end(0)),
-        source='{ torque = "hub" }',
-    ),
-    Case(
-        "one-link arm, hub",
-        ARM,
-        ARM_ELEMENTS,
-        "hub.theta",
-        *SLENDER,
-        span(hub, payload, first_end(1)),
         source='{ torque = "hub" }',
     ),
     Case(
@@ -174,15 +152,6 @@ ELEMENTS_IN_BENDING = (
         "tip.theta",
         *STOCKY,
         span(clamped, body, second_end(1), rayleigh),
-        source='{ force = "tip" }',
-    ),
-    Case(
-        "Timoshenko element, driving point",
-        THICK,
-        elements(arm=f'{THICK_ELEMENT}, between = ["ground", "tip"], l = "l"'),
-        "tip",
-        *STOCKY,
-        span(clamped, free_with_force, second_end(0), timoshenko),
         source='{ force = "tip" }',
     ),
     Case(
