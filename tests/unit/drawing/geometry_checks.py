@@ -88,3 +88,14 @@ def wrongly_counted(model, drawing):
         *(("block", b.name) for b in model.blocks),
     ]
     return [(kind, name, n) for kind, name in wanted if (n := count(drawing, kind, name)) != 1]
+
+
+def faults(model, drawing):
+    """Return all of these that a drawing of a model has."""
+    checks = overlaps(drawing), struck_texts(drawing), outside(drawing), wrongly_counted(model, drawing)
+    return [found for found in checks if found]
+
+
+def place(drawing, kind, name):
+    """Return the box of the first item of a kind and name."""
+    return next(i for i in drawing.items if (i.kind, i.name) == (kind, name)).box

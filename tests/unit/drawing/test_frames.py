@@ -10,12 +10,8 @@ from symflex.library.blocks import BLOCKS
 from symflex.library.elements import ELEMENTS
 from symflex.model.model import INPUT_KINDS
 from tests.house.repository import ROOT
-from tests.unit.drawing.geometry_checks import outside, overlaps, struck_texts, wrongly_counted
+from tests.unit.drawing.geometry_checks import faults, place, wrongly_counted
 from tests.unit.drawing.random_models import models
-
-
-def place(drawing, kind, name):
-    return next(i for i in drawing.items if (i.kind, i.name) == (kind, name)).box
 
 
 def test_members_stand_where_their_lengths_and_angles_put_them():
@@ -78,9 +74,7 @@ Y = "q.y"
 @pytest.mark.parametrize(("first", "count"), [(1, 3), pytest.param(1000, 20, marks=pytest.mark.slow)])
 def test_random_models_are_drawn_with_everything_in_its_place(first, count):
     for seed, model in models(first, count):
-        drawing = drawing_of(model)
-        wrong = (overlaps(drawing), struck_texts(drawing), outside(drawing), wrongly_counted(model, drawing))
-        assert wrong == ([], [], [], []), seed
+        assert faults(model, drawing_of(model)) == [], seed
 
 
 @pytest.mark.slow

@@ -11,7 +11,7 @@ from symflex import pipeline
 from symflex.cli import run
 from symflex.drawing import drawing_of
 from symflex.errors import SpecError
-from tests.unit.drawing.geometry_checks import count, outside, overlaps, struck_texts, wrongly_counted
+from tests.unit.drawing.geometry_checks import count, faults
 
 LONG = "a" * 64
 MEMBER = 'E = "1 GPa", rho = "1 kg/m^3", I = "1 m^4"'
@@ -240,9 +240,7 @@ REFUSED = {
 def wrong(text, values):
     """Say what is wrong with the drawing of a model."""
     model = pipeline.loads(f"symflex = 1\n{text}")
-    drawing = drawing_of(model, values=values)
-    said = overlaps(drawing), struck_texts(drawing), outside(drawing), wrongly_counted(model, drawing)
-    return [one for one in said if one]
+    return faults(model, drawing_of(model, values=values))
 
 
 @pytest.mark.parametrize("half", [0, 1])

@@ -8,7 +8,7 @@ from symflex import pipeline
 from symflex.drawing import draw_model, drawing_of
 from symflex.errors import UsageError
 from symflex.figures import render
-from tests.unit.drawing.geometry_checks import outside, overlaps, struck_texts, wrongly_counted
+from tests.unit.drawing.geometry_checks import faults, place
 
 CHAIN = """
 symflex = 1
@@ -82,19 +82,11 @@ def read(text):
     return pipeline.loads(text)
 
 
-def place(drawing, kind, name):
-    return next(i for i in drawing.items if (i.kind, i.name) == (kind, name)).box
-
-
 def test_no_symbol_or_text_stands_on_another():
     for values in (False, True):
         for name, text in MODELS.items():
             model = read(text)
-            drawing = drawing_of(model, values=values)
-            assert not overlaps(drawing), (values, name)
-            assert not struck_texts(drawing), (values, name)
-            assert not outside(drawing), (values, name)
-            assert not wrongly_counted(model, drawing), (values, name)
+            assert faults(model, drawing_of(model, values=values)) == [], (values, name)
 
 
 def test_a_chain_runs_from_the_ground_to_its_tip():
