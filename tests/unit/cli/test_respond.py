@@ -59,15 +59,12 @@ def test_text_says_what_is_an_impulse(oscillator):
     assert max(map(len, out.splitlines())) <= 80
 
 
-def test_a_table_has_a_line_a_point(oscillator, tmp_path):
+def test_a_table_has_a_line_a_point_and_a_figure_is_written(oscillator, tmp_path):
     oscillator("respond", "osc.toml", "--tf", "X/F", "--until", "0.5", "--points", "3", "-o", "x.csv")
     text = (tmp_path / "x.csv").read_text(encoding="utf-8")
     rows = list(csv.DictReader(io.StringIO("".join(x for x in text.splitlines(True) if x[0] != "#"))))
     assert [float(row["time_s"]) for row in rows] == [0.0, 0.25, 0.5]
     assert float(rows[2]["value"]) == pytest.approx(step_of_oscillator(0.5), rel=1e-11)
-
-
-def test_a_figure_is_written(oscillator, tmp_path):
     oscillator("respond", "osc.toml", "--tf", "X/F", "--until", "0.5", "-o", "x.svg")
     assert (tmp_path / "x.svg").read_bytes().startswith(b"<?xml")
 
@@ -124,6 +121,7 @@ def test_a_file_that_is_no_input_is_refused_at_its_place(oscillator, tmp_path):
         done = oscillator("respond", "osc.toml", "--to", "u.csv")
         assert done.code == 3, (text, code)
         assert f"error[{code}]" in done.err, (text, code)
+    assert "error[SF901]" in oscillator("respond", "osc.toml", "--to", "none.csv").err
 
 
 def test_a_shaper_is_printed_with_its_residual_and_drawn(oscillator, tmp_path):
@@ -135,10 +133,6 @@ def test_a_shaper_is_printed_with_its_residual_and_drawn(oscillator, tmp_path):
     done = oscillator("shape", "osc.toml", "-o", "left.svg")
     assert "ZV shaper, 2 impulses" in done.out
     assert (tmp_path / "left.svg").exists()
-
-
-def test_a_file_that_is_missing_is_said(oscillator):
-    assert "error[SF901]" in oscillator("respond", "osc.toml", "--to", "none.csv").err
 
 
 def test_a_sampled_module_steps_as_the_closed_form_does(oscillator, tmp_path):

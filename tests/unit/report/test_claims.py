@@ -127,12 +127,9 @@ def test_claims_behind_a_link_that_leads_out_are_not_read(tmp_path):
     assert len(find_claims([inside / "a.toml"], [outside])) == 1
 
 
-def test_a_claim_about_a_model_that_is_not_there_is_not_examined(tmp_path):
+def test_a_claim_about_a_model_or_a_function_that_is_not_there_is_not_examined(tmp_path):
     verdict, evidence = judged(tmp_path, '{ is = "colocated", of = "cart: X/F" }')
     assert (verdict, evidence) == ("not examined", "the report does not hold cart")
-
-
-def test_a_claim_about_a_function_without_numbers_is_not_examined(tmp_path):
     verdict, evidence = judged(tmp_path, '{ is = "colocated", of = "cart: Y/F" }', cart=function())
     assert verdict == "not examined"
     assert "Y/F" in evidence
@@ -215,16 +212,16 @@ def test_what_dampers_bring_is_a_condition(tmp_path):
 
 
 def test_functions_of_two_models_are_compared(tmp_path):
-    fewer = '{ is = "fewer-zeros-added", of = ["one: X/F", "other: X/F"] }'
     more = replace(SPRUNG, counts=(2, 4))
-    assert judged(tmp_path, fewer, one=SPRUNG, other=more)[0] == "holds"
-    assert judged(tmp_path, fewer, one=more, other=SPRUNG)[0] == "does not hold"
-    same = '{ is = "same-poles", of = ["one: X/F", "other: X/F"] }'
-    assert judged(tmp_path, same, one=function(poles=axis(1)), other=function(poles=axis(1)))[0] == "holds"
-    assert (
-        judged(tmp_path, same, one=function(poles=axis(1)), other=function(poles=axis(2)))[0]
-        == "does not hold"
-    )
+    one, other = (function(poles=axis(w)) for w in (1, 2))
+    for name, first, second, verdict in (
+        ("fewer-zeros-added", SPRUNG, more, "holds"),
+        ("fewer-zeros-added", more, SPRUNG, "does not hold"),
+        ("same-poles", one, one, "holds"),
+        ("same-poles", one, other, "does not hold"),
+    ):
+        check = f'{{ is = "{name}", of = ["one: X/F", "other: X/F"] }}'
+        assert judged(tmp_path, check, one=first, other=second)[0] == verdict, (name, verdict)
 
 
 def test_loops_are_judged_by_their_gains(tmp_path):
