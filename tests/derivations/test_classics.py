@@ -35,8 +35,13 @@ def values(name):
     return classics.values(FOLDER / f"{name}.toml")
 
 
+@functools.cache
+def printed(name, tf):
+    return derived(name, tf).to_json_dict()  # what derive --json prints
+
+
 def newton_step(name, tf, part, s):
-    found = derived(name, tf).to_json_dict()  # what derive --json prints
+    found = printed(name, tf)
     return distance_to_root(found[part], values(name), found["where"], s)
 
 

@@ -51,8 +51,9 @@ def test_every_gain_and_frequency_of_the_table_of_lumped_models():
 @pytest.mark.slow
 def test_every_gain_and_frequency_of_the_table_of_the_beam():
     (beam,) = [row for row in ROWS if "sliding_free_beam" in row[0]]
-    # Where the loop is a spring and a damper its passivity says that no pole is right of the axis.
-    assert check_row(beam) == ("passive loop", "argument principle")
+    # The beam loses energy in its material, so poles far out are proved left of the axis, and the others are
+    # counted in half a disc: passivity need not be asked.
+    assert check_row(beam) == ("argument principle", "argument principle")
 
 
 @pytest.mark.slow
