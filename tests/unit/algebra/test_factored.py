@@ -16,7 +16,7 @@ from symflex.errors import BudgetError
 NAMES = ("s", "a", "b", "c")
 RING = Ring(NAMES)
 SYMBOLS = sympy.symbols(NAMES)
-QUIET = settings(max_examples=40)
+QUIET = settings(max_examples=30)
 
 
 def generator(name):

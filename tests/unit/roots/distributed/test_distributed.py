@@ -354,7 +354,7 @@ def test_a_search_repeated_with_proof_keeps_hidden_modes_hidden(monkeypatch, is_
 
 def test_no_root_of_a_search_broken_off_is_a_pole_and_a_zero():
     source = resting_hub()
-    for looks in (140, 320, 500):
+    for looks in (140, 440):
         shown = locate(source, Modes(3), 12, Budget(looks, clock=itertools.count().__next__))
         with precision(128):
             assert not any(overlap(pole, zero) for pole in shown.poles for zero in shown.zeros), looks

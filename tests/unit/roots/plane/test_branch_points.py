@@ -50,10 +50,9 @@ def poles(text, modes):
 
 def test_a_free_beam_on_a_damped_foundation_has_the_modes_of_one_in_the_air_shifted():
     # Both rigid motions are at the point where the wavenumber vanishes.
-    for stiffness, damping in ((10000, "40"), (10000, "400.01")):
-        text = beam(f'k_f = "{stiffness} N/m^2", c_f = "{damping} N*s/m^2"', '["tip", "end"]')
-        expected = on_foundation(stiffness, float(damping), (0.0, *FREE_FREE[:2]))
-        assert poles(text, len(expected)) == pytest.approx(expected, rel=1e-9), damping
+    expected = on_foundation(10000.0, 40.0, (0.0, *FREE_FREE))
+    text = beam('k_f = "10 kN/m^2", c_f = "40 N*s/m^2"', '["tip", "end"]')
+    assert poles(text, len(expected)) == pytest.approx(expected, rel=1e-9)
 
 
 def test_a_free_beam_on_a_critically_damped_foundation_has_a_double_pole():

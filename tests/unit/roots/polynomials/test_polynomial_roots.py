@@ -340,7 +340,7 @@ FACTORS = st.lists(
 )
 
 
-@settings(max_examples=60)
+@settings(max_examples=40)
 @given(COEFFICIENTS, st.integers(min_value=1, max_value=60))
 def test_linear_factors_multiply_to_the_polynomial_conjugates_come_together_and_digits_are_those_asked_for(
     coefficients, digits
@@ -358,7 +358,7 @@ def test_linear_factors_multiply_to_the_polynomial_conjugates_come_together_and_
         assert ball == 0 or ball.rad() <= ball.abs_lower() * arb(10) ** -digits
 
 
-@settings(max_examples=60)
+@settings(max_examples=40)
 @given(FACTORS)
 def test_roots_of_a_product_are_disjoint_and_as_multiple_as_in_its_square_free_factorisation(factors):
     product = fmpz_poly([1])
