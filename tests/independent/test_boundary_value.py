@@ -139,7 +139,13 @@ def printed_value(name, form, s):
         return complex(above / below)
 
 
-@pytest.mark.parametrize("name", quick_first((name for name in BY_NAME if name not in UNNAMED), EXPORTED))
+# A print with both theories takes ten seconds to read: each of them has its own.
+PRINTED = [
+    name for name in BY_NAME if name not in UNNAMED and name != "Timoshenko root, rigid body, slender tip"
+]
+
+
+@pytest.mark.parametrize("name", quick_first(PRINTED, EXPORTED))
 def test_the_printed_forms_agree_with_the_boundary_value_problem(name):
     for form in FORMS:
         # Points 0 and 10 lie on the imaginary axis, where the frequency form holds.
