@@ -19,6 +19,7 @@ from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from matplotlib import mathtext, textpath
 from mkdocs.structure.files import File, Files
 
 from symflex import pipeline
@@ -62,6 +63,10 @@ INLINE: Final = re.compile(r"<!-- math -->`([^`]+)`")
 SPECIFICATION: Final = re.compile(
     r'^```toml title="([\w.]+)"\n(symflex = 1\n.*?)^```$', re.MULTILINE | re.DOTALL
 )
+
+
+# Every SVG has a parser of mathematics of its own; one for all remembers labels that many figures have.
+textpath.MathTextParser = cache(mathtext.MathTextParser)  # type: ignore[attr-defined, assignment]
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,8 @@ left half plane: beyond b a zero gives +pi, a pole -pi.
 Of a distributed system there are infinitely many poles and zeros to sum over. So the argument is followed
 from a small positive s on a quarter circle to the imaginary axis and along it, in steps that are halved until
 values and slopes at both ends agree. A root on the axis is passed on its right, which comes to the same.
+Without losses G(-s) = G(s) or -G(s), and values on the axis are real or imaginary: between roots the argument
+does not turn. If all roots on the axis are known, it is followed to the lowest frequency only.
 
 Grids of frequencies, and the band shown when none is asked for, come from certified poles and zeros too: they
 miss no resonance.
@@ -105,17 +107,26 @@ DETOUR = 4.0
 STEEPEST = 1e11
 """Slope of ln G over ln(s) from which on a frequency is as good as a root."""
 SHORTEST_SHARE = 1e-6
+ROUNDING = 1e-14
+"""Relative, by which frequencies may leave the band that they were made for."""
 
 Point = tuple[complex, "Sample"]
 
 
-def follow_phase(bound: AnyBoundFunction, omega: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def follow_phase(
+    bound: AnyBoundFunction, omega: npt.NDArray[np.float64], roots: PoleZeroMap | None = None
+) -> npt.NDArray[np.float64]:
     """Return the continuous phase [rad] of a distributed system; NaN exactly at a root.
 
-    Frequencies [rad/s] are positive and increase; the function is not identically zero. SF505 when the band
-    holds too many resonances.
+    Frequencies [rad/s] are positive and increase; the function is not identically zero. ``roots`` are its
+    poles and zeros, when they are known already. SF505 when the band holds too many resonances.
     """
     walk = _Walk(bound)
+    turned = None if roots is None or not walk.function.is_even else _turned_by_roots(roots, omega)
+    if turned is not None:
+        turned += follow_phase(bound, omega[:1])[0]
+        if np.isfinite(turned[0]):
+            return turned
     phase = np.full(omega.shape, np.nan)
     start = min(walk.start, log(omega[0]) - LONGEST_STEP) if omega.size else walk.start
     here, total = walk.reach_axis(start)
@@ -130,6 +141,27 @@ def follow_phase(bound: AnyBoundFunction, omega: npt.NDArray[np.float64]) -> npt
         total += walk.along(here, there)
         here, phase[i] = there, total
     return phase
+
+
+def _turned_by_roots(roots: PoleZeroMap, omega: npt.NDArray[np.float64]) -> npt.NDArray[np.float64] | None:
+    """Return how far the argument of a function without losses turns from the first frequency on.
+
+    ``None`` where it is not proved that all roots between the frequencies are known.
+    """
+    region, certificate = roots.region, roots.certificate
+    if not (isinstance(region, Band) and certificate.certified and omega.size) or roots.excluded:
+        return None
+    # A band ends where its frequencies do, but for the rounding of 2 pi.
+    low, high = (2 * pi * float(end) for end in (region.low, region.high))
+    if not (low <= omega[0] * (1 + ROUNDING) and omega[-1] <= high * (1 + ROUNDING)):
+        return None
+    turned = np.zeros(omega.shape)
+    for group, turn in ((roots.zeros, pi), (roots.poles, -pi)):
+        for root in group:
+            if root.on_imaginary_axis and root.im > 0:
+                at = float(root.im.mid())
+                turned += turn * root.multiplicity * ((omega > at) & (omega[0] < at))
+    return turned
 
 
 class _Walk:
@@ -300,8 +332,8 @@ def respond(
 
     Each value is right to the last bits of its absolute value; ``inf + nan*1j`` at a pole. The phase is
     counted from the poles and zeros, for a distributed system followed from s = 0, so it does not depend on
-    how fine the grid is. ``roots`` are all poles and zeros, when they are known already; those of a
-    distributed system do not matter. ValueError unless ``omega`` [rad/s] is one-dimensional and finite.
+    how fine the grid is. ``roots`` are all poles and zeros, of a distributed system those in the band, when
+    they are known already. ValueError unless ``omega`` [rad/s] is one-dimensional and finite.
 
     Examples
     --------
@@ -335,7 +367,7 @@ def respond(
     if of_network is not None:
         turns = of_network
     elif bound.is_distributed:
-        turns = _follow_turns(bound, grid, values)
+        turns = _follow_turns(bound, grid, values, roots)
     else:
         turns = count_turns(grid, values, locate(bound) if roots is None else roots)
     return SampledResponse(bound.name, grid, values, quantity, unit, turns)
@@ -381,13 +413,16 @@ def _network_turns(
 
 
 def _follow_turns(
-    bound: AnyBoundFunction, omega: npt.NDArray[np.float64], values: npt.NDArray[np.complex128]
+    bound: AnyBoundFunction,
+    omega: npt.NDArray[np.float64],
+    values: npt.NDArray[np.complex128],
+    roots: PoleZeroMap | None,
 ) -> npt.NDArray[np.int64]:
     """Return the whole turns that the principal values of a distributed system's phase lack."""
     steps, places = np.unique(np.abs(omega), return_inverse=True)
     phase = np.zeros(steps.shape)
     moving = steps > 0
-    phase[moving] = follow_phase(bound, steps[moving])
+    phase[moving] = follow_phase(bound, steps[moving], roots)
     return _turns_to(phase[places], omega, values)
 
 
