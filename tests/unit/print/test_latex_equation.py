@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import re
+from functools import cache
 from pathlib import Path
 
 import pytest
 from flint import arb
 
-from symflex.equations import assemble
+from symflex import pipeline
 from symflex.errors import UsageError
 from symflex.expressions import Name, negative, number, power, product_of, quotient, sum_of
-from symflex.model import load_model
-from symflex.model.spec import read
 from symflex.print.forms import PrintedForm, print_form
 from symflex.print.label import read_label
 from symflex.print.latex import (
@@ -24,23 +23,23 @@ from symflex.print.latex import (
     transfer_function_latex,
 )
 from symflex.roots import Certificate, Everything, PoleZeroMap, Root
-from symflex.transfer import derive, derive_all
 
 DERIVATIONS = Path(__file__).parents[3] / "derivations" / "eppinger1988"
 
 
-def derived(stem, output, source):
-    return derive(assemble(load_model(read(DERIVATIONS / f"{stem}.toml"))), output, source)
-
-
 @pytest.fixture(scope="module")
 def two_mass():
-    return derived("two_mass", "V_tip", "F")
+    return next(tf for tf in functions("two_mass") if tf.name == "V_tip/F")
 
 
 @pytest.fixture(scope="module")
 def rigid_body():
-    return derived("rigid_body", "V_tip", "V_cmd")
+    return next(tf for tf in functions("rigid_body") if tf.name == "V_tip/V_cmd")
+
+
+@cache
+def functions(stem):
+    return pipeline.derive_all(pipeline.load(DERIVATIONS / f"{stem}.toml"))
 
 
 s = Name("s")
@@ -180,8 +179,7 @@ def test_a_map_of_another_transfer_function_is_refused(two_mass):
 
 
 def test_every_transfer_function_of_a_model_has_a_subsection(two_mass):
-    model = two_mass.model
-    tfs = derive_all(assemble(model), model.transfer_functions)
+    model, tfs = two_mass.model, functions("two_mass")
     latex = latex_document(model, tfs, [print_form(tf) for tf in tfs])
     assert latex.count(r"\subsection{") == len(model.transfer_functions)
 

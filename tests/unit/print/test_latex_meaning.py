@@ -11,32 +11,13 @@ from hypothesis import strategies as st
 from symflex.expressions import Name, Negative, Number, Power, Product, Quotient, Sum
 from symflex.print.latex import latex_expression
 from symflex.print.latex.expression import Writer, break_lines
+from tests.contract.exact import Point, value_of
 
 VALUES = {"a": Fraction(3, 7), "b": Fraction(5, 11), "c": Fraction(13, 17), "s": Fraction(19, 23)}
+POINT = Point(0, **VALUES)
 TOKEN = re.compile(r"\\frac|\\times|\\cdot|[0-9.]+|[a-z]|[-+/^(){}\[\]]|\\[{}]")
 LAYOUT = re.compile(r"\\left|\\right|\\[bB]ig[lr]|\\quad|\\,|\{\}|\s")
 OPENING = {"(": ")", "[": "]", "\\{": "\\}", "{": "}"}
-
-
-def value_of(tree):
-    match tree:
-        case Number(value=value):
-            return value
-        case Name(name=name):
-            return VALUES[name]
-        case Negative(operand=operand):
-            return -value_of(operand)
-        case Sum(terms=terms):
-            return sum(map(value_of, terms))
-        case Product(factors=factors):
-            product = Fraction(1)
-            for factor in factors:
-                product *= value_of(factor)
-            return product
-        case Quotient(numerator=above, denominator=below):
-            return value_of(above) / value_of(below)
-        case Power(base=base, exponent=exponent):
-            return value_of(base) ** int(value_of(exponent))
 
 
 class Reader:
@@ -138,7 +119,7 @@ trees = st.recursive(leaves, branches, max_leaves=20)
 
 def is_finite(tree):
     try:
-        value_of(tree)
+        value_of(tree, POINT)
     except ZeroDivisionError:
         return False
     return True
@@ -147,7 +128,7 @@ def is_finite(tree):
 @settings(max_examples=80)
 @given(trees.filter(is_finite), st.sampled_from([6.0, 9.0, 15.0]))
 def test_an_expression_means_what_its_tree_means_whole_and_broken(tree, width):
-    expected = value_of(tree)
+    expected = value_of(tree, POINT)
     assert meaning(latex_expression(tree, {})) == expected
     # A number too long for a line goes on in the next.
     lines = [line.replace(r"\quad ", "") for line in break_lines(tree, Writer({}), width, width)]
