@@ -58,19 +58,17 @@ def lumped_bending_beam(s, K):
     return complex(np.linalg.det(matrix))
 
 
-def beam(s, K, *, is_force):
-    stiffness, mass, length, eta, b = 200e9 * 4000e-12, 7850 * 480e-6, 1.086, 1e-4, 20
-    k_c = 2e3 if is_force else 0.0
+def beam(s, K):
+    stiffness, mass, length, eta, b, k_c = 200e9 * 4000e-12, 7850 * 480e-6, 1.086, 1e-4, 20, 2e3
     grown = bending_transfer(s, EI=stiffness * (1 + eta * s), mass=mass, length=length)
     scale = 1 / np.abs(grown).max()
     t = grown * scale
-    gain = K * k_c if is_force else K
     # Unknowns: w(0), M(0), V(0), w(l); w'(0) = 0.
     rows = [
         [t[0, 0], t[0, 2], t[0, 3], -scale],
         [t[2, 0], t[2, 2], t[2, 3], 0],
         [t[3, 0], t[3, 2], t[3, 3], -k_c * scale],
-        [b * s, 0, 1, gain],
+        [b * s, 0, 1, K * k_c],
     ]
     weights = np.array([1, stiffness, stiffness, 1])
     return complex(np.linalg.det(np.array(rows, complex) * weights)) / scale
@@ -108,24 +106,9 @@ v = {}
 V = "s*tip"
 """
 
-TIP_POSITION = (
-    (CONTROL / "sliding_free_beam_position.toml")
-    .read_text("utf-8")
-    .replace("K*(X_cmd - (act))", "K*(X_cmd - tip)")
-)
-
 LOOPS = [
     pytest.param(
-        lambda: loop("K/(s*(s + 1)*(s + 2))"), lambda s, K: s * (s + 1) * (s + 2) + K, 50, id="type-1"
-    ),
-    pytest.param(
         lambda: loop("K*(s + 2)^2/s^3"), lambda s, K: s**3 + K * (s + 2) ** 2, 50, id="conditionally-stable"
-    ),
-    pytest.param(
-        lambda: loop("K*(s + 1)/(s*(s - 1)*(s + 6))"),
-        lambda s, K: s * (s - 1) * (s + 6) + K * (s + 1),
-        100,
-        id="unstable-plant",
     ),
     pytest.param(lambda: symflex.load(CONTROL / "two_mass_force.toml"), two_mass, 1e3, id="two-mass"),
     pytest.param(
@@ -137,15 +120,8 @@ LOOPS = [
         1e4,
         id="lumped-bending-beam",
     ),
-    pytest.param(lambda: loop("K*D/s"), lambda s, K: s + K * cmath.exp(-s / 2), 150, id="delay-integrator"),
     pytest.param(
         lambda: loop("K*D/(s - 1)"), lambda s, K: s - 1 + K * cmath.exp(-s / 2), 150, id="delay-unstable"
-    ),
-    pytest.param(
-        lambda: loop("K*D*(s + 1)/s^2"),
-        lambda s, K: s**2 + K * (s + 1) * cmath.exp(-s / 2),
-        250,
-        id="delay-double-integrator",
     ),
     pytest.param(
         lambda: loop("K*D/(s^2 + 0.2*s + 1)", T="2 s"),
@@ -155,16 +131,9 @@ LOOPS = [
     ),
     pytest.param(
         lambda: symflex.load(CONTROL / "sliding_free_beam_force.toml"),
-        lambda s, K: beam(s, K, is_force=True),
+        beam,
         2500,
         id="beam-force",
-        marks=pytest.mark.slow,
-    ),
-    pytest.param(
-        lambda: symflex.loads(TIP_POSITION),
-        lambda s, K: beam(s, K, is_force=False),
-        2500,
-        id="beam-tip-position",
         marks=pytest.mark.slow,
     ),
     pytest.param(lambda: symflex.loads(ROD), rod, 4e4, id="rod-tip-velocity", marks=pytest.mark.slow),
@@ -189,9 +158,8 @@ def test_counts_on_both_sides_of_every_boundary(model, chi, radius):
         assert abs(chi(1j * omega, K)) < 1e-7 * scale
 
 
-@pytest.mark.parametrize(
-    ("expression", "K", "omega"),
-    [
+def test_textbook_boundaries():
+    for expression, K, omega in (
         # Textbook results, by Routh's test or by elementary phase.
         ("K/(s*(s + 1)*(s + 2))", 6, math.sqrt(2)),
         ("K*(s + 2)^2/s^3", 1, 2),
@@ -199,16 +167,12 @@ def test_counts_on_both_sides_of_every_boundary(model, chi, radius):
         ("K*(s + 1)/(s*(s - 1)*(s + 6))", 7.5, math.sqrt(1.5)),
         # The same, with proportional and integral control of 1/((s + 1)(s + 2)) with K_I = 10: K > 10/3 - 2.
         ("(K + 10/s)/((s + 1)*(s + 2))", 10 / 3 - 2, math.sqrt(10 / 3)),
-        ("K*D/s", math.pi, math.pi),
-    ],
-)
-def test_textbook_boundaries(expression, K, omega):
-    (boundary, *_) = loop(expression).stability("K").boundaries
-    assert abs(float(boundary.gain) - K) < 1e-12 * K
-    assert abs(2 * math.pi * boundary.frequencies_hz[0] - omega) < 1e-12 * omega
+    ):
+        (boundary, *_) = loop(expression).stability("K").boundaries
+        assert abs(float(boundary.gain) - K) < 1e-12 * K, expression
+        assert abs(2 * math.pi * boundary.frequencies_hz[0] - omega) < 1e-12 * omega, expression
 
 
-@pytest.mark.slow
 def test_margins_of_an_integrator_with_dead_time():
     # L = K e^(-s T)/s crosses 1 at omega = K; the phase left is 90 degrees less K T.
     found = loop("K*D/s", K=1.2).stability("K")

@@ -13,6 +13,7 @@ from symflex import pipeline
 from symflex.errors import UsageError
 from symflex.figures import AxisLimits, draw_loop
 from symflex.loops import loop_gain, trace_locus
+from tests.unit.refusals import refusal
 
 
 def characteristic(model, gain="K"):
@@ -22,19 +23,14 @@ def characteristic(model, gain="K"):
 def test_curves_go_from_open_loop_poles_to_closed_loop_poles(loop):
     locus = trace_locus(characteristic(loop("K/(s*(s + 1)*(s + 2))")), (Fraction(0), Fraction(60)))
     assert locus.arrived
+    for s in (s for branch in locus.branches for s in branch[::10]):  # poles for some gain
+        gain = -s * (s + 1) * (s + 2)
+        assert abs(gain.imag) < 1e-8 * (1 + abs(gain))
+        assert -1e-9 < gain.real < 60.001
     ends = sorted((branch[-1] for branch in locus.branches), key=lambda s: (s.real, s.imag))
     wanted = sorted(np.roots([1, 3, 2, 60]), key=lambda s: (s.real, s.imag))
     assert np.allclose(ends, wanted, rtol=1e-9)
     assert sorted(branch[0].real for branch in locus.branches) == [-2, -1, 0]
-
-
-def test_every_point_traced_is_a_pole_for_some_gain(loop):
-    locus = trace_locus(characteristic(loop("K*(s + 3)/(s^2 + 1*s + 1)")), (Fraction(0), Fraction(100)))
-    for branch in locus.branches:
-        for s in branch[::10]:
-            gain = -(s * s + s + 1) / (s + 3)
-            assert abs(gain.imag) < 1e-8 * (1 + abs(gain))
-            assert -1e-9 < gain.real < 100.001
 
 
 def test_one_curve_ends_next_to_the_zero(loop):
@@ -57,12 +53,10 @@ def test_the_loop_gain_is_minus_one_at_a_boundary(loop):
 
 
 def test_errors(loop):
-    with pytest.raises(UsageError, match="SF806"):
-        trace_locus(characteristic(loop("K^2/(s + 1)")))
-    with pytest.raises(UsageError, match="SF804"):
-        trace_locus(characteristic(loop("K/(s + 1)", K={})))
-    with pytest.raises(UsageError, match="SF806"):
-        loop_gain(characteristic(loop("K/(s + 1)", K={})))
+    squared, unset = (characteristic(loop(*each)) for each in (("K^2/(s + 1)",), ("K/(s + 1)", {})))
+    assert refusal(trace_locus, squared) == "UsageError SF806"
+    assert refusal(trace_locus, unset) == "UsageError SF804"
+    assert refusal(loop_gain, unset) == "UsageError SF806"
 
 
 def newton(function, slope, s):
@@ -171,70 +165,51 @@ def test_poles_that_go_where_poles_accumulate_stop_there():
         assert len(branch) == 1 or abs(branch[-1] + 5000) > hole.radius
 
 
-@pytest.mark.parametrize(
-    ("limits", "message", "hint"),
-    [
+def test_a_range_that_is_none_is_told_in_its_own_words(loop):
+    done = characteristic(loop("K/(s + 1)"))
+    for limits, message, hint in (
         ((5, 1), "reversed: 5 to 1", "--range 1 5"),
         ((2, 2), "empty", "different"),
         ((0, None), "finite", "two numbers"),
         ((None, 1), "finite", "two numbers"),
-    ],
-    ids=str,
-)
-def test_a_range_that_is_none_is_told_in_its_own_words(loop, limits, message, hint):
-    given = tuple(None if x is None else Fraction(x) for x in limits)
-    with pytest.raises(UsageError, match="SF804") as caught:
-        trace_locus(characteristic(loop("K/(s + 1)")), given)
-    (told,) = caught.value.diagnostics
-    assert message in told.message
-    assert hint in told.hint
-
-
-def texts_and_frame(loop, expression, limits, **more):
-    figure = draw_loop("locus", characteristic(loop(expression, **more)), limits=tuple(map(Fraction, limits)))
-    (axes,) = figure.axes
-    return [text.get_text() for text in figure.legends[0].get_texts()], axes
+    ):
+        with pytest.raises(UsageError, match="SF804") as caught:
+            trace_locus(done, tuple(None if x is None else Fraction(x) for x in limits))
+        (told,) = caught.value.diagnostics
+        assert message in told.message, limits
+        assert hint in told.hint, limits
 
 
 @pytest.mark.slow
 def test_the_frame_holds_the_poles_at_the_last_gain(loop):
-    labels, axes = texts_and_frame(loop, "K*D*(s + 3)/(s + 1)", (0, Fraction(9, 10)), T="0.1 s")
+    done = characteristic(loop("K*D*(s + 3)/(s + 1)", T="0.1 s"))
+    figure = draw_loop("locus", done, limits=(Fraction(0), Fraction(9, 10)))
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
     assert labels == ["poles, $K = 0$", "poles, $K = 0.9$", "zeros", "poles from infinity"]
     # The fifth mode is near (2 n + 1) pi / T for n = 3.
-    assert axes.get_ylim()[1] > 7 * np.pi / 0.1
-    assert axes.get_xlim()[0] < -3
+    assert figure.axes[0].get_ylim()[1] > 7 * np.pi / 0.1
+    assert figure.axes[0].get_xlim()[0] < -3
 
 
 def test_a_locus_is_shown_as_far_as_the_band_reaches(loop):
-    done = characteristic(loop("K*(s + 30)/((s + 1)*(s + 2))"))
-    (axes,) = draw_loop("locus", done, band_hz=(0, 20 / (2 * np.pi))).axes
+    figure = draw_loop(
+        "locus", characteristic(loop("K*(s + 30)/((s + 1)*(s + 2))")), band_hz=(0, 20 / (2 * np.pi))
+    )
+    (axes,) = figure.axes
     assert 20 < axes.get_ylim()[1] < 25
     assert axes.get_xlim()[0] > -25
+    assert not any("zeros" in text.get_text() for text in figure.legends[0].get_texts())  # at -30
 
 
 def test_as_many_modes_are_traced_as_a_band_holds(loop):
     # (s + 1) exp(s/10) = -1 where s = 10 W(-exp(1/10)/10) - 1.
     known = [10 * lambertw(-np.exp(0.1) / 10, branch) - 1 for branch in range(-8, 8)]
-    wanted = sorted((s for s in known if abs(s) < 300), key=lambda s: (s.imag, s.real))
+    wanted = sorted((s for s in known if abs(s) < 150), key=lambda s: (s.imag, s.real))
     done = characteristic(loop("K*D/(s + 1)", T="0.1 s"))
-    traced = trace_locus(done, (Fraction(1), Fraction(2)), band_hz=(0, 300 / (2 * np.pi)))
+    traced = trace_locus(done, (Fraction(1), Fraction(2)), band_hz=(0, 150 / (2 * np.pi)))
     found = [complex(float(r.re.mid()), float(r.im.mid())) for r in traced.start.poles]
-    assert len(wanted) > 8
+    assert len(wanted) > 4
     assert np.allclose(sorted(found, key=lambda s: (s.imag, s.real)), wanted, rtol=1e-9)
-
-
-@pytest.mark.slow
-def test_poles_in_the_band_at_the_last_gain_are_traced_too(loop):
-    # At the gain 0 there is one pole; at the last one, poles are at 10 W(-2 exp(1/10)/10) - 1.
-    known = [10 * lambertw(-0.2 * np.exp(0.1), n) - 1 for n in range(-8, 8)]
-    traced = trace_locus(
-        characteristic(loop("K*D/(s + 1)", T="0.1 s")),
-        (Fraction(0), Fraction(2)),
-        band_hz=(0, 300 / (2 * np.pi)),
-    )
-    wanted = [s for s in known if abs(s) < 300]
-    assert len(wanted) > 8
-    assert all(min(abs(s - end) for end in traced.ends) < 1e-6 for s in wanted)
 
 
 def test_a_locus_has_the_limits_asked_for_and_counts_what_is_outside(loop):
@@ -246,18 +221,10 @@ def test_a_locus_has_the_limits_asked_for_and_counts_what_is_outside(loop):
     assert labels == ["poles, $K = 0$", "poles, $K = 1$ (all outside)", "poles, $K = 1000$ (all outside)"]
 
 
-def test_the_legend_names_what_is_seen(loop):
-    labels, axes = texts_and_frame(loop, "K*(s + 300)/((s + 1)*(s + 2))", (0, 1))
-    assert not any("zeros" in label for label in labels)
-    assert axes.get_xlim()[0] > -300
-    labels, _ = texts_and_frame(loop, "K/(s*(s + 1)*(s + 2))", (0, 10**9))
-    assert labels[2].endswith("(all outside)")
-
-
-@pytest.mark.parametrize(("gain", "said"), [(1, "stable"), (4, "unstable: 2 poles in the right half plane")])
-def test_a_nyquist_plot_says_whether_the_closed_loop_is_stable(gain, said, loop):
+def test_a_nyquist_plot_says_whether_the_closed_loop_is_stable(loop):
     # K exp(-s/2)/s is stable up to K = pi, where a pair crosses; the next one does at 5 pi.
-    figure = draw_loop("nyquist", characteristic(loop("K*D/s", K=gain)), title="A loop")
+    said = "unstable: 2 poles in the right half plane"
+    figure = draw_loop("nyquist", characteristic(loop("K*D/s", K=4)), title="A loop")
     (legend,) = figure.legends
     assert legend.get_title().get_text() == (
         f"A loop\nopen loop: no pole in the right half plane\nclosed loop {said}"

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import symflex
-from symflex.errors import BudgetError, ModelError, UsageError
+from tests.unit.refusals import refusal
 
 
 def counts(found):
@@ -106,8 +106,15 @@ def test_a_neutral_loop_is_certified_only_below_a_gain_of_one(loop):
 
 
 @pytest.mark.slow
-def test_what_is_not_proved_of_a_beam_without_loss_is_said(lossless_beam):
+def test_poles_cross_where_a_damper_at_the_actuator_does_nothing_and_what_is_not_proved_is_said(
+    lossless_beam,
+):
+    # Poles cross where the damped end is at rest: at a colocated zero, 2 + cosh 2q + cos 2q = 0.
     found = lossless_beam("tip", is_damped=True).stability("K", up_to_hz=60)
+    (hertz,) = found.boundaries[0].frequencies_hz
+    stiffness, mass, length = 200e9 * 4000e-12, 7850 * 480e-6, 1.086
+    # Of the clamped-free beam the first root of cosh x cos x = -1, x = 2q.
+    assert abs(2 * math.pi * hertz - 1.8751040687119611**2 / length**2 * math.sqrt(stiffness / mass)) < 1e-7
     assert not found.certified
     assert abs(found.counted_up_to_hz - 60) < 1e-9
     assert "NOT CERTIFIED beyond 60 Hz" in str(found)
@@ -124,26 +131,12 @@ def test_of_a_spring_at_the_damped_end_all_poles_are_counted_and_margins_are_not
     assert counts(found) == [(0, 0)]
 
 
-@pytest.mark.slow
-def test_crossing_where_a_damper_at_the_actuator_does_nothing(lossless_beam):
-    # Poles cross where the damped end is at rest: at a colocated zero, 2 + cosh 2q + cos 2q = 0.
-    found = lossless_beam("tip", is_damped=True).stability("K", up_to_hz=60)
-    (hertz,) = found.boundaries[0].frequencies_hz
-    stiffness, mass, length = 200e9 * 4000e-12, 7850 * 480e-6, 1.086
-    # Of the clamped-free beam the first root of cosh x cos x = -1, x = 2q.
-    assert abs(2 * math.pi * hertz - 1.8751040687119611**2 / length**2 * math.sqrt(stiffness / mass)) < 1e-7
-
-
 def test_mirrored_poles_of_a_lossless_beam(lossless_beam):
     colocated = lossless_beam("act").stability("K", up_to_hz=100)
     tip = lossless_beam("tip").stability("K", up_to_hz=100)
     assert [right for right, _ in counts(colocated)] == [0]
     assert [right for right, _ in counts(tip)] == [0, 2]
-    assert found_symmetric(tip)
-
-
-def found_symmetric(found):
-    return all(c.is_symmetric for b in found.proved.boundaries for c in b.crossings)
+    assert all(c.is_symmetric for b in tip.proved.boundaries for c in b.crossings)
 
 
 def test_a_real_pole_through_zero_beside_a_delay(loop):
@@ -156,38 +149,27 @@ def test_a_real_pole_through_zero_beside_a_delay(loop):
 
 
 def test_values_in_place_of_declared_ones(loop):
-    model = loop("K*D/s")
-    assert abs(float(model.stability("K", (0, 50), T="0.25 s").boundaries[0].gain) - 2 * math.pi) < 1e-12
+    found = loop("K*D/s").stability("K", (0, 20), T="0.25 s")
+    assert abs(float(found.boundaries[0].gain) - 2 * math.pi) < 1e-12
+    # The bandwidth is where K/omega = 1, and K is half of pi/(2 T).
+    assert found.bandwidth_hz == pytest.approx(0.5, rel=1e-12)
+    assert max(map(len, str(found).splitlines())) <= 80
 
 
-@pytest.mark.parametrize(
-    ("arguments", "error", "code"),
-    [
-        (("Q",), UsageError, "SF902"),
-        (("T",), ModelError, "SF801"),
-        (("K", (2, 1)), UsageError, "SF804"),
-        (("K", (0, None)), UsageError, "SF804"),
-    ],
-)
-def test_errors(loop, arguments, error, code):
-    with pytest.raises(error, match=code):
-        loop("K*D/s").stability(*arguments)
-
-
-def test_a_gain_squared_beside_a_delay_is_refused(loop):
-    with pytest.raises(ModelError, match="SF803"):
-        loop("K^2*D/s").stability("K", (0, 3))
-
-
-def test_a_gain_without_value_needs_a_range_beside_a_delay(loop):
-    with pytest.raises(UsageError, match="SF804"):
-        loop("K*D/s", K={}).stability("K")
-    assert loop("K*D/s", K={}).stability("K", (0, 5)).is_stable is None
-
-
-def test_the_budget_is_kept(loop):
-    with pytest.raises(BudgetError, match="SF506"):
-        loop("K*D/s").stability("K", (0, 50), budget=1e-6)
+def test_errors(loop):
+    model, unset = loop("K*D/s"), loop("K*D/s", K={})
+    for arguments, refused in (
+        (("Q",), "UsageError SF902"),
+        (("T",), "ModelError SF801"),
+        (("K", (2, 1)), "UsageError SF804"),
+        (("K", (0, None)), "UsageError SF804"),
+    ):
+        assert refusal(model.stability, *arguments) == refused, arguments
+    assert refusal(model.stability, "K", (0, 50), budget=1e-6) == "BudgetError SF506"
+    assert refusal(loop("K^2*D/s").stability, "K", (0, 3)) == "ModelError SF803"
+    # Beside a delay a gain without a value needs a range.
+    assert refusal(unset.stability, "K") == "UsageError SF804"
+    assert unset.stability("K", (0, 5)).is_stable is None
 
 
 def test_the_document_is_json(loop):
@@ -211,19 +193,8 @@ def test_the_bandwidth_is_where_half_of_the_limit_has_loop_gain_one(loop):
     assert found.to_json_dict()["bandwidth"]["phase_margin_degrees"] == pytest.approx(margin)
 
 
-def test_the_bandwidth_of_a_loop_with_a_delay(loop):
-    found = loop("K*D/s").stability("K", (0, 20))
-    # K/omega = 1, and K is half of pi/(2 T).
-    assert found.bandwidth_hz == pytest.approx(0.25, rel=1e-12)
-
-
 def test_there_may_be_no_bandwidth_or_no_limit_to_it(loop):
     assert loop("K/(s + 1)").stability("K").bandwidth_hz == float("inf")
     # Half of the limit is a loop gain of 1/2 where it is largest.
     assert np.isnan(loop("K*D/(s + 1)", T="10 s").stability("K", (0, 2)).bandwidth_hz)
     assert np.isnan(loop("K/(s - 1)").stability("K").bandwidth_hz)
-
-
-@pytest.mark.slow
-def test_the_print_fits_a_terminal(loop):
-    assert max(map(len, str(loop("K*D/s").stability("K")).splitlines())) <= 80
