@@ -55,8 +55,8 @@ def test_modes_that_swap_places_within_one_step():
 
 
 def test_names_do_not_depend_on_the_direction():
-    up = symflex.loads(TWO_RESONANCES).sweep({"k_1": "1:9:lin:12"})
-    down = symflex.loads(TWO_RESONANCES).sweep({"k_1": "9:1:lin:12"})
+    up = symflex.loads(TWO_RESONANCES).sweep({"k_1": "1:9:lin:7"})
+    down = symflex.loads(TWO_RESONANCES).sweep({"k_1": "9:1:lin:7"})
     # Names begin with the lower mode, which is the moving one upwards and the still one downwards.
     assert np.allclose(up["im"], down["im"][::-1, ::-1])
 
@@ -68,17 +68,15 @@ def test_similar_functions_need_no_distances():
     assert names.mode[1].tolist() == [0, 1]
 
 
-@pytest.mark.parametrize(
-    "texts", [["k=1,2,3"], ["k=1,2", "m=1,2,3"], ["k=1,2,3,4", "m=1:2"], ["k=1:2", "m=1:3"]]
-)
-def test_everyone_but_one_comes_after_a_neighbour(texts):
-    draws = 25 if any(text.count(":") == 1 for text in texts) else 0
-    design = read_design(oscillator().parameters, texts, draws)
-    steps = predecessors(design)
-    assert sorted(steps.order) == list(range(design.count))
-    assert [i for i in range(design.count) if steps.before[i] < 0] == [steps.order[0]]
-    place = {i: k for k, i in enumerate(steps.order)}
-    assert all(place[steps.before[i]] < place[i] for i in steps.order[1:])
+def test_everyone_but_one_comes_after_a_neighbour():
+    for texts in [["k=1,2,3"], ["k=1,2", "m=1,2,3"], ["k=1,2,3,4", "m=1:2"], ["k=1:2", "m=1:3"]]:
+        draws = 25 if any(text.count(":") == 1 for text in texts) else 0
+        design = read_design(oscillator().parameters, texts, draws)
+        steps = predecessors(design)
+        assert sorted(steps.order) == list(range(design.count)), texts
+        assert [i for i in range(design.count) if steps.before[i] < 0] == [steps.order[0]], texts
+        place = {i: k for k, i in enumerate(steps.order)}
+        assert all(place[steps.before[i]] < place[i] for i in steps.order[1:]), texts
 
 
 def test_a_grid_is_walked_along_its_axes():

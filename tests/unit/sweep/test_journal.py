@@ -12,19 +12,23 @@ import pytest
 
 from symflex.errors import SymflexError, UsageError
 from symflex.files.lock import held
-from symflex.sweep.files import MAGIC, archive, npz_bytes, open_journal, read_sweep
-from symflex.sweep.run import run_sweep
-from tests.unit.sweep.test_run import task_and_design
+from symflex.sweep.files import MAGIC, archive, open_journal, read_sweep
+from tests.unit.refusals import refusal
 
 ROWS = {"point_status": np.zeros(1, np.int32), "re": np.ones((1, 2))}
 
 
-@pytest.fixture
-def journal(tmp_path):
-    """A journal of one chunk."""
-    opened = open_journal(tmp_path / "a.nc", "key")
+def journal_in(folder):
+    """Return a journal of one chunk, of a sweep to ``a.nc``."""
+    folder.mkdir(exist_ok=True)
+    opened = open_journal(folder / "a.nc", "key")
     opened.write(0, ROWS)
     return opened
+
+
+@pytest.fixture
+def journal(tmp_path):
+    return journal_in(tmp_path)
 
 
 def test_a_chunk_is_read_as_it_was_written(journal):
@@ -55,11 +59,12 @@ CHUNKS = {
 }
 
 
-@pytest.mark.parametrize("damage", CHUNKS.values(), ids=CHUNKS)
-def test_a_damaged_chunk_is_not_read(journal, damage):
-    damage(journal.folder / "chunk-000000.npz")
-    assert journal.read(0) is None
-    assert journal.read(1) is None
+def test_a_damaged_chunk_is_not_read(tmp_path):
+    for name, damage in CHUNKS.items():
+        journal = journal_in(tmp_path / name)
+        damage(journal.folder / "chunk-000000.npz")
+        assert journal.read(0) is None, name
+        assert journal.read(1) is None, name
 
 
 def test_a_chunk_of_another_sweep_is_not_read(tmp_path, journal):
@@ -79,19 +84,28 @@ ABOUTS = {
 }
 
 
-@pytest.mark.parametrize("content", ABOUTS.values(), ids=ABOUTS)
-def test_a_journal_whose_owner_cannot_be_read_is_refused(tmp_path, journal, content):
-    (journal.folder / "sweep.json").write_bytes(content)
-    with pytest.raises(UsageError, match="SF916"):
-        open_journal(tmp_path / "a.nc", "key")
+NO_FILES = {
+    "a pipe": os.mkfifo,
+    "a folder": os.mkdir,
+    "a link in a circle": lambda path: os.symlink(path, path),
+    "a link to a device": lambda path: os.symlink("/dev/zero", path),
+    "a link to a file": lambda path: os.symlink("/etc/passwd", path),
+}
 
 
-@pytest.mark.parametrize("make", [os.mkfifo, os.mkdir, lambda path: os.symlink(path, path)])
-def test_a_journal_whose_owner_is_no_file_is_refused(tmp_path, journal, make):
-    (journal.folder / "sweep.json").unlink()
-    make(journal.folder / "sweep.json")
-    with pytest.raises(UsageError, match="SF916"):
-        open_journal(tmp_path / "a.nc", "key")
+def test_a_journal_whose_owner_cannot_be_read_is_refused(tmp_path, journal):
+    owner = journal.folder / "sweep.json"
+    for name, content in ABOUTS.items():
+        owner.write_bytes(content)
+        assert refusal(open_journal, tmp_path / "a.nc", "key") == "UsageError SF916", name
+
+
+def test_a_journal_whose_owner_is_no_file_is_refused(tmp_path):
+    for name, make in NO_FILES.items():
+        owner = journal_in(tmp_path / name).folder / "sweep.json"
+        owner.unlink()
+        make(owner)
+        assert refusal(open_journal, tmp_path / name / "a.nc", "key") == "UsageError SF916", name
 
 
 def test_a_folder_among_what_is_left_is_refused(tmp_path, journal):
@@ -144,11 +158,10 @@ def test_a_file_that_is_no_lock_is_left_alone(tmp_path):
     assert (tmp_path / "a.nc.lock").read_text() == "mine"
 
 
-@pytest.mark.parametrize("make", [os.mkfifo, os.mkdir, lambda path: os.symlink("/etc/passwd", path)])
-def test_a_lock_that_is_no_file_is_refused(tmp_path, make):
-    make(tmp_path / "a.nc.lock")
-    with pytest.raises(UsageError, match="SF903"), held(tmp_path / "a.nc"):
-        pass
+def test_a_lock_that_is_no_file_is_refused(tmp_path):
+    for name, make in NO_FILES.items():
+        make(tmp_path / f"{name}.lock")
+        assert refusal(held(tmp_path / name).__enter__) == "UsageError SF903", name
 
 
 HEADERS = {
@@ -160,25 +173,13 @@ HEADERS = {
 }
 
 
-@pytest.mark.parametrize("header", HEADERS.values(), ids=HEADERS)
-def test_an_archive_with_a_false_header_holds_no_sweep(tmp_path, header):
-    (tmp_path / "a.npz").write_bytes(archive({"header": np.array(header)}))
-    with pytest.raises(SymflexError, match="SF915"):
-        read_sweep(tmp_path / "a.npz")
+def test_an_archive_with_a_false_header_holds_no_sweep(tmp_path):
+    for name, header in HEADERS.items():
+        (tmp_path / "a.npz").write_bytes(archive({"header": np.array(header)}))
+        assert refusal(read_sweep, tmp_path / "a.npz").endswith(" SF915"), name
 
 
-@pytest.mark.parametrize("make", [os.mkfifo, os.mkdir, lambda path: os.symlink("/dev/zero", path)])
-def test_what_is_no_file_holds_no_sweep(tmp_path, make):
-    make(tmp_path / "a.npz")
-    with pytest.raises(UsageError, match="SF901"):
-        read_sweep(tmp_path / "a.npz")
-
-
-def test_a_damaged_journal_gives_the_same_bytes(tmp_path):
-    task, design = task_and_design(2)
-    expected = npz_bytes(run_sweep(task, design))
-    run_sweep(task, design, journal=open_journal(tmp_path / "a.nc", "key"))
-    path = tmp_path / "a.nc.part" / "chunk-000001.npz"
-    path.write_bytes(path.read_bytes().replace(b"\xf0\xbf", b"\xf0\x3f", 1)[:-1] + b"\1")
-    again = open_journal(tmp_path / "a.nc", "key")
-    assert npz_bytes(run_sweep(task, design, journal=again)) == expected
+def test_what_is_no_file_holds_no_sweep(tmp_path):
+    for name in ("a pipe", "a folder", "a link to a device"):
+        NO_FILES[name](tmp_path / f"{name}.npz")
+        assert refusal(read_sweep, tmp_path / f"{name}.npz") == "UsageError SF901", name

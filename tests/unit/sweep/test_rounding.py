@@ -6,7 +6,7 @@ from math import inf, isnan, ulp
 import mpmath
 import pytest
 from flint import arb
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from symflex.roots import precision
@@ -26,6 +26,7 @@ def test_what_is_larger_than_any_double_is_said_to_be_nothing():
     assert rounded(arb(10) ** 400)[1] == inf
 
 
+@settings(max_examples=40)
 @given(st.fractions(min_value=-(10**6), max_value=10**6).filter(bool))
 def test_small_balls_give_the_nearest_double(value):
     with precision(200):
@@ -36,6 +37,7 @@ def test_small_balls_give_the_nearest_double(value):
     assert abs(Fraction(centre) - value) <= Fraction(radius)
 
 
+@settings(max_examples=40)
 @given(st.floats(-1e6, 1e6).filter(lambda x: abs(x) > 1e-6), st.floats(1e-12, 1e3))
 def test_large_balls_are_covered(middle, size):
     centre, radius, is_nearest = rounded(arb(middle, size))
