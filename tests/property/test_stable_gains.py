@@ -28,7 +28,7 @@ def polynomial(coefficients):
     b=st.lists(COEFFICIENTS, min_size=1, max_size=4).filter(any),
     gains=st.lists(st.floats(-20, 20), min_size=4, max_size=4),
 )
-@settings(max_examples=60)
+@settings(max_examples=40)
 def test_counts_agree_with_the_roots_of_the_polynomial(a, b, gains):
     b = b[: len(a)]
     if not any(b):
@@ -69,7 +69,7 @@ def test_counts_agree_with_the_roots_of_the_polynomial(a, b, gains):
     T=st.sampled_from([0.5, 1, 2.25]),
     gain=st.floats(-5, 5),
 )
-@settings(max_examples=40)
+@settings(max_examples=15)
 def test_counts_beside_a_delay_agree_with_turns(a, b, T, gain):
     b = b[: len(a) - 1]
     if not any(b):
