@@ -125,7 +125,7 @@ def test_random_networks_hold_every_element_and_block_and_respond_somewhere():
     kinds = set()
 
     @given(networks())
-    @settings(max_examples=200)
+    @settings(max_examples=120)
     def draw(network):
         kinds.update(network.kinds)
         entries = tomllib.loads(to_toml(network))
