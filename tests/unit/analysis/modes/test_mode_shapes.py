@@ -55,6 +55,10 @@ def classic(name, output, source):
     return symflex.load(CLASSICS / f"{name}.toml").transfer_function(output, source).bind()
 
 
+def of(text, output, source):
+    return symflex.loads(f"symflex = 1\n{text}").transfer_function(output, source).bind()
+
+
 def clamped(x, beta):
     """The shape of Blevins 1979, table 8-1, of a beam clamped at 0 and clamped or free at 1."""
     sign = 1 if abs(np.cos(beta) * np.cosh(beta) + 1) < 1e-6 else -1
@@ -104,25 +108,29 @@ def test_modes_are_orthogonal_with_respect_to_mass_and_stiffness():
         assert abs(a @ laplacian(SPRINGS) @ b) < 1e-9
 
 
+TWO_MASSES = """
+parameters = { m = "1 kg", r = "3 kg", k = "7 N/m" }
+elements.a = { type = "mass", at = "x", m = "m" }
+elements.b = { type = "mass", at = "y", m = "r" }
+elements.k = { type = "spring", between = ["x", "y"], k = "k" }
+inputs.F   = { force = "x" }
+outputs.X  = "x"
+"""
+
+
 def test_the_shape_of_two_masses_is_proved():
-    model = symflex.Model(
-        elements={
-            "a": {"type": "mass", "at": "x", "m": "1 kg"},
-            "b": {"type": "mass", "at": "y", "m": "3 kg"},
-            "k": {"type": "spring", "between": ["x", "y"], "k": "7 N/m"},
-        },
-        inputs={"F": {"force": "x"}},
-        outputs={"X": "x"},
-    )
-    bound = model.transfer_function("X", "F").bind()
+    bound = of(TWO_MASSES, "X", "F")
     shape = bound.mode_shape(1, digits=40)
     assert shape.certified
     assert shape.reference == "x"
     with mpmath.workdps(200):
-        # Momentum is zero: m_1 x + m_2 y = 0.
+        # Momentum is zero: m x + r y = 0.
         assert abs(shape["y"] + mpmath.mpf(1) / 3) <= shape.radius("y") < mpmath.mpf(10) ** -40
     rigid = bound.mode_shape(0)
     assert [complex(rigid[name]) for name in "xy"] == pytest.approx([1, 1])
+    # Given values take the place of declared ones.
+    drive = symflex.loads(f"symflex = 1\n{TWO_MASSES}").transfer_function("X", "F")
+    assert complex(drive.bind(r=10).mode_shape(1)["y"]) == pytest.approx(-0.1)
 
 
 def test_a_massless_beam_with_a_rigid_body_satisfies_its_own_equations():
@@ -189,19 +197,16 @@ def test_a_free_beam_has_neither_moment_nor_force_at_its_ends():
 
 
 def test_a_stocky_cantilever_meets_its_conditions_and_equations():
-    bound = classic("timoshenko_cantilever", "W_tip", "F")
+    shape = classic("timoshenko_cantilever", "W_tip", "F").mode_shape(2)
+    assert shape.quantities("beam") == ("w", "w'", "phi", "phi'")
     x = np.array([0.0, 0.1, 0.3])
+    w, slope, phi, bend = (shape.along("beam", x, quantity) for quantity in shape.quantities("beam"))
+    assert [w[0], phi[0], bend[2], slope[2] - phi[2]] == pytest.approx([0, 0, 0, 0], abs=1e-10)
     step, shear, density = 1e-5, 0.85 * 77e9 * 2.4e-3, 7850 * 2.4e-3
-    for mode in (1, 3):
-        shape = bound.mode_shape(mode)
-        assert shape.quantities("beam") == ("w", "w'", "phi", "phi'"), mode
-        w, slope, phi, bend = (shape.along("beam", x, quantity) for quantity in shape.quantities("beam"))
-        conditions = [w[0], phi[0], bend[2], slope[2] - phi[2]]
-        assert conditions == pytest.approx([0, 0, 0, 0], abs=1e-10), mode
-        around = shape.along("beam", [0.1 - step, 0.1 + step], "w'")
-        change = (around[1] - around[0]) / (2 * step)
-        square = (complex(shape.pole) ** 2).real
-        assert shear * (change - bend[1]) == pytest.approx(density * square * w[1], rel=1e-6), mode
+    around = shape.along("beam", [0.1 - step, 0.1 + step], "w'")
+    change = (around[1] - around[0]) / (2 * step)
+    square = (complex(shape.pole) ** 2).real
+    assert shear * (change - bend[1]) == pytest.approx(density * square * w[1], rel=1e-6)
 
 
 def test_a_rod_with_a_mass_is_a_sine_from_its_support():
@@ -224,41 +229,27 @@ def test_a_shaft_between_discs_turns_with_the_largest_angle_one():
 
 
 def test_a_string_written_as_a_field_is_a_sine():
-    model = symflex.loads("""
-    symflex = 1
-    [fields.w]
-    domain     = ["0", "0.65"]
-    equation   = "180*w'' + u = 0.00942*s^2*w"
-    conditions = ["w(0) = 0", "w(0.65) = 0"]
-    [inputs]
-    u = {}
-    [outputs]
-    W = "w(0.325)"
-    """)
-    shape = model.transfer_function("W", "u").bind().mode_shape(1)
-    assert shape.along("w", 0.65 * X) == pytest.approx(sin(pi * X), abs=1e-9)
+    text = """
+inputs.u  = {}
+outputs.W = "w(0.325)"
+[fields.w]
+domain     = ["0", "0.65"]
+equation   = "180*w'' + u = 0.00942*s^2*w"
+conditions = ["w(0) = 0", "w(0.65) = 0"]
+"""
+    assert of(text, "W", "u").mode_shape(1).along("w", 0.65 * X) == pytest.approx(sin(pi * X), abs=1e-9)
 
 
 def test_material_loss_alone_leaves_a_pinned_beam_its_sine():
-    model = symflex.loads("""
-    symflex = 1
-    [elements]
-    arm.type    = "beam"
-    arm.between = ["p", "q"]
-    arm.E       = "1 Pa"
-    arm.I       = "1 m^4"
-    arm.rho     = "1 kg/m^3"
-    arm.A       = "1 m^2"
-    arm.l       = "1 m"
-    arm.eta     = "0.004 s"
-    near = { type = "pin", at = "p" }
-    far  = { type = "pin", at = "q" }
-    [inputs]
-    M = { torque = "p.theta" }
-    [outputs]
-    angle = "p.theta"
-    """)
-    shape = model.transfer_function("angle", "M").bind().mode_shape(2)
+    unit = 'E = "1 Pa", I = "1 m^4", rho = "1 kg/m^3", A = "1 m^2", l = "1 m"'
+    text = f"""
+elements.arm  = {{ type = "beam", between = ["p", "q"], {unit}, eta = "0.004 s" }}
+elements.near = {{ type = "pin", at = "p" }}
+elements.far  = {{ type = "pin", at = "q" }}
+inputs.M      = {{ torque = "p.theta" }}
+outputs.angle = "p.theta"
+"""
+    shape = of(text, "angle", "M").mode_shape(2)
     assert shape.damping_ratio > 0.05
     assert shape.along("arm", X) == pytest.approx(sin(2 * pi * X), abs=1e-9)
 
@@ -288,24 +279,25 @@ def test_motor_amplifier_screw_and_link_move_together():
     assert shape.along("link", 0, "theta") == pytest.approx(0, abs=1e-12)
 
 
+OSCILLATOR = """
+elements.body = { type = "mass", at = "x", m = "1 kg" }
+elements.wall = { type = "spring", between = ["x", "ground"], k = "K N/m" }
+elements.loss = { type = "damper", between = ["x", "ground"], b = "B N*s/m" }
+inputs.F  = { force = "x" }
+outputs.X = "x"
+"""
+
+
 def test_a_delayed_force_lags():
-    model = symflex.loads("""
-    symflex = 1
-    [blocks]
-    D = { type = "delay", T = "0.1 s" }
-    [signals]
-    u = "-3*D*x"
-    [elements]
-    body = { type = "mass", at = "x", m = "1 kg" }
-    wall = { type = "spring", between = ["x", "ground"], k = "100 N/m" }
-    loss = { type = "damper", between = ["x", "ground"], b = "4 N*s/m" }
-    pull = { type = "force_source", at = "x", f = "u" }
-    [inputs]
-    F = { force = "x" }
-    [outputs]
-    X = "x"
-    """)
-    shape = model.transfer_function("X", "F").bind().mode_shape(1)
+    text = (
+        OSCILLATOR.replace("K", "100").replace("B", "4")
+        + """
+blocks.D  = { type = "delay", T = "0.1 s" }
+signals.u = "-3*D*x"
+elements.pull = { type = "force_source", at = "x", f = "u" }
+"""
+    )
+    shape = of(text, "X", "F").mode_shape(1)
     s = complex(shape.pole)
     assert shape["x"] == 1
     assert complex(shape["u"]) == pytest.approx(-3 * exp(-0.1 * s))
@@ -313,20 +305,16 @@ def test_a_delayed_force_lags():
 
 
 def test_a_field_loaded_by_a_signal_all_along_satisfies_its_equation():
-    model = symflex.loads("""
-    symflex = 1
-    [signals]
-    q = "-500*w(1/2)"
-    [fields.w]
-    domain     = ["0", "1"]
-    equation   = "w'''' + s^2*w = q"
-    conditions = ["w(0) = 0", "w'(0) = 0", "w''(1) = 0", "w'''(1) = -F"]
-    [inputs]
-    F = {}
-    [outputs]
-    W = "w(1)"
-    """)
-    shape = model.transfer_function("W", "F").bind().mode_shape(1)
+    text = """
+signals.q = "-500*w(1/2)"
+inputs.F  = {}
+outputs.W = "w(1)"
+[fields.w]
+domain     = ["0", "1"]
+equation   = "w'''' + s^2*w = q"
+conditions = ["w(0) = 0", "w'(0) = 0", "w''(1) = 0", "w'''(1) = -F"]
+"""
+    shape = of(text, "W", "F").mode_shape(1)
     assert complex(shape["q"]).real == pytest.approx(-500 * float(shape.along("w", 0.5)))
     step = 1e-5
     third = shape.along("w", [0.3 - step, 0.3 + step], "w'''")
@@ -336,38 +324,15 @@ def test_a_field_loaded_by_a_signal_all_along_satisfies_its_equation():
 
 
 def test_a_circuit_is_scaled_by_its_largest_voltage():
-    model = symflex.loads("""
-    symflex = 1
-    [elements]
-    L = { type = "inductor", between = ["a", "b"], L = "1 H" }
-    C = { type = "capacitor", between = ["b", "ground"], C = "1 F" }
-    C_a = { type = "capacitor", between = ["a", "ground"], C = "2 F" }
-    [inputs]
-    i = { current = "a" }
-    [outputs]
-    v = "b"
-    """)
-    shape = model.transfer_function("v", "i").bind().mode_shape(1)
+    text = """
+elements.L   = { type = "inductor", between = ["a", "b"], L = "1 H" }
+elements.C   = { type = "capacitor", between = ["b", "ground"], C = "1 F" }
+elements.C_a = { type = "capacitor", between = ["a", "ground"], C = "2 F" }
+inputs.i     = { current = "a" }
+outputs.v    = "b"
+"""
+    shape = of(text, "v", "i").mode_shape(1)
     assert [complex(shape[n]) for n in "ab"] == pytest.approx([-0.5, 1])
-
-
-def test_given_values_take_the_place_of_declared_ones():
-    drive = symflex.loads("""
-    symflex = 1
-    [parameters]
-    m = "1 kg"
-    r = "2 kg"
-    k = "5 N/m"
-    [elements]
-    a = { type = "mass", at = "x", m = "m" }
-    b = { type = "mass", at = "y", m = "r" }
-    c = { type = "spring", between = ["x", "y"], k = "k" }
-    [inputs]
-    F = { force = "x" }
-    [outputs]
-    X = "x"
-    """).transfer_function("X", "F")
-    assert complex(drive.bind(r=10).mode_shape(1)["y"]) == pytest.approx(-0.1)
 
 
 def test_near_a_pole_the_outputs_stand_in_the_ratio_of_the_shape():
@@ -399,7 +364,6 @@ def test_a_hidden_mode_has_a_shape():
 
 
 TWO_ARMS = """
-symflex = 1
 [elements]
 one = { type = "rod", between = ["ground", "p"], E = "1 Pa", rho = "1 kg/m^3", A = "1 m^2", l = "1 m" }
 two = { type = "rod", between = ["ground", "q"], E = "1 Pa", rho = "1 kg/m^3", A = "1 m^2", l = "1 m" }
@@ -411,7 +375,7 @@ Y = "p"
 
 
 def test_two_equal_arms_have_two_shapes_at_one_pole():
-    bound = symflex.loads(TWO_ARMS).transfer_function("Y", "F").bind()
+    bound = of(TWO_ARMS, "Y", "F")
     first, second = bound.mode_shapes(1)
     assert [complex(first[n]) for n in "pq"] == pytest.approx([1, 0])
     assert [complex(second[n]) for n in "pq"] == pytest.approx([0, 1])
@@ -422,38 +386,21 @@ def test_two_equal_arms_have_two_shapes_at_one_pole():
 
 
 def test_the_modes_of_a_double_pole_share_its_shapes():
-    model = symflex.loads("""
-    symflex = 1
-    [elements]
-    a = { type = "mass", at = "x", m = "1 kg" }
-    b = { type = "mass", at = "y", m = "1 kg" }
-    c = { type = "spring", between = ["x", "ground"], k = "4 N/m" }
-    d = { type = "spring", between = ["y", "ground"], k = "4 N/m" }
-    [inputs]
-    F = { force = "x" }
-    [outputs]
-    X = "x"
-    """)
-    shapes = model.transfer_function("X", "F").bind().mode_shapes(1)
-    assert [[complex(s[n]) for n in "xy"] for s in shapes] == [
-        pytest.approx([1, 0]),
-        pytest.approx([0, 1]),
-    ]
+    text = """
+elements.a = { type = "mass", at = "x", m = "1 kg" }
+elements.b = { type = "mass", at = "y", m = "1 kg" }
+elements.c = { type = "spring", between = ["x", "ground"], k = "4 N/m" }
+elements.d = { type = "spring", between = ["y", "ground"], k = "4 N/m" }
+inputs.F  = { force = "x" }
+outputs.X = "x"
+"""
+    first, second = of(text, "X", "F").mode_shapes(1)
+    assert [complex(first[n]) for n in "xy"] == pytest.approx([1, 0])
+    assert [complex(second[n]) for n in "xy"] == pytest.approx([0, 1])
 
 
 def test_a_double_pole_with_one_shape_has_no_second_mode():
-    model = symflex.loads("""
-    symflex = 1
-    [elements]
-    a = { type = "mass", at = "x", m = "1 kg" }
-    k = { type = "spring", between = ["x", "ground"], k = "1 N/m" }
-    b = { type = "damper", between = ["x", "ground"], b = "2 N*s/m" }
-    [inputs]
-    F = { force = "x" }
-    [outputs]
-    X = "x"
-    """)
-    bound = model.transfer_function("X", "F").bind()  # (s + 1)^2
+    bound = of(OSCILLATOR.replace("K", "1").replace("B", "2"), "X", "F")  # (s + 1)^2
     assert bound.mode_shape(1)["x"] == 1
     with pytest.raises(UsageError, match="SF904"):
         bound.mode_shape(2)
@@ -501,10 +448,8 @@ def test_the_pole_of_a_filter_in_an_output_has_no_shape():
     for output in ("x/(s + 5)", "u/(s + 5)"):
         motion = 'm = { type = "mass", at = "x", m = "1 kg" }' if "x" in output else ""
         given = '{ force = "x" }' if motion else "{}"
-        model = symflex.loads(
-            f'symflex = 1\n[elements]\n{motion}\n[inputs]\nu = {given}\n[outputs]\nY = "{output}"'
-        )
-        found = words(model.transfer_function("Y", "u").bind().mode_shape, 1)
+        bound = of(f'[elements]\n{motion}\n[inputs]\nu = {given}\n[outputs]\nY = "{output}"', "Y", "u")
+        found = words(bound.mode_shape, 1)
         assert "SF902" in found and "is not a pole of the model's equations" in found, output
 
 

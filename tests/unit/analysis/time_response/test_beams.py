@@ -120,9 +120,8 @@ def test_a_ramp_of_a_cantilever_ends_in_the_static_slope():
     assert abs(found.values[1] - expected) <= found.radius[1] + 1e-10
 
 
-@pytest.mark.parametrize("output", ["x", "s*x"])
-def test_the_bound_of_modes_left_out_holds_for_a_thousand_of_them(output):
-    modes = lossless_modes(beam(output=output), 24)
+def test_the_bound_of_modes_left_out_holds_for_a_thousand_of_them():
+    modes = lossless_modes(beam(), 24)
     roots, reached = modes.lowest(20)
     rest = modes.rest(reached, 1)
     many, _ = modes.lowest(1000)

@@ -63,12 +63,13 @@ def proportional(s):
     return 2 * receptance(s, mpmath.mpf("0.02"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("force", "gain", "late", "kind"),
     [
         ("k*(r - D*x)", proportional, 0.0, "step"),
         ("D*k*(r - x)", proportional, 0.3, "ramp"),
-        pytest.param("D*k*(1 + T_d*s)/(1 + T_f*s)*(r - x)", controlled, 0.3, "step", marks=pytest.mark.slow),
+        ("D*k*(1 + T_d*s)/(1 + T_f*s)*(r - x)", controlled, 0.3, "step"),
     ],
     ids=["that measures late", "that acts late", "whose controller is proper"],
 )
