@@ -6,13 +6,20 @@
 changes the modules in a copy of the checkout, one place at a time (mutmut does), runs the tests named, and
 prints the share of changes that they notice and the diff of every other. Without tests the unit tests of the
 modules' rooms are taken; ``--sample`` draws so many changes of each module, the same ones each time. Those
-of functions with a decorator (properties, cached results) are not made. The figures of the core stand in
-docs/mutation.md.
+of functions with a decorator (properties, cached results) are not made. docs/mutation.md has the figures of
+the core.
+
+    python -m tests.mutation --sample 40 --record before.json symflex/loops/lumped.py tests/unit/loops
+    python -m tests.mutation --again before.json symflex/loops/lumped.py tests/unit/loops
+
+The first writes down which changes the tests noticed; the second makes just these again, after tests were cut
+or joined, and prints every one that nobody notices any more.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import re
 import shutil
 import subprocess
@@ -45,7 +52,15 @@ NOTICED = {"killed", "timeout"}
 SEED = 15
 
 
-def measure(modules: list[str], tests: list[str], *, sample: int | None = None, children: int = 2) -> None:
+def measure(
+    modules: list[str],
+    tests: list[str],
+    *,
+    sample: int | None = None,
+    again: Path | None = None,
+    record: Path | None = None,
+    children: int = 2,
+) -> None:
     """Print which changes of modules survive the tests, and the shares of those noticed."""
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder)
@@ -66,7 +81,10 @@ def measure(modules: list[str], tests: list[str], *, sample: int | None = None, 
         with (copy / "pyproject.toml").open("a") as file:
             file.write(SETTINGS.format(modules=modules, copied=COPIED, tests=tests))
         chosen: list[str] = []
-        if sample is not None:
+        if again is not None:
+            before = json.loads(again.read_text(encoding="utf-8"))
+            chosen = [name for module in modules for name in before[module]["noticed"]]
+        elif sample is not None:
             # A run for a change that does not exist lists all changes, and which tests reach them.
             run(*MUTMUT, "run", "none")
             found = list(verdicts())
@@ -83,10 +101,15 @@ def measure(modules: list[str], tests: list[str], *, sample: int | None = None, 
                 line for line in run(*MUTMUT, "show", name).splitlines() if re.match(r"[-+](?![-+])", line)
             ]
             print(f"{name.rpartition('.')[2]} ({every[name]})", *diff, sep="\n")
+    found: dict[str, dict[str, list[str]]] = {}
     for module in modules:
         tried = [name for name in every if _module_of(name) == module]
-        noticed = len(tried) - len(set(survived).intersection(tried))
-        print(f"{module}: {noticed} of {len(tried)} changes noticed, {noticed / max(1, len(tried)):.0%}")
+        noticed = [name for name in tried if name not in survived]
+        found[module] = {"noticed": noticed, "survived": [name for name in tried if name in survived]}
+        share = len(noticed) / max(1, len(tried))
+        print(f"{module}: {len(noticed)} of {len(tried)} changes noticed, {share:.0%}")
+    if record is not None:
+        record.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
 
 
 def _module_of(change: str) -> str:
@@ -99,9 +122,18 @@ if __name__ == "__main__":
     )
     parser.add_argument("paths", nargs="+", metavar="PATH", help="modules, symflex/..., and tests")
     parser.add_argument("--sample", type=int, metavar="N", help="draw N changes of each module")
+    parser.add_argument("--again", type=Path, metavar="FILE", help="make what a record says was noticed")
+    parser.add_argument("--record", type=Path, metavar="FILE", help="write which changes were noticed")
     parser.add_argument("--children", type=int, default=2, metavar="N", help="processes (2)")
     given = parser.parse_args()
     changed = [path for path in given.paths if path.startswith("symflex/")]
     rooms = sorted({f"tests/unit/{Path(path).parts[1]}" for path in changed})
     named = [path for path in given.paths if path not in changed]
-    measure(changed, named or rooms, sample=given.sample, children=given.children)
+    measure(
+        changed,
+        named or rooms,
+        sample=given.sample,
+        again=given.again,
+        record=given.record,
+        children=given.children,
+    )
