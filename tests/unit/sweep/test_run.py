@@ -46,7 +46,7 @@ def task_and_design(count):
 
 @pytest.mark.slow
 def test_the_order_in_which_chunks_come_back_does_not_matter():
-    task, design = task_and_design(101)
+    task, design = task_and_design(401)
     here, there = run_sweep(task, design), run_sweep(task, design, Backwards(), workers=3)
     assert npz_bytes(here) == npz_bytes(there)
 
@@ -168,7 +168,7 @@ def test_margins_are_what_routh_says():
 
 # --------------------------------------------------------------------------- processes, kills and clusters
 
-ARGUMENTS = ["--over", "E=+-5%", "--over", "l=+-2%", "--monte-carlo", "300", "--modes", "4"]
+ARGUMENTS = ["--over", "E=+-5%", "--over", "l=+-2%", "--monte-carlo", "600", "--modes", "6"]
 
 
 def symflex_sweep(folder, output, *more):
@@ -193,12 +193,12 @@ def test_a_sweep_that_is_killed_goes_on_to_the_same_bytes(tmp_path):
         command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
     ) as p:
         for _ in range(6000):
-            if len(list(journal.glob("chunk-*.npz"))) >= 20 or p.poll() is not None:
+            if len(list(journal.glob("chunk-*.npz"))) >= 60 or p.poll() is not None:
                 break
             time.sleep(0.01)
         p.send_signal(signal.SIGKILL)
     kept = {path.name: path.stat().st_mtime_ns for path in journal.glob("chunk-*.npz")}
-    assert 0 < len(kept) < 300 // chunk_size(300)
+    assert 0 < len(kept) < 600 // chunk_size(600)
     assert not (tmp_path / "killed.nc").exists()
     assert run(tmp_path, "killed.nc", "--workers", "2") == expected
     assert not journal.exists()
