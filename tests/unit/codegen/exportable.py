@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from functools import cache
+from importlib.abc import InspectLoader
+from importlib.util import module_from_spec, spec_from_loader
 from pathlib import Path
 
 from symflex import pipeline
@@ -141,3 +143,24 @@ def derived(name):
 
 def public_name(tf):
     return f"{tf.output.name}_over_{tf.input.name}"
+
+
+class _Loader(InspectLoader):
+    """Loads a module from text."""
+
+    def __init__(self, text):
+        self.text = text
+
+    def get_source(self, fullname):
+        return self.text
+
+    def is_package(self, fullname):
+        return False
+
+
+def executed(text):
+    """Return what generated Python defines."""
+    loader = _Loader(text)
+    module = module_from_spec(spec_from_loader("generated", loader))
+    loader.exec_module(module)
+    return vars(module)

@@ -194,7 +194,7 @@ X = "q"
 """
 KINDS = {
     "a lossy blade that ends in a tip": (TAPERED.replace("LAW", "1").replace("END", BLADE), (6, 1e4), 1e-13),
-    "members that taper": (TAPERED.replace("LAW", "(1 - x/(2*l))").replace("END", ROD), (1, 1e5), 1e-13),
+    "members that taper": (TAPERED.replace("LAW", "(1 - x/(2*l))").replace("END", ROD), (1, 1e4), 1e-13),
     "a sign that depends on the frequency": (FOUNDATION, (1e-2, 1e5), 1e-13),
     "two beams": (specification("two_beams"), (1e-2, 1e5), 1e-13),
     "axial force": (specification("tension"), (1e-2, 1e5), 1e-13),
@@ -204,8 +204,10 @@ KINDS = {
 }
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("kind", KINDS)
+DEAR = (*[*KINDS][:2], "no formula for wavenumbers")
+
+
+@pytest.mark.parametrize("kind", [pytest.param(k, marks=pytest.mark.slow) if k in DEAR else k for k in KINDS])
 def test_every_kind_of_kernel_agrees_with_balls(kind, tmp_path):
     text, ends, allowed = KINDS[kind]
     tf = pipeline.derive_all(pipeline.loads(text))[0]
@@ -213,12 +215,12 @@ def test_every_kind_of_kernel_agrees_with_balls(kind, tmp_path):
     solved = {f for f in ("cx_roots(", "cx_modal(", "cx_propagated(") if f in files.text}
     assert solved == {PIPE: {"cx_roots(", "cx_modal("}, MASSLESS: {"cx_propagated("}}.get(text, set())
     library, _ = compiled(tmp_path, files)
-    omega = np.geomspace(*ends, 13)
+    omega = np.geomspace(*ends, 5 if kind in DEAR else 13)
     found, negative = response(library, 0, omega), response(library, 0, -omega)
     computed = found, negative.conj(), value_at(library, 0, 1j * omega)
     assert max(worst_errors(tf, 1j * omega, *computed)) <= allowed
     if kind != "a delay":  # it grows without bounds to the left
-        s = omega * np.exp(1j * np.linspace(0.1, 6.2, 13))
+        s = omega * np.exp(1j * np.linspace(0.1, 6.2, len(omega)))
         assert worst_errors(tf, s, value_at(library, 0, s))[0] <= allowed
 
 

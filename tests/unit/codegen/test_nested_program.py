@@ -13,18 +13,14 @@ from symflex.codegen.python.module import NUMPY
 from symflex.errors import BudgetError
 from symflex.expressions import Product, Sum, format_expression
 from symflex.print.forms.nested import nested_form
+from tests.unit.codegen.exportable import executed
 from tests.unit.transfer.test_nested_form import CHAIN, dense
-
-
-def module(tfs, model):
-    namespace = {}
-    exec(compile(NUMPY.export(model, tfs, samples=20).text, "<export>", "exec"), namespace)  # noqa: S102
-    return namespace["TRANSFER_FUNCTIONS"]
 
 
 def test_the_exported_module_computes_what_the_matrix_gives():
     model = pipeline.loads(CHAIN)
-    functions = module(pipeline.derive_nested(model), model)
+    text = NUMPY.export(model, pipeline.derive_nested(model), samples=20).text
+    functions = executed(text)["TRANSFER_FUNCTIONS"]
     s = np.array([0.3j, 12j, 40j, 2 - 3j, 500j])
     expected = np.array([dense(x, "F")[2] for x in s])
     assert np.allclose(functions["X_3/F"](s), expected, rtol=1e-9)

@@ -15,6 +15,7 @@ from symflex.errors import ModelError
 from tests.independent import plane_frames
 from tests.independent.boundary_value import Problem, bending
 from tests.independent.members import random_members, response, specification
+from tests.unit.codegen.exportable import executed
 from tests.unit.codegen.test_c_files import compiled, value_at
 from tests.unit.codegen.test_c_files import response as c_response
 
@@ -36,9 +37,7 @@ in_numpy = cache(exported)
 @cache
 def functions(text):
     """Return the functions of a numpy module."""
-    scope = {"__name__": "plant"}
-    exec(compile(in_numpy(text).text, "plant", "exec"), scope)  # noqa: S102
-    return scope
+    return executed(in_numpy(text).text)
 
 
 def chain(count, length="0.5 m", last=""):
@@ -131,10 +130,8 @@ def test_three_spans_with_a_sensor_inside_are_solved_as_they_are_asked_for():
     assert "solved as a network" in reason
     made = EXPORTERS["numpy"].export(model, tfs, "plant", is_alone=False, samples=20)
     assert len(made.text) < MODULE_BYTES
-    scope = {"__name__": "plant"}
-    exec(compile(made.text, "plant", "exec"), scope)  # noqa: S102
     expected = np.array([inside_the_second_span(s) for s in POINTS])
-    assert scope["Y_over_F"](POINTS) == pytest.approx(expected, rel=1e-12)
+    assert executed(made.text)["Y_over_F"](POINTS) == pytest.approx(expected, rel=1e-12)
 
 
 def test_long_members_neither_overflow_nor_lose_digits():

@@ -95,9 +95,7 @@ def functions_of(text):
 def module(text):
     """Return what is exported of a specification."""
     tfs = functions_of(text)
-    made = types.ModuleType("exported")
-    exec(compile(NUMPY.export(tfs[0].model, tfs, samples=10).text, "exported", "exec"), vars(made))  # noqa: S102
-    return made
+    return types.SimpleNamespace(**exportable.executed(NUMPY.export(tfs[0].model, tfs, samples=10).text))
 
 
 @pytest.fixture(autouse=True)
