@@ -8,7 +8,6 @@ import pytest
 from symflex import pipeline
 from symflex.codegen.matlab import MATLAB
 from symflex.transfer import bind
-from tests.house.repository import ROOT
 from tests.integration.octave import Octave
 from tests.unit.codegen.against_balls import axis_points, worst_errors
 from tests.unit.codegen.exportable import SPECS, derived, public_name
@@ -37,30 +36,25 @@ def exported(octave, name, samples=400):
 def test_what_else_a_program_can_hold_agrees_on_the_axis_and_in_both_half_planes(octave):
     asked = []
     for name in SPECS:
-        tfs, on_axis = exported(octave, name, samples=30)
+        tfs, on_axis = exported(octave, name, samples=5)
         assert bool(on_axis) == (name == "two_beams")
         for tf in tfs:
-            w = axis_points(tf, 30)
+            w = axis_points(tf, 20)
             turned = w[::5] * np.exp(1j * np.linspace(0.3, 6.0, len(w[::5])))
             s = np.concatenate([1j * w, turned if name != "delayed" else []])
             # Where roots are equal at every s, rounding costs digits, and the export says so.
             worst = 1e-8 if name == "massless_beam" else ACCURACY
             asked.append((tf, s, worst, octave.keep(f"G.{public_name(tf)}({octave.points(s)})")))
+            if name == "chain":  # powers that overflow are taken of 1/s
+                assert "is_far" in (octave.folder / "chain.m").read_text()
+                far = np.array([1e3j, 1e8j, 1e16j, 1e18 + 1e18j, 1e25, -1e30j, 2.0])
+                asked.append((tf, far, worst, octave.keep(f"G.X_over_F({octave.points(far)})")))
             if tf.name in on_axis:
                 key = octave.keep(f"G.{public_name(tf)}_at(real({octave.points(-w)}))")
                 asked.append((tf, -1j * w, worst, key))
     octave.run()
     for tf, s, worst, key in asked:
         assert worst_errors(tf, s, octave.value(key))[0] <= worst, tf.name
-
-
-def test_powers_that_overflow_are_taken_of_one_over_s(octave):
-    ((tf,), _) = exported(octave, "chain", samples=30)
-    s = np.array([1e3j, 1e8j, 1e16j, 1e18 + 1e18j, 1e25, -1e30j, 2.0])
-    key = octave.keep(f"G.X_over_F({octave.points(s)})")
-    assert "is_far" in (octave.folder / "chain.m").read_text()
-    octave.run()
-    assert worst_errors(tf, s, octave.value(key))[0] <= ACCURACY
 
 
 def test_a_conical_rod_is_its_formula_also_where_the_taper_is_an_array(octave):
@@ -76,18 +70,9 @@ def test_a_conical_rod_is_its_formula_also_where_the_taper_is_an_array(octave):
     assert found == pytest.approx(receptance(9000j, np.array([0.0, 0.3, 0.8])), rel=1e-11)
 
 
-def tapered(octave, name):
-    """Write the function file of a derivation with a tip, and call its main function."""
-    model = pipeline.load(ROOT / "derivations" / "tapers" / f"{name}.toml")
-    made = MATLAB.export(model, pipeline.derive_all(model), name, samples=5)
-    assert not made.warnings
-    octave.write(name, made.text)
-    octave.do(f"G = {name}();")
-
-
 @pytest.mark.slow
 def test_a_hanging_string_is_bessels_function_also_far_above_its_band(octave):
-    tapered(octave, "hanging_string")
+    exported(octave, "hanging_string", samples=5)
     points = octave.points(TIPS)
     keys = [octave.keep(f"G.{name}_over_w_0({points})") for name in ("tip", "mid")]
     lengths = np.array([0.5, 3.0, 0.7, 2.0, 1.0, 1.5])
@@ -103,14 +88,11 @@ def test_a_hanging_string_is_bessels_function_also_far_above_its_band(octave):
 
 
 @pytest.mark.slow
-def test_a_wedge_and_a_cone_are_kirchhoffs(octave):
-    found = []
-    for name, m in (("wedge", 1), ("cone", 2)):
-        tapered(octave, name)
-        found.append((octave.keep(f"G.tip_over_w_0({octave.points(FAST)})"), m))
+def test_a_wedge_is_kirchhoffs(octave):
+    exported(octave, "wedge", samples=5)
+    key = octave.keep(f"G.tip_over_w_0({octave.points(FAST)})")
     octave.run()
-    for key, m in found:
-        assert octave.value(key) == pytest.approx(kirchhoff(FAST, m), rel=1e-13)
+    assert octave.value(key) == pytest.approx(kirchhoff(FAST, 1), rel=1e-13)
 
 
 # ------------------------------------------------------------------------------------------ what is called
