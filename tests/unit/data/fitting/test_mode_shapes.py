@@ -10,8 +10,9 @@ from scipy.linalg import eigh
 
 from symflex.data.fitting import Base, fit_resonances, mode_shapes
 from symflex.data.measurement import MeasuredResponse
-from symflex.errors import DataError, FitError, UsageError
+from symflex.errors import FitError, UsageError
 from symflex.options import FitOptions
+from tests.unit.refusals import refusal
 
 # Three masses between two walls.
 MASS = np.diag([2.0, 3.0, 1.5])
@@ -19,7 +20,7 @@ STIFFNESS = 1e4 * np.array([[9.0, -4.0, 0.0], [-4.0, 10.0, -6.0], [0.0, -6.0, 8.
 SQUARES, SHAPES = eigh(STIFFNESS, MASS)  # columns with phi^T M phi = 1
 OMEGA = np.sqrt(SQUARES)
 ZETA = np.array([0.01, 0.02, 0.015])
-FREQUENCY = np.arange(5.0, 70.0, 0.05)
+FREQUENCY = np.arange(5.0, 70.0, 0.1)
 DRIVEN = 1
 
 
@@ -49,7 +50,7 @@ def shapes_of(data, driving=DRIVEN, **asked):
 
 @pytest.mark.parametrize(
     ("power", "unit", "factor"),
-    [(0, "m/N", 1.0), (1, "m/(N*s)", 1.0), (2, "m/(N*s^2)", 1.0), (0, "mm/N", 1000.0), (2, "1/kg", 1.0)],
+    [(1, "m/(N*s)", 1.0), (0, "mm/N", 1000.0), (2, "1/kg", 1.0)],
 )
 def test_shapes_are_the_eigenvectors_normalised_by_mass(power, unit, factor):
     found = shapes_of(responses(power, unit, factor))
@@ -77,12 +78,10 @@ def test_a_response_elsewhere_is_not_taken_for_the_driven_point():
     assert raised.value.diagnostics[0].code == "SF616"
 
 
-@pytest.mark.parametrize("unit", ["", "V/N", "m"])
-def test_a_response_without_the_unit_of_a_motion_over_a_force_is_refused(unit):
-    data = [replace(r, unit=unit) for r in responses(0, "m/N")]
-    with pytest.raises(DataError) as raised:
-        shapes_of(data)
-    assert raised.value.diagnostics[0].code == "SF602"
+def test_a_response_without_the_unit_of_a_motion_over_a_force_is_refused():
+    for unit in ("", "V/N", "m"):
+        data = [replace(r, unit=unit) for r in responses(0, "m/N")]
+        assert refusal(shapes_of, data) == "DataError SF602", unit
 
 
 def test_a_fit_of_several_responses_or_with_a_base_is_refused():

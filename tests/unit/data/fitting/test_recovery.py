@@ -31,17 +31,8 @@ def recover(count, seed, **settings):
 
 
 @pytest.mark.slow
-def test_ten_systems_are_recovered():
-    errors, deviations = recover(10, seed=1)
-    assert errors[:, 0].max() < 0.002
-    assert errors[:, 1].max() < 0.10
-    # 200 intervals, of which some go together: a wide limit here, the promised one in the slow test.
-    assert 0.5 < np.mean(errors < deviations) < 0.85
-
-
-@pytest.mark.slow
-def test_two_hundred_systems_are_recovered_and_intervals_are_honest():
-    errors, deviations = recover(200, seed=2)
+def test_many_systems_are_recovered_and_intervals_are_honest():
+    errors, deviations = recover(60, seed=2)
     assert errors[:, 0].max() < 0.002
     assert errors[:, 1].max() < 0.10
     inside = np.mean(errors < deviations, axis=(0, 2))
@@ -51,7 +42,7 @@ def test_two_hundred_systems_are_recovered_and_intervals_are_honest():
 @pytest.mark.slow
 def test_intervals_are_honest_where_leakage_rules():
     """Records so short that the narrowest peaks are little more than a line wide."""
-    errors, deviations = recover(100, seed=2, record=8.0)
+    errors, deviations = recover(60, seed=2, record=8.0)
     inside = np.mean(errors < deviations, axis=(0, 2))
     assert np.all((inside > 0.60) & (inside < 0.76)), inside
 
