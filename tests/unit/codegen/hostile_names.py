@@ -155,7 +155,8 @@ TEXTS = tuple(dict.fromkeys([*HOSTILE, *IN_COMMENTS, *IN_MATLAB, *IN_JULIA]))
 PYTHON = [
     *keyword.kwlist,
     *keyword.softkwlist,
-    *(name for name in dir(builtins) if name.islower() or name.startswith("__")),
+    *[name for name in dir(builtins) if name.islower() or name.startswith("__")][::4],
+    *"complex float abs zip tuple any all isinstance list next iter max min len range sum type bool".split(),
     *"np numpy ArrayLike NDArray annotations arguments self cls jax jnp xp sys cmath math importlib".split(),
     *"Any Array space BLOCK PARAMETERS TRANSFER_FUNCTIONS FREQUENCY_RESPONSES STATES INPUTS OUTPUTS".split(),
     *"_numbers _real_numbers _in_blocks _shape _in_pieces _in_array _in_real_pieces _is_left".split(),

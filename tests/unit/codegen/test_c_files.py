@@ -194,7 +194,7 @@ X = "q"
 """
 KINDS = {
     "a lossy blade that ends in a tip": (TAPERED.replace("LAW", "1").replace("END", BLADE), (6, 1e4), 1e-13),
-    "members that taper": (TAPERED.replace("LAW", "(1 - x/(2*l))").replace("END", ROD), (1, 1e4), 1e-13),
+    "members that taper": (TAPERED.replace("LAW", "(1 - x/(2*l))").replace("END", ROD), (1, 2e3), 1e-13),
     "a sign that depends on the frequency": (FOUNDATION, (1e-2, 1e5), 1e-13),
     "two beams": (specification("two_beams"), (1e-2, 1e5), 1e-13),
     "axial force": (specification("tension"), (1e-2, 1e5), 1e-13),

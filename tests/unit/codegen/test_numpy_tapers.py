@@ -123,8 +123,8 @@ def test_a_hanging_string_is_bessels_function():
     assert string["mid_over_w_0"](TIPS) == pytest.approx(hanging(TIPS, 1.0, 2.0), rel=2e-12)
     lengths = np.array([[0.5], [3.0]])
     assert string["tip_over_w_0"](TIPS, l=lengths) == pytest.approx(hanging(TIPS, 0.0, lengths), rel=2e-12)
-    # Up to the mode 570. A rounding of s alone costs |s G'/G| times as much.
-    omega = np.geomspace(0.1, 2e3, 12)
+    # Up to the mode 86; in C up to the mode 570. A rounding of s alone costs |s G'/G| times as much.
+    omega = np.geomspace(0.1, 300, 12)
     x = 2 * omega * np.sqrt(2 / 9.81)
     room = 3e-14 * (1 + np.abs(x * jv(1, x) / jv(0, x)))
     assert np.all(np.abs(string["tip_over_w_0"](1j * omega) * jv(0, x) - 1) < room)
