@@ -1,4 +1,4 @@
-"""What all tests share: one thread each, how a test asks for a program or a library, and what each test costs."""
+"""What tests share: one thread each, how one asks for a program or a library, and what each costs."""
 
 from __future__ import annotations
 

@@ -99,6 +99,7 @@ SEARCHED = ("rod_tip_mass", "timoshenko_cantilever", "one_link_arm", "kelvin_voi
 """Whose poles no table of ``test_published_roots`` has."""
 
 
+@pytest.mark.slow
 def test_printed_denominators_vanish_at_poles():
     steps = {
         (name, k): newton_step(name, tf, "den", pole(k))

@@ -233,6 +233,7 @@ def beam_values(h):
     return {"m_2": values["m_2"], "J": values["J"], "c": values["c"], "h": h, "length": values["l"]}
 
 
+@pytest.mark.slow
 def test_the_zeros_of_the_bending_beam_are_proved_where_the_bracket_says():
     assert eppinger1988.bracket(**beam_values(NEAR_TIP)) > 0 > eppinger1988.bracket(**beam_values(FAR_TIP))
     assert all(zero.on_imaginary_axis for zero in roots("zeros", "lumped_bending_beam", "X_act"))

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 
+import pytest
+
 from symflex.cli import run
 
 HEAD = """symflex = 1
@@ -267,6 +269,7 @@ BROKEN = {
 }
 
 
+@pytest.mark.slow
 def test_a_broken_taper_is_refused_at_its_place_in_a_sentence(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     for name, (marked, code, sentence) in BROKEN.items():

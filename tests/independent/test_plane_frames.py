@@ -259,6 +259,7 @@ def finite_element_frequencies(storeys, parts):
     return np.sqrt(np.linalg.eigvalsh(factor @ stiffness @ factor.T))
 
 
+@pytest.mark.slow
 def test_a_frame_of_ten_storeys_has_the_modes_of_finite_elements_and_no_other():
     """Frequencies of finite elements lie above, by less than 0.1 % with four elements a member."""
     model = pipeline.loads(specification(10))

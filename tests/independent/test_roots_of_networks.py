@@ -103,6 +103,7 @@ def frequencies(roots, top):
 
 
 @networks(7, slice(0, 2))
+@pytest.mark.slow
 def test_counts_of_eigenvalues_and_winding_numbers_find_the_same(network):
     network = lossless(network)
     counted = located(network, Modes(4))

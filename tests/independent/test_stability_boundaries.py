@@ -173,6 +173,7 @@ def test_textbook_boundaries():
         assert abs(2 * math.pi * boundary.frequencies_hz[0] - omega) < 1e-12 * omega, expression
 
 
+@pytest.mark.slow
 def test_margins_of_an_integrator_with_dead_time():
     # L = K e^(-s T)/s crosses 1 at omega = K; the phase left is 90 degrees less K T.
     found = loop("K*D/s", K=1.2).stability("K")

@@ -70,6 +70,7 @@ ANSWERS = {
 }
 
 
+@pytest.mark.slow
 def test_what_a_tip_answers_is_what_bessel_functions_say():
     for name, answer in ANSWERS.items():
         found = field(name)
@@ -200,6 +201,7 @@ y = "root"
 """
 
 
+@pytest.mark.slow
 def test_a_rod_that_thins_out_faster_than_its_taper_is_a_power_series_about_its_tip():
     s = mpc(-400, 9000)
     # With t from the tip on the section is t exp(2 t/l): t u'' + (1 + 2 t/l) u' = k^2 t u.

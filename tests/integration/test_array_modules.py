@@ -165,9 +165,8 @@ def test_array_api_strict_agrees_with_ball_arithmetic(name, over_any, strict):
 
 
 @needs_jax
-@pytest.mark.parametrize(
-    "name", ["two_mass", pytest.param("sliding_free_beam", marks=pytest.mark.slow), LONG]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["two_mass", "sliding_free_beam", "timoshenko_cantilever"])
 def test_jax_agrees_with_ball_arithmetic_compiled_or_not(name, over_jax, jax, jnp):
     module, (s, found) = over_jax(name), references(name)
     for key in [*found][:2]:
@@ -231,6 +230,7 @@ def test_values_stay_on_the_device_of_the_arguments(over_any, strict):
 
 
 @needs_strict
+@pytest.mark.slow
 @needs_jax
 def test_arrays_of_two_libraries_are_refused(over_any, strict, jnp):
     with pytest.raises(TypeError, match="together"):
@@ -416,6 +416,7 @@ def test_the_array_api_module_can_be_compiled_by_jax(over_any, jax, jnp):
 
 
 @needs_jax
+@pytest.mark.slow
 def test_the_derivative_by_s_agrees_with_ball_arithmetic(over_jax, jax):
     s, found = references("rod_tip_mass")
     value, slope = found["X_tip/F"]
@@ -470,9 +471,10 @@ def test_the_derivative_by_an_axial_force_is_that_of_the_boundary_value_problem(
 
 
 @needs_jax
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "function"),
-    [pytest.param("sliding_free_beam", "V_act_over_F", marks=pytest.mark.slow), ("two_mass", "X_tip_over_F")],
+    [("sliding_free_beam", "V_act_over_F"), ("two_mass", "X_tip_over_F")],
 )
 def test_derivatives_are_finite_wherever_values_are(name, function, over_jax, jax, jnp):
     module = over_jax(name)
@@ -494,6 +496,7 @@ def test_derivatives_are_finite_wherever_values_are(name, function, over_jax, ja
 
 
 @needs_jax
+@pytest.mark.slow
 def test_the_derivative_at_rest_is_finite(over_jax, jax, jnp):
     module = over_jax("rod_tip_mass")
     value, slope = jax.value_and_grad(lambda x: jnp.real(module.X_tip_over_F(0.0, l=x)))(1.0)
@@ -501,6 +504,7 @@ def test_the_derivative_at_rest_is_finite(over_jax, jax, jnp):
     assert float(slope) == pytest.approx(1 / (200e9 * 0.00048), rel=1e-15)
 
 
+@pytest.mark.slow
 @needs_jax
 def test_functions_are_mapped_over_parameters(over_jax, jax):
     given = over_jax("two_mass").X_tip_over_F
@@ -518,6 +522,7 @@ def test_a_response_in_real_arithmetic_is_differentiated_by_frequency(over_jax, 
     assert complex(found) == pytest.approx(complex(expected), rel=1e-11)
 
 
+@pytest.mark.slow
 @needs_jax
 def test_single_precision_is_told_of(over_jax, jax):
     jax.config.update("jax_enable_x64", False)

@@ -35,8 +35,8 @@ from symflex.print.latex import DOCUMENT, latex_document, latex_expression, late
 from symflex.print.latex.expression import Writer
 from symflex.roots.locate import locate
 from symflex.transfer import bind
+from tests.unit.codegen.hostile_names import HOSTILE as TEXTS
 from tests.unit.codegen.models_with_kernels import derived as of_case
-from tests.unit.codegen.test_numpy_hostile import HOSTILE as TEXTS
 
 pytestmark = pytest.mark.needs_tool("pdflatex")
 

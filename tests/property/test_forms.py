@@ -51,6 +51,7 @@ def assert_lowest_terms(tf):
 
 @given(network=networks())
 @settings(max_examples=20)
+@pytest.mark.slow
 def test_a_random_network_is_in_lowest_terms_and_every_form_reads_back_to_it(network):
     for tf in pipeline.derive_all(pipeline.loads(to_toml(network))):
         assert_lowest_terms(tf)

@@ -76,6 +76,7 @@ def test_a_figure_is_drawn_on_the_axes_given_in_the_user_s_style(loop, actuator)
         assert axes[-1].xaxis.label.get_size() == 13.0, kind
 
 
+@pytest.mark.slow
 def test_a_figure_without_axes_shows_in_a_notebook(loop, actuator):
     for kind in ("poles and zeros", "locus", "mode shape", "response"):
         data, size = DRAWINGS[kind][1](loop, actuator, None)._repr_png_()

@@ -39,6 +39,7 @@ def lossless():
     return both(two_beams())
 
 
+@pytest.mark.slow
 def test_values_and_phases_of_a_lossless_network_are_those_of_the_expanded_form(lossless):
     nested, expanded = lossless
     omega = np.geomspace(1.0, 5e4, 12)
@@ -47,6 +48,7 @@ def test_values_and_phases_of_a_lossless_network_are_those_of_the_expanded_form(
     np.testing.assert_allclose(found.phase, expected.phase, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_the_phase_of_a_damped_network_is_followed_through_its_resonances():
     nested, expanded = both(two_beams(', eta = "1e-4 s"'))
     omega = np.geomspace(10.0, 3e3, 4)

@@ -51,6 +51,7 @@ UNREAD = {
 }
 
 
+@pytest.mark.slow
 def test_a_formula_beyond_the_limits_is_still_proved_to_differ():
     for name, given in UNREAD.items():
         found = audited("V_act", *given)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from symflex import pipeline
 from tests.unit.audit.beam import COLOCATED, KRYLOV, SCALE, TIP, VAUGHAN, audited, measured
 
@@ -13,6 +15,7 @@ def laws(*given):
     return {law.law: law for law in audited(*given).laws}
 
 
+@pytest.mark.slow
 def test_the_papers_colocated_formula_violates_three_laws_and_keeps_two():
     # With q -> 0: S -> 0 and C -> 1, so (1 + 2 + 1)*1 = 4 and (1 + 6 + 1)/2 = 4.
     found = {law.law: law for law in measured("V_act", PAPER, VAUGHAN, SCALE).laws}

@@ -106,6 +106,7 @@ def test_a_formula_of_another_kind_is_proved_to_differ_without_a_correction():
     assert found.correction is None
 
 
+@pytest.mark.slow
 def test_the_derived_function_is_written_in_the_symbols_of_a_hopeless_print():
     found = audited("V_tip", "(S^3 - C)/(S - 7*C^2)", VAUGHAN)
     assert "(C^3 + S^2*C + C)/(C^4 + 2*S^2*C^2 + S^4 - 4*S*C - 1)" in format_expression(found.derived)

@@ -125,6 +125,7 @@ def test_the_version_is_the_packages(shell):
     assert shell("--version").out == f"symflex, version {__version__}\n"
 
 
+@pytest.mark.slow
 def test_output_keeps_to_80_columns(shell, monkeypatch):
     # The path printed is the one given, and where the checkout lies is not the program's to shorten.
     monkeypatch.chdir(ROOT)

@@ -320,6 +320,7 @@ def either(request):
 
 
 @pytest.mark.parametrize("name", LIBRARIES)
+@pytest.mark.slow
 def test_values_agree_with_balls_on_the_axis_and_all_around(name, request):
     library = request.getfixturevalue(name)
     for number, tf in enumerate(pipeline.derive_all(pipeline.loads(LIBRARIES[name]))[:2]):

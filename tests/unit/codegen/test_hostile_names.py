@@ -291,6 +291,7 @@ def assert_inert(target, text):
 
 
 @pytest.mark.needs_tool("gcc")
+@pytest.mark.slow
 def test_a_compiler_of_c_takes_any_prose_and_any_members_without_a_warning(tmp_path):
     model, tfs = springs(tuple(dict.fromkeys([*hostile.C, *hostile.ODD])))
     texts = [hostile.TEXTS[i % len(hostile.TEXTS)] for i in range(len(model.parameters))]
@@ -336,7 +337,7 @@ def values_in(target, folder, tfs, model):
 RUN = [
     "numpy",
     "array-api",
-    pytest.param("jax", marks=pytest.mark.needs_module("jax")),
+    pytest.param("jax", marks=[pytest.mark.needs_module("jax"), pytest.mark.slow]),
     pytest.param("c", marks=pytest.mark.needs_tool("gcc")),
     pytest.param("matlab", marks=pytest.mark.needs_tool("octave")),
 ]

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from functools import cache
 
+import pytest
+
 import symflex
 from symflex.codegen.infix import in_lines
 from symflex.codegen.julia import JULIA, module_name
@@ -23,6 +25,7 @@ def made(target, name):
     return TARGETS[target][0].export(model, tfs, name, samples=5)
 
 
+@pytest.mark.slow
 def test_lines_are_no_longer_than_the_language_likes():
     for target, (_, width) in TARGETS.items():
         for name in SHORT:
@@ -47,6 +50,7 @@ def test_functions_come_first_and_then_responses_in_what_was_measured_and_is_sai
         assert all(said.count(v.text()) for v in export.verified)
 
 
+@pytest.mark.slow
 def test_every_function_that_matlab_calls_is_in_the_file():
     for name in CALLING:
         text = made("matlab", name).text
@@ -66,6 +70,7 @@ def test_every_function_that_matlab_calls_is_in_the_file():
 STRING = re.compile(r'"""(?:[^"\\]|\\.|"(?!""))*"""|"(?:[^"\\\n]|\\.)*"')
 
 
+@pytest.mark.slow
 def test_every_private_function_that_julia_calls_is_in_the_module_and_brackets_are_balanced():
     for name in CALLING:
         text = made("julia", name).text
@@ -128,6 +133,7 @@ def test_lines_of_code_end_after_operators():
     assert not any(line.startswith(("+", "-", "*", ".*")) for line in lines)
 
 
+@pytest.mark.slow
 def test_a_model_of_the_python_interface_exports_both():
     text = DERIVATIONS["two_mass"].read_text()
     model = symflex.loads(text)

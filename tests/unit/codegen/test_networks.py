@@ -76,6 +76,7 @@ def receptance(count, s):
 
 
 @pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.slow
 def test_a_numpy_module_has_the_responses_of_boundary_value_problems(seed):
     network = random_members(seed)
     found = functions(specification(network))["X_over_F"](POINTS)
@@ -124,6 +125,7 @@ def inside_the_second_span(s):
         return complex(problem.solve()(seen))
 
 
+@pytest.mark.slow
 def test_three_spans_with_a_sensor_inside_are_solved_as_they_are_asked_for():
     model = pipeline.loads(SPANS)
     tfs, reason = pipeline.derive_as(model, model.transfer_functions, solves=True)
@@ -148,6 +150,7 @@ def test_long_members_neither_overflow_nor_lose_digits():
     assert functions(chain(1, "6 m"))["Y_over_F"](1j * omega) == pytest.approx(expected, rel=1e-11)
 
 
+@pytest.mark.slow
 def test_a_frequency_at_which_a_member_is_resonant_between_clamps_is_one_like_others():
     # Blevins: cos x cosh x = 1 at x = 4.73004074486270402602, of the first beam of 0.5 m.
     x = mpf("4.73004074486270402602")
@@ -217,6 +220,7 @@ Y = "r.y"
 """
 
 
+@pytest.mark.slow
 def test_a_module_of_a_frame_gives_the_response_of_its_dynamic_stiffness():
     steel = {"E": mpf(210e9), "I": mpf("1e-8"), "A": mpf("1e-4"), "rho": mpf(7800)}
     members = [

@@ -186,6 +186,7 @@ def test_an_exported_function_agrees_with_the_boundary_value_problem(name):
         assert made.X_over_F_at(np.array([0.0, 1e-6]))[0] == pytest.approx(static, rel=1e-14)
 
 
+@pytest.mark.slow
 def test_the_sliding_free_beam_agrees_with_its_boundary_value_problem():
     made = module(specification("sliding_free"))
     for output, name in enumerate(("V_act", "V_tip")):
@@ -198,6 +199,7 @@ def test_the_sliding_free_beam_agrees_with_its_boundary_value_problem():
         assert max(errors) < 2e-15
 
 
+@pytest.mark.slow
 def test_a_sensor_inside_agrees_with_the_boundary_value_problem():
     for name, x in (("V_mid_over_F", "0.5"), ("V_s_over_F", "0.31")):
         function = getattr(module(SENSOR), name)
@@ -344,6 +346,7 @@ def _column_under_load() -> float:
     return float(middle - length**2 / (8.0 * force))
 
 
+@pytest.mark.slow
 def test_a_pipe_with_flow_deflects_at_rest_as_a_compressed_column() -> None:
     for s in (0.0, 1e-9j, 1e-6j, -1e-9, 1e-6 + 1e-6j):
         assert abs(module(PIPE).Y_over_p(s) / _column_under_load() - 1) < 1e-12, s

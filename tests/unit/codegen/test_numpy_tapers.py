@@ -117,6 +117,7 @@ def hanging(s, above, length):
     return jv(0, x * np.sqrt(above)) / jv(0, x * np.sqrt(length))
 
 
+@pytest.mark.slow
 def test_a_hanging_string_is_bessels_function():
     string = functions("hanging_string")
     assert string["tip_over_w_0"](TIPS) == pytest.approx(hanging(TIPS, 0.0, 2.0), rel=2e-12)
@@ -148,5 +149,6 @@ FAST = 200 * TIPS
 
 
 @pytest.mark.parametrize(("name", "n"), [("wedge", 1), ("cone", 2)])
+@pytest.mark.slow
 def test_a_wedge_and_a_cone_are_kirchhoffs(name, n):
     assert functions(name)["tip_over_w_0"](FAST) == pytest.approx(kirchhoff(FAST, n), rel=1e-11)

@@ -72,6 +72,7 @@ def loop_drawing():
     return drawing_of(pipeline.loads(LOOP))
 
 
+@pytest.mark.slow
 def test_worked_models_are_drawn_with_everything_in_its_place():
     for name in WORKED:
         model = pipeline.load(ROOT / f"derivations/{name}.toml")
@@ -240,6 +241,7 @@ outputs = {{ D = "q - p", P = "p" }}
     assert all(len({round(x, 6) for x, _ in points}) == 1 for points in leads)
 
 
+@pytest.mark.slow
 def test_what_is_read_twice_has_one_wire_that_branches():
     text = f'{LOOP}Other = "n + 3*x"\n'
     drawing = drawing_of(pipeline.loads(text))

@@ -244,6 +244,7 @@ def wrong(text, values):
 
 
 @pytest.mark.parametrize("half", [0, 1])
+@pytest.mark.slow
 def test_odd_models_are_drawn(half):
     found = {name: wrong(ODD[name], values=False) for name in [*ODD][half::2]}
     assert {name: said for name, said in found.items() if said} == {}

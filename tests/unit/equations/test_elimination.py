@@ -154,6 +154,7 @@ def test_the_rows_given_are_not_changed():
     assert [dict(row) for row in rows] == before
 
 
+@pytest.mark.slow
 def test_a_chain_may_be_longer_than_calls_may_be_deep():
     # The determinant of tridiagonal (-1, 2, -1) with n rows is n + 1.
     n, limit = 150, sys.getrecursionlimit()

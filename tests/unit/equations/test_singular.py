@@ -214,6 +214,7 @@ def test_a_loop_next_to_a_field_has_the_gain_that_its_definitions_say():
             assert not is_singular(pipeline.assemble(pipeline.loads(text))), offset
 
 
+@pytest.mark.slow
 def test_a_node_that_floats_is_found_where_no_prime_field_holds_every_wavenumber():
     # Fourth roots of this many independent quantities are not in one of 400 fields together.
     beams = "".join(

@@ -430,6 +430,7 @@ def test_a_power_of_moderate_size_is_read():
         assert isinstance(tree(written), Expression), written
 
 
+@pytest.mark.slow
 def test_a_hostile_text_is_refused_or_read_under_either_limits():
     many = 10_001  # more characters than a user may write
     wrong = ["(" * many, "(" * many + "a" + ")" * many, ")" * many, "-" * many + "a", "+" * many + "a"]

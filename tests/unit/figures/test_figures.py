@@ -102,6 +102,7 @@ def test_a_figure_of_one_function_is_a_column_wide(tfs):
         assert drawn(kind, tfs[:1]).get_size_inches()[0] == 3.5, kind
 
 
+@pytest.mark.slow
 def test_two_drawings_have_the_same_bytes(tfs):
     one, other = (drawn("poles_zeros", tfs[:1]) for _ in range(2))
     assert [f for f in FORMATS if render(one, f) != render(other, f)] == []
@@ -192,6 +193,7 @@ def test_a_name_becomes_a_label():
         assert label_of_name(name) == label, (name, label)
 
 
+@pytest.mark.slow
 def test_every_command_a_label_may_use_is_drawn():
     figure = matplotlib.figure.Figure()
     for command in sorted({*GREEK, *ACCENTS, *FONTS, *SYMBOLS}):
@@ -237,6 +239,7 @@ def test_the_level_is_relative_to_the_unit_and_different_units_stand_in_the_lege
     ]
 
 
+@pytest.mark.slow
 def test_the_band_is_the_model_s_or_the_one_asked_for_in_any_numbers(tfs):
     for asked, band in ((None, (0.2, 5)), ((1, 3), (1, 3)), ((Fraction(1, 2), Fraction(3)), (0.5, 3))):
         assert drawn("bode", tfs, band_hz=asked).axes[0].get_xlim() == pytest.approx(band), asked
@@ -398,6 +401,7 @@ def test_a_root_that_is_multiple_or_far_away_is_named():
     assert r"$\times$ $-5000$" in said[DISTANT]
 
 
+@pytest.mark.slow
 def test_many_functions_take_the_page_and_several_rows(tfs):
     figure = drawn("poles_zeros", tfs * 3)
     assert figure.get_size_inches()[0] == 7.16

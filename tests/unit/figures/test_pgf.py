@@ -14,7 +14,7 @@ from symflex.errors import UsageError
 from symflex.figures import FIGURES, draw, render
 from symflex.figures.files import pgf_text
 from symflex.print.latex import DOCUMENT
-from tests.unit.codegen.test_numpy_hostile import HOSTILE
+from tests.unit.codegen.hostile_names import HOSTILE
 from tests.unit.print.test_html import MARKUP
 from tests.unit.print.test_latex_document import MORE
 from tests.unit.print.test_latex_text import COMMANDS as OF_TEXT
@@ -138,6 +138,7 @@ def test_equal_figures_give_equal_text(bounds, drawn):
     assert text_of("modes", bounds, width_mm=88.5, title="Two masses") == drawn("modes")
 
 
+@pytest.mark.slow
 def test_a_figure_in_the_font_of_latex_embeds_computer_modern(bounds):
     sources = [bound.source for bound in bounds]
     for font, name in (("latex", b"Cmr10"), ("times", b"STIX"), ("sans", b"DejaVuSans")):
@@ -154,6 +155,7 @@ def test_a_font_or_width_that_does_not_exist_is_refused(bounds):
             draw("bode", [bound.source for bound in bounds], bounds, **asked)
 
 
+@pytest.mark.slow
 def test_the_figures_of_a_model_and_one_of_each_other_kind_are_among_the_files():
     figures = '[figures.fig_7]\nkind = "bode"\nof = ["Y/F"]\ntitle = "100 % \\\\input{x}"\n'
     model = pipeline.loads(SPEC + figures)

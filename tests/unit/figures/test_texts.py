@@ -35,6 +35,7 @@ def test_texts_of_a_figure_keep_apart(name, kinds):
         assert not faults(draw(kind, [one.source for one in bounds], bounds)), kind
 
 
+@pytest.mark.slow
 def test_texts_of_a_figure_of_a_loop_keep_apart():
     model = pipeline.load(MODELS / "eppinger1988/loops/lumped_bending_beam_position.toml")
     for kind in ("locus", "nyquist"):
@@ -78,6 +79,7 @@ def crowded(seeds):
     return {seed: said for seed, said in found.items() if said}
 
 
+@pytest.mark.slow
 def test_numbers_and_names_of_scattered_roots_keep_apart():
     assert crowded((0, 1, 5)) == {}
 

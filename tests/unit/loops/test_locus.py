@@ -38,6 +38,7 @@ def test_one_curve_ends_next_to_the_zero(loop):
     assert min(abs(branch[-1] - 3) for branch in locus.branches) < 1e-4
 
 
+@pytest.mark.slow
 def test_a_delay_loop_is_traced(loop):
     locus = trace_locus(characteristic(loop("K*D/(s + 1)")), (Fraction(1, 10), Fraction(4)), modes=3)
     assert locus.arrived

@@ -96,6 +96,7 @@ def unstable(count, gain, up_to):
     return int(np.sum((poles.real > 0) & (abs(poles) < up_to)))
 
 
+@pytest.mark.slow
 def test_a_chain_has_the_stable_gains_of_its_formula(monkeypatch):
     up_to = 100.0
     limit = f"{up_to} Hz"
@@ -126,6 +127,7 @@ def test_a_locus_is_that_of_the_formula(monkeypatch):
         assert [one[0], one[-1]] == pytest.approx([other[0], other[-1]], rel=1e-9)
 
 
+@pytest.mark.slow
 def test_a_loop_gain_is_minus_one_at_a_closed_loops_pole(monkeypatch):
     (boundary, *_) = found(chain(6)).boundaries
     (crossing,) = boundary.crossings

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from symflex import pipeline
 from tests.house.repository import ROOT, specifications
 
@@ -123,6 +125,7 @@ SHIPPED = [
 ]
 
 
+@pytest.mark.slow
 def test_a_shipped_model_has_no_warnings():
     for path in SHIPPED:
         assert pipeline.warnings(pipeline.load(path)) == (), path

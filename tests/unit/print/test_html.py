@@ -13,7 +13,7 @@ from symflex import pipeline
 from symflex.model import ModelParameter
 from symflex.print.html import LONGEST, NUMBER, bound_html, escape_html, html_table, model_html, roots_html
 from symflex.roots import Certificate, Everything, HiddenRoot, PoleZeroMap, Root
-from tests.unit.codegen.test_numpy_hostile import HOSTILE
+from tests.unit.codegen.hostile_names import HOSTILE
 
 SPEC = """symflex = 1
 title = "An oscillator"

@@ -11,7 +11,7 @@ from symflex import pipeline
 from symflex.codegen.latex import LatexExporter
 from symflex.print.forms import print_form
 from symflex.print.latex import DOCUMENT, latex_files
-from tests.unit.codegen.test_numpy_hostile import HOSTILE
+from tests.unit.codegen.hostile_names import HOSTILE
 from tests.unit.print.test_html import MARKUP, SPEC
 from tests.unit.print.test_latex_text import COMMANDS as OF_TEXT
 

@@ -57,6 +57,7 @@ def hostile(tmp_path_factory):
     return report_on(tmp_path_factory.mktemp("hostile"), hostile=HOSTILE)
 
 
+@pytest.mark.slow
 def test_a_page_needs_nothing_but_itself_and_its_links_lead_somewhere(small, hostile):
     for report in (small, hostile):
         page = Page(report_page(report))

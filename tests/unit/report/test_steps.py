@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from symflex import loads
 from symflex.report.sections.files import figure_section
 from symflex.report.study import Study
@@ -32,6 +34,7 @@ def test_a_stable_closed_loop_shows_the_step_of_its_reference(tmp_path):
     assert found == ["figures/a_roots.svg", "figures/a_step.svg"]
 
 
+@pytest.mark.slow
 def test_no_step_is_shown_of_what_is_open_or_grows_or_has_its_own(tmp_path):
     unstable = LOOP.replace('"K N*s/m"', '{ value = "-2 N*s/m", assume = "real" }')
     is_open = 'symflex = 1\ninputs.u = {}\noutputs.y = "u/(s + 1)"\n'

@@ -48,6 +48,7 @@ def test_a_table_has_a_row_for_each_root(sweep):
 
 @pytest.mark.slow
 @pytest.mark.needs_module("pyarrow")
+@pytest.mark.slow
 def test_parquet_holds_the_same_table(sweep):
     from pyarrow import parquet
 
@@ -60,6 +61,7 @@ def test_parquet_holds_the_same_table(sweep):
 
 @pytest.mark.slow
 @pytest.mark.needs_module("xarray")
+@pytest.mark.slow
 def test_xarray_reads_the_file_and_selects_by_label(sweep, tmp_path):
     import xarray
 

@@ -247,6 +247,7 @@ def test_the_workers_of_a_sweep_that_is_killed_end(tmp_path):
 
 @pytest.mark.slow
 @pytest.mark.needs_module("distributed")
+@pytest.mark.slow
 def test_an_address_that_is_none_is_refused_and_leaves_nothing_to_close():
     # Finalizers complain when the interpreter ends, and not before.
     script = (
@@ -271,6 +272,7 @@ def test_an_address_that_is_none_is_refused_and_leaves_nothing_to_close():
 
 @pytest.mark.slow
 @pytest.mark.needs_module("distributed")
+@pytest.mark.slow
 def test_a_cluster_of_two_workers_gives_the_same_bytes(tmp_path):
     script = tmp_path / "cluster.py"
     script.write_text(

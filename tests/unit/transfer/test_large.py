@@ -78,6 +78,7 @@ def test_the_number_of_terms_is_bounded_before_opening():
         assert bound >= sum(len(f) for f, _ in tf.ratio.factors if len(f) > 2)
 
 
+@pytest.mark.slow
 def test_orders_and_parameters_are_told_and_a_form_is_printed_without_opening(monkeypatch):
     driving, transfer = pipeline.derive_all(chain(10))
     assert driving.order == (18, 20)

@@ -165,6 +165,7 @@ def test_even_and_single_times_agree():
     assert np.all(np.abs(even.values - single.values) <= even.radius + single.radius)
 
 
+@pytest.mark.slow
 def test_where_nobody_says_how_long_a_neutral_loop_is_followed_for_fifty_turns():
     text = 'symflex = 1\nparameters = { T = "1 ms", w = "1 1/s" }\ninputs.u = {}\n'
     text += 'blocks.D = { type = "delay", T = "T" }\noutputs.y = "w^2*u/(s^2 + w*s + w^2 + s^2*D/2)"\n'
@@ -211,6 +212,7 @@ def roots_of_a_delayed_integrator(gain):
     [(1.2, "a*(u - D*x)", "step"), (1.7, "x", "ramp")],
     ids=["through", "unstable"],
 )
+@pytest.mark.slow
 def test_a_loop_run_through_many_times_settles_into_its_residues(gain, law, kind):
     signals = 'signals.x = "k*(u - D*x)/s"\n'
     found = time_response(

@@ -154,6 +154,7 @@ outputs.X = "tip"
 
 
 @pytest.mark.parametrize(("controller", "control", "sectors"), [(PD, pd, TILTED), (IDEAL, ideal, SECTORS)])
+@pytest.mark.slow
 def test_the_size_far_out_holds_wherever_it_is_said_to(controller, control, sectors):
     bound = servo(controller)
     far_out = FunctionFarOut.of(bound, sectors)

@@ -95,6 +95,7 @@ def lossless():
     return bound()
 
 
+@pytest.mark.slow
 def test_a_size_by_series_is_no_less_than_values_near_and_hardly_more(lossless):
     size = SizeOfFunction.of(lossless)
     assert isinstance(size, SizeBySeries)

@@ -62,6 +62,7 @@ def check(roots, expected, digits):
     return root
 
 
+@pytest.mark.slow
 def test_translation_of_a_free_beam_on_a_foundation_is_known_to_all_digits():
     result = solved(AXIAL, 25, Modes(1))
     assert check(result.poles, lambda: mpc(0, sqrt(7)), 25).on_imaginary_axis

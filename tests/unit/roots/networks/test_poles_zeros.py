@@ -159,6 +159,7 @@ def test_forty_digits_are_correct():
     assert expected.startswith(pole.decimal(40).im[:38])
 
 
+@pytest.mark.slow
 def test_frequencies_of_unlike_members_are_those_of_an_independent_matrix():
     # Six beams on springs: sign changes of the determinant of textbook matrices, cleared of their poles.
     lengths, springs = [0.3, 0.41, 0.27, 0.36, 0.5, 0.33], [100.0, 900.0, 50.0, 4000.0, 10.0, 700.0]

@@ -99,6 +99,7 @@ def test_equal_beams_act_alike_and_equal_absorbers_are_parts_without_members():
     assert [(round(float(r.im), 9), r.multiplicity, r.certified) for r in tuned] == [(10.0, 3, True)]
 
 
+@pytest.mark.slow
 def test_a_star_has_twofold_frequencies_of_an_arm_and_lists_the_hidden_partner_of_the_highest_pole():
     found = located(hub(*arms(5, 72)), Modes(2))
     assert found.certificate.certified
