@@ -179,9 +179,6 @@ def test_the_new_root_finder_proves_its_roots(extended):
 
 @pytest.mark.slow
 def test_the_contract_of_elements_and_blocks_holds_with_the_additions(extended):
-    # The page gives the rod with lateral inertia no smallest model, which the contract asks for.
-    plugin = 'from symflex.library.elements import ELEMENTS\ndel ELEMENTS["love_rod"]\n'
-    (extended / "without_love_rod.py").write_text(plugin, encoding="utf-8")
-    options = ["-q", "-p", "no:cacheprovider", "-p", "no:xdist", "-p", "without_love_rod"]
+    options = ["-q", "-p", "no:cacheprovider", "-p", "no:xdist"]
     options += ["--import-mode=importlib", "-k", "test_elements or a_block"]
     python(extended, "-m", "pytest", *options, "tests/contract")

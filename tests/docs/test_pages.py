@@ -12,7 +12,7 @@ import pytest
 import symflex
 from tests.docs.reference import FORMULA, PLACE, with_tables
 from tests.docs.update import printed
-from tests.house.repository import ROOT, all_blocks, blocks, pages, slow_ones
+from tests.house.repository import ROOT, all_blocks, blocks, pages
 from tests.unit.refusals import refusal
 
 SPECIFICATIONS = [block for block in all_blocks("toml") if block.text.startswith("symflex = 1")]
@@ -113,10 +113,11 @@ def test_long_sessions_on_a_page_show_what_the_program_prints(page, sessions, re
 
 @pytest.mark.parametrize(
     "page",
-    slow_ones(
-        (page for page in pages() if any(b.page == page for b in PYTHON)),
-        lambda page: page.name.startswith(("tutorial", "roots")),
-    ),
+    [
+        pytest.param(page, marks=[pytest.mark.slow] if page.name.startswith(("tutorial", "roots")) else [])
+        for page in pages()
+        if any(b.page == page for b in PYTHON)
+    ],
     ids=lambda p: p.name,
 )
 def test_the_python_examples_of_a_page_run_in_order(page, reader):

@@ -6,12 +6,6 @@ import re
 import subprocess
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
-
-import pytest
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
 
 ROOT = Path(__file__).parents[2]
 
@@ -39,14 +33,6 @@ class Block:
 def specifications(folder: Path, pattern: str) -> list[Path]:
     """Return the specifications of a folder that a pattern matches; files of claims are none."""
     return sorted(path for path in folder.glob(pattern) if path.name != "claims.toml")
-
-
-def uniform(paths: Iterable[Path]) -> list[Path]:
-    """Return the specifications without those of members that taper.
-
-    These have not code in every language (SF910), and their sensitivities take long.
-    """
-    return [path for path in paths if path.parent.name != "tapers"]
 
 
 def tracked_files() -> list[Path]:
@@ -97,28 +83,3 @@ def blocks(page: Path) -> list[Block]:
 def all_blocks(language: str) -> list[Block]:
     """Return the blocks of one language on all pages."""
     return [block for page in pages() for block in blocks(page) if block.language == language]
-
-
-EACH_TIME = ("sliding_free_beam", "timoshenko_cantilever", "rod_tip_mass", "two_mass_force")
-"""Of the classics and loops, the models that go through every test in every run; others do with -m slow."""
-
-
-def slow_ones(values: Iterable[Any], is_slow: Callable[[Any], bool]) -> list[Any]:
-    """Return the values as parameters, some of them of slow tests."""
-    return [pytest.param(v, marks=pytest.mark.slow) if is_slow(v) else v for v in values]
-
-
-def one_in(n: int, values: Iterable[Any]) -> list[Any]:
-    """Return the values as parameters, of slow tests all but each n-th, where many go one way."""
-    kept = [*values]
-    quick = kept[::n]
-    return slow_ones(kept, lambda value: value not in quick)
-
-
-def in_turns(paths: Iterable[Path], dear: Iterable[str] = ()) -> list[Any]:
-    """Return the paths as parameters; the dear, and most classics and loops, which go one way, are slow."""
-    found: list[Any] = []
-    for path in paths:
-        is_turn = (path.parent.name == "eppinger1988" or path.stem in EACH_TIME) and path.stem not in dear
-        found.append(pytest.param(path, marks=[] if is_turn else [pytest.mark.slow], id=path.stem))
-    return found
