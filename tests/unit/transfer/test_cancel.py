@@ -8,7 +8,7 @@ from random import Random
 import sympy
 
 from symflex.algebra import Factored, Ring
-from symflex.transfer.lowest_terms import cancel
+from symflex.transfer.lowest_terms import LARGE, LineImages, cancel
 
 RING = Ring(("s", "k", "b"))
 SYMBOLS = sympy.symbols("s k b")
@@ -123,3 +123,19 @@ def test_coprime_quotients_keep_their_factors_as_they_were_grouped():
     result, shared = cancel(numerator, denominator)
     assert [e for _, e in result.factors] == [1, -2]
     assert shared.factors == ()
+
+
+def test_large_factors_are_proved_coprime_on_a_line_unless_they_share_something():
+    # (s + k + 1)^8 has 45 terms; it is irreducible up to its power, and so are s + b and k + b.
+    large = (S + K + 1) ** 8
+    assert len(large) > LARGE
+    images = LineImages(RING)
+    for other, coprime in [
+        (S + B, True),
+        (S**2 + B + 1, True),
+        (S + K + 1, False),
+        ((S + 1) * (S + K + 1), False),
+    ]:
+        assert images.prove_coprime(large, other) == coprime, other
+    # What two polynomials share may have no s: then it divides the leading coefficients.
+    assert not images.prove_coprime(large * (K + B), (S + B) * (K + B))
