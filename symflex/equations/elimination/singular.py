@@ -15,7 +15,7 @@ from flint import nmod_mat
 from symflex.algebra import PRIME, random_point, residue
 from symflex.errors import Diagnostic, ModelError
 from symflex.errors.diagnostic import nearest
-from symflex.expressions import format_expression
+from symflex.expressions import Attribute, format_expression, names
 from symflex.library.elements import COMPONENTS, LineElement, Variable
 from symflex.model.network import domain_of, variable_of
 
@@ -281,8 +281,10 @@ def _idle_elements(equations: Equations, driven: nmod_mat, felt: nmod_mat) -> It
 
     A branch changes the transfer functions by a product: what the inputs put across it times what the outputs
     see of a force through it (Sherman and Morrison 1950). Where one of the two is zero, the branch is idle.
+    An expression that reads the branch's own force sees the branch however little that force moves.
     """
     model = equations.model
+    read = {n.owner for _, e in model.expressions() for n in names(e) if isinstance(n, Attribute)}
     place = {v: i for i, v in enumerate(equations.unknowns)}
     told = {d.span for d in model.warnings}
     loose = {n.name for n in model.nodes if n.span in told}
@@ -296,7 +298,9 @@ def _idle_elements(equations: Equations, driven: nmod_mat, felt: nmod_mat) -> It
         first, *others = ([int(driven[place[v], j]) for j in columns] for v in ends)
         if not (any(first) if not others else first != others[0]):
             idle.setdefault("no input strains" if others else "no input moves", []).append(use)
-        elif not any(int(felt[balance[v], i]) for v in ends for i in range(len(model.outputs))):
+        elif use.name not in read and not any(
+            int(felt[balance[v], i]) for v in ends for i in range(len(model.outputs))
+        ):
             idle.setdefault("no output sees", []).append(use)
     for why, uses in idle.items():
         who = [f"{use.element.type_name} '{use.name}'" for use in uses]

@@ -109,3 +109,16 @@ def test_a_part_that_is_driven_one_way_is_one_that_no_output_sees():
     assert messages(elements=push) == [
         ("SF654", "mass 'b' changes no transfer function: no output sees it", LOOSE, "warning")
     ]
+
+
+def test_a_part_whose_own_force_is_read_is_seen_though_both_its_ends_are_held():
+    # The gauge's force is k times the displacement imposed: F/z = k.
+    gauge = 'gauge = { type = "spring", between = ["z", "ground"], k = "k" }'
+    assert (
+        told(
+            elements=f"{LINK}\n{gauge}",
+            inputs='z_0 = { displacement = "z" }\nF = { force = "x" }',
+            outputs='X = "x"\nF_z = "gauge.f"',
+        )
+        == []
+    )
