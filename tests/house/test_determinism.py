@@ -14,8 +14,7 @@ COMPARED = {
     "a network": "eppinger1988/loops/two_mass_force",
     "a field": "eppinger1988/sliding_free_beam",
     "a member": "classics/rod_tip_mass",
-    "a frame": "frames/portal_frame",
-    "a taper": "tapers/wedge",
+    "a taper": "tapers/conical_horn",
 }
 COMMANDS = (
     ("derive", "--format", "text"),

@@ -75,7 +75,8 @@ def jax():
     import jax
 
     jax.config.update("jax_enable_x64", True)
-    return jax
+    yield jax
+    jax.clear_caches()  # what every test compiles stayed for good, gigabytes after all of them
 
 
 @pytest.fixture
