@@ -189,6 +189,7 @@ def test_an_exporter_names_its_suffix_and_what_it_makes():
         assert exporter.summary.strip(), name
 
 
+@pytest.mark.slow
 def test_an_export_is_the_same_each_time_and_ends_with_one_newline():
     model = pipeline.loads(element_model("spring"))
     tfs = pipeline.derive_all(model)

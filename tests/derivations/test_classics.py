@@ -189,6 +189,7 @@ SHAPES = {
 }
 
 
+@pytest.mark.slow
 def test_outputs_move_beside_each_other_as_the_modes_say():
     wrong = {}
     for (name, output, other, source), (modes, ratio) in SHAPES.items():

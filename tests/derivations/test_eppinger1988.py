@@ -147,6 +147,7 @@ def pair(omega, zeta):
     return [root, root.conjugate()]
 
 
+@pytest.mark.slow
 def test_the_polynomial_model_has_the_rigid_body_poles_and_a_pair_of_poles_and_zeros_per_resonance():
     fitted = ("polynomial_resonance", "A_tip", "V_cmd")
     poles = [*rigid_body_poles(), *(p for omega in MODES for p in pair(omega, 0.05))]
@@ -155,6 +156,7 @@ def test_the_polynomial_model_has_the_rigid_body_poles_and_a_pair_of_poles_and_z
     assert_same_roots(numbers(roots("zeros", *fitted)), zeros, 1e-9)
 
 
+@pytest.mark.slow
 def test_the_polynomial_model_is_the_printed_cascade_and_leaves_low_frequencies_alone():
     fitted = derive("polynomial_resonance", "A_tip", "V_cmd").bind()
     printed = eppinger1988.printed_rigid_body().subs(parameters("rigid_body"))
@@ -181,6 +183,7 @@ def test_two_and_six_masses_vibrate_at_the_measured_modes():
     assert [-p.real / abs(p) for p in flexible] == pytest.approx([0.015] * 5, rel=0.02)
 
 
+@pytest.mark.slow
 def test_the_poles_of_six_masses_are_the_eigenvalues_of_the_state_matrix(six_mass_values):
     found = numbers(roots("poles", "six_mass", "X_act"))
     flexible = [p for p in eppinger1988.chain_poles(*six_mass_values) if abs(p) > 1.0]

@@ -103,6 +103,7 @@ def laplace(q):
     return 2 * sqrt(v["E"] * v["I"] / (v["rho"] * v["A"])) * (q / v["l"]) ** 2
 
 
+@pytest.mark.slow
 def test_printed_poles_and_zeros_of_the_beam_are_those_of_its_equations():
     v = values("sliding_free_beam")
     for k in range(1, 6):

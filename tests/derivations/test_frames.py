@@ -62,6 +62,7 @@ def test_a_formula_of_pages_is_shown_in_steps_and_given_to_programs_whole():
     assert isinstance(read, TransferFunction) and not reason
 
 
+@pytest.mark.slow
 def test_the_sway_of_the_portal_frame_is_below_thomson_s_bound():
     """Example 10.5-4: 3.21 with one element a member and no stretching, which both raise it."""
     model = pipeline.load(FOLDER / "portal_frame.toml")

@@ -149,6 +149,7 @@ def test_the_conical_horn_has_the_poles_of_its_closed_form_and_no_zeros():
         assert isclose(tan(q), -q * (1 - v["c"]) / v["c"], rel_tol=1e-11)
 
 
+@pytest.mark.slow
 def test_the_exponential_horn_is_a_rod_with_a_cut_off():
     # u = exp(a x) (cos(q x) + b sin(q x)), q^2 = k^2 - a^2 (Webster 1919); at the free end u' = 0.
     v, found = given("exponential_horn"), bound("exponential_horn")

@@ -439,6 +439,7 @@ def test_model_blocks_that_multiply_from_file_to_file_are_answered(tmp_path):
         assert (code, "SF103" in printed) == (3, True), count
 
 
+@pytest.mark.slow
 def test_a_file_whose_name_is_not_utf_8_is_accepted(tmp_path):
     name = os.fsdecode(b"\xff\x1b[31m.toml")
     try:

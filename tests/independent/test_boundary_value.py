@@ -99,6 +99,7 @@ def test_the_exact_evaluation_agrees_with_the_boundary_value_problem(name):
 
 
 @pytest.mark.parametrize("name", sorted(EXPORTED))
+@pytest.mark.slow
 def test_the_exported_function_agrees_with_the_boundary_value_problem(name):
     function = imported(model_of(name).export_numpy(), "exported").TRANSFER_FUNCTIONS["out/u"]
     assert_agrees(name, function, [*few(name), *VERY_SLOW])
@@ -199,6 +200,7 @@ def is_near(found, case, s):
     return abs(found - expected) < WORST_RELATIVE_ERROR * abs(expected)
 
 
+@pytest.mark.slow
 def test_the_exact_evaluation_knows_the_limit_at_a_removable_pole():
     found = {
         (case.name, s): is_near(
@@ -228,6 +230,7 @@ def test_the_exported_function_is_right_at_and_beside_a_removable_pole(name):
 # ----------------------------------------------------------------------------------- the reference itself
 
 
+@pytest.mark.slow
 def test_the_reference_has_fifty_digits_where_exponentials_are_largest():
     # Bending, waves, and an equation of another order, each at its point farthest out.
     for name in ("sliding-free, tip", "electrical transmission line", "coupled bending and torsion"):

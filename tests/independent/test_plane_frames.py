@@ -45,6 +45,7 @@ def is_response(functions, outputs, members, held, force="c.y", added=lambda s: 
     )
 
 
+@pytest.mark.slow
 def test_an_l_frame_has_the_response_of_its_dynamic_stiffness():
     outputs = ("c.y", "b.x", "b.theta")
     wall = 'wall = { type = "fixed", at = "a" }\n'
@@ -59,6 +60,7 @@ def on(joint, **values):
     return {((joint, c), (joint, c)): value for c, value in values.items()}
 
 
+@pytest.mark.slow
 def test_a_hinge_shares_translations_and_a_body_adds_its_inertia():
     outputs = ("c.y", "c.x", "b.theta")
     found = bound(

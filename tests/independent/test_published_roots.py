@@ -90,6 +90,7 @@ def natural(text, modes, digits=30):
 # ------------------------------------------------------------------------------------------- the sequences
 
 
+@pytest.mark.slow
 def test_the_published_digits_solve_their_equation_and_are_the_root_of_their_number():
     for expansion in EXPANSIONS:
         equation, last = EQUATIONS[expansion.equation], mpf(expansion.digits)
@@ -153,6 +154,7 @@ def differing(roots, entries):
     return [x for x, wanted, unit in pairs if abs(x - wanted) > unit]
 
 
+@pytest.mark.slow
 def test_wavenumbers_of_a_beam_are_those_of_the_textbook():
     wrong = {
         ends: differing(bound(beam_between(*ends)).poles(modes=5, digits=50), entries)
@@ -161,6 +163,7 @@ def test_wavenumbers_of_a_beam_are_those_of_the_textbook():
     assert not any(wrong.values()), wrong
 
 
+@pytest.mark.slow
 def test_zeros_at_the_driven_end_are_wavenumbers_of_the_beam_with_that_end_held_the_other_way():
     held = {
         ends: (first, second)

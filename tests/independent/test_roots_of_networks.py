@@ -61,6 +61,7 @@ def networks(most, chosen):
 
 
 @networks(6, slice(0, 40, 20))
+@pytest.mark.slow
 def test_responses_grow_and_vanish_where_roots_are(network):
     found = located(network, Modes(2))
     for roots, expected in ((found.poles, 2), (found.zeros, 0.5)):

@@ -59,6 +59,7 @@ def shape_of(text, number):
     return found.pole, part
 
 
+@pytest.mark.slow
 def test_a_conical_rod_moves_like_a_sine_over_its_diameter():
     pole, part = shape_of(HEAD + ROD, 2)
     k = mpf(str(float(pole.im.mid()))) * mp.sqrt(mpf(3) / 2)

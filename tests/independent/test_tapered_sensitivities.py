@@ -51,6 +51,7 @@ def test_frequencies_of_a_tapered_cantilever_scale_as_dimensions_say():
         assert abs(found[name].normalised - power) < 1e-14
 
 
+@pytest.mark.slow
 def test_the_pole_of_a_conical_rod_moves_with_its_cone_as_the_closed_form_does():
     # u (1 - c x/l) = sin(q x/l), free at l: q cos(q) (1 - c) + c sin(q) = 0; omega = q sqrt(E/rho)/l.
     found = derivatives(ROD % 'A = "A_0*(1 - c*x/l)^2"', "c")

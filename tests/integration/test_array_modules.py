@@ -181,6 +181,7 @@ def test_jax_agrees_with_ball_arithmetic_compiled_or_not(name, over_jax, jax, jn
     assert np.max(np.abs(np.asarray(compiled) / np.asarray(eager) - 1)) < 1e-11
 
 
+@pytest.mark.slow
 def test_numpy_s_arrays_get_what_the_numpy_module_gives(over_any):
     s = np.concatenate([1j * np.logspace(-9, 12, 60), 10.0 ** np.arange(-3, 6) * np.exp(2j)])
     for name in ("rod_tip_mass", "shaft_discs", CHAIN):
@@ -537,6 +538,7 @@ def test_single_precision_is_told_of(over_jax, jax):
 # --------------------------------------------------------------------------------------------- the text
 
 
+@pytest.mark.slow
 def test_a_module_imports_what_it_is_for_only():
     wanted = {
         "array-api": {"__future__", "cmath", "importlib", "sys", "typing"},

@@ -102,6 +102,7 @@ def close(found, expected):
 @pytest.mark.parametrize("kind", tuple(KINDS))
 @given(data=st.data())
 @quiet(4)
+@pytest.mark.slow
 def test_a_passive_part_is_reciprocal_takes_power_in_and_is_real_in_time(kind, data):
     values = data.draw(numbers(kind))
     for s in POINTS:

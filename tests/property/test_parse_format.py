@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import cache
 from pathlib import Path
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -60,6 +61,7 @@ def built(draw, depth=4):
 
 @given(expression=built())
 @settings(max_examples=60)
+@pytest.mark.slow
 def test_any_built_tree_is_read_back_as_itself(expression):
     assert read(format_expression(expression)) == expression
 
@@ -69,6 +71,7 @@ def functions():
     return [tf for stem in KINDS for tf in pipeline.derive_all(pipeline.load(FOLDER / f"{stem}.toml"))[:2]]
 
 
+@pytest.mark.slow
 def test_everything_a_derivation_prints_is_read_back_as_itself():
     for tf in functions():
         forms = [print_form(tf, name) for name in forms_of(tf)]

@@ -43,6 +43,7 @@ def assert_close(found, expected):
 
 @given(network=networks())
 @quiet(12)
+@pytest.mark.slow
 def test_the_bound_transfer_functions_agree_with_the_dense_tableau(network):
     model = symflex.loads(to_toml(network))
     for output, source in pairs(network):

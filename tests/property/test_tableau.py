@@ -6,6 +6,7 @@ import contextlib
 import tomllib
 
 import numpy as np
+import pytest
 import sympy
 from hypothesis import given, settings
 
@@ -120,6 +121,7 @@ def responds(network, at):
     return False
 
 
+@pytest.mark.slow
 def test_random_networks_hold_every_element_and_block_and_respond_somewhere():
     """A signal loop may have a pole at one point, but no network is singular at all of them."""
     kinds = set()
@@ -139,6 +141,7 @@ def test_random_networks_hold_every_element_and_block_and_respond_somewhere():
 
 @given(passive_networks())
 @settings(max_examples=60)
+@pytest.mark.slow
 def test_the_driving_point_of_a_passive_network_is_positive_real(network):
     for at in POINTS:
         response = respond(network, "Y_1", "U_1", at)
@@ -149,6 +152,7 @@ def test_the_driving_point_of_a_passive_network_is_positive_real(network):
 
 @given(reciprocal_networks())
 @settings(max_examples=60)
+@pytest.mark.slow
 def test_the_tableau_of_a_passive_network_is_reciprocal(network):
     for at in POINTS:
         there, back = respond(network, "Y_2", "U_1", at), respond(network, "Y_1", "U_2", at)

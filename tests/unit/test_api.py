@@ -457,6 +457,7 @@ def test_a_function_without_a_closed_form_is_said_to_have_a_nested_one(model, mo
         assert caught.value.diagnostics[0].hint == hint, code
 
 
+@pytest.mark.slow
 def test_a_nested_function_has_the_poles_shapes_and_responses_of_the_expanded_one():
     """A rod of two pieces: sin(w) = 0 where it is free."""
     half = 'type = "rod", E = 1, A = 1, rho = 1, l = 0.5'

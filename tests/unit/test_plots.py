@@ -66,6 +66,7 @@ DRAWINGS = {
 }
 
 
+@pytest.mark.slow
 def test_a_figure_is_drawn_on_the_axes_given_in_the_user_s_style(loop, actuator):
     for kind, (count, drawing) in DRAWINGS.items():
         with matplotlib.rc_context({"lines.linewidth": 7.0, "font.size": 13.0}):
@@ -84,6 +85,7 @@ def test_a_figure_without_axes_shows_in_a_notebook(loop, actuator):
         assert 400 <= size["width"] <= 900, kind  # the column of a notebook
 
 
+@pytest.mark.slow
 def test_axes_in_the_wrong_number_are_refused(loop, actuator):
     for kind, (_, drawing) in DRAWINGS.items():
         assert refusal(drawing, loop, actuator, own(4)) == "UsageError SF902", kind
@@ -128,6 +130,7 @@ def test_a_number_of_modes_is_shown_of_a_beam():
     assert len(crosses.get_ydata()) == len(poles)
 
 
+@pytest.mark.slow
 def test_values_in_place_of_declared_ones_move_the_locus(loop):
     heights = [m.axes[0].get_xlim() for m in (loop.locus("K", (0, 1)), loop.locus("K", (0, 50)))]
     assert heights[0] != heights[1]
@@ -144,6 +147,7 @@ def test_a_mode_in_which_nothing_is_drawn_says_so():
         shape.mode_shape(1).plot()
 
 
+@pytest.mark.slow
 def test_a_sweep_draws_itself(drive):
     sweep = drive.sweep({"k": [80e3, 90e3, 100e3]})
     panels = own(3)
@@ -248,6 +252,7 @@ def test_state_equations_are_matrices_in_a_notebook(drive):
     assert shown.count(r"\begin{matrix}") == 4
 
 
+@pytest.mark.slow
 def test_a_nested_function_draws_the_curve_of_the_expanded_one():
     model = symflex.loads(
         'symflex = 1\nelements.m = { type = "mass", at = "x", m = "2 kg" }\n'

@@ -65,6 +65,7 @@ def test_parameters_may_be_arrays():
         assert alone[1][0] == pytest.approx(1.0, rel=1e-12)  # the Wronskian
 
 
+@pytest.mark.slow
 def test_what_an_element_is_does_not_depend_on_others():
     u = -np.geomspace(1e-3, 1e6, 50)
     wanted = [((0,), (1,))]

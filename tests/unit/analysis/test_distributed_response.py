@@ -56,6 +56,7 @@ def test_negative_frequencies_have_the_opposite_phase():
     assert response.phase[0] == pytest.approx(-response.phase[1])
 
 
+@pytest.mark.slow
 def test_the_phase_of_a_lossy_beam_is_continuous_through_its_resonances():
     # It turns by 1/zeta times the logarithmic step at a resonance, at most; zeta = 0.02 at the lowest.
     phase = respond(bound(KELVIN_VOIGT), np.geomspace(1, 300, 800)).phase

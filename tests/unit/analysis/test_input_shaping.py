@@ -179,6 +179,7 @@ def test_a_joint_shaper_of_modes_far_apart_takes_more_impulses_and_is_shorter_to
         assert min(shaper.amplitudes) > 0, kind
 
 
+@pytest.mark.slow
 def test_a_joint_shaper_of_quick_modes_is_that_of_slow_ones_in_another_unit_of_time():
     longest = 2 * pi * (1 + 1 / 6.27)
     with precision(100):
@@ -223,6 +224,7 @@ def test_a_joint_ei_shaper_keeps_five_percent_on_both_sides_of_two_modes_and_is_
         assert min(left[:150]) < 1e-3 > min(left[151:])  # it leaves nothing once on either side
 
 
+@pytest.mark.slow
 def test_an_integrator_finds_the_bound_of_a_joint_ei_shaper_kept():
     shaper = input_shaper(rational("1/((s^2 + 1)*(s^2 + 53/10))"), 2, "ei", joint=True)
     for omega, ratio in ((1.0, 1.24), (sqrt(5.3), 0.9)):

@@ -64,6 +64,7 @@ def test_the_order_at_rest_and_the_reach_of_all_members_are_known(lossless):
     assert function.reach(100.0) == pytest.approx(wavenumber * 10 * 0.5, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_mode_shapes_of_a_network_are_those_of_the_expanded_form(lossless):
     nested, expanded = lossless
     for number in (1, 2):

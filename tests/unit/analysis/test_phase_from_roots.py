@@ -6,6 +6,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
+import pytest
 
 from symflex import pipeline
 from symflex.analysis.response import follow_phase, roots_if_found
@@ -22,6 +23,7 @@ def bound_and_roots(name):
     return bound, roots_if_found(bound, BAND)
 
 
+@pytest.mark.slow
 def test_without_losses_it_turns_by_half_a_turn_at_each_root():
     for name in ("clamped_free", "sliding_sliding"):
         bound, roots = bound_and_roots(name)
@@ -34,6 +36,7 @@ def test_without_losses_it_turns_by_half_a_turn_at_each_root():
         )
 
 
+@pytest.mark.slow
 def test_roots_that_are_not_all_in_reach_do_not_matter():
     bound, roots = bound_and_roots("clamped_free")
     expected = follow_phase(bound, OMEGA)

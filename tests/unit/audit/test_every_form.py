@@ -24,6 +24,7 @@ NESTED = ("timoshenko_cantilever", "frequency")
     "name",
     ["sliding_free_beam", "timoshenko_cantilever", "rod_tip_mass", "kelvin_voigt_cantilever", "quarter_car"],
 )
+@pytest.mark.slow
 def test_every_form_is_proved_equal_to_the_derivation(name):
     tf = derived(name)[-1]
     verdicts = {}

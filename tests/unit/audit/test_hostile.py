@@ -59,6 +59,7 @@ def test_a_formula_beyond_the_limits_is_still_proved_to_differ():
         assert found.verdict == "differs", name
 
 
+@pytest.mark.slow
 def test_the_deviation_of_a_formula_beyond_the_limits_is_measured():
     found = measured("V_act", *UNREAD["the root of a large number"])
     assert (found.verdict, bool(found.unread)) == ("differs", True)

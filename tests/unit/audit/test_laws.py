@@ -76,6 +76,7 @@ def test_an_added_pole_is_named():
     assert "missing" not in found.detail
 
 
+@pytest.mark.slow
 def test_a_wrong_limit_is_named():
     for expr, ratio in (
         (COLOCATED.replace("6*C^2", "14*C^2"), "2"),  # (1 + 14 + 1)/(1 + 6 + 1)

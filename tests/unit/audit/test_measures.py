@@ -46,6 +46,7 @@ def test_a_wrong_damping_shows_most_at_the_undamped_frequency():
     assert deviation.magnitude_hz == pytest.approx(10 / (2 * pi), rel=1e-4)
 
 
+@pytest.mark.slow
 def test_a_zero_the_system_does_not_have_is_a_deviation_without_bound():
     deviation = audited("(s^2 + 400)/(400*(m*s^2 + b*s + k))").deviation
     assert deviation.unbounded

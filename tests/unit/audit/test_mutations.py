@@ -39,6 +39,7 @@ RIGHT = {
 }
 
 
+@pytest.mark.slow
 def test_a_right_formula_is_proved():
     assert {name: audited(*given).verdict for name, given in RIGHT.items()} == dict.fromkeys(RIGHT, "equal")
 
@@ -78,6 +79,7 @@ WRONG = {
 
 
 @pytest.mark.parametrize("name", WRONG)
+@pytest.mark.slow
 def test_a_wrong_formula_is_proved_to_differ_and_what_was_made_wrong_is_found(name):
     given, expected = WRONG[name]
     found = audited(*given)
@@ -100,6 +102,7 @@ def test_a_constant_ratio_is_named():
         assert format_expression(audited(*act(expr, scale=scale)).ratio) == expected, name
 
 
+@pytest.mark.slow
 def test_a_formula_of_another_kind_is_proved_to_differ_without_a_correction():
     found = audited("V_tip", "2*mu/(rho*A*s)/(tanh(q) + tan(q))", KRYLOV)
     assert found.verdict == "differs"

@@ -104,6 +104,7 @@ def wrong_warnings(shell, *commands):
     return {c: d for c, d in done.items() if d.err.count("SF650") != 1 or "SF650" in d.out}
 
 
+@pytest.mark.slow
 def test_every_command_that_reads_a_specification_prints_its_warnings_once(shell):
     assert not wrong_warnings(
         shell, "derive", "roots", "rational --modes 1", "export --to numpy", "audit", "stability --gain k",

@@ -168,6 +168,7 @@ def test_factors_whose_coefficients_exceed_a_machine_word_are_printed_exactly(sh
     assert entry["den"] == "*".join(f"({a}*s^2 + {b}*s + {c})" for a, b, c in lowest)
 
 
+@pytest.mark.slow
 def test_factors_whose_coefficients_exceed_a_machine_word_have_every_form_and_are_exported(shell):
     (shell.folder / "fine.toml").write_text(FINE, encoding="utf-8")
     for form in (None, *RATIONAL):

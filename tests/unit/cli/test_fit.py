@@ -37,6 +37,7 @@ def test_the_paper_s_modes_come_back_from_the_synthetic_figure(shell):
     assert response["lag"]["value"] == pytest.approx(2 * 0.7 / (2 * np.pi * 5000), rel=0.15)
 
 
+@pytest.mark.slow
 def test_the_fitted_specification_is_the_one_in_the_repository(shell):
     assert shell("fit", DATA, *BASE, "--lag", "--modes", "5", "-o", "fitted.toml").code == 0
     fitted = symflex.load(shell.folder / "fitted.toml")
@@ -96,6 +97,7 @@ def test_a_poor_fit_says_so_first_and_strict_makes_it_exit_code_4(oscillator):
     assert oscillator("fit", "two.csv", "--modes", "2", "--strict").code == 0
 
 
+@pytest.mark.slow
 def test_a_fitted_delay_is_written_and_taken_by_check_derive_and_roots(oscillator):
     lines = (oscillator.folder / "one.csv").read_text().splitlines()
     table = np.array([[float(x) for x in line.split(",")] for line in lines[1:]])

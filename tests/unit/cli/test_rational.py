@@ -50,6 +50,7 @@ def test_text_of_a_lumped_system_says_that_it_is_exact(shell):
     assert done.err == "showing X/F; choose with --tf: V/F\n"
 
 
+@pytest.mark.slow
 def test_text_fits_eighty_columns(shell):
     for name in ("eppinger1988/six_mass", "classics/clamped_free"):
         for form in ("product", "modal"):

@@ -95,6 +95,7 @@ def test_a_parameter_without_value_gets_one(spec):
     assert float(json.loads(done.out)["poles"][0]["im"]) == pytest.approx(3)
 
 
+@pytest.mark.slow
 def test_a_value_that_the_file_could_not_have_is_a_usage_error(spec):
     for given, code, said in (
         (["k"], "SF902", "found 'k'"),
@@ -132,6 +133,7 @@ def test_what_is_wrong_with_values_is_said_where_they_are_used_and_all_at_once(s
     assert (both.code, both.err.count("error[")) == (2, 2)
 
 
+@pytest.mark.slow
 def test_every_command_that_binds_values_takes_them_and_refuses_wrong_ones(spec):
     for command in (
         ["check", "spec.toml"],

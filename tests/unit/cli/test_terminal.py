@@ -90,6 +90,7 @@ def that_drive(said, folder, commands):
     return {command: driven for command, driven in found.items() if driven}
 
 
+@pytest.mark.slow
 def test_a_specification_drives_no_terminal(said, tmp_path):
     assert that_drive(said, tmp_path, COMMANDS) == {}
     assert "title " in said("check", "a\x07\x9b2J.toml")

@@ -99,6 +99,7 @@ def exported(text, **options):
 # ------------------------------------------------------------------------------------------ values
 
 
+@pytest.mark.slow
 def test_a_conical_rod_is_its_formula_in_any_order_of_frequencies(tmp_path):
     library, _ = compiled(tmp_path, files := exported(CONE))
     assert "cx_begun(" not in files.text  # what begins at a tip
@@ -447,6 +448,7 @@ def test_no_compiler_warns_and_objects_call_no_allocator_and_hold_no_variables(t
     assert {kind.lower() for kind, _ in symbols} <= {"t", "r", "u"}
 
 
+@pytest.mark.slow
 def test_objects_of_two_models_are_linked_together(tmp_path):
     sources = written(tmp_path, "two_mass", "sliding_free_beam")
     (tmp_path / "main.c").write_text(
@@ -500,6 +502,7 @@ def test_the_header_tells_the_verified_error_units_and_what_omega_is():
     assert all(len(line) <= 88 for line in header.split("\n"))
 
 
+@pytest.mark.slow
 def test_the_text_is_the_same_each_time():
     first, second = of_either("beam"), exported(BEAM)
     assert (first.text, first.companions[".h"]) == (second.text, second.companions[".h"])

@@ -82,7 +82,11 @@ WORDS = dict.fromkeys(PYTHON, hostile.PYTHON) | {
     "matlab": hostile.MATLAB,
     "julia": hostile.JULIA,
 }
-every_target = pytest.mark.parametrize("target", WRITERS)
+WRITTEN_ALIKE = {"array-api", "jax", "julia", "state-space"}
+"""Targets whose printer is that of another, but for a few lines."""
+every_target = pytest.mark.parametrize(
+    "target", [pytest.param(t, marks=[pytest.mark.slow] if t in WRITTEN_ALIKE else []) for t in WRITERS]
+)
 
 
 @cache
@@ -485,6 +489,7 @@ def test_builtins_are_not_shadowed_where_the_code_uses_them():
 # ---------------------------------------------------------------------------- states, and documents of LaTeX
 
 
+@pytest.mark.slow
 def test_names_and_units_of_states_and_their_ends_are_only_strings():
     model, _ = springs(("k_1",))
     system = pipeline.state_space(model)
@@ -500,6 +505,7 @@ def test_names_and_units_of_states_and_their_ends_are_only_strings():
         assert space["state_space"]()[0].tolist() == [[0, 1], [-0.5, -1.5]], text
 
 
+@pytest.mark.slow
 def test_documents_have_the_same_environments_and_balanced_braces_whatever_names_are():
     names = [*dict.fromkeys([*hostile.TEX, *hostile.ODD, *hostile.NAMES[::20]])]
     parts, texts = [], []

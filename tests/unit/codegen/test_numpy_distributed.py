@@ -176,6 +176,7 @@ def relative_errors(function, expected, points=POINTS):
 
 
 @pytest.mark.parametrize("name", [n for n in SPECS if n != "sliding_free"])
+@pytest.mark.slow
 def test_an_exported_function_agrees_with_the_boundary_value_problem(name):
     made, points = module(specification(name)), POINTS if name in ("two_beams", "tension") else POINTS[::2]
     assert max(relative_errors(made.X_over_F, EXPECTED[name], points)) < 1e-14
@@ -312,6 +313,7 @@ def test_complex_stiffness_serves_at_high_frequencies():
     assert np.all(np.isfinite(function(1j * np.logspace(-9, 12, 60), E=70e9 * (1 + 0.1j))))
 
 
+@pytest.mark.slow
 def test_arguments_of_a_pair_that_meet_are_no_singularity():
     # lambda_1 = lambda_2 = 50/m where N^2 = 4 EI (rho A s^2 + k_f): on the real axis.
     text = specification("tension").replace('N = "500 N"', 'N = "3.5 MN"')
@@ -412,6 +414,7 @@ JOINED = COMPRESSED.replace('c = "1e-3 N*s/m"', 'c = "1e-3 N*s/m"\nl_2 = "0.05 m
 )
 
 
+@pytest.mark.slow
 def test_lengths_given_at_run_time_need_not_be_like_the_declared_ones() -> None:
     text = JOINED.replace("w''(l)", "w''(l + l_2)").replace("w'''(l)", "w'''(l + l_2)")
     text = text.replace("P*w'(l)", "P*w'(l + l_2)").replace('Y = "w(l)"', 'Y = "w(l_2)"')

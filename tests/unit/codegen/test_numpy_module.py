@@ -293,6 +293,7 @@ def test_a_function_without_values_says_that_it_is_not_verified(symbolic):
     assert "X/F: not verified: no values for b" in symbolic.__doc__
 
 
+@pytest.mark.slow
 def test_of_a_long_formula_a_docstring_tells_how_to_print_it(folder):
     module = imported(exported_text(DERIVATIONS / "six_mass.toml"), folder, "six_mass")
     formula = module.X_act_over_F.__doc__.split("Parameters")[0]

@@ -73,6 +73,7 @@ def test_the_taper_may_be_an_array_and_none_is_the_uniform_rod(cone):
     assert cone(s, c=c) == pytest.approx(receptance(s, c), rel=1e-11)
 
 
+@pytest.mark.slow
 def test_a_uniform_rod_before_the_cone_is_followed_too():
     rod = """[elements]
         root = { type = "rod", between = ["ground", "p"], E = "E", rho = "rho", l = "l", A = "A_0" }"""

@@ -70,6 +70,7 @@ FORMS = ("closed", "closed in s", "nested", "factors")
 
 
 @pytest.mark.parametrize("form", FORMS)
+@pytest.mark.slow
 def test_eight_masses_agree_with_a_linear_solve_from_1e_minus_9_to_1e12(form):
     number = 6 if form == "factors" else 8
     for which, tf in enumerate(chain(number)):

@@ -85,6 +85,7 @@ def test_every_element_has_a_symbol():
     assert set(ELEMENTS) == set(SYMBOLS)
 
 
+@pytest.mark.slow
 def test_a_loop_runs_from_its_input_and_closes_below():
     model, drawing = pipeline.loads(LOOP), loop_drawing()
     assert faults(model, drawing) == []

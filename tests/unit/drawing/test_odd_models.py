@@ -250,6 +250,7 @@ def test_odd_models_are_drawn(half):
     assert {name: said for name, said in found.items() if said} == {}
 
 
+@pytest.mark.slow
 def test_odd_models_are_drawn_with_values():
     found = {name: wrong(ODD[name], values=True) for name in VALUED}
     assert {name: said for name, said in found.items() if said} == {}

@@ -82,6 +82,7 @@ def read(text):
     return pipeline.loads(text)
 
 
+@pytest.mark.slow
 def test_no_symbol_or_text_stands_on_another():
     for values in (False, True):
         for name, text in MODELS.items():

@@ -67,6 +67,7 @@ Y = "y"
     assert abs(pipeline.bind(derived(body))(1j) - 2.718281828459045 ** (-1e-3j)) < 1e-15
 
 
+@pytest.mark.slow
 def test_densely_coupled_symbols_end_in_a_budget():
     n = 7
     names = [f"u{i}" for i in range(n)]

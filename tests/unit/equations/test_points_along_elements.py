@@ -54,6 +54,7 @@ def cantilever(x):
     return {"y": y, "theta": theta, "f": f, "tau": tau}
 
 
+@pytest.mark.slow
 def test_the_state_of_a_cantilever_at_a_point_solves_its_equation():
     places = [("x_s", X, "y"), ("0.3 m", X, "theta"), ("300mm", X, "f"), ("0.3", X, "tau")]
     places += [("l/2", 0.4, "y"), ("l - 5 mm", 0.795, "f")]

@@ -323,6 +323,7 @@ i = "a.i + held.i"
 """
 
 
+@pytest.mark.slow
 def test_a_system_of_many_kinds_of_rows_responds_as_its_equations_say():
     assert_solves(MACHINE)
     assert_solves(CIRCUIT)
@@ -348,6 +349,7 @@ def graph(seed):
     )
 
 
+@pytest.mark.slow
 def test_signals_depend_on_each_other_as_their_equations_say():
     for text in map(graph, range(12)):
         if is_singular(pipeline.assemble(pipeline.loads(text))):
@@ -379,6 +381,7 @@ def forced(seed):
     )
 
 
+@pytest.mark.slow
 def test_forces_that_other_nodes_decide_act_as_the_equations_say():
     for seed in range(12):
         assert_solves(forced(seed))
@@ -410,6 +413,7 @@ def moved(seed):
     )
 
 
+@pytest.mark.slow
 def test_nodes_that_levers_and_inputs_move_respond_as_their_equations_say():
     for seed in range(15, 35):
         assert_solves(moved(seed))

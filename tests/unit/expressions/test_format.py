@@ -46,6 +46,7 @@ def read(written):
 @example(Product((a, Negative(Product((b, c))), c)), a)
 @example(Sum((Negative(Negative(a)), Negative(Sum((b, c))))), a)
 @example(Power(Power(a, b), Negative(Power(b, c))), a)
+@pytest.mark.slow
 def test_a_printed_equation_and_its_sides_are_read_back_as_themselves(left, right):
     printed = format_expression(Equation(left, right))
     assert parse_equation(text_of(printed), limits=SHAPE_LIMITS) == Equation(left, right)

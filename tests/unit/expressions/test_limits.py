@@ -2,6 +2,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -51,6 +52,7 @@ sized = st.recursive(numbers, grown, max_leaves=15)
 
 @settings(max_examples=50)
 @given(sized)
+@pytest.mark.slow
 def test_no_value_exceeds_its_bound_and_a_followed_value_is_the_value(pair):
     value, size = pair
     assert abs(value.numerator) <= 2**size.upper

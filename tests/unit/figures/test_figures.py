@@ -117,6 +117,7 @@ def test_bytes_do_not_depend_on_the_hash_seed_and_pyplot_is_never_imported():
     assert done.stdout == f"{hashes()} False\n"
 
 
+@pytest.mark.slow
 def test_the_user_s_own_settings_do_not_matter_and_are_left_as_they_were(tfs):
     """One context sets the style of all kinds."""
     expected = render(drawn("poles_zeros", tfs), "svg")
@@ -128,6 +129,7 @@ def test_the_user_s_own_settings_do_not_matter_and_are_left_as_they_were(tfs):
         assert dict(matplotlib.rcParams) == before
 
 
+@pytest.mark.slow
 def test_a_title_is_printed_as_it_is(tfs):
     title = "Costs $5 or $\\frac{x$ & <b>"
     for kind in FIGURES:
@@ -152,6 +154,7 @@ def test_an_unknown_format_is_refused(sketch):
         render(sketch, "jpg")
 
 
+@pytest.mark.slow
 def test_save_writes_the_format_asked_for_without_a_date(sketch, tmp_path):
     for format, start in (("pdf", b"%PDF-"), ("png", b"\x89PNG"), ("svg", b"<?xml")):
         save(sketch, tmp_path / "figure", format)
@@ -321,6 +324,7 @@ def test_a_band_chooses_among_all_modes():
         drawn("modes", tfs, band_hz=(1.7, 2))
 
 
+@pytest.mark.slow
 def test_a_narrow_band_has_frequencies_that_differ_below_it(tfs):
     for band in ((9, 11), (2e6, 2.1e6), (1000, 1000.01), (0.001, 0.0012)):
         figure = drawn("bode", tfs[:1], band_hz=band)

@@ -44,6 +44,7 @@ def test_there_is_a_row_per_mode_with_its_frequency_and_damping():
     assert titles == [r"$11.00$ Hz, $\zeta = 0.0149$", r"$38.01$ Hz, $\zeta = 0.0149$"]
 
 
+@pytest.mark.slow
 def test_hidden_modes_are_drawn_in_their_place_and_as_many_as_the_analysis_says():
     model = pipeline.load(CLASSICS / "clamped_clamped.toml")
     assert model.analysis.modes == 3

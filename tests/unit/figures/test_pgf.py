@@ -107,6 +107,7 @@ def labelled(bound, latex):
     return replace(bound, source=replace(bound.source, output=replace(bound.source.output, latex=latex)))
 
 
+@pytest.mark.slow
 def test_a_hostile_model_is_drawn_as_any_other(bounds):
     # Labels are text once they are refused, so that three texts go into one figure.
     for title, *labels in zip(MORE[::3], MORE[1::3], MORE[2::3], strict=True):

@@ -59,6 +59,7 @@ def test_the_largest_displacement_of_a_frame_is_that_along_x_or_y():
     assert symmetric.reference == "beam.y(0.25)"
 
 
+@pytest.mark.slow
 def test_along_a_member_the_shape_is_given_along_the_axes_of_the_plane():
     _, (bending,) = shapes(member("left", "ground", "p", 90) + member("arm", "p", "q"), 1)
     left = bending.along("left")

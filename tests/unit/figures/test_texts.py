@@ -97,6 +97,7 @@ def test_one_far_pole_does_not_rule_a_locus():
     assert named == {r"$\times$ $-5000$", r"$\star$ $-5000$"}
 
 
+@pytest.mark.slow
 def test_a_locus_marks_the_gain_s_own_value():
     # s^2 + 2 s + K at K = 5: -1 +- 2j
     (axes,) = loop("1/(s*(s + 2))", K=5).locus("K", (0, 10)).axes

@@ -83,6 +83,7 @@ def test_a_straight_member_is_a_beam_and_a_rod():
         assert near(values(whole, inputs, outputs), values(apart, inputs, outputs)), more
 
 
+@pytest.mark.slow
 def test_turning_a_whole_frame_with_its_load_changes_nothing():
     def response(by):
         elements = (
@@ -98,6 +99,7 @@ def test_turning_a_whole_frame_with_its_load_changes_nothing():
     assert near(response("0.7"), upright)
 
 
+@pytest.mark.slow
 def test_a_frame_that_is_turned_as_a_whole_has_the_formula_of_one_that_is_not():
     text = (
         'symflex = 1\n[parameters]\na = { unit = "rad", assume = "real" }\n[elements]\n'

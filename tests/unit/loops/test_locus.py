@@ -33,6 +33,7 @@ def test_curves_go_from_open_loop_poles_to_closed_loop_poles(loop):
     assert sorted(branch[0].real for branch in locus.branches) == [-2, -1, 0]
 
 
+@pytest.mark.slow
 def test_one_curve_ends_next_to_the_zero(loop):
     locus = trace_locus(characteristic(loop("K*(s - 3)/((s + 1)*(s + 2))")), (Fraction(0), Fraction(10**6)))
     assert min(abs(branch[-1] - 3) for branch in locus.branches) < 1e-4
@@ -113,6 +114,7 @@ def test_a_pole_from_infinity_of_a_loop_that_differentiates(loop):
     assert locus.branches[0][-1] == pytest.approx(wanted[1])
 
 
+@pytest.mark.slow
 def test_curves_turn_little_from_step_to_step(loop):
     # Poles leave each other at once where those of two modes come close.
     expression = "K/((s^2 + 0.04*s + 4)*(s^2 + 0.05*s + 5))"
@@ -202,6 +204,7 @@ def test_a_locus_is_shown_as_far_as_the_band_reaches(loop):
     assert not any("zeros" in text.get_text() for text in figure.legends[0].get_texts())  # at -30
 
 
+@pytest.mark.slow
 def test_as_many_modes_are_traced_as_a_band_holds(loop):
     # (s + 1) exp(s/10) = -1 where s = 10 W(-exp(1/10)/10) - 1.
     known = [10 * lambertw(-np.exp(0.1) / 10, branch) - 1 for branch in range(-8, 8)]
@@ -213,6 +216,7 @@ def test_as_many_modes_are_traced_as_a_band_holds(loop):
     assert np.allclose(sorted(found, key=lambda s: (s.imag, s.real)), wanted, rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_a_locus_has_the_limits_asked_for_and_counts_what_is_outside(loop):
     frame = AxisLimits(x=(-3, 1), y=(0, 2))
     done = characteristic(loop("K*(s + 30)/((s + 1)*(s + 2))"))

@@ -153,6 +153,7 @@ def test_six_beams_lose_their_poles_where_finite_elements_do():
     assert len(gains) == 3
 
 
+@pytest.mark.slow
 def test_without_losses_nothing_is_claimed_of_the_axis():
     network = found(
         chain(6, loss='{ value = "0 N*s/m", assume = "nonnegative" }', law="K*(r*t - n_6.y)/t"), "40 Hz"

@@ -131,6 +131,7 @@ def test_of_a_spring_at_the_damped_end_all_poles_are_counted_and_margins_are_not
     assert counts(found) == [(0, 0)]
 
 
+@pytest.mark.slow
 def test_mirrored_poles_of_a_lossless_beam(lossless_beam):
     colocated = lossless_beam("act").stability("K", up_to_hz=100)
     tip = lossless_beam("tip").stability("K", up_to_hz=100)

@@ -123,6 +123,7 @@ def test_every_command_that_reads_a_specification_refuses_a_file_outside(capsys)
 
 
 @pytest.mark.usefixtures("beside")
+@pytest.mark.slow
 def test_every_command_that_reads_a_specification_takes_a_folder_outside(capsys):
     assert_taken(sorted(COMMANDS.keys() - DEAR), capsys)
     assert symflex.load("outer.toml", allow_outside=["../beside"]).outputs == ("X",)

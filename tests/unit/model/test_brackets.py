@@ -50,6 +50,7 @@ W = sympy.Function("w")(X)
 D = sympy.Derivative
 
 
+@pytest.mark.slow
 def test_brackets_open_as_sympy_differentiates():
     for text, meant in [
         ("(a*(1 - x/b)^3*w'')''", D(A * (1 - X / B) ** 3 * D(W, X, 2), X, 2)),

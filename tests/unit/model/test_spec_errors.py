@@ -202,6 +202,7 @@ def check(value: Value, source: Source) -> None:
 
 @settings(max_examples=100)
 @given(st.lists(st.sampled_from(FRAGMENTS), max_size=40).map("".join))
+@pytest.mark.slow
 def test_any_text_gives_a_spec_or_a_spec_error(text: str) -> None:
     source = Source("a.toml", text)
     try:

@@ -62,6 +62,7 @@ def test_what_keeps_just_within_the_limits_is_read(monkeypatch: pytest.MonkeyPat
         assert parse(Source("a.toml", text)).source.text == text
 
 
+@pytest.mark.slow
 def test_a_long_hostile_text_takes_time_in_proportion_to_its_length() -> None:
     # Each took minutes or more when a scan ran to the end of the text for each of its lines.
     for text in [

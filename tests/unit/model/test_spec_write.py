@@ -83,6 +83,7 @@ values = st.recursive(
 
 @settings(max_examples=60)
 @given(mappings(values))
+@pytest.mark.slow
 def test_what_is_written_is_read_back(mapping: dict[str, object]) -> None:
     assert plain(parse(Source("<python>", write(mapping))).root) == exact(mapping)
 

@@ -54,6 +54,7 @@ def with_texts(model, text):
     return replace(model, title=f"t{text}", source=f"s{text}", parameters=parameters)
 
 
+@pytest.mark.slow
 def test_no_text_of_a_model_brings_a_command(model):
     # Letters that a plain text is made of, a unit that siunitx lacks, and a description in lines.
     usual = commands(files_of(with_texts(model, "words " * 20)))

@@ -92,6 +92,7 @@ def test_what_no_transfer_function_holds_is_refused():
             latex_expression(node, {})
 
 
+@pytest.mark.slow
 def test_a_tree_of_any_depth_is_printed():
     expression = Name("x")
     for _ in range(5000):

@@ -105,6 +105,7 @@ def test_a_preferred_unit_is_coherent():
 
 @settings(max_examples=20)
 @given(dimensions)
+@pytest.mark.slow
 def test_any_printed_dimension_reads_back_as_itself(dimension):
     assert unit_of(str(dimension)).dimension == dimension
 

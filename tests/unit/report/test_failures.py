@@ -135,6 +135,7 @@ def test_sections_of_a_single_model_are_told_as_they_begin(tmp_path):
     assert "symbolic: roots" in log.lines
 
 
+@pytest.mark.slow
 def test_a_figure_that_is_asked_for_and_fails_is_told_by_the_exit_code(tmp_path):
     figure = '[figures.nothing]\nkind = "bode"\nof = ["Y/u"]\n'
     text = SMALL.replace("F = {", "u = {}, F = {") + figure

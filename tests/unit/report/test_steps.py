@@ -29,6 +29,7 @@ def drawn(folder, text):
     return sorted(name for name in section.files if name.endswith(".svg"))
 
 
+@pytest.mark.slow
 def test_a_stable_closed_loop_shows_the_step_of_its_reference(tmp_path):
     found = drawn(tmp_path, LOOP.replace("K N", "2 N") + ROOTS)
     assert found == ["figures/a_roots.svg", "figures/a_step.svg"]

@@ -335,6 +335,7 @@ NOT_PASSIVE = {
 }
 
 
+@pytest.mark.slow
 def test_energy_is_nowhere_supplied():
     for name, given in PASSIVE.items():
         assert known(model_of(*given)), name

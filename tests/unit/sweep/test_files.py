@@ -128,6 +128,7 @@ def test_a_summary_as_json(spec, capsys):
     assert mode["frequency_hz"] == pytest.approx([1 / (2 * np.pi), 2 / (2 * np.pi)])
 
 
+@pytest.mark.slow
 def test_every_format_is_written_twice_alike(spec, tmp_path):
     command = ["sweep", spec, "--over", "k=1:2", "--monte-carlo", "3", "--workers", "1", "-o"]
     for suffix in WRITERS:
@@ -211,6 +212,7 @@ def test_a_few_values_of_a_second_parameter_are_lines_of_their_own():
     assert pale < full == 1
 
 
+@pytest.mark.slow
 def test_many_values_of_two_parameters_are_bars():
     many = oscillator().sweep({"b": [0.1 * i for i in range(1, 14)], "k": [1.0 * i for i in range(1, 15)]})
     (bar,) = [line for line in draw_sweep(many).axes[0].lines if line.get_linewidth() > 3]

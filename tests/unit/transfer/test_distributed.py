@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import mpmath as mp
+import pytest
 from flint import acb, ctx
 
 from symflex import pipeline
@@ -305,6 +306,7 @@ conditions = [
 """
 
 
+@pytest.mark.slow
 def test_wavenumbers_of_almost_equal_size_are_told_apart():
     # Two wave speeds of this curved beam are close; a value nearby was right where this one had been lost.
     (tf,) = pipeline.derive_all(pipeline.loads(ARCH))

@@ -63,6 +63,7 @@ def on_line(model):
     return DeterminantsOnLine(Determinants.of(equations), expansion.plain, expansion.images)
 
 
+@pytest.mark.slow
 def test_a_chain_of_ten_is_opened_only_when_it_is_asked_for():
     tf = pipeline.derive_all(chain(10))[0]
     assert tf.is_large

@@ -1,5 +1,7 @@
 """Driving points where fields meet each other, or a node."""
 
+import pytest
+
 from symflex import pipeline
 from symflex.report.structure import is_colocated
 
@@ -76,6 +78,7 @@ def is_driven(text, name):
     return is_colocated(model, output, model.inputs[0])
 
 
+@pytest.mark.slow
 def test_a_jump_of_the_shear_is_colocated_with_both_fields_deflections_there():
     for condition in CONTINUITY:
         text = SPANS.replace("DEFLECTION", condition)
@@ -117,6 +120,7 @@ outputs.Y = "SHOWN"
 """
 
 
+@pytest.mark.slow
 def test_the_end_of_an_element_is_its_node():
     for torque, shown, kind in [
         ('"p"', "axle.theta(0)", "colocated"),

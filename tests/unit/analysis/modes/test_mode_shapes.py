@@ -335,6 +335,7 @@ outputs.v    = "b"
     assert [complex(shape[n]) for n in "ab"] == pytest.approx([-0.5, 1])
 
 
+@pytest.mark.slow
 def test_near_a_pole_the_outputs_stand_in_the_ratio_of_the_shape():
     for path, source, outputs, amplitudes in (
         ("eppinger1988/six_mass", "F", ("X_act", "X_tip"), lambda a: (a["x_act"], a["x_tip"])),

@@ -179,6 +179,7 @@ def test_a_beam_is_right_at_low_frequencies():
         assert R(1j * omega) == pytest.approx(tf(1j * omega), rel=2e-3)
 
 
+@pytest.mark.slow
 def test_the_modal_form_of_a_delay_in_a_loop():
     tf = distributed.bound(distributed.DELAY_LOOP)
     R = approximate(tf, 6, "modal")

@@ -39,6 +39,7 @@ def test_residues_are_those_of_the_formula():
         assert one.coefficients[0].rel_accuracy_bits() > 66
 
 
+@pytest.mark.slow
 def test_an_approximation_of_two_beams_is_close_to_them_below_its_modes():
     bound = bound_of(2, "nested")
     found = pipeline.rational(bound, 2, "product")

@@ -295,6 +295,7 @@ def test_a_motor_and_a_flexible_load_by_finite_differences():
                 assert abs(number(s.derivative) - slope) < abs(slope) * mpmath.mpf(10) ** -20, name
 
 
+@pytest.mark.slow
 def test_a_lossy_beam_with_a_mass_and_a_dashpot_by_finite_differences():
     # 1 + cos x cosh x + m/(rho A l) x (cos x sinh x - sin x cosh x) = 0 with x^4 = -rho A s^2 l^4/(E* I),
     # where m stands for m + b/s and E* for E (1 + eta s) (Rao 2007, section 11.5).

@@ -319,6 +319,7 @@ def with_delay(output):
     return loads(f"symflex = 1\n{text}").transfer_function("X", "F").bind().bound
 
 
+@pytest.mark.slow
 def test_a_beam_that_is_seen_late_does_the_same_later():
     late = with_delay('elements.push = { type = "force_source", at = "x", f = "F" }')
     found = time_response(late, "step", SampleTimes.of([0.5, 1.0, 1.37, 2.0, 3.9]))

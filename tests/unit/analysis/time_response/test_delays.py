@@ -233,6 +233,7 @@ def test_a_loop_run_through_many_times_settles_into_its_residues(gain, law, kind
     assert found.radius.max() <= 1e-12 * np.abs(found.values).max()
 
 
+@pytest.mark.slow
 def test_only_the_first_of_the_times_may_come_before_a_loop_has_settled():
     # At t = 0 the response is 0 within a radius, which no digits of itself could be smaller than.
     text = (

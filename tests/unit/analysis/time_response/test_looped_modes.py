@@ -83,6 +83,7 @@ def test_a_loop_is_what_the_method_of_steps_says(force, gain, late, kind):
     assert found.radius.max() < 2e-6 * np.max(np.abs(expected))
 
 
+@pytest.mark.slow
 def test_an_impulse_is_enclosed_too():
     times = [0.2, 0.5]
     found = time_response(loop("k*(r - D*x)"), "impulse", SampleTimes.of(times), 5)
@@ -130,6 +131,7 @@ def convolved_twice(t):
     return 16.0 * float(np.sum(pairs)), 4.0 * float(np.sum(single))
 
 
+@pytest.mark.slow
 def test_without_loss_the_second_turn_is_a_convolution_of_modes():
     times = [0.1, 0.45, 0.6]
     found = time_response(loop("k*(r - D*x)", eta="0 s"), "step", SampleTimes.of(times), 7)

@@ -43,6 +43,7 @@ def test_too_few_resonances_are_called_poor():
     assert fit_resonances([two_modes(3)], None, FitOptions(modes=1)).poor != ()
 
 
+@pytest.mark.slow
 def test_responses_measured_as_different_quantities_have_powers_of_s_of_their_own():
     one, other = two_modes(4), two_modes(5)
     other = MeasuredResponse("z/u", other.frequency_hz, other.values * (OMEGA * 1j * other.frequency_hz) ** 2)

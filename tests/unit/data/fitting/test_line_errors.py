@@ -15,6 +15,7 @@ NARROW = System(np.array([20.0]), np.array([0.01]), np.array([26.0]), np.array([
 MEASUREMENTS = 150
 
 
+@pytest.mark.slow
 def test_the_spread_of_scores_is_that_computed():
     """J'e of 150 measurements: its variance is known to 12 %, and lines are far from independent."""
     random = np.random.default_rng(11)

@@ -67,6 +67,7 @@ FILES = {
 }
 
 
+@pytest.mark.slow
 def test_a_flipped_bit_is_answered_or_refused():
     for read, data in FILES.values():
         for place in range(0, len(data), 2):

@@ -109,6 +109,7 @@ def test_poles_of_a_kelvin_voigt_beam_solve_a_quadratic_per_mode():
     assert result.excluded == ()
 
 
+@pytest.mark.slow
 def test_where_kelvin_voigt_poles_accumulate_a_neighbourhood_is_left_out_and_all_others_are_found():
     eta, expected = mpf("0.004"), []
     for n in range(1, 60):
@@ -433,6 +434,7 @@ def test_poles_on_the_axis_have_no_damping_beside_a_delayed_input_and_the_phase_
     assert respond(source, [np.pi / 2, 3.0]).phase[1] == pytest.approx(-np.pi - 0.003)
 
 
+@pytest.mark.slow
 def test_frequencies_beyond_doubles_are_a_typed_error():
     # The first is about sqrt(E I/(rho A)) = 1e168 rad/s; squares of it are beyond doubles.
     text = """

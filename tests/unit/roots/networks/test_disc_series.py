@@ -103,6 +103,7 @@ def test_roots_close_to_the_edge_are_among_those_approximated():
     assert len(guesses) == found.count() == 10
 
 
+@pytest.mark.slow
 def test_roots_are_proved_where_a_singularity_close_by_takes_many_terms():
     # Analytic up to 1.07 times the radius; the roots -6 +- 6j lie where rounding of boxes grows most.
     found = series(lambda s: (s * s + 12 * s + 72) / (10.7 - s), log(309 / 0.2), ratio=1.05)

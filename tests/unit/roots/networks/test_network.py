@@ -119,6 +119,7 @@ def test_zeros_of_trains_are_those_of_what_stands_beside_the_way_and_loops_add_n
     assert most(text) is None
 
 
+@pytest.mark.slow
 def test_a_train_with_losses_has_no_zeros_but_those_of_an_absorber():
     found = located(driven(*SHAFTS), Modes(3))
     assert found.certificate.certified
@@ -210,6 +211,7 @@ def test_a_spring_between_a_beam_and_what_is_read_is_a_path():
     assert omegas(found.zeros) == pytest.approx([3.926602312**2 * unit, 7.068582746**2 * unit], rel=1e-9)
 
 
+@pytest.mark.slow
 def test_a_rate_has_one_zero_at_rest_wherever_it_is_read():
     for lines in (TRAIN, (rod("r0", "ground", "a"), *TRAIN)):
         found = located(driven_at_a(*lines, output="s*d"), Modes(2))

@@ -57,6 +57,7 @@ def test_a_free_beam_has_two_motions_at_rest_of_which_a_force_sees_one():
     assert omegas(found.poles) == pytest.approx([(b / 1.5) ** 2 * UNIT for b in FREE], rel=1e-11)
 
 
+@pytest.mark.slow
 def test_what_the_counts_of_a_network_do_not_settle_is_searched_in_its_formula(monkeypatch):
     def undecided(*_, **__):
         raise UndecidedError
@@ -134,6 +135,7 @@ def test_poles_and_zeros_alternate_where_a_force_acts():
     assert all(a != b for (_, a), (_, b) in pairwise(merged))
 
 
+@pytest.mark.slow
 def test_regions_of_a_cantilever_hold_what_lies_in_them():
     text = specification(spans(3, {0: "fixed"}), 'F = { force = "n_3" }', 'X = "n_3"')
     every = omegas(located(text, Modes(8)).poles)
@@ -217,6 +219,7 @@ def damped_rod(b):
     return specification("\n".join([*pieces, dashpot(b)]))
 
 
+@pytest.mark.slow
 def test_a_rod_with_a_dashpot_has_its_poles_on_a_line_and_zeros_of_the_clamped_one():
     # cosh s + b sinh s = 0: s = ln((1 - b)/(1 + b))/2 + j pi (k + 1/2); one that supplies energy is unstable.
     for b, word in ((0.3, "stable"), (-0.3, "unstable")):
@@ -237,6 +240,7 @@ def test_a_strong_dashpot_has_real_poles_to_forty_digits():
     assert real[0].decimal(40).re.startswith("-0.346573590279972654708616060729088284")
 
 
+@pytest.mark.slow
 def test_regions_hold_what_lies_in_them():
     # abs(s)/(2 pi) is about 0.26, 0.75, 1.25; of a mode both conjugates are shown.
     for region, count in (

@@ -43,6 +43,7 @@ def multiplicities(text, held=()):
     return sorted({p.multiplicity for p in repeated_parts(network(text), held)})
 
 
+@pytest.mark.slow
 def test_of_equal_arms_on_a_hub_all_but_three_move_alone():
     # The hub takes two forces and a torque.
     for count, step, expected in ((8, 45, [5]), (5, 72, [2]), (4, 90, []), (7, 17, [4])):
@@ -108,6 +109,7 @@ def test_a_star_has_twofold_frequencies_of_an_arm_and_lists_the_hidden_partner_o
     assert max(float(p.im) for p in found.poles) in [float(h.root.im) for h in found.hidden]
 
 
+@pytest.mark.slow
 def test_roots_that_nothing_makes_equal_are_not_told_apart():
     lines = arms(8, 45)
     lines[0] = arm(0, 0, "0.50000000000000000001")

@@ -140,6 +140,7 @@ def test_coefficients_and_roots_beyond_the_range_of_doubles_are_solved():
     assert (upper.decimal(20).im, lower.decimal(20).im) == (f"1.{'0' * 19}e450", f"-1.{'0' * 19}e450")
 
 
+@pytest.mark.slow
 def test_all_roots_of_dense_integer_coefficients_are_those_of_mpmath():
     coefficients = [(7919 * k * k + 104729) % 2003 - 1001 for k in range(25)]
     roots = find_polynomial_roots(problem(*coefficients), 20)
