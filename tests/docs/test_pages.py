@@ -19,6 +19,7 @@ SPECIFICATIONS = [block for block in all_blocks("toml") if block.text.startswith
 SESSIONS = [block for block in all_blocks("console") if block.text.startswith("$ symflex")]
 PYTHON = [block for block in all_blocks("python") if ">>>" in block.text]
 WITH_TABLES = [p for p in pages() if any(found.search(p.read_text("utf-8")) for found in (PLACE, FORMULA))]
+LONG = ("python-api", "roots", "tutorial")
 FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
 
@@ -114,7 +115,7 @@ def test_long_sessions_on_a_page_show_what_the_program_prints(page, sessions, re
 @pytest.mark.parametrize(
     "page",
     [
-        pytest.param(page, marks=[pytest.mark.slow] if page.name.startswith(("tutorial", "roots")) else [])
+        pytest.param(page, marks=[pytest.mark.slow] if page.name.startswith(LONG) else [])
         for page in pages()
         if any(b.page == page for b in PYTHON)
     ],

@@ -22,6 +22,7 @@ def test_an_input_that_once_failed_is_answered(file):
     import_module(f"tests.fuzz.target_{file.parent.name}").run(file.read_bytes())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name in TARGETS if name != "derivation"])
 def test_a_target_takes_its_seeds(name):
     target = import_module(f"tests.fuzz.target_{name}")

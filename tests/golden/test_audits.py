@@ -17,7 +17,9 @@ AUDITS = Path(__file__).parent / "audit"
 NAMES = sorted(path.stem for path in AUDITS.glob("*.toml"))
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=[pytest.mark.slow] if n == "paper_beam" else []) for n in NAMES]
+)
 def test_an_audit_reads_as_expected(name, monkeypatch, capsys):
     monkeypatch.chdir(AUDITS)
     assert run(["audit", f"{name}.toml"]) == 0

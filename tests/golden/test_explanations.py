@@ -25,7 +25,10 @@ def arguments(name):
     return ["roots", str(path), "--tf", f"{output}/{source}", "--digits", "8", "--explain"]
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(n, marks=[pytest.mark.slow] if n.startswith("robot_axis") else []) for n in NAMES],
+)
 def test_an_explanation_reads_as_expected(name, capsys):
     assert run(arguments(name)) == 0
     printed = capsys.readouterr().out

@@ -354,6 +354,7 @@ def test_a_pipe_with_flow_deflects_at_rest_as_a_compressed_column() -> None:
         assert abs(module(PIPE).Y_over_p(s) / _column_under_load() - 1) < 1e-12, s
 
 
+@pytest.mark.slow
 def test_numbers_and_arrays_give_the_same_where_matrix_exponentials_serve() -> None:
     pipe = module(PIPE).Y_over_p
     for s in (0.0, 1e-9j, 1j, 30j, 100j, 1e3j):
