@@ -94,7 +94,7 @@ begin = time.process_time()
 END = "print(time.process_time() - begin)"
 
 FASTEST = "SymPy `DomainMatrix.charpoly()` over ZZ[s, m, k, b]"
-"""Of the other ways, from six masses on; the one that a quick run compares with."""
+"""The fastest other way from six masses on, and the only one that a quick run compares with."""
 SYMPY_WAYS = {
     "SymPy `Matrix.det(method='berkowitz')`": """
 for a in minors:

@@ -59,7 +59,7 @@ LIBRARIES_DIFFER: Final = 2.0
 """How many times the documented error another mathematical library may have."""
 LARGEST: Final = 1e-13
 BITS: Final = 400
-"""In which transfer functions of rounded state equations are computed."""
+"""Precision of the transfer functions that rounded state equations have."""
 
 
 @dataclass(frozen=True)

@@ -97,7 +97,7 @@ UNITS_OF = {
     "massless_beam": {"EI": "N*m^2", "l": "m"},
     "dc_motor": {"R": "ohm", "k_t": "N*m/A"},
 }
-"""Of kinds of elements, the units of the values they must have."""
+"""The units of the values that each kind of element must have."""
 TIMES = {"T_1": "s", "T_2": "s"}
 BLOCKS = {
     "resonance": ({"omega_p": "rad/s", "zeta_p": "", "omega_z": "rad/s", "zeta_z": ""},),
@@ -109,7 +109,7 @@ BLOCKS = {
         for more in ({}, {"k_i": "1/s"}, {"k_d": "s", "T_f": "s"}, {"k_i": "1/s", "k_d": "s"})
     ),
 }
-"""Of kinds of blocks, the values they may have; all but an integrator without a gain are dimensionless."""
+"""The values each kind of block may have; only an integrator without a gain has a dimension."""
 LISTED_PORTS = ("between", "terminals")
 
 

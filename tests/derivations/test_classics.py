@@ -94,7 +94,7 @@ POLES = {
     ("one_link_arm", "y_tip/tau"): ((1, 2, 4), arm_mode),
     ("kelvin_voigt_cantilever", "X_tip/F"): ((1, 2, 4), damped_mode),
 }
-"""Of each transfer function modes, by number, and the function that returns the pole."""
+"""For each transfer function, the numbers of some modes and the function that returns their poles."""
 SEARCHED = ("rod_tip_mass", "timoshenko_cantilever", "one_link_arm", "kelvin_voigt_cantilever")
 """Whose poles no table of ``test_published_roots`` has."""
 

@@ -113,7 +113,7 @@ LIMITS = {
     ("rayleigh", "euler-bernoulli"): lambda g: {"E": 70e9 * g, "I": 6.75e-8 / g},
     ("timoshenko", "rayleigh"): lambda g: {"G": 26e9 * g},
 }
-"""Of a theory and the one it tends to, at first order in 1/g: the values that lead there."""
+"""The values for which one theory tends to another, at first order in 1/g."""
 
 
 @pytest.mark.parametrize(("full", "plain"), LIMITS, ids=" to ".join)

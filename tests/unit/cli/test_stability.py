@@ -97,7 +97,7 @@ def test_outputs_that_are_not_together_are_told(files):
 
 @pytest.mark.slow
 def test_figures_of_loops_are_drawn(files):
-    # Of a rational loop, which is quicker than one with a delay.
+    # A rational loop is quicker than one with a delay.
     text = LOOP.replace("K*D/s", "K/(s*(s + 1))").replace('[blocks]\nD = { type = "delay", T = "T" }\n', "")
     text = text.replace('T = { value = "0.5 s" }\n', "")
     (files.folder / "short.toml").write_text(text, encoding="utf-8")

@@ -106,8 +106,8 @@ def markups(drawing):
 def test_a_beam_is_drawn_as_thick_as_a_square_one_of_its_section():
     """The side of a square whose second moment is (1 - c x/l)^4 I_0: a quarter is left where c = 0.75.
 
-    Of one that loses width alone I/A, which tells its depth, is the same everywhere: a quarter of its width
-    is left.
+    If a beam loses width alone, I/A is the same everywhere, and so is its depth: a quarter of its width is
+    left.
     """
     width_alone = 'I = "I_0*(1 - c*x/l)"\nA = "A_0*(1 - c*x/l)"\n'
     for section, left in ((SQUARE, 0.25), (width_alone, 0.25), (UNIFORM, 1)):

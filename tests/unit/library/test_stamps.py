@@ -106,7 +106,7 @@ Q = "hold.tau"
 
 
 def test_the_massless_beam_has_the_euler_bernoulli_stiffness():
-    # Of (y_a, theta_a, y_b, theta_b), from the energy of Hermite cubics: Przemieniecki 1968, chapter 5.
+    # For (y_a, theta_a, y_b, theta_b), from the energy of Hermite cubics: Przemieniecki 1968, chapter 5.
     EI, l = symbols("EI l")  # noqa: E741
     stiffness = sympy.Matrix(
         [

@@ -113,7 +113,7 @@ def test_poles_cross_where_a_damper_at_the_actuator_does_nothing_and_what_is_not
     found = lossless_beam("tip", is_damped=True).stability("K", up_to_hz=60)
     (hertz,) = found.boundaries[0].frequencies_hz
     stiffness, mass, length = 200e9 * 4000e-12, 7850 * 480e-6, 1.086
-    # Of the clamped-free beam the first root of cosh x cos x = -1, x = 2q.
+    # The clamped-free beam: x is the first root of cosh x cos x = -1, x = 2q.
     assert abs(2 * math.pi * hertz - 1.8751040687119611**2 / length**2 * math.sqrt(stiffness / mass)) < 1e-7
     assert not found.certified
     assert abs(found.counted_up_to_hz - 60) < 1e-9

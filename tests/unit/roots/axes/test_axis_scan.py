@@ -202,7 +202,7 @@ def test_steps_are_as_long_as_an_exponent_allows_and_a_sample_that_is_a_root_is_
         assert list(_step_by_step(ray, 1.0, 2.0, 0.0)) == [], fastest
         assert np.diff(ray.places)[:-1] == pytest.approx([step] * (len(ray.places) - 2)), fastest
         assert (ray.places[0], ray.places[-1]) == (1.0, 2.0), fastest
-        # The work is told, one sample at a time.
+        # Every sample is charged to the budget.
         assert ray.spent == len(ray.places), fastest
     with pytest.raises(RootOnPathError):
         list(_step_by_step(parabola(1.0, 9.0), 1.0, 2.0, 0.0))
