@@ -239,6 +239,7 @@ STATIC = {
 """Textbook statics, and for free beams the rigid body's acceleration (1/m + r r'/J with J = m l^2/12)."""
 
 
+@pytest.mark.slow
 def test_static_limits_are_those_of_the_textbook():
     found = {case: derived(*case).bind().dcgain() for case in STATIC}
     assert found == {

@@ -126,6 +126,7 @@ COUNTS = {
 }
 
 
+@pytest.mark.slow
 def test_there_are_as_many_poles_and_zeros_as_the_paper_says():
     found = {case: tuple(count(roots(kind, *case)) for kind in ("poles", "zeros")) for case in COUNTS}
     assert found == COUNTS

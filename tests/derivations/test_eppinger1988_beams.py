@@ -169,6 +169,7 @@ def robot_axis(v, s):
     return solution(w) * s, solution(w_tip) * s
 
 
+@pytest.mark.slow
 def test_the_robot_axis_is_what_its_laws_and_its_field_give():
     for s in (*POINTS, 20 + 68j, -3000 + 1000j):
         for tf, expected in zip(

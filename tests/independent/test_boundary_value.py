@@ -216,6 +216,7 @@ BESIDE = ("rod in a bed", "Rayleigh beam in tension", "Timoshenko beam")
 
 
 @pytest.mark.parametrize("name", quick_first(BESIDE, BESIDE[:2]))
+@pytest.mark.slow
 def test_the_exported_function_is_right_at_and_beside_a_removable_pole(name):
     # Several points belong to one model, which is exported once.
     places = [(case, s) for case, s in REMOVABLE if case.name == name]

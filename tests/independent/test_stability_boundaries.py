@@ -141,6 +141,7 @@ LOOPS = [
 
 
 @pytest.mark.parametrize(("model", "chi", "radius"), LOOPS)
+@pytest.mark.slow
 def test_counts_on_both_sides_of_every_boundary(model, chi, radius):
     found = model().stability("K")
     assert found.certified

@@ -124,6 +124,7 @@ tip = "tip"
 @pytest.mark.parametrize(
     ("nodes", "taper"), [('"base", "tip"', "1 - x/l"), ('"tip", "base"', "x/l")], ids=["second", "first"]
 )
+@pytest.mark.slow
 def test_a_beam_may_end_in_a_tip_at_either_node(nodes, taper):
     found = bound(ARM.format(nodes, taper, taper, ""))
     # Base moved and free to turn: w = z^-1 (a J_1 + b I_1), of which EI w'' goes like xi^-1 (a J_3 + b I_3).

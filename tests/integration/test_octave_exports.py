@@ -57,6 +57,7 @@ def test_what_else_a_program_can_hold_agrees_on_the_axis_and_in_both_half_planes
         assert worst_errors(tf, s, octave.value(key))[0] <= worst, tf.name
 
 
+@pytest.mark.slow
 def test_a_conical_rod_is_its_formula_also_where_the_taper_is_an_array(octave):
     model = pipeline.loads(CONE)
     octave.write("cone", MATLAB.export(model, pipeline.derive_all(model), "cone", samples=5).text)

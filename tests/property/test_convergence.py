@@ -57,6 +57,7 @@ AT = {
 }
 
 
+@pytest.mark.slow
 def test_a_chain_of_masses_tends_to_the_rod_at_second_order():
     for (where, s), output in itertools.product(AT.items(), ("near", "far")):
         errors = [error(n, output, s) for n in (4, 8, 16, 32)]

@@ -67,6 +67,7 @@ def test_the_exported_functions_agree_with_the_dense_tableau_and_broadcast_over_
 
 @given(network=reciprocal_networks())
 @quiet(12)
+@pytest.mark.slow
 def test_a_passive_network_is_reciprocal(network):
     model = symflex.loads(to_toml(network))
     there = model.transfer_function("Y_2", "U_1").bind()
@@ -78,6 +79,7 @@ def test_a_passive_network_is_reciprocal(network):
 
 @given(network=passive_networks())
 @quiet(12)
+@pytest.mark.slow
 def test_neither_poles_nor_zeros_of_a_passive_driving_point_are_in_the_right_half_plane(network):
     G = symflex.loads(to_toml(network)).transfer_function("Y_1", "U_1")
     H = G.bind()

@@ -340,6 +340,7 @@ def test_nothing_proved_is_nothing_found(loop):
     assert caught.value.found is None
 
 
+@pytest.mark.slow
 def test_work_without_end_is_not_taken_for_a_result(loop, monkeypatch):
     monkeypatch.setattr(winding, "WORK_LIMIT", 12_000)
     with pytest.raises(BudgetError, match="SF505") as caught:

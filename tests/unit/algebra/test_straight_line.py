@@ -51,6 +51,7 @@ def made(bench, kind, given, n):
     return None
 
 
+@pytest.mark.slow
 def test_whatever_is_done_steps_have_the_values_of_fractions():
     for seed in range(15):
         random, bench = Random(seed), Workbench(NAMES)

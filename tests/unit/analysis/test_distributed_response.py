@@ -44,6 +44,7 @@ def test_the_phase_at_the_tip_loses_half_a_turn_at_every_pole():
     assert phase == pytest.approx([-90, -90, -270, -270, -450, -450, -630])
 
 
+@pytest.mark.slow
 def test_the_phase_does_not_depend_on_the_grid():
     # 10 poles below 1000 rad/s, (n - 1/4)^2 pi^2; the tip's zeros are real.
     (phase,) = np.degrees(respond(bound(SLIDING_FREE, 1), [1000.0]).phase)

@@ -197,6 +197,7 @@ def test_a_joint_shaper_of_quick_modes_is_that_of_slow_ones_in_another_unit_of_t
         ("1/((s^2 + 1)*(s^2 + 2))", "ei"),  # so close that their humps are one
     ],
 )
+@pytest.mark.slow
 def test_a_joint_shaper_that_is_none_is_refused(text, kind):
     with pytest.raises(ModelError, match="leave out --joint"):
         input_shaper(rational(text), 2, kind, joint=True)

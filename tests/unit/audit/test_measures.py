@@ -33,6 +33,7 @@ def audited(expr, extra=""):
     return found
 
 
+@pytest.mark.slow
 def test_a_factor_of_ten_is_twenty_decibels_everywhere():
     deviation = audited("10/(m*s^2 + b*s + k)").deviation
     assert deviation.magnitude_db == pytest.approx(20, abs=1e-9)
@@ -53,6 +54,7 @@ def test_a_zero_the_system_does_not_have_is_a_deviation_without_bound():
     assert deviation.magnitude_hz == pytest.approx(20 / (2 * pi), rel=1e-6)
 
 
+@pytest.mark.slow
 def test_the_values_at_a_point_are_those_of_both_formulas():
     comparison = audited("2/(m*s^2 + b*s + k)").comparison
     s = complex(*map(float, comparison.point))

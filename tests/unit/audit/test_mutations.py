@@ -97,6 +97,7 @@ RATIOS = {
 }
 
 
+@pytest.mark.slow
 def test_a_constant_ratio_is_named():
     for name, (expr, scale, expected) in RATIOS.items():
         assert format_expression(audited(*act(expr, scale=scale)).ratio) == expected, name

@@ -174,6 +174,7 @@ def test_an_error_is_coloured_on_a_terminal_unless_no_color_is_set(shell):
 
 
 @pytest.mark.parametrize("words", [("derive", str(TWO_MASS)), ("roots", "--help")])
+@pytest.mark.slow
 def test_a_reader_that_goes_away_is_no_error(words):
     command = [sys.executable, "-m", "symflex", *words]
     reading, writing = os.pipe()

@@ -74,6 +74,7 @@ def test_what_cancelled_is_named(shell):
 
 
 @pytest.mark.parametrize("name", ["eppinger1988/base_flexure", "classics/rod_tip_mass"])
+@pytest.mark.slow
 def test_json_reads_back_to_the_same_function_exactly(shell, name):
     path = WORKED / f"{name}.toml"
     model = pipeline.load(path)

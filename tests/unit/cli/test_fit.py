@@ -67,6 +67,7 @@ def test_a_fit_that_fails_is_said_and_not_replaced_by_a_far_worse_one(shell):
     assert "6 resonances describe the data far better" in done.err
 
 
+@pytest.mark.slow
 def test_a_fit_without_base_is_a_specification_of_its_own(oscillator):
     done = oscillator("fit", "one.csv", "--modes", "1", "-o", "one.toml")
     assert (done.code, done.err) == (0, "wrote one.toml\n")
@@ -178,6 +179,7 @@ def test_measure_names_the_option_that_is_no_number(oscillator):
 
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("power", [0, 2])
+@pytest.mark.slow
 def test_data_without_any_resonance_are_refused_without_speaking_of_a_base(shell, power):
     rows = "".join(f"{i},{float(i) ** power},0\n" for i in range(1, 61))
     (shell.folder / "flat.csv").write_text("frequency_hz,re,im\n" + rows)

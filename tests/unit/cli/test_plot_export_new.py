@@ -34,6 +34,7 @@ def test_as_many_modes_are_drawn_as_asked_for(shell):
     assert sizes[0] < sizes[1]
 
 
+@pytest.mark.slow
 def test_a_figure_is_named_after_specification_and_kind_by_default_and_drawn_by_its_own_name(shell):
     assert shell("plot", "x.toml", "later").code == 0
     assert (shell.folder / "x_later.pdf").exists()
@@ -113,6 +114,7 @@ def test_a_figure_without_values_says_which(shell):
     assert "parameter 'm' has no value" in done.err
 
 
+@pytest.mark.slow
 def test_every_target_is_exported_to_stdout(shell):
     for target in EXPORTERS:
         done = shell("export", "x.toml", "--to", target, *(["--no-figures"] if target == "latex" else []))

@@ -436,6 +436,7 @@ def of_a_rod():
 
 
 @pytest.mark.parametrize("target", [*RUN[:2], *RUN[3:]])
+@pytest.mark.slow
 def test_a_function_named_like_a_part_of_another_is_not_taken_for_it(target, tmp_path):
     model, tfs = of_a_rod()
     # Rao 2007, chapter 9: 1/(E A g coth(g l) + m s^2) with g = s sqrt(rho/E); a mass on a spring.

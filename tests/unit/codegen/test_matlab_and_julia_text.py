@@ -34,6 +34,7 @@ def test_lines_are_no_longer_than_the_language_likes():
             assert not any(line != line.rstrip() for line in lines), (target, name)
 
 
+@pytest.mark.slow
 def test_a_transfer_function_given_twice_is_written_once():
     model, tfs = derived("two_mass")
     for language, _ in TARGETS.values():

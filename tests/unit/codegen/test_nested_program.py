@@ -68,6 +68,7 @@ def test_a_program_beyond_the_limit_is_refused(monkeypatch):
     assert caught.value.diagnostics[0].code == "SF503"
 
 
+@pytest.mark.slow
 def test_long_products_and_sums_are_continued_in_lines_of_their_own():
     (tf,) = pipeline.derive_nested(network(chain(80)), [("X_last", "F")])
     form = nested_form(tf)

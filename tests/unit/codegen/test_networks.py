@@ -136,6 +136,7 @@ def test_three_spans_with_a_sensor_inside_are_solved_as_they_are_asked_for():
     assert executed(made.text)["Y_over_F"](POINTS) == pytest.approx(expected, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_long_members_neither_overflow_nor_lose_digits():
     # A cantilever's tip: Graff 1975, section 3.2. At 3e5 rad/s its cosh is one of 800, which is no double.
     omega = 3e5

@@ -380,6 +380,7 @@ Y = "w(l)"
 """
 
 
+@pytest.mark.slow
 def test_roots_that_nearly_meet_cost_no_digits() -> None:
     # x^4 + 400 x^2 + s^2 has double roots at s = 200, which c takes apart a little: exponents of size 14.
     (tf,) = functions_of(COMPRESSED)

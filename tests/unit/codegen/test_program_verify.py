@@ -159,6 +159,7 @@ X = "a"
 
 
 @pytest.mark.parametrize(("length", "pieces"), [("0.3 m", 2), ("1 mm", 4)])
+@pytest.mark.slow
 def test_three_lengths_have_series_each_by_itself_where_it_is_measured_to_serve(length, pieces):
     (tf,) = pipeline.derive_all(pipeline.loads(ROD_ON_A_SPRING.format(length=length)))
     (_, _), real = choose_programs(tf)
@@ -191,6 +192,7 @@ X = "tip.x"
 """
 
 
+@pytest.mark.slow
 def test_a_bar_gets_no_piece_where_it_bends_like_a_short_one_and_stretches_like_a_long_one():
     valued, symbolic = (
         pipeline.derive_all(pipeline.loads(BAR.replace("DAMPING", given)))[0] for given in ('"2 N*s/m"', "{}")

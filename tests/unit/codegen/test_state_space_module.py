@@ -100,6 +100,7 @@ def test_the_measured_error_bounds_what_the_module_is_off_by():
                 assert abs(value / exact - 1) <= v.error * (1 + slope) + 2e-16
 
 
+@pytest.mark.slow
 def test_low_frequencies_of_a_free_chain_cost_digits_and_are_warned_of():
     text = (PAPER / "six_mass.toml").read_text().replace('"1 Hz", "200 Hz"', '"0.001 Hz", "200 Hz"')
     model = pipeline.loads(text)

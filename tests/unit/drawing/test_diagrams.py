@@ -173,6 +173,7 @@ def test_texts_of_an_svg_are_texts_and_parts_bear_their_names():
     assert svg == render_drawing(drawing, "svg").decode()
 
 
+@pytest.mark.slow
 def test_a_notebook_shows_the_drawing_of_a_model():
     shown = Model.of(pipeline.loads(LOOP))._repr_html_()
     assert "<title>element car</title>" in shown

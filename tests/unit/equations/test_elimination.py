@@ -60,6 +60,7 @@ def stiffness(branches, size, value, at):
     return matrix
 
 
+@pytest.mark.slow
 def test_the_quotient_of_a_random_network_is_that_of_exact_dense_elimination():
     at = Fraction(7, 3)
     for seed in range(15):

@@ -151,6 +151,7 @@ def _is_tidy(node):
 
 @settings(max_examples=50)
 @given(built)
+@pytest.mark.slow
 def test_a_built_tree_is_tidy_and_is_read_back_as_itself(tree):
     assert parse(text_of(format_expression(tree)), limits=SHAPE_LIMITS) == tree
     pending = [tree]

@@ -5,6 +5,8 @@ import subprocess
 import sys
 
 CODE = """
+import pytest
+
 from symflex.errors import Source, Span, SpecError, Text
 from symflex.expressions import format_expression, parse
 for value in ("2x", "a +", "(a", "a b)", "motor.5", "b*sin(a) - w''(l)^2/3"):
@@ -21,5 +23,6 @@ def output(seed):
     return done.stdout
 
 
+@pytest.mark.slow
 def test_trees_and_messages_do_not_depend_on_the_hash_seed():
     assert output("1") == output("2025")

@@ -278,6 +278,7 @@ def test_a_bode_plot_has_the_limits_asked_for(undamped):
     assert max(line.get_ydata().max() for line in top.lines) > 40
 
 
+@pytest.mark.slow
 def test_phases_have_a_few_ticks_whatever_their_limits_are(tfs):
     for ends in ((-1.0, 1.0), (0.0, 1e-9), (-1e30, 1e30), (-400.0, 0.0)):
         figure = drawn("bode", tfs[:1], frame=AxisLimits(phase=ends))

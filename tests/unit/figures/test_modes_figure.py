@@ -53,6 +53,7 @@ def test_hidden_modes_are_drawn_in_their_place_and_as_many_as_the_analysis_says(
     assert titles == ["$51.88$ Hz", "$143.0$ Hz", "$280.4$ Hz"]
 
 
+@pytest.mark.slow
 def test_the_curve_is_the_displacement_along_the_beam():
     axes = drawn(pipeline.load(CLASSICS / "pinned_pinned.toml")).axes[1]
     x, y = axes.lines[1].get_data()
@@ -209,6 +210,7 @@ def test_fields_on_adjoining_domains_share_an_axis():
     assert run.unit == "m"
 
 
+@pytest.mark.slow
 def test_a_long_chain_is_drawn_without_names():
     elements = "\n".join(
         f'm_{i} = {{ type = "mass", at = "x_{i}", m = "1 kg" }}\n'

@@ -38,6 +38,7 @@ def test_members_are_placed_by_their_lengths_and_directions():
     assert placed == {"left": (0, 0), "beam": (0, 0.5), "right": (0.5, 0)}
 
 
+@pytest.mark.slow
 def test_what_a_hinge_joins_is_drawn_at_one_place():
     hinged = member("one", "ground", "p") + member("two", "h", "q", 90)
     hinged += (

@@ -89,6 +89,7 @@ def test_numbers_and_names_of_more_scattered_roots_keep_apart():
     assert crowded((2, 3, 4, *range(6, 12))) == {}
 
 
+@pytest.mark.slow
 def test_one_far_pole_does_not_rule_a_locus():
     figure = loop("1/((s + 1)*(s + 2)*(s + 5000))").locus("K", (0, 10))
     (axes,) = figure.axes

@@ -90,6 +90,7 @@ def test_a_cascade_is_proved_with_dead_time_in_several_places():
     assert (verdict.right, verdict.certified) == (counted(*place), True)
 
 
+@pytest.mark.slow
 def test_a_loop_that_cannot_be_proved_has_a_reason():
     # The current's rate fed back with dead time: K_d D s^2 beside L s^2, neutral and not small enough.
     text = CASCADE.format(speed=0, current=1, voltage=0).replace("D_c*motor.i", "D_c*(1 + s/1000)*motor.i")

@@ -20,6 +20,7 @@ def characteristic(model, gain="K"):
     return pipeline.characteristic_loop(model.resolved, gain)
 
 
+@pytest.mark.slow
 def test_curves_go_from_open_loop_poles_to_closed_loop_poles(loop):
     locus = trace_locus(characteristic(loop("K/(s*(s + 1)*(s + 2))")), (Fraction(0), Fraction(60)))
     assert locus.arrived
@@ -105,6 +106,7 @@ def test_a_pole_from_infinity_meets_one_of_the_plant(loop):
     assert abs(pair[1] + 1 + 4 * np.exp(-pair[1] / 2)) < 1e-8
 
 
+@pytest.mark.slow
 def test_a_pole_from_infinity_of_a_loop_that_differentiates(loop):
     locus = trace_locus(characteristic(loop("K*(s + 2)^2/(s + 1)")), (Fraction(0), Fraction(10)))
     (entering,) = locus.entering

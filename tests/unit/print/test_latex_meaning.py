@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from fractions import Fraction
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -127,6 +128,7 @@ def is_finite(tree):
 
 @settings(max_examples=80)
 @given(trees.filter(is_finite), st.sampled_from([6.0, 9.0, 15.0]))
+@pytest.mark.slow
 def test_an_expression_means_what_its_tree_means_whole_and_broken(tree, width):
     expected = value_of(tree, POINT)
     assert meaning(latex_expression(tree, {})) == expected

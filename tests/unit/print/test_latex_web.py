@@ -42,6 +42,7 @@ def printed():
     return [(tf, print_form(tf, form)) for tf in functions for form in (None, *forms_of(tf))]
 
 
+@pytest.mark.slow
 def test_notebooks_hold_only_what_katex_and_mathjax_have_in_common(printed):
     latex = [notebook_latex(tf, form) for tf, form in printed]
     whole = "\n".join(line for line in latex if line is not None)
@@ -62,6 +63,7 @@ def test_the_equations_of_a_paper_add_only_numbers_and_page_breaks(printed):
     assert environments(equations) <= {"equation", "align", "align*"}
 
 
+@pytest.mark.slow
 def test_a_formula_that_a_page_would_take_seconds_to_set_is_left_out(printed):
     tf, _ = printed[0]
 

@@ -81,6 +81,7 @@ def test_pint_knows_every_prefix():
     assert set(PINT_PREFIXES) == set(PREFIXES)
 
 
+@pytest.mark.slow
 def test_the_factor_of_a_unit_is_exactly_that_of_pint(registry):
     for name in UNITS:
         assert factor_here(registry, unit_of(name), name) == factor_in_pint(registry, PINT_UNITS[name]), name

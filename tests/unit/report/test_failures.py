@@ -57,6 +57,7 @@ def test_problems_of_all_files_are_told_before_anything_is_computed(tmp_path, mo
     ]  # fmt: skip
 
 
+@pytest.mark.slow
 def test_a_model_that_exceeds_a_budget_costs_its_own_chapter_only_and_the_report_says_why(models, too_large):
     small, symbolic = write_chapters(models, 0, Silent())
     assert (small.failure, small.code) == ("far too large", 5)

@@ -341,11 +341,13 @@ def test_energy_is_nowhere_supplied():
         assert known(model_of(*given)), name
 
 
+@pytest.mark.slow
 def test_what_may_supply_energy_is_not_said_to_be_passive():
     for name, given in NOT_PASSIVE.items():
         assert not known(model_of(*given)), name
 
 
+@pytest.mark.slow
 def test_some_of_these_have_poles_in_the_right_half_plane():
     for name in ("a negative spring at the tip", "pushed"):
         model = model_of(*NOT_PASSIVE[name])

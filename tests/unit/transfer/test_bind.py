@@ -98,6 +98,7 @@ def value_and_slope(law, s, *given):
         return value, acb(mpmath.nstr(slope.real, 40), mpmath.nstr(slope.imag, 40))
 
 
+@pytest.mark.slow
 def test_balls_hold_what_the_equations_of_motion_give_at_forty_digits():
     for output, given in [*combinations("YVIW", GIVEN)]:
         tf = derive(TWO_MASSES, output)

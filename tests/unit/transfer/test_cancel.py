@@ -5,6 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from random import Random
 
+import pytest
 import sympy
 
 from symflex.algebra import Factored, Ring
@@ -64,6 +65,7 @@ def some_factors(random):
     return product(factors)
 
 
+@pytest.mark.slow
 def test_quotients_of_products_come_in_lowest_terms_with_what_was_divided_out():
     for seed in range(20):
         random = Random(seed)

@@ -199,6 +199,7 @@ def test_the_strings_of_the_document_lead_to_the_function():
 
 @given(network=networks())
 @quiet(12)
+@pytest.mark.slow
 def test_random_networks_agree_with_the_dense_tableau_and_with_their_strings(network):
     found = {tf.name: tf for tf in pipeline.derive_nested(pipeline.loads(to_toml(network)))}
     for output, source in pairs(network):

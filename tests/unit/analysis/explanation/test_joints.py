@@ -91,6 +91,7 @@ def test_velocities_and_the_slope_under_a_moment_are_colocated_too():
         assert told(SPANNED, tf) == ("colocated", "proved"), tf
 
 
+@pytest.mark.slow
 def test_what_the_force_does_no_work_on_is_not():
     for tf in ("Tip/F", "T_1/F", "Y_1/M"):
         assert told(SPANNED, tf)[0] == "noncolocated", tf
@@ -137,6 +138,7 @@ def test_the_end_of_an_element_is_its_node():
         )
 
 
+@pytest.mark.slow
 def test_a_deflection_is_colocated_with_a_force_and_a_slope_with_a_torque():
     beam = 'type = "beam", E = 1, I = 1, rho = 1, A = 1, l = "l"'
     text = f"""

@@ -151,6 +151,7 @@ def test_a_node_with_two_components_is_named_by_both_or_by_itself():
 # --------------------------------------------------------------------------------- beams of textbooks
 
 
+@pytest.mark.slow
 def test_a_cantilever_bends_as_blevins_prints():
     bound = classic("clamped_free", "W_tip", "F")
     for mode in (1, 2, 5):
@@ -196,6 +197,7 @@ def test_a_free_beam_has_neither_moment_nor_force_at_its_ends():
         assert np.abs(shape.along("bar", [0.0, 1.0])) == pytest.approx([1, 1]), mode
 
 
+@pytest.mark.slow
 def test_a_stocky_cantilever_meets_its_conditions_and_equations():
     shape = classic("timoshenko_cantilever", "W_tip", "F").mode_shape(2)
     assert shape.quantities("beam") == ("w", "w'", "phi", "phi'")
@@ -240,6 +242,7 @@ conditions = ["w(0) = 0", "w(0.65) = 0"]
     assert of(text, "W", "u").mode_shape(1).along("w", 0.65 * X) == pytest.approx(sin(pi * X), abs=1e-9)
 
 
+@pytest.mark.slow
 def test_material_loss_alone_leaves_a_pinned_beam_its_sine():
     unit = 'E = "1 Pa", I = "1 m^4", rho = "1 kg/m^3", A = "1 m^2", l = "1 m"'
     text = f"""
@@ -354,6 +357,7 @@ def test_near_a_pole_the_outputs_stand_in_the_ratio_of_the_shape():
 # ------------------------------------------------------------------------- hidden and multiple modes
 
 
+@pytest.mark.slow
 def test_a_hidden_mode_has_a_shape():
     bound = classic("clamped_clamped", "W_mid", "p")
     hidden = bound.pole_zero_map(modes=2).hidden[0]

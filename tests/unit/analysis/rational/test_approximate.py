@@ -136,6 +136,7 @@ def test_zeros_are_left_out_until_the_function_is_proper():
     assert R(1e-4) == pytest.approx(math.tanh(1e-4), rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_lumped_system_with_all_its_modes_is_itself():
     for name in ("two_mass", "rigid_body"):
         model = pipeline.load(DERIVATIONS / "eppinger1988" / f"{name}.toml")
@@ -172,6 +173,7 @@ def test_the_first_order_reaches_as_far_as_algebra_says():
     assert R.valid_to(0.01) * 2 * PI == pytest.approx(1, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_a_beam_is_right_at_low_frequencies():
     tf = distributed.bound(distributed.FREE)
     R = approximate(tf, 3, "modal")

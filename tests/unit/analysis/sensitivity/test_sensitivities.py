@@ -273,6 +273,7 @@ def motor_polynomial(L, R, k_t, k_e, J_1, J_2, k, b, d):
     return np.polyadd(np.polymul([L, R], determinant), np.polymul([k_t * k_e, 0], second))
 
 
+@pytest.mark.slow
 def test_a_motor_and_a_flexible_load_by_finite_differences():
     found = moved(pipeline.loads(MOTOR), digits=25)
     assert all(s.status == "certified" for s in found)

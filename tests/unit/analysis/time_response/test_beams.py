@@ -101,6 +101,7 @@ def test_a_step_of_the_sliding_beam_is_its_modal_sum(output, which):
     assert found.radius.max() <= 1e-9 * np.max(np.abs(expected))
 
 
+@pytest.mark.slow
 def test_the_velocity_has_a_wider_bound_that_holds_too():
     found = time_response(sliding("V_tip"), "step", SampleTimes.of(TIMES))
     beta, _, weights = sliding_free()
@@ -143,6 +144,7 @@ def test_paths_between_the_modes_are_told_from_those_through_them():
         assert factor.keeps_away_from_zero(between, least)
 
 
+@pytest.mark.slow
 def test_a_mass_and_a_spring_at_the_tip_leave_a_modal_sum():
     rest = 'elements.m = { type = "mass", at = "x", m = "0.3 kg" }\n'
     rest += 'elements.k = { type = "spring", between = ["ground", "x"], k = "5 N/m" }'
@@ -234,6 +236,7 @@ def test_an_impulse_of_a_displacement_is_a_step_of_a_velocity_and_known_as_soon_
     assert found.radius[0] == 0
 
 
+@pytest.mark.slow
 def test_a_beam_that_loses_much_rings_out_at_the_rate_of_its_slowest_high_modes():
     found = time_response(beam(kind=f'{UNIT}, eta = "0.4 s"', output="s*x"), "step", SampleTimes.of(TIMES))
     beta, weights = cantilever()

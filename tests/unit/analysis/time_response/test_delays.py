@@ -182,6 +182,7 @@ def test_where_nobody_says_how_long_a_neutral_loop_is_followed_for_fifty_turns()
         function.step_response([20.0])
 
 
+@pytest.mark.slow
 def test_where_nobody_says_how_long_a_slow_loop_is_followed_until_it_has_settled():
     text = 'symflex = 1\nparameters.T = "1 ms"\nblocks.D = { type = "delay", T = "T" }\ninputs.r = {}\n'
     text += 'signals = { y = "u/(s*(s + 1))", u = "D*(r - y)/(1 + 0.03*s)" }\noutputs.y = "y"\n'

@@ -53,6 +53,7 @@ def stepped(elements, is_late):
 
 
 @pytest.mark.parametrize("is_late", [False, True])
+@pytest.mark.slow
 def test_twice_as_many_elements_come_sixteen_times_closer_alone_and_in_a_loop_with_a_delay(is_late):
     bound = loads(LOOP if is_late else OPEN).transfer_function("X", "r" if is_late else "F").bind().bound
     found = time_response(bound, "step", SampleTimes.of(np.linspace(0, LAST, 6)[1:]), 7)

@@ -39,6 +39,7 @@ def test_the_sign_of_a_gain_is_found():
     assert fit.resonances.gain[0] == pytest.approx(-2.5, rel=0.02)
 
 
+@pytest.mark.slow
 def test_too_few_resonances_are_called_poor():
     assert fit_resonances([two_modes(3)], None, FitOptions(modes=1)).poor != ()
 

@@ -78,6 +78,7 @@ def test_a_response_elsewhere_is_not_taken_for_the_driven_point():
     assert raised.value.diagnostics[0].code == "SF616"
 
 
+@pytest.mark.slow
 def test_a_response_without_the_unit_of_a_motion_over_a_force_is_refused():
     for unit in ("", "V/N", "m"):
         data = [replace(r, unit=unit) for r in responses(0, "m/N")]

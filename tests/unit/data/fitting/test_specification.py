@@ -89,6 +89,7 @@ def test_a_base_with_a_beam_or_rod_is_copied_too(folder):
     assert model.transfer_function("X", "F").bind()(S[40]) == pytest.approx(fit.values()[40], rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_dead_time_is_found_and_written_as_a_delay_block(folder):
     fit = symflex.fit(noisy(2.5 * resonance() * np.exp(-S * 4e-3)), modes=1, delay=True)
     assert fit.resonances.delay[0] == pytest.approx(4e-3, abs=4 * fit.standard_errors.delay[0])

@@ -165,6 +165,7 @@ def test_nothing_is_unpickled(write):
     assert not (path.parent / "sprung").exists()
 
 
+@pytest.mark.slow
 def test_an_archive_that_grows_beyond_the_limit_is_refused(write):
     buffer = io.BytesIO()
     np.savez_compressed(buffer, f=np.zeros(8_000_000), H=VALUES)

@@ -353,6 +353,7 @@ def test_a_search_repeated_with_proof_keeps_hidden_modes_hidden(monkeypatch, is_
     assert {h.cause for h in shown.hidden} == {"coincident"}
 
 
+@pytest.mark.slow
 def test_no_root_of_a_search_broken_off_is_a_pole_and_a_zero():
     source = resting_hub()
     for looks in (140, 440):

@@ -51,6 +51,7 @@ def test_an_integrator_with_dead_time_has_as_many_as_hayes_counts():
         assert verdict.word == ("unstable" if count else "stable"), gain
 
 
+@pytest.mark.slow
 def test_whatever_is_asked_for_the_unstable_poles_of_a_delay_are_those_of_lambert():
     expected = unstable_by_lambert(10)
     for region in (Modes(1), Mode(3), Band(0, 1), Rectangle(-9, -1, 0, 1)):
@@ -84,6 +85,7 @@ def test_a_pole_on_the_axis_is_not_asymptotically_stable():
         assert found(f'symflex = 1\ninputs.u = {{}}\noutputs.y = "u/({den})"').verdict.word == word
 
 
+@pytest.mark.slow
 def test_loops_whose_delayed_part_is_differentiated_are_counted_only_where_it_is_the_smaller():
     for den, expected in [
         # Roots of s = -exp(s), without end to the right (Bellman & Cooke 1963, section 12.12).
@@ -137,6 +139,7 @@ def test_a_part_not_told_from_zero_is_not_printed_as_zero():
     assert "  ~0" in roots_text(shown, 15)
 
 
+@pytest.mark.slow
 def test_a_passive_structure_has_no_pole_right_of_the_axis_with_and_without_a_damper():
     for b, word in ((None, "marginal"), ("3 N*s/m", "stable"), ("0 N*s/m", "marginal")):
         verdict = found(ROD + (DAMPER.format(b=b) if b else "") + FORCE).verdict

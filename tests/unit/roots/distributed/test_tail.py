@@ -61,6 +61,7 @@ LARGER_THAN_THE_REST = {
 }
 
 
+@pytest.mark.slow
 def test_delays_end_where_the_highest_power_outweighs_the_rest():
     # On the imaginary axis exponentials are as large as one: no smaller radius is a bound for all dead times.
     for denominator, radius in LARGER_THAN_THE_REST.items():
@@ -196,6 +197,7 @@ def diffusion(length=1):
     return field("w'' - s*w = 0", "w(0) = 0", f"w'({length}) = F", length=length)
 
 
+@pytest.mark.slow
 def test_diffusion_ends_where_its_exponential_outweighs_a_number():
     for number, length in ((100, 1), (3000, 3), (100, 0.5)):
         # Of cosh(sqrt(s)) + c the last root right of the axis is (acosh(c) + j pi)^2; on the imaginary axis,

@@ -109,6 +109,7 @@ def test_a_string_driven_in_its_middle_hides_the_modes_with_a_node_there():
     assert omegas(found.zeros) == pytest.approx([2 * first, 4 * first, 6 * first], rel=1e-12)
 
 
+@pytest.mark.slow
 def test_two_equal_arms_on_a_hub_have_a_double_frequency_of_which_the_hub_sees_one():
     # Mirror images of each other: in one mode the hub moves, in the other it rests, at the clamped frequency.
     arm = f'{{ {BEAM}, l = "0.5 m", between = ["a", "END"] }}'
@@ -123,6 +124,7 @@ def test_two_equal_arms_on_a_hub_have_a_double_frequency_of_which_the_hub_sees_o
     )
 
 
+@pytest.mark.slow
 def test_poles_and_zeros_alternate_where_a_force_acts():
     rows = [
         f'b_{i} = {{ {BEAM}, between = ["n_{i}", "n_{i + 1}"], l = "{0.3 + 0.05 * i:.2f} m" }}\n'

@@ -55,6 +55,7 @@ def test_a_free_beam_on_a_damped_foundation_has_the_modes_of_one_in_the_air_shif
     assert poles(text, len(expected)) == pytest.approx(expected, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_a_free_beam_on_a_critically_damped_foundation_has_a_double_pole():
     text = beam('k_f = "10 kN/m^2", c_f = "400 N*s/m^2"', '["tip", "end"]')
     expected = [-50.0, *on_foundation(10000.0, 400.0, FREE_FREE)]

@@ -205,6 +205,7 @@ def test_three_roots_1e_30_apart_are_told_apart():
             assert sum(contains(root.re, value) for root in roots) == 1, value
 
 
+@pytest.mark.slow
 def test_close_roots_are_told_apart_in_clusters_inside_clusters_and_rings():
     close = [1, 1 + TINY, 1 + TINY**2, 1 + TINY**3, -2]
     roots = find_polynomial_roots(problem(*from_roots(close)), 10)
