@@ -4,11 +4,9 @@ import os
 import subprocess
 import sys
 
+import pytest
+
 CODE = """
-import pytest
-
-import pytest
-
 from symflex.errors import Source, Span, SpecError, Text
 from symflex.expressions import format_expression, parse
 for value in ("2x", "a +", "(a", "a b)", "motor.5", "b*sin(a) - w''(l)^2/3"):
