@@ -31,6 +31,7 @@ from symflex.model import ExactValue, with_numbers
 from symflex.model.along import COORDINATE, varies_along_x
 from symflex.model.declarations import assuming
 from symflex.quantities import parse_quantity, unit_of
+from symflex.transfer.against_equations import bound_claim, compare
 from symflex.transfer.balls import (
     FIRST_BITS,
     EvaluationPlan,
@@ -425,7 +426,7 @@ def bind(tf: TransferFunction, values: Mapping[str, Given] | None = None) -> Bou
             if e > 0 and any(degree_in(f, i) for i in varying)
         ]
     if not tf.kernels:
-        return BoundTransferFunction(tf, exact, ratio, tuple(hidden))
+        return _compared(BoundTransferFunction(tf, exact, ratio, tuple(hidden)))
     kernels = tf.kernels.embedded([(v, images.apply_factored(v)) for v in tf.kernels.values])
     for law in kernels.dispersions:
         if law.wavenumbers and law.characteristic[0].is_zero:
@@ -433,7 +434,17 @@ def bind(tf: TransferFunction, values: Mapping[str, Given] | None = None) -> Bou
             hint = "a rigid or massless limit has its own equations: write the zero in place of the parameter"
             raise ModelError(Diagnostic("SF231", message, None, hint))
     parts = (images.apply_factored(tf.num), images.apply_factored(tf.den))
-    return BoundTransferFunction(tf, exact, ratio, tuple(hidden), kernels, parts)
+    return _compared(BoundTransferFunction(tf, exact, ratio, tuple(hidden), kernels, parts))
+
+
+def _compared(bound: BoundTransferFunction) -> BoundTransferFunction:
+    """Return a function once it agrees with the equations at its values.
+
+    Raises InternalError: SF991 it does not.
+    """
+    if bound.source.solve is not None:
+        compare(bound.source.solve, [bound_claim(bound)], dict(bound.values))
+    return bound
 
 
 def _derived_with_numbers(

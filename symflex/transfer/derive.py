@@ -15,6 +15,7 @@ from symflex.algebra import LAPLACE, NO_KERNELS, Factored, KernelTable, degree_i
 from symflex.equations import assemble
 from symflex.equations.elimination import Determinants, explain_singular
 from symflex.errors import Diagnostic, ModelError
+from symflex.transfer.against_equations import ModelSolve, claim, compare
 from symflex.transfer.expansion import Expansion, Opening
 from symflex.transfer.lowest_terms import DeterminantsOnLine, LineImages, cancel
 from symflex.transfer.transfer_function import (
@@ -41,7 +42,7 @@ def derive(equations: Equations, output: str, source: str) -> TransferFunction:
     """Return one transfer function.
 
     Raises ModelError: SF30x when the equations are singular, with the reason; BudgetError: SF50x when the
-    closed form would be too large.
+    closed form would be too large; InternalError: SF991 when it is not what the equations say.
     """
     return derive_all(equations, ((output, source),))[0]
 
@@ -51,9 +52,11 @@ def derive_all(equations: Equations, pairs: Sequence[tuple[str, str]]) -> tuple[
     determinants = Determinants.of(equations)
     workshop = _CramerQuotients(equations, determinants)
     outputs = {row.name: row for row in equations.outputs}
-    return tuple(
+    found = tuple(
         workshop.finish(outputs[output], source, determinants.num(output, source)) for output, source in pairs
     )
+    compare(workshop.solve, [claim(tf) for tf in found])
+    return found
 
 
 class _CramerQuotients:
@@ -67,6 +70,7 @@ class _CramerQuotients:
         self._expansion = Expansion.of(equations)
         self._images = LineImages(self._expansion.ring)
         self._opening = Opening(self._closure, self._expansion)
+        self.solve = ModelSolve(equations.model, nested_transfer, equations)
         propagation = equations.propagation
         self._reduction = None if propagation is None else self._kernel_reduction(propagation)
 
@@ -161,6 +165,7 @@ class _CramerQuotients:
             model,
             table,
             parts,
+            self.solve,
         )
 
     def _finish_distributed(

@@ -16,7 +16,7 @@ functions are evaluated at points.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from math import prod
 from operator import truediv
 from typing import TYPE_CHECKING, Any
@@ -26,10 +26,11 @@ from flint import acb, acb_series, arb, ctx
 from symflex.algebra import LAPLACE, uncollected
 from symflex.algebra.straight_line import Operation, Step, StraightLine
 from symflex.budget import spend
-from symflex.equations import assemble
 from symflex.expressions import Name, names
+from symflex.transfer.against_equations import Claim, ModelSolve, compare
 from symflex.transfer.balls import FIRST_BITS, ball, double_value, enclosure, later
 from symflex.transfer.bind import BoundTransferFunction, Given, bind, values_for
+from symflex.transfer.derive import nested_transfer
 from symflex.transfer.transfer_function import TransferFunction, name_quantity, unit_of_quotient
 
 if TYPE_CHECKING:
@@ -44,6 +45,7 @@ if TYPE_CHECKING:
     from symflex.equations.line_network import LineNetwork
     from symflex.model import ExactValue, Input, Model, ModelParameter, Output
     from symflex.transfer.balls import Value
+    from symflex.transfer.direct_solve import Point
     from symflex.transfer.enclosed_network import EnclosedNetwork, NetworkResponses
 
 CONSTANT_BITS = 256
@@ -53,18 +55,21 @@ CONSTANT_BITS = 256
 class CutModel:
     """A distributed model, of which the network that double precision solves is made when it is wanted."""
 
-    model: Model
+    solve: ModelSolve  # its equations at points
     _known: dict[object, NetworkResponses] = field(default_factory=dict)
+
+    @property
+    def model(self) -> Model:
+        """The model itself."""
+        return self.solve.model
 
     @cached_property
     def network(self) -> LineNetwork:
         """The equations as a table of numbers."""
-        from symflex.equations.line_network import line_network
-        from symflex.transfer.derive import nested_transfer  # exports of networks alone need these
+        from symflex.equations.line_network import line_network  # exports of networks alone need it
 
-        is_sparse = not any(block.submodel is not None for block in self.model.blocks)
         with uncollected():
-            return line_network(assemble(self.model, nested_transfer, is_sparse=is_sparse, is_cut=True))
+            return line_network(self.solve.direct.equations)
 
     def responses(self, bits: int, values: Mapping[str, ExactValue]) -> NetworkResponses:
         """Return the network with numbers, solved in balls at a precision."""
@@ -200,10 +205,12 @@ def derive_nested(
     """Return transfer functions in nested form.
 
     Those of a distributed model are nameless, see :func:`symflex.equations.assemble.assemble`. Raises
-    ModelError: SF30x when the equations are singular.
+    ModelError: SF30x when the equations are singular; InternalError: SF991 when a function is not what they
+    say.
     """
     model = equations.model
-    cut = None if equations.propagation is None else CutModel(model)
+    solve = ModelSolve(model, nested_transfer, equations)
+    cut = None if equations.propagation is None else CutModel(solve)
     from symflex.equations.elimination.star_mesh import eliminate  # few models are so large
 
     found = eliminate(equations, pairs)
@@ -228,7 +235,13 @@ def derive_nested(
                 cut,
             )
         )
+    compare(solve, [Claim((tf.output.name, tf.input.name), [partial(_value, tf)]) for tf in made])
     return tuple(made)
+
+
+def _value(tf: NestedTransferFunction, _: Point, known: Mapping[str, acb]) -> acb:
+    num, den = _values(tf, {name: known[name] for name in tf.generators}, ball)
+    return acb(num) / acb(den)
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,7 +5,7 @@ What it is called follows from the dimensions of its ends.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from symflex.equations.elimination import Closure
     from symflex.model import Input, Model, ModelParameter, Output
     from symflex.quantities import Dimension
+    from symflex.transfer.against_equations import ModelSolve
     from symflex.transfer.expansion import Opening
 
 
@@ -101,6 +102,8 @@ class TransferFunction:
     model: Model  # where it comes from
     kernels: KernelTable = NO_KERNELS  # what wavenumbers and kernels are; empty if lumped
     parts: tuple[Factored, Factored] | None = None  # of a distributed system, :attr:`num` and :attr:`den`
+    # The equations it was compared with, for comparing it again when it has numbers.
+    solve: ModelSolve | None = field(default=None, compare=False, repr=False)
 
     @cached_property
     def ratio(self) -> Factored:

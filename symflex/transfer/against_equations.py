@@ -1,0 +1,272 @@
+"""Transfer functions compared with the equations they were derived from, before anything is made of them.
+
+Input: the equations without kernels, ready to be solved at points, and what evaluates a transfer function.
+Output: nothing where they agree, why that is not decided, or InternalError (SF991) where they differ.
+
+Two rational or meromorphic functions that agree at one random point are almost surely equal (Schwartz 1980,
+Zippel 1979). A point is a complex frequency, and parameters beside the declared values: a root there is real
+as it is at these, and no coincidence of them is taken for an identity. Both values are balls, and no rounding
+is compared.
+
+Example: ``1/(m s^2 - k)`` for a mass m on a spring k at s = 1 + 1j rad/s, m = 2 kg, k = 8 N/m.
+
+    derived 1/(-8 + 4j), the equation 1/(8 + 4j): they differ, and nothing is shown.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property, partial
+from random import Random
+from typing import TYPE_CHECKING
+
+from flint import acb, ctx
+
+from symflex.algebra import LAPLACE, NO_KERNELS, PolynomialMemo, uncollected
+from symflex.equations import assemble
+from symflex.errors import Diagnostic, InternalError, ModelError
+from symflex.model import ExactValue
+from symflex.model.along import is_tapered, varies_along_x
+from symflex.transfer.balls import at_centre, ball, enclosure, plan
+from symflex.transfer.direct_solve import DirectSolve, GeneratorValues, Point, SingularPointError, carried
+from symflex.transfer.transfer_function import TransferFunction
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from flint import acb_mat, fmpz_mpoly
+
+    from symflex.algebra import Dispersion, Factored, Ring
+    from symflex.equations import Equations
+    from symflex.model import Model, PlacedBlock
+    from symflex.transfer.bind import BoundTransferFunction
+    from symflex.transfer.transfer_function import ClosedForm
+
+    Nested = Callable[[PlacedBlock, Ring], Factored]
+
+BITS = 192
+"""Precision that is tried first; then one or two more an unknown, as long chains of members need."""
+WANTED = 40
+"""Bits of both values that are proved before they are compared."""
+SPREADS = (Fraction(1, 8), Fraction(1, 128), Fraction(0))
+"""How far parameters are taken from their declared values: less where a root or a wall would be negative."""
+FREQUENCY = (Fraction(-15, 13), Fraction(17, 9))
+"""Real and imaginary part of a complex frequency [rad/s]."""
+WHOLE = (1237, -1373)
+"""Two of them where all is polynomial: integers, which the engine puts into long polynomials at once."""
+MOST = 1 << 20
+"""An integer in place of a parameter is smaller."""
+
+
+@dataclass(frozen=True, eq=False)
+class ModelSolve:
+    """A model's equations without kernels, assembled when they are first solved at a point."""
+
+    model: Model
+    nested: Nested  # returns the transfer functions of blocks that are models
+    plain: Equations | None = None  # of a lumped model, those it was derived from
+
+    @property
+    def is_lumped(self) -> bool:
+        """True where the equations hold nothing but polynomials in s."""
+        return self.plain is not None and self.plain.propagation is None
+
+    @cached_property
+    def direct(self) -> DirectSolve:
+        """The equations, ready to be solved."""
+        if self.plain is not None and self.is_lumped:
+            return DirectSolve(self.plain)
+        is_sparse = not is_tapered(self.model) and all(b.submodel is None for b in self.model.blocks)
+        with uncollected():
+            return DirectSolve(assemble(self.model, self.nested, is_sparse=is_sparse, is_cut=True))
+
+    def parameters(self) -> Iterator[Mapping[str, ExactValue]]:
+        """Return values beside the declared ones, nearer and nearer; of a lumped model integers before."""
+        random = Random(20)
+        if self.is_lumped:
+            yield {p.name: ExactValue(Fraction(random.randrange(1, MOST))) for p in self.model.parameters}
+        shares = {p.name: Fraction(random.randrange(-64, 65), 64) for p in self.model.parameters}
+        for spread in SPREADS:
+            yield {p.name: _beside(p.value, shares[p.name] * spread) for p in self.model.parameters}
+
+
+def _beside(value: ExactValue | None, share: Fraction) -> ExactValue:
+    if value is None or not value.rational:
+        return ExactValue(1 + share)
+    return ExactValue(value.rational * (1 + share), value.pi_power)
+
+
+Form = Callable[[Point, Mapping[str, acb]], acb]
+"""The value at a point, where the generators of the equations have the values given."""
+
+
+@dataclass(frozen=True, eq=False)
+class Claim:
+    """What is said of one pair of output and input."""
+
+    pair: tuple[str, str]
+    forms: Sequence[Form]  # each of which has the value the equations give
+    # Of a lumped model the product of what remains of the determinant and of what cancelled from it.
+    determinant: Form | None = None
+
+
+def compare(
+    solve: ModelSolve, claims: Sequence[Claim], values: Mapping[str, ExactValue] | None = None
+) -> str:
+    """Compare functions with the equations at random points, or at random frequencies with the given values.
+
+    Returns why they could not be compared; nothing where they agree. Raises InternalError: SF991 they differ.
+    """
+    reason = solve.direct.unsolved
+    for beside in () if reason else solve.parameters():
+        parameters = beside if values is None else {**beside, **values}
+        points = list(_points(parameters, is_lumped=solve.is_lumped))
+        more = max(BITS, len(solve.direct.equations.unknowns))
+        for precision in (BITS, BITS + more, BITS + 2 * more):
+            try:
+                with ctx.workprec(precision):
+                    reason = _compare_at(solve.direct, claims, points)
+            except (SingularPointError, ZeroDivisionError):
+                reason = "the equations or the function have no value at the points tried"
+            except ModelError as error:
+                reason = error.diagnostics[0].message
+                break
+            if not reason:
+                return ""
+    return reason
+
+
+def _points(parameters: Mapping[str, ExactValue], *, is_lumped: bool) -> Iterator[Point]:
+    enclosed = {name: enclosure(value) for name, value in parameters.items()}
+    whole = {
+        name: int(v.rational)
+        for name, v in parameters.items()
+        if not v.pi_power and v.rational.denominator == 1
+    }
+    for s in WHOLE if is_lumped else ():
+        yield Point(partial(acb, s), enclosed, {**whole, LAPLACE: s})
+    if not is_lumped:
+        yield Point(lambda: acb(ball(FREQUENCY[0]), ball(FREQUENCY[1])), enclosed)
+
+
+def _compare_at(direct: DirectSolve, claims: Sequence[Claim], points: Sequence[Point]) -> str:
+    """Return why functions were not compared at some points with the same parameters."""
+    solutions = [direct.at(here, [c.pair for c in claims]) for here in points]
+    for claim in claims:
+        quotients = []
+        for here, solution in zip(points, solutions, strict=True):
+            right = solution.values[claim.pair]
+            for form in claim.forms:
+                value = form(here, solution.generators)
+                if not (_is_narrow(value) and _is_narrow(right)):
+                    return "values are not narrow enough to be compared"
+                if not value.overlaps(right):
+                    raise _differs(claim, here, "does not agree with the model's equations")
+            if claim.determinant is not None:
+                left = claim.determinant(here, solution.generators)
+                quotients.append(solution.determinant * solution.divisors[claim.pair[0]] / left)
+        if not all(map(_is_narrow, quotients)):
+            return "determinants are not narrow enough to be compared"
+        if any(not q.overlaps(quotients[0]) for q in quotients):
+            raise _differs(claim, points[-1], "has lost a mode of the model's equations")
+    return ""
+
+
+def _is_narrow(value: acb) -> bool:
+    """Tell whether a ball is narrow, or so small that a zero is what it encloses."""
+    if not value.is_finite():
+        return False
+    is_zero = value.contains(0) and float(abs(value).upper()) < 2.0 ** -(ctx.prec // 2)
+    return bool(value == 0 or is_zero or value.rel_accuracy_bits() >= WANTED)
+
+
+def claim(tf: TransferFunction) -> Claim:
+    """Return what a transfer function says: its closed form, its expanded one, and its two parts."""
+    forms: list[Form] = []
+    closed = tf.closed
+    if closed is not None:
+        forms.append(lambda here, known: _quotient(closed, here, known))
+    if tf.reduced is not None:
+        forms.append(partial(_value, tf))
+    return Claim(
+        (tf.output.name, tf.input.name), forms, None if tf.is_distributed else partial(_determinant, tf)
+    )
+
+
+def bound_claim(bound: BoundTransferFunction) -> Claim:
+    """Return what a transfer function with numbers says."""
+    pair = bound.source.output.name, bound.source.input.name
+    return Claim(
+        pair, [partial(_value, bound)], None if bound.is_distributed else partial(_determinant, bound)
+    )
+
+
+def _value(tf: TransferFunction | BoundTransferFunction, here: Point, known: Mapping[str, acb]) -> acb:
+    """Return the value of an expanded form."""
+    if tf.is_distributed:
+        return _with_kernels(tf, here, known)
+    return GeneratorValues(dict(known), here.whole)(tf.ratio)
+
+
+def _determinant(tf: TransferFunction | BoundTransferFunction, here: Point, known: Mapping[str, acb]) -> acb:
+    """Return the denominator times what cancelled from it."""
+    number = GeneratorValues(dict(known), here.whole)
+    closed = tf.closed if isinstance(tf, TransferFunction) else None
+    left = number(tf.den) if closed is None else _closed(closed, here, known)(closed.den)
+    ring = tf.ring if isinstance(tf, TransferFunction) else tf.ratio.ring
+    for hidden in tf.hidden:
+        left = left * number.polynomial(hidden.polynomial, ring.names) ** hidden.multiplicity
+    return left
+
+
+def _closed(closed: ClosedForm, here: Point, known: Mapping[str, acb]) -> Callable[[fmpz_mpoly], acb]:
+    """Return what takes closed polynomials to their values."""
+    closure, number = closed.closure, GeneratorValues(dict(known), dict(here.whole))
+    for name, opened in closure.sums:
+        number.values[name] = number.polynomial(opened, closure.base.names)
+    return lambda polynomial: number.polynomial(polynomial, closure.ring.names)
+
+
+def _quotient(closed: ClosedForm, here: Point, known: Mapping[str, acb]) -> acb:
+    number = _closed(closed, here, known)
+    return number(closed.num) / number(closed.den)
+
+
+def _with_kernels(tf: TransferFunction | BoundTransferFunction, here: Point, known: Mapping[str, acb]) -> acb:
+    """Return the value of a transfer function with kernels, where its parts have it as well."""
+    from symflex.algebra.modal_sum import ModalSums  # only with beams
+    from symflex.transfer.enclose_kernels import KernelValues
+
+    ring, table = tf.ratio.ring, tf.kernels
+    numbers = {n: known[n].real for n in ring.names if n in known and n != LAPLACE}
+    kernels = KernelValues(ring.names, table, numbers, ModalSums(ring, NO_KERNELS), PolynomialMemo(plan))
+    values = kernels.at(here.s())
+    constants = (tf if isinstance(tf, TransferFunction) else tf.source).constants
+    along = {c.generator: c.expression for c in constants if varies_along_x(c.expression)}
+    matrices: dict[tuple[Dispersion, Factored], acb_mat] = {}
+    for kernel in table.kernels:
+        law = kernel.dispersion
+        if kernel.function == "entry":
+            if (law, kernel.length) not in matrices:
+                columns, reach = tuple(zip(*law.matrix, strict=True)), (law.start[0], kernel.length)
+                matrices[law, kernel.length] = carried(
+                    columns, reach, GeneratorValues(dict(known)), along, here
+                )
+            values[kernel.generator] = matrices[law, kernel.length][divmod(kernel.order, law.order)]
+    whole, above, below = (at_centre(kernels.value(x, values)) for x in (tf.ratio, tf.num, tf.den))
+    parts = above / below
+    return whole if whole.overlaps(parts) else parts
+
+
+def _differs(claim: Claim, here: Point, fault: str) -> InternalError:
+    s = complex(float(here.s().real.mid()), float(here.s().imag.mid()))
+    return InternalError(
+        Diagnostic(
+            "SF991",
+            f"the transfer function {'/'.join(claim.pair)} {fault} at s = {s:.4g}; nothing of it is shown",
+            None,
+            "this is a fault of symflex, not of the model: please report it with the specification",
+        )
+    )

@@ -1,0 +1,478 @@
+"""The equations of a model solved at one point: numbers first, and then elimination in balls.
+
+Input: :class:`symflex.equations.Equations` without kernels, those of a distributed model cut (see
+:func:`symflex.equations.assemble.assemble`), and a :class:`Point`.
+Output: the values of transfer functions there, ``y = C x + D u`` with ``A(s) x + B u = 0``.
+
+A distributed part relates the states at its ends by the exponential of its matrix times its length, and by
+Taylor steps where its coefficients vary along x. So no wavenumber, no kernel and no cancelling takes part:
+nothing is shared with the derivation of a closed form, which can be compared with these values.
+
+Example: a mass m = 2 kg on a spring k = 8 N/m at s = 1 + 1j rad/s, from its one equation.
+
+    (m s^2 + k) x = F          x/F = 1/(8 + 4j) m/N
+"""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import dataclass, field
+from functools import cached_property
+from heapq import heapify, heappop, heappush
+from math import log2
+from typing import TYPE_CHECKING
+
+from flint import acb, acb_mat, acb_series, arb, ctx
+
+from symflex.algebra import FUNCTIONS, LAPLACE, terms_of
+from symflex.budget import spend
+from symflex.errors import ModelError
+from symflex.expressions import fold
+from symflex.model.along import COORDINATE, varies_along_x
+from symflex.transfer.balls import ball, enclose, evaluated, later, raised, series_terms
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from flint import fmpz_mpoly
+
+    from symflex.algebra import Factored
+    from symflex.equations import Continuum, Equations
+    from symflex.expressions import Call
+    from symflex.library.elements import LinearForm, Variable
+
+ZERO = acb(0)
+SMALL = 1e-3
+"""A pivot is no smaller than so much of its row, or balls would widen; of others the column is short."""
+ROUNDS = 3
+"""Of balancing."""
+FEW_TERMS = 16
+"""Of a polynomial that is summed term by term."""
+TERMS = 40
+"""Of a Taylor step, which is halved until the last of them are below the precision wanted."""
+TAYLOR_BITS = 80
+LAST_TERMS = 3
+"""A coefficient may vanish by symmetry; so many in a row do not."""
+MOST_STEPS = 400
+FIRST_STEPS = 4
+
+
+class SingularPointError(Exception):
+    """The equations have no unique solution at a point, or no value there."""
+
+
+@dataclass(frozen=True, eq=False)
+class Point:
+    """A complex frequency [rad/s] and parameters, enclosed at the precision they are asked for with."""
+
+    s: Callable[[], acb]
+    parameters: Mapping[str, Callable[[], arb]]
+    whole: Mapping[str, int] = field(default_factory=dict)  # those of them, and s, that are integers
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """What the equations say at a point."""
+
+    values: Mapping[tuple[str, str], acb]  # of the transfer functions, by output and input
+    determinant: acb  # of A, up to its sign
+    divisors: Mapping[str, acb]  # what each output's form is divided by
+    generators: Mapping[str, acb]  # the values of the names in the equations
+
+
+@dataclass(frozen=True, eq=False)
+class DirectSolve:
+    """The equations of one model, ready to be solved at points."""
+
+    equations: Equations
+
+    @cached_property
+    def unsolved(self) -> str:
+        """Why the equations cannot be solved at points; empty where they can."""
+        ends = any(law.singular is not None for c in self.equations.continua for _, law in c.parts)
+        return "a stiffness vanishes at an end, where Taylor steps cannot begin" if ends else ""
+
+    def at(self, point: Point, pairs: Sequence[tuple[str, str]]) -> Solution:
+        """Return the values at a point at the current precision.
+
+        Raises SingularPointError: no pivot is proved to differ from zero, or a function of constants has no
+        value there.
+        """
+        spend()
+        equations, values = self.equations, self._generators(point)
+        columns = {v: i for i, v in enumerate(equations.unknowns)}
+        inputs = {v.owner: v for v in equations.inputs}
+        sources = list(dict.fromkeys(source for _, source in pairs))
+        places = columns | {inputs[source]: len(columns) + k for k, source in enumerate(sources)}
+        number = GeneratorValues(values)
+        rows = [number.row(row.form, places) for row in equations.rows]
+        for continuum in equations.continua:
+            rows += _relations(continuum, number, self._along, point, places)
+        determinant, unknowns = _eliminated(rows, len(columns), len(sources))
+        found = {}
+        outputs = {row.name: row for row in equations.outputs}
+        divisors = {output: number(outputs[output].divisor) for output, _ in pairs}
+        for output, source in pairs:
+            form, k = number.row(outputs[output].form, places), sources.index(source)
+            total = form.get(len(columns) + k, ZERO)
+            for i, c in form.items():
+                if i < len(columns):
+                    total = total + c * unknowns[i][k]
+            found[output, source] = total / divisors[output]
+        return Solution(found, determinant, divisors, values)
+
+    @cached_property
+    def _along(self) -> Mapping[str, Call]:
+        """The functions of the coordinate along x."""
+        constants = self.equations.constants
+        return {c.generator: c.expression for c in constants if varies_along_x(c.expression)}
+
+    def _generators(self, point: Point) -> dict[str, acb]:
+        """Return the value of every name but those that vary along x."""
+        values = {LAPLACE: point.s(), "pi": acb(arb.pi())}
+        values |= {name: acb(enclosed()) for name, enclosed in point.parameters.items()}
+        for constant in self.equations.constants:
+            if constant.generator not in self._along:
+                with suppress(ModelError):  # where it is needed its name is missing
+                    values[constant.generator] = acb(later(constant.expression, point.parameters)())
+        # Only numbers: definitions may hold delays, and delays may hold definitions.
+        number, waves = GeneratorValues(values), self.equations.propagation
+        delays = {}
+        if waves is not None:
+            laws, lengths = waves.table.dispersions, waves.lengths
+            for p in waves.propagators:
+                delays[p.generator] = laws[p.dispersion].shift, lengths[p.dispersion][p.length]
+        for name, value in self.equations.definitions:
+            for delay in [d for d in delays if value.ring.index.get(d) is not None and value.depends_on(d)]:
+                _delay(delay, delays, number)
+            if not _holds(value, self._along):
+                values[name] = number(value)
+        for delay in delays:
+            _delay(delay, delays, number)
+        return values
+
+
+def _delay(name: str, delays: Mapping[str, tuple[Factored, Factored]], number: GeneratorValues) -> None:
+    if name not in number.values:
+        rate, time = delays[name]
+        number.values[name] = (-number(rate) * number(time)).exp()
+
+
+def _holds(value: Factored, names: Mapping[str, Call]) -> bool:
+    """Tell whether a value varies along x."""
+    return any(n in value.ring.index and value.depends_on(n) for n in (COORDINATE, *names))
+
+
+@dataclass(frozen=True, eq=False)
+class GeneratorValues:
+    """Takes rational functions to their values."""
+
+    values: dict[str, acb]
+    whole: Mapping[str, int] = field(default_factory=dict)
+
+    def __call__(self, value: Factored) -> acb:
+        """Return the value of a rational function."""
+        total = acb(ball(value.unit))
+        for factor, exponent in value.factors:
+            number = self.polynomial(factor, value.ring.names)
+            if exponent < 0 and number.contains(0):
+                raise SingularPointError
+            total = total * number**exponent
+        return total
+
+    def polynomial(self, polynomial: fmpz_mpoly, names: Sequence[str]) -> acb:
+        """Return the value of a polynomial in the generators named; where all are integers the engine's."""
+        if len(polynomial) > FEW_TERMS and all(
+            names[i] in self.whole for i, d in enumerate(polynomial.degrees()) if int(d)
+        ):
+            return acb(polynomial(*(self.whole.get(name, 0) for name in names)))
+        total = ZERO
+        for monomial, coefficient in terms_of(polynomial):
+            term = acb(coefficient)
+            for i, e in monomial:
+                if names[i] not in self.values:
+                    raise SingularPointError
+                term = term * self.values[names[i]] ** int(e)
+            total = total + term
+        return total
+
+    def row(self, form: LinearForm, places: Mapping[Variable, int]) -> dict[int, acb]:
+        """Return a linear form by its columns; what belongs to none is left out."""
+        found: dict[int, acb] = {}
+        for variable, coefficient in form.terms:
+            if variable in places:
+                i, c = places[variable], self(coefficient)
+                found[i] = found[i] + c if i in found else c
+        return found
+
+
+# ---------------------------------------------------------------------------------------- distributed parts
+
+
+def _relations(
+    part: Continuum,
+    number: GeneratorValues,
+    along: Mapping[str, Call],
+    point: Point,
+    places: Mapping[Variable, int],
+) -> list[dict[int, acb]]:
+    """Return the rows that relate the states at both ends of a part."""
+    size, loads = len(part.initial), part.system.loads
+    if not part.final:
+        return []
+    columns = [*zip(*part.system.matrix, strict=True), *loads]
+    reached = carried(columns, (part.start, part.length), number, along, point)
+    rows = []
+    for i, (end, sign) in enumerate(part.final):
+        row: dict[int, acb] = {}
+        terms = [(end, acb(-sign)), *((v, reached[i, j]) for j, v in enumerate(part.initial))]
+        terms += [(v, reached[i, size + k]) for k, v in enumerate(part.loads[: len(loads)])]
+        for variable, value in terms:
+            if variable is not None and variable in places:
+                place = places[variable]
+                row[place] = row[place] + value if place in row else value
+        rows.append(row)
+    return rows
+
+
+def carried(
+    columns: Sequence[Sequence[Factored]],
+    reach: tuple[Factored, Factored],
+    number: GeneratorValues,
+    along: Mapping[str, Call],
+    point: Point,
+) -> acb_mat:
+    """Return what takes states over a length, where each column says what a state adds to the slopes of all.
+
+    ``reach`` is where x begins, and the length; ``along`` are the functions of x among the generators.
+    """
+    size, length = len(columns), number(reach[1])
+    entries = {
+        (i, j): value
+        for j, column in enumerate(columns)
+        for i, value in enumerate(column)
+        if not value.is_zero
+    }
+    if any(_holds(value, along) for value in entries.values()):
+        return _stepped(entries, size, number(reach[0]), length, _AlongX(number, along, point))
+    matrix = acb_mat(size, size)
+    for place, value in entries.items():
+        matrix[place] = number(value) * length
+    return matrix.exp()
+
+
+@dataclass(frozen=True, eq=False)
+class _AlongX:
+    """Takes rational functions to their Taylor series along x."""
+
+    number: GeneratorValues
+    functions: Mapping[str, Call]
+    point: Point
+
+    def series(self, value: Factored, x: acb) -> list[acb]:
+        """Return the coefficients about a point, as many as ``ctx.cap``."""
+        along = acb_series([x, 1])
+        known: dict[str, acb_series] = {COORDINATE: along}
+
+        def named(name: str) -> acb | acb_series:
+            if name in self.functions:
+                known.setdefault(name, self._function(self.functions[name], along))
+            return known[name] if name in known else self.number.values[name]
+
+        found = evaluated(value, named, acb_series([1]))
+        return [found[i] for i in range(ctx.cap)]
+
+    def _function(self, call: Call, along: acb_series) -> acb_series:
+        def named(name: str) -> acb_series:
+            if name == COORDINATE:
+                return along
+            return acb_series([arb.pi() if name == "pi" else self.point.parameters[name]()])
+
+        series: acb_series = fold(
+            call,
+            number=lambda x: acb_series([ball(x)]),
+            name=named,
+            power=lambda base, exponent: raised(base, _whole(enclose(exponent, {}))),
+            call=lambda inner, argument: _elementary(inner.name, argument),
+        )
+        return series
+
+
+def _whole(exponent: arb) -> int:
+    return round(float(exponent.mid()))  # the grammar has no other powers
+
+
+def _elementary(name: str, x: acb_series) -> acb_series:
+    match name:
+        case "sinh" | "cosh" | "tanh":
+            up, down = x.exp(), (-x).exp()
+            odd, even = up - down, up + down
+            quotient: acb_series = odd / even if name == "tanh" else (odd if name == "sinh" else even) / 2
+            return quotient
+        case "tan":
+            return _elementary("sin", x) / _elementary("cos", x)
+    function: Callable[[acb_series], acb_series] = FUNCTIONS[name].evaluate  # type: ignore[assignment]
+    return function(x)
+
+
+def _stepped(
+    entries: Mapping[tuple[int, int], Factored], size: int, start: acb, length: acb, along: _AlongX
+) -> acb_mat:
+    """Return the same by Taylor steps, its balls as wide as the terms that were left out suggest."""
+    states = acb_mat(size, size)
+    for i in range(size):
+        states[i, i] = acb(1)
+    done, step, steps = arb(0), arb(1) / FIRST_STEPS, 0
+    with series_terms(TERMS):
+        while done < 1:
+            steps += 1
+            step = min(step, 1 - done, key=lambda h: float(h.mid()))
+            here = start + length * done
+            series = {place: along.series(value, here) for place, value in entries.items()}
+            while (across := _taylor(series, size, length * step)) is None:
+                step = step / 2
+                steps += 1
+                if steps > MOST_STEPS:
+                    raise SingularPointError
+            states = across * states
+            done, step = (done + step).mid(), step * 2
+    return states
+
+
+def _taylor(series: Mapping[tuple[int, int], list[acb]], size: int, step: acb) -> acb_mat | None:
+    """Return what takes states over one step, None where its last terms are too large."""
+    across = acb_mat(size, size)
+    for column in range(size):
+        terms = [[acb(int(i == column)) for i in range(size)]]
+        for k in range(TERMS - 1):
+            following = [ZERO] * size
+            for (i, j), coefficients in series.items():
+                total = ZERO
+                for m in range(k + 1):
+                    if coefficients[m] != 0:
+                        total = total + coefficients[m] * terms[k - m][j]
+                following[i] = following[i] + total
+            terms.append([x / (k + 1) for x in following])
+        power, sums, last = acb(1), [ZERO] * size, arb(0)
+        for k, term in enumerate(terms):
+            sums = [a + b * power for a, b in zip(sums, term, strict=True)]
+            if k >= TERMS - LAST_TERMS:
+                last = max(last, *((abs(b) * abs(power)).upper() for b in term), key=lambda b: float(b.mid()))
+            power = power * step
+        most = max(((abs(x)).upper() for x in sums), key=lambda b: float(b.mid()))
+        if not last.is_finite() or not last <= most * arb(2) ** -TAYLOR_BITS:
+            return None
+        for i, x in enumerate(sums):
+            across[i, column] = x + acb(arb(0, last), arb(0, last))
+    return across
+
+
+# ---------------------------------------------------------------------------------------------- elimination
+
+
+def _eliminated(  # noqa: PLR0912 (one loop over a workbench that is not worth a name)
+    rows: list[dict[int, acb]], size: int, sources: int
+) -> tuple[acb, list[list[acb]]]:
+    """Return the determinant of A but for its sign, and the unknowns per unit of each input.
+
+    Rows have the unknowns' columns and then those of the inputs. The shortest row is next, and of its entries
+    the one whose column is shortest, so that networks stay sparse.
+    """
+    powers = _balance(rows, size)
+    holders: list[set[int]] = [set() for _ in range(size)]
+    for i, row in enumerate(rows):
+        for j in [j for j, x in row.items() if x == 0]:
+            del row[j]
+        for j in row:
+            if j < size:
+                holders[j].add(i)
+    if len(rows) != size:
+        raise SingularPointError
+    waiting = [(len(row), i) for i, row in enumerate(rows)]
+    heapify(waiting)
+    left, order, determinant = set(range(size)), [], acb(1)
+    undecided: list[tuple[int, int]] = []  # rows no pivot of which is proved, until others have changed them
+    while left:
+        if not waiting:
+            raise SingularPointError
+        count, i = heappop(waiting)
+        if i not in left or count != len(rows[i]):
+            continue
+        row = rows[i]
+        sizes = {j: _size(x) for j, x in row.items() if j < size and not x.contains(0)}
+        if not sizes:
+            undecided.append((count, i))
+            continue
+        least = max(sizes.values()) * SMALL
+        j = min((j for j, x in sizes.items() if x >= least), key=lambda j: len(holders[j]))
+        left.remove(i)
+        pivot = row[j]
+        determinant = determinant * pivot
+        order.append((i, j))
+        for other in [x for x in holders[j] if x in left]:
+            _subtract(rows[other], row, j, rows[other][j] / pivot, holders, other, size)
+            heappush(waiting, (len(rows[other]), other))
+        for entry in undecided:
+            heappush(waiting, entry)
+        undecided.clear()
+        for k in row:
+            if k < size:
+                holders[k].discard(i)
+    unknowns: list[list[acb]] = [[] for _ in range(size)]
+    for i, j in reversed(order):
+        row = rows[i]
+        for k in range(sources):
+            total = row.get(size + k, ZERO)
+            for column, x in row.items():
+                if column < size and column != j:
+                    total = total + x * unknowns[column][k]
+            unknowns[j].append(-total / row[j])
+    for power in powers:
+        determinant = determinant / power
+    return determinant, [[x * scale for x in own] for own, scale in zip(unknowns, powers, strict=True)]
+
+
+def _balance(rows: list[dict[int, acb]], size: int) -> list[arb]:
+    """Scale columns by powers of two, so that no entry is small because of its unit; return the powers."""
+    sizes = [{j: log2(_size(x)) for j, x in row.items() if j < size and _size(x)} for row in rows]
+    shifts = [0.0] * size
+    for _ in range(ROUNDS):
+        most = [max((x + shifts[j] for j, x in own.items()), default=0.0) for own in sizes]
+        columns: list[list[float]] = [[] for _ in range(size)]
+        for own, largest in zip(sizes, most, strict=True):
+            for j, x in own.items():
+                columns[j].append(x - largest)
+        shifts = [-max(own, default=0.0) for own in columns]
+    powers = [arb(2) ** round(shift) for shift in shifts]
+    for row in rows:
+        for j in row:
+            if j < size:
+                row[j] = row[j] * powers[j]
+    return powers
+
+
+def _size(x: acb) -> float:
+    return float(abs(x.mid()).upper())
+
+
+def _subtract(
+    target: dict[int, acb],
+    row: Mapping[int, acb],
+    pivot: int,
+    factor: acb,
+    holders: list[set[int]],
+    number: int,
+    size: int,
+) -> None:
+    """Take a multiple of one row from another, which loses its entry in the pivot's column."""
+    for k, x in row.items():
+        if k == pivot:
+            continue
+        if k in target:
+            target[k] = target[k] - factor * x
+        else:
+            target[k] = -factor * x
+            if k < size:
+                holders[k].add(number)
+    del target[pivot]
+    holders[pivot].discard(number)
