@@ -166,7 +166,8 @@ def _compare_at(direct: DirectSolve, claims: Sequence[Claim], points: Sequence[P
                     raise _differs(claim, here, "does not agree with the model's equations")
             if claim.determinant is not None:
                 left = claim.determinant(here, solution.generators)
-                quotients.append(solution.determinant * solution.divisors[claim.pair[0]] / left)
+                # Squares, as the sign of a determinant depends on the order of elimination.
+                quotients.append((solution.determinant * solution.divisors[claim.pair[0]] / left) ** 2)
         if not all(map(_is_narrow, quotients)):
             return "determinants are not narrow enough to be compared"
         if any(not q.overlaps(quotients[0]) for q in quotients):
