@@ -103,7 +103,7 @@ Form = Callable[[Point, Mapping[str, acb]], acb]
 
 
 @dataclass(frozen=True, eq=False)
-class Statement:
+class Agreement:
     """What is said of one pair of output and input."""
 
     pair: tuple[str, str]
@@ -113,7 +113,7 @@ class Statement:
 
 
 def compare(
-    solve: ModelSolve, statements: Sequence[Statement], values: Mapping[str, ExactValue] | None = None
+    solve: ModelSolve, agreements: Sequence[Agreement], values: Mapping[str, ExactValue] | None = None
 ) -> str:
     """Compare functions with the equations at random points, or at random frequencies with the given values.
 
@@ -127,7 +127,7 @@ def compare(
         for precision in (BITS, BITS + more, BITS + 2 * more):
             try:
                 with ctx.workprec(precision):
-                    reason = _compare_at(solve.direct, statements, points)
+                    reason = _compare_at(solve.direct, agreements, points)
             except (SingularPointError, ZeroDivisionError):
                 reason = "the equations or the function have no value at the points tried"
             except ModelError as error:
@@ -151,27 +151,27 @@ def _points(parameters: Mapping[str, ExactValue], *, is_lumped: bool) -> Iterato
         yield Point(lambda: acb(ball(FREQUENCY[0]), ball(FREQUENCY[1])), enclosed)
 
 
-def _compare_at(direct: DirectSolve, statements: Sequence[Statement], points: Sequence[Point]) -> str:
+def _compare_at(direct: DirectSolve, agreements: Sequence[Agreement], points: Sequence[Point]) -> str:
     """Return why functions were not compared at some points with the same parameters."""
-    solutions = [direct.at(here, [c.pair for c in statements]) for here in points]
-    for statement in statements:
+    solutions = [direct.at(here, [c.pair for c in agreements]) for here in points]
+    for agreement in agreements:
         quotients = []
         for here, solution in zip(points, solutions, strict=True):
-            right = solution.values[statement.pair]
-            for form in statement.forms:
+            right = solution.values[agreement.pair]
+            for form in agreement.forms:
                 value = form(here, solution.generators)
                 if not (_is_narrow(value) and _is_narrow(right)):
                     return "values are not narrow enough to be compared"
                 if not value.overlaps(right):
-                    raise _differs(statement, here, "does not agree with the model's equations")
-            if statement.determinant is not None:
-                left = statement.determinant(here, solution.generators)
+                    raise _differs(agreement, here, "does not agree with the model's equations")
+            if agreement.determinant is not None:
+                left = agreement.determinant(here, solution.generators)
                 # Squares, as the sign of a determinant depends on the order of elimination.
-                quotients.append((solution.determinant * solution.divisors[statement.pair[0]] / left) ** 2)
+                quotients.append((solution.determinant * solution.divisors[agreement.pair[0]] / left) ** 2)
         if not all(map(_is_narrow, quotients)):
             return "determinants are not narrow enough to be compared"
         if any(not q.overlaps(quotients[0]) for q in quotients):
-            raise _differs(statement, points[-1], "has lost a mode of the model's equations")
+            raise _differs(agreement, points[-1], "has lost a mode of the model's equations")
     return ""
 
 
@@ -183,7 +183,7 @@ def _is_narrow(value: acb) -> bool:
     return bool(value == 0 or is_zero or value.rel_accuracy_bits() >= WANTED)
 
 
-def statement(tf: TransferFunction) -> Statement:
+def agreement(tf: TransferFunction) -> Agreement:
     """Return what a transfer function says: its closed form, its expanded one, and its two parts."""
     forms: list[Form] = []
     closed = tf.closed
@@ -191,15 +191,15 @@ def statement(tf: TransferFunction) -> Statement:
         forms.append(lambda here, known: _quotient(closed, here, known))
     if tf.reduced is not None:
         forms.append(partial(_value, tf))
-    return Statement(
+    return Agreement(
         (tf.output.name, tf.input.name), forms, None if tf.is_distributed else partial(_determinant, tf)
     )
 
 
-def bound_statement(bound: BoundTransferFunction) -> Statement:
+def bound_agreement(bound: BoundTransferFunction) -> Agreement:
     """Return what a transfer function with numbers says."""
     pair = bound.source.output.name, bound.source.input.name
-    return Statement(
+    return Agreement(
         pair, [partial(_value, bound)], None if bound.is_distributed else partial(_determinant, bound)
     )
 
@@ -261,12 +261,12 @@ def _with_kernels(tf: TransferFunction | BoundTransferFunction, here: Point, kno
     return whole if whole.overlaps(parts) else parts
 
 
-def _differs(statement: Statement, here: Point, fault: str) -> InternalError:
-    s = complex(float(here.s().real.mid()), float(here.s().imag.mid()))
+def _differs(agreement: Agreement, here: Point, fault: str) -> InternalError:
+    name, s = "/".join(agreement.pair), complex(float(here.s().real.mid()), float(here.s().imag.mid()))
     return InternalError(
         Diagnostic(
             "SF991",
-            f"the transfer function {'/'.join(statement.pair)} {fault} at s = {s:.4g}; nothing of it is shown",
+            f"the transfer function {name} {fault} at s = {s:.4g}; nothing of it is shown",
             None,
             "this is a fault of symflex, not of the model: please report it with the specification",
         )

@@ -15,7 +15,7 @@ from symflex.algebra import LAPLACE, NO_KERNELS, Factored, KernelTable, degree_i
 from symflex.equations import assemble
 from symflex.equations.elimination import Determinants, explain_singular
 from symflex.errors import Diagnostic, ModelError
-from symflex.transfer.against_equations import ModelSolve, compare, statement
+from symflex.transfer.against_equations import ModelSolve, agreement, compare
 from symflex.transfer.expansion import Expansion, Opening
 from symflex.transfer.lowest_terms import DeterminantsOnLine, LineImages, cancel
 from symflex.transfer.transfer_function import (
@@ -55,7 +55,7 @@ def derive_all(equations: Equations, pairs: Sequence[tuple[str, str]]) -> tuple[
     found = tuple(
         workshop.finish(outputs[output], source, determinants.num(output, source)) for output, source in pairs
     )
-    compare(workshop.solve, [statement(tf) for tf in found])
+    compare(workshop.solve, [agreement(tf) for tf in found])
     return found
 
 

@@ -27,7 +27,7 @@ from symflex.algebra import LAPLACE, uncollected
 from symflex.algebra.straight_line import Operation, Step, StraightLine
 from symflex.budget import spend
 from symflex.expressions import Name, names
-from symflex.transfer.against_equations import ModelSolve, Statement, compare
+from symflex.transfer.against_equations import Agreement, ModelSolve, compare
 from symflex.transfer.balls import FIRST_BITS, ball, double_value, enclosure, later
 from symflex.transfer.bind import BoundTransferFunction, Given, bind, values_for
 from symflex.transfer.derive import nested_transfer
@@ -235,7 +235,7 @@ def derive_nested(
                 cut,
             )
         )
-    compare(solve, [Statement((tf.output.name, tf.input.name), [partial(_value, tf)]) for tf in made])
+    compare(solve, [Agreement((tf.output.name, tf.input.name), [partial(_value, tf)]) for tf in made])
     return tuple(made)
 
 

@@ -13,7 +13,7 @@ from symflex import pipeline
 from symflex.errors import InternalError
 from symflex.model import ExactValue
 from symflex.transfer import nested_transfer
-from symflex.transfer.against_equations import ModelSolve, Statement, compare, statement
+from symflex.transfer.against_equations import Agreement, ModelSolve, agreement, compare
 from symflex.transfer.direct_solve import Point, SingularPointError
 from tests.house.repository import ROOT
 
@@ -108,7 +108,7 @@ outputs = { X = "x" }
 def test_every_derivation_is_compared(path):
     model = pipeline.load(path)
     for tf in pipeline.derive_all(model):
-        reason = compare(tf.solve, [statement(tf)])
+        reason = compare(tf.solve, [agreement(tf)])
         assert reason == (
             "" if path.stem not in ("hanging_string", "wedge", "cone") else tf.solve.direct.unsolved
         )
@@ -136,14 +136,14 @@ def test_a_wrong_sign_a_factor_and_a_lost_factor_are_noticed(name):
     for ratio in wrong(tf):
         planted = replace(tf, reduced=ratio, closed=None, parts=(ratio.numerator(), ratio.denominator()))
         with pytest.raises(InternalError, match=r"SF991.*transfer function"):
-            compare(tf.solve, [statement(planted)])
+            compare(tf.solve, [agreement(planted)])
 
 
 def test_wrong_parts_of_a_function_are_noticed():
     tf = functions("classics/clamped_free.toml")[0]
     planted = replace(tf, parts=(tf.num * 2, tf.den))
     with pytest.raises(InternalError):
-        compare(tf.solve, [statement(planted)])
+        compare(tf.solve, [agreement(planted)])
 
 
 def test_a_mode_that_was_lost_is_noticed():
@@ -151,7 +151,7 @@ def test_a_mode_that_was_lost_is_noticed():
     text = Path(ROOT / "derivations/eppinger1988/two_mass.toml").read_text(encoding="utf-8")
     assert "hidden" not in text
     less = replace(tf, reduced=tf.ratio * 1, closed=None)
-    wider = Statement(("X_act", "F"), statement(less).forms, lambda _, known: known["s"] ** 3)
+    wider = Agreement(("X_act", "F"), agreement(less).forms, lambda _, known: known["s"] ** 3)
     with pytest.raises(InternalError, match="lost a mode"):
         compare(tf.solve, [wider])
 
@@ -159,7 +159,7 @@ def test_a_mode_that_was_lost_is_noticed():
 def test_a_bound_function_is_compared_at_its_values():
     tf = functions("classics/clamped_free.toml")[0]
     values = {p.name: ExactValue(Fraction(k + 2, 3)) for k, p in enumerate(tf.model.parameters)}
-    assert compare(tf.solve, [statement(tf)], values) == ""
-    shifted = Statement(("W_tip", "F"), [lambda *_: acb(arb(1) / 7)])
+    assert compare(tf.solve, [agreement(tf)], values) == ""
+    shifted = Agreement(("W_tip", "F"), [lambda *_: acb(arb(1) / 7)])
     with pytest.raises(InternalError):
         compare(tf.solve, [shifted], values)
