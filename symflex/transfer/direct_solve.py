@@ -19,7 +19,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 from heapq import heapify, heappop, heappush
-from math import log2
+from math import inf, log
 from typing import TYPE_CHECKING
 
 from flint import acb, acb_mat, acb_series, arb, ctx
@@ -42,8 +42,8 @@ if TYPE_CHECKING:
     from symflex.library.elements import LinearForm, Variable
 
 ZERO = acb(0)
-SMALL = 1e-3
-"""A pivot is no smaller than so much of its row, or balls would widen; of others the column is short."""
+SMALL = 10.0
+"""Bits that a pivot may be smaller than its row, or balls would widen; of those left the column is short."""
 ROUNDS = 3
 """Of balancing."""
 FEW_TERMS = 16
@@ -403,7 +403,7 @@ def _eliminated(  # noqa: PLR0912 (one loop over a workbench that is not worth a
         if not sizes:
             undecided.append((count, i))
             continue
-        least = max(sizes.values()) * SMALL
+        least = max(sizes.values()) - SMALL
         j = min((j for j, x in sizes.items() if x >= least), key=lambda j: len(holders[j]))
         left.remove(i)
         pivot = row[j]
@@ -434,7 +434,7 @@ def _eliminated(  # noqa: PLR0912 (one loop over a workbench that is not worth a
 
 def _balance(rows: list[dict[int, acb]], size: int) -> list[arb]:
     """Scale columns by powers of two, so that no entry is small because of its unit; return the powers."""
-    sizes = [{j: log2(_size(x)) for j, x in row.items() if j < size and _size(x)} for row in rows]
+    sizes = [{j: _size(x) for j, x in row.items() if j < size and x != 0} for row in rows]
     shifts = [0.0] * size
     for _ in range(ROUNDS):
         most = [max((x + shifts[j] for j, x in own.items()), default=0.0) for own in sizes]
@@ -452,7 +452,11 @@ def _balance(rows: list[dict[int, acb]], size: int) -> list[arb]:
 
 
 def _size(x: acb) -> float:
-    return float(abs(x.mid()).upper())
+    """Return the binary logarithm of what a ball encloses; far beyond doubles where bending is stiff."""
+    largest = abs(x).upper()
+    if not largest.is_finite():
+        raise SingularPointError
+    return float(largest.log().mid()) / log(2) if largest > 0 else -inf
 
 
 def _subtract(
