@@ -19,8 +19,10 @@ from flint import acb, arb
 from symflex.algebra import Factored, degree_in
 from symflex.budget import Budget, entered_budget
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
+from symflex.loops.apart import PolesApart, poles_apart
 from symflex.loops.axis_factors import SHRINKINGS, AxisFactors
 from symflex.loops.distributed import DistributedFactors
+from symflex.loops.locus import closed_loop_roots
 from symflex.loops.loop import Loop
 from symflex.loops.lumped import LumpedFactor
 from symflex.loops.networks import AnyLoop, NetworkFactors, NetworkLoop
@@ -76,10 +78,11 @@ def find_stable_gains(
     """
     budget = budget or entered_budget()
     lumped, along, (low, high) = _factors(loop, limits, digits, up_to, budget)
+    apart = _apart(loop, budget)
     crossings = [c for factor in lumped for c in factor.crossings(digits + GUARD_DIGITS, budget)]
     if along is not None:
         crossings += along.crossings(digits + GUARD_DIGITS)
-    search = _GainSearch(lumped, along, (low, high), budget)
+    search = _GainSearch(lumped, along, (low, high), budget, PoleCount(apart.right, apart.axis))
     boundaries, intervals = search.between(crossings)
     nominal = loop.nominal
     reasons = [] if along is None else along.reasons
@@ -100,12 +103,17 @@ def find_stable_gains(
         digits,
         None,
         method="polynomials" if along is None else along.method,
+        apart=apart,
+        is_passive=isinstance(along, DistributedFactors) and along.passive is not None,
     )
+    if nominal is not None and found.nominal_interval is None and along is None:
+        found = replace(found, at_nominal=closed_loop_roots(loop, nominal, budget=budget).verdict)
     loop_gain = _loop_gain(loop, along, digits + GUARD_DIGITS, budget)
     phase_margins: tuple[PhaseMargin, ...] = ()
     bandwidth = beyond = None
     if loop_gain is not None:
-        if found.is_stable and nominal:
+        interval = found.nominal_interval
+        if nominal and interval is not None and interval.poles.is_stable:
             phase_margins = _phase_margins(loop_gain, nominal)
         bandwidth = allowed_bandwidth(intervals, high, loop_gain)
         if is_complete and isinstance(along, DistributedFactors) and along.is_endless and along.passive:
@@ -137,6 +145,7 @@ def _factors(
     """Return the factors of polynomials, those of all else, and the range of the gain."""
     plain, mixed = _split(loop) if isinstance(loop, Loop) else ((), ())
     low, high = _limits(loop, limits, is_distributed=bool(mixed) or isinstance(loop, NetworkLoop))
+    plain = tuple(factor for factor in plain if factor.degree)
     if isinstance(loop, Loop) and not mixed:
         return [LumpedFactor.of(loop.bound, factor) for factor in plain], None, (low, high)
     if any(factor.degree > 1 for factor in mixed):
@@ -153,6 +162,11 @@ def _factors(
         DistributedFactors(loop.bound, loop.gain.name, mixed, (low, high), up_to, budget),
         (low, high),
     )
+
+
+def _apart(loop: AnyLoop, budget: Budget) -> PolesApart:
+    """Return the poles that no gain moves, as far as they are roots of polynomials."""
+    return poles_apart(loop.bound, _split(loop)[0], budget) if isinstance(loop, Loop) else PolesApart()
 
 
 def _split(loop: Loop) -> tuple[tuple[GainPolynomial, ...], tuple[GainPolynomial, ...]]:
@@ -200,6 +214,7 @@ class _GainSearch:
     along: AxisFactors[Any] | None
     limits: Limits
     budget: Budget
+    apart: PoleCount  # of poles that no gain moves
 
     def __post_init__(self) -> None:
         self.reasons: list[str] = []
@@ -255,7 +270,7 @@ class _GainSearch:
 
     def _count(self, gain: Fraction) -> PoleCount:
         self.budget.spend()
-        total = PoleCount(0, 0)
+        total = self.apart
         for factor in self.lumped:
             total = total + factor.count(gain, self.budget)
         if self.along is not None:

@@ -15,8 +15,10 @@ from typing import TYPE_CHECKING
 from symflex.algebra import Factored
 from symflex.budget import Budget, entered_budget, spend
 from symflex.errors import Diagnostic, UncertifiedError, UsageError
+from symflex.loops.apart import poles_apart
 from symflex.loops.loop import Loop, LoopFunction
 from symflex.loops.networks import AnyLoop, LoopInDisc, NetworkLoop
+from symflex.model import ExactValue
 from symflex.roots import Band, Modes, PoleZeroMap, Position, Region, Root
 from symflex.roots.locate import locate
 from symflex.roots.networks.cramer import EssentialSingularityError
@@ -90,13 +92,14 @@ def loop_gain(loop: Loop, gain: Fraction | None = None) -> BoundTransferFunction
     SF806 when the loop is not a straight line in its gain, or K, nominal by default, has no value.
     """
     above, below = _parts(loop)
-    return _with(loop.bound, above * (nominal_gain(loop) if gain is None else gain), below)
+    return _with(loop, above * (nominal_gain(loop) if gain is None else gain), below, Fraction(0))
 
 
 def closed_loop(loop: Loop, gain: Fraction | None = None) -> BoundTransferFunction:
     """Return ``B/(A + K B)``, whose poles are those of the closed loop; as :func:`loop_gain` otherwise."""
     above, below = _parts(loop)
-    return _with(loop.bound, above, below + above * (nominal_gain(loop) if gain is None else gain))
+    value = nominal_gain(loop) if gain is None else gain
+    return _with(loop, above, below + above * value, value)
 
 
 def nominal_gain(loop: AnyLoop) -> Fraction:
@@ -108,7 +111,7 @@ def nominal_gain(loop: AnyLoop) -> Fraction:
 
 
 def _parts(loop: Loop) -> tuple[Factored, Factored]:
-    """Return B and A, both with the factors that do not depend on the gain."""
+    """Return B and A, both divided by what divides the characteristic function."""
     one = Factored.number(loop.bound.ratio.ring, 1)
     above = below = one
     if len(loop.with_gain) != 1 or loop.with_gain[0].degree != 1 or loop.with_gain[0].multiplicity != 1:
@@ -119,22 +122,33 @@ def _parts(loop: Loop) -> tuple[Factored, Factored]:
         if factor.degree:
             above = above * factor.coefficients[1]
             below = below * factor.coefficients[0]
+        elif factor.multiplicity < 0:
+            divisor = factor.coefficients[0] ** factor.multiplicity
+            above, below = above * divisor, below * divisor
     return above, below
 
 
-def _with(bound: BoundTransferFunction, num: Factored, den: Factored) -> BoundTransferFunction:
-    """Return a transfer function of the given parts over the ring of another."""
+def _with(loop: Loop, num: Factored, den: Factored, gain: Fraction) -> BoundTransferFunction:
+    """Return a function of the given parts, whose poles are those of the model with a gain."""
+    bound = loop.bound
     parts = (num, den) if bound.kernels else None
-    return replace(bound, ratio=num / den, hidden=(), parts=parts, is_of_model=False)
+    own = (loop.gain.name, ExactValue(gain))
+    values = tuple(own if name == loop.gain.name else (name, value) for name, value in bound.values)
+    return replace(bound, values=values, ratio=num / den, hidden=(), parts=parts)
 
 
 def closed_loop_roots(
     loop: AnyLoop, gain: Fraction, region: Region | None = None, budget: Budget | None = None
 ) -> PoleZeroMap:
-    """Return the poles at a gain, and the zeros they go to: those of ``B/(A + K B)``."""
+    """Return the poles at a gain, and the zeros they go to: those of ``B/(A + K B)``.
+
+    What is said of stability holds for the whole model: poles that no gain moves count as well.
+    """
     if isinstance(loop, NetworkLoop):
         return loop.located(gain, region or Modes(loop.modes), budget or entered_budget())
-    return locate(closed_loop(loop, gain), region, 15, budget)
+    found = locate(closed_loop(loop, gain), region, 15, budget)
+    apart = poles_apart(loop.bound, loop.factors, budget or entered_budget())
+    return replace(found, verdict=found.verdict.beside(apart.verdict))
 
 
 def _traceable(loop: AnyLoop, roots: Sequence[Root], budget: Budget) -> Traceable:

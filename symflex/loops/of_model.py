@@ -31,12 +31,13 @@ from symflex.transfer.of_model import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from symflex.budget import Budget
     from symflex.loops.networks import AnyLoop
     from symflex.loops.stability_map import StabilityMap
-    from symflex.transfer import Given
+    from symflex.model import ModelParameter
+    from symflex.transfer import Given, TransferFunction
 
 
 def characteristic_loop(model: Model, gain: str, values: Mapping[str, Given] | None = None) -> AnyLoop:
@@ -64,15 +65,24 @@ def characteristic_loop(model: Model, gain: str, values: Mapping[str, Given] | N
     prepared = with_numbers(model, (gain, *given))
     equations = assemble(prepared)
     plain = {row.name for row in equations.outputs if row.divisor.is_one}
-    pair = next((p for p in model.transfer_functions if p[0] in plain), model.transfer_functions[0])
+    pairs = [p for p in model.transfer_functions if p[0] in plain] or model.transfer_functions
     try:
-        (tf,) = derive_all(prepared, [pair])
+        tf = _seeing(prepared, pairs, parameter)
     except BudgetError as error:
         if not is_large:
             raise
         message = f"'{gain}' stands in several places of a network too large to be written out"
         raise loop_room.no_loop("SF803", message, parameter) from error
     return loop_room.characteristic_loop(tf, parameter, given)
+
+
+def _seeing(model: Model, pairs: Sequence[tuple[str, str]], gain: ModelParameter) -> TransferFunction:
+    """Return the first function whose poles depend on the gain, else the first: what it hides is hidden."""
+    for pair in pairs:
+        (tf,) = derive_all(model, [pair])
+        if gain.name in tf.ratio.ring.index and tf.den.depends_on(gain.name):
+            return tf
+    return derive_all(model, pairs[:1])[0]
 
 
 def stability(

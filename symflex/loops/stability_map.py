@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import pi
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from flint import arb
 
+from symflex.loops.apart import PolesApart
 from symflex.print.text import INDENT, Passage, passages_text
 from symflex.roots import decimals, precision
+from symflex.roots.pole_zero_map import StabilityVerdict
 from symflex.transfer.balls import ball
 
 if TYPE_CHECKING:
@@ -18,6 +20,9 @@ if TYPE_CHECKING:
 
 SCHEMA = "symflex.stability/1"
 BITS = 128
+NOTHING_APART = PolesApart()
+NO_NOMINAL = "the gain has no value"
+BESIDE = "the gain lies at a boundary, or outside of what was examined"
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,6 +120,12 @@ class StabilityMap:
     method : str
         How poles were counted: ``polynomials``, ``argument principle``, ``roots`` (all found, and by which
         engines), ``network``; and ``passive loop`` where that proves that there are none.
+    apart : PolesApart
+        Poles that no gain moves, without kernels: hidden ones are not counted in ``intervals``.
+    at_nominal : StabilityVerdict or None
+        Of a nominal gain that lies in none of the intervals, where it was examined alone.
+    is_passive : bool
+        It is proved that no gain of the range brings a pole into the right half plane.
     """
 
     gain: str
@@ -132,6 +143,9 @@ class StabilityMap:
     bandwidth: AllowedBandwidth | None
     margin_beyond: float | None = None
     method: str = ""
+    apart: PolesApart = NOTHING_APART
+    at_nominal: StabilityVerdict | None = None
+    is_passive: bool = False
 
     def __repr__(self) -> str:
         count = len(self.boundaries)
@@ -161,10 +175,32 @@ class StabilityMap:
         return next((i for i in self.intervals if i.holds(self.nominal)), None)
 
     @property
-    def is_stable(self) -> bool | None:
-        """Whether the loop is stable with its nominal gain; ``None`` when there is none."""
+    def verdict(self) -> StabilityVerdict:
+        """Whether the loop is stable with its nominal gain, in the words of all commands."""
+        return replace(self._word, hidden=self.apart.verdict.hidden, moving=self.apart.verdict.moving)
+
+    @property
+    def _word(self) -> StabilityVerdict:
         found = self.nominal_interval
-        return None if found is None else found.poles.is_stable
+        if found is None:
+            return self.at_nominal or StabilityVerdict(
+                "unknown", None, False, NO_NOMINAL if self.nominal is None else BESIDE
+            )
+        right, axis = found.poles.right, found.poles.axis
+        beyond = "" if self.is_complete else self.reasons[0]
+        if right:
+            return StabilityVerdict("unstable", None if beyond else right, True, beyond, right)
+        where = f"{_poles(axis)} on the imaginary axis" if axis else ""
+        if beyond and not self.is_passive:
+            reason = f"{where}; {beyond}" if where else beyond
+            return StabilityVerdict("unknown", None, False, reason)
+        return StabilityVerdict("marginal" if axis else "stable", 0, True, where or beyond)
+
+    @property
+    def is_stable(self) -> bool | None:
+        """Whether the loop is stable with its nominal gain; ``None`` where that is not proved."""
+        word = self.verdict.word
+        return None if word == "unknown" else word == "stable"
 
     @property
     def phase_margin(self) -> PhaseMargin | None:
@@ -190,11 +226,13 @@ class StabilityMap:
                     "right_half_plane_poles": i.poles.right,
                     "imaginary_axis_poles": i.poles.axis,
                     "stable": i.poles.is_stable,
+                    "verdict": i.poles.word,
                 }
                 for i in self.intervals
             ],
             "nominal": None if self.nominal is None else str(self.nominal),
             "stable": self.is_stable,
+            "verdict": self.verdict.to_json_dict(),
             "gain_margins": [
                 {
                     "factor": real_json(m.factor, self.digits),
@@ -300,6 +338,8 @@ class Crossing:
 class PoleCount:
     """Closed-loop poles that are not in the open left half plane, with multiplicity.
 
+    Hidden ones that no gain moves count where they lie right of the axis only.
+
     Examples
     --------
     >>> PoleCount(2, 0) + PoleCount(0, 1)
@@ -316,6 +356,11 @@ class PoleCount:
     def is_stable(self) -> bool:
         """All poles lie in the open left half plane."""
         return not self.right and not self.axis
+
+    @property
+    def word(self) -> Literal["stable", "marginal", "unstable"]:
+        """What this says of stability, if none is missing."""
+        return "unstable" if self.right else "marginal" if self.axis else "stable"
 
 
 SHORT_DIGITS = 6
@@ -338,11 +383,16 @@ def _passages(found: StabilityMap) -> Iterator[Passage]:
     lines = [f"{found.gain}{unit}   {_status(found)}", f"{INDENT}examined: {_examined(found)}"]
     lines += [f"{INDENT}not proved: {reason}" for reason in found.reasons]
     if found.nominal is not None:
-        lines.append(f"{INDENT}{found.gain} = {_number(found.nominal)}: {nominal_text(found)}")
+        lines.append(f"{INDENT}{found.gain} = {_number(found.nominal)}: {found.verdict.sentence}")
+    if found.verdict.hidden:
+        lines.append(f"{INDENT}{found.verdict.hidden_motion}")
     yield Passage(lines)
     scope = "" if found.is_complete else ", as far as poles were counted"
     stable = [2 * INDENT + _between(interval, found) for interval in found.stable]
     yield Passage([f"{INDENT}stable for{scope}" + (":" if stable else ": no gain"), *stable])
+    marginal = [2 * INDENT + _between(i, found) for i in found.intervals if i.poles.word == "marginal"]
+    if marginal:
+        yield Passage([f"{INDENT}marginal for{scope}, with poles on the imaginary axis:", *marginal])
     head = (found.gain, "radius", "omega [rad/s]", "f [Hz]", "unstable poles")
     rows = [head, *(_boundary_row(found, i) for i in range(len(found.boundaries)))]
     yield Passage(
@@ -385,20 +435,6 @@ def _examined(found: StabilityMap) -> str:
     if low is None:
         return f"{name} < {_number(high)}"
     return f"{_number(low)} < {name} < {_number(high)}"
-
-
-def nominal_text(found: StabilityMap) -> str:
-    """Say whether the loop is stable with the gain's declared value."""
-    interval = found.nominal_interval
-    if interval is None:
-        return "at a boundary, or outside of what was examined"
-    if interval.poles.is_stable:
-        return "stable" if found.is_complete else "stable as far as poles were counted"
-    right, axis = interval.poles.right, interval.poles.axis
-    if right:
-        least = "" if found.is_complete else "at least "
-        return f"unstable, {least}{_poles(right)} in the right half plane"
-    return f"not asymptotically stable, {_poles(axis)} on the imaginary axis"
 
 
 def _poles(count: int) -> str:

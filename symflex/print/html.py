@@ -196,7 +196,8 @@ def roots_html(found: PoleZeroMap) -> str:
     status = "certified" if certificate.certified else f"NOT CERTIFIED: {certificate.reason}"
     count = f"{certificate.found} of {certificate.counted} roots enclosed"
     caption = f"<strong>{escape_html(found.tf)}</strong>, {escape_html(status)}: {count}"
-    caption += f"<br>{escape_html(found.verdict.sentence)}"
+    for said in filter(None, (found.verdict.sentence, found.verdict.hidden_motion)):
+        caption += f"<br>{escape_html(said)}"
     if shown := region_text(found.region):
         caption += f"<br>shown: {escape_html(shown)}"
     if found.excluded:

@@ -186,6 +186,8 @@ def roots_text(found: PoleZeroMap, digits: int, width: int = WIDTH) -> str:
     lines = [f"{found.tf}   {status}: {certificate.found} of {certificate.counted} roots enclosed; {word}"]
     if found.verdict.sentence != word:
         lines += wrap(found.verdict.sentence, width, initial_indent=INDENT, subsequent_indent=2 * INDENT)
+    if found.verdict.hidden:
+        lines += wrap(found.verdict.hidden_motion, width, initial_indent=INDENT, subsequent_indent=2 * INDENT)
     if shown := region_text(found.region):
         if found.verdict.word == "unstable" and not found.unstable:
             shown += "; poles in the right half plane, all that are known"

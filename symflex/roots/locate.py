@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 
 from symflex.algebra import Factored
 from symflex.budget import Budget, entered_budget
+from symflex.equations import assemble
+from symflex.equations.elimination import free_at_rest
 from symflex.errors import BudgetError, Diagnostic, SymflexError
 from symflex.model import with_numbers
 from symflex.model.signs import is_passive
@@ -73,7 +75,7 @@ def locate(
     above = [(f, e) for f, e in bound.ratio.factors if e > 0]
     below = [(f, -e) for f, e in bound.ratio.factors if e < 0]
     hidden = [(f.polynomial, f.multiplicity) for f in bound.hidden]
-    return find_pole_zero_map(
+    found = find_pole_zero_map(
         bound.name,
         problem_of(bound, below),
         problem_of(bound, above),
@@ -82,6 +84,17 @@ def locate(
         [(problem_of(bound, [factor]), "cancelled") for factor in hidden],
         budget=budget,
     )
+    return replace(found, verdict=replace(found.verdict, moving=_moving_unseen(bound)))
+
+
+def _moving_unseen(bound: BoundTransferFunction) -> tuple[str, ...]:
+    """Return what moves at hidden poles at s = 0 of a lumped model, nothing where that is not known."""
+    model = bound.source.model
+    at_rest = any(bound.ratio.not len(ring.coefficients(f.polynomial)[0]) for f in bound.hidden)
+    if not at_rest or model.is_distributed:
+        return ()
+    equations = assemble(with_numbers(model, (), dict(bound.values)))
+    return () if equations.constants else free_at_rest(equations, bound.source.output.name)
 
 
 def equations_of(bound: BoundNested) -> Equations:
@@ -359,7 +372,7 @@ class _Searched:
             bound.ratio.ring, Fraction(1), tuple((h.polynomial, h.multiplicity) for h in bound.hidden)
         )
         poles = [] if bound.ratio.is_zero else [(0, bound.den)]
-        coincident = [h.root for h in self.hidden if h.cause == "coincident"]
+        coincident = [h for h in self.hidden if h.cause == "coincident"]
         degenerate = _degenerate_points(bound)
         proof, rests = _passivity(bound)
         found: list[tuple[Root, ...]] = []
@@ -372,7 +385,7 @@ class _Searched:
                     if place < len(self.sides)
                     else Side(bound, part, self.digits, self.budget, is_hidden=is_hidden)
                 )
-                known = [*side.roots, *(() if is_hidden else coincident)]
+                known = [*side.roots, *(h.root for h in coincident if h.is_proved is is_hidden)]
                 if proof or is_over:
                     if rests:
                         known += [r for r in side.at_origin if r not in known]
@@ -393,10 +406,10 @@ class _Searched:
                 reasons.append(DEGENERATE)
             found.append(apart)
             reasons += [whole.unproved] if whole.unproved else []
-        roots = [root for each in found for root in each]
         if proof:
             reasons = [] if rests else ["none of those found lies on the imaginary axis"]
-        verdict = judge(roots, "; ".join(dict.fromkeys(reasons)), proof)
+        seen = [root for each in found[:-1] for root in each]
+        verdict = judge(seen, "; ".join(dict.fromkeys(reasons)), proof, found[-1])
         return verdict, found[0] if poles else (), found[-1]
 
     def _reached(self, side: Side) -> float:

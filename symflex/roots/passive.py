@@ -164,7 +164,7 @@ class _Structure:
             return None
         with precision(BITS):
             law = {at: c / below[0, 0] for at, c in law.items()}
-        return law if all(i <= 1 and j <= 1 and c > 0 for (i, j), c in law.items()) else None
+        return law if all(i <= 1 and j <= 1 and c >= 0 for (i, j), c in law.items()) else None
 
     def _rests(self, damped: Sequence[Ends]) -> bool:
         """Tell whether everything rests where what is damped does, at any frequency of the axis."""

@@ -26,12 +26,19 @@ REFINEMENTS = 4
 """Doublings of the digits before a root counts as on the boundary."""
 
 
+MOST_NAMES = 3
+"""Of what moves, in a line."""
 ON_AXIS = "a pole lies on the imaginary axis or too close to it to be told"
 
 
 @dataclass(frozen=True, slots=True)
 class StabilityVerdict:
-    """Whether all poles of a model, hidden modes among them, lie in the open left half plane.
+    """Whether a system is stable, in the words that all commands, reports and figures use.
+
+    ``stable``: all poles that input and output see lie in the open left half plane, and no hidden one lies in
+    the right. ``marginal``: no pole lies in the right half plane, and input and output see some on the
+    imaginary axis. ``unstable``: a pole lies in the right half plane, seen or hidden. ``unknown``: none of
+    these is proved. Hidden poles on the axis leave the word as it is and are named beside it.
 
     Examples
     --------
@@ -39,16 +46,18 @@ class StabilityVerdict:
     'unstable: 2 poles in the right half plane'
     >>> StabilityVerdict("unknown", None, False, "poles have no end").headline
     'stability not known'
+    >>> StabilityVerdict("stable", 0, True, hidden="a hidden pole at s = 0", moving=("phi",)).hidden_motion
+    'a hidden pole at s = 0: phi moves without input or output seeing it'
     """
 
-    # ``stable``; ``unstable``, with poles in the right half plane; ``marginal``, with none there, which is
-    # proved, and some on the imaginary axis; ``unknown``.
     word: Literal["stable", "marginal", "unstable", "unknown"]
     # Poles in the open right half plane, with multiplicity; ``None`` where they are not all counted.
     right: int | None
     certified: bool  # the word is proved
     reason: str = ""  # what it follows from, or what is not proved. Never empty where something is not.
     found: int = 0  # poles in the right half plane that are known, at least
+    hidden: str = ""  # which hidden poles do not lie in the open left half plane
+    moving: tuple[str, ...] = ()  # what moves at a hidden pole at s = 0, where that is known
 
     def __post_init__(self) -> None:
         if not self.reason and (not self.certified or self.right is None):
@@ -70,8 +79,22 @@ class StabilityVerdict:
 
     @property
     def headline(self) -> str:
-        """The verdict and the number of poles, without what it follows from."""
-        return self.sentence.removesuffix(self.reason).rstrip(":; ") if self.found else self.brief
+        """The verdict and the number of poles that grow, or that are hidden, without what it follows from."""
+        said = self.sentence.removesuffix(self.reason).rstrip(":; ") if self.found else self.brief
+        return f"{said}, with {self.hidden}" if self.hidden and not self.found else said
+
+    @property
+    def hidden_motion(self) -> str:
+        """The motion that input and output do not see and that does not decay, in a line; empty without."""
+        if not self.hidden:
+            return ""
+        if not self.moving:
+            return f"{self.hidden}, which input and output do not see"
+        more = len(self.moving) - MOST_NAMES
+        shown = [*self.moving[:MOST_NAMES], *([f"{more} more"] if more > 0 else [])]
+        verb, it = ("moves", "it") if len(self.moving) == 1 else ("move", "them")
+        names = " and ".join([", ".join(shown[:-1]), shown[-1]] if len(shown) > 1 else shown)
+        return f"{self.hidden}: {names} {verb} without input or output seeing {it}"
 
     @property
     def brief(self) -> str:
@@ -86,9 +109,35 @@ class StabilityVerdict:
             "certified": self.certified,
             "reason": self.reason,
             "right_half_plane_found": self.found,
+            "hidden_motion": self.hidden_motion,
         }
 
+    def beside(self, other: StabilityVerdict) -> StabilityVerdict:
+        """Return the verdict on a system that has the poles of two.
 
+        Examples
+        --------
+        >>> stable = StabilityVerdict("stable", 0, True)
+        >>> stable.beside(StabilityVerdict("marginal", 0, True, "a pole at 0")).sentence
+        'marginal, not asymptotically stable: a pole at 0'
+        """
+        both = (self, other)
+        word = min((each.word for each in both), key=WORST_FIRST.index)
+        right = None if self.right is None or other.right is None else self.right + other.right
+        decides = (each for each in both if each.word == word or (right is None and each.right is None))
+        return StabilityVerdict(
+            word,
+            None if word == "unknown" else right,
+            word != "unknown",
+            "; ".join(dict.fromkeys(each.reason for each in decides if each.reason)),
+            self.found + other.found,
+            " and ".join(each.hidden for each in both if each.hidden),
+            tuple(dict.fromkeys((*self.moving, *other.moving))),
+        )
+
+
+WORST_FIRST = ("unstable", "unknown", "marginal", "stable")
+"""The words, the one first that decides about a whole."""
 NOT_EXAMINED = StabilityVerdict("unknown", None, certified=False, reason="not examined")
 
 
@@ -97,23 +146,33 @@ def is_right(root: Root) -> bool:
     return bool(root.re > 0)
 
 
-def judge(roots: Sequence[Root], unproved: str = "", proof: str = "") -> StabilityVerdict:
+def judge(
+    roots: Sequence[Root], unproved: str = "", proof: str = "", hidden: Sequence[Root] = ()
+) -> StabilityVerdict:
     """Return the verdict that known poles allow.
 
-    ``roots`` are poles and hidden modes: all that are not in the open left half plane, unless ``unproved``
-    says why there may be others right of the imaginary axis or on it. ``proof`` says what proves that there
-    are none in the open right half plane, but maybe on the axis.
+    ``roots`` are the poles that input and output see, ``hidden`` the others: all that are not in the open
+    left half plane, unless ``unproved`` says why there may be more right of the imaginary axis or on it.
+    ``proof`` says what proves that there are none in the open right half plane, but maybe on the axis.
 
     Examples
     --------
     >>> from flint import arb
     >>> from symflex.roots.root import Root
     >>> pole = Root(arb(-1), arb(0), 1, on_imaginary_axis=False, is_real=True)
-    >>> judge([pole]).sentence
-    'stable'
+    >>> rest = Root(arb(0), arb(0), 1, on_imaginary_axis=True, is_real=True)
+    >>> judge([pole]).sentence, judge([pole, rest]).sentence
+    ('stable', 'marginal, not asymptotically stable: a pole at 0')
+    >>> judge([pole], hidden=[rest]).headline
+    'stable, with a hidden pole at s = 0'
     """
-    count = count_right(roots)
-    unclear = any(root.re.contains(0) and not root.on_imaginary_axis for root in roots)
+    return replace(_judged(roots, hidden, unproved, proof), hidden=_named_hidden(hidden))
+
+
+def _judged(roots: Sequence[Root], hidden: Sequence[Root], unproved: str, proof: str) -> StabilityVerdict:
+    every = (*roots, *hidden)
+    count = count_right(every)
+    unclear = any(root.re.contains(0) and not root.on_imaginary_axis for root in every)
     if count:
         if unclear:
             unproved = unproved or ON_AXIS
@@ -122,7 +181,7 @@ def judge(roots: Sequence[Root], unproved: str = "", proof: str = "") -> Stabili
     if on_axis:
         where = "poles on the imaginary axis"
         if all(root.is_zero for root in on_axis):
-            times = sum(root.multiplicity for root in on_axis)
+            times = _times(on_axis)
             where = "a pole at 0" if times == 1 else f"{times} poles at 0"
         if unproved and not proof:  # a pole that grows may lie beyond what was counted
             return StabilityVerdict("unknown", None, False, f"{where}; {unproved}")
@@ -132,6 +191,32 @@ def judge(roots: Sequence[Root], unproved: str = "", proof: str = "") -> Stabili
     if unproved or unclear:
         return StabilityVerdict("unknown", None, False, unproved or ON_AXIS)
     return StabilityVerdict("stable", 0, True)
+
+
+def _named_hidden(hidden: Sequence[Root]) -> str:
+    """Return which hidden roots are proved not to lie in the open left half plane."""
+    on_axis = [root for root in hidden if root.on_imaginary_axis]
+    at_rest = _times([root for root in on_axis if root.is_zero])
+    return hidden_poles(at_rest, _times(on_axis) - at_rest, count_right(hidden))
+
+
+def hidden_poles(at_rest: int, on_axis: int, right: int) -> str:
+    """Return in words how many hidden poles lie at s = 0, elsewhere on the axis, and right of it.
+
+    Examples
+    --------
+    >>> hidden_poles(1, 2, 0)
+    'a hidden pole at s = 0 and 2 on the imaginary axis'
+    >>> hidden_poles(0, 0, 2), hidden_poles(0, 0, 0)
+    ('2 hidden poles in the right half plane', '')
+    """
+    places = ((at_rest, "at s = 0"), (on_axis, "on the imaginary axis"), (right, "in the right half plane"))
+    said: list[str] = []
+    for count, where in places:
+        if count:
+            kind = "" if said else " hidden pole" if count == 1 else " hidden poles"
+            said.append(f"{'a' if count == 1 and not said else count}{kind} {where}")
+    return " and ".join(said)
 
 
 def count_right(roots: Sequence[Root]) -> int:
@@ -177,6 +262,11 @@ class HiddenRoot:
     root: Root  # the mode that input and output do not see together
     # ``"cancelled"`` exactly; ``"coincident"`` when a pole and a zero agree in all digits.
     cause: str = "cancelled"
+
+    @property
+    def is_proved(self) -> bool:
+        """Whether pole and zero are equal: what agrees in all digits may still be seen."""
+        return self.cause == "cancelled" or self.root.is_zero
 
 
 @dataclass(frozen=True, slots=True)
@@ -366,7 +456,7 @@ def find_pole_zero_map(
         for root in right_beyond(whole_roots, known)
     ]
     missing = "" if counted == found else reason or "not all poles were found"
-    verdict = judge([root for i, roots in enumerate(every) if i != 1 for root in roots], missing)
+    verdict = judge(every[0], missing, hidden=[root for roots in every[2:] for root in roots])
     return PoleZeroMap(
         tf,
         where,

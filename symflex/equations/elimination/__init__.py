@@ -8,7 +8,7 @@ from symflex.equations.elimination.closing import (
     eliminate_unit_pivots,
 )
 from symflex.equations.elimination.determinants import Determinants, Minors, expanded_terms, expansion_order
-from symflex.equations.elimination.singular import explain_singular, is_singular, unreached
+from symflex.equations.elimination.singular import explain_singular, free_at_rest, is_singular, unreached
 
 __all__ = [
     "ClosedSystem",
@@ -21,6 +21,7 @@ __all__ = [
     "expanded_terms",
     "expansion_order",
     "explain_singular",
+    "free_at_rest",
     "is_singular",
     "unreached",
 ]

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from flint import nmod_mat
 
-from symflex.algebra import PRIME, random_point, residue
+from symflex.algebra import LAPLACE, PRIME, random_point, residue
 from symflex.errors import Diagnostic, ModelError
 from symflex.errors.diagnostic import nearest
 from symflex.expressions import Attribute, format_expression, names
@@ -135,6 +135,24 @@ def listed(names: list[str]) -> str:
         if names
         else "the system"
     )
+
+
+def free_at_rest(equations: Equations, output: str) -> tuple[str, ...]:
+    """Return the nodes and signals that an equilibrium without input may leave anywhere, at most unseen.
+
+    They belong to solutions of ``A(0) x = 0`` in which the output stays 0, where there are some. ``equations``
+    have numbers in place of all parameters, and no kernels.
+    """
+    point = {**random_point(equations.ring.names), LAPLACE: 0}
+    for name, value in equations.definitions:
+        point[name] = _number(value, point, PRIME)
+    seen = [row.form for row in equations.outputs if row.name == output]
+    for forms in ([*(row.form for row in equations.rows), *seen], [row.form for row in equations.rows]):
+        matrix = matrix_of(forms, equations.unknowns, PRIME, lambda c: _number(c, point, PRIME))
+        free = [equations.unknowns[i] for i in _support(matrix, len(equations.unknowns))]
+        if names := [str(v) for v in free if v.kind in ("node", "signal")]:
+            return tuple(dict.fromkeys(names))
+    return ()
 
 
 def numbers_at_random(equations: Equations) -> tuple[int, Callable[[Factored], int]]:

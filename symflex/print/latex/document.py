@@ -286,7 +286,8 @@ def _about_roots(tf: AnyTransferFunction, found: PoleZeroMap) -> list[str]:
     sentences = []
     if shown := region_text(found.region):
         sentences.append(f"Listed are {escape_text(shown)}.")
-    sentences.append(f"{escape_text(found.verdict.sentence.capitalize())}.")
+    for said in filter(None, (found.verdict.sentence, found.verdict.hidden_motion)):
+        sentences.append(f"{escape_text(said[:1].upper() + said[1:])}.")
     if found.certificate.certified:
         sentences.append(
             "Every pole and zero listed is enclosed to the digits printed, and their count is proved."

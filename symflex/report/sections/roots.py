@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 from symflex.analysis.explanation import explanation_paragraphs
 from symflex.errors import SymflexError, UncertifiedError
 from symflex.loops import degrees
-from symflex.loops.stability_map import bandwidth_text, nominal_text
+from symflex.loops.stability_map import bandwidth_text
 from symflex.print.latex import root_table
 from symflex.print.roots import KINDS, PAGE_COLUMNS, one_of_each_pair, region_text, roots_of
 from symflex.report.document import (
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from symflex.report.document import Block, Cell, Tone
     from symflex.report.study import Study
     from symflex.roots import PoleZeroMap
+    from symflex.roots.pole_zero_map import StabilityVerdict
 
 
 DIGITS: Final = 10
@@ -77,8 +78,7 @@ def _of(found: PoleZeroMap, told: ZeroExplanation | None) -> tuple[Block, ...]:
     else:
         mark, said = Badge("not certified", "bad"), f": {certificate.reason or 'no reason given'}."
     shown = f" Listed: {region_text(found.region)}." if region_text(found.region) else ""
-    verdict = found.verdict
-    blocks.append(text(stability_mark(verdict.word), f"{verdict.sentence.removeprefix(verdict.brief)}."))
+    blocks.append(_stability(found.verdict))
     blocks.append(text(mark, said + shown))
     for part in found.excluded:
         blocks.append(
@@ -100,6 +100,13 @@ def _of(found: PoleZeroMap, told: ZeroExplanation | None) -> tuple[Block, ...]:
     if told is not None:
         blocks += [text(*lines) for lines in _told(told)]
     return tuple(blocks)
+
+
+def _stability(verdict: StabilityVerdict, more: str = "") -> Block:
+    """Return what is said of stability, with its badge, and the motion that nothing sees."""
+    said = f"{verdict.sentence.removeprefix(verdict.brief)}{more}."
+    motion = verdict.hidden_motion
+    return text(stability_mark(verdict.word), f"{said} {motion[:1].upper()}{motion[1:]}." if motion else said)
 
 
 def stability_mark(word: str) -> Badge:
@@ -171,15 +178,13 @@ def _gains(found: StabilityMap) -> tuple[Block, ...]:
         opening = text(Badge("not certified", "bad"), f": {'; '.join(found.reasons)}.")
     blocks: list[Block] = []
     if found.nominal is not None:
-        word = "unknown" if found.is_stable is None else "stable" if found.is_stable else "unstable"
-        said = nominal_text(found).removeprefix(word)
-        blocks.append(text(stability_mark(word), f"{said}, with {found.gain} = {float(found.nominal):g}."))
+        blocks.append(_stability(found.verdict, f", with {found.gain} = {float(found.nominal):g}"))
     blocks.append(opening)
     rows: list[tuple[Cell, ...]] = []
     for interval in found.intervals:
-        stable = Badge("stable", "good") if interval.poles.is_stable else Badge("unstable", "bad")
+        mark = stability_mark(interval.poles.word)
         low, high = ("no end" if end is None else decimal(end) for end in (interval.low, interval.high))
-        rows.append(((low,), (high,), (str(interval.poles.right),), (str(interval.poles.axis),), (stable,)))
+        rows.append(((low,), (high,), (str(interval.poles.right),), (str(interval.poles.axis),), (mark,)))
     unit = f" [{found.unit}]" if found.unit else ""
     title = f"Closed-loop poles by the gain {found.gain}{unit}"
     blocks.append(Table(LOOP_HEADS, tuple(rows), title))

@@ -223,9 +223,10 @@ def _without_losses(
         )
     elif found is not None:
         zeros = (*(r for r in zeros if not found.zeros), *found.zeros)
-    known = [*poles, *(h.root for h in hidden)]
+    known = [*poles, *(h.root for h in hidden if not h.is_proved)]
     proof = PASSIVE if network.passive else ""
-    verdict = judge(known, NONE_ON_AXIS if proof else NOT_PASSIVE, proof)
+    unseen = [h.root for h in hidden if h.is_proved]
+    verdict = judge(known, NONE_ON_AXIS if proof else NOT_PASSIVE, proof, unseen)
     reasons += search.reasons
     return LocatedRoots(engine, poles, zeros, hidden, verdict, tuple(reasons), (), code)
 
@@ -279,9 +280,10 @@ def _in_disc(
         wanted = region.count if isinstance(region, Modes) else region.number
         if not found.holds(wanted):
             reasons.append(TOO_FEW)
-    known = [*found.poles, *found.shared]
+    known = [*found.poles, *(r for r in found.shared if not r.is_zero)]
     beyond = REACHED.format(found.radius / (2 * pi))
-    verdict = judge(known, NONE_ON_AXIS if proof else beyond, proof)
+    at_rest = [r for r in found.shared if r.is_zero]
+    verdict = judge(known, NONE_ON_AXIS if proof else beyond, proof, at_rest)
     hidden = tuple(HiddenRoot(r, "cancelled" if r.is_zero else "coincident") for r in shared)
     unstable = right_beyond(found.poles, poles)
     return LocatedRoots(CRAMER, poles, zeros, hidden, verdict, tuple(reasons), unstable)

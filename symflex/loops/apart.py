@@ -1,0 +1,75 @@
+"""Poles of a model that no gain moves: of filters before a loop, of what follows it, and hidden ones.
+
+Input: a loop. Output: where these poles lie, and what they say of stability. A speed loop
+
+    J s^2 phi = K (w - s phi)    has the poles 0 and -K/J, and s phi/w = K/(J s + K) shows -K/J alone
+
+so that the shaft's angle, at rest anywhere, is told apart from what the gain decides.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from symflex.algebra import NO_KERNELS, Factored, degree_in
+from symflex.roots.locate import locate
+from symflex.roots.pole_zero_map import StabilityVerdict, count_right
+from symflex.roots.region import Modes
+from symflex.transfer.transfer_function import HiddenFactor
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.budget import Budget
+    from symflex.loops.loop import GainPolynomial
+    from symflex.transfer import BoundTransferFunction
+
+
+NONE = StabilityVerdict("stable", 0, certified=True)
+
+
+@dataclass(frozen=True, slots=True)
+class PolesApart:
+    """Poles that do not depend on a gain."""
+
+    verdict: StabilityVerdict = NONE
+    right: int = 0  # right of the imaginary axis, hidden ones among them
+    axis: int = 0  # on the axis, those that input and output see
+
+
+def poles_apart(
+    bound: BoundTransferFunction, factors: Sequence[GainPolynomial], budget: Budget
+) -> PolesApart:
+    """Return where the roots of those factors lie that do not depend on the gain.
+
+    ``bound`` carries their ring. What divides the others has no poles of its own.
+    """
+    ring = bound.ratio.ring
+    kernels = [ring.index[name] for name in bound.kernels.generators]
+    parts = [
+        (f, exponent * factor.multiplicity, factor.is_hidden)
+        for factor in factors
+        for f, exponent in factor.coefficients[0].factors
+        if not factor.degree and factor.multiplicity > 0 and any(degree_in(f, i) for i in (0, *kernels))
+    ]
+    if not parts:
+        return PolesApart()
+    one = Factored.number(ring, 1)
+    den = one
+    for f, exponent, is_hidden in parts:
+        den = den if is_hidden else den * Factored.polynomial(ring, f) ** exponent
+    hidden = tuple(HiddenFactor(f, exponent) for f, exponent, is_hidden in parts if is_hidden)
+    is_plain = not any(degree_in(f, i) for f, _, _ in parts for i in kernels)
+    apart = replace(
+        bound,
+        ratio=1 / den,
+        hidden=hidden,
+        kernels=NO_KERNELS if is_plain else bound.kernels,
+        parts=None if is_plain else (one, den),
+        is_of_model=False,
+    )
+    found = locate(apart, None if is_plain else Modes(1), budget=budget)
+    every = (*found.all_poles, *(h.root for h in found.hidden))
+    on_axis = [r for r in found.poles if r.on_imaginary_axis]
+    return PolesApart(found.verdict, count_right(every), sum(r.multiplicity for r in on_axis))
