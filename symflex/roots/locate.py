@@ -90,7 +90,8 @@ def locate(
 def _moving_unseen(bound: BoundTransferFunction) -> tuple[str, ...]:
     """Return what moves at hidden poles at s = 0 of a lumped model, nothing where that is not known."""
     model = bound.source.model
-    at_rest = any(bound.ratio.not len(ring.coefficients(f.polynomial)[0]) for f in bound.hidden)
+    zero = [bound.ratio.ring.coefficients(f.polynomial)[0] for f in bound.hidden]
+    at_rest = not all(len(x) for x in zero)
     if not at_rest or model.is_distributed:
         return ()
     equations = assemble(with_numbers(model, (), dict(bound.values)))
