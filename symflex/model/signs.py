@@ -15,9 +15,10 @@ from typing import TYPE_CHECKING, cast
 
 from flint import arb, arb_series, fmpq
 
-from symflex.algebra import FUNCTIONS
+from symflex.algebra import FUNCTIONS, LAPLACE
 from symflex.errors import Diagnostic, UsageError
 from symflex.expressions import (
+    Call,
     Expression,
     Name,
     Negative,
@@ -25,6 +26,7 @@ from symflex.expressions import (
     Power,
     Product,
     Quotient,
+    Sum,
     fold,
     names,
     substitute,
@@ -91,7 +93,7 @@ class Line:
         """Return the sign of an expression, ``None`` where it cannot be told."""
         polynomial = self._read(difference)
         if polynomial is None:
-            return None
+            return self._sign_in_balls(difference)
         if not polynomial:
             return 0
         signs = {1 if c > 0 else -1 for c in polynomial.values()}
@@ -101,7 +103,12 @@ class Line:
             if any(all(name in certain for name, _ in monomial) for monomial in polynomial):
                 return signs.pop()
         value = self._value(polynomial)
-        return None if value is None else (value > 0) - (value < 0)
+        return self._sign_in_balls(difference) if value is None else (value > 0) - (value < 0)
+
+    def _sign_in_balls(self, expression: Expression) -> int | None:
+        """Return the sign of the number an expression is, of any form: ``E/(2*(1 + nu))``."""
+        number = value_along(expression, arb("nan"), self)
+        return 0 if number is not None and number == 0 else sign_of(number)
 
     def is_zero(self, value: Expression) -> bool:
         """Tell whether a value is zero whatever the parameters are."""
@@ -111,6 +118,21 @@ class Line:
         """Return the number a place is with the parameters' values."""
         polynomial = self._read(place)
         return None if polynomial is None else self._value(polynomial)
+
+    def is_polynomial_in(self, expression: Expression, name: str) -> bool:
+        """Tell whether no negative power of a name occurs, nor any other function of it."""
+        polynomial = self._read(expression)
+        return polynomial is not None and all(e >= 0 for m in polynomial for n, e in m if n == name)
+
+    def opened_names(self, expression: Expression) -> set[str]:
+        """Return the names of an expression and of the definitions in it; a dot for all others."""
+        found: set[str] = set()
+        for each in names(expression):
+            if isinstance(each, Name) and each.name in self.definitions:
+                found |= self.opened_names(self.definitions[each.name])
+            elif not isinstance(each, Call):
+                found.add(each.name if isinstance(each, Name) else ".")
+        return found
 
     def key(self, place: Expression) -> Hashable:
         """Return what is equal of equal places: the number, else the polynomial, else the place as written.
@@ -471,25 +493,44 @@ def is_passive(model: Model, values: Iterable[tuple[str, ExactValue]] | None = N
     """
     if model.signals or model.blocks or model.fields:
         return False
-    declared = ((p.name, p.value) for p in model.parameters)
-    line = Line.of_numbers(model.definitions, declared if values is None else values)
+    line = line_of(model, values or ())
     inputs = {each.name for each in model.inputs}
     return all(_is_passive(use, line, inputs) for use in model.elements)
+
+
+def line_of(model: Model, values: Iterable[tuple[str, ExactValue]]) -> Line:
+    """Return the line of a model's numbers: the values given, its own for what cancelled from a function."""
+    numbers = {**{p.name: p.value for p in model.parameters}, **dict(values)}
+    return Line.of_numbers(model.definitions, numbers.items())
 
 
 def _is_passive(use: PlacedElement, line: Line, inputs: set[str]) -> bool:
     element, given = use.element, dict(use.values)
     if element.is_source:
-        # One that follows an input alone is a support or a free node where the input rests.
-        known = inputs | {"pi", *line.values}
-        return all(
-            isinstance(each, Name) and each.name in known for value in given.values() for each in names(value)
-        )
+        return follows_inputs(use, line, inputs)
     law = element.passive
-    if law is None or any(given[name] != given[law.equal[0]] for name in law.equal):
+    if law is None or any(
+        given[name] != given[law.equal[0]]
+        and line.sign(Sum((given[name], Negative(given[law.equal[0]])))) != 0
+        for name in law.equal
+    ):
         return False
     signs = parameter_signs(use, line)
     return all(sign is not None and (sign >= 0 or name in law.of_any_sign) for name, sign in signs.items())
+
+
+def follows_inputs(use: PlacedElement, line: Line, inputs: Collection[str]) -> bool:
+    """Tell whether a source follows inputs alone: it is a support or a free node where these rest.
+
+    It may follow derivatives of them, as inertia does a support's acceleration, but no filter, which has
+    poles of its own.
+    """
+    known = {"pi", LAPLACE, *inputs, *line.values}
+    return all(
+        (used := line.opened_names(value)) <= known
+        and (LAPLACE not in used or line.is_polynomial_in(value, LAPLACE))
+        for _, value in use.values
+    )
 
 
 def parameter_signs(use: PlacedElement, line: Line) -> dict[str, int | None]:

@@ -531,7 +531,9 @@ def _passivity(bound: BoundTransferFunction) -> tuple[str, bool]:
     if is_passive(model, bound.values) or are_passive(model, bound.values):
         return PASSIVE, False
     loop = passive_loop(model, "", bound.values)
-    return ("", False) if loop is None else (PASSIVE_LOOP, loop.rests)
+    if loop is None:
+        return "", False
+    return PASSIVE_LOOP if loop.stiffness or loop.damping else PASSIVE, loop.rests
 
 
 def _degenerate_points(bound: BoundTransferFunction) -> list[Root]:

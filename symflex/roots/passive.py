@@ -23,13 +23,13 @@ from flint import arb
 
 from symflex.algebra import LAPLACE, Factored
 from symflex.algebra.ring import terms_of
-from symflex.expressions import Name, names
+from symflex.expressions import Name
 from symflex.library.elements.element import LinearForm, Variable
 from symflex.library.elements.line import Beam, LineElement
 from symflex.library.elements.lumped import ThroughSource
 from symflex.model import Signal
 from symflex.model.network import variable_of
-from symflex.model.signs import Line, is_passive, parameter_signs
+from symflex.model.signs import Line, follows_inputs, is_passive, line_of, parameter_signs
 from symflex.roots import precision
 from symflex.transfer.balls import ball
 from symflex.transfer.of_model import assemble
@@ -41,8 +41,8 @@ if TYPE_CHECKING:
     from symflex.model import ExactValue, Model, PlacedElement
 
 BITS = 128
-SUPPLIED = "0"
-"""What the loop supplies, as a signal; no name of a specification begins so."""
+INERTIA = 2
+"""The power of s of a mass."""
 Form = dict[Variable, Factored]
 Powers = dict[tuple[int, int], arb]
 """Coefficients of a polynomial, by the powers of s and of the gain."""
@@ -81,32 +81,42 @@ def passive_loop(model: Model, gain: str, values: Iterable[tuple[str, ExactValue
     ``values`` are those of the parameters, with any value of the gain. Without the name of one, which is
     empty then, the loop is as they say.
     """
-    known = dict(values)
+    known = {p.name: p.value for p in model.parameters if p.value is not None} | dict(values)
+    line = line_of(model, known.items())
     inputs = {each.name for each in model.inputs}
-    following = [e for e in model.elements if e.element.is_source and _follows_more(e, inputs, known)]
-    if len(following) != 1 or not isinstance(following[0].element, ThroughSource) or model.blocks:
+    sources = [e for e in model.elements if e.element.is_source and not follows_inputs(e, line, inputs)]
+    if any(not isinstance(e.element, ThroughSource) for e in sources) or model.blocks:
         return None
-    (source,) = following
-    rest = tuple(e for e in model.elements if e is not source)
+    rest = tuple(e for e in model.elements if e not in sources)
     if not is_passive(replace(model, elements=rest, signals=()), known.items()):
         return None
-    ((quantity, supplied),) = source.values
-    named = replace(source, values=((quantity, Name(SUPPLIED)),))
-    signals = (*model.signals, Signal(SUPPLIED, supplied))
+    named, signals = list(rest), list(model.signals)
+    for number, source in enumerate(sources):
+        ((quantity, supplied),) = source.values
+        named.append(replace(source, values=((quantity, Name(_supply(number))),)))
+        signals.append(Signal(_supply(number), supplied))
     equations = assemble(
-        replace(model, elements=(*rest, named), signals=signals, outputs=(), figures=(), published=())
+        replace(model, elements=tuple(named), signals=tuple(signals), outputs=(), figures=(), published=())
     )
-    line = Line.of_numbers(model.definitions, known.items())
-    return _Structure(equations, rest, gain, line, known).closed_at(_ends(source, equations.model))
+    ends = [_Acting.of(source, equations.model) for source in sources]
+    return _Structure(equations, rest, gain, line, known).closed_at(ends)
 
 
-def _follows_more(use: PlacedElement, inputs: set[str], known: Mapping[str, ExactValue]) -> bool:
-    allowed = inputs | {"pi"} | known.keys()
-    return any(
-        not isinstance(each, Name) or each.name not in allowed
-        for _, value in use.values
-        for each in names(value)
-    )
+@dataclass(frozen=True, slots=True)
+class _Acting:
+    """Where a source acts, and the power of s by which what moves there is more than a displacement."""
+
+    ends: Ends
+    rate: int  # 1 of voltages, whose product with a current is power as that of a velocity with a force is
+
+    @staticmethod
+    def of(source: PlacedElement, model: Model) -> _Acting:
+        return _Acting(_ends(source, model), int("electrical" in dict(source.domains).values()))
+
+
+def _supply(number: int) -> str:
+    """Return the name of what a source supplies, as a signal; no name of a specification begins so."""
+    return f"{number}"
 
 
 def _ends(use: PlacedElement, model: Model) -> Ends:
@@ -128,10 +138,10 @@ class _Structure:
     line: Line
     values: Mapping[str, ExactValue]
 
-    def closed_at(self, ends: Ends) -> PassiveLoop | None:
-        """Return how the loop is closed by what acts at one end, or between two."""
-        law = self._law(ends)
-        if law is None:
+    def closed_at(self, places: Sequence[_Acting]) -> PassiveLoop | None:
+        """Return how loops are closed by what acts at one end each, or between two."""
+        laws = [law for number, at in enumerate(places) if (law := self._law(number, at)) is not None]
+        if len(laws) < len(places):
             return None
         # Signals are no part of the structure: none is left that moves by itself.
         moving = {v for v in self.equations.unknowns if v.kind in ("node", "through")}
@@ -139,21 +149,30 @@ class _Structure:
             self.equations.unknowns
         ):
             return None
-        stiffness, damping = (float(sum(c.mid() for (i, _), c in law.items() if i == n)) for n in (0, 1))
-        return PassiveLoop(stiffness, damping, self._rests([ends] if damping else []))
+        damped = [at.ends for at, law in zip(places, laws, strict=True) if any(i == 1 for i, _ in law)]
+        moved = [law for law in laws if not self.gain or any(j for _, j in law)]
+        size = [float(sum(c.mid() for law in moved for (i, _), c in law.items() if i == n)) for n in range(3)]
+        # Of masses, and of loops in several places, no phase is known.
+        is_bounded = len(moved) == 1 and not size[INERTIA]
+        return PassiveLoop(size[0], size[1] if is_bounded else 0.0, self._rests(damped))
 
     @cached_property
     def _forms(self) -> list[tuple[str, Form]]:
         """What vanishes where inputs rest, each row with its role."""
         return [(row.role, _form(row.form)) for row in self.equations.rows]
 
-    def _law(self, ends: Ends) -> Powers | None:
+    def _law(self, number: int, at: _Acting) -> Powers | None:
         """Return the polynomial with which minus the motion is multiplied, where none of it is negative."""
-        effort = Variable("signal", SUPPLIED)
+        ends = at.ends
+        effort = Variable("signal", _supply(number))
         rows = [form for role, form in self._forms if role in ("signal", "constraint")]
         for variable in {v for row in rows for v in row} - {effort, *ends}:
             rows = _without(variable, rows)
-        found = next((row for row in rows if effort in row), {})
+        found = next((row for row in rows if effort in row), None)
+        if found is None:
+            return None
+        if len(found) == 1:
+            return {}  # it follows inputs, through signals
         shares = [
             found[v] / found[effort] * sign for v, sign in zip(ends, (1, -1), strict=False) if v in found
         ]
@@ -163,8 +182,8 @@ class _Structure:
         if law is None or below is None or below.keys() != {(0, 0)}:
             return None
         with precision(BITS):
-            law = {at: c / below[0, 0] for at, c in law.items()}
-        return law if all(i <= 1 and j <= 1 and c >= 0 for (i, j), c in law.items()) else None
+            law = {(i + at.rate, j): c / below[0, 0] for (i, j), c in law.items() if c != 0}
+        return law if all(i <= INERTIA and j <= 1 and c > 0 for (i, j), c in law.items()) else None
 
     def _rests(self, damped: Sequence[Ends]) -> bool:
         """Tell whether everything rests where what is damped does, at any frequency of the axis."""

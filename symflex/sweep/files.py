@@ -280,7 +280,7 @@ def _sweep(attributes: Mapping[str, str], arrays: list[Labelled], coordinates: s
 JOURNAL_SCHEMA = "symflex.sweep.journal/1"
 ABOUT = "sweep.json"
 ABOUT_LIMIT = 10_000
-MAGIC = b"symflex chunk 1\n"
+MAGIC = b"symflex chunk 2\n"
 
 
 class FolderJournal:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import pickle
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
 from fractions import Fraction
 from functools import lru_cache
@@ -29,6 +29,7 @@ from symflex.model import ExactValue
 from symflex.roots import Everything, Modes, PoleZeroMap, Region, Root, precision
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import locate
+from symflex.roots.pole_zero_map import NOT_EXAMINED, StabilityVerdict
 from symflex.sweep.design import Point, Range, Rows, Solver, Task, between, codes_of, derived
 from symflex.sweep.similarity import Similarities, Similarity
 from symflex.transfer import AnyBoundFunction, AnyTransferFunction, BoundNested, TransferFunction, bind_any
@@ -113,6 +114,11 @@ REMEMBERED = 256
 FAMILY_BYTES = 7
 
 
+VERDICTS = ("unknown", "unstable", "marginal", "stable")
+"""Words of :class:`~symflex.roots.pole_zero_map.StabilityVerdict`, as an array numbers them."""
+UNKNOWN, STABLE = 0, 3
+
+
 class RootStatus(IntEnum):
     """What is proved of one root."""
 
@@ -146,6 +152,7 @@ class PointRoots:
     roots: tuple[FoundRoot, ...]  # by natural frequency
     at_zero: int  # multiplicity of the root at s = 0
     status: PointStatus  # whether none is missing
+    verdict: StabilityVerdict = NOT_EXAMINED
     code: str = ""  # of the error, where the point failed
     # Equal for functions that are similar, whose roots then stand in the same order; 0 where not known.
     family: int = 0
@@ -188,7 +195,7 @@ class RootSolver:
             return self._solve(dict(zip(self._names, point, strict=True)))
         except SymflexError as error:
             spend()  # that the time is over says nothing of a point
-            return PointRoots((), 0, PointStatus.FAILED, error.diagnostics[0].code)
+            return PointRoots((), 0, PointStatus.FAILED, code=error.diagnostics[0].code)
 
     def _bound(self, values: dict[str, ExactValue]) -> AnyBoundFunction:
         bound = bind_any(self._tf, values)
@@ -214,7 +221,8 @@ class RootSolver:
         scaled = _scaled(known.roots, known.similarity, similarity)
         if known.model is None or not all(root.place.is_nearest for root in scaled):
             return self._searched(self._bound(values), family)
-        return PointRoots(scaled, known.model.at_zero, known.model.status, "", family)
+        # A positive scale moves no pole over the axis.
+        return replace(known.model, roots=scaled, family=family)
 
     def _known(self, values: dict[str, ExactValue], similarity: Similarity, family: int) -> _Known:
         """Return the roots at a point to many digits, none where not all is proved."""
@@ -249,7 +257,7 @@ class RootSolver:
             for root in _upper(every)
         )
         at_zero = sum(root.multiplicity for root in every if root.is_zero)
-        return PointRoots(rows, at_zero, status, certificate.code or "", family)
+        return PointRoots(rows, at_zero, status, found.verdict, certificate.code or "", family)
 
 
 def _upper(roots: Sequence[Root]) -> tuple[Root, ...]:
@@ -293,9 +301,18 @@ def _rows(found: Sequence[PointRoots]) -> Rows:
         "status": status,
         "multiplicity": multiplicity,
         "at_zero": np.array([point.at_zero for point in found], np.int32),
+        **_said([point.verdict for point in found]),
         "point_status": np.array([point.status for point in found], np.int8),
         "family": np.array([point.family for point in found], np.int64),
         "code": codes_of([point.code for point in found]),
+    }
+
+
+def _said(verdicts: Sequence[StabilityVerdict]) -> Rows:
+    """Return what is said of stability at points, and whether hidden motion that stays is."""
+    return {
+        "verdict": np.array([VERDICTS.index(each.word) for each in verdicts], np.int8),
+        "hidden_motion": np.array([bool(each.hidden) for each in verdicts], np.int8),
     }
 
 
@@ -347,25 +364,30 @@ def solve_margins(task: Task) -> Solver:
     def solve(points: Sequence[Point]) -> Rows:
         values = {name: np.full(len(points), np.nan) for name in MARGINS}
         radii = {name: np.full(len(points), np.nan) for name in MARGINS}
-        stable = np.full(len(points), -1, np.int8)
+        verdicts = [NOT_EXAMINED] * len(points)
 
         def one(i: int, point: Point) -> PointStatus:
             loop = characteristic_loop(tf, parameter, dict(zip(task.names, point, strict=True)))
             found = find_stable_gains(loop)
-            stable[i] = -1 if found.is_stable is None else int(found.is_stable)
+            verdicts[i] = found.verdict
             for name, (centre, radius) in _margins_of(found).items():
                 values[name][i], radii[name][i] = centre, radius
             return PointStatus.CERTIFIED if found.certified else PointStatus.NOT_CERTIFIED
 
         told = _each(points, one)
-        return {**values, **{f"{name}_radius": radii[name] for name in MARGINS}, "stable": stable, **told}
+        said = _said(verdicts)
+        word = said["verdict"]
+        stable = np.where(word == STABLE, 1, np.where(word == UNKNOWN, -1, 0)).astype(np.int8)
+        radius = {f"{name}_radius": radii[name] for name in MARGINS}
+        return {**values, **radius, "stable": stable, **said, **told}
 
     return solve
 
 
 def _margins_of(found: StabilityMap) -> dict[str, Pair]:
     """Return the margins of a stable loop; an infinite gain margin is inf, or 0 downwards."""
-    if not found.is_stable:
+    interval = found.nominal_interval
+    if interval is None or not interval.poles.is_stable:
         return {}
     result: dict[str, Pair] = {"gain_margin_up": (inf, 0.0), "gain_margin_down": (0.0, 0.0)}
     for margin in found.gain_margins:

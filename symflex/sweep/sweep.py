@@ -11,17 +11,22 @@ from symflex.errors.optional import installed
 from symflex.print.text import Passage, passages_text
 from symflex.sweep.design import Array, Design, Rows, Task, number
 from symflex.sweep.follow import Between, NameOrigin, follow, predecessors
-from symflex.sweep.points import MARGINS, PointStatus, RootStatus
+from symflex.sweep.points import MARGINS, VERDICTS, PointStatus, RootStatus
 
 SCHEMA = "symflex.sweep/1"
 MODE, FREQUENCY, DRAW = "mode", "frequency", "draw"
 RESERVED = frozenset(
     {MODE, FREQUENCY, DRAW, "re", "im", "radius", "status", "link", "multiplicity", "at_zero", "stable"}
+    | {"verdict", "hidden_motion"}
     | {"point_status", "code", "frequency_hz", "damping_ratio", "s", "response"}
     | {name + end for name in MARGINS for end in ("", "_radius")}
 )
 ROOT_STATUS = "0 absent, 1 certified, 2 several that cannot be told apart"
 POINT_STATUS = "0 certified, 1 certified except where roots accumulate, 2 not certified, 3 failed"
+STABILITY = {
+    "verdict": "0 not known, 1 unstable, 2 marginal, 3 stable: of all poles, shown or not",
+    "hidden_motion": "1 where hidden poles lie on the imaginary axis or right of it",
+}
 LINKS = (
     "0 absent, 1 start, 2 similar: proved, 3 clearly the nearest, 4 in doubt, 5 met the real axis, 6 appears"
 )
@@ -145,6 +150,8 @@ def assembled(
         found = [(name, (FREQUENCY,), rows[name], "", f"{name} of the response") for name in ("re", "im")]
     else:
         found = [(name, (), rows[name], unit, doc) for name, unit, doc in _margin_names()]
+    if task.of in ("poles", "margins"):
+        found += [(name, (), rows[name], "", doc) for name, doc in STABILITY.items()]
     found.append(("point_status", (), rows["point_status"], "", POINT_STATUS))
     found.append(("code", (), rows["code"], "", "error code of a point that failed"))
     shape = design.shape
@@ -236,7 +243,7 @@ def _margin_names() -> list[tuple[str, str, str]]:
     }
     named = [(name, *docs[name]) for name in MARGINS]
     radii = [(f"{name}_radius", unit, "bound of the error") for name, unit, _ in named]
-    return [*named, *radii, ("stable", "", "1 stable, 0 unstable, -1 not known")]
+    return [*named, *radii, ("stable", "", "1 stable, 0 marginal or unstable, -1 not known")]
 
 
 INDENT = "  "
@@ -277,12 +284,7 @@ def _passages(sweep: Sweep) -> Iterator[Passage]:
     if codes:
         proved.append(f"{INDENT}codes: {', '.join(codes)}")
     if sweep.of == "poles":
-        unstable = _unstable_points(sweep)
-        proved.append(
-            f"{INDENT}unstable at {unstable} of {points}"
-            if unstable
-            else f"{INDENT}stability not known: no pole shown grows; others and hidden modes are not examined"
-        )
+        proved += _stability(sweep, points)
     if sweep.of in ("poles", "zeros"):
         yield Passage([*proved, *_doubts(sweep)])
         more = sweep["status"].shape[-1] - MODES_SHOWN
@@ -294,9 +296,30 @@ def _passages(sweep: Sweep) -> Iterator[Passage]:
             yield Passage(_margins(sweep))
 
 
-def _unstable_points(sweep: Sweep) -> int:
-    """Return at how many points a pole that is shown lies in the right half plane, which is proved."""
-    return int(np.sum(np.any((sweep["status"] > 0) & (sweep["damping_ratio"] < 0), axis=-1)))
+def _words(sweep: Sweep) -> dict[str, int]:
+    """Return at how many points which word is said of stability; nothing in files from before it was."""
+    if "verdict" not in (each.name for each in sweep.variables):
+        return {}
+    return {word: int(np.sum(sweep["verdict"] == i)) for i, word in reversed([*enumerate(VERDICTS)])}
+
+
+def _stability(sweep: Sweep, points: str) -> list[str]:
+    """Return at how many points the system is stable, and at how many some of it moves unseen."""
+    words = _words(sweep)
+    if not words:
+        return [f"{INDENT}stability not known: this file does not say"]
+    said = [
+        f"{'stability not known' if word == 'unknown' else word} at {count}"
+        for word, count in words.items()
+        if count
+    ]
+    unseen = int(np.sum(sweep["hidden_motion"]))
+    lines = [f"{INDENT}{', '.join([f'{said[0]} of {points}', *said[1:]])}"]
+    return (
+        [*lines, f"{INDENT}hidden poles on the imaginary axis or right of it at {unseen}"]
+        if unseen
+        else lines
+    )
 
 
 def counted(count: int, what: str) -> str:
@@ -359,7 +382,10 @@ def _link_counts(sweep: Sweep) -> dict[str, int]:
 
 def _margins(sweep: Sweep) -> list[str]:
     stable = sweep["stable"]
-    lines = [f"{INDENT}stable at {int(np.sum(stable == 1))} of {counted(stable.size, 'point')}"]
+    points = counted(stable.size, "point")
+    lines = [f"{INDENT}stable at {int(np.sum(stable == 1))} of {points}"]
+    if _words(sweep):
+        lines = _stability(sweep, points)
     for name, unit in (
         ("gain_margin_up", ""),
         ("gain_margin_down", ""),
@@ -400,9 +426,12 @@ def sweep_json(sweep: Sweep) -> dict[str, object]:
         ],
         "codes": sorted({code for code in sweep["code"].reshape(-1).tolist() if code}),
     }
+    if words := _words(sweep):
+        document["stability"] = words
+        document["hidden_motion_points"] = int(np.sum(sweep["hidden_motion"]))
     if sweep.of in ("poles", "zeros"):
         if sweep.of == "poles":
-            document["unstable_points"] = _unstable_points(sweep)
+            document["unstable_points"] = _words(sweep).get("unstable")
         document["links"] = _link_counts(sweep)
         document["modes"] = [
             {

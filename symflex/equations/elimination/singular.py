@@ -138,10 +138,10 @@ def listed(names: list[str]) -> str:
 
 
 def free_at_rest(equations: Equations, output: str) -> tuple[str, ...]:
-    """Return the nodes and signals that an equilibrium without input may leave anywhere, at most unseen.
+    """Return the nodes and signals that may rest anywhere without input, those an output does not see first.
 
-    They belong to solutions of ``A(0) x = 0`` in which the output stays 0, where there are some. ``equations``
-    have numbers in place of all parameters, and no kernels.
+    They belong to solutions of ``A(0) x = 0`` in which the output stays 0, where there are some.
+    ``equations`` have numbers in place of all parameters, and no kernels.
     """
     point = {**random_point(equations.ring.names), LAPLACE: 0}
     for name, value in equations.definitions:
