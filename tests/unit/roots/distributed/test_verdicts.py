@@ -94,6 +94,7 @@ def test_a_verdict_has_these_keys_as_data():
         "certified": True,
         "reason": "no end",
         "right_half_plane_found": 3,
+        "hidden_motion": "",
     }
     assert NOT_EXAMINED.to_json_dict() == {
         "verdict": "unknown",
@@ -101,6 +102,7 @@ def test_a_verdict_has_these_keys_as_data():
         "certified": False,
         "reason": "not examined",
         "right_half_plane_found": 0,
+        "hidden_motion": "",
     }
 
 
