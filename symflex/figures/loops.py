@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import cycle
 from math import pi
@@ -13,6 +13,7 @@ from matplotlib.font_manager import FontProperties
 from matplotlib.patches import Circle
 
 from symflex.analysis.response import adaptive_grid, default_band, grid_about, respond, roots_if_found
+from symflex.budget import entered_budget
 from symflex.figures.axes import (
     FREE,
     RIGHT_HALF_PLANE,
@@ -49,7 +50,14 @@ from symflex.figures.style import (
     size_of_text,
     title_lines,
 )
-from symflex.loops import NetworkLoop, closed_loop, closed_loop_roots, loop_gain, nominal_gain
+from symflex.loops import (
+    NetworkLoop,
+    closed_loop,
+    closed_loop_roots,
+    loop_gain,
+    nominal_gain,
+    poles_apart,
+)
 from symflex.roots import Band
 
 if TYPE_CHECKING:
@@ -100,7 +108,8 @@ def draw_locus(locus: RootLocus, canvas: Canvas) -> Figure:
     width = canvas.width or COLUMN_INCHES
     lines = title_lines(canvas.title, width)
     stages = _stages(locus)
-    axes = canvas.one_panel(HEIGHT_INCHES + LINE_INCHES * (len(lines) + len(stages) + 1))
+    said = _said_of_stability(locus.gain, stages)
+    axes = canvas.one_panel(HEIGHT_INCHES + LINE_INCHES * (len(lines) + len(said) + 1))
     marks = [
         *(RootMark(stage.kind, s) for stage in stages for s in stage.points),
         *(RootMark("zero", point_of(root)) for root in locus.start.zeros),
@@ -135,7 +144,6 @@ def draw_locus(locus: RootLocus, canvas: Canvas) -> Figure:
             )
     _draw_holes(axes, locus)
     label_s_plane(axes)
-    said = [f"${name} = {stage.gain}$, {stage.found.verdict.headline}" for stage in stages]
     letters = sum(len(str(label).replace("$", "")) for label in axes.get_legend_handles_labels()[1])
     legend = canvas.legend(
         axes,
@@ -177,6 +185,16 @@ def _stages(locus: RootLocus) -> list[Stage]:
         found.append(("nominal", gain, poles, [point_of(root) for root in poles.all_poles]))
     found.append(("last", high, locus.end, locus.ends))
     return [Stage(kind, number_label(float(gain)), p, tuple(points)) for kind, gain, p, points in found]
+
+
+def _said_of_stability(gain: str, stages: Sequence[Stage]) -> list[str]:
+    """Return what each gain makes of stability, then what no gain moves and nothing sees."""
+    verdicts = [stage.found.verdict for stage in stages]
+    said = [
+        f"${label_of_name(gain)} = {stage.gain}$, {replace(verdict, hidden='').headline}"
+        for stage, verdict in zip(stages, verdicts, strict=True)
+    ]
+    return said + list(dict.fromkeys(verdict.hidden for verdict in verdicts if verdict.hidden))
 
 
 def _view(locus: RootLocus, marks: Sequence[RootMark], canvas: Canvas) -> View:
@@ -280,6 +298,8 @@ def draw_loop_gain(loop: AnyLoop, canvas: Canvas) -> Figure:
         curve, closed = _network_curve(loop, gain, canvas), closed_loop_roots(loop, gain)
     else:
         curve, closed = _curve(loop_gain(loop), canvas), roots_if_found(closed_loop(loop))
+        apart = poles_apart(loop.bound, loop.factors, entered_budget())
+        closed = replace(closed, verdict=closed.verdict.beside(apart.verdict))
     return _draw_curves([curve], [label], canvas, f"closed loop {closed.verdict.headline}")
 
 

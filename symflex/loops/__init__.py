@@ -1,5 +1,6 @@
 """Stable gains of feedback loops, proved: poles right of the imaginary axis counted, none missing."""
 
+from symflex.loops.apart import PolesApart, poles_apart
 from symflex.loops.colocation import DynamicColocation, dynamic_colocation
 from symflex.loops.find import find_stable_gains
 from symflex.loops.locus import (
@@ -40,6 +41,7 @@ __all__ = [
     "NetworkLoop",
     "PhaseMargin",
     "PoleCount",
+    "PolesApart",
     "RootLocus",
     "StabilityMap",
     "characteristic_loop",
@@ -53,6 +55,7 @@ __all__ = [
     "loop_gain",
     "nominal_gain",
     "pick_gain",
+    "poles_apart",
     "require_arrival",
     "trace_locus",
 ]

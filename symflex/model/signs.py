@@ -134,6 +134,14 @@ class Line:
                 found.add(each.name if isinstance(each, Name) else ".")
         return found
 
+    def nearly(self, expression: Expression) -> float | None:
+        """Return the double next to the number an expression of any form is, None without one."""
+        exact = self.value(expression)
+        if exact is not None:
+            return float(exact)
+        number = value_along(expression, arb("nan"), self)
+        return float(number.mid()) if number is not None and number.is_finite() else None
+
     def key(self, place: Expression) -> Hashable:
         """Return what is equal of equal places: the number, else the polynomial, else the place as written.
 
@@ -251,8 +259,8 @@ class RangedValue:
             return self._complaint_inside(line, self.length)
         if sign is None or (self.is_end and line.is_zero(self.expression)) or sign >= self._least:
             return ""
-        value = None if literal_value(self.expression) is not None else line.value(self.expression)
-        shown = f" ({float(value):.6g})" if value else ""
+        value = None if literal_value(self.expression) is not None else line.nearly(self.expression)
+        shown = f" ({value:.6g})" if value else ""
         return f"{self.what} is {'negative' if sign < 0 else '0'}{shown}; {self.reason}"
 
     @property

@@ -8,6 +8,8 @@ from fractions import Fraction
 from math import exp, inf, isfinite, pi
 from typing import TYPE_CHECKING
 
+from flint import arb
+
 from symflex.algebra import Factored
 from symflex.budget import Budget, entered_budget
 from symflex.equations import assemble
@@ -16,7 +18,14 @@ from symflex.errors import BudgetError, Diagnostic, SymflexError
 from symflex.model import with_numbers
 from symflex.model.signs import is_passive
 from symflex.roots.distributed.proof import limits
-from symflex.roots.distributed.right_half_plane import DEGENERATE, PASSIVE, PASSIVE_LOOP, search_right
+from symflex.roots.distributed.right_half_plane import (
+    DEGENERATE,
+    PASSIVE,
+    PASSIVE_LOOP,
+    RightHalfPlane,
+    gaps_text,
+    search_right,
+)
 from symflex.roots.distributed.side import ACCUMULATION_DIGITS, Side, groups, polynomial_roots
 from symflex.roots.engines import LOSSLESS, POLYNOMIAL
 from symflex.roots.functions.simplified import without_lengths_of_zero
@@ -377,7 +386,7 @@ class _Searched:
         degenerate = _degenerate_points(bound)
         proof, rests = _passivity(bound)
         found: list[tuple[Root, ...]] = []
-        reasons: list[str] = []
+        gaps: list[RightHalfPlane] = []
         for place, part in (*poles, (2 * len(poles), product)):
             is_hidden = part is product
             try:
@@ -391,27 +400,37 @@ class _Searched:
                     if rests:
                         known += [r for r in side.at_origin if r not in known]
                     found.append(tuple(known))
-                    reasons += [unproved] if is_over and unproved else []
+                    gaps.append(RightHalfPlane((), unproved or ""))
                     continue
                 reached = 0.0 if unproved else self._reached(side)
                 whole = search_right(bound, part, side, known, reached, self.digits, self.budget)
             except SymflexError as error:
                 found.append(())
-                reasons.append(error.diagnostics[0].message)
+                gaps.append(RightHalfPlane((), error.diagnostics[0].message))
                 continue
             # Where wavenumbers meet or vanish, a function may have a root that the system does not have.
             apart = tuple(
                 r for r in whole.roots if not any(overlap(r, p) for p in degenerate if not p.is_zero)
             )
             if any(is_right(r) for r in whole.roots if r not in apart):
-                reasons.append(DEGENERATE)
+                gaps.append(RightHalfPlane((), DEGENERATE))
             found.append(apart)
-            reasons += [whole.unproved] if whole.unproved else []
+            gaps.append(whole)
+        unsure = gaps_text(gaps)
         if proof:
-            reasons = [] if rests else ["none of those found lies on the imaginary axis"]
+            unsure = "" if rests else "none of those found lies on the imaginary axis"
         seen = [root for each in found[:-1] for root in each]
-        verdict = judge(seen, "; ".join(dict.fromkeys(reasons)), proof, found[-1])
+        # Where wavenumbers vanish, a factor may have a root that is no pole: s itself tells how many are.
+        unseen = [r for r in found[-1] if not r.is_zero] + self._at_rest()
+        verdict = judge(seen, unsure, proof, unseen)
         return verdict, found[0] if poles else (), found[-1]
+
+    def _at_rest(self) -> list[Root]:
+        """Return the hidden pole at 0, where there is one."""
+        ring = self.bound.ratio.ring
+        times = sum(h.multiplicity for h in self.bound.hidden if h.polynomial == ring.context.gen(0))
+        zero = Root(arb(0), arb(0), times, on_imaginary_axis=True, is_real=True)
+        return [zero] if times else []
 
     def _reached(self, side: Side) -> float:
         """Return up to which abs(s) all roots of a side are known [rad/s]."""

@@ -22,7 +22,7 @@ from symflex.roots.pole_zero_map import count_right, is_right
 from symflex.roots.region import Rectangle
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from symflex.algebra import Factored
     from symflex.budget import Budget
@@ -46,6 +46,7 @@ class RightHalfPlane:
 
     roots: tuple[Root, ...]  # those found, on the imaginary axis too
     unproved: str = ""  # why there may be others; empty where there are none
+    reached: float = 0.0  # up to which abs(s) there are none [rad/s], where that is known
 
 
 def search_right(
@@ -68,7 +69,7 @@ def search_right(
         return RightHalfPlane(tuple(known), ACCUMULATING)
     radius, unproved = _end(side, reached)
     if radius <= reached:
-        return RightHalfPlane(tuple(known), unproved and _up_to(unproved, reached))
+        return _known_to(known, unproved, reached)
     # Roots mirror each other in the axis, and a path along it would meet them.
     is_mirrored = bool(unproved) and side.function.is_even
     count: int | None = None
@@ -78,8 +79,9 @@ def search_right(
         pass
     except BudgetError as error:
         # Where no end is known, more was looked at than what was asked for.
-        said = _up_to(unproved, reached) if unproved else error.diagnostics[0].message
-        return RightHalfPlane(tuple(known), said)
+        if unproved:
+            return _known_to(known, unproved, reached)
+        return RightHalfPlane(tuple(known), error.diagnostics[0].message)
     seen = [root for root in known if root.re.contains(0) or is_right(root)]
     if count is None or count != count_right(seen):
         limit = Fraction(radius)
@@ -90,16 +92,22 @@ def search_right(
             # Roots of lossless systems lie on the border, and beyond what was asked for it is not followed.
             proof = None if is_mirrored else again.prove(region)
         except BudgetError as error:
+            if is_mirrored:
+                return _known_to(known, unproved, reached)
             more = f"{count} are counted, and not all found: " if count else ""
-            said = _up_to(unproved, reached) if is_mirrored else more + error.diagnostics[0].message
-            return RightHalfPlane(tuple(known), said)
+            return RightHalfPlane(tuple(known), more + error.diagnostics[0].message)
         seen = [root for root in again.roots if root.re.contains(0) or is_right(root)]
         if proof is None:
-            return RightHalfPlane(tuple(seen), _up_to(unproved, reached))
+            return _known_to(seen, unproved, reached)
         if not proof.is_complete if count is None else count_right(seen) != count:
-            said = _up_to(unproved, reached) if unproved else proof.reason or NOT_COUNTED
-            return RightHalfPlane(tuple(seen), said)
-    return RightHalfPlane(tuple(seen), unproved and _up_to(unproved, radius))
+            if unproved:
+                return _known_to(seen, unproved, reached)
+            return RightHalfPlane(tuple(seen), proof.reason or NOT_COUNTED)
+    return _known_to(seen, unproved, radius)
+
+
+def _known_to(roots: Sequence[Root], unproved: str, reached: float) -> RightHalfPlane:
+    return RightHalfPlane(tuple(roots), unproved, reached if unproved else 0.0)
 
 
 def _end(side: Side, reached: float) -> tuple[float, str]:
@@ -114,6 +122,19 @@ def _end(side: Side, reached: float) -> tuple[float, str]:
     return radius, ""
 
 
-def _up_to(reason: str, radius: float) -> str:
-    """Say how far poles are known."""
-    return f"known up to {radius / (2 * pi):.4g} Hz only: {reason}" if radius > 0 else reason
+def gaps_text(found: Iterable[RightHalfPlane]) -> str:
+    """Say why roots of several functions may be missing, each reason once and how far all are known.
+
+    Examples
+    --------
+    >>> gaps_text([RightHalfPlane((), "no end", 20.0), RightHalfPlane((), "no end", 10.0)])
+    'known up to 1.592 Hz only: no end'
+    """
+    reached: dict[str, float] = {}
+    for each in found:
+        if each.unproved:
+            reached[each.unproved] = min(reached.get(each.unproved, each.reached), each.reached)
+    return "; ".join(
+        f"known up to {radius / (2 * pi):.4g} Hz only: {reason}" if radius > 0 else reason
+        for reason, radius in reached.items()
+    )

@@ -51,6 +51,7 @@ def test_a_sweep_of_poles_says_at_how_many_points_one_grows(shell):
     text = 'symflex = 1\nparameters.b = { assume = "real" }\ninputs.u = {}\noutputs.y = "u/(s^2 + b*s + 4)"'
     (shell.folder / "grows.toml").write_text(text)
     command = ("sweep", "grows.toml", "--workers", "1", "--over")
-    assert "unstable at 2 of 3 points" in shell(*command, "b=-1,-0.5,1").out
+    assert "  stable at 1 of 3 points, unstable at 2\n" in shell(*command, "b=-1,-0.5,1").out
     assert shell(*command, "b=-1,-0.5,1", "--json").json["unstable_points"] == 2
-    assert "stability not known: no pole shown grows" in shell(*command, "b=1,2").out
+    assert "  stable at 2 of 2 points\n" in shell(*command, "b=1,2").out
+    assert "  marginal at 1 of 1 point\n" in shell(*command, "b=0").out

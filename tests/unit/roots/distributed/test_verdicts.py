@@ -19,6 +19,7 @@ from symflex.roots.distributed.right_half_plane import (
     ACCUMULATING,
     NOT_COUNTED,
     RightHalfPlane,
+    gaps_text,
     search_right,
 )
 from symflex.roots.pole_zero_map import NOT_EXAMINED, ON_AXIS, StabilityVerdict, judge
@@ -52,6 +53,45 @@ def test_poles_allow_this_verdict_and_no_other():
     ]:
         found = judge(roots, unproved, proof)
         assert (found.word, found.right, found.certified, found.reason, found.found) == expected, roots
+
+
+def test_hidden_poles_on_the_axis_are_named_and_leave_the_word_those_on_the_right_decide():
+    for seen, hidden, word, said in [
+        ([LEFT], [ZERO], "stable", "a hidden pole at s = 0"),
+        ([LEFT], [LEFT], "stable", ""),
+        ([ZERO], [DOUBLE_ZERO, ON], "marginal", "2 hidden poles at s = 0 and 1 on the imaginary axis"),
+        ([LEFT], [RIGHT], "unstable", "a hidden pole in the right half plane"),
+        ([LEFT], [NEAR], "unknown", ""),
+        ([RIGHT], [ON], "unstable", "a hidden pole on the imaginary axis"),
+    ]:
+        found = judge(seen, hidden=hidden)
+        assert (found.word, found.hidden) == (word, said), (seen, hidden)
+
+
+def test_hidden_motion_is_a_line_that_names_what_moves():
+    for moving, said in [
+        ((), "a hidden pole at s = 0, which input and output do not see"),
+        (("phi",), "phi moves without input or output seeing it"),
+        (("x", "y"), "x and y move without input or output seeing them"),
+        (
+            tuple("abcde"),
+            "a hidden pole at s = 0: a, b, c and 2 more move without input or output seeing them",
+        ),
+    ]:
+        verdict = StabilityVerdict("stable", 0, True, hidden="a hidden pole at s = 0", moving=moving)
+        assert verdict.hidden_motion.removeprefix("a hidden pole at s = 0: ") == said
+
+
+def test_poles_of_two_parts_together_are_as_stable_as_the_worse_of_them():
+    for one, other, expected in [
+        (judge([LEFT]), judge([ON]), ("marginal", 0, "poles on the imaginary axis", 0)),
+        (judge([ON]), judge([RIGHT]), ("unstable", 1, "", 1)),
+        (judge([RIGHT]), judge([LEFT], "no end"), ("unstable", None, "no end", 1)),
+        (judge([LEFT], "no end"), judge([LEFT], "no end"), ("unknown", None, "no end", 0)),
+        (judge([LEFT], "no end"), judge([ON]), ("unknown", None, "no end", 0)),
+    ]:
+        for found in (one.beside(other), other.beside(one)):
+            assert (found.word, found.right, found.reason, found.found) == expected
 
 
 def test_a_verdict_is_said_in_a_sentence_a_headline_and_a_word():
@@ -180,8 +220,11 @@ def searching(monkeypatch):
     return search
 
 
-def up_to(radius, reason):
-    return f"known up to {radius / (2 * pi):.4g} Hz only: {reason}"
+def test_gaps_of_several_functions_say_every_reason_once_and_how_far_all_are_known():
+    found = [
+        RightHalfPlane((), *gap) for gap in [("", 0.0), ("no end", 40 * pi), ("no end", 20 * pi), ("lost", 0)]
+    ]
+    assert gaps_text(found) == "known up to 10 Hz only: no end; lost"
 
 
 def test_all_roots_of_a_polynomial_and_as_many_as_are_counted_need_no_search(searching):
@@ -211,14 +254,14 @@ def test_without_an_end_poles_are_counted_as_far_as_kernels_have_few_waves(searc
     for reached in [0.0, 29.0]:
         side = Half(0)
         found = searching(side, reached=reached, tails=ENDLESS)
-        assert found == RightHalfPlane((), up_to(30.0, "poles have no end")), reached
+        assert found == RightHalfPlane((), "poles have no end", 30.0), reached
         assert side.counted_to == [pytest.approx(30 * 1.01)], reached
 
 
 def test_where_all_roots_are_known_none_is_counted_again(searching):
-    for tails, unproved in [(ENDLESS, up_to(40.0, "poles have no end")), (ENDING, "")]:
+    for tails, unproved in [(ENDLESS, ("poles have no end", 40.0)), (ENDING, ())]:
         side = Half(0)
-        assert searching(side, [RIGHT], reached=40.0, tails=tails) == RightHalfPlane((RIGHT,), unproved)
+        assert searching(side, [RIGHT], reached=40.0, tails=tails) == RightHalfPlane((RIGHT,), *unproved)
         assert side.counted_to == [], tails
 
 
@@ -239,10 +282,10 @@ def test_where_they_are_not_found_it_is_said_why(searching):
 
 
 def test_where_they_have_no_end_either_all_are_known_as_far_as_before(searching):
-    for reached, said in [(0.0, "poles have no end"), (20.0, up_to(20.0, "poles have no end"))]:
+    for reached in [0.0, 20.0]:
         again = Half(0, roots=(RIGHT,), proof=Proof(3, 1))
         found = searching(Half(3), reached=reached, tails=ENDLESS, again=again)
-        assert found == RightHalfPlane((RIGHT,), said), reached
+        assert found == RightHalfPlane((RIGHT,), "poles have no end", reached), reached
 
 
 def test_with_a_root_on_the_path_the_search_is_proved_by_itself(searching):
@@ -254,7 +297,7 @@ def test_with_a_root_on_the_path_the_search_is_proved_by_itself(searching):
 def test_a_budget_spent_by_the_count_is_said(searching):
     assert searching(Half(SPENT), [RIGHT]) == RightHalfPlane((RIGHT,), "the budget is spent")
     found = searching(Half(SPENT), [RIGHT], reached=20.0, tails=ENDLESS)
-    assert found == RightHalfPlane((RIGHT,), up_to(20.0, "poles have no end"))
+    assert found == RightHalfPlane((RIGHT,), "poles have no end", 20.0)
 
 
 def test_a_budget_spent_by_the_search_is_said_with_what_was_counted(searching):
@@ -269,11 +312,11 @@ def test_a_budget_spent_by_the_search_is_said_with_what_was_counted(searching):
 def test_roots_that_mirror_each_other_are_not_counted_along_the_axis_but_where_they_end(searching):
     side, again = Half(9, is_even=True), Half(0, roots=(RIGHT, ON, LEFT))
     found = searching(side, [ON], reached=20.0, tails=ENDLESS, again=again)
-    assert found == RightHalfPlane((RIGHT, ON), up_to(20.0, "poles have no end"))
+    assert found == RightHalfPlane((RIGHT, ON), "poles have no end", 20.0)
     assert side.counted_to == []
     assert again.searched
     found = searching(Half(9, is_even=True), [ON, LEFT], reached=31.0, tails=ENDLESS)
-    assert found == RightHalfPlane((ON, LEFT), up_to(31.0, "poles have no end"))
+    assert found == RightHalfPlane((ON, LEFT), "poles have no end", 31.0)
     assert searching(Half(1, is_even=True), [RIGHT]) == RightHalfPlane((RIGHT,))
 
 
@@ -283,4 +326,4 @@ def test_a_budget_spent_beyond_what_was_asked_for_says_how_far_all_is_known(sear
             raise SPENT
 
     found = searching(Half(0, is_even=True), [ON], reached=20.0, tails=ENDLESS, again=Spent(0))
-    assert found == RightHalfPlane((ON,), up_to(20.0, "poles have no end"))
+    assert found == RightHalfPlane((ON,), "poles have no end", 20.0)
