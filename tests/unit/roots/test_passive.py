@@ -11,7 +11,9 @@ import pytest
 from scipy.linalg import eigvals
 
 from symflex import pipeline
+from symflex.errors import SpecError
 from symflex.loops.of_model import stability
+from symflex.model.signs import is_passive
 from symflex.options import StabilityOptions
 from symflex.roots import Band, Modes
 from symflex.roots.passive import PassiveLoop, passive_loop
@@ -67,9 +69,15 @@ def test_other_loops_are_not_taken_for_passive():
         "K*(r - (1 - T*s)*hub.theta)",
         "K*(r - hub.theta)/(1 + T*s)",  # lags
         "K*(r - (1 + 1/(T*s))*hub.theta)",
+        "K*(r - T^3*s^3*hub.theta)",
         "K*(r - hub.theta) - arm.tau",
     ]:
         assert closed(arm(tau)) is None
+
+
+def test_a_gain_may_be_a_mass_of_which_no_phase_is_known():
+    found = closed(arm("K*(r - T^2*s^2*hub.theta)"))
+    assert (found.stiffness, found.damping, found.least_phase_margin(2.0)) == (0, 0, 0)
 
 
 def test_of_a_beam_with_rotatory_inertia_nothing_is_said_about_the_axis():
@@ -236,7 +244,134 @@ def test_a_loop_without_a_spring_leaves_a_pole_at_0_wherever_others_are_sought()
     found = judged("K*T*s*(r - phi)", Band(Fraction(2), Fraction(3)))
     # The input does not see where it comes to rest.
     assert found.headline == "stable, with a hidden pole at s = 0"
-    assert "a pole at 0" in found.sentence
+
+
+# ------------------------------------------------------------------------------- elements, by their values
+
+MEMBERS = """
+symflex = 1
+[parameters]
+E = "200 Pa"
+nu = { value = "NU", assume = "real" }
+rho = "1 kg/m^3"
+A = "1 m^2"
+A_1 = "3 m^2"
+I = "1 m^4"
+l = "1 m"
+m = "2 kg"
+k = "3 N/m"
+b = "1 N*s/m"
+C = "2 F"
+R = "1 Ohm"
+L = "1 H"
+k_t = "2 N*m/A"
+k_e = "KE V*s/rad"
+[definitions]
+G = "E/(2*(1 + nu))"
+"""
+ROD = """
+[inputs]
+F = { force = "x" }
+[outputs]
+X = "x"
+[elements]
+rod = { type = "rod", between = ["x", "y"], E = "E", A = "A", rho = "rho", l = "l" }
+"""
+FOLLOWS = ROD + 'follows = { type = "force_source", at = "y", f = "FORCE" }\n'
+SHAFT = """
+[inputs]
+T = { torque = "x" }
+[outputs]
+X = "x"
+[elements]
+rod = { type = "shaft", between = ["ground", "x"], G = "SHEAR", J = "I", rho = "rho", l = "l" }
+"""
+PINNED = """
+[inputs]
+T = { torque = "b.theta" }
+[outputs]
+X = "b.theta"
+[elements]
+left = { type = "pin", at = "a" }
+right = { type = "pin", at = "b" }
+
+[elements.beam]
+type = "beam"
+between = ["a", "b"]
+theory = "timoshenko"
+E = "E"
+G = "G"
+I = "I"
+A = "A"
+rho = "rho"
+l = "l"
+kappa = "5/6"
+"""
+COIL = ROD.replace('E = "E"', 'E = "E*A_1/A"').replace('rho = "rho"', 'rho = "rho*A_1/A"')
+MOTOR = """
+[inputs]
+u = { unit = "V" }
+[outputs]
+X = "x"
+[elements]
+rod = { type = "shaft", between = ["phi", "x"], G = "G", J = "I", rho = "rho", l = "l" }
+motor = { type = "dc_motor", terminals = ["v", "ground"], shaft = "phi", R = "R", MORE }
+supply = { type = "voltage_source", between = ["v", "ground"], v = "u" }
+""".replace("MORE", 'L = "L", k_t = "k_t", k_e = "k_e"')
+CURRENT = (
+    MOTOR
+    + 'leak = { type = "current_source", at = "v_2", i = "CURRENT" }\n'
+    + ('resistor = { type = "resistor", between = ["v", "v_2"], R = "R" }\n')
+)
+
+
+def members(text, nu="0.3", k_e="2"):
+    return pipeline.loads(MEMBERS.replace("NU", nu).replace("KE", k_e) + text)
+
+
+def word(model):
+    (tf,) = pipeline.derive_bound(model, [model.transfer_functions[0]])
+    return pipeline.roots(tf, Modes(1)).verdict
+
+
+def test_signs_are_told_with_numbers_whatever_the_form_of_a_value():
+    for text in (SHAFT.replace("SHEAR", "E/(2*(1 + nu))"), SHAFT.replace("SHEAR", "G"), PINNED, COIL):
+        for nu in ("0.3", "-0.3"):
+            assert word(members(text, nu)).sentence.endswith("passive, energy is nowhere supplied"), text
+
+
+def test_a_modulus_that_is_negative_with_its_numbers_is_refused():
+    with pytest.raises(SpecError, match=r"G of shaft 'rod' is negative \(-200\)"):
+        members(SHAFT.replace("SHEAR", "E/(2*(1 + nu))"), "-1.5")
+
+
+def test_motor_constants_that_are_equal_by_value_make_a_passive_motor():
+    assert word(members(MOTOR)).reason == "a pole at 0; passive, energy is nowhere supplied"
+    assert not is_passive(members(MOTOR, k_e="2.5"))
+
+
+def test_sources_that_act_as_springs_dampers_and_masses_supply_nothing():
+    second = 'more = { type = "force_source", at = "x", f = "-b*s*x - m*s^2*x" }\n'
+    for force in ("-m*s^2*y", "-k*y", "F_2 - m*s^2*y", "-m*s^2*a", "-(k + b*s + m*s^2)*y"):
+        text = FOLLOWS.replace("FORCE", force).replace("F =", 'F_2 = { unit = "N" }\na = { unit = "m" }\nF =')
+        for more in ("", second):
+            assert closed(members(text + more)) is not None, (force, more)
+
+
+def test_sources_that_supply_energy_are_not_taken_for_springs_dampers_or_masses():
+    for force in ("m*s^2*y", "k*y", "-m*s^2*x", "-m*b/k*s^3*y", "-k*y/(1 + b*s/k)", "b*s*y - m*s^2*y"):
+        assert closed(members(FOLLOWS.replace("FORCE", force))) is None, force
+
+
+def test_a_current_that_follows_a_voltage_is_a_resistor_or_a_capacitor():
+    # Of a voltage the derivative does no work: the second one is no inertia.
+    for current, is_one in (("-v_2/R", True), ("-C*s*v_2", True), ("-C*b/k*s^2*v_2", False)):
+        assert (closed(members(CURRENT.replace("CURRENT", current))) is not None) is is_one, current
+
+
+def test_what_is_held_moves_as_it_is_told_and_supplies_nothing():
+    base = ROD.replace('F = { force = "x" }', 'a = { displacement = "x" }').replace('X = "x"', 'Y = "y"')
+    assert is_passive(members(base + 'load = { type = "mass", at = "y", m = "m" }\n'))
 
 
 # ---------------------------------------------------------------------------------------------- fields
