@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from flint import arb
 
     from symflex import loops as stability_room
+    from symflex.roots.pole_zero_map import StabilityVerdict
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,7 @@ class StabilityBoundary:
 
 @dataclass(frozen=True)
 class Stability:
-    """The gains for which all closed-loop poles lie in the open left half plane.
+    """The gains for which all closed-loop poles that input and output see lie in the open left half plane.
 
     Parameters
     ----------
@@ -94,8 +95,13 @@ class Stability:
 
     @property
     def is_stable(self) -> bool | None:
-        """Whether the loop is stable with the gain's declared value; ``None`` when it has none."""
+        """Whether the loop is stable with the gain's declared value; ``None`` where that is not proved."""
         return self.proved.is_stable
+
+    @property
+    def verdict(self) -> StabilityVerdict:
+        """What is said of the gain's declared value: its ``word``, ``sentence`` and ``hidden_motion``."""
+        return self.proved.verdict
 
     @property
     def gain_margins(self) -> tuple[mpmath.mpf, ...]:

@@ -104,6 +104,7 @@ def find_stable_gains(
         None,
         method="polynomials" if along is None else along.method,
         apart=apart,
+        tf=loop.bound.name if isinstance(loop, Loop) else "",
         is_passive=isinstance(along, DistributedFactors) and along.passive is not None,
     )
     if nominal is not None and found.nominal_interval is None and along is None:

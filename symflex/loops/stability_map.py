@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import pi
+from textwrap import wrap
 from typing import TYPE_CHECKING, Literal
 
 from flint import arb
 
 from symflex.loops.apart import PolesApart
-from symflex.print.text import INDENT, Passage, passages_text
+from symflex.print.text import INDENT, WIDTH, Passage, passages_text
 from symflex.roots import decimals, precision
 from symflex.roots.pole_zero_map import StabilityVerdict
 from symflex.transfer.balls import ball
@@ -124,6 +125,8 @@ class StabilityMap:
         Poles that no gain moves, without kernels: hidden ones are not counted in ``intervals``.
     at_nominal : StabilityVerdict or None
         Of a nominal gain that lies in none of the intervals, where it was examined alone.
+    tf : str
+        ``"OUT/IN"``, whose input and output see the poles that are not hidden; empty where nothing is.
     is_passive : bool
         It is proved that no gain of the range brings a pole into the right half plane.
     """
@@ -145,6 +148,7 @@ class StabilityMap:
     method: str = ""
     apart: PolesApart = NOTHING_APART
     at_nominal: StabilityVerdict | None = None
+    tf: str = ""
     is_passive: bool = False
 
     def __repr__(self) -> str:
@@ -213,6 +217,7 @@ class StabilityMap:
         return {
             "schema": SCHEMA,
             "gain": self.gain,
+            "tf": self.tf,
             "unit": self.unit,
             "range": [None if x is None else str(x) for x in self.limits],
             "certified": self.certified,
@@ -385,7 +390,8 @@ def _passages(found: StabilityMap) -> Iterator[Passage]:
     if found.nominal is not None:
         lines.append(f"{INDENT}{found.gain} = {_number(found.nominal)}: {found.verdict.sentence}")
     if found.verdict.hidden:
-        lines.append(f"{INDENT}{found.verdict.hidden_motion}")
+        said = f"{found.tf}: {found.verdict.hidden_motion}"
+        lines += wrap(said, WIDTH, initial_indent=INDENT, subsequent_indent=2 * INDENT)
     yield Passage(lines)
     scope = "" if found.is_complete else ", as far as poles were counted"
     stable = [2 * INDENT + _between(interval, found) for interval in found.stable]
