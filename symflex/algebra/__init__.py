@@ -10,6 +10,7 @@ from symflex.algebra.factored import (
     random_point,
     residue,
 )
+from symflex.algebra.radicals import Radicals
 from symflex.algebra.ring import (
     FUNCTIONS,
     LAPLACE,
@@ -37,6 +38,7 @@ __all__ = [
     "Kernel",
     "KernelTable",
     "PolynomialMemo",
+    "Radicals",
     "Ring",
     "by_powers",
     "common_denominator",

@@ -2,5 +2,6 @@
 
 from symflex.equations.assemble import assemble
 from symflex.equations.equations import ConstantFunction, Continuum, Equations, OutputRow
+from symflex.equations.radicals import radicals_of
 
-__all__ = ["ConstantFunction", "Continuum", "Equations", "OutputRow", "assemble"]
+__all__ = ["ConstantFunction", "Continuum", "Equations", "OutputRow", "assemble", "radicals_of"]

@@ -8,13 +8,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from functools import cached_property
 from graphlib import CycleError, TopologicalSorter
 from typing import TYPE_CHECKING
 
 from symflex.algebra import (
     FUNCTIONS,
     LAPLACE,
+    PRIME,
     Factored,
+    Radicals,
     Ring,
     common_denominator,
     least_common_multiple,
@@ -23,7 +26,8 @@ from symflex.algebra import (
 )
 from symflex.budget import spend
 from symflex.equations.equations import ConstantFunction, Continuum, Equations, OutputRow
-from symflex.equations.evaluate import ExactEvaluator, Opener, written_denominator
+from symflex.equations.evaluate import ExactEvaluator, Opener, without_squares, written_denominator
+from symflex.equations.radicals import radicals_of
 from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError
 from symflex.expressions import Call, Expression, Name, Number, format_expression, names, substitute
 from symflex.library.elements import (
@@ -219,15 +223,20 @@ class _Assembly:
             return None
         return tuple((c.generator, c.expression) for c in self.constants if varies_along_x(c.expression))
 
+    @cached_property
+    def _radicals(self) -> Radicals:
+        return radicals_of(self.ring, self.constants, self.model.parameters)
+
     def _evaluator(self, blocks: Mapping[str, Factored]) -> tuple[ExactEvaluator, dict[str, int]]:
         known = {d.name for d in self.model.definitions}
-        point = random_point([n for n in self.ring.names if n not in known])
+        prime, point = self._radicals.point() or (PRIME, random_point(self.ring.names))
+        point = {name: number for name, number in point.items() if name not in known}
         scope = scope_of(self.model)
         fields = {*scope.unknowns, *scope.along}
         value = None if self.distributed is None else self._at_point
         definitions = self._definitions
         return ExactEvaluator(
-            self.ring, scope, blocks, self.through, definitions, point, fields, value
+            self.ring, scope, blocks, self.through, definitions, point, prime, fields, self._radicals, value
         ), point
 
     def _at_point(self, call: Call) -> LinearForm:
@@ -280,7 +289,7 @@ class _Assembly:
         blocks = self._blocks()
         evaluator, point = self._evaluator(blocks)
         definitions = self._define(evaluator, point)
-        self._check_blocks(blocks, point)
+        self._check_blocks(blocks, point, evaluator.prime)
         nodes = {n.name: n for n in self.model.nodes}
         for node in self.model.nodes:
             for component in node.components:
@@ -428,7 +437,7 @@ class _Assembly:
         for definition in self.model.definitions:
             try:
                 value = evaluator.constant(definition.expression)
-                point[definition.name] = residue(value, point)
+                point[definition.name] = residue(value, point, evaluator.prime)
             except SymflexError as error:
                 self.problems.extend(error.diagnostics)
             except (ZeroDivisionError, KeyError):
@@ -437,11 +446,11 @@ class _Assembly:
                 found.append((definition.name, value))
         return tuple(found)
 
-    def _check_blocks(self, blocks: Mapping[str, Factored], point: Mapping[str, int]) -> None:
+    def _check_blocks(self, blocks: Mapping[str, Factored], point: Mapping[str, int], prime: int) -> None:
         """Note every block that divides by zero once its definitions are opened."""
         for block in self.model.blocks:
             try:
-                residue(blocks[block.name], point)
+                residue(blocks[block.name], point, prime)
             except ZeroDivisionError:
                 self.problems.append(Diagnostic("SF224", f"block '{block.name}' divides by zero", block.span))
             except KeyError:
@@ -450,7 +459,7 @@ class _Assembly:
     def _blocks(self) -> Mapping[str, Factored]:
         found: dict[str, Factored] = {} if self.distributed is None else dict(self.distributed.delays)
         scope = scope_of(self.model)
-        evaluator = ExactEvaluator(self.ring, scope, found, {}, self._definitions)
+        evaluator = ExactEvaluator(self.ring, scope, found, {}, self._definitions, radicals=self._radicals)
         s = Factored.generator(self.ring, LAPLACE)
         for block in self._ordered_blocks():
             if block.name in found:
@@ -460,9 +469,9 @@ class _Assembly:
             try:
                 if block.block is not None:
                     values = {name: evaluator.constant(e) for name, e in block.values}
-                    found[block.name] = block.block.transfer(s, values)
+                    found[block.name] = self._radicals.reduced(block.block.transfer(s, values))
                 elif self.nested is not None:
-                    found[block.name] = self.nested(block, self.ring)
+                    found[block.name] = self._radicals.reduced(self.nested(block, self.ring))
             except ZeroDivisionError:
                 self.problems.append(Diagnostic("SF224", f"block '{block.name}' divides by zero", block.span))
                 found[block.name] = Factored.number(self.ring, 1)
@@ -637,8 +646,10 @@ class _Assembly:
     def _polynomial(self, row: EquationRow) -> EquationRow:
         if self.ring.is_sparse:
             return row  # nothing is expanded, and rows scaled differently would lose their symmetry
-        below = common_denominator(self.ring, row.form.coefficients)
-        return row if below.is_one else replace(row, form=row.form * below)
+        # Elements multiply what was evaluated: the torque constant of a motor with itself.
+        form = without_squares(row.form, self._radicals)
+        below = common_denominator(self.ring, form.coefficients)
+        return replace(row, form=form if below.is_one else form * below)
 
     def _equal(self, variable: Variable, expression: Expression, evaluator: ExactEvaluator) -> None:
         """Add the row ``variable = expression``."""

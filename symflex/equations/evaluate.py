@@ -12,7 +12,16 @@ from functools import cached_property
 from math import isqrt
 from typing import TYPE_CHECKING
 
-from symflex.algebra import LAPLACE, Factored, Ring, degree_in, least_common_multiple, residue
+from symflex.algebra import (
+    LAPLACE,
+    PRIME,
+    Factored,
+    Radicals,
+    Ring,
+    degree_in,
+    least_common_multiple,
+    residue,
+)
 from symflex.errors import BudgetError, Diagnostic, ModelError
 from symflex.expressions import (
     Attribute,
@@ -52,7 +61,9 @@ class ExactEvaluator:
     definitions: Mapping[str, Expression]  # opened inside the arguments of functions
     # A random point of a prime field, with the definitions that are known by now.
     point: Mapping[str, int] = field(default_factory=dict)
+    prime: int = PRIME
     fields: Collection[str] = ()  # the unknowns of fields
+    radicals: Radicals | None = None  # relations of the roots among the generators
     # Returns a field's unknown, or a derivative of it, at the point a call names.
     field_value: Callable[[Call], LinearForm] | None = None
 
@@ -97,7 +108,10 @@ class ExactEvaluator:
 
     def _value(self, expression: Expression) -> Factored | LinearForm:
         try:
-            return self._evaluate(expression)
+            value = self._evaluate(expression)
+            if isinstance(value, LinearForm):
+                return without_squares(value, self.radicals)
+            return self.radicals.reduced(value) if self.radicals else value
         except BudgetError as error:
             located = [
                 d if d.span else Diagnostic(d.code, d.message, expression.span, d.hint)
@@ -187,7 +201,7 @@ class ExactEvaluator:
         if not used or any(name not in self.point for name in used):
             return False
         try:
-            return residue(value, self.point) == 0
+            return residue(value, self.point, self.prime) == 0
         except ZeroDivisionError:
             return False  # a block that divides by zero, which is reported at the block
 
@@ -210,6 +224,11 @@ class ExactEvaluator:
         if inner.is_zero and name in ("cos", "cosh", "exp"):
             return Factored.number(self.ring, 1)
         return Factored.generator(self.ring, format_expression(opened))
+
+
+def without_squares(form: LinearForm, radicals: Radicals | None) -> LinearForm:
+    """Return a combination without squares of roots: ``sqrt(x)^2`` is ``x``."""
+    return LinearForm.of(*((v, radicals.reduced(c)) for v, c in form.terms)) if radicals else form
 
 
 @dataclass(frozen=True)

@@ -166,6 +166,8 @@ def polynomial_in_s(bound: BoundTransferFunction, factor: fmpz_mpoly) -> Polynom
 
 def problem_of(bound: BoundTransferFunction, factors: Iterable[tuple[fmpz_mpoly, int]]) -> RootProblem:
     """Return what roots powers of factors without wavenumbers and kernels have, those that depend on s."""
+    if bound.radicals:
+        factors = bound.radicals.split(factors)
     polynomials = [(polynomial_in_s(bound, f), e) for f, e in factors]
     return RootProblem(tuple((p, e) for p, e in polynomials if p.degree > 0))
 

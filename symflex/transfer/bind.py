@@ -24,9 +24,10 @@ from flint import acb, acb_poly, acb_series, arb, ctx
 
 from symflex.algebra import LAPLACE, NO_KERNELS, Factored, KernelTable, PolynomialMemo, Ring, degree_in
 from symflex.budget import spend
-from symflex.equations import assemble
+from symflex.equations import assemble, radicals_of
 from symflex.errors import Diagnostic, ModelError, Text, UsageError
 from symflex.errors.diagnostic import nearest
+from symflex.expressions import format_expression, names
 from symflex.model import ExactValue, with_numbers
 from symflex.model.along import COORDINATE, varies_along_x
 from symflex.model.declarations import assuming
@@ -43,7 +44,6 @@ from symflex.transfer.balls import (
     later,
     order_near,
     plan,
-    rational_value,
     value_at,
 )
 from symflex.transfer.derive import derive, nested_transfer
@@ -55,6 +55,7 @@ if TYPE_CHECKING:
 
     from flint import fmpz_mpoly
 
+    from symflex.algebra import Radicals
     from symflex.algebra.modal_sum import ModalSums
     from symflex.expressions import Call
     from symflex.model import Model, ModelParameter
@@ -182,6 +183,11 @@ class BoundTransferFunction:
             if constant.generator not in self.along:
                 known[constant.generator] = later(constant.expression, values)
         return tuple((name, known[name]) for name in self.ratio.ring.names[1:] if name in known)
+
+    @cached_property
+    def radicals(self) -> Radicals:
+        """The relations of the roots among the generators."""
+        return _radicals(self.source, self.ratio.ring, dict(self.values))
 
     @cached_property
     def along(self) -> Mapping[str, Call]:
@@ -401,7 +407,8 @@ def bind(tf: TransferFunction, values: Mapping[str, Given] | None = None) -> Bou
         return _derived_with_numbers(tf, exact)
     coordinate = [COORDINATE] if any(law.matrix for law in tf.kernels.dispersions) else []
     ring = Ring((LAPLACE, "pi", *coordinate, *_used_constants(tf), *tf.kernels.generators))
-    images = _Substitution(ring, tf.ratio.ring, table, _rational_squares(tf, ring, table))
+    radicals = _radicals(tf, ring, table)
+    images = _Substitution(ring, tf.ratio.ring, table, radicals)
     # Kept apart, so that factors which these values make equal are still seen to cancel.
     above, below = Factored.number(ring, tf.ratio.unit), Factored.number(ring, 1)
     for factor, exponent in tf.ratio.factors:
@@ -415,7 +422,7 @@ def bind(tf: TransferFunction, values: Mapping[str, Given] | None = None) -> Bou
             above = above * value**exponent
         else:
             below = below * value**-exponent
-    ratio, shared = cancel(above, below)
+    ratio, shared = cancel(above, below, radicals=None if tf.kernels else radicals)
     varying = [0, *(ring.index[k.generator] for k in tf.kernels.kernels)]
     hidden = [HiddenFactor(f, e) for f, e in shared.factors if any(degree_in(f, i) for i in varying)]
     for known in tf.hidden:
@@ -464,7 +471,7 @@ def bind_polynomials(
     Such are the coefficients of a gain in its denominator.
     """
     ring, values = bound.ratio.ring, dict(bound.values)
-    images = _Substitution(ring, tf.ratio.ring, values, _rational_squares(tf, ring, values))
+    images = _Substitution(ring, tf.ratio.ring, values, _radicals(tf, ring, values))
     return tuple(images.apply(polynomial) for polynomial in polynomials)
 
 
@@ -472,46 +479,34 @@ def _used_constants(tf: TransferFunction) -> list[str]:
     """Return the functions of constants that occur; the others may lack a value."""
     index = tf.ratio.ring.index
     polynomials = [*(f for f, _ in tf.all_factors), *(h.polynomial for h in tf.hidden)]
-    return [c.generator for c in tf.constants if any(degree_in(p, index[c.generator]) for p in polynomials)]
+    used = [c for c in tf.constants if any(degree_in(p, index[c.generator]) for p in polynomials)]
+    inside = {format_expression(n) for c in used for n in names(c.expression)}
+    return [c.generator for c in tf.constants if c.generator in inside]
 
 
-def _rational_squares(
-    tf: TransferFunction, ring: Ring, values: Mapping[str, ExactValue]
-) -> dict[int, Fraction]:
-    """Return the squares of the generators that are roots of rational numbers, by position."""
-    return {
-        ring.index[c.generator]: square
-        for c in tf.constants
-        if c.generator in ring.index
-        and c.expression.name == "sqrt"
-        and (square := rational_value(c.expression.argument, values)) is not None
-    }
+def _radicals(tf: TransferFunction, ring: Ring, values: Mapping[str, ExactValue]) -> Radicals:
+    """Return the relations that roots among the generators have with these values."""
+
+    def value(name: str) -> Factored:
+        return Factored.generator(ring, "pi") ** values[name].pi_power * values[name].rational
+
+    return radicals_of(ring, tf.constants, tf.model.parameters, value)
 
 
 @dataclass(frozen=True)
 class _Substitution:
-    """Puts exact values in place of parameters.
-
-    ``squares`` holds the squares of generators that are square roots of rational numbers, so that
-    ``sqrt(k/m)^2`` is what it is and can cancel.
-    """
+    """Puts exact values in place of parameters."""
 
     ring: Ring
     source: Ring
     values: Mapping[str, ExactValue]
-    squares: Mapping[int, Fraction]
+    radicals: Radicals  # over ``ring``
 
     def apply(self, polynomial: fmpz_mpoly) -> Factored:
         """Return the polynomial over s, pi and functions of constants."""
         names = self.source.names
         targets = [self.ring.index.get(n) for n in names]
         pi = self.ring.index["pi"]
-        # Only where every power is even: an odd one keeps (s + sqrt(k))^2 a visible square.
-        even = {
-            target
-            for i, target in enumerate(targets)
-            if target in self.squares and all(int(m[i]) % 2 == 0 for m in polynomial.monoms())
-        }
         powers: dict[tuple[str, int], Fraction] = {}
         collected: dict[tuple[int, ...], Fraction] = {}
         for monomial, coefficient in polynomial.terms():
@@ -522,9 +517,6 @@ class _Substitution:
                 if not e:
                     continue
                 if target is not None:
-                    if target in even:
-                        number *= self.squares[target] ** (e // 2)
-                        continue
                     exponents[target] += e
                     continue
                 value = self.values[name]
@@ -535,7 +527,7 @@ class _Substitution:
                 exponents[pi] += value.pi_power * e
             place = tuple(exponents)
             collected[place] = collected.get(place, Fraction(0)) + number
-        return self._clear(collected, pi)
+        return self.radicals.reduced(self._clear(collected, pi))
 
     def apply_factored(self, value: Factored) -> Factored:
         """Return a rational function over s, pi and functions of constants.

@@ -11,8 +11,8 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from symflex.algebra import LAPLACE, NO_KERNELS, Factored, KernelTable, degree_in
-from symflex.equations import assemble
+from symflex.algebra import LAPLACE, NO_KERNELS, Factored, KernelTable, Radicals, degree_in
+from symflex.equations import assemble, radicals_of
 from symflex.equations.elimination import Determinants, explain_singular
 from symflex.errors import Diagnostic, ModelError
 from symflex.transfer.against_equations import ModelSolve, agreement, compare
@@ -71,12 +71,31 @@ class _CramerQuotients:
         self._images = LineImages(self._expansion.ring)
         self._opening = Opening(self._closure, self._expansion)
         self.solve = ModelSolve(equations.model, nested_transfer, equations)
+        self._radicals = self._expansion.radicals
         propagation = equations.propagation
         self._reduction = None if propagation is None else self._kernel_reduction(propagation)
 
     @cached_property
     def _line(self) -> DeterminantsOnLine:
         return DeterminantsOnLine(self._determinants, self._expansion.plain, self._expansion.images)
+
+    @cached_property
+    def _line_at_roots(self) -> DeterminantsOnLine | None:
+        """The line in s on which roots are what they are, modulo a prime; None when it is not found."""
+        plain, definitions = self._expansion.plain, self._expansion.images
+        point = self._radicals.point()
+        return (
+            None
+            if point is None
+            else DeterminantsOnLine(self._determinants, plain, definitions, LAPLACE, point)
+        )
+
+    def _are_coprime(self, output: str, source: str) -> bool:
+        """Tell whether determinants are proved coprime, also modulo the relations of roots."""
+        if not self._line.prove_coprime(output, source):
+            return False
+        line = self._line_at_roots if self._radicals else self._line
+        return line is not None and line.prove_coprime(output, source)
 
     @cached_property
     def _line_in_s(self) -> DeterminantsOnLine:
@@ -101,7 +120,7 @@ class _CramerQuotients:
         model = self._equations.model
         output = next(o for o in model.outputs if o.name == row.name)
         given = next(i for i in model.inputs if i.name == source)
-        if self._reduction is None and row.divisor.is_one and self._line.prove_coprime(row.name, source):
+        if self._reduction is None and row.divisor.is_one and self._are_coprime(row.name, source):
             return self._made(output, given, self._primitive(row.name, source, num), None)
         # For a zero numerator the common factor is the whole denominator: every mode is hidden.
         common = num.gcd(self._den)
@@ -120,13 +139,34 @@ class _CramerQuotients:
         if denominator.unit < 0:
             num_closed, den_closed, denominator = -num_closed, -den_closed, -denominator
         numerator = self._expansion.expanded(self._closure.open(num_closed))
-        ratio, cancelled = cancel(numerator, denominator, self._images)
+        num_closed, den_closed = self._without_squares(num_closed, den_closed)
+        ratio, cancelled = cancel(numerator, denominator, self._images, self._radicals)
         closed = ClosedForm(self._opening, num_closed, den_closed) if cancelled.is_one else None
         return self._made(output, given, closed, ratio, self._hidden(shared * cancelled))
 
+    def _without_squares(self, num: fmpz_mpoly, den: fmpz_mpoly) -> tuple[fmpz_mpoly, fmpz_mpoly]:
+        """Return a closed quotient without squares of roots: ``sqrt(x)^2`` is ``x``."""
+        roots = self._closed_radicals
+        if num.is_zero() or not (roots.has_squares(num) or roots.has_squares(den)):
+            return num, den
+        above, below = (roots.normal(p) for p in (num, den))
+        ratio = above / below
+        num, den = ratio.numerator().expand(), ratio.denominator().expand()
+        common = num.gcd(den)
+        return num / common, den / common
+
+    @cached_property
+    def _closed_radicals(self) -> Radicals:
+        ring, equations = self._closure.ring, self._equations
+        return (
+            radicals_of(ring, equations.constants, equations.model.parameters)
+            if self._radicals
+            else Radicals(ring)
+        )
+
     def _primitive(self, output: str, source: str, num: fmpz_mpoly) -> ClosedForm:
         """Return a quotient of coprime determinants without common integer, the denominator positive."""
-        den = self._den
+        num, den = self._without_squares(num, self._den)
         common = _integer_content(num).gcd(_integer_content(den))
         if common != 1:
             num, den = num / common, den / common

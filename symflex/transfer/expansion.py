@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE, Factored, Ring
+from symflex.equations import radicals_of
 from symflex.errors import Diagnostic, ModelError
 from symflex.model.along import COORDINATE, is_tapered
 
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 
     from flint import fmpz_mpoly
 
+    from symflex.algebra import Radicals
     from symflex.equations import Equations
     from symflex.equations.elimination import Closure
 
@@ -29,6 +31,7 @@ class Expansion:
     source: Ring  # the equations' own
     plain: Ring  # s, parameters, pi and functions of constants
     ring: Ring  # the same and, of a distributed system, its wavenumbers and kernels
+    radicals: Radicals  # the relations of roots over ``ring``
     # What definitions, and propagators, are over ``ring``.
     images: dict[str, Factored] = field(default_factory=dict)
 
@@ -44,7 +47,8 @@ class Expansion:
         )
         propagation = equations.propagation
         ring = Ring(plain) if propagation is None else Ring((*plain, *propagation.table.generators))
-        made = Expansion(equations.ring, Ring(plain), ring)
+        radicals = radicals_of(ring, equations.constants, equations.model.parameters)
+        made = Expansion(equations.ring, Ring(plain), ring, radicals)
         if propagation is not None:
             # Propagators hold no definitions, but definitions may hold delays.
             inner = [made.generator(n) for n in propagation.kernel_ring.names]
@@ -57,10 +61,11 @@ class Expansion:
     def expanded(self, value: Factored) -> Factored:
         """Return a value over the equations' ring with its definitions opened."""
         if self.ring == self.source:
-            return value
+            return self.radicals.reduced(value)
         names = self.source.names
         images = [self.images[n] if n in self.images else self.generator(n) for n in names]
-        return value.map_factors(self.ring, lambda factor: self._open(factor, images))
+        opened = value.map_factors(self.ring, lambda factor: self._open(factor, images))
+        return self.radicals.reduced(opened)
 
     def generator(self, name: str) -> Factored | None:
         """Return a generator of the plain ring, None for a name it does not have."""

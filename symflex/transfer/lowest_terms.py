@@ -17,6 +17,8 @@ from functools import cached_property
 from random import Random
 from typing import TYPE_CHECKING
 
+from flint import nmod_poly
+
 from symflex.algebra import LAPLACE, Factored, PolynomialMemo, Ring, degree_in
 from symflex.budget import spend
 from symflex.equations.elimination.determinants import DegreeBounds, Minors
@@ -26,17 +28,29 @@ if TYPE_CHECKING:
 
     from flint import fmpz_mpoly
 
+    from symflex.algebra import Radicals
+    from symflex.algebra.radicals import Point
     from symflex.equations.elimination import Determinants
 
 
 def cancel(
-    numerator: Factored, denominator: Factored, images: LineImages | None = None
+    numerator: Factored,
+    denominator: Factored,
+    images: LineImages | None = None,
+    radicals: Radicals | None = None,
 ) -> tuple[Factored, Factored]:
     """Return numerator/denominator in lowest terms, and the common factor that was found.
 
-    Both may be rational; equal factors cancel at once, the others pairwise by exact greatest common divisors.
-    ``images`` may be shared by calls over one ring, so that an image is made once.
+    Both may be rational; equal factors cancel at once, the others pairwise by exact greatest common divisors,
+    those of polynomials in roots modulo the relations of these. ``images`` may be shared by calls over one
+    ring, so that an image is made once.
     """
+    if radicals:
+        quotient, shared = cancel(numerator, denominator, images)
+        reduced, more = radicals.in_lowest_terms(quotient)
+        if more.is_one:
+            return reduced, shared
+        return cancel(reduced.numerator(), reduced.denominator(), images)[0], shared * more
     ring = numerator.ring
     quotient = numerator / denominator
     if quotient.is_zero:
@@ -154,7 +168,8 @@ class DeterminantsOnLine:
     """The determinants of one system on a line.
 
     Definitions are over ``plain``, the ring without sums and definitions; only the generator ``along``
-    varies, all do by default.
+    varies, all do by default. What does not vary is random, or has the residues of ``point``: then images
+    are taken modulo its prime.
     """
 
     def __init__(
@@ -163,12 +178,17 @@ class DeterminantsOnLine:
         plain: Ring,
         definitions: Mapping[str, Factored],
         along: str | None = None,
+        point: Point | None = None,
     ) -> None:
         self._determinants = determinants
+        self._prime = 0 if point is None else point[0]
         random = Random(1)
         t = LINE.generator(LAPLACE)
         moving = [along in (None, name) for name in plain.names]
         plain_images = [t * random.randrange(1, 2**10) * m + random.randrange(1, 2**10) for m in moving]
+        if point is not None:
+            held = zip(plain.names, plain_images, moving, strict=True)
+            plain_images = [p if m else LINE.constant(point[1][name]) for name, p, m in held]
         known: dict[str, Image] = {
             name: (p, int(m)) for name, p, m in zip(plain.names, plain_images, moving, strict=True)
         }
@@ -191,12 +211,17 @@ class DeterminantsOnLine:
         self._den = None
         if all(row is not None for row in entries):
             columns = sum(1 << c for c in reduced.columns)
-            self._den = _kept(self._values.determinant(columns), self._degrees.determinant(columns))
+            self._den = self._kept(self._values.determinant(columns), self._degrees.determinant(columns))
 
     def prove_coprime(self, output: str, source: str) -> bool:
         """Tell whether a bordered determinant is proved coprime to the determinant; False decides nothing."""
         num = self._num(output, source)
-        return num is not None and self._den is not None and bool(num.gcd(self._den).is_constant())
+        if num is None or self._den is None:
+            return False
+        if self._prime:
+            ours, theirs = (self._modulo(p) for p in (num, self._den))
+            return int(ours.gcd(theirs).degree()) == 0
+        return bool(num.gcd(self._den).is_constant())
 
     def order(self, output: str, source: str) -> tuple[int, int] | None:
         """Return the degrees of both in what varies, None where they are not proved."""
@@ -210,7 +235,16 @@ class DeterminantsOnLine:
             return None
         values, degrees = self._outputs[self._determinants.position(output)]
         columns = self._determinants.border(source)
-        return _kept(self._values.bordered(values, columns), self._degrees.bordered(degrees, columns))
+        return self._kept(self._values.bordered(values, columns), self._degrees.bordered(degrees, columns))
+
+    def _kept(self, image: fmpz_mpoly, most: int) -> fmpz_mpoly | None:
+        """Return an image that has full degree."""
+        if self._prime:
+            return image if int(self._modulo(image).degree()) == most else None
+        return image if not image.is_zero() and int(image.total_degree()) == most else None
+
+    def _modulo(self, image: fmpz_mpoly) -> nmod_poly:
+        return nmod_poly([int(c.leading_coefficient()) for c in LINE.coefficients(image)], self._prime)
 
     def _definition(self, value: Factored) -> Image | None:
         if value.unit.denominator != 1 or any(e < 0 for _, e in value.factors):
@@ -241,8 +275,3 @@ def _composed(polynomial: fmpz_mpoly, images: Sequence[Image | None]) -> Image |
         default=-1,
     )
     return polynomial.compose(*values, ctx=LINE.context), highest
-
-
-def _kept(image: fmpz_mpoly, most: int) -> fmpz_mpoly | None:
-    """Return an image that has full degree."""
-    return image if not image.is_zero() and int(image.total_degree()) == most else None

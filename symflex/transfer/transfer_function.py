@@ -74,7 +74,8 @@ class ClosedForm:
 
         Raises BudgetError: SF501 when it would be too large.
         """
-        return self.opening(self.num) / self.opening(self.den)
+        radicals = self.opening.expansion.radicals
+        return radicals.reduced(self.opening(self.num) / self.opening(self.den))
 
     @cached_property
     def generators(self) -> frozenset[str]:

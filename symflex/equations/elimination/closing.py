@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE, Factored, Ring, expanded_length
 from symflex.budget import spend
+from symflex.expressions import Name, format_expression
+from symflex.expressions import names as names_in
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -127,6 +129,11 @@ def close(equations: Equations) -> ClosedSystem:
             else:
                 names = equations.ring.names
                 outside |= {names[i] for i, d in enumerate(factor.degrees()) if int(d)}
+    for constant in equations.constants:
+        if constant.generator in outside and constant.expression.name == "sqrt":
+            # Its square is what is in it.
+            inside = names_in(constant.expression)
+            outside |= {n.name if isinstance(n, Name) else format_expression(n) for n in inside}
     named = tuple((f"sum{i}", factor) for i, factor in enumerate(sums.values()))
     # A parameter may be called like a closed sum; generator names must differ.
     taken = set(equations.ring.names)

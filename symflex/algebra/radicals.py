@@ -1,0 +1,562 @@
+"""Square roots among the generators of a ring: normal forms, and common factors in s modulo their relations.
+
+    (L*s + r)*(C*r*s + 1) / (L*C*s^2 + 2*C*r*s + 1),  r = sqrt(L/C)   ->   r
+
+Roots whose radicands are independent modulo squares generate a field over the rational functions, in which
+products of different roots are linearly independent (Kummer; Lang, Algebra, chapter VI, theorem 8.1). So a
+polynomial of degree at most one in every root has one normal form; a root that depends on others is a product
+of them. Polynomials in s over that field have greatest common divisors by Euclid's algorithm, as the leading
+coefficient can be freed of roots: it is multiplied by its conjugates.
+
+Modulo a prime at which all radicands are squares roots are numbers. Polynomials that are coprime there, and
+keep their degrees, are coprime.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import cached_property, reduce
+from math import gcd, isqrt
+from random import Random
+from typing import TYPE_CHECKING, TypeVar
+
+from flint import fmpz, nmod_poly
+from flint.utils.flint_exceptions import DomainError
+
+from symflex.algebra.factored import PRIME, Factored, residue
+from symflex.algebra.ring import PolynomialMemo, by_powers, coefficients_of, degree_in
+from symflex.budget import spend
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+
+    from flint import fmpz_mpoly
+
+    from symflex.algebra.ring import Ring
+
+TRIES = 2_000
+"""Primes, and numbers in place of parameters, that are tried until all radicands are squares."""
+SQUARES_SEEN = 40
+"""Points at which a radicand is a square until it is taken for one: it is none with odds ``2^-40``."""
+
+Element = TypeVar("Element", int, "fmpz_mpoly")
+Point = tuple[int, dict[str, int]]
+"""A prime, and a residue for every generator."""
+
+
+@dataclass(frozen=True, eq=False)
+class Radicals:
+    """Arithmetic modulo the relations of square roots; false when there are none.
+
+    Examples
+    --------
+    >>> from symflex.algebra import Ring
+    >>> ring = Ring(("s", "k", "m", "p", "q", "r"))  # p = sqrt(k), q = sqrt(m), r = sqrt(k*m)
+    >>> s, k, m, p, q, r = (Factored.generator(ring, name) for name in ring.names)
+    >>> radicals = Radicals.of(ring, {3: k, 4: m, 5: k * m}, {1, 2})
+    >>> str(radicals.reduced(r)), str(radicals.reduced(p**3 / q))
+    ('p*q', 'k*p*q^-1')
+    >>> square = radicals.reduced(m * s**2 + 2 * r * s + k)
+    >>> quotient, cancelled = radicals.in_lowest_terms((q * s + p) / square)
+    >>> str(quotient), str(cancelled)
+    ('(s*q + p)^-1', '(s*q + p)')
+    """
+
+    ring: Ring  # s is its first generator
+    # Per root's position what its square is, in other generators and earlier roots; all independent.
+    squares: Mapping[int, Factored] = field(default_factory=dict)
+    images: Mapping[int, Factored] = field(default_factory=dict)  # what roots are that depend on others
+    # False when a root is left without its relation, as its sign or its dependence is not known.
+    is_complete: bool = True
+    _points: dict[int, Point | None] = field(default_factory=dict, repr=False)
+
+    @staticmethod
+    def of(ring: Ring, radicands: Mapping[int, Factored], positive: Collection[int]) -> Radicals:
+        """Return the relations of roots, inner ones first; ``positive`` are positions of generators."""
+        plain = {
+            i: a for i, a in radicands.items() if not any(a.depends_on(ring.names[j]) for j in radicands)
+        }
+        found = _independent(ring, plain, frozenset(positive))
+        for i, radicand in radicands.items():
+            if i not in plain:
+                found = found.with_nested(i, radicand)
+        return found
+
+    def __bool__(self) -> bool:
+        return bool(self.squares or self.images)
+
+    def with_nested(self, position: int, radicand: Factored) -> Radicals:
+        """Return the same with one more root, whose radicand holds earlier ones."""
+        square = self.reduced(radicand)
+        for seed in range(SQUARES_SEEN):
+            point = self.point(seed)
+            if point is None:
+                break
+            prime, values = point
+            if fmpz(residue(square, values, prime)).jacobi(prime) < 0:
+                return Radicals(self.ring, {**self.squares, position: square}, self.images, self.is_complete)
+        return Radicals(self.ring, self.squares, self.images, is_complete=False)
+
+    # ------------------------------------------------------------------------------------- normal form
+
+    def reduced(self, value: Factored) -> Factored:
+        """Return a product with every factor in normal form; ZeroDivisionError when a denominator is zero."""
+        if not self or not any(self._is_rooted(f) for f, _ in value.factors):
+            return value
+        result = Factored.number(self.ring, value.unit)
+        for factor, exponent in value.factors:
+            result = result * self._power(factor, exponent)
+        return self._balanced(result)
+
+    def _power(self, factor: fmpz_mpoly, exponent: int) -> Factored:
+        if len(factor) > 1 or not self._is_rooted(factor):
+            return self.normal(factor) ** exponent
+        (i,) = (i for i in self._rooted if degree_in(factor, i))
+        if i in self.images:
+            return self.reduced(self.images[i] ** exponent)
+        half = int(exponent / 2)
+        return self.squares[i] ** half * Factored.generator(self.ring, self.ring.names[i]) ** (
+            exponent - 2 * half
+        )
+
+    def _balanced(self, value: Factored) -> Factored:
+        """Return a product with roots above or below, as is shorter: ``k/sqrt(k)`` is ``sqrt(k)``."""
+        for i, square in self.squares.items():
+            exponent = value.exponent_of(self.ring.context.gen(i))
+            if exponent:
+                other = value * (Factored.generator(self.ring, self.ring.names[i]) ** 2 / square) ** -exponent
+                value = min(value, other, key=_size)
+        return value
+
+    def normal(self, polynomial: fmpz_mpoly) -> Factored:
+        """Return a polynomial in normal form."""
+        if not self._is_rooted(polynomial):
+            return Factored.polynomial(self.ring, polynomial)
+        below = Factored.number(self.ring, 1)
+        for i, image in self.images.items():
+            if degree_in(polynomial, i):
+                polynomial, scale = self._put_in(polynomial, i, image, 1)
+                below = below * scale
+        for i, square in reversed(tuple(self.squares.items())):
+            if degree_in(polynomial, i) > 1:
+                polynomial, scale = self._put_in(polynomial, i, square, 2)
+                below = below * scale
+        return Factored.polynomial(self.ring, polynomial) / below
+
+    def _put_in(
+        self, polynomial: fmpz_mpoly, i: int, image: Factored, step: int
+    ) -> tuple[fmpz_mpoly, Factored]:
+        """Return a polynomial with ``image`` for a power of a generator, and what it is divided by."""
+        above, below = image.numerator().expand(), image.denominator()
+        most, generator = degree_in(polynomial, i) // step, self.ring.context.gen(i)
+        total, scale = self.ring.constant(0), below.expand()
+        for power, part in by_powers(self.ring, polynomial, i).items():
+            spend()
+            whole, rest = divmod(power, step)
+            total = total + part * generator**rest * above**whole * scale ** (most - whole)
+        return total, below**most
+
+    @cached_property
+    def _rooted(self) -> tuple[int, ...]:
+        return (*self.squares, *self.images)
+
+    def _is_rooted(self, polynomial: fmpz_mpoly) -> bool:
+        degrees = polynomial.degrees()
+        return any(int(degrees[i]) for i in self._rooted)
+
+    def has_squares(self, polynomial: fmpz_mpoly) -> bool:
+        """Tell whether a nonzero polynomial holds squares of roots."""
+        degrees = polynomial.degrees()
+        return any(int(degrees[i]) > 1 for i in self.squares)
+
+    # ---------------------------------------------------------------------------------- common factors
+
+    def in_lowest_terms(self, value: Factored) -> tuple[Factored, Factored]:
+        """Return a product in normal form without common factors in s above and below, and what cancelled."""
+        shared = Factored.number(self.ring, 1)
+        while True:
+            above, below = ([(f, abs(e)) for f, e in value.factors if e * sign > 0] for sign in (1, -1))
+            for f, m in above:
+                for g, n in below:
+                    common = self._common(f, g)
+                    if common is None:
+                        continue
+                    power = min(m, n)
+                    shared = shared * Factored.polynomial(self.ring, common) ** power
+                    parts = (self.quotient(f, common) / self.quotient(g, common)) ** power
+                    ours, theirs = (Factored.polynomial(self.ring, p) for p in (f, g))
+                    value = self.reduced(value / (ours / theirs) ** power * parts)
+                    break
+                else:
+                    continue
+                break
+            else:
+                shortest = value.map_factors(self.ring, self._shortest)
+                hidden = shared.map_factors(self.ring, self._shortest).filter(lambda f: bool(degree_in(f, 0)))
+                return self._without_rooted_scale(self.reduced(shortest)), hidden
+
+    def _shortest(self, f: fmpz_mpoly) -> Factored:
+        """Return a factor, a root in front where that is shorter: ``p*(p*s + q)``, not ``m*s + p*q``."""
+        best = Factored.polynomial(self.ring, f)
+        for i in self.squares:
+            if len(f) > 1 and degree_in(f, i):
+                root = Factored.generator(self.ring, self.ring.names[i])
+                other = self.normal(f * self.ring.context.gen(i)) / root
+                best = min(best, other, key=_degrees)
+        return best
+
+    def _common(self, f: fmpz_mpoly, g: fmpz_mpoly) -> fmpz_mpoly | None:
+        """Return the common factor of two that are coprime but for roots, ``None`` when there is none."""
+        if not (self._is_rooted(f) or self._is_rooted(g)):
+            return None
+        common = self.gcd(f, g)
+        return common if degree_in(common, 0) else None
+
+    def _without_rooted_scale(self, value: Factored) -> Factored:
+        """Return a product whose sums of roots free of s stand below no longer, where that is shorter."""
+        scale = value.filter(lambda f: len(f) > 1 and self._is_rooted(f) and not degree_in(f, 0))
+        if scale.is_one:
+            return value
+        freed = Factored.number(self.ring, 1)
+        for factor, exponent in scale.factors:
+            one = Factored.polynomial(self.ring, factor)
+            freed = freed * (one if exponent > 0 else self._inverse(factor)) ** abs(exponent)
+        top = self.normal(freed.numerator().expand())
+        return min(value, self.reduced(value / scale * top / freed.denominator()), key=_size)
+
+    def gcd(self, f: fmpz_mpoly, g: fmpz_mpoly) -> fmpz_mpoly:
+        """Return the greatest common divisor in s of two polynomials in normal form, by Euclid's algorithm.
+
+        Its leading coefficient in s is free of roots, and it has no content; it is one where there is none.
+        """
+        one = self.ring.constant(1)
+        if not degree_in(f, 0) or not degree_in(g, 0) or self._are_coprime_modulo(f, g):
+            return one
+        if degree_in(f, 0) < degree_in(g, 0):
+            f, g = g, f
+        f, g = self.primitive(f), self.primitive(g)
+        while True:
+            spend()
+            rest = self._divided(f, g)[1]
+            if rest.is_zero():
+                return g
+            if not degree_in(rest, 0):
+                return one
+            f, g = g, self.primitive(rest)
+
+    def quotient(self, f: fmpz_mpoly, g: fmpz_mpoly) -> Factored:
+        """Return ``f/g`` where g divides f."""
+        divisor = self.primitive(g)
+        whole = self.primitive(self._divided(f, divisor)[0])
+        lead = self.normal(self._lead(whole) * self._lead(g))
+        scale = Factored.polynomial(self.ring, self._lead(f)) * self._inverse(lead.numerator().expand())
+        top = self.normal(scale.numerator().expand()) / scale.denominator()
+        return Factored.polynomial(self.ring, whole) * self.reduced(top * lead.denominator())
+
+    def primitive(self, f: fmpz_mpoly) -> fmpz_mpoly:
+        """Return a polynomial times a factor free of s so that no root stands in its leading coefficient."""
+        for i in reversed(tuple(self.squares)):
+            top = self._lead(f)
+            if degree_in(top, i):
+                f = self._whole(f * _conjugate(self.ring, top, i))
+        content = self._content(f)
+        return f / (content if int(f.leading_coefficient()) > 0 else -content)
+
+    def _content(self, f: fmpz_mpoly) -> fmpz_mpoly:
+        parts = coefficients_of(self.ring, f, (0, *self.squares)).values()
+        return reduce(lambda a, b: a.gcd(b), parts, self.ring.constant(0))
+
+    def _divided(self, f: fmpz_mpoly, g: fmpz_mpoly) -> tuple[fmpz_mpoly, fmpz_mpoly]:
+        """Return quotient and remainder in s by a primitive polynomial, both times one factor free of s."""
+        lead, n, s = self._lead(g), degree_in(g, 0), self.ring.context.gen(0)
+        whole = self.ring.constant(0)
+        while not f.is_zero() and (m := degree_in(f, 0)) >= n:
+            spend()
+            term = self._lead(f) * s ** (m - n)
+            f, whole = self._whole_pair(lead * f - term * g, lead * whole + term)
+        return whole, f
+
+    def _whole_pair(self, f: fmpz_mpoly, g: fmpz_mpoly) -> tuple[fmpz_mpoly, fmpz_mpoly]:
+        """Return both in normal form times one factor free of s and of roots, without common content."""
+        values = [self.normal(p) for p in (f, g)]
+        below = [v.denominator() for v in values]
+        f, g = ((v * below[0] * below[1]).expand() for v in values)
+        content = self._content(f).gcd(self._content(g))
+        return f / content, g / content
+
+    def _whole(self, f: fmpz_mpoly) -> fmpz_mpoly:
+        """Return a polynomial in normal form, times a factor free of s and of roots."""
+        value = self.normal(f)
+        return (value * value.denominator()).expand()
+
+    def _lead(self, f: fmpz_mpoly) -> fmpz_mpoly:
+        """Return the coefficient of the highest power of s."""
+        return by_powers(self.ring, f)[degree_in(f, 0)]
+
+    def _inverse(self, f: fmpz_mpoly) -> Factored:
+        """Return one over a polynomial in normal form, no root below."""
+        above, below = self.ring.constant(1), Factored.polynomial(self.ring, f)
+        for i in reversed(tuple(self.squares)):
+            top = below.numerator().expand()
+            if degree_in(top, i):
+                conjugate = _conjugate(self.ring, top, i)
+                above, below = above * conjugate, self.normal(top * conjugate) / below.denominator()
+        return self.normal(above) / below
+
+    def split(self, factors: Iterable[tuple[fmpz_mpoly, int]]) -> list[tuple[fmpz_mpoly, int]]:
+        """Return powers of polynomials as powers of square-free coprime ones, numbers free of s left out.
+
+        Of each, what divides the same with -s in place of s is a part of its own, as it may have roots on the
+        imaginary axis.
+        """
+        base: list[tuple[fmpz_mpoly, int]] = []
+        for factor, exponent in factors:
+            if degree_in(factor, 0):
+                for part, times in self._square_free(self.primitive(factor)):
+                    base = self._inserted(base, part, times * exponent)
+        found = []
+        for element, times in base:
+            even = self.gcd(element, self.primitive(_conjugate(self.ring, element, 0)))
+            found += [(p, times) for p in (even, self._over(element, even)) if degree_in(p, 0)]
+        return found
+
+    def _square_free(self, f: fmpz_mpoly) -> list[tuple[fmpz_mpoly, int]]:
+        """Return the parts of every multiplicity (Musser 1971)."""
+        found, times = [], 1
+        repeated = self.gcd(f, f.derivative(0))
+        simple = self._over(f, repeated)
+        while degree_in(simple, 0):
+            common = self.gcd(simple, repeated)
+            if degree_in(part := self._over(simple, common), 0):
+                found.append((part, times))
+            simple, repeated, times = common, self._over(repeated, common), times + 1
+        return found
+
+    def _inserted(
+        self, base: Sequence[tuple[fmpz_mpoly, int]], element: fmpz_mpoly, times: int
+    ) -> list[tuple[fmpz_mpoly, int]]:
+        result = []
+        for other, known in base:
+            common = self.gcd(element, other)
+            element = self._over(element, common)
+            result += [(self._over(other, common), known), (common, known + times)]
+        return [(p, n) for p, n in (*result, (element, times)) if degree_in(p, 0)]
+
+    def _over(self, f: fmpz_mpoly, g: fmpz_mpoly) -> fmpz_mpoly:
+        """Return ``f/g`` up to a factor free of s."""
+        return self.primitive(self._divided(f, g)[0]) if degree_in(g, 0) else f
+
+    def fraction(self, num: fmpz_mpoly, den: fmpz_mpoly) -> tuple[fmpz_mpoly, fmpz_mpoly]:
+        """Return a quotient free of s, and of roots below; zero has the numerator zero."""
+        if not (self._is_rooted(num) or self._is_rooted(den)):
+            return num, den
+        below = self.normal(den)
+        value = Factored.polynomial(self.ring, num) * self._inverse(below.numerator().expand())
+        value = self.normal(value.numerator().expand()) / value.denominator() * below.denominator()
+        return value.numerator().expand(), value.denominator().expand()
+
+    # ----------------------------------------------------------------------------------------- a prime
+
+    def point(self, seed: int = 0) -> Point | None:
+        """Return a prime and a random number for every generator that satisfy all relations.
+
+        ``None`` when none is found, or a root has no relation: then nothing is proved at a point.
+        """
+        if not self and self.is_complete:
+            return PRIME, dict(zip(self.ring.names, self._numbers(Random(20 + seed), PRIME), strict=True))
+        if seed not in self._points:
+            self._points[seed] = self._found_point(Random(20 + seed))
+        return self._points[seed]
+
+    def _numbers(self, random: Random, prime: int) -> list[int]:
+        # Squares, so that radicands that are products are squares as well.
+        return [random.randrange(1, prime) ** 2 % prime for _ in self.ring.names]
+
+    def _found_point(self, random: Random) -> Point | None:
+        for _ in range(TRIES if self.is_complete else 0):
+            spend()
+            prime = 4 * random.randrange(2**58, 2**59) + 3
+            if fmpz(prime).is_prime():
+                values = dict(zip(self.ring.names, self._numbers(random, prime), strict=True))
+                if self._satisfies(values, prime):
+                    return prime, values
+        return None
+
+    def _satisfies(self, values: dict[str, int], prime: int) -> bool:
+        """Give roots their values; tell whether they have any."""
+        names = self.ring.names
+        try:
+            for i, square in self.squares.items():
+                value = residue(square, values, prime)
+                if fmpz(value).jacobi(prime) < 1:
+                    return False
+                values[names[i]] = pow(value, (prime + 1) // 4, prime)
+            for i, image in self.images.items():
+                values[names[i]] = residue(image, values, prime)
+        except ZeroDivisionError:
+            return False
+        return True
+
+    def _are_coprime_modulo(self, f: fmpz_mpoly, g: fmpz_mpoly) -> bool:
+        """Tell whether two polynomials are proved coprime in s modulo a prime; False decides nothing."""
+        ours, theirs = self._image(f), self._image(g)
+        return ours is not None and theirs is not None and int(ours.gcd(theirs).degree()) == 0
+
+    @cached_property
+    def _image(self) -> PolynomialMemo[nmod_poly | None]:
+        return PolynomialMemo(self._made)
+
+    def _made(self, f: fmpz_mpoly) -> nmod_poly | None:
+        """Return a polynomial's image in s, ``None`` when its degree drops."""
+        point = self.point()
+        if point is None:
+            return None
+        prime, values = point
+        numbers = [0] * (degree_in(f, 0) + 1)
+        for power, part in by_powers(self.ring, f).items():
+            numbers[power] = residue(Factored.polynomial(self.ring, part), values, prime)
+        return nmod_poly(numbers, prime) if numbers[-1] else None
+
+
+def _size(value: Factored) -> int:
+    return sum(len(f) * abs(e) for f, e in value.factors)
+
+
+def _degrees(value: Factored) -> int:
+    return sum(sum(map(int, m)) for f, _ in value.factors if len(f) > 1 for m in f.monoms())
+
+
+def _conjugate(ring: Ring, polynomial: fmpz_mpoly, i: int) -> fmpz_mpoly:
+    """Return a polynomial with the sign of one generator changed."""
+    return ring.context.from_dict({m: -c if int(m[i]) % 2 else c for m, c in polynomial.to_dict().items()})
+
+
+@dataclass(frozen=True, eq=False)
+class _Base:
+    """Pairwise coprime integers and polynomials, of which radicands are products."""
+
+    ring: Ring
+    positive: frozenset[int]  # positions of generators that are
+    numbers: list[int] = field(default_factory=list)
+    polynomials: list[fmpz_mpoly] = field(default_factory=list)
+
+    def take(self, radicand: Factored) -> None:
+        """Let a radicand's factors be products of elements."""
+        for number in (radicand.unit.numerator, radicand.unit.denominator):
+            _refine(self.numbers, abs(number), gcd, lambda n: n == 1)
+        for factor, _ in radicand.factors:
+            _refine(self.polynomials, factor, lambda a, b: a.gcd(b), lambda p: bool(p.is_constant()))
+
+    def odd(self, value: Factored) -> frozenset[str]:
+        """Return which elements that are no squares stand in a product to an odd power, and its sign."""
+        if value.is_zero:
+            return frozenset()
+        odd = {f"{n}" for n in self.numbers if _times(value.unit, n) % 2 and isqrt(n) ** 2 != n}
+        for p in self.polynomials:
+            if sum(e * _power_in(f, p) for f, e in value.factors) % 2 and _root_of(p) is None:
+                odd.add(f"({p})")
+        return frozenset(odd | ({"-"} if value.unit < 0 else set()))
+
+    def root(self, value: Factored) -> Factored | None:
+        """Return the root of a square, which is not negative; ``None`` when its sign is not known."""
+        top, bottom = isqrt(value.unit.numerator), isqrt(value.unit.denominator)
+        result = Factored.number(self.ring, Fraction(top, bottom))
+        for p in self.polynomials:
+            exponent = sum(e * _power_in(f, p) for f, e in value.factors)
+            root = _root_of(p)
+            base, times = (p, exponent // 2) if root is None else (root, exponent)
+            if times % 2 and not self._is_positive(base):
+                return None
+            result = result * Factored.polynomial(self.ring, base) ** times
+        return result
+
+    def _is_positive(self, p: fmpz_mpoly) -> bool:
+        used = {i for i, d in enumerate(p.degrees()) if int(d)}
+        return used <= self.positive and all(int(c) > 0 for c in p.coeffs())
+
+
+def _independent(ring: Ring, radicands: Mapping[int, Factored], positive: frozenset[int]) -> Radicals:
+    """Return the relations of roots of rational functions, the simplest ones independent."""
+    base = _Base(ring, positive)
+    for radicand in radicands.values():
+        if not radicand.is_zero:
+            base.take(radicand)
+    squares: dict[int, Factored] = {}
+    images: dict[int, Factored] = {}
+    # Per independent root what is odd in it after elimination, and the roots whose product that is.
+    rows: list[tuple[frozenset[str], frozenset[int]]] = []
+    is_complete = True
+    for i in sorted(radicands, key=lambda i: (len(base.odd(radicands[i])), _size(radicands[i]))):
+        radicand = radicands[i]
+        if radicand.is_zero:
+            images[i] = radicand
+            continue
+        odd, parts = base.odd(radicand), frozenset[int]()
+        for row, of in rows:
+            if min(row) in odd:
+                odd, parts = odd ^ row, parts ^ of
+        if odd:
+            rows.append((odd, parts | {i}))
+            squares[i] = radicand
+            continue
+        rest = radicand
+        for j in parts:
+            rest = rest / radicands[j]
+        root = base.root(rest)
+        if root is None:
+            is_complete = False
+            continue
+        for j in sorted(parts):
+            root = root * Factored.generator(ring, ring.names[j])
+        images[i] = root
+    return Radicals(ring, squares, images, is_complete)
+
+
+def _refine(
+    base: list[Element],
+    new: Element,
+    common: Callable[[Element, Element], Element],
+    is_unit: Callable[[Element], bool],
+) -> None:
+    """Make an element a product of elements of a pairwise coprime base (Bach, Driscoll and Shallit 1993)."""
+    waiting = [new]
+    while waiting:
+        x = waiting.pop()
+        if is_unit(x):
+            continue
+        for k, known in enumerate(base):
+            shared = common(x, known)
+            if not is_unit(shared):
+                del base[k]
+                waiting += [shared, x // shared, known // shared]
+                break
+        else:
+            base.append(x)
+
+
+def _times(value: Fraction, n: int) -> int:
+    """Return how often an integer divides a fraction."""
+    above, below, times = abs(value.numerator), value.denominator, 0
+    while above % n == 0:
+        above, times = above // n, times + 1
+    while below % n == 0:
+        below, times = below // n, times - 1
+    return times
+
+
+def _power_in(f: fmpz_mpoly, p: fmpz_mpoly) -> int:
+    """Return how often a polynomial divides another."""
+    times = 0
+    while True:
+        whole, rest = divmod(f, p)
+        if not rest.is_zero():
+            return times
+        f, times = whole, times + 1
+
+
+def _root_of(p: fmpz_mpoly) -> fmpz_mpoly | None:
+    try:
+        return p.sqrt()
+    except DomainError:
+        return None

@@ -1,0 +1,54 @@
+"""The relations of the square roots among functions of constants."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from typing import TYPE_CHECKING
+
+from symflex.algebra import Factored, Radicals, Ring
+from symflex.expressions import Call, Expression, fold, format_expression
+from symflex.model.along import varies_along_x
+from symflex.model.linearity import integer_exponent
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from symflex.equations.equations import ConstantFunction
+    from symflex.model import ModelParameter
+
+
+def radicals_of(
+    ring: Ring,
+    constants: Sequence[ConstantFunction],
+    parameters: Sequence[ModelParameter],
+    value: Callable[[str], Factored] | None = None,
+) -> Radicals:
+    """Return the relations over a ring of the roots that are among its generators.
+
+    ``value`` is what a parameter's name stands for, by default the generator of that name.
+    """
+    roots = [c.expression for c in constants if c.expression.name == "sqrt"]
+    roots = [c for c in roots if format_expression(c) in ring.index and not varies_along_x(c)]
+    if not roots or ring.is_sparse:
+        return Radicals(ring)
+
+    def named(name: str) -> Factored:
+        return Factored.generator(ring, name) if value is None or name == "pi" else value(name)
+
+    def raised(base: Factored, exponent: Expression) -> Factored:
+        return base ** (integer_exponent(exponent) or 0)
+
+    def called(call: Call, _: Factored) -> Factored:
+        return Factored.generator(ring, format_expression(call))
+
+    radicands = {}
+    for c in roots:
+        # What divides by zero has no value, which is reported where one is asked for.
+        with suppress(ZeroDivisionError):
+            radicands[ring.index[format_expression(c)]] = fold(
+                c.argument, number=lambda n: Factored.number(ring, n), name=named, power=raised, call=called
+            )
+    signed = {p.name for p in parameters if p.assume == "real"}
+    known = {p.name for p in parameters if p.name not in signed} | {"pi"}
+    positive = {i for n, i in ring.index.items() if n in known or n.startswith("exp(")}
+    return Radicals.of(ring, radicands, positive)
