@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from flint import fmpz_mpoly
 
-    from symflex.algebra import Ring
+    from symflex.algebra import Radicals, Ring
 
 
 Key = tuple[int, int]
@@ -199,19 +199,24 @@ class FieldElement:
     # num and den: Coprime; the denominator's leading coefficient is positive.
     num: fmpz_mpoly
     den: fmpz_mpoly
+    radicals: Radicals | None = (
+        None  # relations of roots that may stand in both; none stands in the denominator
+    )
 
     @staticmethod
-    def of(num: fmpz_mpoly, den: fmpz_mpoly) -> FieldElement:
+    def of(num: fmpz_mpoly, den: fmpz_mpoly, radicals: Radicals | None = None) -> FieldElement:
         """Return a quotient in lowest terms; ZeroDivisionError when the denominator is zero."""
         if den.is_zero():
             message = "division by zero"
             raise ZeroDivisionError(message)
+        if radicals:
+            num, den = radicals.fraction(num, den)
         common = num.gcd(den)
         if not common.is_one():
             num, den = num / common, den / common
         if int(den.leading_coefficient()) < 0:
             num, den = -num, -den
-        return FieldElement(num, den)
+        return FieldElement(num, den, radicals)
 
     @staticmethod
     def number(ring: Ring, value: int) -> FieldElement:
@@ -239,11 +244,12 @@ class FieldElement:
         if other.is_zero:
             return self
         if self.den == other.den:
-            return FieldElement.of(self.num + other.num, self.den)
-        return FieldElement.of(self.num * other.den + other.num * self.den, self.den * other.den)
+            return FieldElement.of(self.num + other.num, self.den, self.radicals or other.radicals)
+        num = self.num * other.den + other.num * self.den
+        return FieldElement.of(num, self.den * other.den, self.radicals or other.radicals)
 
     def __neg__(self) -> FieldElement:
-        return FieldElement(-self.num, self.den)
+        return FieldElement(-self.num, self.den, self.radicals)
 
     def __sub__(self, other: FieldElement) -> FieldElement:
         return self + (-other)
@@ -253,12 +259,12 @@ class FieldElement:
             return other
         if other.is_one or self.is_zero:
             return self
-        return FieldElement.of(self.num * other.num, self.den * other.den)
+        return FieldElement.of(self.num * other.num, self.den * other.den, self.radicals or other.radicals)
 
     def __truediv__(self, other: FieldElement) -> FieldElement:
         if other.is_one:
             return self
-        return FieldElement.of(self.num * other.den, self.den * other.num)
+        return FieldElement.of(self.num * other.den, self.den * other.num, self.radicals or other.radicals)
 
     def __str__(self) -> str:
         return f"({self.num})/({self.den})"

@@ -19,7 +19,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE, Factored, Ring
-from symflex.equations import ConstantFunction, Equations, assemble
+from symflex.equations import ConstantFunction, Equations, assemble, radicals_of
 from symflex.equations.elimination import explain_singular
 from symflex.errors import Diagnostic, ModelError
 from symflex.expressions import Attribute, Expression, Name, names, product_of
@@ -43,6 +43,7 @@ from symflex.transfer.derive import nested_transfer
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from symflex.algebra import Radicals
     from symflex.model import Model
 
 
@@ -103,30 +104,36 @@ def realise(model: Model, pairs: Sequence[tuple[str, str]]) -> StateSpace:
 
 def _built(model: Model, outputs: Sequence[str], inputs: Sequence[str]) -> _Realisation:
     equations = assemble(model, nested_transfer)
-    rows = _Rows.of(equations, outputs, inputs)
+    radicals = radicals_of(equations.ring, equations.constants, model.parameters)
+    rows = _Rows.of(equations, outputs, inputs, radicals)
     shown = {_owner(n) for o in model.outputs if o.name in outputs for n in names(o.expression)}
     solved = solve(rows.rows, _weights(rows, model, shown))
     if solved is None:
         raise explain_singular(equations)
-    return _Realisation(model, equations.ring, equations.constants, rows, solved)
+    return _Realisation(model, equations.ring, equations.constants, radicals, rows, solved)
 
 
 def realise_quotient(
-    ratio: Factored, constants: tuple[ConstantFunction, ...], model: Model, pair: tuple[str, str]
+    ratio: Factored,
+    constants: tuple[ConstantFunction, ...],
+    radicals: Radicals,
+    model: Model,
+    pair: tuple[str, str],
 ) -> StateSpace:
     """Return state equations of a rational function of s in a model that is not rational itself.
 
     The states are those of one differential equation for the output: its derivatives, or the partial state.
-    ``constants`` are what the function generators of its ring stand for; the model has names and units of the
+    ``constants`` are what the function generators of its ring stand for, ``radicals`` the relations of roots
+    among them; the model has names and units of the
     ends. SF236 when it grows with s.
     """
     output, source = pair
     ring = ratio.ring
     y = Variable("value", output)
     row: Row = {}
-    for power, value in _powers(ring, ratio.denominator()).items():
+    for power, value in _powers(ring, ratio.denominator(), radicals).items():
         row[0, power] = value
-    for power, value in _powers(ring, ratio.numerator()).items():
+    for power, value in _powers(ring, ratio.numerator(), radicals).items():
         row[1, power] = -value
     one = FieldElement.number(ring, 1)
     columns = {y: 0, Variable("input", source): 1}
@@ -135,7 +142,7 @@ def realise_quotient(
     if solved is None:
         message = "a denominator is not zero"
         raise AssertionError(message)
-    return _Realisation(model, ring, constants, rows, solved).state_space((output,), (source,))
+    return _Realisation(model, ring, constants, radicals, rows, solved).state_space((output,), (source,))
 
 
 def not_rational(what: str) -> ModelError:
@@ -167,7 +174,7 @@ class _Rows:
     results: tuple[Row, ...]  # per output what it is, not yet reduced
 
     @staticmethod
-    def of(equations: Equations, outputs: Sequence[str], inputs: Sequence[str]) -> _Rows:
+    def of(equations: Equations, outputs: Sequence[str], inputs: Sequence[str], radicals: Radicals) -> _Rows:
         ring = equations.ring
         filtered = {o.name for o in equations.outputs if o.name in outputs and o.divisor.depends_on(LAPLACE)}
         own = tuple(Variable("value", name) for name in outputs if name in filtered)
@@ -175,12 +182,12 @@ class _Rows:
         everything = (*unknowns, *(Variable("input", name) for name in inputs))
         columns = {variable: j for j, variable in enumerate(everything)}
         about: list[tuple[Variable, str]] = [(row.about, row.role) for row in equations.rows]
-        rows = [_row(ring, row.form, columns) for row in equations.rows]
+        rows = [_row(ring, row.form, columns, radicals) for row in equations.rows]
         results: list[Row] = []
         by_name = {o.name: o for o in equations.outputs}
         for name in outputs:
-            row = _row(ring, by_name[name].form, columns)
-            divisor = _powers(ring, by_name[name].divisor)
+            row = _row(ring, by_name[name].form, columns, radicals)
+            divisor = _powers(ring, by_name[name].divisor, radicals)
             if name in filtered:
                 column = columns[Variable("value", name)]
                 for power, value in divisor.items():
@@ -251,20 +258,22 @@ def _equal(left: Mapping[int, FieldElement], right: Mapping[int, FieldElement]) 
     return left.keys() == right.keys() and all((left[i] - right[i]).is_zero for i in left)
 
 
-def _row(ring: Ring, form: LinearForm, columns: Mapping[Variable, int]) -> Row:
+def _row(ring: Ring, form: LinearForm, columns: Mapping[Variable, int], radicals: Radicals) -> Row:
     """Return a form by columns and powers of s; inputs that are not wanted are zero."""
     row: Row = {}
     for variable, coefficient in form.terms:
         if variable in columns:
-            for power, value in _powers(ring, coefficient).items():
+            for power, value in _powers(ring, coefficient, radicals).items():
                 add_term(row, (columns[variable], power), value)
     return row
 
 
-def _powers(ring: Ring, value: Factored) -> dict[int, FieldElement]:
+def _powers(ring: Ring, value: Factored, radicals: Radicals) -> dict[int, FieldElement]:
     """Return the coefficients of the powers of s in a polynomial."""
+    one = ring.constant(1)
     parts = [*enumerate(ring.coefficients(value.expand()))][::-1]  # as they print, the highest first
-    return {power: FieldElement(part, ring.constant(1)) for power, part in parts if not part.is_zero()}
+    values = [(power, FieldElement.of(part, one, radicals)) for power, part in parts]
+    return {power: value for power, value in values if not value.is_zero}
 
 
 def _weights(rows: _Rows, model: Model, shown: set[str]) -> list[tuple[int, int]]:
@@ -305,6 +314,7 @@ class _Realisation:
     model: Model
     ring: Ring
     constants: tuple[ConstantFunction, ...]
+    radicals: Radicals
     rows: _Rows
     solved: SolvedRows
 
@@ -336,6 +346,7 @@ class _Realisation:
             self.model,
             self.ring,
             self.constants,
+            self.radicals,
             self._states(keys, direct),
             tuple(Channel(name, given[name]) for name in inputs),
             tuple(Channel(name, shown[name]) for name in outputs),
@@ -512,6 +523,7 @@ class StateSpace:
     model: Model  # where it comes from; its parameters may have been replaced by numbers
     ring: Ring  # what numerators and denominators of the entries are polynomials of
     constants: tuple[ConstantFunction, ...]  # what the ring's function generators stand for
+    radicals: Radicals  # the relations of roots among them
     # states, inputs and outputs: the names of w, u, y.
     states: tuple[State, ...]
     inputs: tuple[Channel, ...]

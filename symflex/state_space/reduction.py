@@ -15,9 +15,10 @@ from fractions import Fraction
 
 from flint import nmod_mat
 
-from symflex.algebra import PRIME, Factored, random_point, residue
+from symflex.algebra import Factored, Ring, residue
+from symflex.algebra.radicals import Point
 from symflex.budget import spend
-from symflex.errors import BudgetError, Diagnostic
+from symflex.errors import BudgetError, Diagnostic, UncertifiedError
 from symflex.state_space.popov import FieldElement, Vector, applied, combined, transposed
 from symflex.state_space.realise import Combination, State, StateSpace
 
@@ -38,8 +39,12 @@ def minimal(system: StateSpace) -> StateSpace:
     """Return the controllable and observable part.
 
     It is minimal for almost all values of its parameters; special values may hide more. SF502 when the
-    combinations of states become too large.
+    combinations of states become too large, SF401 when it is not known how roots depend on each other.
     """
+    if not system.radicals.is_complete:
+        message = "it is not known how the square roots in the model depend on each other"
+        hint = "keep all states, or give parameters under roots a sign and write nested roots out"
+        raise UncertifiedError(Diagnostic("SF401", message, None, hint))
     columns = transposed(system.a, system.order)
     reached = _closed(transposed(system.b, len(system.inputs)), columns, system)
     if len(reached) < system.order:
@@ -82,13 +87,14 @@ def _observable(system: StateSpace, basis: Basis) -> StateSpace:
 
 def _closed(start: Sequence[Vector], rows: Sequence[Vector], system: StateSpace) -> Basis:
     """Return the least space that holds the given vectors and that a matrix maps into itself."""
-    points = [_at_random_point(start, rows, system, seed) for seed in (0, 1)]
-    dimension = max(len(point) for point in points)
+    found = (_at_random_point(start, rows, system, seed) for seed in (0, 1))
+    points = [point for point in found if point is not None]
+    dimension = max((len(space) for _, space in points), default=0)
     one = FieldElement.number(system.ring, 1)
     if dimension == system.order:
         # With numbers in place of parameters a dimension can only be lost, so this is a proof.
         return {j: {j: one} for j in range(system.order)}
-    guess = _constants(points, system)
+    guess = _constants(points, system.ring)
     if guess is not None and all(_is_inside(v, guess) for v in start):
         moved = (applied(vector, rows) for vector in guess.values())
         if all(_is_inside(vector, guess) for vector in moved):
@@ -96,26 +102,27 @@ def _closed(start: Sequence[Vector], rows: Sequence[Vector], system: StateSpace)
     return _generated(start, rows, system)
 
 
-def _constants(points: Sequence[Mapping[int, Mapping[int, int]]], system: StateSpace) -> Basis | None:
+def _constants(points: Sequence[tuple[int, Mapping[int, Mapping[int, int]]]], ring: Ring) -> Basis | None:
     """Return a basis of small numbers that is the same at all random points, ``None`` when there is none."""
-    first, *others = points
-    if any(other != first for other in others):
+    found = [
+        {k: {j: _reconstructed(x, prime) for j, x in entries.items()} for k, entries in space.items()}
+        for prime, space in points
+    ]
+    if not found or any(other != found[0] for other in found[1:]):
         return None
-    ring = system.ring
     basis: Basis = {}
-    for pivot, entries in first.items():
+    for pivot, row in found[0].items():
         basis[pivot] = {}
-        for j, entry in entries.items():
-            fraction = _reconstructed(entry)
+        for j, fraction in row.items():
             if fraction is None:
                 return None
             basis[pivot][j] = FieldElement(ring.constant(fraction[0]), ring.constant(fraction[1]))
     return basis
 
 
-def _reconstructed(value: int) -> tuple[int, int] | None:
+def _reconstructed(value: int, prime: int) -> tuple[int, int] | None:
     """Return the small fraction that a residue is (Wang 1981), ``None`` when it is not one."""
-    (above, below), (left, right) = (PRIME, value), (0, 1)
+    (above, below), (left, right) = (prime, value), (0, 1)
     while below > LARGEST:
         quotient = above // below
         above, below = below, above - quotient * below
@@ -191,10 +198,15 @@ def _state(vector: Vector, pivot: int, number: int, states: Sequence[State], tak
 
 def _at_random_point(
     start: Sequence[Vector], rows: Sequence[Vector], system: StateSpace, seed: int
-) -> dict[int, dict[int, int]]:
-    """Return the least such space with random numbers in place of parameters, as residues by pivot."""
+) -> tuple[int, dict[int, dict[int, int]]] | None:
+    """Return a prime, and the least such space modulo it with random numbers in place of parameters.
+
+    Entries stand by pivot. ``None`` where no numbers satisfy the relations of roots.
+    """
     n = system.order
-    point = {name: value + seed for name, value in random_point(system.ring.names).items()}
+    point = system.radicals.point(seed)
+    if point is None:
+        return None
     step = _residues(rows, n, point, system)
     found = _independent(_residues(start, n, point, system))
     length = 1
@@ -203,22 +215,25 @@ def _at_random_point(
         step, length = step * step, 2 * length
     table = [[int(x) for x in row] for row in found.tolist()]
     vectors = [{j: x for j, x in enumerate(row) if x} for row in table]
-    return {min(vector): vector for vector in vectors}
+    return point[0], {min(vector): vector for vector in vectors}
 
 
-def _residues(rows: Sequence[Vector], columns: int, point: Mapping[str, int], system: StateSpace) -> nmod_mat:
-    matrix = nmod_mat(len(rows), columns, PRIME)
+def _residues(rows: Sequence[Vector], columns: int, point: Point, system: StateSpace) -> nmod_mat:
+    prime, values = point
+    matrix = nmod_mat(len(rows), columns, prime)
     for i, row in enumerate(rows):
         for j, value in row.items():
             quotient = Factored(system.ring, Fraction(1), ((value.num, 1), (value.den, -1)))
-            matrix[i, j] = residue(quotient, point)
+            matrix[i, j] = residue(quotient, values, prime)
     return matrix
 
 
 def _stacked(above: nmod_mat, below: nmod_mat) -> nmod_mat:
-    return nmod_mat(above.nrows() + below.nrows(), above.ncols(), [*above.entries(), *below.entries()], PRIME)
+    return nmod_mat(
+        above.nrows() + below.nrows(), above.ncols(), [*above.entries(), *below.entries()], above.modulus()
+    )
 
 
 def _independent(matrix: nmod_mat) -> nmod_mat:
     reduced, rank = matrix.rref()
-    return nmod_mat(rank, matrix.ncols(), reduced.entries()[: rank * matrix.ncols()], PRIME)
+    return nmod_mat(rank, matrix.ncols(), reduced.entries()[: rank * matrix.ncols()], matrix.modulus())

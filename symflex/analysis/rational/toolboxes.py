@@ -241,7 +241,7 @@ class ExactFunction(RationalFunction):
         model = with_numbers(source.model, (), dict(self._bound.values))
         pair = (source.output.name, source.input.name)
         if model.is_distributed:
-            system = realise_quotient(self._bound.ratio, source.constants, model, pair)
+            system = realise_quotient(self._bound.ratio, source.constants, self._bound.radicals, model, pair)
         else:
             system = realise(model, [pair])
         return bound_state_space(minimal(system) if self._is_minimal else system, dict(self._bound.values))
