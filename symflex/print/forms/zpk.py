@@ -28,8 +28,8 @@ BITS_PER_DIGIT = 4
 def zpk_form(tf: TransferFunction, digits: int) -> PrintedForm:
     """Return gain times real first- and second-order factors, in decimals of the given digits.
 
-    Raises ModelError: SF229 when a parameter has no value; UncertifiedError: SF404 when roots could not be told
-    apart, for then no factor is known to be theirs.
+    Raises ModelError: SF229 when a parameter has no value; UncertifiedError: SF404 when roots could not be
+    told apart, for then no factor is known to be theirs.
     """
     bound = bind(tf)
     if bound.ratio.is_zero:
@@ -37,7 +37,9 @@ def zpk_form(tf: TransferFunction, digits: int) -> PrintedForm:
     found = locate(bound, None, digits + GUARD_DIGITS)
     if any(not root.certified for root in (*found.zeros, *found.poles)):
         message = f"some roots of {tf.name} could not be told apart, so that their factors are not known"
-        hint = "'symflex roots' encloses them together; their constants may satisfy a relation: write them without it"
+        hint = (
+            "'symflex roots' encloses them together; constants may satisfy a relation: write them without it"
+        )
         raise UncertifiedError(Diagnostic("SF404", message, None, hint))
     gain = _decimal(_gain(bound, digits), digits)
     return PrintedForm(
