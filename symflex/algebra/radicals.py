@@ -174,27 +174,44 @@ class Radicals:
 
     def in_lowest_terms(self, value: Factored) -> tuple[Factored, Factored]:
         """Return a product in normal form without common factors in s above and below, and what cancelled."""
-        shared = Factored.number(self.ring, 1)
-        while True:
-            above, below = ([(f, abs(e)) for f, e in value.factors if e * sign > 0] for sign in (1, -1))
-            for f, m in above:
-                for g, n in below:
-                    common = self._common(f, g)
-                    if common is None:
-                        continue
-                    power = min(m, n)
-                    shared = shared * Factored.polynomial(self.ring, common) ** power
-                    parts = (self.quotient(f, common) / self.quotient(g, common)) ** power
-                    ours, theirs = (Factored.polynomial(self.ring, p) for p in (f, g))
-                    value = self.reduced(value / (ours / theirs) ** power * parts)
-                    break
-                else:
+        value, shared = self.reduced(value), Factored.number(self.ring, 1)
+        above, below = ([(f, abs(e)) for f, e in value.factors if e * sign > 0] for sign in (1, -1))
+        scale, i = Factored.number(self.ring, value.unit), 0
+        while i < len(above):
+            f, m = above[i]
+            for j, (g, n) in enumerate(below):
+                if (common := self._common(f, g)) is None:
                     continue
+                power = min(m, n)
+                shared = shared * Factored.polynomial(self.ring, common) ** power
+                more, above[i : i + 1] = self._pieces(f, common, m, power)
+                less, below[j : j + 1] = self._pieces(g, common, n, power)
+                scale = scale * more / less
                 break
             else:
-                shortest = value.map_factors(self.ring, self._shortest)
-                hidden = shared.map_factors(self.ring, self._shortest).filter(lambda f: bool(degree_in(f, 0)))
-                return self._without_rooted_scale(self.reduced(shortest)), hidden
+                i += 1
+        for sign, side in ((1, above), (-1, below)):
+            for f, e in side:
+                scale = scale * self._shortest(f) ** (sign * e)
+        hidden = shared.map_factors(self.ring, self._shortest).filter(lambda f: bool(degree_in(f, 0)))
+        return self._without_rooted_scale(self.reduced(scale)), hidden
+
+    def _pieces(
+        self, f: fmpz_mpoly, common: fmpz_mpoly, exponent: int, power: int
+    ) -> tuple[Factored, list[tuple[fmpz_mpoly, int]]]:
+        """Return ``f**exponent / common**power`` as a part free of s and powers of factors."""
+        rest = self.quotient(f, common)
+        varying = [(p, e * exponent) for p, e in rest.factors if degree_in(p, 0)]
+        if exponent > power:
+            varying.append((common, exponent - power))
+        free = rest.filter(lambda p: not degree_in(p, 0)) * rest.unit
+        return free**exponent, varying
+
+    def shortest(self, value: Factored) -> Factored:
+        """Return a product in normal form, roots in front of its factors where that is shorter."""
+        if not any(self._is_rooted(f) for f, _ in value.factors):
+            return value
+        return self.reduced(value.map_factors(self.ring, self._shortest))
 
     def _shortest(self, f: fmpz_mpoly) -> Factored:
         """Return a factor, a root in front where that is shorter: ``p*(p*s + q)``, not ``m*s + p*q``."""
@@ -210,7 +227,7 @@ class Radicals:
         """Return the common factor of two that are coprime but for roots, ``None`` when there is none."""
         if not (self._is_rooted(f) or self._is_rooted(g)):
             return None
-        common = self.gcd(f, g)
+        common = f if f == g else self.gcd(f, g)
         return common if degree_in(common, 0) else None
 
     def _without_rooted_scale(self, value: Factored) -> Factored:
@@ -313,7 +330,7 @@ class Radicals:
         base: list[tuple[fmpz_mpoly, int]] = []
         for factor, exponent in factors:
             if degree_in(factor, 0):
-                for part, times in self._square_free(self.primitive(factor)):
+                for part, times in self._square_free(factor):
                     base = self._inserted(base, part, times * exponent)
         found = []
         for element, times in base:
@@ -321,9 +338,23 @@ class Radicals:
             found += [(p, times) for p in (even, self._over(element, even)) if degree_in(p, 0)]
         return found
 
+    def with_powers(self, value: Factored) -> Factored:
+        """Return a product whose polynomials in roots are powers of square-free ones."""
+        result = value
+        for f, e in value.factors:
+            if not (self._is_rooted(f) and degree_in(f, 0)):
+                continue
+            parts = [(Factored.polynomial(self.ring, p), self._lead(p), n) for p, n in self._square_free(f)]
+            if any(n > 1 for _, _, n in parts):
+                scale = Factored.polynomial(self.ring, self._lead(f)) / Factored.polynomial(self.ring, f)
+                for part, lead, n in parts:
+                    scale = scale * (part / Factored.polynomial(self.ring, lead)) ** n
+                result = result * scale**e
+        return self.shortest(result)
+
     def _square_free(self, f: fmpz_mpoly) -> list[tuple[fmpz_mpoly, int]]:
         """Return the parts of every multiplicity (Musser 1971)."""
-        found, times = [], 1
+        found, times, f = [], 1, self.primitive(f)
         repeated = self.gcd(f, f.derivative(0))
         simple = self._over(f, repeated)
         while degree_in(simple, 0):
@@ -487,7 +518,7 @@ def _independent(ring: Ring, radicands: Mapping[int, Factored], positive: frozen
     # Per independent root what is odd in it after elimination, and the roots whose product that is.
     rows: list[tuple[frozenset[str], frozenset[int]]] = []
     is_complete = True
-    for i in sorted(radicands, key=lambda i: (len(base.odd(radicands[i])), _size(radicands[i]))):
+    for i in sorted(radicands, key=lambda i: _simplicity(radicands[i], base)):
         radicand = radicands[i]
         if radicand.is_zero:
             images[i] = radicand
@@ -511,6 +542,11 @@ def _independent(ring: Ring, radicands: Mapping[int, Factored], positive: frozen
             root = root * Factored.generator(ring, ring.names[j])
         images[i] = root
     return Radicals(ring, squares, images, is_complete)
+
+
+def _simplicity(radicand: Factored, base: _Base) -> tuple[int, int, int]:
+    number = abs(radicand.unit.numerator) * radicand.unit.denominator
+    return len(base.odd(radicand)), _size(radicand), number
 
 
 def _refine(

@@ -84,13 +84,15 @@ def locate(
     above = [(f, e) for f, e in bound.ratio.factors if e > 0]
     below = [(f, -e) for f, e in bound.ratio.factors if e < 0]
     hidden = [(f.polynomial, f.multiplicity) for f in bound.hidden]
+    # Polynomials in roots that look different may have roots in common: they are split together.
+    together = [hidden] if bound.radicals and hidden else [[factor] for factor in hidden]
     found = find_pole_zero_map(
         bound.name,
         problem_of(bound, below),
         problem_of(bound, above),
         region,
         digits,
-        [(problem_of(bound, [factor]), "cancelled") for factor in hidden],
+        [(problem_of(bound, factors), "cancelled") for factors in together],
         budget=budget,
     )
     return replace(found, verdict=replace(found.verdict, moving=_moving_unseen(bound)))

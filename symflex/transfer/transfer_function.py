@@ -10,6 +10,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE, NO_KERNELS, KernelTable, degree_in
+from symflex.equations import radicals_of
 from symflex.expressions import Name, names
 from symflex.quantities import unit_of
 
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 
     from flint import fmpz_mpoly
 
-    from symflex.algebra import Factored, Ring
+    from symflex.algebra import Factored, Radicals, Ring
     from symflex.algebra.modal_sum import ModalSums
     from symflex.equations import ConstantFunction
     from symflex.equations.elimination import Closure
@@ -75,7 +76,7 @@ class ClosedForm:
         Raises BudgetError: SF501 when it would be too large.
         """
         radicals = self.opening.expansion.radicals
-        return radicals.reduced(self.opening(self.num) / self.opening(self.den))
+        return radicals.shortest(self.opening(self.num) / self.opening(self.den))
 
     @cached_property
     def generators(self) -> frozenset[str]:
@@ -127,6 +128,11 @@ class TransferFunction:
     def ring(self) -> Ring:
         """Where :attr:`ratio` lives."""
         return self.ratio.ring if self._large is None else self._large.opening.expansion.ring
+
+    @cached_property
+    def radicals(self) -> Radicals:
+        """The relations of the roots among the generators of :attr:`ring`."""
+        return radicals_of(self.ring, self.constants, self.model.parameters)
 
     @property
     def is_zero(self) -> bool:

@@ -86,17 +86,16 @@ def _divided(arranger: Arranger, ring: Ring, polynomial: fmpz_mpoly, divisor: fm
 def factored_form(tf: TransferFunction) -> PrintedForm:
     """Return numerator and denominator as products of irreducible factors over the rationals.
 
-    Of functions with kernels the trigonometric factors too.
+    Powers of polynomials in roots are found too: ``m*s^2 + 2*sqrt(k*m)*s + k`` is a square. Of functions
+    with kernels the trigonometric factors too.
     """
     if tf.is_distributed:
         from symflex.print.forms.irreducible import irreducible_kernels  # only with beams
 
         return in_kernels(tf, "factored", irreducible_kernels(tf.ratio, tf.kernels))
-    arranger = _arranger(tf)
+    arranger, value = _arranger(tf), tf.radicals.with_powers(tf.ratio)
     return PrintedForm(
-        "factored",
-        _irreducible(arranger, tf.ratio.numerator()),
-        _irreducible(arranger, tf.ratio.denominator()),
+        "factored", _irreducible(arranger, value.numerator()), _irreducible(arranger, value.denominator())
     )
 
 
