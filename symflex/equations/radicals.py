@@ -43,8 +43,8 @@ def radicals_of(
 
     radicands = {}
     for c in roots:
-        # What divides by zero has no value, which is reported where one is asked for.
-        with suppress(ZeroDivisionError):
+        # What divides by zero, or holds s or a block, has no value, which is reported where one is asked for.
+        with suppress(ZeroDivisionError, KeyError):
             radicands[ring.index[format_expression(c)]] = fold(
                 c.argument, number=lambda n: Factored.number(ring, n), name=named, power=raised, call=called
             )
