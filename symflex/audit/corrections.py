@@ -35,6 +35,7 @@ from symflex.expressions import (
     Quotient,
     Sum,
     is_number,
+    nodes,
     number,
     product_of,
     quotient,
@@ -369,11 +370,15 @@ def _more_terms(wanted: _Wanted) -> Iterator[Correction]:
 
 
 def _in_lines(reading: FormulaReading) -> Iterator[Correction]:
-    """Yield a line of the formula times a number, or its square or square root."""
+    """Yield a line of the formula times a number, its square or root, or a quotient in it turned over."""
     formula = reading.formula
     for i, (name, expression) in enumerate(formula.lines):
         new_lines: list[Expression] = [_times(f, expression) for f in FACTORS]
         new_lines += [Call("sqrt", expression), Power(expression, number(2))]
+        turned = (
+            (p, quotient(p.denominator, p.numerator)) for p in nodes(expression) if isinstance(p, Quotient)
+        )
+        new_lines += [_replaced(expression, part, new) for part, new in turned]
         for new in new_lines:
             lines = (*formula.lines[:i], (name, new), *formula.lines[i + 1 :])
             change = Change(f"line {name}", expression, new)
