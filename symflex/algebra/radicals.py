@@ -14,7 +14,7 @@ keep their degrees, are coprime.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property, reduce
 from math import gcd, isqrt
@@ -39,6 +39,9 @@ TRIES = 2_000
 """Primes, and numbers in place of parameters, that are tried until all radicands are squares."""
 SQUARES_SEEN = 40
 """Points at which a radicand is a square until it is taken for one: it is none with odds ``2^-40``."""
+
+NEW = -1
+"""Stands for the position of a root that is no generator."""
 
 Element = TypeVar("Element", int, "fmpz_mpoly")
 Point = tuple[int, dict[str, int]]
@@ -69,6 +72,7 @@ class Radicals:
     images: Mapping[int, Factored] = field(default_factory=dict)  # what roots are that depend on others
     # False when a root is left without its relation, as its sign or its dependence is not known.
     is_complete: bool = True
+    radicands: Mapping[int, Factored] = field(default_factory=dict)  # of all roots, as they are written
     _points: dict[int, Point | None] = field(default_factory=dict, repr=False)
 
     @staticmethod
@@ -77,32 +81,97 @@ class Radicals:
         plain = {
             i: a for i, a in radicands.items() if not any(a.depends_on(ring.names[j]) for j in radicands)
         }
-        found = _independent(ring, plain, frozenset(positive))
+        known = frozenset(positive)
+
+        def root_of(value: Factored) -> Factored | None:
+            """Return the root of a rational function in terms of the others, ``None`` when it is none."""
+            return _independent(ring, {**plain, NEW: value}, known).images.get(NEW)
+
+        found = _independent(ring, plain, known)
         for i, radicand in radicands.items():
             if i not in plain:
-                found = found.with_nested(i, radicand)
-        return found
+                found = found.with_nested(i, found.reduced(radicand), root_of)
+        return replace(found, radicands=radicands)
 
     def __bool__(self) -> bool:
-        return bool(self.squares or self.images)
+        return bool(self.radicands)
 
-    def with_nested(self, position: int, radicand: Factored) -> Radicals:
+    def with_nested(
+        self, position: int, square: Factored, root_of: Callable[[Factored], Factored | None]
+    ) -> Radicals:
         """Return the same with one more root, whose radicand holds earlier ones."""
-        square = self.reduced(radicand)
+        image = self._root_of_nested(square, root_of)
+        if image is not None:
+            return replace(self, images={**self.images, position: image}, _points={})
         for seed in range(SQUARES_SEEN):
             point = self.point(seed)
             if point is None:
                 break
             prime, values = point
             if fmpz(residue(square, values, prime)).jacobi(prime) < 0:
-                return Radicals(self.ring, {**self.squares, position: square}, self.images, self.is_complete)
-        return Radicals(self.ring, self.squares, self.images, is_complete=False)
+                return replace(self, squares={**self.squares, position: square}, _points={})
+        return replace(self, is_complete=False, _points={})
+
+    def _root_of_nested(
+        self, value: Factored, root_of: Callable[[Factored], Factored | None]
+    ) -> Factored | None:
+        """Return the root of a sum with roots in it as far as it is one of two kinds, ``None`` otherwise.
+
+        ``sqrt(2 - sqrt(2))`` is ``sqrt(2)/sqrt(2 + sqrt(2))``; ``sqrt(3 + 2*sqrt(2))`` is ``1 + sqrt(2)``.
+        """
+        used = {i for f, _ in value.factors for i in self.squares if degree_in(f, i)}
+        if not used:
+            return root_of(value)
+        for i, square in self.squares.items():
+            if any(self._is_rooted(f) for f, _ in square.factors):
+                product = self._multiplied(value * square)
+                if not any(self._is_rooted(f) for f, _ in product.factors) and (root := root_of(product)):
+                    return root / Factored.generator(self.ring, self.ring.names[i])
+        if len(used) > 1:
+            return None
+        (i,) = used
+        value = self._multiplied(value)
+        parts = by_powers(self.ring, value.numerator().expand(), i)
+        zero = self.ring.constant(0)
+        even, odd = (Factored.polynomial(self.ring, parts.get(n, zero)) / value.denominator() for n in (0, 1))
+        half = root_of(even * even - odd * odd * self.squares[i])
+        if half is None or any(self._is_rooted(f) for f, _ in half.factors):
+            return None
+        larger, smaller = root_of((even + half) / 2), root_of((even - half) / 2)
+        if larger is None or smaller is None:
+            return None
+        sums = (larger + smaller, larger - smaller)
+        return next((x for x in sums if self._multiplied(self._multiplied(x**2) - value).is_zero), None)
+
+    def _multiplied(self, value: Factored) -> Factored:
+        """Return a product multiplied out, in normal form."""
+        above, below = (self.normal(v.expand()) for v in (value.numerator(), value.denominator()))
+        return above / below
 
     # ------------------------------------------------------------------------------------- normal form
 
+    def tidy(self, value: Factored) -> Factored:
+        """Return a product without squares of roots, factors in normal form only where that is shorter.
+
+        So roots stay as they were written: ``sqrt(6)``, and not ``sqrt(2)*sqrt(3)``.
+        """
+        written, result = self._as_written, Factored.number(self.ring, value.unit)
+        if not any(degree_in(f, i) for f, _ in value.factors for i in self.radicands):
+            return value
+        for f, e in value.factors:
+            own = written.reduced(Factored.polynomial(self.ring, f) ** e)
+            result = result * (own if len(f) == 1 else min(own, self.normal(f) ** e, key=_size))
+        return written.reduced(result)
+
+    @cached_property
+    def _as_written(self) -> Radicals:
+        """The same without dependences between roots."""
+        plain = {i: a for i, a in self.images.items() if not any(self._is_rooted(f) for f, _ in a.factors)}
+        return Radicals(self.ring, {i: a for i, a in self.radicands.items() if i not in plain}, plain)
+
     def reduced(self, value: Factored) -> Factored:
         """Return a product with every factor in normal form; ZeroDivisionError when a denominator is zero."""
-        if not self or not any(self._is_rooted(f) for f, _ in value.factors):
+        if not any(self._is_rooted(f) for f, _ in value.factors):
             return value
         result = Factored.number(self.ring, value.unit)
         for factor, exponent in value.factors:
@@ -168,15 +237,20 @@ class Radicals:
     def has_squares(self, polynomial: fmpz_mpoly) -> bool:
         """Tell whether a nonzero polynomial holds squares of roots."""
         degrees = polynomial.degrees()
-        return any(int(degrees[i]) > 1 for i in self.squares)
+        return any(int(degrees[i]) > 1 for i in self.radicands)
 
     # ---------------------------------------------------------------------------------- common factors
 
     def in_lowest_terms(self, value: Factored) -> tuple[Factored, Factored]:
         """Return a product in normal form without common factors in s above and below, and what cancelled."""
-        value, shared = self.reduced(value), Factored.number(self.ring, 1)
-        above, below = ([(f, abs(e)) for f, e in value.factors if e * sign > 0] for sign in (1, -1))
-        scale, i = Factored.number(self.ring, value.unit), 0
+        shared, i = Factored.number(self.ring, 1), 0
+        # Apart, so that what becomes equal in normal form is seen to cancel.
+        top, bottom = self.reduced(value.numerator()), self.reduced(value.denominator())
+        if top.is_zero:
+            return top, bottom.filter(lambda f: bool(degree_in(f, 0)))
+        above, below = ([(f, e) for f, e in v.factors if degree_in(f, 0)] for v in (top, bottom))
+        top, bottom = (v.filter(lambda f: not degree_in(f, 0)) * v.unit for v in (top, bottom))
+        scale = top / bottom
         while i < len(above):
             f, m = above[i]
             for j, (g, n) in enumerate(below):
@@ -194,7 +268,10 @@ class Radicals:
             for f, e in side:
                 scale = scale * self._shortest(f) ** (sign * e)
         hidden = shared.map_factors(self.ring, self._shortest).filter(lambda f: bool(degree_in(f, 0)))
-        return self._without_rooted_scale(self.reduced(scale)), hidden
+        result = self._without_rooted_scale(self.reduced(scale))
+        if not shared.is_one:
+            return result, hidden
+        return min(self.tidy(value), result, key=_size), shared
 
     def _pieces(
         self, f: fmpz_mpoly, common: fmpz_mpoly, exponent: int, power: int
@@ -208,10 +285,8 @@ class Radicals:
         return free**exponent, varying
 
     def shortest(self, value: Factored) -> Factored:
-        """Return a product in normal form, roots in front of its factors where that is shorter."""
-        if not any(self._is_rooted(f) for f, _ in value.factors):
-            return value
-        return self.reduced(value.map_factors(self.ring, self._shortest))
+        """Return a product with roots in front of its factors where that is shorter."""
+        return self.tidy(value.map_factors(self.ring, self._shortest)) if self else value
 
     def _shortest(self, f: fmpz_mpoly) -> Factored:
         """Return a factor, a root in front where that is shorter: ``p*(p*s + q)``, not ``m*s + p*q``."""
@@ -225,9 +300,11 @@ class Radicals:
 
     def _common(self, f: fmpz_mpoly, g: fmpz_mpoly) -> fmpz_mpoly | None:
         """Return the common factor of two that are coprime but for roots, ``None`` when there is none."""
+        if f == g:
+            return f
         if not (self._is_rooted(f) or self._is_rooted(g)):
             return None
-        common = f if f == g else self.gcd(f, g)
+        common = self.gcd(f, g)
         return common if degree_in(common, 0) else None
 
     def _without_rooted_scale(self, value: Factored) -> Factored:
@@ -340,17 +417,18 @@ class Radicals:
 
     def with_powers(self, value: Factored) -> Factored:
         """Return a product whose polynomials in roots are powers of square-free ones."""
-        result = value
-        for f, e in value.factors:
+        result, is_changed = self.reduced(value), False
+        for f, e in result.factors:
             if not (self._is_rooted(f) and degree_in(f, 0)):
                 continue
             parts = [(Factored.polynomial(self.ring, p), self._lead(p), n) for p, n in self._square_free(f)]
             if any(n > 1 for _, _, n in parts):
+                is_changed = True
                 scale = Factored.polynomial(self.ring, self._lead(f)) / Factored.polynomial(self.ring, f)
                 for part, lead, n in parts:
                     scale = scale * (part / Factored.polynomial(self.ring, lead)) ** n
                 result = result * scale**e
-        return self.shortest(result)
+        return self.shortest(result) if is_changed else value
 
     def _square_free(self, f: fmpz_mpoly) -> list[tuple[fmpz_mpoly, int]]:
         """Return the parts of every multiplicity (Musser 1971)."""
@@ -394,7 +472,7 @@ class Radicals:
 
         ``None`` when none is found, or a root has no relation: then nothing is proved at a point.
         """
-        if not self and self.is_complete:
+        if not self:
             return PRIME, dict(zip(self.ring.names, self._numbers(Random(20 + seed), PRIME), strict=True))
         if seed not in self._points:
             self._points[seed] = self._found_point(Random(20 + seed))
@@ -450,11 +528,14 @@ class Radicals:
         return nmod_poly(numbers, prime) if numbers[-1] else None
 
 
-def _size(value: Factored) -> int:
-    return sum(len(f) * abs(e) for f, e in value.factors)
+def _size(value: Factored) -> tuple[int, int]:
+    """Return how many terms a product has, zero the fewest, and its degree."""
+    terms = sum(len(f) * abs(e) for f, e in value.factors)
+    return (-1 if value.is_zero else terms), _degrees(value)
 
 
 def _degrees(value: Factored) -> int:
+    """Return the degrees of all terms of the sums in a product together."""
     return sum(sum(map(int, m)) for f, _ in value.factors if len(f) > 1 for m in f.monoms())
 
 
@@ -518,7 +599,7 @@ def _independent(ring: Ring, radicands: Mapping[int, Factored], positive: frozen
     # Per independent root what is odd in it after elimination, and the roots whose product that is.
     rows: list[tuple[frozenset[str], frozenset[int]]] = []
     is_complete = True
-    for i in sorted(radicands, key=lambda i: _simplicity(radicands[i], base)):
+    for i in sorted(radicands, key=lambda i: (i == NEW, _simplicity(radicands[i], base))):
         radicand = radicands[i]
         if radicand.is_zero:
             images[i] = radicand
@@ -544,7 +625,7 @@ def _independent(ring: Ring, radicands: Mapping[int, Factored], positive: frozen
     return Radicals(ring, squares, images, is_complete)
 
 
-def _simplicity(radicand: Factored, base: _Base) -> tuple[int, int, int]:
+def _simplicity(radicand: Factored, base: _Base) -> tuple[int, tuple[int, int], int]:
     number = abs(radicand.unit.numerator) * radicand.unit.denominator
     return len(base.odd(radicand)), _size(radicand), number
 

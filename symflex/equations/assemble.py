@@ -469,9 +469,9 @@ class _Assembly:
             try:
                 if block.block is not None:
                     values = {name: evaluator.constant(e) for name, e in block.values}
-                    found[block.name] = self._radicals.reduced(block.block.transfer(s, values))
+                    found[block.name] = self._radicals.tidy(block.block.transfer(s, values))
                 elif self.nested is not None:
-                    found[block.name] = self._radicals.reduced(self.nested(block, self.ring))
+                    found[block.name] = self._radicals.tidy(self.nested(block, self.ring))
             except ZeroDivisionError:
                 self.problems.append(Diagnostic("SF224", f"block '{block.name}' divides by zero", block.span))
                 found[block.name] = Factored.number(self.ring, 1)

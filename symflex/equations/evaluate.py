@@ -111,7 +111,7 @@ class ExactEvaluator:
             value = self._evaluate(expression)
             if isinstance(value, LinearForm):
                 return without_squares(value, self.radicals)
-            return self.radicals.reduced(value) if self.radicals else value
+            return self.radicals.tidy(value) if self.radicals else value
         except BudgetError as error:
             located = [
                 d if d.span else Diagnostic(d.code, d.message, expression.span, d.hint)
@@ -228,7 +228,7 @@ class ExactEvaluator:
 
 def without_squares(form: LinearForm, radicals: Radicals | None) -> LinearForm:
     """Return a combination without squares of roots: ``sqrt(x)^2`` is ``x``."""
-    return LinearForm.of(*((v, radicals.reduced(c)) for v, c in form.terms)) if radicals else form
+    return LinearForm.of(*((v, radicals.tidy(c)) for v, c in form.terms)) if radicals else form
 
 
 @dataclass(frozen=True)

@@ -149,7 +149,7 @@ class _CramerQuotients:
         roots = self._closed_radicals
         if num.is_zero() or not (roots.has_squares(num) or roots.has_squares(den)):
             return num, den
-        above, below = (roots.normal(p) for p in (num, den))
+        above, below = (roots.tidy(Factored.polynomial(roots.ring, p)) for p in (num, den))
         ratio = above / below
         num, den = ratio.numerator().expand(), ratio.denominator().expand()
         common = num.gcd(den)

@@ -61,11 +61,11 @@ class Expansion:
     def expanded(self, value: Factored) -> Factored:
         """Return a value over the equations' ring with its definitions opened."""
         if self.ring == self.source:
-            return self.radicals.reduced(value)
+            return self.radicals.tidy(value)
         names = self.source.names
         images = [self.images[n] if n in self.images else self.generator(n) for n in names]
         opened = value.map_factors(self.ring, lambda factor: self._open(factor, images))
-        return self.radicals.reduced(opened)
+        return self.radicals.tidy(opened)
 
     def generator(self, name: str) -> Factored | None:
         """Return a generator of the plain ring, None for a name it does not have."""
