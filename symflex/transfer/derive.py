@@ -16,8 +16,10 @@ from symflex.equations import assemble, radicals_of
 from symflex.equations.elimination import Determinants, explain_singular
 from symflex.errors import Diagnostic, ModelError
 from symflex.transfer.against_equations import ModelSolve, agreement, compare
+from symflex.model.along import is_tapered
 from symflex.transfer.expansion import Expansion, Opening
 from symflex.transfer.lowest_terms import DeterminantsOnLine, LineImages, cancel
+from symflex.transfer.named_coefficients import named_coefficients
 from symflex.transfer.transfer_function import (
     ClosedForm,
     HiddenFactor,
@@ -33,7 +35,8 @@ if TYPE_CHECKING:
 
     from symflex.algebra import Ring
     from symflex.algebra.propagators import Propagation
-    from symflex.equations import Equations, OutputRow
+    from symflex.equations import Equations
+    from symflex.equations.elimination import Closure
     from symflex.model import Input, Output, PlacedBlock
     from symflex.transfer.distributed import KernelReduction
 
@@ -49,31 +52,54 @@ def derive(equations: Equations, output: str, source: str) -> TransferFunction:
 
 def derive_all(equations: Equations, pairs: Sequence[tuple[str, str]]) -> tuple[TransferFunction, ...]:
     """Return several transfer functions that share one elimination; see :func:`derive`."""
-    determinants = Determinants.of(equations)
-    workshop = _CramerQuotients(equations, determinants)
-    outputs = {row.name: row for row in equations.outputs}
-    found = tuple(
-        workshop.finish(outputs[output], source, determinants.num(output, source)) for output, source in pairs
-    )
+    workshop = _CramerQuotients(equations)
+    if not (workshop.is_sure or is_tapered(equations.model)):
+        named, kept = named_coefficients(equations)
+        again = assemble(named, nested_transfer, is_joined=equations.is_joined)
+        workshop = _CramerQuotients(again, equations, kept)
+    found = tuple(workshop.finish(output, source) for output, source in pairs)
     compare(workshop.solve, [agreement(tf) for tf in found])
     return found
 
 
 class _CramerQuotients:
-    """Reduces one Cramer quotient after the other over the same denominator."""
+    """Reduces one Cramer quotient after the other over the same denominator.
 
-    def __init__(self, equations: Equations, determinants: Determinants) -> None:
+    With ``kept`` these definitions, which the model of ``origin`` does not have, are opened last of all.
+    """
+
+    def __init__(
+        self, equations: Equations, origin: Equations | None = None, kept: Sequence[str] = ()
+    ) -> None:
         self._equations = equations
-        self._determinants = determinants
-        self._closure = determinants.system.closure
-        self._den = determinants.den
-        self._expansion = Expansion.of(equations)
-        self._images = LineImages(self._expansion.ring)
-        self._opening = Opening(self._closure, self._expansion)
-        self.solve = ModelSolve(equations.model, nested_transfer, equations)
+        self._origin = origin or equations
+        self._expansion = Expansion.of(equations, kept)
+        self._opened = Expansion.of(equations) if kept else self._expansion
         self._radicals = self._expansion.radicals
+        self.solve = ModelSolve(self._origin.model, nested_transfer, self._origin)
         propagation = equations.propagation
-        self._reduction = None if propagation is None else self._kernel_reduction(propagation)
+        self._reduction = None if propagation is None else self._kernel_reduction(propagation, kept)
+
+    @property
+    def is_sure(self) -> bool:
+        """True where no common factor is overlooked."""
+        return self._reduction is None or self._reduction.is_sure
+
+    @cached_property
+    def _determinants(self) -> Determinants:
+        return Determinants.of(self._equations)
+
+    @cached_property
+    def _closure(self) -> Closure:
+        return self._determinants.system.closure
+
+    @cached_property
+    def _images(self) -> LineImages:
+        return LineImages(self._expansion.ring)
+
+    @cached_property
+    def _opening(self) -> Opening:
+        return Opening(self._closure, self._expansion)
 
     @cached_property
     def _line(self) -> DeterminantsOnLine:
@@ -102,29 +128,31 @@ class _CramerQuotients:
         plain, definitions = self._expansion.plain, self._expansion.images
         return DeterminantsOnLine(self._determinants, plain, definitions, LAPLACE)
 
-    def _kernel_reduction(self, propagation: Propagation) -> KernelReduction:
+    def _kernel_reduction(self, propagation: Propagation, kept: Sequence[str]) -> KernelReduction:
         """Return how quotients of kernels are reduced, with definitions opened everywhere."""
         from symflex.transfer.distributed import KernelReduction  # only with beams
 
         table = propagation.table
-        opened = [(v, self._expansion.expanded(propagation.embed(v))) for v in table.values]
+        opened = [(v, _lowest(self._expansion.expanded(propagation.embed(v)))) for v in table.values]
         self._cleared = self._expansion.expanded(
             self._equations.cleared or Factored.number(propagation.ring, 1)
         )
-        parameters = [p.name for p in self._equations.model.parameters]
+        parameters = [*(p.name for p in self._equations.model.parameters), *kept]
         ring = self._expansion.ring
         return KernelReduction(ring, table.embedded(opened), parameters, propagation.coordinates)
 
-    def finish(self, row: OutputRow, source: str, num: fmpz_mpoly) -> TransferFunction:
+    def finish(self, name: str, source: str) -> TransferFunction:
         """Return the reduced transfer function ``num / den / divisor``."""
-        model = self._equations.model
+        row = next(row for row in self._equations.outputs if row.name == name)
+        num, den = self._determinants.num(name, source), self._determinants.den
+        model = self._origin.model
         output = next(o for o in model.outputs if o.name == row.name)
         given = next(i for i in model.inputs if i.name == source)
         if self._reduction is None and row.divisor.is_one and self._are_coprime(row.name, source):
             return self._made(output, given, self._primitive(row.name, source, num), None)
         # For a zero numerator the common factor is the whole denominator: every mode is hidden.
-        common = num.gcd(self._den)
-        num_closed, den_closed = num / common, self._den / common
+        common = num.gcd(den)
+        num_closed, den_closed = num / common, den / common
         shared = self._expansion.expanded(self._closure.open(common))
         divisor = self._closure.close(row.divisor)
         den_closed = den_closed * divisor
@@ -166,7 +194,7 @@ class _CramerQuotients:
 
     def _primitive(self, output: str, source: str, num: fmpz_mpoly) -> ClosedForm:
         """Return a quotient of coprime determinants without common integer, the denominator positive."""
-        num, den = self._without_squares(num, self._den)
+        num, den = self._without_squares(num, self._determinants.den)
         common = _integer_content(num).gcd(_integer_content(den))
         if common != 1:
             num, den = num / common, den / common
@@ -187,7 +215,7 @@ class _CramerQuotients:
         table: KernelTable = NO_KERNELS,
         parts: tuple[Factored, Factored] | None = None,
     ) -> TransferFunction:
-        equations, model = self._equations, self._equations.model
+        equations, model = self._origin, self._origin.model
         known = dict(model.quotients).get((output.name, given.name))
         quantity, unit = name_quantity(output, given, known), unit_of_quotient(output, given, known)
         ring, definitions, constants = equations.ring, equations.definitions, equations.constants
@@ -221,13 +249,18 @@ class _CramerQuotients:
         )
         if reduction is None or reduced is None:
             raise explain_singular(self._equations)
-        above, below, table = reduced.num, reduced.den, reduced.table
+        determinant = self._expansion.expanded(self._closure.open(self._determinants.den)) / self._cleared
+        cancelled = reduced.shared * reduction.hidden_where_waves_vanish(determinant, reduced)
+        table = reduced.table.embedded((v, _lowest(self._opened.expanded(v))) for v in reduced.table.values)
+        above, below, cancelled = map(self._opened.expanded, (reduced.num, reduced.den, cancelled))
+        if self._opened is not self._expansion:
+            from symflex.transfer.distributed import opened
+
+            above, below = opened(above, below, table)
         if below.unit < 0:
             above, below = -above, -below
-        determinant = self._expansion.expanded(self._closure.open(self._den)) / self._cleared
-        cancelled = reduced.shared * reduction.hidden_where_waves_vanish(determinant, reduced)
         ratio = above / below
-        if not any(reduction.has_kernels(f) for f, _ in ratio.factors):
+        if ratio.ring.used_in(f for f, _ in ratio.factors).isdisjoint(k.generator for k in table.kernels):
             table = NO_KERNELS
             ratio, above, below, cancelled = (
                 self._without_kernels(v) for v in (ratio, above, below, cancelled)
@@ -241,10 +274,10 @@ class _CramerQuotients:
 
     def _without_kernels(self, value: Factored) -> Factored:
         """Return the factors that hold no kernel or wavenumber, over the ring without them."""
-        ring = self._expansion.plain
+        ring = self._opened.plain
         gens = ring.context.gens()
         zero = ring.constant(0)
-        images = [gens[i] if i < len(gens) else zero for i in range(len(self._expansion.ring.names))]
+        images = [gens[i] if i < len(gens) else zero for i in range(len(self._opened.ring.names))]
         plain = value.filter(lambda f: not any(int(d) for d in f.degrees()[len(gens) :])) * value.unit
         return plain.map_factors(
             ring, lambda f: Factored.polynomial(ring, f.compose(*images, ctx=ring.context))
@@ -257,6 +290,11 @@ class _CramerQuotients:
         return tuple(
             HiddenFactor(f, e) for f, e in value.factors if e > 0 and any(degree_in(f, i) for i in varying)
         )
+
+
+def _lowest(value: Factored) -> Factored:
+    """Return a coefficient or length without common factors that putting definitions in has left."""
+    return cancel(value.numerator(), value.denominator())[0]
 
 
 def _integer_content(polynomial: fmpz_mpoly) -> fmpz:

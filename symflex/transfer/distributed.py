@@ -17,6 +17,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, partial
+from itertools import combinations
 from typing import TYPE_CHECKING
 
 from symflex.algebra import (
@@ -93,6 +94,11 @@ class KernelReduction:
         relations = sum(len(_relations(ring, d)) for d in table.dispersions)
         self._is_solved = len(self.solved) == relations
         self._kernels = [ring.index[k.generator] for k in table.kernels]
+
+    @property
+    def is_sure(self) -> bool:
+        """True where no common factor is overlooked: relations of pairs of wavenumbers are solved."""
+        return self._is_solved or all(d.kind != "pair" for d in self.table.dispersions)
 
     def has_kernels(self, factor: fmpz_mpoly) -> bool:
         """Tell whether a polynomial over the ring contains a kernel."""
@@ -352,6 +358,30 @@ class KernelReduction:
         return rest
 
 
+def opened(num: Factored, den: Factored, table: KernelTable) -> tuple[Factored, Factored]:
+    """Return a quotient into which coefficients have been put without what is common to both parts."""
+    num, den = _with_fewer_waves(num, table), _with_fewer_waves(den, table)
+    _, shared = cancel(num.numerator(), den.numerator())
+    return num / shared, den / shared
+
+
+def _with_fewer_waves(value: Factored, table: KernelTable) -> Factored:
+    """Return a product with factors such as ``c - lambda_1^2`` and ``c - lambda_2^2`` multiplied out.
+
+    Their product is one of s and parameters, which may be common to numerator and denominator.
+    """
+    ring, normal = value.ring, NormalForm(value.ring, table)
+    waves, kernels = frozenset(table.wavenumbers), frozenset(k.generator for k in table.kernels)
+    used = [(f, e, ring.used_in([f])) for f, e in value.factors]
+    own = [(f, e) for f, e, names in used if names & waves and not names & kernels]
+    for (f, e), (g, d) in combinations(own, 2):
+        product = normal.reduce(f * g)
+        if e == d and ring.used_in(p for p, _ in product.factors).isdisjoint(waves):
+            pair = Factored.polynomial(ring, f) * Factored.polynomial(ring, g)
+            return _with_fewer_waves(value / pair**e * product**e, table)
+    return value
+
+
 def _split_contents(value: Factored, split: Split) -> Factored:
     """Return a value with every factor free of kernels set apart."""
     result = Factored.number(value.ring, value.unit)
@@ -447,14 +477,16 @@ def _length(solved: Sequence[tuple[str, Factored]]) -> tuple[int, int]:
 
 
 def _solve_in_turn(
-    ring: Ring, relations: Sequence[Factored], parameters: Sequence[str], preferred: str | None = None
+    ring: Ring,
+    relations: Sequence[tuple[Sequence[str], Factored]],
+    parameters: Sequence[str],
+    preferred: str | None = None,
 ) -> tuple[tuple[str, Factored], ...]:
     solved: list[tuple[str, Factored]] = []
-    for relation in relations:
-        value = _solved_for(relation, solved)
-        if value.is_zero:
+    for wavenumbers, relation in relations:
+        polynomial = _branch(_solved_for(relation, solved), wavenumbers)
+        if polynomial is None:
             continue
-        polynomial = value.numerator().expand()
         found: list[tuple[int, int, int, str, Factored]] = []
         # s comes last: it is everywhere, but better than nothing where a diffusivity enters squared.
         for name in (*parameters, LAPLACE):
@@ -474,6 +506,23 @@ def _solve_in_turn(
     return tuple(solved)
 
 
+def _branch(value: Factored, wavenumbers: Sequence[str]) -> fmpz_mpoly | None:
+    """Return the one irreducible factor that makes a relation true, ``None`` when there may be several.
+
+    ``value`` is the relation with parameters expressed by wavenumbers. It may have factors without the
+    wavenumbers of the relation, which are never zero: ``(1 + nu)*(...) = 0`` does not mean ``nu = -1``.
+    """
+    ring = value.ring
+    waves = [ring.generator(w) for w in wavenumbers]
+    found = [
+        piece
+        for factor in value.numerator().factors
+        for piece, _ in irreducible_factors(factor[0])[1]
+        if piece not in waves and not ring.used_in([piece]).isdisjoint(wavenumbers)
+    ]
+    return found[0] if len(found) == 1 else None
+
+
 def _solved_for(value: Factored, solved: Sequence[tuple[str, Factored]]) -> Factored:
     """Return a value with the parameters that wavenumbers determine expressed by them."""
     for name, formula in solved:
@@ -491,17 +540,18 @@ def _at_zero(ring: Ring, polynomial: fmpz_mpoly, index: int) -> fmpz_mpoly:
     return ring.context.from_dict(terms)
 
 
-def _relations(ring: Ring, dispersion: Dispersion) -> list[Factored]:
+def _relations(ring: Ring, dispersion: Dispersion) -> list[tuple[Sequence[str], Factored]]:
+    """Return what is zero by the definition of the wavenumbers, which stand beside it."""
     waves = [Factored.generator(ring, w) for w in dispersion.wavenumbers]
-    c = dispersion.characteristic
+    c, found = dispersion.characteristic, list[Factored]()
     match dispersion.kind:
         case "wave":
-            return [waves[0] ** 2 + c[0]]
+            found = [waves[0] ** 2 + c[0]]
         case "bending":
-            return [waves[0] ** 4 * 4 - c[0]]
+            found = [waves[0] ** 4 * 4 - c[0]]
         case "pair":
-            return [waves[0] ** 2 + waves[1] ** 2 + c[2], (waves[0] * waves[1]) ** 2 - c[0]]
-    return []
+            found = [waves[0] ** 2 + waves[1] ** 2 + c[2], (waves[0] * waves[1]) ** 2 - c[0]]
+    return [(dispersion.wavenumbers, value) for value in found]
 
 
 def _substitute(ring: Ring, name: str, formula: Factored, factor: fmpz_mpoly) -> Factored:

@@ -15,7 +15,7 @@ from symflex.errors import Diagnostic, ModelError
 from symflex.model.along import COORDINATE, is_tapered
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
 
     from flint import fmpz_mpoly
 
@@ -36,11 +36,12 @@ class Expansion:
     images: dict[str, Factored] = field(default_factory=dict)
 
     @staticmethod
-    def of(equations: Equations) -> Expansion:
-        """Return the expansion of some equations, each definition opened once."""
+    def of(equations: Equations, kept: Collection[str] = ()) -> Expansion:
+        """Return the expansion of some equations, each definition opened once, but for those ``kept``."""
         plain = (
             LAPLACE,
             *(p.name for p in equations.model.parameters),
+            *kept,
             "pi",
             *([COORDINATE] if is_tapered(equations.model) else []),
             *(c.generator for c in equations.constants),
@@ -55,14 +56,15 @@ class Expansion:
             for p in propagation.propagators:
                 made.images[p.generator] = compose_rational(ring, p.image, inner)
         for name, value in equations.definitions:
-            made.images[name] = made.expanded(value)
+            if name not in kept:
+                made.images[name] = made.expanded(value)
         return made
 
     def expanded(self, value: Factored) -> Factored:
-        """Return a value over the equations' ring with its definitions opened."""
-        if self.ring == self.source:
+        """Return a value over the equations' ring, or with some opened already, with definitions opened."""
+        names = value.ring.names
+        if self.ring.names == names:
             return self.radicals.tidy(value)
-        names = self.source.names
         images = [self.images[n] if n in self.images else self.generator(n) for n in names]
         opened = value.map_factors(self.ring, lambda factor: self._open(factor, images))
         return self.radicals.tidy(opened)

@@ -1,0 +1,113 @@
+"""Names for the coefficients of field equations, while what a transfer function has in common is cancelled.
+
+Input: a model whose wavenumbers no parameter follows from, and what its laws are.
+Output: the same with a definition for every coefficient.
+
+A pair of wavenumbers is tied to parameters by two relations, and common factors are found where each is
+solved for a parameter. With ``A = "d^2"`` and ``I = "d^4/12"`` neither is solved for d. Nor are those of two
+beams that differ in a damper alone: their wavenumbers are tied to each other besides. With a name of its own
+for every coefficient of every law each relation can be solved; in the result the names are opened again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from functools import partial
+from itertools import chain
+from typing import TYPE_CHECKING
+
+from symflex.expressions import Name, Negative, Number, Product, Quotient, Sum, names
+from symflex.library.elements.line import LineElement
+from symflex.library.fields import text
+from symflex.model.boundary import depends_on_s, varying_constants
+from symflex.model.model import Definition
+from symflex.transfer.expansion import Expansion
+
+if TYPE_CHECKING:
+    from symflex.equations import Equations
+    from symflex.expressions import Equation, Expression
+    from symflex.model import FieldProblem, Model, PlacedElement
+
+
+@dataclass
+class _Naming:
+    """Collects definitions, one per law and value."""
+
+    varying: frozenset[str]  # constants that depend on s
+    constants: frozenset[str]  # parameters, definitions, pi
+    found: dict[tuple[Hashable, Hashable], Definition] = field(default_factory=dict)
+
+    def name(self, law: Hashable, key: Hashable, value: Expression) -> Expression:
+        """Return the name of a value in a law; zero, and what depends on s, stay what they are."""
+        if depends_on_s(value, self.varying) or value == Number(Fraction(0)):
+            return value
+        own = Definition(f"coefficient[{len(self.found)}]", value)
+        return Name(self.found.setdefault((law, key), own).name)
+
+    def element(self, use: PlacedElement, law: Hashable) -> PlacedElement:
+        """Return a line element with names for its values."""
+        if not isinstance(use.element, LineElement):
+            return use
+        kept = {p.name for p in use.element.parameters if p.is_direction} | {use.element.length}
+        values = ((n, e if n in kept else self.name(law, n, e)) for n, e in use.values)
+        return replace(use, values=tuple(values))
+
+    def field(self, problem: FieldProblem, law: Hashable) -> FieldProblem:
+        """Return a field with names for the coefficients in its equations and conditions."""
+        put = partial(self._in_expression, law)
+
+        def named(equation: Equation) -> Equation:
+            return replace(equation, left=put(equation.left), right=put(equation.right))
+
+        equations, conditions = map(named, problem.equations), map(named, problem.conditions)
+        return replace(problem, equations=tuple(equations), conditions=tuple(conditions))
+
+    def _in_expression(self, law: Hashable, expression: Expression) -> Expression:
+        put = partial(self._in_expression, law)
+        if self._is_constant(expression):
+            return self.name(law, expression, expression)
+        match expression:
+            case Negative(operand):
+                return Negative(put(operand))
+            case Sum(terms):
+                return Sum(tuple(map(put, terms)))
+            case Product(factors):
+                constant = [f for f in factors if self._is_constant(f)]
+                rest = [put(f) for f in factors if not self._is_constant(f)]
+                return Product((put(Product(tuple(constant))), *rest)) if constant else Product(tuple(rest))
+            case Quotient(numerator, denominator):
+                return Quotient(put(numerator), put(denominator))
+        return expression
+
+    def _is_constant(self, expression: Expression) -> bool:
+        return all(isinstance(n, Name) and n.name in self.constants for n in names(expression))
+
+
+def named_coefficients(equations: Equations) -> tuple[Model, tuple[str, ...]]:
+    """Return the model with definitions for the coefficients of its laws, and their names.
+
+    Line elements and fields of one law share names.
+    """
+    model, laws = equations.model, _laws(equations)
+    varying = varying_constants(model.definitions, model.blocks)
+    constants = {"pi", *(p.name for p in model.parameters), *(d.name for d in model.definitions)}
+    naming = _Naming(varying, frozenset(constants - varying))
+    elements = tuple(naming.element(use, laws.get(use.name)) for use in model.elements)
+    fields = tuple(naming.field(problem, laws[problem.name]) for problem in model.fields)
+    found = tuple(naming.found.values())
+    named = replace(model, elements=elements, fields=fields, definitions=(*model.definitions, *found))
+    return named, tuple(d.name for d in found)
+
+
+def _laws(equations: Equations) -> dict[str, Hashable]:
+    """Return what is equal of line elements and fields with equal equations, however they are written."""
+    expansion, propagation = Expansion.of(equations), equations.propagation
+    found: dict[str, Hashable] = {}
+    if propagation is None:
+        return found
+    for part in equations.continua:
+        entries = map(propagation.embed, chain(*part.system.matrix, *part.system.loads))
+        found[part.name] = (part.kind, part.system.states, *(text(expansion.expanded(x)) for x in entries))
+    return found
