@@ -496,10 +496,11 @@ def _check_tip(model: Model, use: PlacedElement, *, is_second: bool) -> None:
 
 
 def _solution(field: FieldProblem, evaluator: ExactEvaluator, demands: _Demands) -> FieldSolution:
-    inside, given, unknowns = evaluator.along_x(), field.equations, field.unknowns
+    given, unknowns = field.equations, field.unknowns
     written = field.written[: len(given)]
     if written not in ((), given) and any(map(varies_along_x, given)):
         given, unknowns = named_brackets(written, unknowns)
+    inside = replace(evaluator, scope=evaluator.scope.within(unknowns))
     equations = [read_equation(e, unknowns, inside) for e in given]
     inputs = tuple(dict.fromkeys(v for e in equations for v in e.loads))
     zero = Factored.number(evaluator.ring, 0)

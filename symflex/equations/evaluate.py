@@ -66,6 +66,7 @@ class ExactEvaluator:
     radicals: Radicals | None = None  # relations of the roots among the generators
     # Returns a field's unknown, or a derivative of it, at the point a call names.
     field_value: Callable[[Call], LinearForm] | None = None
+    is_constant: bool = False  # where only constants may stand, a parameter may share its name with a node
 
     @property
     def s(self) -> Factored:
@@ -77,6 +78,10 @@ class ExactEvaluator:
         """Opens the definitions inside the arguments of functions."""
         return Opener(self.definitions)
 
+    @cached_property
+    def _of_constants(self) -> ExactEvaluator:
+        return self if self.is_constant else replace(self, is_constant=True)
+
     def along_x(self) -> ExactEvaluator:
         """Return the same for what may vary along x."""
         return replace(self, scope=self.scope.varying())
@@ -87,7 +92,7 @@ class ExactEvaluator:
         Raises ModelError: SF224 when it divides by zero; BudgetError: SF501 when it would expand beyond the
         limits.
         """
-        value = self._value(expression)
+        value = self._of_constants._value(expression)
         if isinstance(value, LinearForm):
             message = f"'{format_expression(expression)}' must be constant"
             raise ModelError(Diagnostic("SF212", message, expression.span))
@@ -151,7 +156,7 @@ class ExactEvaluator:
         raise TypeError(message)
 
     def _name(self, expression: Name | Attribute) -> Factored | LinearForm:
-        meaning = self.scope.lookup(expression, constant=False)
+        meaning = self.scope.lookup(expression, constant=self.is_constant)
         if meaning.kind == "block":
             return self._block(expression, meaning.name)
         if meaning.kind == "through" and meaning.variable is not None:

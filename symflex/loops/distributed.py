@@ -108,7 +108,7 @@ class DistributedFactors(AxisFactors[LoopFunction]):
     def passive(self) -> PassiveLoop | None:
         """How the loop is closed, where it is proved to be passive for every gain in the range."""
         return (
-            passive_loop(self.bound.source.model, self.gain, self.bound.values)
+            passive_loop(self.bound.source.model, self.gain, self.bound.all_values)
             if self.limits[0] >= 0
             else None
         )

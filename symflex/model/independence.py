@@ -125,7 +125,10 @@ class RandomPoint:
     def _name(self, expression: Name | Attribute) -> Form:
         if isinstance(expression, Name) and expression.name in self.scope.inside:
             return {(expression.name, 0, 0): 1}
-        meaning = self.scope.lookup(expression, constant=False)
+        try:
+            meaning = self.scope.lookup(expression, constant=False)
+        except SpecError:  # in a point or a denominator only a constant is meant
+            meaning = self.scope.lookup(expression, constant=True)
         if meaning.variable is not None and meaning.kind not in CONSTANT_KINDS:
             return {meaning.variable: 1}
         if meaning.kind != "definition":

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from fractions import Fraction
-from functools import reduce
+from functools import cached_property, reduce
 from math import prod
 from typing import TYPE_CHECKING, cast
 
@@ -76,13 +76,25 @@ class Line:
     values: Mapping[str, Fraction]  # of those that have one
     _opened: dict[str, Polynomial | None] = field(default_factory=dict, repr=False)
 
+    @cached_property
+    def enclosures(self) -> Mapping[str, arb]:
+        """The values of parameters and definitions, of those that have one."""
+        found = {"pi": arb.pi(), **{name: _ball(value) for name, value in self.values.items()}}
+        for name, expression in self.definitions.items():
+            if (value := _enclosed(expression, found)) is not None:
+                found[name] = value
+        return found
+
     @staticmethod
     def of_numbers(
-        definitions: Iterable[Definition], values: Iterable[tuple[str, ExactValue | None]]
+        definitions: Iterable[Definition],
+        values: Iterable[tuple[str, ExactValue | None]],
+        positive: frozenset[str] = frozenset(),
     ) -> Line:
-        """Return the line of parameters of which nothing is known but the values of some."""
+        """Return the line of parameters of which nothing is known but values, and that some are positive."""
         numbers = {name: v.nearly for name, v in values if v is not None}
-        return Line({d.name: d.expression for d in definitions}, frozenset(), frozenset(), numbers)
+        positive |= {name for name, value in numbers.items() if value > 0}
+        return Line({d.name: d.expression for d in definitions}, positive, frozenset(), numbers)
 
     def __post_init__(self) -> None:
         """Open the definitions in order, so that a long chain is not followed at once."""
@@ -363,28 +375,22 @@ def _ball(number: Fraction) -> arb:
 
 def value_along(value: Expression, x: arb, line: Line) -> arb | None:
     """Return what varies along x on a ball of x, None where a parameter has no value."""
+    return _enclosed(value, {**line.enclosures, COORDINATE: x})
 
-    def named(name: str) -> arb:
-        if name == COORDINATE:
-            return x
-        if name in line.definitions:
-            return inside(line.definitions[name])
-        return arb.pi() if name == "pi" else _ball(line.values[name])
 
-    def inside(expression: Expression) -> arb:
+def _enclosed(expression: Expression, values: Mapping[str, arb]) -> arb | None:
+    """Return an enclosure of an expression, None where a name has no value."""
+    try:
         found: arb = fold(
             lower(expression),
             number=_ball,
-            name=named,
+            name=values.__getitem__,
             power=lambda base, exponent: base ** (integer_exponent(exponent) or 0),
             call=lambda call, argument: FUNCTIONS[call.name].evaluate(argument),
         )
-        return found
-
-    try:
-        return inside(value)
     except (KeyError, TypeError):
         return None  # a parameter without value, or a quantity that is no number
+    return found
 
 
 def _slope_along(value: Expression, x: arb, line: Line) -> arb | None:
@@ -509,7 +515,9 @@ def is_passive(model: Model, values: Iterable[tuple[str, ExactValue]] | None = N
 def line_of(model: Model, values: Iterable[tuple[str, ExactValue]]) -> Line:
     """Return the line of a model's numbers: the values given, its own for what cancelled from a function."""
     numbers = {**{p.name: p.value for p in model.parameters}, **dict(values)}
-    return Line.of_numbers(model.definitions, numbers.items())
+    # What cancels in a function may have no value, but has the sign that is assumed of it.
+    free = frozenset(p.name for p in model.parameters if numbers[p.name] is None and p.assume == "positive")
+    return Line.of_numbers(model.definitions, numbers.items(), free)
 
 
 def _is_passive(use: PlacedElement, line: Line, inputs: set[str]) -> bool:

@@ -548,10 +548,10 @@ def _passivity(bound: BoundTransferFunction) -> tuple[str, bool]:
     """Return why no pole lies right of the imaginary axis, and whether none lies on it but at 0."""
     if not bound.is_of_model:
         return "", False
-    model = bound.source.model
-    if is_passive(model, bound.values) or are_passive(model, bound.values):
+    model, values = bound.source.model, bound.all_values
+    if is_passive(model, values) or are_passive(model, values):
         return PASSIVE, False
-    loop = passive_loop(model, "", bound.values)
+    loop = passive_loop(model, "", values)
     if loop is None:
         return "", False
     return PASSIVE_LOOP if loop.stiffness or loop.damping else PASSIVE, loop.rests

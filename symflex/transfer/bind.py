@@ -150,6 +150,12 @@ class BoundTransferFunction:
         return f"<BoundTransferFunction {self.name}>"
 
     @property
+    def all_values(self) -> tuple[tuple[str, ExactValue], ...]:
+        """The values of all parameters that have one: those that cancelled keep the declared ones."""
+        declared = {p.name: p.value for p in self.source.model.parameters if p.value is not None}
+        return tuple((declared | dict(self.values)).items())
+
+    @property
     def is_distributed(self) -> bool:
         """True when the function is transcendental."""
         return bool(self.kernels)

@@ -15,8 +15,8 @@ from symflex.algebra import LAPLACE, NO_KERNELS, Factored, KernelTable, Radicals
 from symflex.equations import assemble, radicals_of
 from symflex.equations.elimination import Determinants, explain_singular
 from symflex.errors import Diagnostic, ModelError
-from symflex.transfer.against_equations import ModelSolve, agreement, compare
 from symflex.model.along import is_tapered
+from symflex.transfer.against_equations import ModelSolve, agreement, compare
 from symflex.transfer.expansion import Expansion, Opening
 from symflex.transfer.lowest_terms import DeterminantsOnLine, LineImages, cancel
 from symflex.transfer.named_coefficients import named_coefficients

@@ -89,7 +89,7 @@ class Filtered:
 def filtered(bound: BoundTransferFunction, digits: int) -> Filtered | None:
     """Return a passive model's function as that of a force, filtered; None where no force does the same."""
     model = bound.source.model
-    if not bound.is_of_model or not is_passive(model, bound.values):
+    if not bound.is_of_model or not is_passive(model, bound.all_values):
         return None
     model = in_one_way(model)
     places = [

@@ -104,7 +104,7 @@ def passive_bound(bound: BoundTransferFunction) -> PassiveBound | None:
     derivative of one.
     """
     model = bound.source.model
-    if not bound.is_of_model or not is_passive(model, bound.values):
+    if not bound.is_of_model or not is_passive(model, bound.all_values):
         return None
     model = in_one_way(model)
     here = acting(model, bound.source.input)
