@@ -8,6 +8,7 @@ A ``model`` block stands for a transfer function of its own model, over the ring
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -41,6 +42,14 @@ if TYPE_CHECKING:
     from symflex.transfer.distributed import KernelReduction
 
 
+@dataclass(frozen=True)
+class Terms:
+    """How many terms a distributed system's determinants may have."""
+
+    closed: int  # with sums and definitions closed
+    opened: int  # in wavenumbers, kernels and parameters, before they are reduced
+
+
 def derive(equations: Equations, output: str, source: str) -> TransferFunction:
     """Return one transfer function.
 
@@ -50,13 +59,18 @@ def derive(equations: Equations, output: str, source: str) -> TransferFunction:
     return derive_all(equations, ((output, source),))[0]
 
 
-def derive_all(equations: Equations, pairs: Sequence[tuple[str, str]]) -> tuple[TransferFunction, ...]:
-    """Return several transfer functions that share one elimination; see :func:`derive`."""
-    workshop = _CramerQuotients(equations)
+def derive_all(
+    equations: Equations, pairs: Sequence[tuple[str, str]], most: Terms | None = None
+) -> tuple[TransferFunction, ...]:
+    """Return several transfer functions that share one elimination; see :func:`derive`.
+
+    ``most`` refuses distributed systems earlier, whose formulas nobody would read.
+    """
+    workshop = _CramerQuotients(equations, most)
     if not (workshop.is_sure or is_tapered(equations.model)):
         named, kept = named_coefficients(equations)
         again = assemble(named, nested_transfer, is_joined=equations.is_joined)
-        workshop = _CramerQuotients(again, equations, kept)
+        workshop = _CramerQuotients(again, most, equations, kept)
     found = tuple(workshop.finish(output, source) for output, source in pairs)
     compare(workshop.solve, [agreement(tf) for tf in found])
     return found
@@ -69,12 +83,17 @@ class _CramerQuotients:
     """
 
     def __init__(
-        self, equations: Equations, origin: Equations | None = None, kept: Sequence[str] = ()
+        self,
+        equations: Equations,
+        most: Terms | None,
+        origin: Equations | None = None,
+        kept: Sequence[str] = (),
     ) -> None:
         self._equations = equations
+        self._most = most
         self._origin = origin or equations
-        self._expansion = Expansion.of(equations, kept)
-        self._opened = Expansion.of(equations) if kept else self._expansion
+        self._expansion = Expansion.of(equations, kept, most and most.opened)
+        self._opened = Expansion.of(equations, (), most and most.opened) if kept else self._expansion
         self._radicals = self._expansion.radicals
         self.solve = ModelSolve(self._origin.model, nested_transfer, self._origin)
         propagation = equations.propagation
@@ -87,7 +106,7 @@ class _CramerQuotients:
 
     @cached_property
     def _determinants(self) -> Determinants:
-        return Determinants.of(self._equations)
+        return Determinants.of(self._equations, self._most and self._most.closed)
 
     @cached_property
     def _closure(self) -> Closure:

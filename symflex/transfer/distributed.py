@@ -36,6 +36,7 @@ from symflex.algebra.ring import by_powers
 from symflex.algebra.vanishing import OriginSeries, Vanishing
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic
+from symflex.transfer.expansion import KERNEL_TERMS
 from symflex.transfer.kernel_images import KernelImages
 from symflex.transfer.lowest_terms import cancel
 
@@ -47,9 +48,6 @@ if TYPE_CHECKING:
     from symflex.algebra.exponentials import KernelPair
 
     Split = Callable[[fmpz_mpoly], tuple[fmpz_mpoly, fmpz_mpoly]]
-
-TERM_LIMIT = 200_000
-"""Terms of a quotient in kernels up to which it is reduced: some ten seconds."""
 
 CIRCULAR_AND_HYPERBOLIC = frozenset({"cosh", "sinh", "cos", "sin"})
 
@@ -121,8 +119,8 @@ class KernelReduction:
         ``cancelled`` is the common factor that was cancelled before, over what rows were multiplied by to
         clear denominators.
         """
-        if max(sum(len(f) for f, _ in v.factors) for v in (num, den)) > TERM_LIMIT:
-            message = f"the closed form comes from one with more than {TERM_LIMIT} terms in kernels"
+        if max(sum(len(f) for f, _ in v.factors) for v in (num, den)) > KERNEL_TERMS:
+            message = f"the closed form comes from one with more than {KERNEL_TERMS} terms in kernels"
             hint = "let equal parts share their parameters, or split the model"
             raise BudgetError(Diagnostic("SF502", message, None, hint))
         # Where parameters follow from the wavenumbers, that alone makes equal functions equal.

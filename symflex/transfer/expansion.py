@@ -7,11 +7,14 @@ Output: the same over a ring that has no generator for definitions, nor for prop
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from math import prod
 from typing import TYPE_CHECKING
 
-from symflex.algebra import LAPLACE, Factored, Ring
+from symflex.algebra import LAPLACE, MEMORY_LIMIT, Factored, Ring
+from symflex.algebra.ring import TERM_LIMIT
+from symflex.budget import spend
 from symflex.equations import radicals_of
-from symflex.errors import Diagnostic, ModelError
+from symflex.errors import BudgetError, Diagnostic, ModelError
 from symflex.model.along import COORDINATE, is_tapered
 
 if TYPE_CHECKING:
@@ -22,6 +25,10 @@ if TYPE_CHECKING:
     from symflex.algebra import Radicals
     from symflex.equations import Equations
     from symflex.equations.elimination import Closure
+
+KERNEL_TERMS = 50_000
+"""Terms of a quotient in kernels up to which it is reduced: four beams that differ in all have 29,000, which
+takes twenty seconds; a portal frame of 160,000 takes more than two gigabytes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,9 +41,10 @@ class Expansion:
     radicals: Radicals  # the relations of roots over ``ring``
     # What definitions, and propagators, are over ``ring``.
     images: dict[str, Factored] = field(default_factory=dict)
+    most: int = TERM_LIMIT  # terms of one factor
 
     @staticmethod
-    def of(equations: Equations, kept: Collection[str] = ()) -> Expansion:
+    def of(equations: Equations, kept: Collection[str] = (), most: int | None = None) -> Expansion:
         """Return the expansion of some equations, each definition opened once, but for those ``kept``."""
         plain = (
             LAPLACE,
@@ -49,7 +57,8 @@ class Expansion:
         propagation = equations.propagation
         ring = Ring(plain) if propagation is None else Ring((*plain, *propagation.table.generators))
         radicals = radicals_of(ring, equations.constants, equations.model.parameters)
-        made = Expansion(equations.ring, Ring(plain), ring, radicals)
+        most = most or (TERM_LIMIT if propagation is None else KERNEL_TERMS)
+        made = Expansion(equations.ring, Ring(plain), ring, radicals, most=most)
         if propagation is not None:
             # Propagators hold no definitions, but definitions may hold delays.
             inner = [made.generator(n) for n in propagation.kernel_ring.names]
@@ -82,7 +91,7 @@ class Expansion:
             raise ModelError(Diagnostic("SF215", message))
         if len(factor) == 1:
             return known[0]
-        return compose_rational(self.ring, factor, images)
+        return compose_rational(self.ring, factor, images, self.most)
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,13 +117,19 @@ class Opening:
 
 SMALL = 100_000
 """Number of terms up to which the engine composes at once."""
+HELD = 4
+"""How many times as many terms as are allowed may be held before they are added up."""
 
 
-def compose_rational(ring: Ring, factor: fmpz_mpoly, images: Sequence[Factored | None]) -> Factored:
+def compose_rational(
+    ring: Ring, factor: fmpz_mpoly, images: Sequence[Factored | None], most: int = TERM_LIMIT
+) -> Factored:
     """Return ``factor`` over ``ring`` with the images in place of its generators.
 
-    An image is ``None`` where a generator does not occur.
+    An image is ``None`` where a generator does not occur. Raises BudgetError: SF502 when far more than
+    ``most`` terms come of it.
     """
+    most = min(most, MEMORY_LIMIT // ring.bytes_of(1))
     degrees = [int(d) for d in factor.degrees()]
     if _is_small(factor, images):
         zero = ring.constant(0)
@@ -135,14 +150,27 @@ def compose_rational(ring: Ring, factor: fmpz_mpoly, images: Sequence[Factored |
     }
     powers: dict[tuple[int, int], fmpz_mpoly] = {}
     terms: list[fmpz_mpoly] = []
+    held = 0
     for monomial, coefficient in factor.terms():
-        term = ring.constant(int(coefficient))
-        for i, below in denominators.items():
-            exponent = int(monomial[i])
+        spend()
+        used = [(i, int(monomial[i])) for i in denominators]
+        for i, exponent in used:
             if (i, exponent) not in powers:
-                raised = wholes[i] ** exponent * below ** (degrees[i] - exponent)
+                raised = wholes[i] ** exponent * denominators[i] ** (degrees[i] - exponent)
                 powers[i, exponent] = raised.expand()
-            term = term * powers[i, exponent]
+        size = prod(len(powers[each]) for each in used)
+        held += size
+        if held > HELD * most:
+            # Refused before it is made: the engine does not survive running out of memory.
+            terms = [_sum(terms, ring)]
+            held = len(terms[0]) + size
+            if held > most:
+                message = f"the closed form would have more than {most} terms before it is reduced"
+                hint = "let equal parts share their parameters, or split the model"
+                raise BudgetError(Diagnostic("SF502", message, None, hint))
+        term = ring.constant(int(coefficient))
+        for each in used:
+            term = term * powers[each]
         terms.append(term)
     total = _sum(terms, ring)
     scale = Factored.number(ring, 1)

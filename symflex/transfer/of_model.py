@@ -22,8 +22,8 @@ from symflex.model.along import is_tapered
 from symflex.model.signs import is_passive
 from symflex.transfer import nested_form
 from symflex.transfer.bind import bind
+from symflex.transfer.derive import Terms, nested_transfer
 from symflex.transfer.derive import derive_all as derive_from
-from symflex.transfer.derive import nested_transfer
 from symflex.transfer.nested_form import bind_nested
 
 if TYPE_CHECKING:
@@ -41,6 +41,9 @@ if TYPE_CHECKING:
 
 EXPANDED_TERMS = 5_000
 """Terms of a closed determinant beyond which nobody reads it: more than fifty pages."""
+UNASKED = Terms(EXPANDED_TERMS, 10_000)
+"""The same of a distributed model, where the expanded form was not asked for: counted as it is multiplied
+out, since an estimate says little where one member's motion is another's. A second or two."""
 EXPANDED_PRODUCTS = 500
 """The same of a distributed model, where a term holds kernels of every member: four beams on springs have
 900, which print on 1,500 lines, three have 120."""
@@ -125,10 +128,12 @@ def derive_all(model: Model, pairs: Sequence[tuple[str, str]] | None = None) -> 
     return _derive_expanded(model, wanted)
 
 
-def _derive_expanded(model: Model, wanted: Sequence[tuple[str, str]]) -> tuple[TransferFunction, ...]:
+def _derive_expanded(
+    model: Model, wanted: Sequence[tuple[str, str]], most: Terms | None = None
+) -> tuple[TransferFunction, ...]:
     """Return what :func:`derive_all` does, of a model known not to be too large."""
     try:
-        found = derive_from(assemble(model), wanted)
+        found = derive_from(assemble(model), wanted, most)
     except BudgetError as error:
         if error.diagnostics[0].code not in ("SF501", "SF502") or not model.is_distributed:
             raise
@@ -136,12 +141,12 @@ def _derive_expanded(model: Model, wanted: Sequence[tuple[str, str]]) -> tuple[T
         joined = equations_room.assemble(model, nested_transfer, is_joined=True)
         if not joined.is_joined:
             raise
-        found = derive_from(joined, wanted)
+        found = derive_from(joined, wanted, most)
     mixed = [i for i, tf in enumerate(found) if tf.is_mixed]
     if not mixed:
         return found
     nameless = equations_room.assemble(model, nested_transfer, is_nameless=True)
-    again = dict(zip(mixed, derive_from(nameless, [wanted[i] for i in mixed]), strict=True))
+    again = dict(zip(mixed, derive_from(nameless, [wanted[i] for i in mixed], most), strict=True))
     return tuple(again.get(i, tf) for i, tf in enumerate(found))
 
 
@@ -209,7 +214,7 @@ def derive_as(
             reason = f"in nested form: the expanded determinant would have {_some(terms)} terms"
             return nested_form.derive_nested(equations, pairs), reason
     try:
-        found = _derive_expanded(model, pairs)
+        found = _derive_expanded(model, pairs, UNASKED if model.is_distributed else None)
         # Where one beam's motion is another's, the estimate may be far too small.
         if solves and _may_be_large(model) and max(map(_kernel_products, found)) > CODE_PRODUCTS:
             return derive_nested(model, pairs), SOLVED
@@ -333,7 +338,7 @@ def derive_for_roots(
     most = QUICK_PRODUCTS if is_quick else EXPANDED_PRODUCTS
     if not is_counted and _expanded_terms(numbered, equations, pairs[0]) <= most:
         try:
-            return tuple(bind(tf) for tf in _derive_expanded(model, pairs))
+            return tuple(bind(tf) for tf in _derive_expanded(model, pairs, UNASKED))
         except BudgetError as error:
             if error.diagnostics[0].code not in ("SF501", "SF502"):
                 raise

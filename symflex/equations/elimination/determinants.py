@@ -55,8 +55,8 @@ class Determinants:
     den: fmpz_mpoly  # the determinant, not zero, over the closed ring
 
     @staticmethod
-    def of(equations: Equations) -> Determinants:
-        """Return the determinants of a system.
+    def of(equations: Equations, most: int | None = None) -> Determinants:
+        """Return the determinants of a system; minors of more than ``most`` terms are refused.
 
         Raises ModelError: SF30x when the equations are singular, with the reason; BudgetError: SF502 when the
         determinant would be too large.
@@ -66,7 +66,9 @@ class Determinants:
         if len(reduced.rows) != len(reduced.columns):
             raise explain_singular(equations)
         order = expansion_order(reduced.rows, reduced.columns)
-        minors = Minors(tuple(reduced.rows[i] for i in order), ring=system.closure.ring)
+        if most is None and equations.propagation is not None:
+            most = KERNEL_TERMS
+        minors = Minors(tuple(reduced.rows[i] for i in order), ring=system.closure.ring, most=most)
         den = minors.determinant(sum(1 << c for c in reduced.columns))
         if den.is_zero():
             raise explain_singular(equations)
@@ -103,6 +105,9 @@ nested, a chain of 700 masses takes 2.4 s and 60 MB."""
 MEMORY_LIMIT = 300_000_000
 """Bytes that all minors of a system may take together: a free chain of sixteen masses needs 270 MB. The
 engine takes almost three times as much for a while."""
+KERNEL_TERMS = 10_000
+"""Terms of one minor of a distributed system: four beams that differ in all have 2,500. The greatest common
+divisor of two of 26,000 terms takes half a minute and more than a gigabyte."""
 
 Entry = TypeVar("Entry")
 Value = TypeVar("Value")
@@ -179,6 +184,7 @@ class Minors(LaplaceExpansion["fmpz_mpoly", "fmpz_mpoly"]):
     """
 
     ring: Ring = field(kw_only=True)
+    most: int | None = field(default=None, kw_only=True)  # terms of one of them
     _bytes: int = 0
 
     def _one(self) -> fmpz_mpoly:
@@ -188,6 +194,8 @@ class Minors(LaplaceExpansion["fmpz_mpoly", "fmpz_mpoly"]):
         self._bytes += self.ring.bytes_of(len(value))
         if self._bytes > MEMORY_LIMIT:
             raise _too_large("the determinant has too many minors or terms")
+        if self.most is not None and len(value) > self.most:
+            raise _too_large(f"its determinant would have more than {self.most} terms")
 
     def _expand(self, entries: Mapping[int, fmpz_mpoly], below: int, columns: int) -> fmpz_mpoly:
         total = self.ring.constant(0)
