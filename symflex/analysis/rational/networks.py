@@ -8,7 +8,8 @@ bounded there: so are, by Cauchy's estimate, the errors of its Taylor coefficien
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import TYPE_CHECKING
@@ -41,35 +42,45 @@ class NetworkSides:
 
     bound: BoundNested
     reach: float  # how far from 0 points are asked for [rad/s]
-    _known: dict[int, tuple[DiscSide, DiscSide]] = field(default_factory=dict)  # by digits
+    _known: dict[int, tuple[DiscSeries, DiscSeries]] = field(default_factory=dict)  # by digits
 
     @cached_property
     def _cramer(self) -> CramerEquations:
         source = self.bound.source
         return CramerEquations.of(equations_of(self.bound), source.output.name, source.input.name)
 
-    def _to_digits(self, digits: int) -> tuple[DiscSide, DiscSide]:
-        """Return denominator and numerator; SF405 where they are not enclosed in the disc."""
-        if digits not in self._known:
-            bits = SERIES_BITS + 2 * bits_for_digits(digits)
-            search = DiscSearch(self._cramer, digits, entered_budget(), (False, False), bits)
-            try:
-                radius = WIDER * self.reach or search.radius_of(FEWEST_MODES)
-                self._known[digits] = search.sides(radius)
-            except (EssentialSingularityError, UndecidedError) as error:
-                message = f"the determinants of {self.bound.name} are not known as far as its poles"
-                hint = "ask for fewer modes"
-                raise UncertifiedError(Diagnostic("SF405", message, None, hint)) from error
-        return self._known[digits]
+    def _search(self, digits: int) -> tuple[DiscSearch, float]:
+        """Return a search to so many digits, and the radius of its disc."""
+        bits = SERIES_BITS + 2 * bits_for_digits(digits)
+        search = DiscSearch(self._cramer, digits, entered_budget(), (False, False), bits)
+        return search, WIDER * self.reach or search.radius_of(FEWEST_MODES)
+
+    @contextmanager
+    def _enclosed(self) -> Iterator[None]:
+        try:
+            yield
+        except (EssentialSingularityError, UndecidedError) as error:
+            message = f"the determinants of {self.bound.name} are not known as far as its poles"
+            hint = "ask for fewer modes"
+            raise UncertifiedError(Diagnostic("SF405", message, None, hint)) from error
 
     def taylor(self, digits: int) -> tuple[Taylor, Taylor]:
-        """Return the Taylor coefficients of numerator and denominator at points of the disc."""
-        den, num = self._to_digits(digits)
-        return partial(_coefficients, num.series), partial(_coefficients, den.series)
+        """Return the Taylor coefficients of numerator and denominator at points of the disc.
+
+        SF405 where they are not enclosed there.
+        """
+        if digits not in self._known:
+            with self._enclosed():
+                search, radius = self._search(digits)
+                self._known[digits] = search.series(radius)
+        den, num = self._known[digits]
+        return partial(_coefficients, num), partial(_coefficients, den)
 
     def at_zero(self, digits: int) -> tuple[DiscSide, DiscSide]:
         """Return numerator and denominator, whose orders at 0 are proved; SF405 where they are not."""
-        den, num = self._to_digits(digits)
+        with self._enclosed():
+            search, radius = self._search(digits)
+            den, num = search.sides(radius)
         if den.zero_reach or num.zero_reach:
             message = f"the behaviour of {self.bound.name} near s = 0 cannot be told"
             raise UncertifiedError(Diagnostic("SF405", message))
@@ -82,6 +93,5 @@ def _coefficients(series: DiscSeries, centre: acb, terms: int) -> list[acb] | No
         room = 1 - abs(x)
         if not room > 0:
             return None
-        local = series.about(x)[:terms]
-        local += [acb(0)] * (terms - len(local))
+        local = series.first_about(x, terms)
         return [(c + ball_about_zero(series.off / room**k)) / series.radius**k for k, c in enumerate(local)]

@@ -32,7 +32,7 @@ from symflex.analysis.time_response.function_size import ZERO, SizeOfExponential
 from symflex.analysis.time_response.lossless_modes import LosslessModes, lossless_modes
 from symflex.analysis.time_response.lossy_modes import LossyBound, lossy_bound
 from symflex.analysis.time_response.passive_modes import PassiveBound, passive_bound
-from symflex.budget import entered_budget
+from symflex.budget import entered_budget, spend
 from symflex.errors import BudgetError, Diagnostic, UncertifiedError
 from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.winding import RootOnPathError
@@ -87,12 +87,22 @@ NEXT_TO = 0.05
 """How far from there it may be, over the last step."""
 ESTIMATED_MODES = 25
 """Where the rest is estimated."""
+FEW_ESTIMATED = 12
+"""The same of networks at first: 25 modes of two links that lose energy in the material take a minute."""
+LITTLE = 1e-3
+"""Estimated rest over the largest value for which these few are enough."""
+HOPELESS = 10
+"""The same from which on more of them do not help."""
 LAST_MODES = 5
 """From whose residues the rest is estimated."""
 SLOWEST = 0.9
 """Half of a sum over that of the quarter before: it falls off so slowly that nothing is said beyond."""
 FAR = 100
 """Of the highest pole, where the transfer function shows how a response begins; 1 where members taper."""
+MOST_BITS = 16_384
+"""To which it shows that."""
+CLOSELY = 1e-12
+"""Of the largest term, how well that is known."""
 SURER = 2
 """By what the lack at t = 0 is multiplied: terms that differ in sign may add up to more later."""
 TOO_MUCH = 0.3
@@ -228,6 +238,7 @@ class PartialSum:
     speed: arb | None = None  # how much the derivative of what is left out is at most, where that is known
     fade: arb = ZERO  # at a time t [s] exp(-fade t) times the rest is left, at most [1/s]
     method: str = "estimated modes"  # what bounds the rest, such as ``passive modes``
+    count: int = ESTIMATED_MODES  # of modes, where it is estimated
 
     @property
     def left(self) -> arb:
@@ -534,21 +545,23 @@ def estimated(bound: AnyBoundFunction, integrations: int, times: SampleTimes) ->
     largest = max((abs(y.mid()) for y in sampled.values), default=arb(0))
     told = sum(bool(y.rad() < TOO_MUCH * largest) for y in sampled.values)
     if 2 * told < len(sampled.values):
-        raise _said_nothing(bound)
-    return sampled, f"what the modes beyond the lowest {ESTIMATED_MODES} add is estimated"
+        raise _said_nothing(bound, integrations)
+    return sampled, f"what the modes beyond the lowest {found.count} add is estimated"
 
 
 def estimated_step(bound: AnyBoundFunction, times: SampleTimes) -> PartialSum:
     """Return a step response whose rest is estimated, as it is at first; SF810 where that is too much."""
     found = estimated_modes(bound, 1, times)
     if not found.rest < TOO_MUCH * max((abs(y.mid()) for y in found.values), default=arb(0)):
-        raise _said_nothing(bound)
+        raise _said_nothing(bound, 1)
     return found
 
 
-def _said_nothing(bound: AnyBoundFunction) -> UncertifiedError:
+def _said_nothing(bound: AnyBoundFunction, integrations: int) -> UncertifiedError:
     message = f"the modes of {bound.name} fall off too slowly to say what it does in time"
-    hint = "ask for a displacement, or a step in place of an impulse"
+    # The smoother the input is, the less high modes add.
+    smoother = ("a step in place of an impulse", "a ramp in place of a step")[integrations : integrations + 1]
+    hint = " or ".join([*(f"ask for {each}," for each in smoother), "filter the output"])
     return UncertifiedError(Diagnostic("SF810", message, None, hint))
 
 
@@ -557,8 +570,20 @@ def estimated_modes(bound: AnyBoundFunction, integrations: int, times: SampleTim
 
     Higher modes are taken to fade no more slowly than the slowest of the upper half of those found.
     """
+    if isinstance(bound, BoundNested):
+        few = _estimated_sum(bound, integrations, times, FEW_ESTIMATED)
+        largest = max((abs(y.mid()) for y in few.values), default=arb(0))
+        left = sorted(few.at_times or (few.rest,), key=arb.mid)
+        typical = left[len(left) // 2]
+        if typical < LITTLE * largest or not typical < HOPELESS * largest:
+            return few
+    return _estimated_sum(bound, integrations, times, ESTIMATED_MODES)
+
+
+def _estimated_sum(bound: AnyBoundFunction, integrations: int, times: SampleTimes, count: int) -> PartialSum:
+    """Return the sum over so many modes."""
     # Zeros matter in residues alone; to find them takes as long as to find the poles.
-    located = locate(bound, Modes(ESTIMATED_MODES), DIGITS, with_zeros=False).complete()
+    located = locate(bound, Modes(count), DIGITS, with_zeros=False).complete()
     poles = [root for root in located.all_poles if not root.im < 0 and not root.is_zero]
     rings = _rings(bound, poles, integrations)
     apart = [root for root in poles if not any(ring.holds(root.enclosure()) for ring, _, _ in rings)]
@@ -583,7 +608,8 @@ def estimated_modes(bound: AnyBoundFunction, integrations: int, times: SampleTim
                 kernel.function == "entry" for kernel in bound.kernels.kernels
             )
             far = (1 if tapers else FAR) * max(abs(term.rate).upper() for term in terms)
-            begun, sooner = (_begun(bound, integrations, s) for s in (far, far / 2))
+            small = CLOSELY * max(sizes, default=0.0)
+            begun, sooner = (_begun(bound, integrations, s.mid(), small) for s in (far, far / 2))
             at_once = sum((term.coefficients[0] for term in (*origin, *terms)), acb(0)).real
             rest += SURER * abs(at_once - begun)
             slowest = max(upper, key=arb.mid).min(0)
@@ -592,13 +618,19 @@ def estimated_modes(bound: AnyBoundFunction, integrations: int, times: SampleTim
                 # What fades begins smoothly: only at t = 0 itself do the modes not say more.
                 values[0] = begun + arb(0, SURER * abs(begun - sooner).upper())
                 at_times = (arb(0), *at_times[1:])
-        return PartialSum((*origin, *terms), tuple(values), rest, at_times)
+        return PartialSum((*origin, *terms), tuple(values), rest, at_times, count=count)
 
 
-def _begun(bound: AnyBoundFunction, integrations: int, far: arb) -> arb:
-    """Return what a response begins with, as far as the transfer function at a large s shows it."""
-    there = bound.enclosed(bits_for_digits(2 * DIGITS))(acb(far))
-    return (there / far ** (integrations - 1)).real
+def _begun(bound: AnyBoundFunction, integrations: int, far: arb, small: float) -> arb:
+    """Return what a response begins with, to something small, as the transfer function at a large s shows it."""
+    bits = bits_for_digits(2 * DIGITS)
+    # Between many members exponentials take each other out, and so far out these are large.
+    while True:
+        spend()
+        found = (bound.enclosed(bits)(acb(far)) / far ** (integrations - 1)).real
+        if found.rad() <= max(small, CLOSELY * abs(found).mid()) or bits >= MOST_BITS:
+            return found
+        bits *= 2
 
 
 def _rings(bound: AnyBoundFunction, poles: Sequence[Root], integrations: int) -> list[Ring]:

@@ -27,7 +27,7 @@ from symflex.roots.precision import bits_for_digits
 from symflex.roots.root import Root, mirror_images
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from symflex.budget import Budget
 
@@ -230,7 +230,23 @@ class DiscSearch:
                 break
         raise UndecidedError
 
+    def series(self, radius: float) -> tuple[DiscSeries, DiscSeries]:
+        """Return denominator and numerator in a disc about 0, whose roots nobody asks for.
+
+        EssentialSingularityError where roots accumulate in it.
+        """
+        return next(self._sampled(radius))
+
     def _sides(self, radius: float) -> tuple[DiscSide, DiscSide]:
+        for pair in self._sampled(radius):
+            den = self._side(pair[0], "den")
+            num = None if den is None else self._side(pair[1], "num")
+            if den is not None and num is not None:
+                return den, num
+        raise UndecidedError
+
+    def _sampled(self, radius: float) -> Iterator[tuple[DiscSeries, DiscSeries]]:
+        """Yield denominator and numerator in a disc, to ever more bits."""
         middle = arb(radius)
         bounds = []
         for ratio in RATIOS:
@@ -262,19 +278,13 @@ class DiscSearch:
                 values = circle_values(
                     partial(self._value, bits=bits), middle, count, symmetric=all(self.symmetric)
                 )
-            found = []
-            for i, name in enumerate(("den", "num")):
-                series = DiscSeries.of([getattr(v, name) for v in values], middle, bound[i], ratio, bits)
-                side = self._side(series, name)
-                if side is None:
-                    break
-                found.append(side)
-            if len(found) == 2:  # noqa: PLR2004
-                return found[0], found[1]
+            yield (
+                DiscSeries.of([v.den for v in values], middle, bound[0], ratio, bits),
+                DiscSeries.of([v.num for v in values], middle, bound[1], ratio, bits),
+            )
             extra *= 2
             if extra > 16 * self.series_bits:
                 break
-        raise UndecidedError
 
     def _order_at_zero(self, name: str, least: int) -> int | None:
         size = len(self.equations.entries) - (name == "den")

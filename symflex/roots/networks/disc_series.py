@@ -94,6 +94,14 @@ class DiscSeries:
         shifted: acb_poly = self.polynomial(acb_poly([x, 1]))
         return shifted.coeffs()
 
+    def first_about(self, x: acb, count: int) -> list[acb]:
+        """Return so few of these that the values of derivatives take less time."""
+        found, derivative, factorial = [], self.polynomial, 1
+        for k in range(count):
+            found.append(derivative(x) / factorial)
+            derivative, factorial = derivative.derivative(), factorial * (k + 1)
+        return found
+
     # -------------------------------------------------------------------------------------- counting
 
     def count(self) -> int:
