@@ -10,6 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
+from flint import nmod_poly
+
+from symflex.algebra.factored import PRIME, random_point, residue
 from symflex.errors import Diagnostic, ModelError
 
 if TYPE_CHECKING:
@@ -76,6 +79,8 @@ class Dispersion:
     start: tuple[Factored, ...] = ()
     singular: SingularStart | None = None  # where a stiffness vanishes at the start
     span: Span | None = None  # where such equations are written
+    # What is zero, besides s, where another law that was split from the same equations has a root of its own.
+    meets: tuple[Factored, ...] = ()
 
     @property
     def order(self) -> int:
@@ -91,7 +96,17 @@ class Dispersion:
             self.shift,
             *(x for row in (*self.matrix, *own) for x in row),
             *self.start,
+            *self.meets,
         )
+
+    @property
+    def has_double_root(self) -> bool:
+        """Tell whether two roots of the characteristic polynomial are equal at every s."""
+        if not self.characteristic:
+            return False
+        point = random_point(self.characteristic[0].ring.names)
+        polynomial = nmod_poly([*(residue(c, point) for c in self.characteristic), 1], PRIME)
+        return bool(polynomial.gcd(polynomial.derivative()).degree() > 0)
 
     def replaced(self, image: Callable[[Factored], Factored]) -> Dispersion:
         """Return the law with every coefficient replaced."""
@@ -106,6 +121,7 @@ class Dispersion:
             shift=image(self.shift),
             matrix=rows(self.matrix),
             start=tuple(map(image, self.start)),
+            meets=tuple(map(image, self.meets)),
             singular=own and replace(own, matrix=rows(own.matrix), values=rows(own.values)),
         )
 

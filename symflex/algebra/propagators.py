@@ -86,23 +86,25 @@ class Propagation:
             for p in self.propagators
         }
 
-    def fundamental(self, dispersion: int, length: Factored) -> tuple[Factored, ...]:
+    def fundamental(self, dispersion: int, length: Factored, multiplicity: int = 1) -> tuple[Factored, ...]:
         """Return ``h, h', ..., h^(n-1)`` of a dispersion at a length, over ``ring``.
 
-        Of a varying one, the entries of the fundamental matrix, row by row.
+        With a multiplicity, those of the power of its characteristic polynomial. Of a varying one, the
+        entries of the fundamental matrix, row by row.
         """
         law = self.table.dispersions[dispersion]
         if law.kind == "varying":
             return self._entries(dispersion, length)
         one = Factored.number(self.ring, 1)
-        n = law.order
+        n = law.order * multiplicity
         if length.is_zero:
             return tuple(one if k == n - 1 else one * 0 for k in range(n))
         position = self._places[dispersion][residue(length, self._point)]
-        if law.kind == "exponential":
-            return (self._known[dispersion, position, EXPONENTIAL],)
-        below = _denominators(law, self.ring)
-        plain = [self._known[dispersion, position, k] / below[k] for k in range(n)]
+        plain = [one]
+        if law.kind != "exponential":
+            below = _denominators(law, self.ring)
+            plain = [self._known[dispersion, position, k] / below[k] for k in range(law.order)]
+        plain = _repeated(plain, _eigenvalue(law, self.ring), self.embed(length), multiplicity)
         if law.shift.is_zero:
             return tuple(plain)
         minus = -self.embed(law.shift)
@@ -170,6 +172,36 @@ def _denominators(law: Dispersion, ring: Ring) -> tuple[Factored, ...]:
             split = w[0] ** 2 - w[1] ** 2
             return (w[0] * w[1] * split, split, split, split)
     return (one,) * law.order
+
+
+def _eigenvalue(law: Dispersion, ring: Ring) -> Factored:
+    """Return kappa of a law ``lambda^n = kappa``."""
+    w = [Factored.generator(ring, name) for name in law.wavenumbers]
+    match law.kind:
+        case "wave":
+            return w[0] ** 2
+        case "bending":
+            return w[0] ** 4 * -4
+    return Factored.number(ring, 0)
+
+
+def _repeated(plain: list[Factored], kappa: Factored, x: Factored, multiplicity: int) -> list[Factored]:
+    """Return ``h, h', ...`` of ``(lambda^n - kappa)^m`` from those of m = 1.
+
+    With g for one power less, ``h^(n-1) = x g/(n (m - 1))`` and ``h^(n) - kappa h = g``: the inverse Laplace
+    transforms of a derivative with respect to lambda, and of the definition.
+    """
+    n, found = len(plain), plain
+    for m in range(1, multiplicity):
+        # The next derivative of g follows from its equation, whose coefficients are binomial.
+        known = [found[n * i] * (-kappa) ** (m - i) * comb(m, i) for i in range(m) if not kappa.is_zero]
+        beyond = [*found, -sum(known, x * 0)]
+        # ``(x g)^(k) = x g^(k) + k g^(k-1)``
+        product = [x * g + (beyond[k - 1] * k if k else x * 0) for k, g in enumerate(beyond)]
+        high = [p / (n * m) for p in product]
+        low = [(product[k + 1] / (n * m) - beyond[k]) / kappa for k in range(n - 1)]
+        found = [*low, *high]
+    return found
 
 
 WAVENUMBER_NAMES = {"wave": ("gamma",), "bending": ("mu",), "pair": ("lambda_1", "lambda_2")}

@@ -332,21 +332,22 @@ def find_point(
 def _with_kernels(
     ring: Ring, table: KernelTable, values: dict[str, nmod_poly], field: TaylorField
 ) -> dict[str, nmod_poly] | None:
-    starts: dict[tuple[str, Factored], int] = {}
+    starts: dict[tuple[int, int], int] = {}
     known: dict[tuple[Dispersion, str, Factored, bool], tuple[nmod_poly, nmod_poly]] = {}
     for kernel in table.kernels:
         if kernel.function in ("fundamental", "entry"):
             continue
-        key = (kernel.wavenumber, kernel.length)
-        start = starts.setdefault(key, pow(BASE, 1001 + 2 * len(starts), field.prime))
         circular = kernel.function in ("cos", "sin")
-        pair = (kernel.dispersion, *key, circular)
+        pair = (kernel.dispersion, kernel.wavenumber, kernel.length, circular)
         if pair not in known:
             length = field.rational(kernel.length, ring.names, values)
             shift = field.rational(kernel.dispersion.shift, ring.names, values)
             if length is None or shift is None:
                 return None
             rate = values[kernel.wavenumber] if kernel.wavenumber else -shift
+            # Where two wavenumbers meet, both start from one exponential per length.
+            place = (int(rate[0]), int(length[0]))
+            start = starts.setdefault(place, pow(BASE, 1001 + 2 * len(starts), field.prime))
             known[pair] = field.even_odd(field.times(rate, length), start, circular=circular)
         even, odd = known[pair]
         if kernel.function == "exp":

@@ -330,6 +330,7 @@ class _Assembly:
             None if self.distributed is None or self.ring.is_sparse or self.is_cut else self._cleared(),
             tuple(self._pieces() if self.is_cut else self.continua),
             self.distributed is not None and bool(self.distributed.links),
+            self.distributed is not None and self.distributed.is_split,
         )
 
     def _cleared(self) -> Factored:

@@ -55,14 +55,14 @@ from symflex.model.along import COORDINATE, varies_along_x
 from symflex.model.brackets import named_brackets
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 
     from symflex.algebra.dispersion import SingularStart
     from symflex.algebra.propagators import Propagation
     from symflex.equations.evaluate import ExactEvaluator
     from symflex.errors import Span
     from symflex.expressions import Equation
-    from symflex.library.fields import Matrix
+    from symflex.library.partial_fractions import Matrix
     from symflex.model import ExactValue, FieldProblem, Model, PlacedElement
 
 
@@ -235,6 +235,12 @@ class Distributed:
     links: tuple[ChainEnd, ...] = ()  # of elements that follow from the start of a chain
 
     @property
+    def is_split(self) -> bool:
+        """True when what is coupled has several laws somewhere, or equal wavenumbers."""
+        media = [*(medium for medium, _ in self.lines.values()), *(s.medium for s in self.solutions.values())]
+        return any(part.is_share for medium in media for part, _ in medium.parts)
+
+    @property
     def turned(self) -> frozenset[str]:
         """The line elements whose state follows from that at their second end, a tip."""
         return frozenset(name for name, (medium, _) in self.lines.items() if medium.is_turned)
@@ -271,8 +277,15 @@ class Distributed:
 class _Demands:
     """Collects dispersions, each once, with the lengths it is needed at."""
 
-    def __init__(self, along: AlongX | None, *, is_followed: bool) -> None:
+    def __init__(
+        self,
+        along: AlongX | None,
+        settled: Callable[[Factored], Factored] | None,
+        *,
+        is_followed: bool,
+    ) -> None:
         self.along = along
+        self.settled = settled  # of components(), None where wavenumbers get no names
         self.is_followed = is_followed
         self.keys: dict[tuple[str, ...], int] = {}
         self.found: dict[tuple[str, ...], tuple[Component, ...]] = {}
@@ -289,7 +302,7 @@ class _Demands:
         key = tuple(text(x) for row in system.matrix for x in row)
         try:
             # Members of one material and section have equal equations, mostly.
-            found = self.found.get(key) or components(system)
+            found = self.found.get(key) or components(system, self.settled)
         except BudgetError as error:
             raise BudgetError(*(replace(d, span=span) for d in error.diagnostics)) from None
         self.found[key] = found
@@ -298,8 +311,9 @@ class _Demands:
             if law.kind == "polynomial":
                 parts.append((part, POLYNOMIAL))
                 continue
-            dispersion = Dispersion(name, law.kind, law.coefficients, law.shift)  # type: ignore[arg-type]
-            parts.append((part, self._number((law.kind, *law.key), dispersion)))
+            dispersion = Dispersion(name, law.kind, law.coefficients, law.shift, meets=part.meets)  # type: ignore[arg-type]
+            key = (law.kind, *law.key, *map(text, part.meets))
+            parts.append((part, self._number(key, dispersion)))
         return Medium(system, tuple(parts))
 
     def _varying(
@@ -372,7 +386,9 @@ def survey(
     ModelError: SF305 when the highest derivatives of a field are not determined, and what evaluation raises.
     """
     moving = None if functions is None else AlongX(evaluator.along_x(), functions)
-    demands = _Demands(moving, is_followed=is_followed)
+    is_nameless = is_nameless or is_cut
+    settled = None if is_nameless or evaluator.ring.is_sparse else evaluator.settled
+    demands = _Demands(moving, settled, is_followed=is_followed)
     problems: list[Diagnostic] = []
     lines: list[tuple[str, Medium, Factored]] = []
     delays: list[tuple[str, int, Factored]] = []
@@ -425,7 +441,6 @@ def survey(
         raise (BudgetError if all(d.code.startswith("SF5") for d in problems) else ModelError)(*problems)
     if not (lines or delays or solutions):
         return None
-    is_nameless = is_nameless or is_cut
     propagation = propagate(evaluator.ring, _nameless(demands.demands) if is_nameless else demands.demands)
     one = Factored.number(propagation.ring, 1)
     return Distributed(
@@ -558,7 +573,7 @@ def _fundamental(
     """Return ``h, ..., h^(n-1)`` of a part at a length."""
     n = len(part.coefficients)
     if number != POLYNOMIAL:
-        return propagation.fundamental(number, length)
+        return propagation.fundamental(number, length, part.multiplicity)
     x = propagation.embed(length)
     return tuple(_monomial(x, n - 1 - k) for k in range(n))
 
@@ -593,7 +608,7 @@ def _driven(medium: Medium, length: Factored, propagation: Propagation) -> list[
     one = zero + 1
     columns = [[zero] * len(medium.system.states) for _ in medium.system.loads]
     for part, number in medium.parts:
-        n = len(part.states)
+        n = len(part.states) if part.matrix else len(part.coefficients)
         if not _is_loaded(part, medium.system):
             continue
         h = _fundamental(part, number, length, propagation)

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from symflex.algebra import Factored
     from symflex.equations.equations import Continuum, Equations
-    from symflex.library.fields import Matrix
+    from symflex.library.partial_fractions import Matrix
 
 Value = TypeVar("Value")
 

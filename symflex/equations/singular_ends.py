@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from flint import fmpz_mpoly
 
-    from symflex.library.fields import Matrix
+    from symflex.library.partial_fractions import Matrix
 
 POWER_LIMIT = 64
 """States that need a higher power of h meet an irregular point: powers would grow without end."""

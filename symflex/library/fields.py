@@ -22,13 +22,13 @@ from typing import TYPE_CHECKING, Protocol
 
 from symflex.algebra.dispersion import DispersionKind
 from symflex.errors import BudgetError, Diagnostic
+from symflex.library.partial_fractions import Share, factors, shares, solve, squared
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
+    from collections.abc import Callable, Collection, Mapping, Sequence
 
     from symflex.algebra import Factored
-
-Matrix = tuple[tuple["Factored", ...], ...]
+    from symflex.library.partial_fractions import Matrix
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -134,7 +134,7 @@ def first_order(
         [-e.terms.get(state, zero) for state in states] + [-e.loads.get(i, zero) for i in inputs]
         for e in equations
     ]
-    solved = _solve(highest, right)
+    solved = solve(highest, right)
     if solved is None:
         return None
     position = {state: i for i, state in enumerate(states)}
@@ -152,26 +152,6 @@ def first_order(
             loads.append(tuple(row[len(states) :]))
     columns: Matrix = tuple(tuple(loads[i][j] for i in range(len(states))) for j in range(len(inputs)))
     return FieldSystem(tuple(u + "'" * k for u, k in states), tuple(matrix), columns)
-
-
-def _solve(matrix: list[list[Factored]], right: list[list[Factored]]) -> list[list[Factored]] | None:
-    """Return ``matrix^-1 right`` by Gauss-Jordan elimination, ``None`` when the matrix is singular."""
-    rows = [[*a, *b] for a, b in zip(matrix, right, strict=True)]
-    n = len(matrix)
-    for column in range(n):
-        pivot = next((r for r in range(column, n) if not rows[r][column].is_zero), None)
-        if pivot is None:
-            return None
-        rows[column], rows[pivot] = rows[pivot], rows[column]
-        scale = rows[column][column]
-        rows[column] = [x / scale for x in rows[column]]
-        for r in range(n):
-            factor = rows[r][column]
-            if r != column and not factor.is_zero:
-                rows[r] = [
-                    x if y.is_zero else x - factor * y for x, y in zip(rows[r], rows[column], strict=True)
-                ]
-    return [row[n:] for row in rows]
 
 
 def rod(s: Factored, values: Mapping[str, Factored]) -> FieldSystem:
@@ -324,18 +304,22 @@ def text(value: Factored) -> str:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Component:
-    """A part of a field's states that is coupled to no other part.
+    """A part of a field's states that is coupled to no other part, or the share that one law has in it.
 
     Of a member at an angle, the parts in its own axes: stretching and bending both move x and y.
     """
 
     states: tuple[int, ...]  # the positions, among the system's states, of those it moves
-    characteristic: Characteristic  # of this part alone
-    coefficients: tuple[Factored, ...]  # ``c_0, ..., c_(n-1)`` of the same polynomial, not shifted
+    characteristic: Characteristic  # of this part alone, without its multiplicity
+    # ``c_0, ..., c_(n-1)`` of the same polynomial to the power of the multiplicity, not shifted
+    coefficients: tuple[Factored, ...]
     adjugate: tuple[Matrix, ...]  # ``B_0, ..., B_(n-1)``
     # Of a part whose coefficients vary along x, which has no such polynomial: the coefficients of its states
     # and then of the loads, which are states that stay what they are.
     matrix: Matrix = ()
+    multiplicity: int = 1  # of every exponent
+    is_share: bool = False  # whether it is what a factor of a characteristic polynomial adds
+    meets: tuple[Factored, ...] = ()  # of a share, see :class:`symflex.algebra.Dispersion`
 
 
 def varies(system: FieldSystem, along: Collection[str]) -> bool:
@@ -356,21 +340,51 @@ def varying_components(system: FieldSystem) -> tuple[Component, ...]:
     return tuple(found)
 
 
-def components(system: FieldSystem) -> tuple[Component, ...]:
-    """Return the uncoupled parts of a field's equations, each with its characteristic polynomial."""
+def components(
+    system: FieldSystem, settled: Callable[[Factored], Factored] | None = None
+) -> tuple[Component, ...]:
+    """Return the uncoupled parts of a field's equations, each with its characteristic polynomial.
+
+    With ``settled``, which returns a value with all that is known of its generators put in, polynomials that
+    factor into such whose roots have a formula, and squares of these, give one part per factor.
+    """
     found = []
     axes = system.axes
     whole = system.matrix if axes is None else axes.own.matrix
     size = len(whole)
     places = {(i, j) for i in range(size) for j in range(size) if not whole[i][j].is_zero}
     for own in coupled_states(size, places):
-        states, matrix = own, tuple(tuple(whole[i][j] for j in own) for i in own)
+        matrix = tuple(tuple(whole[i][j] for j in own) for i in own)
         coefficients, adjugate = faddeev_leverrier(matrix)
-        if axes is not None:
-            adjugate = tuple(axes.turned(_spread(b, own, whole[0][0] * 0, len(whole))) for b in adjugate)
-            states = tuple(range(len(whole)))
-        found.append(Component(states, classify(coefficients), coefficients, adjugate))
+        plain = Share(coefficients, 1, coefficients, adjugate)
+        for share in (plain,) if settled is None else _split(plain, matrix, settled):
+            states, adjugate = own, share.adjugate
+            if axes is not None:
+                adjugate = tuple(axes.turned(_spread(b, own, whole[0][0] * 0, len(whole))) for b in adjugate)
+                states = tuple(range(len(whole)))
+            law, m = classify(share.factor), share.multiplicity
+            found.append(
+                Component(states, law, share.coefficients, adjugate, (), m, share is not plain, share.meets)
+            )
     return tuple(found)
+
+
+def _split(plain: Share, matrix: Matrix, settled: Callable[[Factored], Factored]) -> Sequence[Share]:
+    """Return the shares of the factors of a characteristic polynomial, all of whose roots have formulas."""
+    c, kind = plain.factor, classify(plain.factor).kind
+    if kind == "pair" and settled(c[2] ** 2 - c[0] * 4).is_zero:
+        found = [(squared(c), 2)]
+    elif kind in ("pair", "general"):
+        found = factors([settled(x) for x in c])
+    else:
+        return (plain,)
+    if len(found) == 1 and found[0][1] == 1:
+        return (plain,)
+    kinds = [classify(p).kind for p, _ in found]
+    if "general" in kinds or any(k == "pair" and m > 1 for k, (_, m) in zip(kinds, found, strict=True)):
+        return (plain,)
+    known = [f for row in matrix for x in row for f, e in x.factors if e < 0]
+    return shares(found, plain.adjugate, known) or (plain,)
 
 
 def _spread(matrix: Matrix, states: Sequence[int], zero: Factored, size: int) -> Matrix:

@@ -561,7 +561,7 @@ def _degenerate_points(bound: BoundTransferFunction) -> list[Root]:
     """Return where wavenumbers vanish or meet: what numerator and denominator share there is no mode."""
     roots: list[Root] = []
     for law in bound.kernels.dispersions:
-        values = list(law.characteristic[:1])
+        values = [*law.characteristic[:1], *law.meets]
         if law.kind == "pair":
             values.append(law.characteristic[2])
             values.append(law.characteristic[2] ** 2 - law.characteristic[0] * 4)

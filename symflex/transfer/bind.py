@@ -51,7 +51,7 @@ from symflex.transfer.lowest_terms import cancel
 from symflex.transfer.transfer_function import HiddenFactor, TransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Collection, Mapping, Sequence
 
     from flint import fmpz_mpoly
 
@@ -145,6 +145,8 @@ class BoundTransferFunction:
     kernels: KernelTable = NO_KERNELS
     parts: tuple[Factored, Factored] | None = None  # of a distributed system, :attr:`num` and :attr:`den`
     is_of_model: bool = True  # its poles are those of the source's model; not so of a loop gain
+    # Of one that was derived with numbers in place of some parameters, the function with all of them.
+    symbolic: TransferFunction | None = None
 
     def __repr__(self) -> str:
         return f"<BoundTransferFunction {self.name}>"
@@ -408,13 +410,17 @@ def bind(tf: TransferFunction, values: Mapping[str, Given] | None = None) -> Bou
     """
     used = (*tf.parameters, *(p for p in tf.hidden_parameters if p not in tf.parameters))
     exact = values_for(tf.model, used, dict(values or {}))
-    table = dict(exact)
     if tf.is_large:
-        return _derived_with_numbers(tf, exact)
-    coordinate = [COORDINATE] if any(law.matrix for law in tf.kernels.dispersions) else []
-    ring = Ring((LAPLACE, "pi", *coordinate, *_used_constants(tf), *tf.kernels.generators))
-    radicals = _radicals(tf, ring, table)
-    images = _Substitution(ring, tf.ratio.ring, table, radicals)
+        return _derived_with_numbers(tf, exact, [p.name for p in tf.model.parameters])
+    images = _substitution(tf, exact)
+    ring, radicals = images.ring, images.radicals
+    if degenerate := _degenerate(tf, images):
+        try:
+            return _derived_with_numbers(tf, exact, degenerate)
+        except ModelError as error:
+            message = f"a part of {tf.name} is 0/0 or 0 at every s for these values"
+            hint = f"a limit has its own equations ({error.diagnostics[0].message})"
+            raise ModelError(Diagnostic("SF231", message, None, hint)) from None
     # Kept apart, so that factors which these values make equal are still seen to cancel.
     above, below = Factored.number(ring, tf.ratio.unit), Factored.number(ring, 1)
     for factor, exponent in tf.ratio.factors:
@@ -441,11 +447,6 @@ def bind(tf: TransferFunction, values: Mapping[str, Given] | None = None) -> Bou
     if not tf.kernels:
         return _compared(BoundTransferFunction(tf, exact, ratio, tuple(hidden)))
     kernels = tf.kernels.embedded([(v, images.apply_factored(v)) for v in tf.kernels.values])
-    for law in kernels.dispersions:
-        if law.wavenumbers and law.characteristic[0].is_zero:
-            message = f"a wavenumber of {tf.name} is zero at every s for these values"
-            hint = "a rigid or massless limit has its own equations: write the zero in place of the parameter"
-            raise ModelError(Diagnostic("SF231", message, None, hint))
     parts = (images.apply_factored(tf.num), images.apply_factored(tf.den))
     return _compared(BoundTransferFunction(tf, exact, ratio, tuple(hidden), kernels, parts))
 
@@ -460,13 +461,59 @@ def _compared(bound: BoundTransferFunction) -> BoundTransferFunction:
     return bound
 
 
+def is_degenerate(tf: TransferFunction) -> bool:
+    """Tell whether a formula is 0/0 for the declared values, as where these make wavenumbers equal."""
+    used = tf.parameters
+    if not tf.kernels.wavenumbers or any(p.value is None for p in used):
+        return False
+    return bool(_degenerate(tf, _substitution(tf, read_values(used, {}))))
+
+
+def _substitution(tf: TransferFunction, values: Sequence[tuple[str, ExactValue]]) -> _Substitution:
+    coordinate = [COORDINATE] if any(law.matrix for law in tf.kernels.dispersions) else []
+    ring = Ring((LAPLACE, "pi", *coordinate, *_used_constants(tf), *tf.kernels.generators))
+    table = dict(values)
+    return _Substitution(ring, tf.ratio.ring, table, _radicals(tf, ring, table))
+
+
+def _degenerate(tf: TransferFunction, images: _Substitution) -> list[str]:
+    """Return the parameters whose values make a formula 0/0 at every s, none where it is not.
+
+    Two wavenumbers are equal then, or a difference of some is what it divides by.
+    """
+    zeros: list[fmpz_mpoly] = []
+    for law in tf.kernels.dispersions:
+        c = law.characteristic
+        zeros += [f for x in law.meets for f, _ in x.factors if images.apply_factored(x).is_zero]
+        if law.wavenumbers and images.apply_factored(c[0]).is_zero:
+            zeros += [f for f, _ in c[0].factors]
+        elif law.kind == "pair" and images.apply_factored(c[2] ** 2 - c[0] * 4).is_zero:
+            zeros += [f for x in c for f, _ in x.factors]
+        elif law.kind == "general" and law.replaced(images.apply_factored).has_double_root:
+            zeros += [f for x in c for f, _ in x.factors]
+    kernels = [tf.ratio.ring.index[name] for name in tf.kernels.generators]
+    for factor in (f for value in (tf.num, tf.den) for f, e in value.factors if e < 0 or value is tf.den):
+        plain = tf.kernels and not any(degree_in(factor, i) for i in kernels)
+        if plain and images.apply(factor).is_zero:
+            zeros.append(factor)
+    return [p.name for p in tf.parameters_in(zeros)]
+
+
 def _derived_with_numbers(
-    tf: TransferFunction, values: tuple[tuple[str, ExactValue], ...]
+    tf: TransferFunction, values: tuple[tuple[str, ExactValue], ...], names: Collection[str]
 ) -> BoundTransferFunction:
-    """Return a large function with numbers, derived with them from the start: none of its terms is made."""
-    numeric = with_numbers(tf.model, (), dict(values))
+    """Return a function derived with the values of some parameters from the start.
+
+    Of a large one none of its terms is made; where wavenumbers are equal, they are seen to be.
+    """
+    symbolic = [p.name for p in tf.model.parameters if p.name not in names]
+    numeric = with_numbers(tf.model, symbolic, dict(values), in_kernels=True)
     found = derive(assemble(numeric, nested_transfer), tf.output.name, tf.input.name)
-    return replace(bind(found), values=values)
+    if found.is_mixed:
+        nameless = assemble(numeric, nested_transfer, is_nameless=True)
+        found = derive(nameless, tf.output.name, tf.input.name)
+    left = {name: value for name, value in values if name in symbolic}
+    return replace(bind(found, left), values=values, symbolic=tf)
 
 
 def bind_polynomials(

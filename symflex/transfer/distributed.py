@@ -217,9 +217,11 @@ class KernelReduction:
 
     @cached_property
     def _vanishing(self) -> tuple[fmpz_mpoly, ...]:
-        """What vanishes with a wavenumber: s, and where foundations balance inertia."""
+        """What vanishes with a wavenumber or where two meet: s, and where foundations balance inertia."""
         found = [self.ring.context.gen(0)]
         for dispersion in self.table.dispersions:
+            for meeting in dispersion.meets:
+                found += [f for f, _ in meeting.factors if f not in found and degree_in(f, 0)]
             for factor, exponent in dispersion.characteristic[0].factors if dispersion.characteristic else ():
                 if exponent > 0 and degree_in(factor, 0) and factor not in found:
                     found.append(factor)
@@ -284,11 +286,17 @@ class KernelReduction:
         above, below = [one], [one]
         rest = Factored.number(self.ring, ratio.unit)
         splits = {d: self._split(d) for d in table.dispersions if d.kind == "pair"}
+        meets = [value for d in table.dispersions for value in d.meets]
+        meetings = [f for f in self._vanishing if any(value.exponent_of(f) for value in meets)]
+        series = [(f, OriginSeries(self.ring, table, f)) for f in meetings]
         for factor, exponent in ratio.factors:
             if not self.has_kernels(factor):
                 rest = rest * Factored(self.ring, Fraction(1), ((factor, exponent),))
                 continue
             orders = self._orders(vanishing, factor, table, splits)
+            for meeting, near in series:
+                order = near.order(Factored.polynomial(self.ring, factor)) or 0
+                orders = orders * Factored.polynomial(self.ring, meeting) ** order
             piece = Factored(self.ring, Fraction(1), ((factor, abs(exponent)),))
             (above if exponent > 0 else below).append(piece / orders ** abs(exponent))
             rest = rest * orders**exponent

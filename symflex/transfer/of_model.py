@@ -21,7 +21,7 @@ from symflex.model import with_numbers
 from symflex.model.along import is_tapered
 from symflex.model.signs import is_passive
 from symflex.transfer import nested_form
-from symflex.transfer.bind import bind
+from symflex.transfer.bind import bind, is_degenerate
 from symflex.transfer.derive import Terms, nested_transfer
 from symflex.transfer.derive import derive_all as derive_from
 from symflex.transfer.nested_form import bind_nested
@@ -58,6 +58,7 @@ CODE_MEMBERS = 4
 MOST_PRODUCTS = 20_000
 """The same, beyond which nothing expanded fits into memory: five beams have 8,000, six 70,000."""
 SOLVED = "solved as a network: code of the formula would be long (--representation expanded)"
+SPLIT = "solved as a network: where wavenumbers meet, code of the formula would lose digits"
 NEVER_LARGE = 20
 """Elements of a lumped model up to which it is not estimated either."""
 FEW_MEMBERS = 2
@@ -115,7 +116,8 @@ def check_along(model: Model) -> None:
 def derive_all(model: Model, pairs: Sequence[tuple[str, str]] | None = None) -> tuple[TransferFunction, ...]:
     """Return the transfer functions of the given pairs, all by default, from one elimination.
 
-    Those in which some wavenumbers have a formula and others have none take a second one, without names.
+    Those in which some wavenumbers have a formula and others have none, or that would be 0/0 for the declared
+    values, take a second one, without names.
     Raises BudgetError: SF501, SF502 when they are too large expanded.
     """
     wanted = model.transfer_functions if pairs is None else tuple(pairs)
@@ -142,7 +144,7 @@ def _derive_expanded(
         if not joined.is_joined:
             raise
         found = derive_from(joined, wanted, most)
-    mixed = [i for i, tf in enumerate(found) if tf.is_mixed]
+    mixed = [i for i, tf in enumerate(found) if tf.is_mixed or is_degenerate(tf)]
     if not mixed:
         return found
     nameless = equations_room.assemble(model, nested_transfer, is_nameless=True)
@@ -214,6 +216,8 @@ def derive_as(
             reason = f"in nested form: the expanded determinant would have {_some(terms)} terms"
             return nested_form.derive_nested(equations, pairs), reason
     try:
+        if solves and not is_tapered(model) and assemble(with_numbers(model, in_kernels=True)).is_split:
+            return derive_nested(model, pairs), SPLIT
         found = _derive_expanded(model, pairs, UNASKED if model.is_distributed else None)
         # Where one beam's motion is another's, the estimate may be far too small.
         if solves and _may_be_large(model) and max(map(_kernel_products, found)) > CODE_PRODUCTS:

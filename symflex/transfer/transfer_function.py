@@ -203,7 +203,7 @@ class TransferFunction:
         """The parameters that occur, in declared order."""
         if self._large is not None:
             return self._parameters_named(self._opened_names(self._large.generators))
-        return self._parameters_in([f for f, _ in self.all_factors])
+        return self.parameters_in([f for f, _ in self.all_factors])
 
     @property
     def all_factors(self) -> tuple[tuple[fmpz_mpoly, int], ...]:
@@ -220,9 +220,10 @@ class TransferFunction:
     @cached_property
     def hidden_parameters(self) -> tuple[ModelParameter, ...]:
         """The parameters that occur in hidden factors, in declared order."""
-        return self._parameters_in([h.polynomial for h in self.hidden])
+        return self.parameters_in([h.polynomial for h in self.hidden])
 
-    def _parameters_in(self, polynomials: Sequence[fmpz_mpoly]) -> tuple[ModelParameter, ...]:
+    def parameters_in(self, polynomials: Sequence[fmpz_mpoly]) -> tuple[ModelParameter, ...]:
+        """Return the parameters that polynomials over the function's ring hold."""
         return self._parameters_named(self.ring.used_in(polynomials))
 
     def _opened_names(self, found: frozenset[str]) -> set[str]:

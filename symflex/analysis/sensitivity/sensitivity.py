@@ -341,7 +341,7 @@ def sensitivities(
     known = {name: value for name, value in values.items() if value is not None}
     chosen = [p for p in model.parameters if p.name in known and (not names or p.name in names)]
     if model.is_distributed:
-        return differentiate(bound.source, known, found, chosen, digits)
+        return differentiate(bound.symbolic or bound.source, known, found, chosen, digits)
     # One symbol at a time, among numbers, is far less than all at once.
     pair = (bound.source.output.name, bound.source.input.name)
     moved: list[RootDerivative] = []

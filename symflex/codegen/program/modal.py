@@ -14,9 +14,7 @@ from functools import cached_property, partial
 from math import pi, prod
 from typing import TYPE_CHECKING
 
-from flint import nmod_poly
-
-from symflex.algebra import LAPLACE, PRIME, Factored, degree_in, random_point, residue
+from symflex.algebra import LAPLACE, Factored, degree_in
 from symflex.algebra.ring import by_powers
 from symflex.budget import spend
 from symflex.codegen.program.forge import Forge, straight
@@ -74,14 +72,9 @@ def build_modal(tf: TransferFunction, reach: float) -> Piecewise:
     return _ModalWorkshop(tf, reach).program()
 
 
-def _has_double_root(law: Dispersion) -> bool:
+def _is_double(law: Dispersion) -> bool:
     """Tell whether two characteristic roots are equal at every s, or do not move apart with s."""
-    if not any(c.depends_on(LAPLACE) for c in law.characteristic):
-        return True
-    point = random_point(law.characteristic[0].ring.names)
-    values = [0 if c.is_zero else residue(c, point) for c in law.characteristic]
-    polynomial = nmod_poly([*values, 1], PRIME)
-    return bool(polynomial.gcd(polynomial.derivative()).degree() > 0)
+    return law.has_double_root or not any(c.depends_on(LAPLACE) for c in law.characteristic)
 
 
 @dataclass
@@ -122,7 +115,7 @@ class _ModalWorkshop:
         """Return the program."""
         forge = Forge()
         site = Site(forge, self.tf, ())
-        if any(_has_double_root(law) for law in self._laws):
+        if any(_is_double(law) for law in self._laws):
             # At every s some roots meet, and means over a circle would be of no use.
             return self._assembled(straight(forge, [forge.constant(1)]), (), (0,), (self._direct(),))
         laws = [law for law in self._laws if law.order > 1]

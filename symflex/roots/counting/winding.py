@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 RING = log(2)
 LARGEST_RING = 120
 """Octaves searched for the lowest root, from that of one wave: more than 36 decades."""
+FAR = 60.0
+"""Logarithm of a frequency beyond all that matter."""
 SAME_ORDER = 0.05
 """Difference of a count from the order at 0, in turns, that rounding may cause."""
 LONGEST_STEP = 0.4
@@ -175,6 +177,8 @@ class Winding:
         """Return ln of a frequency at which the largest argument of a kernel is about one."""
         z, step = 0.0, 2 * RING
         reach = self.reach(z)
+        if self.reach(FAR) == reach:
+            return z  # no kernel depends on s, as of a beam without mass
         for _ in range(LARGEST_RING):
             if reach > 1:
                 z -= step
