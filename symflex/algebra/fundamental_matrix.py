@@ -48,7 +48,8 @@ from symflex.algebra.varying_system import (
     polynomial_of,
     sequence_of,
 )
-from symflex.budget import spend
+from symflex.budget import GB, spend
+from symflex.errors import BudgetError, Diagnostic
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
@@ -81,6 +82,8 @@ WIDE = 2.0**-30
 """Relative radius of balls about whose middle a polynomial is expanded before it is evaluated."""
 TINY = 2.0**-200
 """Share of the largest abs(u), of which a smaller one is not told apart where much is left to spare."""
+MOST_MEMORY = 4e9
+"""Bytes of all steps: a library that asks for more than there is ends the process."""
 SMALL = 2.0**-10
 """Share of what a value moves by on a ball, that may be left out of its series."""
 
@@ -214,6 +217,11 @@ class PowerExpansion:
         """The fundamental matrix of every step, by rows and columns."""
         found: list[dict[tuple[Lines, Lines], Polynomial]] = []
         last = len(self.legs) - 1
+        taken = len(self.legs) * self.system.size**2 * self.terms * self.precision / 8
+        if taken > MOST_MEMORY:
+            message = f"solutions along a member that varies take about {taken / GB:.0f} GB"
+            hint = "ask for lower frequencies; are units, and powers of s, right?"
+            raise BudgetError(Diagnostic("SF504", message, None, hint))
         with ctx.workprec(self.precision):
             start, end = self.system.ends()
             for k, (leg, discs) in enumerate(zip(self.legs, self.discs, strict=True)):

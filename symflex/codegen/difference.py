@@ -161,7 +161,7 @@ class DifferenceEquation:
 def difference_equation(sampled: SampledTransferFunction, *, is_direct: bool = False) -> DifferenceEquation:
     """Return the sections of a sampled transfer function, their coefficients rounded once.
 
-    One section holds everything where ``is_direct``, or zeros cannot be told apart.
+    One section holds everything where ``is_direct``, or poles or zeros cannot be told apart.
 
     Raises
     ------
@@ -182,14 +182,16 @@ def difference_equation(sampled: SampledTransferFunction, *, is_direct: bool = F
     with precision(sampled.bits):
         order = len(sampled.poles)
         gain = next((c for c in sampled.numerator if c != 0), arb(0))
-        if is_direct or sampled.zeros is None or not order or gain == 0:
+        roots = (*sampled.poles, *(sampled.zeros or ()))
+        is_told = sampled.zeros is not None and all(z.imag == 0 or not z.imag.contains(0) for z in roots)
+        if is_direct or not is_told or not order or gain == 0:
             above = tuple(_double(c, sampled.tf) for c in sampled.numerator)
             return DifferenceEquation(
                 sampled,
                 (FilterSection(above, tuple(_double(c, sampled.tf) for c in sampled.denominator[1:])),),
             )
         sections = []
-        for poles, zeros in _paired(sampled.poles, sampled.zeros):
+        for poles, zeros in _paired(sampled.poles, sampled.zeros or ()):
             below = _below(poles, sampled.tf)
             scaled = [c * gain for c in _expanded(zeros)]
             gain = arb(1)

@@ -22,7 +22,7 @@ from symflex.algebra.propagators import propagate
 from symflex.algebra.ring import terms_of
 from symflex.budget import spend
 from symflex.equations.along import AlongX
-from symflex.equations.singular_ends import UnsolvedEndError, singular_start
+from symflex.equations.singular_ends import CUT, UnsolvedEndError, singular_start
 from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError
 from symflex.expressions import (
     Call,
@@ -559,8 +559,11 @@ def _singular(
     try:
         return singular_start(part.matrix, way, COORDINATE, lambda value: along.at(value, end))
     except UnsolvedEndError as error:
-        message = f"a stiffness of '{name}' vanishes at x = {format_expression(end)}: {error}"
-        raise ModelError(Diagnostic("SF250", message, span, error.hint)) from None
+        why, hint = str(error), error.hint
+    except ZeroDivisionError:
+        why, hint = "a function of x vanishes there besides, and solutions are not power series", CUT
+    message = f"a stiffness of '{name}' vanishes at x = {format_expression(end)}: {why}"
+    raise ModelError(Diagnostic("SF250", message, span, hint))
 
 
 def _is_loaded(part: Component, system: FieldSystem) -> bool:

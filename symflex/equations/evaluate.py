@@ -95,7 +95,7 @@ class ExactEvaluator:
         Raises ModelError: SF224 when it divides by zero; BudgetError: SF501 when it would expand beyond the
         limits.
         """
-        value = self._of_constants._value(expression)
+        value = self._of_constants.value(expression)
         if isinstance(value, LinearForm):
             message = f"'{format_expression(expression)}' must be constant"
             raise ModelError(Diagnostic("SF212", message, expression.span))
@@ -103,7 +103,7 @@ class ExactEvaluator:
 
     def linear(self, expression: Expression) -> LinearForm:
         """Return an expression of unknowns and inputs as a linear form; zero is the empty form."""
-        value = self._value(expression)
+        value = self.value(expression)
         if isinstance(value, LinearForm):
             return value
         if value.is_zero:
@@ -114,7 +114,8 @@ class ExactEvaluator:
         """Tell whether a name is read as a block."""
         return self.scope.lookup(expression, constant=False).kind == "block"
 
-    def _value(self, expression: Expression) -> Factored | LinearForm:
+    def value(self, expression: Expression) -> Factored | LinearForm:
+        """Return the value of an expression, of constants or of unknowns."""
         try:
             value = self._evaluate(expression)
             if isinstance(value, LinearForm):

@@ -156,13 +156,15 @@ def _traceable(loop: AnyLoop, roots: Sequence[Root], budget: Budget) -> Traceabl
     if isinstance(loop, Loop):
         above, below = _parts(loop)
         return LoopFunction.of(loop.bound, below, above)
-    largest = max(abs(s) for s in _points(roots))
-    for wider in WIDER:
+    largest = max((abs(s) for s in _points(roots)), default=0.0)
+    for wider in WIDER if largest else ():
         try:
             return loop.in_disc(wider * largest, budget)
         except (EssentialSingularityError, UndecidedError):
             continue
     message = "poles of the network cannot be followed as far as they are marked"
+    if not largest:
+        message = "no pole of the network but at s = 0 is known at the ends of the range"
     raise UncertifiedError(Diagnostic("SF807", message, None, "trace fewer modes: --modes N"))
 
 
@@ -192,6 +194,7 @@ def trace_locus(
     wider: Region | None = Modes(wanted + 2) if is_endless else None
     start = closed_loop_roots(loop, low, region, budget)
     end = closed_loop_roots(loop, high, wider, budget)
+    budget.spend()  # a search that ends with its time returns what it proved, perhaps nothing
     function = _traceable(loop, (*start.all_poles, *end.all_poles), budget)
     poles, final = _points(start.all_poles), _points(end.all_poles)
     bottom, top = float(low), float(high)

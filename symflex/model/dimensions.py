@@ -51,7 +51,7 @@ from symflex.library.elements import Variable
 from symflex.model.declarations import CycleReading
 from symflex.model.linearity import integer_exponent
 from symflex.model.reading import QuantityLiteral
-from symflex.quantities import DIMENSIONLESS, Dimension, unit_of
+from symflex.quantities import DIMENSIONLESS, Dimension, pound_hint, unit_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -188,7 +188,9 @@ class DimensionSystem:
         if not self._learn(reduced):
             found = self._reduce(measure).dimension
             message = f"{what} is in '{found}'; {a_what} is in '{unit}'"
-            self._note("SF203", message, expression.span, self._declaration(expression))
+            self._note(
+                "SF203", message, expression.span, self._declaration(expression, found, wanted.dimension)
+            )
 
     def read(self, expression: Expression) -> None:
         """Take an expression as whole: nothing around it tells how cycles in it are meant."""
@@ -511,9 +513,12 @@ class DimensionSystem:
     def _is_stale(self, variable: Variable) -> bool:
         return any(v in self._solved for v, _ in self._solved[variable][0])
 
-    def _declaration(self, expression: Expression) -> str | None:
+    def _declaration(self, expression: Expression, found: Dimension, wanted: Dimension) -> str | None:
         if isinstance(expression, Name):
             quantity = self._quantities.get(expression.name)
             if quantity is not None:
-                return f"'{expression.name}' is declared in '{quantity.unit}'"
+                pounds = pound_hint(quantity.unit, found, wanted)
+                return f"'{expression.name}' is declared in '{quantity.unit}'" + (
+                    f"; {pounds}" if pounds else ""
+                )
         return None

@@ -233,7 +233,10 @@ def _check_count(reader: Reader, spec: Spec, outputs: Sequence[Output], inputs: 
 
 
 def _in_order(problems: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
-    """Return the problems in the order of the text, each once; those of other files come last."""
+    """Return the problems in the order of the text, each once; those of other files come last.
+
+    A name that can be read two ways is one problem, however often it occurs: the first place is shown.
+    """
     unique = list(dict.fromkeys(problems))
 
     def place(problem: Diagnostic) -> tuple[int, str, int]:
@@ -242,7 +245,9 @@ def _in_order(problems: Sequence[Diagnostic], source: Source) -> list[Diagnostic
             return (2, "", 0)
         return (int(span.source is not source), span.source.name, span.start)
 
-    return sorted(unique, key=place)
+    ordered = sorted(unique, key=place)
+    first = {(p.code, p.message): p for p in reversed(ordered)}
+    return [p for p in ordered if p.code != "SF211" or first[p.code, p.message] is p]
 
 
 def _refuse_twins(

@@ -24,7 +24,7 @@ from symflex.model.model import (
 )
 from symflex.model.reading import QuantityLiteral, Reader, signed_number
 from symflex.model.scope import ModelScope, build_scope
-from symflex.quantities import DIMENSIONLESS, Dimension, Quantity, unit_of
+from symflex.quantities import DIMENSIONLESS, Dimension, Quantity, pound_hint, unit_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
@@ -57,8 +57,10 @@ def check_units(
         elif not isinstance(expression, QuantityLiteral):
             system.require(expression, unit, what, doc, varies=varies)
         elif unit and expression.quantity.dimension != unit_of(unit).dimension:
-            message = f"{what} is in '{expression.quantity.unit}'; {doc} is in '{unit}'"
-            reader.note("SF203", message, expression.span)
+            given = expression.quantity
+            message = f"{what} is in '{given.unit}'; {doc} is in '{unit}'"
+            hint = pound_hint(given.unit, given.dimension, unit_of(unit).dimension)
+            reader.note("SF203", message, expression.span, hint)
 
     system.place_lines()
     for definition in draft.definitions:

@@ -11,7 +11,7 @@ A column that is added to one of the four lists below is in every table of its k
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from textwrap import wrap
 from typing import TYPE_CHECKING, Final
 
@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 KINDS: Final = {"poles": "Poles", "zeros": "Zeros", "hidden": "Hidden roots"}
 """What a :class:`~symflex.roots.PoleZeroMap` holds, and the titles of tables of it."""
+NEARLY_ZERO: Final = "~0"
+"""Of what is not told from 0."""
 _FREQUENCY_BITS: Final = 256
 
 
@@ -123,7 +125,12 @@ def _damping(root: Root, printed: RootDecimals, digits: int) -> str:
 def _plain_damping(root: Root, printed: RootDecimals, digits: int) -> str:
     """Return the damping ratio as a double; nearly zero where only the real part's enclosure holds 0."""
     zeta = root.damping_ratio()
-    return "" if zeta is None else "~0" if printed.re.startswith("0e") else f"{zeta:.6g}"
+    return "" if zeta is None else f"{zeta:.6g}" if _told(printed.re) != NEARLY_ZERO else NEARLY_ZERO
+
+
+def _told(part: str) -> str:
+    """Return a part of s, or that it is not told from 0: ``0e-28`` says no more, and reads like a number."""
+    return NEARLY_ZERO if part.startswith("0e") else part
 
 
 _REAL: Final = RootColumn(
@@ -153,15 +160,17 @@ _TIMES: Final = RootColumn(
     "multiplicity", ("Multi-", "plicity"), "", lambda root, printed, digits: str(root.multiplicity)
 )
 
-PAGE_COLUMNS: Final = (_REAL, _IMAGINARY, _RADIUS, _HERTZ, _RATIO, _TIMES)
+_TOLD_REAL: Final = replace(_REAL, text=lambda root, printed, digits: _told(printed.re))
+_TOLD_IMAGINARY: Final = replace(_IMAGINARY, text=lambda root, printed, digits: _told(printed.im))
+PAGE_COLUMNS: Final = (_TOLD_REAL, _TOLD_IMAGINARY, _RADIUS, _HERTZ, _RATIO, _TIMES)
 """Of tables on web pages."""
 PAPER_COLUMNS: Final = (_REAL, _IMAGINARY, _HERTZ, _RATIO)
 """Of LaTeX tables; the multiplicity is a column there where one is not 1."""
 MODE_COLUMNS: Final = (_HERTZ, _ANGULAR, _RATIO)
 """Of LaTeX tables of modes."""
 TERMINAL_COLUMNS: Final = (
-    RootColumn("Re", (), "rad/s", _REAL.text),
-    RootColumn("Im", (), "rad/s", _IMAGINARY.text, is_mirrored=True),
+    RootColumn("Re", (), "rad/s", _TOLD_REAL.text),
+    RootColumn("Im", (), "rad/s", _TOLD_IMAGINARY.text, is_mirrored=True),
     RootColumn("radius", (), "", _RADIUS.text),
     RootColumn("f", (), "Hz", lambda root, printed, digits: f"{root.frequency_hz():.6g}"),
     RootColumn("zeta", (), "", _plain_damping),

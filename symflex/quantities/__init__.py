@@ -2,7 +2,7 @@
 
 from symflex.quantities.dimension import DIMENSIONLESS, Dimension, dimension_name
 from symflex.quantities.quantity import Quantity, looks_like_quantity, parse_quantity, parse_unit, unit_of
-from symflex.quantities.units import Unit
+from symflex.quantities.units import Unit, pound_hint
 
 __all__ = [
     "DIMENSIONLESS",
@@ -13,5 +13,6 @@ __all__ = [
     "looks_like_quantity",
     "parse_quantity",
     "parse_unit",
+    "pound_hint",
     "unit_of",
 ]

@@ -7,6 +7,7 @@ NIST Special Publication 811 (2008), appendix B, for the inch, pound, and what f
 from __future__ import annotations
 
 import functools
+import re
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise, product
@@ -248,6 +249,8 @@ _INSTEAD: Final[dict[str, str]] = {
     "\u00b0F": "only absolute temperatures are read: use 'K'",
 }
 
+_FORCES: Final = {"lb": "lbf", "lbm": "lbf", "oz": "ozf"}
+_MASSES: Final = {"lbf": "lb", "ozf": "oz"}
 # Units long enough to be given a plural; a shorter one with an s is a product, as in Pas.
 _WORDS: Final = tuple(name for name in UNITS if len(name) > 2)  # noqa: PLR2004
 _LONGEST_PRODUCT: Final = 8
@@ -295,6 +298,25 @@ def unit_hint(symbol: str) -> str | None:
     if product_of_units is None and "_" in symbol:
         return "between a number and a parameter write '*'"
     return product_of_units or nearest(symbol, known)
+
+
+def pound_hint(unit: str, found: Dimension, wanted: Dimension) -> str | None:
+    """Return how a unit is written whose pounds or ounces are masses in place of forces, or the reverse.
+
+    Examples
+    --------
+    >>> from symflex.quantities import unit_of
+    >>> pound_hint("lb/ft", unit_of("lb/ft").dimension, unit_of("N/m").dimension)
+    "'lb' is a mass, 'lbf' a force: write 'lbf/ft'"
+    >>> pound_hint("lbf", unit_of("lbf").dimension, unit_of("kg").dimension)
+    "'lbf' is a force, 'lb' a mass: write 'lb'"
+    """
+    for instead, more, kinds in ((_FORCES, wanted, ("mass", "force")), (_MASSES, found, ("force", "mass"))):
+        written = next((name for name in re.findall(r"[A-Za-z_]+", unit) if name in instead), None)
+        if written and more == (found if more is wanted else wanted) * _GRAVITY.dimension:
+            right = re.sub(rf"\b{written}\b", instead[written], unit)
+            return f"'{written}' is a {kinds[0]}, '{instead[written]}' a {kinds[1]}: write '{right}'"
+    return None
 
 
 @functools.cache

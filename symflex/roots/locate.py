@@ -46,7 +46,7 @@ from symflex.roots.pole_zero_map import (
 from symflex.roots.polynomial_roots import in_order
 from symflex.roots.problem import problem_of
 from symflex.roots.region import Band, Everything, Mode, Modes, Position, Rectangle, Region
-from symflex.roots.root import ROUNDING, Root, overlap
+from symflex.roots.root import ROUNDING, Root, groups, overlap
 from symflex.transfer import BoundNested, bind
 from symflex.transfer.of_model import assemble_sparse, derive_all, derive_bound, may_be_expanded
 

@@ -20,6 +20,8 @@ PLAIN_FROM = -5
 """Decimal exponent from which numbers are written without one."""
 ROUNDING = 1e-15
 """What doubles of enclosures' ends may be off by, relative to them: a few times 2^-53."""
+NEIGHBOURS = 8
+"""Modes of nearly the same frequency among which images of a root are looked for."""
 HUNDRED = 100
 """Two digits are fewer."""
 
@@ -166,6 +168,34 @@ def are_apart(roots: Sequence[Root]) -> bool:
             return False
         near.append((high, root))
     return True
+
+
+def groups(roots: Sequence[Root]) -> list[list[Root]]:
+    """Return the roots other than 0, those together that mirror each other in the axes.
+
+    Each is proved by itself, so that images may differ within their enclosures.
+
+    Examples
+    --------
+    >>> one, other = (Root(arb(re, 1e-9), arb(0), 1, on_imaginary_axis=False, is_real=True) for re in (-2, 2))
+    >>> len(groups([one, other])), len(groups([one, replace(other, re=arb(2.1, 1e-9))]))
+    (1, 2)
+    """
+    sizes = ((float(root.natural_frequency().mid()), i) for i, root in enumerate(roots) if not root.is_zero)
+    found: list[list[int]] = []
+    for _, i in sorted(sizes):
+        # Images stand next to each other, but for the few that are as large.
+        like = next((g for g in reversed(found[-NEIGHBOURS:]) if _mirrored(roots[g[0]], roots[i])), None)
+        if like is None:
+            found.append([i])
+        else:
+            like.append(i)
+    return [[roots[i] for i in sorted(group)] for group in sorted(found, key=min)]
+
+
+def _mirrored(a: Root, b: Root) -> bool:
+    # A sign changes without rounding.
+    return all(bool(x.overlaps(y)) or bool(x.overlaps(-y)) for x, y in ((a.re, b.re), (a.im, b.im)))
 
 
 def mirror_images(roots: Sequence[Root], *, even: bool) -> list[Root]:

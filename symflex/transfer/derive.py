@@ -106,7 +106,7 @@ class _CramerQuotients:
 
     @cached_property
     def _determinants(self) -> Determinants:
-        return Determinants.of(self._equations, self._most and self._most.closed)
+        return Determinants.of(self._equations, None if self._most is None else self._most.closed)
 
     @cached_property
     def _closure(self) -> Closure:

@@ -458,7 +458,7 @@ class _AboutMiddle:
                 (
                     self.law.size(t.along, along)
                     * s.abs_upper() ** t.power
-                    / self.law.size(t.divisor, along, s)
+                    * self.law.size(t.divisor**-1, along, s)
                     for t in parts
                 ),
                 arb(0),

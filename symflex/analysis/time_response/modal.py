@@ -622,13 +622,13 @@ def _estimated_sum(bound: AnyBoundFunction, integrations: int, times: SampleTime
 
 
 def _begun(bound: AnyBoundFunction, integrations: int, far: arb, small: float) -> arb:
-    """Return what a response begins with, to something small, as the transfer function at a large s shows it."""
+    """Return what a response begins with, to something small, as the function shows it at a large s."""
     bits = bits_for_digits(2 * DIGITS)
     # Between many members exponentials take each other out, and so far out these are large.
     while True:
         spend()
         found = (bound.enclosed(bits)(acb(far)) / far ** (integrations - 1)).real
-        if found.rad() <= max(small, CLOSELY * abs(found).mid()) or bits >= MOST_BITS:
+        if found.rad() <= max(small, CLOSELY * float(abs(found).mid())) or bits >= MOST_BITS:
             return found
         bits *= 2
 

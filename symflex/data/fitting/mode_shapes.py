@@ -63,13 +63,16 @@ def mode_shapes(fit: ResonanceFit, measured: Sequence[MeasuredResponse]) -> Fitt
 
     The fit is of the response at the driven point alone, without a base (else SF902). Responses are
     displacements, velocities or accelerations over the same force, as their units say (else SF602), the
-    fitted one among them. SF616 when a modal constant at the driven point is not positive.
+    fitted one among them (else SF902). SF616 when a modal constant at the driven point is not positive.
     """
     if len(fit.measured) > 1 or fit.bases[0].path:
         message = "mode shapes come from a fit of the driven point alone, without a base"
         raise UsageError(Diagnostic("SF902", message))
     names = tuple(response.name for response in measured)
-    at = next(i for i, response in enumerate(measured) if response is fit.measured[0])
+    at = next((i for i, response in enumerate(measured) if response is fit.measured[0]), None)
+    if at is None:
+        message = f"the fitted response {fit.measured[0].name} is not among those of the mode shapes"
+        raise UsageError(Diagnostic("SF902", message, None, "give the response itself that was fitted"))
     motions = [_motion_over_force(response.name, response.unit) for response in measured]
     units = sorted({motion.unit for motion in motions})
     if len(units) > 1:

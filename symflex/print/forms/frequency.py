@@ -25,7 +25,7 @@ from symflex.expressions import (
 )
 from symflex.print.forms.arrange import Arranger, ProductPrinter, shortest_sides
 from symflex.print.forms.economical import LARGE, angle_doubled, is_half
-from symflex.print.forms.invariants import IMAGINARY, in_krylov_functions, krylov_name
+from symflex.print.forms.invariants import IMAGINARY, NOT_ENTIRE, in_krylov_functions, krylov_name
 from symflex.print.forms.kept import KeptDefinitions
 from symflex.print.forms.notation import (
     Line,
@@ -39,7 +39,7 @@ from symflex.print.forms.notation import (
     speed_squared,
     wave_times_length,
 )
-from symflex.print.forms.printed import PrintedForm
+from symflex.print.forms.printed import PrintedForm, lacks
 
 if TYPE_CHECKING:
     from flint import fmpz_mpoly
@@ -71,7 +71,10 @@ class _FrequencyPage:
         table = KernelTable(
             bending, tuple(k for k in tf.kernels.kernels if k.dispersion in bending and k.wavenumber)
         )
-        self._change, self._value = in_krylov_functions(tf.ratio.ring, table, tf.ratio)
+        found = in_krylov_functions(tf.ratio.ring, table, tf.ratio)
+        if found is None:
+            raise lacks(tf, "frequency", NOT_ENTIRE)
+        self._change, self._value = found
         others = KernelTable(
             tf.kernels.dispersions, tuple(k for k in tf.kernels.kernels if k not in table.kernels)
         )

@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     """A polynomial with some kernels written in the K, and what it is to be multiplied by."""
 
 IMAGINARY = "j[]"
+NOT_ENTIRE = "in lowest terms its numerator and denominator are not seen to be entire in s"
 ORDERS = {"bending": 4, "pair": 4, "wave": 2}
 
 Laurent = dict[tuple[int, int], tuple[int, int]]
@@ -99,15 +100,29 @@ class Invariants:
                 else:
                     rest = rest * one
             if not rest.is_one:
-                whole = rest.expand()
-                found = self._invariant(whole)
-                if found is None:
-                    # Factors in normal form have a product that need not be: sin(q)*sin(q) is one.
-                    found = self._invariant(NormalForm(self.source, self.table).without_odd_squares(whole))
+                found = self._whole(rest.expand())
                 if found is None:
                     return None
                 result = result * found**side
         return self._without_wavenumbers(result)
+
+    def _whole(self, side: fmpz_mpoly) -> Factored | None:
+        """Return a numerator or denominator in the K as :meth:`_invariant` does, in all ways there are."""
+        # Factors in normal form have a product that need not be: sin(q)*sin(q) is one.
+        plain = NormalForm(self.source, self.table).without_odd_squares
+        # What is in lowest terms may lack a wavenumber: lambda_1*S_2 - lambda_2*S_1 is odd, and 1/lambda_1 of
+        # it is neither odd nor even.
+        pairs = [w for d in self.table.dispersions if d.kind == "pair" for w in d.wavenumbers]
+        tries = (
+            (change(side * self.source.generator(w)) if w else change(side), w)
+            for w in ("", *pairs)
+            for change in (lambda f: f, plain)
+        )
+        for tried, w in tries:
+            found = self._invariant(tried)
+            if found is not None:
+                return found / Factored.generator(self.ring, w) if w else found
+        return None
 
     def _invariant(self, polynomial: fmpz_mpoly) -> Factored | None:
         """Return a polynomial in the K, times powers of wavenumbers; ``None`` where it has no such form."""
@@ -311,8 +326,14 @@ class Invariants:
         return Invariants(self.source, table), images
 
 
-def in_krylov_functions(source: Ring, table: KernelTable, value: Factored) -> tuple[Invariants, Factored]:
-    """Return the change, and a quotient in Krylov-Duncan functions; of half the lengths if it must be."""
+def in_krylov_functions(
+    source: Ring, table: KernelTable, value: Factored
+) -> tuple[Invariants, Factored] | None:
+    """Return the change, and a quotient in Krylov-Duncan functions; of half the lengths if it must be.
+
+    ``None`` where numerator and denominator are invariant only after both are multiplied by more than a
+    wavenumber.
+    """
     change = Invariants(source, table)
     found = change.convert(value)
     if found is not None:
@@ -326,8 +347,7 @@ def in_krylov_functions(source: Ring, table: KernelTable, value: Factored) -> tu
         ),
     )
     found = change.convert(halved)
-    assert found is not None
-    return change, found
+    return None if found is None else (change, found)
 
 
 def krylov_name(group: int, order: int) -> str:

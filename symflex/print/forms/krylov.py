@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from symflex.algebra import Factored
 from symflex.expressions import Expression, Name, negative, number, power, product_of, quotient, sum_of
 from symflex.print.forms.arrange import Arranged, Arranger, shortest_sides
-from symflex.print.forms.invariants import Invariants, in_krylov_functions, krylov_name
+from symflex.print.forms.invariants import NOT_ENTIRE, Invariants, in_krylov_functions, krylov_name
 from symflex.print.forms.kept import KeptDefinitions
 from symflex.print.forms.notation import (
     Line,
@@ -20,7 +20,7 @@ from symflex.print.forms.notation import (
     wavenumber_laws,
 )
 from symflex.print.forms.polynomial import in_kernels
-from symflex.print.forms.printed import BegunForm, PrintedForm, terms_of
+from symflex.print.forms.printed import BegunForm, PrintedForm, lacks, terms_of
 
 if TYPE_CHECKING:
     from symflex.print.forms.notation import Angle
@@ -34,14 +34,20 @@ def krylov_form(tf: TransferFunction) -> PrintedForm:
     ``K_0 = cosh(q)``, ``K_1 = sinh(q)/gamma``. Where the exponents of field equations have no formula, the
     solutions and their derivatives at the ends stand as ``h(l)``, ``h'(l)``.
     """
-    return krylov_draft(tf, Arranged()).finish()
+    draft = krylov_draft(tf, Arranged())
+    if draft is None:
+        raise lacks(tf, "krylov", NOT_ENTIRE)
+    return draft.finish()
 
 
-def krylov_draft(tf: TransferFunction, arranged: Arranged) -> BegunForm:
-    """Return what :func:`krylov_form` arranges."""
+def krylov_draft(tf: TransferFunction, arranged: Arranged) -> BegunForm | None:
+    """Return what :func:`krylov_form` arranges; ``None`` where the function has no such form."""
     if not tf.has_formula:
         return BegunForm(terms_of(tf.ratio), partial(in_kernels, tf, "krylov", tf.ratio, arranged))
-    change, value = in_krylov_functions(tf.ratio.ring, tf.kernels, tf.ratio)
+    found = in_krylov_functions(tf.ratio.ring, tf.kernels, tf.ratio)
+    if found is None:
+        return None
+    change, value = found
     return BegunForm(terms_of(value), partial(_krylov, tf, change, value, arranged))
 
 

@@ -108,8 +108,13 @@ def require(tf: TransferFunction, form: str) -> None:
         reason = "the exponents of its field equations have no formula"
     else:
         return
-    hint = f"forms of {tf.name}: " + ", ".join(forms_of(tf))
-    raise UsageError(Diagnostic("SF902", f"{tf.name} has no {form} form: {reason}", None, hint))
+    raise lacks(tf, form, reason)
+
+
+def lacks(tf: TransferFunction, form: str, reason: str) -> UsageError:
+    """Return the error that a transfer function has not a form, which hints at those it has."""
+    hint = f"forms of {tf.name}: " + ", ".join(name for name in forms_of(tf) if name != form)
+    return UsageError(Diagnostic("SF902", f"{tf.name} has no {form} form: {reason}", None, hint))
 
 
 def counts_of(tf: TransferFunction) -> tuple[int | None, int | None]:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from flint import acb
 
 from symflex.algebra import Factored
-from symflex.errors import BudgetError, Diagnostic
+from symflex.errors import BudgetError, Diagnostic, UncertifiedError
 from symflex.roots.axes.lossless import LosslessSearch
 from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.winding import Cell, RootOnPathError
@@ -42,11 +42,12 @@ from symflex.roots.polynomial_roots import find_polynomial_roots, in_order
 from symflex.roots.precision import precision
 from symflex.roots.problem import problem_of
 from symflex.roots.region import Modes, Region
-from symflex.roots.root import FLOAT_BITS, Root, are_apart, mirror_images, overlap
+from symflex.roots.root import Root, are_apart, groups, mirror_images, overlap
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
+    from symflex.algebra import Dispersion
     from symflex.budget import Budget
     from symflex.transfer import BoundTransferFunction
 
@@ -94,6 +95,7 @@ class Side:
         if is_kernel := has_kernels(mixed, bound.kernels):
             # Kernels may have poles where polynomials vanish: only together are they entire.
             self.function = KernelFunction(*without_squares(bound, _without_laplace(plain) * mixed))
+            require_lowest(bound)
             self._winding = CertifiedWinding(self.function, budget)
             self._origin, self._order = roots_at_zero(
                 self._winding, part, self._left, self.holes, is_hidden=is_hidden
@@ -361,17 +363,6 @@ class Side:
         return self._count.right(high, self._budget)
 
 
-def groups(roots: Sequence[Root]) -> list[list[Root]]:
-    """Return the roots other than 0, those together that mirror each other in the axes."""
-    found: dict[tuple[str, str], list[Root]] = {}
-    with precision(FLOAT_BITS):
-        for root in roots:
-            if not root.is_zero:
-                key = (str(abs(root.re).mid()), str(abs(root.im).mid()))
-                found.setdefault(key, []).append(root)
-    return list(found.values())
-
-
 def _without_laplace(value: Factored) -> Factored:
     s = value.ring.context.gen(0)
     return value.filter(lambda factor: factor != s)
@@ -394,3 +385,30 @@ def accumulation_points(bound: BoundTransferFunction) -> tuple[complex, ...]:
                 if point and point.imag >= 0 and point not in points:
                     points.append(point)
     return tuple(points)
+
+
+def require_lowest(bound: BoundTransferFunction) -> None:
+    """Raise UncertifiedError: SF404 where waves are ever shorter as s goes to 0: no root is lowest."""
+    if any(_shortens_at_zero(law) for law in bound.kernels.dispersions):
+        message = f"{bound.name} has an essential singularity at s = 0, where its roots may accumulate"
+        hint = "a coefficient has a pole at s = 0: multiply it by s, or let it be 1/(s + a)"
+        raise UncertifiedError(Diagnostic("SF404", message, None, hint))
+
+
+def _shortens_at_zero(law: Dispersion) -> bool:
+    """Tell whether an exponent of a law has a pole at s = 0, or might have where there is no formula."""
+    uniform = (*law.characteristic, law.shift)
+    if any(not c.is_zero and _order_at_zero(c) < 0 for c in uniform):
+        return True
+    # States scaled by powers of s have no pole, unless a cycle of entries has one (Bellman & Ford).
+    size = range(len(law.matrix))
+    orders = [(i, j, _order_at_zero(x)) for i in size for j in size if not (x := law.matrix[i][j]).is_zero]
+    least = [0] * len(law.matrix)
+    for _ in size:
+        for i, j, order in orders:
+            least[j] = min(least[j], least[i] + order)
+    return any(least[i] + order < least[j] for i, j, order in orders)
+
+
+def _order_at_zero(value: Factored) -> int:
+    return value.exponent_of(value.ring.context.gen(0))

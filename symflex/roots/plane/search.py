@@ -26,7 +26,7 @@ from symflex.roots.plane.local_roots import (
     snapped,
 )
 from symflex.roots.precision import bits_for_digits, precision
-from symflex.roots.root import Root, overlap
+from symflex.roots.root import Root, groups, overlap
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -177,7 +177,7 @@ class RootSearch:
         return found
 
     def _modes(self) -> int:
-        return sum(root.multiplicity for root in self.roots)
+        return sum(group[0].multiplicity for group in groups(self.roots))
 
     def passing(self, radius: float) -> float:
         """Return ln of a radius, at least the one given, whose circle passes all holes."""

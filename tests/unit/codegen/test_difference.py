@@ -7,6 +7,7 @@ import runpy
 import subprocess
 from fractions import Fraction
 from itertools import pairwise
+from math import exp
 from random import Random
 
 import numpy as np
@@ -169,6 +170,15 @@ def test_sections_are_the_polynomials_they_come_from():
     num, den = sampled.coefficients()
     expected = lfilter(np.concatenate([np.zeros(len(den) - len(num)), num]), den, u)
     assert np.max(np.abs(np.array(made.run(u.tolist())) - expected)) < 1e-9 * np.max(np.abs(expected))
+
+
+def test_poles_that_cannot_be_told_apart_share_a_section():
+    # (s + sqrt(2))^2, whose poles no precision tells apart: both come to p.
+    bound = rational("1/(s^2 + 2*sqrt(2)*s + 2)")
+    for method, p in (("tustin", (20 - 2**0.5) / (20 + 2**0.5)), ("matched", exp(-(2**0.5) / 10))):
+        made = difference_equation(sampled_transfer_function(bound, Sampling(Fraction(1, 10), method)))
+        (section,) = made.sections
+        assert section.below == pytest.approx((-2 * p, p * p), rel=1e-14), method
 
 
 def test_an_integrator_beside_another_pole_does_not_leak():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from math import pi
 
@@ -9,10 +10,13 @@ import numpy as np
 import pytest
 
 from symflex import pipeline
+from symflex.budget import Budget
 from symflex.errors import ModelError
 from symflex.figures import draw_loop
 from symflex.loops import Loop, NetworkLoop, of_model, trace_locus
 from symflex.options import StabilityOptions
+from symflex.roots import Modes
+from tests.unit.refusals import refusal
 
 BENDING, MASS, SPRING, LOSS = 70e9 * 2e-9, 2700.0 * 150e-6, 1e3, 0.5
 """Of aluminium strips [N*m^2, kg/m], on springs and dampers [N/m, N*s/m]."""
@@ -110,6 +114,20 @@ def test_a_chain_has_the_stable_gains_of_its_formula(monkeypatch):
     )
     assert [i.poles for i in network.intervals] == [i.poles for i in expected.intervals]
     assert not network.certified and network.radius >= 2 * pi * up_to
+
+
+def test_a_locus_of_a_search_whose_time_is_over_is_refused(monkeypatch):
+    monkeypatch.setattr(of_model, "is_large_network", lambda model: True)
+    loop = of_model.characteristic_loop(pipeline.loads(chain(1)), "K")
+    found = replace(loop.located(Fraction(0), Modes(1), Budget()), poles=(), unstable=(), hidden=())
+
+    def nothing(self, gain, region, budget):
+        return found
+
+    monkeypatch.setattr(NetworkLoop, "located", nothing)
+    assert refusal(trace_locus, loop, (Fraction(0), Fraction(20)), 1) == "UncertifiedError SF807"
+    over = Budget(1, clock=iter(range(0, 1000, 10)).__next__)
+    assert refusal(trace_locus, loop, (Fraction(0), Fraction(20)), 1, over) == "BudgetError SF506"
 
 
 @pytest.mark.slow

@@ -84,6 +84,12 @@ def test_a_name_that_can_be_read_two_ways_is_refused():
     assert set(codes(text + MOVING)) == {"SF211"}
 
 
+def test_a_name_that_can_be_read_two_ways_is_one_problem():
+    text = f'{HEADER}[parameters]\nx = 1\n[elements]\nM = {{ type = "mass", at = "x", m = 1 }}\n'
+    more = '[inputs]\nF = { force = "x" }\n[outputs]\na = "x"\nb = "2*x"\nc = "x - 3*x"\n'
+    assert codes(text + more) == ["SF211"]
+
+
 # -------------------------------------------------------------------------------------- nested models
 
 INNER = """symflex = 1

@@ -311,6 +311,47 @@ def test_a_form_that_needs_formulas_is_refused_without_them():
             print_form(tf, form)
 
 
+PERFECT_SQUARE = """[fields.w]
+domain = ["0", "l"]
+equation = "w'''' - (a^2 + b^2)*s^2*w'' + a^2*b^2*s^4*w = 0"
+conditions = ["w'(0) = 0", "w'''(0) = F", "w''(l) = 0", "w'''(l) = 0"]
+[inputs]
+F = {}
+[outputs]
+Z = "w'(l)"
+B = "w''(0)"
+"""
+
+
+def solved(known):
+    """Return w'(l) and w''(0) of the exponentials that satisfy the conditions."""
+    slow, fast, end, s = (known[name] for name in ("a", "b", "l", "s"))
+    roots = [slow * s, -slow * s, fast * s, -fast * s]
+
+    def row(order, x):
+        return [r**order * mpmath.exp(r * x) for r in roots]
+
+    rows = mpmath.matrix([row(1, 0), row(3, 0), row(2, end), row(3, end)])
+    c = mpmath.lu_solve(rows, mpmath.matrix([0, 1, 0, 0]))
+    return [sum(x * y for x, y in zip(row(*at), c, strict=True)) for at in ((1, end), (2, 0))]
+
+
+def test_derivatives_have_a_krylov_form_where_wavenumbers_are_polynomials():
+    # lambda_1*lambda_2 = a*b*s^2: in lowest terms numerators lack a wavenumber.
+    known = {"a": mpmath.mpf("0.7"), "b": mpmath.mpf("1.9"), "l": mpmath.mpf("1.3"), "s": mpmath.mpc(1, 2)}
+    tfs = pipeline.derive_all(pipeline.loads(spec("a b l", PERFECT_SQUARE)))
+    for tf, wanted in zip(tfs, solved(known), strict=True):
+        form = print_form(tf, "krylov")
+        value = value_of(quotient(form.num, form.den), known, form.where)
+        assert abs(value / wanted - 1) < 1e-12, tf.name
+
+
+def test_a_krylov_form_that_is_not_found_is_refused(monkeypatch):
+    monkeypatch.setattr("symflex.print.forms.krylov.in_krylov_functions", lambda *_: None)
+    with pytest.raises(UsageError, match=r"has no krylov form.*not seen to be entire"):
+        print_form(case("sliding_free_beam", "V_act/F"), "krylov")
+
+
 def test_a_form_of_rational_functions_is_refused_for_a_beam():
     for form in ("monic", "constant", "zpk"):
         with pytest.raises(UsageError, match="not a rational function of s"):

@@ -85,6 +85,13 @@ def test_a_response_without_the_unit_of_a_motion_over_a_force_is_refused():
         assert refusal(shapes_of, data) == "DataError SF602", unit
 
 
+def test_mode_shapes_without_the_fitted_response_are_refused():
+    data = responses(0, "m/N")
+    fit = fit_resonances([data[DRIVEN]], None, FitOptions(modes=3))
+    others = [replace(data[DRIVEN]), *(r for i, r in enumerate(data) if i != DRIVEN)]
+    assert refusal(mode_shapes, fit, others) == "UsageError SF902"
+
+
 def test_a_fit_of_several_responses_or_with_a_base_is_refused():
     data = responses(0, "m/N")
     fit = fit_resonances(

@@ -9,6 +9,7 @@ from types import SimpleNamespace
 import mpmath
 import pytest
 
+from symflex import pipeline
 from symflex.algebra import Factored
 from symflex.algebra.vanishing import OriginSeries
 from symflex.budget import Budget
@@ -23,11 +24,14 @@ from symflex.roots.distributed.proof import (
     roots_at_zero,
     turns_about_zero,
 )
-from symflex.roots.distributed.side import Side, accumulation_points, groups
+from symflex.roots.distributed.side import Side, accumulation_points, require_lowest
 from symflex.roots.engines import GUESS_AND_PROVE, LOSSLESS, SUBDIVISION
+from symflex.roots.locate import locate
 from symflex.roots.plane.search import MODES_LIMIT
 from symflex.roots.problem import polynomial_in_s
-from symflex.roots.root import are_apart
+from symflex.roots.root import are_apart, groups
+from symflex.transfer.of_model import derive_bound
+from tests.unit.refusals import refusal
 from tests.unit.roots.distributed_models import DELAY_LOOP, FREE, KELVIN_VOIGT, ROD, bound
 from tests.unit.roots.stand_ins import root, side
 
@@ -264,6 +268,38 @@ def test_roots_that_mirror_each_other_are_one_group():
     zero, real, mirrored = root(0, 0, 2), root(3, 0), root(-3, 0)
     four = [root(re, im) for re in (-1, 1) for im in (-2, 2)]
     assert groups([zero, real, *four, mirrored, root(2, 1)]) == [[real, mirrored], four, [root(2, 1)]]
+    near = root(-3 - 1e-12, 0, size=1e-10)
+    assert groups([real, near, root(3.1, 0)]) == [[real, near], [root(3.1, 0)]]
+
+
+def field(equation):
+    text = f"""symflex = 1
+[fields.w]
+domain = ["0", "1"]
+equation = "{equation}"
+conditions = ["w(0) = 0", "w'(1) = F"]
+[inputs]
+F = {{}}
+[outputs]
+X = "w(1)"
+"""
+    model = pipeline.loads(text)
+    return derive_bound(model, model.transfer_functions)[0]
+
+
+def test_roots_that_may_accumulate_at_zero_are_refused():
+    # cosh(1/sqrt(s)) = 0 at s = -4/((2 n - 1) pi)^2.
+    for law in ("w'' = 1/s*w", "w'' = x/s*w", "w'' = x^3/s^2*w", "w'' = x*(s + 1)/s^3*w"):
+        assert refusal(locate, field(law), Modes(1)) == "UncertifiedError SF404", law
+
+
+def test_states_may_have_a_pole_at_zero_where_waves_have_none():
+    # A fluid of Maxwell's: E s/(1 + s) in the modulus, and waves of wavenumber sqrt(s (1 + s)) up to x.
+    require_lowest(field("(s/(1 + s)*(1 + x)*w')' = s^2*w"))
+
+
+def test_values_along_a_taper_that_no_memory_holds_are_refused():
+    assert refusal(locate, field("w'' = x*s^40*w"), Modes(11), 45) == "BudgetError SF504"
 
 
 def test_a_factor_without_kernels_is_a_polynomial_in_s():
