@@ -26,7 +26,7 @@ from symflex.roots.distributed.right_half_plane import (
     gaps_text,
     search_right,
 )
-from symflex.roots.distributed.side import ACCUMULATION_DIGITS, Side, groups, polynomial_roots
+from symflex.roots.distributed.side import ACCUMULATION_DIGITS, Side, polynomial_roots
 from symflex.roots.engines import LOSSLESS, POLYNOMIAL
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.passive import passive_loop

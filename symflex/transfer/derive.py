@@ -92,8 +92,9 @@ class _CramerQuotients:
         self._equations = equations
         self._most = most
         self._origin = origin or equations
-        self._expansion = Expansion.of(equations, kept, most and most.opened)
-        self._opened = Expansion.of(equations, (), most and most.opened) if kept else self._expansion
+        opened = None if most is None else most.opened
+        self._expansion = Expansion.of(equations, kept, opened)
+        self._opened = Expansion.of(equations, (), opened) if kept else self._expansion
         self._radicals = self._expansion.radicals
         self.solve = ModelSolve(self._origin.model, nested_transfer, self._origin)
         propagation = equations.propagation
