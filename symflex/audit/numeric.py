@@ -12,15 +12,15 @@ from typing import TYPE_CHECKING
 from flint import acb, arb, ctx
 
 from symflex.algebra import LAPLACE
-from symflex.expressions import Expression, fold
 from symflex.model import ExactValue
 from symflex.transfer import bind
-from symflex.transfer.balls import ball, rational_value
+from symflex.transfer.balls import ball, principal_values
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from symflex.audit.reading import Formula
+    from symflex.expressions import Expression
     from symflex.model import Model
     from symflex.transfer import BoundTransferFunction, TransferFunction
 
@@ -161,18 +161,7 @@ def compare(numbers: Numbers) -> Comparison:
 
 
 def _value(expression: Expression, known: Mapping[str, acb]) -> acb:
-    return fold(
-        expression,
-        number=lambda value: acb(ball(value)),
-        name=lambda name: known[name],
-        power=_power,
-        call=lambda call, argument: acb(getattr(argument, call.name)()),
-    )
-
-
-def _power(base: acb, exponent: Expression) -> acb:
-    power = rational_value(exponent, {}) or Fraction(0)
-    return acb(base ** int(power) if power.denominator == 1 else base ** acb(ball(power)))
+    return principal_values(expression, 1, lambda name: [known[name]])[0]
 
 
 @dataclass(frozen=True, slots=True)

@@ -90,3 +90,9 @@ class BudgetError(SymflexError):
     def __init__(self, *diagnostics: Diagnostic, found: object = None) -> None:
         super().__init__(*diagnostics)
         self.found = found
+
+
+class InternalError(SymflexError):
+    """A result does not stand up to a check that symflex makes of itself; it is a fault of symflex."""
+
+    exit_code = 1

@@ -7,6 +7,7 @@ from re import compile as compile_pattern
 from textwrap import wrap
 from typing import TYPE_CHECKING, NamedTuple
 
+from symflex.errors import Diagnostic, InternalError
 from symflex.expressions import (
     Call,
     Derivative,
@@ -18,6 +19,7 @@ from symflex.expressions import (
     names,
 )
 from symflex.print.forms import PrintedForm, with_hidden
+from symflex.print.read_back import REPORT
 from symflex.transfer import NestedTransferFunction
 
 if TYPE_CHECKING:
@@ -119,7 +121,12 @@ def wrapped(expression: Expression, width: int) -> list[str]:
     Sums break before a sign, products after a times, outermost first; what stands in parentheses is broken
     only when it does not fit, and then stands to the right of its parenthesis or below it.
     """
-    return _lay_out(format_expression(expression), width, hanging=len(INDENT))
+    text = format_expression(expression)
+    lines = _lay_out(text, width, hanging=len(INDENT))
+    if "".join(lines).replace(" ", "") != text.replace(" ", ""):
+        message = "a formula is not shown, as lines it was broken into are not what it is"
+        raise InternalError(Diagnostic("SF992", message, None, REPORT))
+    return lines
 
 
 def _lay_out(text: str, width: int, hanging: int) -> list[str]:

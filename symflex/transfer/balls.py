@@ -8,7 +8,7 @@ from __future__ import annotations
 from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
-from math import inf, isfinite, nan
+from math import inf, isfinite, nan, prod
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from flint import acb, acb_series, arb, ctx, fmpq
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
     from symflex.algebra import Factored
     from symflex.algebra.sparse import Monomial
+    from symflex.expressions import Call
     from symflex.model import ExactValue
 
     Ball = Callable[[acb], acb]
@@ -133,6 +134,51 @@ def _enclose(expression: Expression, values: Mapping[str, Callable[[], arb]]) ->
         name=lambda name: arb.pi() if name == "pi" else values[name](),
         power=lambda base, exponent: base ** _enclose(exponent, values),
         call=lambda call, argument: FUNCTIONS[call.name].evaluate(argument),
+    )
+
+
+def principal_values(
+    expression: Expression,
+    count: int,
+    name: Callable[[str], list[acb]],
+    call: Callable[[Call, list[acb]], list[acb]] | None = None,
+    number: Callable[[Fraction], arb] = ball,
+) -> list[acb]:
+    """Return balls around the principal values of an expression at so many points, in one walk.
+
+    ``name`` gives the values of a name, ``call`` those of a function that is none of the language's, and
+    ``number`` that of a number, which is exact by default. A value is not finite where the expression divides
+    by zero.
+
+    Examples
+    --------
+    >>> from symflex.expressions import Call, Name
+    >>> principal_values(Call("sqrt", Name("s")), 2, lambda _: [acb(4), acb(-4)])
+    [2.00000000000000, 2.00000000000000j]
+    """
+
+    def raised(base: list[acb], exponent: Expression) -> list[acb]:
+        power = rational_value(exponent, {})
+        if power is not None and power.denominator == 1:
+            return [x ** int(power) for x in base]
+        exponents = principal_values(exponent, count, name, call)
+        return [x**y for x, y in zip(base, exponents, strict=True)]
+
+    def called(node: Call, argument: list[acb]) -> list[acb]:
+        if node.name in FUNCTIONS or call is None:
+            return [acb(FUNCTIONS[node.name].evaluate(x)) for x in argument]
+        return call(node, argument)
+
+    return fold(
+        expression,
+        number=lambda value: [acb(number(value))] * count,
+        name=name,
+        power=raised,
+        call=called,
+        negative=lambda values: [-x for x in values],
+        total=lambda terms: [sum(xs, acb(0)) for xs in zip(*terms, strict=True)],
+        product=lambda factors: [prod(xs, start=acb(1)) for xs in zip(*factors, strict=True)],
+        quotient=lambda above, below: [x / y for x, y in zip(above, below, strict=True)],
     )
 
 

@@ -186,7 +186,7 @@ class BoundTransferFunction:
     def constants(self) -> tuple[tuple[str, Callable[[], arb]], ...]:
         """Per generator after s, how to enclose it at the current precision."""
         values: dict[str, Callable[[], arb]] = {name: enclosure(value) for name, value in self.values}
-        known: dict[str, Callable[[], arb]] = {"pi": arb.pi}
+        known: dict[str, Callable[[], arb]] = {**values, "pi": arb.pi}
         for constant in self.source.constants:
             if constant.generator not in self.along:
                 known[constant.generator] = later(constant.expression, values)
@@ -250,13 +250,21 @@ class BoundTransferFunction:
         with ctx.workprec(bits):
             return EnclosedDistributed(bits, part, self.kernel_values())
 
-    def kernel_values(self) -> KernelValues:
-        """Return the evaluator of the ring of kernels, with the constants at the current precision."""
+    def kernel_values(self, *, is_along: bool = True) -> KernelValues:
+        """Return the evaluator of the ring of kernels, with the constants at the current precision.
+
+        Unless ``is_along`` entries of fundamental matrices are given to it.
+        """
         from symflex.transfer.enclose_kernels import KernelValues  # only with beams
 
         constants = {name: evaluate() for name, evaluate in self.constants}
         return KernelValues(
-            self.ratio.ring.names, self.kernels, constants, self._modal_sums, self._plans, self._matrices
+            self.ratio.ring.names,
+            self.kernels,
+            constants,
+            self._modal_sums,
+            self._plans,
+            self._matrices if is_along else None,
         )
 
     @cached_property

@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from symflex.transfer.balls import Value
     from symflex.transfer.direct_solve import Point
     from symflex.transfer.enclosed_network import EnclosedNetwork, NetworkResponses
+    from symflex.transfer.probes import Probes
 
 CONSTANT_BITS = 256
 
@@ -193,6 +194,13 @@ class NestedTransferFunction:
             if constant.generator in used:
                 used |= {n.name for n in names(constant.expression) if isinstance(n, Name)}
         return tuple(p for p in self.model.parameters if p.name in used)
+
+    @cached_property
+    def probes(self) -> Probes:
+        """Its values at test points, for what is printed of it."""
+        from symflex.transfer.probes import Probes  # it knows all kinds of transfer functions
+
+        return Probes(self)
 
 
 AnyTransferFunction = TransferFunction | NestedTransferFunction

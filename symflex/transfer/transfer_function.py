@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from symflex.quantities import Dimension
     from symflex.transfer.against_equations import ModelSolve
     from symflex.transfer.expansion import Opening
+    from symflex.transfer.probes import Probes
 
 
 LARGE = 50_000
@@ -239,6 +240,13 @@ class TransferFunction:
             if constant.generator in used:
                 used |= {n.name for n in names(constant.expression) if isinstance(n, Name)}
         return tuple(p for p in self.model.parameters if p.name in used)
+
+    @cached_property
+    def probes(self) -> Probes:
+        """Its values at test points, for what is printed of it."""
+        from symflex.transfer.probes import Probes  # it knows all kinds of transfer functions
+
+        return Probes(self)
 
     @property
     def order(self) -> tuple[int, int]:

@@ -23,6 +23,7 @@ from symflex.print.forms.polynomial import (
     polynomial_form,
 )
 from symflex.print.forms.printed import Arrange, Begin, BegunForm, PrintedForm, counts_of, forms_of, require
+from symflex.print.read_back import read_back
 from symflex.transfer import NestedTransferFunction
 
 if TYPE_CHECKING:
@@ -93,8 +94,17 @@ def print_form(
     ``form`` is a key of :data:`FORMS`; functions derived nested have the form ``nested`` and no other.
     ``digits`` are the significant ones of forms that print decimals. What is ``arranged`` already, of
     functions of the same model, is not arranged again. Raises UsageError: SF902 when there is no such form,
-    or the function has none; ModelError: SF229 when the form needs numbers and a parameter has none.
+    or the function has none; ModelError: SF229 when the form needs numbers and a parameter has none;
+    InternalError: SF992 when the form, read back, is not the function.
     """
+    made = _arranged(tf, form, digits, arranged)
+    read_back(tf, made, digits if made.name in DECIMAL_FORMS else None)
+    return made
+
+
+def _arranged(
+    tf: AnyTransferFunction, form: str | None, digits: int, arranged: Arranged | None
+) -> PrintedForm:
     if isinstance(tf, NestedTransferFunction):
         if form not in (None, "nested"):
             message = f"{tf.name} is derived in nested form, which is not expanded into others"

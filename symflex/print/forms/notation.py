@@ -14,6 +14,8 @@ from symflex.expressions import (
     Equation,
     Expression,
     Name,
+    Product,
+    Quotient,
     names,
     negative,
     number,
@@ -199,10 +201,10 @@ def wave_times_length(printer: ProductPrinter, wave: Expression, length: Factore
 def times_length(printer: ProductPrinter, root: Expression, length: Factored) -> Expression:
     """Return a length times what a wavenumber is, s in front."""
     above, below = length_sides(printer, length)
-    s = Name(LAPLACE)
-    inner = root.children if root.children and root.children[0] == s else (root,)
-    front = [s] if inner[0] == s else []
-    return quotient(product_of([*front, above, *(inner[1:] if front else inner)]), below)
+    top, bottom = (root.numerator, root.denominator) if isinstance(root, Quotient) else (root, number(1))
+    factors = list(top.factors) if isinstance(top, Product) else [top]
+    front = [factors.pop(0)] if factors[0] == Name(LAPLACE) else []
+    return quotient(product_of([*front, above, *factors]), product_of([below, bottom]))
 
 
 def wave_notation(tf: TransferFunction, dispersions: Iterable[Dispersion], naming: Naming) -> Notation:

@@ -113,7 +113,7 @@ class _DecayingPage:
         replaced = {g for a in angles_of(tf.kernels) for g in a.kernels.values()}
         replaced |= {d.wavenumbers[0] for d in self._bending}
         waves = [d.wavenumbers[0] for d in self._bending]
-        own = [_of(part, w) for w in waves for part in ("a", "p", "sqrt(2p)", "sqrt(2/p)", "sqrt(p/2)")]
+        own = [_of(part, w) for w in waves for part in ("a", "p", "sqrt(2p)", "sqrt(p/2)")]
         functions: list[str] = []
         for i, angle in enumerate(self._angles):
             parts = ("w", "S", "C", "Q") if angle.dispersion.kind == "bending" else ("D",)
@@ -182,7 +182,6 @@ class _DecayingPage:
             symbols |= {
                 _of("p", d.wavenumbers[0]): p,
                 _of("sqrt(2p)", d.wavenumbers[0]): Call("sqrt", product_of([two, p])),
-                _of("sqrt(2/p)", d.wavenumbers[0]): Call("sqrt", quotient(two, p)),
                 _of("sqrt(p/2)", d.wavenumbers[0]): Call("sqrt", quotient(p, two)),
             }
         for j, (_, angle) in enumerate(bent):
@@ -229,8 +228,9 @@ class _DecayingPage:
                 Factored.generator(self.ring, _of(part, d.wavenumbers[0]))
                 for part in ("sqrt(p/2)", "sqrt(2p)")
             )
-            if (small.factors[0][0], 1) in value.factors and value.unit.numerator % 2 == 0:
-                value = value / small * large / 2
+            for exponent, times in ((1, value.unit.numerator), (-1, value.unit.denominator)):
+                if (small.factors[0][0], exponent) in value.factors and times % 2 == 0:
+                    value = value * (large / small / 2) ** exponent
         return value
 
     def _exponential(self, i: int, angle: Angle, n: int) -> Factored:
@@ -269,7 +269,8 @@ class _DecayingPage:
             return of("p") ** (e // 2 + j) * Fraction(2) ** (-e // 2)
         doubled = e + 2 * j
         if doubled < 0:
-            return of("sqrt(2/p)") * of("p") ** ((doubled + 1) // 2) * Fraction(2) ** (-(e + 1) // 2)
+            # Not sqrt(2/p), which is minus one over sqrt(p/2) where p is negative.
+            return of("p") ** ((doubled + 1) // 2) * Fraction(2) ** (-(e + 1) // 2) / of("sqrt(p/2)")
         if e > 0:
             return of("sqrt(p/2)") * of("p") ** ((doubled - 1) // 2) * Fraction(2) ** (-(e - 1) // 2)
         return of("sqrt(2p)") * of("p") ** ((doubled - 1) // 2) * Fraction(2) ** (-(e + 1) // 2)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from flint import arb, fmpz
 
 from symflex.algebra import LAPLACE
-from symflex.errors import Diagnostic, UncertifiedError
+from symflex.errors import BudgetError, Diagnostic, UncertifiedError
 from symflex.expressions import Expression, Name, number, power, product_of, sum_of
 from symflex.print.forms.printed import PrintedForm
 from symflex.roots import precision
@@ -28,13 +28,16 @@ BITS_PER_DIGIT = 4
 def zpk_form(tf: TransferFunction, digits: int) -> PrintedForm:
     """Return gain times real first- and second-order factors, in decimals of the given digits.
 
-    Raises ModelError: SF229 when a parameter has no value; UncertifiedError: SF404 when roots could not be
-    told apart, for then no factor is known to be theirs.
+    Raises ModelError: SF229 when a parameter has no value; BudgetError: SF506 when the time is over;
+    UncertifiedError: SF404 when roots could not be told apart, for then no factor is known to be theirs.
     """
     bound = bind(tf)
     if bound.ratio.is_zero:
         return PrintedForm("zpk", number(0), number(1))
     found = locate(bound, None, digits + GUARD_DIGITS)
+    if found.certificate.is_exceeded:
+        message = f"not all roots of {tf.name} were found: {found.certificate.reason}"
+        raise BudgetError(Diagnostic("SF506", message, None, "allow more time, or ask for another form"))
     if any(not root.certified for root in (*found.zeros, *found.poles)):
         message = f"some roots of {tf.name} could not be told apart, so that their factors are not known"
         hint = (

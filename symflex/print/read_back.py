@@ -1,0 +1,317 @@
+"""What is about to be printed, read back: its values against those of the transfer function.
+
+Input: a transfer function and a form of it, before any printer sees it.
+Output: nothing, or an error where the two differ.
+
+    where q = s*l*c,  1/cosh(q)     at s = -83/64, l = 41/64, c = 107/64:    0.49...
+    the function itself             1/cosh(s*l/c) there:                     0.89...   SF992
+
+A form is read twice: as the tree from which LaTeX, MathML and SymPy are made, and as its text, which is
+parsed as a user's would be. Names are what their lines say, in principal branches; functions of x are what
+their differential equations say. Balls that do not meet prove that a form is wrong.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from typing import TYPE_CHECKING, Final, TypeVar
+
+from flint import acb, arb, ctx, fmpq
+
+from symflex.algebra import LAPLACE, Factored
+from symflex.budget import spend
+from symflex.errors import Diagnostic, InternalError, SpecError, Text
+from symflex.expressions import (
+    PROGRAM_LIMITS,
+    Bessel,
+    Call,
+    Derivative,
+    Equation,
+    Expression,
+    Name,
+    format_expression,
+    names,
+    parse,
+    parse_equation,
+    replace_values,
+)
+from symflex.model.along import COORDINATE
+from symflex.model.analysis import lines_in_order
+from symflex.transfer import NestedTransferFunction
+from symflex.transfer.balls import principal_values
+from symflex.transfer.enclose_kernels import fundamental_functions
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from symflex.algebra import Dispersion
+    from symflex.print.forms.printed import PrintedForm
+    from symflex.transfer import AnyTransferFunction
+    from symflex.transfer.probes import Probes
+
+PRECISIONS: Final = (64, 128, 256, 512)
+"""Bits at which points are tried that are not decided with fewer."""
+LONGEST_TEXT: Final = 5000
+"""Characters of one form that are parsed, at some 10 microseconds each."""
+ENOUGH: Final = 24
+"""Bits of a value that leave a wrong form no place to hide, as points have no meaning."""
+
+
+REPORT: Final = "this is a fault of symflex, not of the model; please report it with the specification"
+INSIDE: Final = Fraction(3, 8)
+"""Part of a member at whose end coefficients that vary along it are compared."""
+E = TypeVar("E", bound=Expression)
+
+
+class _DiffersError(Exception):
+    """A form is wrong; its argument says where, or why it cannot be read."""
+
+
+def read_back(tf: AnyTransferFunction, form: PrintedForm, digits: int | None = None) -> int:
+    """Return at how many points a form has the values of its transfer function; at others neither has one.
+
+    ``digits`` are those of the decimals that a form prints. Raises InternalError: SF992 where they differ.
+    """
+    probes = tf.probes if digits is None else tf.probes.declared
+    try:
+        agreed = _Reader(tf, form, probes, digits).compared()
+        # Most texts are read as the very tree they are made of.
+        if (read := _as_read(form)) != form:
+            _Reader(tf, read, probes, digits).compared()
+        if form.closed:
+            _Reader(tf, form, tf.probes.solved, digits).compared()
+    except _DiffersError as error:
+        message = f"the {form.name} form of {tf.name} is not shown, as it is wrong: {error}"
+        raise InternalError(Diagnostic("SF992", message, None, REPORT)) from None
+    return agreed
+
+
+@dataclass(frozen=True, eq=False)
+class _Reader:
+    """Evaluates one form at test points."""
+
+    tf: AnyTransferFunction
+    form: PrintedForm
+    probes: Probes
+    digits: int | None
+
+    def compared(self) -> int:
+        """Return at how many points the form is right."""
+        pending: Sequence[int] = range(len(self.probes.points))
+        agreed = 0
+        for bits in PRECISIONS[1:] if self.probes.is_solved else PRECISIONS:
+            if not pending:
+                break
+            spend()
+            with ctx.workprec(bits):
+                undecided = []
+                for i, same in zip(pending, self._same(bits, pending), strict=True):
+                    agreed += same
+                    if not same:
+                        undecided.append(i)
+                pending = undecided
+        return agreed
+
+    def _same(self, bits: int, chosen: Sequence[int]) -> list[bool]:
+        """Tell of some points whether both values are one, up to narrow balls."""
+        points = _Points(self, bits, chosen)
+        form = self.form
+        found = []
+        num, den = points.value(form.num), points.value(form.den)
+        printed = [x / y for x, y in zip(num, den, strict=True)]
+        self.check(chosen, points.value(form.argument), points.known[LAPLACE], "its argument")
+        self.check(chosen, printed, derived := self.probes.values(bits, chosen), "its value")
+        points.check_laws()
+        for x, y in zip(printed, derived, strict=True):
+            is_narrow = self.digits is not None or min(x.rel_accuracy_bits(), y.rel_accuracy_bits()) >= ENOUGH
+            found.append(bool(x.is_finite() and y.is_finite() and is_narrow))
+        return found
+
+    def check(self, chosen: Sequence[int], printed: Sequence[acb], right: Sequence[acb], what: str) -> None:
+        """Raise an error where two balls do not meet."""
+        for i, x, y in zip(chosen, printed, right, strict=True):
+            if x.is_finite() and y.is_finite() and not x.overlaps(y):
+                _, (re, im) = self.probes.points[i]
+                at = complex(float(re), float(im))
+                message = (
+                    f"at s = {at:.4g} {what} is {complex(x.mid()):.4g} and should be {complex(y.mid()):.4g}"
+                )
+                raise _DiffersError(message)
+
+    @cached_property
+    def lines(self) -> Mapping[str, Expression]:
+        """What names stand for, each after those it needs."""
+        known = dict(self.form.where)
+        known |= {left.name: e for left, e in self.form.closed if isinstance(left, Name)}
+        laws = {name: law for name, law in self.form.laws if not isinstance(law.left, Derivative | Call)}
+        joined = {name: self._with_laws(e, laws) for name, e in known.items()}
+        form = self.form
+        roots = [form.num, form.den, form.argument, *laws.values(), *(law for _, law in form.laws)]
+        roots += [e for _, e in form.closed]
+        order, circle = lines_in_order(roots, joined)
+        if circle:
+            message = f"names are defined in a circle: {' -> '.join(circle)}"
+            raise _DiffersError(message)
+        return {name: known[name] for name in order}
+
+    @staticmethod
+    def _with_laws(expression: Expression, laws: Mapping[str, Equation]) -> Expression:
+        """Return an expression with the laws of the functions in it beside it, for what it needs first."""
+        called = dict.fromkeys(n.name for n in names(expression) if isinstance(n, Call) and n.name in laws)
+        for name in called:
+            expression = Equation(expression, laws[name])
+        return expression
+
+    @cached_property
+    def laws(self) -> Mapping[str, tuple[Equation, int]]:
+        """The differential equations of functions of x, with their orders."""
+        found = {}
+        for name, law in self.form.laws:
+            if not isinstance(law.left, Derivative | Call):
+                orders = (n.order for n in names(law) if isinstance(n, Derivative) and n.name == name)
+                found[name] = law, max(orders, default=0)
+        return found
+
+    @cached_property
+    def matrices(self) -> Sequence[tuple[Dispersion, tuple[tuple[str, Equation], ...]]]:
+        """The laws that vary along x, each with the printed line of every row."""
+        if isinstance(self.tf, NestedTransferFunction):
+            return ()
+        rows = iter([(name, law) for name, law in self.form.laws if isinstance(law.left, Derivative)])
+        used = self.tf.ratio.ring.used_in(f for f, _ in self.tf.ratio.factors)
+        table = self.tf.kernels
+        return [
+            (d, tuple(row for row, _ in zip(rows, range(d.order), strict=False)))
+            for d in table.dispersions
+            if any(k.function == "entry" and k.generator in used for k in table.kernels_of(d))
+        ]
+
+    @cached_property
+    def entries(self) -> Mapping[str, tuple[Dispersion, int, int]]:
+        """Row and column of what is called an entry of a fundamental matrix."""
+        return {
+            f"{name[:-1]}{j + 1}": (d, i, j)
+            for d, rows in self.matrices
+            for i, (name, _) in enumerate(rows)
+            for j in range(len(rows))
+        }
+
+
+class _Points:
+    """A form at some of the points, at the current precision."""
+
+    def __init__(self, reader: _Reader, bits: int, chosen: Sequence[int]) -> None:
+        self._reader, self._bits, self._chosen = reader, bits, chosen
+        self._functions: dict[tuple[str, Expression], list[tuple[acb, ...]]] = {}
+        self.known = reader.probes.numbers(chosen, bits)
+        for name, line in reader.lines.items():
+            self.known[name] = self.value(line)
+
+    def value(self, expression: Expression, more: Mapping[str, list[acb]] | None = None) -> list[acb]:
+        """Return the values of an expression, in which more names may be known."""
+        known = self.known if more is None else {**self.known, **more}
+
+        def named(name: str) -> list[acb]:
+            if name not in known:
+                message = f"nothing says what {name} is"
+                raise _DiffersError(message)
+            return known[name]
+
+        return principal_values(expression, len(self._chosen), named, self._call, self._number)
+
+    def _number(self, value: Fraction) -> arb:
+        """Return a number, a decimal with what rounding took away."""
+        middle = arb(fmpq(value.numerator, value.denominator))
+        digits = self._reader.digits
+        return middle if digits is None else arb(middle, abs(middle) * arb(10) ** (1 - digits) / 2)
+
+    def _call(self, call: Call, argument: list[acb]) -> list[acb]:
+        if isinstance(call, Bessel):
+            order = acb(fmpq(call.index.numerator, call.index.denominator))
+            return [getattr(x, f"bessel_{call.kind.lower()}")(order) for x in argument]
+        if call.name in self._reader.laws:
+            key = call.name, call.argument
+            if key not in self._functions:
+                self._functions[key] = self._solutions(call.name, argument)
+            return [found[call.order] for found in self._functions[key]]
+        if call.name in self._reader.entries:
+            return self._entry(call.name, argument)
+        message = f"nothing says what {call.name} is a function of"
+        raise _DiffersError(message)
+
+    def _solutions(self, name: str, argument: list[acb]) -> list[tuple[acb, ...]]:
+        """Return a function of x and its derivatives, as its differential equation says."""
+        law, order = self._reader.laws[name]
+        states = [Name(f"{name}{chr(39) * k}") for k in range(order + 1)]
+        opened = replace_values(law.left, {Derivative(name, k): state for k, state in enumerate(states)})
+        count = len(argument)
+        parts = [self.value(opened, {x.name: [acb(int(x is own))] * count for x in states}) for own in states]
+        found = []
+        for *coefficients, leading, x in zip(*parts, argument, strict=True):
+            found.append(fundamental_functions([c / leading for c in coefficients], x))
+        return found
+
+    def _entry(self, name: str, place: list[acb]) -> list[acb]:
+        """Return an entry of a fundamental matrix."""
+        tf, probes = self._reader.tf, self._reader.probes
+        assert not isinstance(tf, NestedTransferFunction)
+        d, i, j = self._reader.entries[name]
+        for kernel in tf.kernels.kernels_of(d):
+            if kernel.order != i * d.order + j:
+                continue
+            right = probes.values_of(d.start[0] + kernel.length, self._bits, self._chosen)
+            if all(x.overlaps(y) for x, y in zip(place, right, strict=True)):
+                own = Factored.generator(tf.ratio.ring, kernel.generator)
+                return probes.values_of(own, self._bits, self._chosen)
+        message = f"{name} is taken where nothing ends"
+        raise _DiffersError(message)
+
+    def check_laws(self) -> None:
+        """Compare the lines of laws that vary along x with these, and what is said of their solutions."""
+        probes, check = self._reader.probes, self._reader.check
+        for d, rows in self._reader.matrices:
+            length = next(k.length for k in self._reader.tf.kernels.kernels_of(d))
+            place = probes.values_of(d.start[0] + length * INSIDE, self._bits, self._chosen)
+            for j in range(d.order):
+                states = {name: [acb(int(i == j))] * len(place) for i, (name, _) in enumerate(rows)}
+                for i, (name, law) in enumerate(rows):
+                    printed = self.value(law.right, {**states, COORDINATE: place})
+                    right = probes.along(d.matrix[i][j], place, self._bits, self._chosen)
+                    check(self._chosen, printed, right, f"the equation of {name}")
+        if not probes.is_solved:
+            return
+        for left, expression in self._reader.form.closed:
+            if isinstance(left, Call):
+                check(self._chosen, self.value(expression), self.value(left), format_expression(left))
+
+
+def _as_read(form: PrintedForm) -> PrintedForm:
+    """Return a form as its text is read; what is longer than is worth while, or than limits allow, as it is.
+
+    Bessel functions are written and not read.
+    """
+    room = LONGEST_TEXT
+
+    def read(expression: E, reader: Callable[..., E]) -> E:
+        nonlocal room
+        text = format_expression(expression)
+        room -= len(text)
+        if room < 0:
+            return expression
+        try:
+            return reader(Text.alone("<printed>", text), limits=PROGRAM_LIMITS)
+        except SpecError as error:
+            if error.diagnostics[0].code == "SF103":
+                return expression
+            message = f"its text cannot be read, {error.diagnostics[0].message}"
+            raise _DiffersError(message) from None
+
+    return replace(
+        form,
+        num=read(form.num, parse),
+        den=read(form.den, parse),
+        where=tuple((name, read(e, parse)) for name, e in form.where),
+        laws=tuple((name, read(law, parse_equation)) for name, law in form.laws),
+    )

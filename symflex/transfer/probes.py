@@ -1,0 +1,327 @@
+"""Values of a transfer function at test points, with which what is printed of it is compared.
+
+Input: a transfer function, with numbers for none of its parameters, some or all.
+Output: points, each a complex s and a value of every parameter, and the function's values there in balls.
+
+    1/(m*s^2 + b*s + k)    m = 41/64, b = 107/64, k = 33/64 and s = -83/64,   m = 121/64, b = 47/64, ...
+
+A wrong root, sign or power changes the value at almost every point. Points lie where principal branches part:
+s is negative, on either half of the imaginary axis and in all four quadrants, and every parameter is below 1
+in one half of them and above 1 in the other. Parameters keep the sign that is assumed of them; lengths are
+positive and roots of constants real. A last pair of points has values near the declared ones. Values are not
+put into polynomials, as :func:`symflex.transfer.bind` puts them: nothing cancels at a point of no meaning.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from math import sqrt, tau
+from random import Random
+from typing import TYPE_CHECKING, Final, Literal
+
+from flint import acb, arb, ctx
+
+from symflex.algebra import LAPLACE, Factored, terms_of
+from symflex.algebra.minors import MinorSums
+from symflex.errors import ModelError
+from symflex.model import ExactValue
+from symflex.model.along import COORDINATE
+from symflex.transfer.balls import ball, enclosure, evaluated, later, plan, principal_values, summed
+from symflex.transfer.bind import BoundTransferFunction
+from symflex.transfer.nested_form import BoundNested, NestedTransferFunction
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from symflex.transfer.nested_form import AnyTransferFunction
+    from symflex.transfer.transfer_function import TransferFunction
+
+    Kind = Literal["drawn", "declared", "solved"]
+    Directions = tuple[tuple[str, str], ...]
+    Values = Mapping[str, ExactValue]
+    Evaluate = Callable[[Factored | None, int], Callable[[acb], acb]]
+
+FIRST: Final = (("-1", "0"), ("0", "1"), ("-5/13", "12/13"), ("12/13", "-5/13"))
+SECOND: Final = (("0", "-1"), ("-1", "0"), ("-3/5", "-4/5"), ("4/5", "3/5"))
+NEARBY: Final = (("-1", "0"), ("0", "1"))
+SOLVED: Final = (("-1/4", "0"),)
+"""Directions of s, of length 1: branches are told apart on an axis only where s lies on it exactly."""
+FIRST_BITS: Final = 64
+SOLVED_BITS: Final = 128
+"""Bits with which the test points of laws that vary along x are solved; with half of them it may take two."""
+TINY: Final = 2.0**-40
+"""Share of s by which a law that is solved at s may be varied."""
+PARTS: Final = 64
+"""Values are multiples of one over this."""
+TRIES: Final = 8
+"""Draws of parameters before those are taken that lie near the declared ones."""
+NEAR: Final = 16
+"""How many times a declared value is larger than the step to the value taken for it."""
+DECLARED_BAND: Final = (Fraction(1, 10), Fraction(1000))
+"""Hz, between which frequencies of a model lie that declares none."""
+
+
+@dataclass(frozen=True, eq=False)
+class Setting:
+    """Values of all parameters, the points s taken with them, and the function there."""
+
+    values: Values
+    points: tuple[tuple[Fraction, Fraction], ...]
+    evaluate: Evaluate  # the function, or another over its ring, at a precision
+    bound: BoundTransferFunction | None = None  # of a function whose parts can be evaluated by themselves
+
+
+class Probes:
+    """The test points of one transfer function; its values at them are found once.
+
+    Examples
+    --------
+    >>> from symflex import pipeline
+    >>> model = pipeline.loads('''
+    ... symflex = 1
+    ... parameters = { a = {} }
+    ... inputs.u = {}
+    ... outputs.y = "u/(s^2 + a*s + 1)"
+    ... ''')
+    >>> (tf,) = pipeline.derive_all(model)
+    >>> probes = Probes(tf)
+    >>> len(probes.points), len(probes.values(64))
+    (8, 8)
+    """
+
+    def __init__(self, tf: AnyTransferFunction, kind: Kind = "drawn") -> None:
+        self._tf, self._kind = tf, kind
+        self._known: dict[tuple[int, int], acb] = {}
+
+    @cached_property
+    def points(self) -> tuple[tuple[Setting, tuple[Fraction, Fraction]], ...]:
+        """All points."""
+        draw = _Draw(self._tf, Random(self._tf.name), self.is_solved)
+        settings: list[Setting | None]
+        match self._kind:
+            case "declared":
+                settings = [draw.declared((*FIRST, *SECOND))]
+            case "solved":
+                settings = [draw.nearby(SOLVED) or draw.half(SOLVED, 0)]
+            case _:
+                settings = [draw.half(FIRST, 0), draw.half(SECOND, 1), draw.nearby(NEARBY)]
+        return tuple((setting, s) for setting in settings if setting is not None for s in setting.points)
+
+    @cached_property
+    def declared(self) -> Probes:
+        """The function with the declared values themselves, for what is printed in decimals."""
+        return Probes(self._tf, "declared")
+
+    @cached_property
+    def solved(self) -> Probes:
+        """The function at few points at which laws that vary along x are solved, which takes longer."""
+        return Probes(self._tf, "solved")
+
+    @property
+    def is_solved(self) -> bool:
+        """Whether laws that vary along x are solved: else functions that they determine are any."""
+        return self._kind == "solved"
+
+    def numbers(self, chosen: Sequence[int], bits: int) -> dict[str, list[acb]]:
+        """Return s, pi and every parameter at some of the points."""
+        with ctx.workprec(bits):
+            points = [self.points[i] for i in chosen]
+            found = {
+                LAPLACE: [acb(ball(re), ball(im)) for _, (re, im) in points],
+                "pi": [acb(arb.pi())] * len(points),
+            }
+            for parameter in self._tf.model.parameters:
+                found[parameter.name] = [acb(enclosure(s.values[parameter.name])()) for s, _ in points]
+            return found
+
+    def values(self, bits: int, chosen: Sequence[int] | None = None) -> list[acb]:
+        """Return balls around the function's values at some of the points, all by default."""
+        wanted = range(len(self.points)) if chosen is None else chosen
+        missing = [i for i in wanted if (i, bits) not in self._known]
+        found = self.values_of(None, bits, missing)
+        self._known.update(zip(((i, bits) for i in missing), found, strict=True))
+        return [self._known[i, bits] for i in wanted]
+
+    def values_of(self, value: Factored | None, bits: int, chosen: Sequence[int]) -> list[acb]:
+        """Return balls around any function over the ring of the transfer function; None is that itself."""
+        enclosed: dict[int, Callable[[acb], acb]] = {}
+        found = []
+        for i in chosen:
+            setting, (re, im) = self.points[i]
+            with ctx.workprec(bits):
+                function = enclosed.get(id(setting)) or setting.evaluate(value, bits)
+                enclosed[id(setting)] = function
+                found.append(function(acb(ball(re), ball(im))))
+        return found
+
+    def along(self, value: Factored, x: Sequence[acb], bits: int, chosen: Sequence[int]) -> list[acb]:
+        """Return balls around a function of s and the coordinate along a member, each point at its own x."""
+        found = []
+        for i, place in zip(chosen, x, strict=True):
+            setting, (re, im) = self.points[i]
+            assert setting.bound is not None
+            with ctx.workprec(bits):
+                kernels = setting.bound.kernel_values(is_along=False)
+                known = kernels.generators_at(acb(ball(re), ball(im)))
+                known[COORDINATE] = place
+                for name, function in setting.bound.along.items():
+                    own = {n: [acb(enclosure(v)())] for n, v in setting.values.items()}
+                    own |= {COORDINATE: [place], "pi": [acb(arb.pi())]}
+                    known[name] = principal_values(function, 1, own.__getitem__)[0]
+                found.append(evaluated(value, known.__getitem__, acb(1)))
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class _Draw:
+    """Draws settings of one function; none of them is one that the model does not allow."""
+
+    tf: AnyTransferFunction
+    random: Random
+    is_solved: bool  # laws that vary along x are solved
+
+    def half(self, directions: Directions, half: int) -> Setting | None:
+        """Return values on one side of 1 for every other parameter, and on the other side for the others."""
+        for _ in range(TRIES):
+            values = {}
+            for i, parameter in enumerate(self.tf.model.parameters):
+                size = Fraction(self.random.randrange(PARTS // 3, PARTS - 3), PARTS)
+                size = size if (i + half) % 2 else 1 / size
+                given = parameter.value
+                is_negative = bool(half) if given is None else given.rational < 0
+                values[parameter.name] = ExactValue(
+                    -size if is_negative and parameter.assume == "real" else size
+                )
+            if (setting := self._setting(values, directions, Fraction(1))) is not None:
+                return setting
+        return self.nearby(directions)
+
+    def nearby(self, directions: Directions) -> Setting | None:
+        """Return values near the declared ones, these themselves where others are none."""
+        return self.declared(directions, is_moved=True) or self.declared(directions)
+
+    def declared(self, directions: Directions, *, is_moved: bool = False) -> Setting | None:
+        """Return the declared values, or some that are moved a little."""
+        model = self.tf.model
+        given = {p.name: p.value for p in model.parameters if p.value is not None}
+        if any(p.name not in given for p in self.tf.parameters):
+            return None
+        values = {}
+        for parameter in model.parameters:
+            value = given.get(parameter.name, ExactValue(Fraction(1)))
+            step = Fraction(self.random.randrange(-PARTS, PARTS), PARTS * NEAR) if is_moved else 0
+            values[parameter.name] = replace(value, rational=value.rational * (1 + step))
+        low, high = model.analysis.band or DECLARED_BAND
+        return self._setting(values, directions, Fraction(tau * sqrt(low * high)).limit_denominator(PARTS))
+
+    def _setting(self, values: Values, directions: Directions, scale: Fraction) -> Setting | None:
+        points = []
+        for re, im in directions:
+            size = scale * Fraction(self.random.randrange(PARTS // 2, 2 * PARTS), PARTS)
+            points.append((size * Fraction(re), size * Fraction(im)))
+        try:
+            found = self._evaluator(values)
+            if found is None:
+                return None
+            # Where a constant is not real, or a coefficient not analytic along x, this says so.
+            found[0](None, SOLVED_BITS if self.is_solved else FIRST_BITS)(
+                acb(ball(points[0][0]), ball(points[0][1]))
+            )
+        except ModelError:
+            return None
+        return Setting(values, tuple(points), *found)
+
+    def _evaluator(self, values: Values) -> tuple[Evaluate, BoundTransferFunction | None] | None:
+        tf, exact = self.tf, tuple(values.items())
+        if isinstance(tf, NestedTransferFunction):
+            nested = BoundNested(tf, exact)
+            return lambda _, bits: nested.enclosed(bits), None
+        if tf.closed is not None:
+            return lambda _, bits: _closed_value(tf, values, bits), None
+        bound = BoundTransferFunction(tf, exact, tf.ratio, (), tf.kernels)
+        if any(d.matrix for d in tf.kernels.dispersions):
+            return _tapered(bound, is_solved=self.is_solved), bound
+        own = bound.enclosed_part(tf.ratio, FIRST_BITS).kernels
+        numbers = own.generators_at(acb(1))
+        if not all(_is_length(acb(own.value(k.length, numbers))) for k in tf.kernels.kernels):
+            return None
+        return lambda value, bits: bound.enclosed_part(tf.ratio if value is None else value, bits), bound
+
+
+def _is_length(value: acb) -> bool:
+    return bool(value.imag == 0 and value.real > 0)
+
+
+def _tapered(bound: BoundTransferFunction, *, is_solved: bool) -> Evaluate:
+    """Return what evaluates functions of entries of fundamental matrices.
+
+    The entries are arbitrary numbers where laws are not solved: no print of them uses what they are.
+    """
+    known: dict[tuple[int, str], dict[str, acb]] = {}
+
+    def evaluate(value: Factored | None, bits: int) -> Callable[[acb], acb]:
+        with ctx.workprec(bits):
+            kernels = bound.kernel_values(is_along=False)
+
+        def at(s: acb) -> acb:
+            with ctx.workprec(bits):
+                key = bits, str(s)
+                if key not in known:
+                    known[key] = _solved(bound, s) if is_solved else _arbitrary(bound, s)
+                return acb(
+                    kernels.value(bound.ratio if value is None else value, {**kernels.at(s), **known[key]})
+                )
+
+        return at
+
+    return evaluate
+
+
+def _arbitrary(bound: BoundTransferFunction, s: acb) -> dict[str, acb]:
+    random = Random(str(s))
+    names = [k.generator for k in bound.kernels.kernels if k.function == "entry"]
+    return {name: acb(random.randrange(1, PARTS), random.randrange(1, PARTS)) / PARTS for name in names}
+
+
+def _solved(bound: BoundTransferFunction, s: acb) -> dict[str, acb]:
+    """Return the entries at one s: matrices that serve for many take far longer."""
+    from symflex.transfer.enclose_varying import VaryingMatrices  # few beams are tapered
+
+    values = {name: enclosure(value) for name, value in bound.values}
+    minors = MinorSums(bound.ratio.ring, bound.kernels)
+    found = {}
+    for law in VaryingMatrices(minors, dict(bound.constants), bound.along, values).laws:
+        expansion = law.expanded_about(s, (abs(s) * TINY).upper(), 1)
+        for kernel in bound.kernels.kernels_of(law.law):
+            if kernel.length == law.length:
+                i, j = divmod(kernel.order, law.law.order)
+                entry = acb("nan") if expansion is None else expansion.series((i,), (j,), acb(0))[0]
+                found[kernel.generator] = entry
+    return found
+
+
+def _closed_value(tf: TransferFunction, values: Values, bits: int) -> Callable[[acb], acb]:
+    """Return what evaluates a lumped function in its closed sums, of which none is opened."""
+    closed = tf.closed
+    assert closed is not None
+    closure = closed.closure
+    sides, names = (plan(closed.num), plan(closed.den)), closure.ring.names
+    enclosures = {name: enclosure(value) for name, value in values.items()}
+    with ctx.workprec(bits):
+        numbers: dict[str, acb] = {name: acb(enclose()) for name, enclose in enclosures.items()}
+        numbers["pi"] = acb(arb.pi())
+        numbers.update((c.generator, acb(later(c.expression, enclosures)())) for c in tf.constants)
+
+    def value(s: acb) -> acb:
+        with ctx.workprec(bits):
+            known = {**numbers, LAPLACE: s}
+            for name, definition in tf.definitions:
+                known[name] = evaluated(definition, known.__getitem__, acb(1))
+            for name, polynomial in closure.sums:
+                known[name] = summed(terms_of(polynomial), closure.base.names, known.__getitem__, acb(1))
+            num, den = (side.value([known[names[i]] ** e for i, e in side.powers]) for side in sides)
+            return acb(num) / acb(den)
+
+    return value
