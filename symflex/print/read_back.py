@@ -35,20 +35,22 @@ from symflex.expressions import (
     names,
     parse,
     parse_equation,
+    product_of,
     replace_values,
 )
 from symflex.model.along import COORDINATE
 from symflex.model.analysis import lines_in_order
 from symflex.transfer import NestedTransferFunction
-from symflex.transfer.balls import principal_values
+from symflex.transfer.balls import at_centre, principal_values
 from symflex.transfer.enclose_kernels import fundamental_functions
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from symflex.algebra import Dispersion
+    from symflex.algebra import Dispersion, Kernel
     from symflex.print.forms.printed import PrintedForm
     from symflex.transfer import AnyTransferFunction
+    from symflex.transfer.balls import Value
     from symflex.transfer.probes import Probes
 
 PRECISIONS: Final = (64, 128, 256, 512)
@@ -88,6 +90,32 @@ def read_back(tf: AnyTransferFunction, form: PrintedForm, digits: int | None = N
     return agreed
 
 
+def read_hidden(
+    tf: AnyTransferFunction, form: PrintedForm, factors: Sequence[tuple[Expression, int]]
+) -> None:
+    """Compare the factors that are said to have cancelled, in the names of a form, with those that have.
+
+    Wavenumbers are roots, of which any may be taken: a factor is one up to a fourth root of 1, and where s is
+    on the right, for to its left one may be the other. Raises InternalError: SF992 where they differ.
+    """
+    if isinstance(tf, NestedTransferFunction) or not tf.hidden:
+        return
+    probes, bits = tf.probes, PRECISIONS[1]
+    chosen = [i for i, (_, (re, _)) in enumerate(probes.points) if re > 0]
+    with ctx.workprec(bits):
+        try:
+            whole = replace(form, num=product_of([e for e, _ in factors]))
+            points = _Points(_Reader(tf, whole, probes, None), bits, chosen)
+            for (printed, _), known in zip(factors, tf.hidden, strict=True):
+                right = probes.values_of(Factored.polynomial(tf.ring, known.polynomial), bits, chosen)
+                for x, y in zip(points.value(printed), right, strict=True):
+                    if (x / y).is_finite() and not ((x / y) ** 4).contains(1):
+                        raise _DiffersError(format_expression(printed))
+        except _DiffersError as error:
+            message = f"what cancelled from {tf.name} is not shown, as it is wrong: {error}"
+            raise InternalError(Diagnostic("SF992", message, None, REPORT)) from None
+
+
 @dataclass(frozen=True, eq=False)
 class _Reader:
     """Evaluates one form at test points."""
@@ -100,34 +128,39 @@ class _Reader:
     def compared(self) -> int:
         """Return at how many points the form is right."""
         pending: Sequence[int] = range(len(self.probes.points))
-        agreed = 0
+        agreed, is_printed, is_derived = 0, False, False
         for bits in PRECISIONS[1:] if self.probes.is_solved else PRECISIONS:
-            if not pending:
-                break
             spend()
             with ctx.workprec(bits):
-                undecided = []
-                for i, same in zip(pending, self._same(bits, pending), strict=True):
-                    agreed += same
-                    if not same:
-                        undecided.append(i)
-                pending = undecided
+                pairs = self._pairs(bits, pending)
+                is_printed |= any(x.is_finite() for x, _ in pairs)
+                is_derived |= any(y.is_finite() for _, y in pairs)
+                undecided = [i for i, pair in zip(pending, pairs, strict=True) if not self._is_decided(*pair)]
+            agreed += len(pending) - len(undecided)
+            pending = undecided
+            if not pending:
+                break
+        if is_derived and not is_printed:
+            message = "it has no value where the function has one"
+            raise _DiffersError(message)
         return agreed
 
-    def _same(self, bits: int, chosen: Sequence[int]) -> list[bool]:
-        """Tell of some points whether both values are one, up to narrow balls."""
-        points = _Points(self, bits, chosen)
-        form = self.form
-        found = []
+    def _pairs(self, bits: int, chosen: Sequence[int]) -> list[tuple[acb, acb]]:
+        """Return what is printed at some points, and what is right."""
+        points, form = _Points(self, bits, chosen), self.form
         num, den = points.value(form.num), points.value(form.den)
-        printed = [x / y for x, y in zip(num, den, strict=True)]
+        printed, derived = [x / y for x, y in zip(num, den, strict=True)], self.probes.values(bits, chosen)
+        self.check(chosen, printed, derived, "its value")
         self.check(chosen, points.value(form.argument), points.known[LAPLACE], "its argument")
-        self.check(chosen, printed, derived := self.probes.values(bits, chosen), "its value")
         points.check_laws()
-        for x, y in zip(printed, derived, strict=True):
-            is_narrow = self.digits is not None or min(x.rel_accuracy_bits(), y.rel_accuracy_bits()) >= ENOUGH
-            found.append(bool(x.is_finite() and y.is_finite() and is_narrow))
-        return found
+        return list(zip(printed, derived, strict=True))
+
+    def _is_decided(self, printed: acb, derived: acb) -> bool:
+        """Tell whether balls that meet are narrow; those of decimals are as wide as these are rounded."""
+        if not (printed.is_finite() and derived.is_finite()):
+            return False
+        bits = min(printed.rel_accuracy_bits(), derived.rel_accuracy_bits())
+        return self.digits is not None or bool(bits >= ENOUGH)
 
     def check(self, chosen: Sequence[int], printed: Sequence[acb], right: Sequence[acb], what: str) -> None:
         """Raise an error where two balls do not meet."""
@@ -174,6 +207,11 @@ class _Reader:
                 found[name] = law, max(orders, default=0)
         return found
 
+    @property
+    def kernels(self) -> Sequence[Kernel]:
+        """The kernels of the transfer function."""
+        return () if isinstance(self.tf, NestedTransferFunction) else self.tf.kernels.kernels
+
     @cached_property
     def matrices(self) -> Sequence[tuple[Dispersion, tuple[tuple[str, Equation], ...]]]:
         """The laws that vary along x, each with the printed line of every row."""
@@ -204,7 +242,7 @@ class _Points:
 
     def __init__(self, reader: _Reader, bits: int, chosen: Sequence[int]) -> None:
         self._reader, self._bits, self._chosen = reader, bits, chosen
-        self._functions: dict[tuple[str, Expression], list[tuple[acb, ...]]] = {}
+        self._functions: dict[tuple[str, Expression], list[tuple[Value, ...]]] = {}
         self.known = reader.probes.numbers(chosen, bits)
         for name, line in reader.lines.items():
             self.known[name] = self.value(line)
@@ -235,13 +273,13 @@ class _Points:
             key = call.name, call.argument
             if key not in self._functions:
                 self._functions[key] = self._solutions(call.name, argument)
-            return [found[call.order] for found in self._functions[key]]
+            return [at_centre(found[call.order]) for found in self._functions[key]]
         if call.name in self._reader.entries:
             return self._entry(call.name, argument)
         message = f"nothing says what {call.name} is a function of"
         raise _DiffersError(message)
 
-    def _solutions(self, name: str, argument: list[acb]) -> list[tuple[acb, ...]]:
+    def _solutions(self, name: str, argument: list[acb]) -> list[tuple[Value, ...]]:
         """Return a function of x and its derivatives, as its differential equation says."""
         law, order = self._reader.laws[name]
         states = [Name(f"{name}{chr(39) * k}") for k in range(order + 1)]
@@ -258,8 +296,8 @@ class _Points:
         tf, probes = self._reader.tf, self._reader.probes
         assert not isinstance(tf, NestedTransferFunction)
         d, i, j = self._reader.entries[name]
-        for kernel in tf.kernels.kernels_of(d):
-            if kernel.order != i * d.order + j:
+        for kernel in self._reader.kernels:
+            if kernel.dispersion is not d or kernel.order != i * d.order + j:
                 continue
             right = probes.values_of(d.start[0] + kernel.length, self._bits, self._chosen)
             if all(x.overlaps(y) for x, y in zip(place, right, strict=True)):
@@ -272,7 +310,7 @@ class _Points:
         """Compare the lines of laws that vary along x with these, and what is said of their solutions."""
         probes, check = self._reader.probes, self._reader.check
         for d, rows in self._reader.matrices:
-            length = next(k.length for k in self._reader.tf.kernels.kernels_of(d))
+            length = next(k.length for k in self._reader.kernels if k.dispersion is d)
             place = probes.values_of(d.start[0] + length * INSIDE, self._bits, self._chosen)
             for j in range(d.order):
                 states = {name: [acb(int(i == j))] * len(place) for i, (name, _) in enumerate(rows)}

@@ -166,7 +166,8 @@ def principal_values(
 
     def called(node: Call, argument: list[acb]) -> list[acb]:
         if node.name in FUNCTIONS or call is None:
-            return [acb(FUNCTIONS[node.name].evaluate(x)) for x in argument]
+            function: Callable[[Arithmetic], Arithmetic] = FUNCTIONS[node.name].evaluate
+            return [function(x) for x in argument]
         return call(node, argument)
 
     return fold(

@@ -28,7 +28,16 @@ from symflex.algebra.minors import MinorSums
 from symflex.errors import ModelError
 from symflex.model import ExactValue
 from symflex.model.along import COORDINATE
-from symflex.transfer.balls import ball, enclosure, evaluated, later, plan, principal_values, summed
+from symflex.transfer.balls import (
+    at_centre,
+    ball,
+    enclosure,
+    evaluated,
+    later,
+    plan,
+    principal_values,
+    summed,
+)
 from symflex.transfer.bind import BoundTransferFunction
 from symflex.transfer.nested_form import BoundNested, NestedTransferFunction
 
@@ -239,13 +248,18 @@ class _Draw:
             nested = BoundNested(tf, exact)
             return lambda _, bits: nested.enclosed(bits), None
         if tf.closed is not None:
-            return lambda _, bits: _closed_value(tf, values, bits), None
+            plain = BoundTransferFunction(tf, exact, Factored.number(tf.ring, 1), ())
+
+            def lumped(value: Factored | None, bits: int) -> Callable[[acb], acb]:
+                return _closed_value(tf, values, bits) if value is None else plain.enclosed_part(value, bits)
+
+            return lumped, None
         bound = BoundTransferFunction(tf, exact, tf.ratio, (), tf.kernels)
         if any(d.matrix for d in tf.kernels.dispersions):
             return _tapered(bound, is_solved=self.is_solved), bound
         own = bound.enclosed_part(tf.ratio, FIRST_BITS).kernels
         numbers = own.generators_at(acb(1))
-        if not all(_is_length(acb(own.value(k.length, numbers))) for k in tf.kernels.kernels):
+        if not all(_is_length(at_centre(own.value(k.length, numbers))) for k in tf.kernels.kernels):
             return None
         return lambda value, bits: bound.enclosed_part(tf.ratio if value is None else value, bits), bound
 
@@ -270,9 +284,8 @@ def _tapered(bound: BoundTransferFunction, *, is_solved: bool) -> Evaluate:
                 key = bits, str(s)
                 if key not in known:
                     known[key] = _solved(bound, s) if is_solved else _arbitrary(bound, s)
-                return acb(
-                    kernels.value(bound.ratio if value is None else value, {**kernels.at(s), **known[key]})
-                )
+                found = {**kernels.at(s), **known[key]}
+                return at_centre(kernels.value(bound.ratio if value is None else value, found))
 
         return at
 
@@ -322,6 +335,6 @@ def _closed_value(tf: TransferFunction, values: Values, bits: int) -> Callable[[
             for name, polynomial in closure.sums:
                 known[name] = summed(terms_of(polynomial), closure.base.names, known.__getitem__, acb(1))
             num, den = (side.value([known[names[i]] ** e for i, e in side.powers]) for side in sides)
-            return acb(num) / acb(den)
+            return at_centre(num) / at_centre(den)
 
     return value

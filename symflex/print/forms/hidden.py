@@ -27,6 +27,8 @@ from symflex.expressions import (
 from symflex.print.forms.arrange import Arranger
 from symflex.print.forms.notation import Naming, Notation, angles_of, constant_symbols, notation_of, reachable
 from symflex.print.forms.polynomial import kernel_printer
+from symflex.print.forms.printed import PrintedForm
+from symflex.print.read_back import read_hidden
 from symflex.transfer import NestedTransferFunction
 
 if TYPE_CHECKING:
@@ -34,7 +36,6 @@ if TYPE_CHECKING:
 
     from symflex.expressions import Expression
     from symflex.print.forms.notation import Line
-    from symflex.print.forms.printed import PrintedForm
     from symflex.transfer import AnyTransferFunction, TransferFunction
 
 Hidden = tuple[tuple["Expression", int], ...]
@@ -50,6 +51,12 @@ def hidden_expressions(tf: AnyTransferFunction) -> Hidden:
     """
     if isinstance(tf, NestedTransferFunction):
         return ()  # not looked for
+    factors = _spelled_out(tf)
+    read_hidden(tf, PrintedForm("", number(1), number(1)), factors)
+    return factors
+
+
+def _spelled_out(tf: TransferFunction) -> Hidden:
     used = tf.ring.used_in(h.polynomial for h in tf.hidden)
     if used & set(tf.kernels.generators):
         notation = notation_of(tf, used, Naming.of(tf))
@@ -94,7 +101,9 @@ def with_hidden(tf: AnyTransferFunction, form: PrintedForm) -> tuple[PrintedForm
     factors = tuple((substitute(e, names), m) for e, m in _factors(tf, notation))
     lines = tuple((name, substitute(e, names)) for name, e in notation.lines if name not in names)
     more = reachable([e for e, _ in factors], lines)
-    return replace(form, where=(*form.where, *more)), factors
+    found = replace(form, where=(*form.where, *more))
+    read_hidden(tf, found, factors)
+    return found, factors
 
 
 def _factors(tf: TransferFunction, notation: Notation) -> Hidden:
