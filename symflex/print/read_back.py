@@ -42,7 +42,6 @@ from symflex.model.along import COORDINATE
 from symflex.model.analysis import lines_in_order
 from symflex.transfer import NestedTransferFunction
 from symflex.transfer.balls import at_centre, principal_values
-from symflex.transfer.enclose_kernels import fundamental_functions
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -281,6 +280,8 @@ class _Points:
 
     def _solutions(self, name: str, argument: list[acb]) -> list[tuple[Value, ...]]:
         """Return a function of x and its derivatives, as its differential equation says."""
+        from symflex.transfer.enclose_kernels import fundamental_functions  # only with beams
+
         law, order = self._reader.laws[name]
         states = [Name(f"{name}{chr(39) * k}") for k in range(order + 1)]
         opened = replace_values(law.left, {Derivative(name, k): state for k, state in enumerate(states)})

@@ -24,7 +24,6 @@ from typing import TYPE_CHECKING, Final, Literal
 from flint import acb, arb, ctx
 
 from symflex.algebra import LAPLACE, Factored, terms_of
-from symflex.algebra.minors import MinorSums
 from symflex.errors import ModelError
 from symflex.model import ExactValue
 from symflex.model.along import COORDINATE
@@ -34,7 +33,6 @@ from symflex.transfer.balls import (
     enclosure,
     evaluated,
     later,
-    plan,
     principal_values,
     summed,
 )
@@ -45,7 +43,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from symflex.transfer.nested_form import AnyTransferFunction
-    from symflex.transfer.transfer_function import TransferFunction
+    from symflex.transfer.transfer_function import ClosedForm, TransferFunction
 
     Kind = Literal["drawn", "declared", "solved"]
     Directions = tuple[tuple[str, str], ...]
@@ -64,8 +62,10 @@ TINY: Final = 2.0**-40
 """Share of s by which a law that is solved at s may be varied."""
 PARTS: Final = 64
 """Values are multiples of one over this."""
-TRIES: Final = 8
+TRIES: Final = 12
 """Draws of parameters before those are taken that lie near the declared ones."""
+STRICT: Final = 8
+"""Draws with another side of 1 for all parameters but one; later ones have any."""
 NEAR: Final = 16
 """How many times a declared value is larger than the step to the value taken for it."""
 DECLARED_BAND: Final = (Fraction(1, 10), Fraction(1000))
@@ -73,7 +73,7 @@ DECLARED_BAND: Final = (Fraction(1, 10), Fraction(1000))
 
 
 @dataclass(frozen=True, eq=False)
-class Setting:
+class ProbeSetting:
     """Values of all parameters, the points s taken with them, and the function there."""
 
     values: Values
@@ -105,10 +105,10 @@ class Probes:
         self._known: dict[tuple[int, int], acb] = {}
 
     @cached_property
-    def points(self) -> tuple[tuple[Setting, tuple[Fraction, Fraction]], ...]:
+    def points(self) -> tuple[tuple[ProbeSetting, tuple[Fraction, Fraction]], ...]:
         """All points."""
         draw = _Draw(self._tf, Random(self._tf.name), self.is_solved)
-        settings: list[Setting | None]
+        settings: list[ProbeSetting | None]
         match self._kind:
             case "declared":
                 settings = [draw.declared((*FIRST, *SECOND))]
@@ -191,13 +191,17 @@ class _Draw:
     random: Random
     is_solved: bool  # laws that vary along x are solved
 
-    def half(self, directions: Directions, half: int) -> Setting | None:
+    def half(self, directions: Directions, half: int) -> ProbeSetting | None:
         """Return values on one side of 1 for every other parameter, and on the other side for the others."""
-        for _ in range(TRIES):
+        parameters = self.tf.model.parameters
+        for turn in range(TRIES):
             values = {}
-            for i, parameter in enumerate(self.tf.model.parameters):
+            for i, parameter in enumerate(parameters):
                 size = Fraction(self.random.randrange(PARTS // 3, PARTS - 3), PARTS)
-                size = size if (i + half) % 2 else 1 / size
+                # A damping ratio may have to stay below 1: one after the other may stay on its side.
+                is_turned = turn > 0 and i == (turn - 1) % len(parameters)
+                is_below = bool((i + half) % 2) != is_turned if turn < STRICT else self.random.randrange(2)
+                size = size if is_below else 1 / size
                 given = parameter.value
                 is_negative = bool(half) if given is None else given.rational < 0
                 values[parameter.name] = ExactValue(
@@ -207,11 +211,11 @@ class _Draw:
                 return setting
         return self.nearby(directions)
 
-    def nearby(self, directions: Directions) -> Setting | None:
+    def nearby(self, directions: Directions) -> ProbeSetting | None:
         """Return values near the declared ones, these themselves where others are none."""
         return self.declared(directions, is_moved=True) or self.declared(directions)
 
-    def declared(self, directions: Directions, *, is_moved: bool = False) -> Setting | None:
+    def declared(self, directions: Directions, *, is_moved: bool = False) -> ProbeSetting | None:
         """Return the declared values, or some that are moved a little."""
         model = self.tf.model
         given = {p.name: p.value for p in model.parameters if p.value is not None}
@@ -225,7 +229,7 @@ class _Draw:
         low, high = model.analysis.band or DECLARED_BAND
         return self._setting(values, directions, Fraction(tau * sqrt(low * high)).limit_denominator(PARTS))
 
-    def _setting(self, values: Values, directions: Directions, scale: Fraction) -> Setting | None:
+    def _setting(self, values: Values, directions: Directions, scale: Fraction) -> ProbeSetting | None:
         points = []
         for re, im in directions:
             size = scale * Fraction(self.random.randrange(PARTS // 2, 2 * PARTS), PARTS)
@@ -240,20 +244,15 @@ class _Draw:
             )
         except ModelError:
             return None
-        return Setting(values, tuple(points), *found)
+        return ProbeSetting(values, tuple(points), *found)
 
     def _evaluator(self, values: Values) -> tuple[Evaluate, BoundTransferFunction | None] | None:
         tf, exact = self.tf, tuple(values.items())
         if isinstance(tf, NestedTransferFunction):
             nested = BoundNested(tf, exact)
             return lambda _, bits: nested.enclosed(bits), None
-        if tf.closed is not None:
-            plain = BoundTransferFunction(tf, exact, Factored.number(tf.ring, 1), ())
-
-            def lumped(value: Factored | None, bits: int) -> Callable[[acb], acb]:
-                return _closed_value(tf, values, bits) if value is None else plain.enclosed_part(value, bits)
-
-            return lumped, None
+        if not tf.is_distributed:
+            return _lumped(tf, values), None
         bound = BoundTransferFunction(tf, exact, tf.ratio, (), tf.kernels)
         if any(d.matrix for d in tf.kernels.dispersions):
             return _tapered(bound, is_solved=self.is_solved), bound
@@ -300,7 +299,8 @@ def _arbitrary(bound: BoundTransferFunction, s: acb) -> dict[str, acb]:
 
 def _solved(bound: BoundTransferFunction, s: acb) -> dict[str, acb]:
     """Return the entries at one s: matrices that serve for many take far longer."""
-    from symflex.transfer.enclose_varying import VaryingMatrices  # few beams are tapered
+    from symflex.algebra.minors import MinorSums  # few beams are tapered
+    from symflex.transfer.enclose_varying import VaryingMatrices
 
     values = {name: enclosure(value) for name, value in bound.values}
     minors = MinorSums(bound.ratio.ring, bound.kernels)
@@ -315,26 +315,34 @@ def _solved(bound: BoundTransferFunction, s: acb) -> dict[str, acb]:
     return found
 
 
-def _closed_value(tf: TransferFunction, values: Values, bits: int) -> Callable[[acb], acb]:
-    """Return what evaluates a lumped function in its closed sums, of which none is opened."""
-    closed = tf.closed
-    assert closed is not None
-    closure = closed.closure
-    sides, names = (plan(closed.num), plan(closed.den)), closure.ring.names
+def _lumped(tf: TransferFunction, values: Values) -> Evaluate:
+    """Return what evaluates functions of a lumped system; its own in closed sums, of which none is opened."""
     enclosures = {name: enclosure(value) for name, value in values.items()}
-    with ctx.workprec(bits):
-        numbers: dict[str, acb] = {name: acb(enclose()) for name, enclose in enclosures.items()}
-        numbers["pi"] = acb(arb.pi())
-        numbers.update((c.generator, acb(later(c.expression, enclosures)())) for c in tf.constants)
 
-    def value(s: acb) -> acb:
+    def evaluate(value: Factored | None, bits: int) -> Callable[[acb], acb]:
         with ctx.workprec(bits):
-            known = {**numbers, LAPLACE: s}
-            for name, definition in tf.definitions:
-                known[name] = evaluated(definition, known.__getitem__, acb(1))
-            for name, polynomial in closure.sums:
-                known[name] = summed(terms_of(polynomial), closure.base.names, known.__getitem__, acb(1))
-            num, den = (side.value([known[names[i]] ** e for i, e in side.powers]) for side in sides)
-            return at_centre(num) / at_centre(den)
+            numbers: dict[str, acb] = {name: acb(enclose()) for name, enclose in enclosures.items()}
+            numbers["pi"] = acb(arb.pi())
+            numbers.update((c.generator, acb(later(c.expression, enclosures)())) for c in tf.constants)
 
-    return value
+        def at(s: acb) -> acb:
+            known = {**numbers, LAPLACE: s}
+            with ctx.workprec(bits):
+                if value is None and tf.closed is not None:
+                    return _in_closed_sums(tf, tf.closed, known)
+                return acb(evaluated(tf.ratio if value is None else value, known.__getitem__, acb(1)))
+
+        return at
+
+    return evaluate
+
+
+def _in_closed_sums(tf: TransferFunction, closed: ClosedForm, known: dict[str, acb]) -> acb:
+    closure = closed.closure
+    for name, definition in tf.definitions:
+        known[name] = evaluated(definition, known.__getitem__, acb(1))
+    for name, polynomial in closure.sums:
+        known[name] = summed(terms_of(polynomial), closure.base.names, known.__getitem__, acb(1))
+    names = closure.ring.names
+    num, den = (summed(terms_of(side), names, known.__getitem__, acb(1)) for side in (closed.num, closed.den))
+    return acb(num) / acb(den)

@@ -203,8 +203,10 @@ def times_length(printer: ProductPrinter, root: Expression, length: Factored) ->
     above, below = length_sides(printer, length)
     top, bottom = (root.numerator, root.denominator) if isinstance(root, Quotient) else (root, number(1))
     factors = list(top.factors) if isinstance(top, Product) else [top]
-    front = [factors.pop(0)] if factors[0] == Name(LAPLACE) else []
-    return quotient(product_of([*front, above, *factors]), product_of([below, bottom]))
+    s = Name(LAPLACE)
+    front = [s] if s in factors else []
+    rest = [factor for factor in factors if factor != s]
+    return quotient(product_of([*front, above, *rest]), product_of([below, bottom]))
 
 
 def wave_notation(tf: TransferFunction, dispersions: Iterable[Dispersion], naming: Naming) -> Notation:
