@@ -68,12 +68,6 @@ class UncertifiedError(SymflexError):
     exit_code = 4
 
 
-class InternalError(SymflexError):
-    """Two ways to the same result disagree: one of them is wrong, and the fault is the program's."""
-
-    exit_code = 1
-
-
 class BudgetError(SymflexError):
     """A limit on time, memory or size was exceeded.
 
