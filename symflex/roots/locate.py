@@ -95,7 +95,10 @@ def locate(
         [(problem_of(bound, factors), "cancelled") for factors in together],
         budget=budget,
     )
-    return replace(found, verdict=replace(found.verdict, moving=_moving_unseen(bound)))
+    verdict = replace(found.verdict, moving=_moving_unseen(bound))
+    if bound.source.hides_waves and verdict.word != "unstable" and not _passivity(bound)[0]:
+        verdict = StabilityVerdict("unknown", None, certified=False, reason=UNSEEN_WAVES)
+    return replace(found, verdict=verdict)
 
 
 def _moving_unseen(bound: BoundTransferFunction) -> tuple[str, ...]:
@@ -153,6 +156,7 @@ def _locate_nested(bound: BoundNested, region: Region | None, digits: int, budge
     return other if is_better else found
 
 
+UNSEEN_WAVES = "a distributed part that input and output do not see may have poles anywhere"
 DEFAULT_MODES = 5
 """Where neither the model nor the user says how many."""
 MATCHING_ROUNDS = 4

@@ -234,6 +234,8 @@ class _CramerQuotients:
         hidden: tuple[HiddenFactor, ...] = (),
         table: KernelTable = NO_KERNELS,
         parts: tuple[Factored, Factored] | None = None,
+        *,
+        hides_waves: bool = False,
     ) -> TransferFunction:
         equations, model = self._origin, self._origin.model
         known = dict(model.quotients).get((output.name, given.name))
@@ -254,6 +256,7 @@ class _CramerQuotients:
             table,
             parts,
             self.solve,
+            hides_waves,
         )
 
     def _finish_distributed(
@@ -279,8 +282,10 @@ class _CramerQuotients:
             above, below = opened(above, below, table)
         if below.unit < 0:
             above, below = -above, -below
-        ratio = above / below
-        if ratio.ring.used_in(f for f, _ in ratio.factors).isdisjoint(k.generator for k in table.kernels):
+        ratio, hides_waves = above / below, False
+        kernels = {k.generator for k in table.kernels}
+        if ratio.ring.used_in(f for f, _ in ratio.factors).isdisjoint(kernels):
+            hides_waves = not ratio.ring.used_in(f for f, _ in cancelled.factors).isdisjoint(kernels)
             table = NO_KERNELS
             ratio, above, below, cancelled = (
                 self._without_kernels(v) for v in (ratio, above, below, cancelled)
@@ -290,7 +295,8 @@ class _CramerQuotients:
                 above.ring.used_in(f for v in (above, below, cancelled) for f, _ in v.factors)
             )
         parts = (above, below) if table else None
-        return self._made(output, given, None, ratio, self._hidden(cancelled, table), table, parts)
+        hidden_factors = self._hidden(cancelled, table)
+        return self._made(output, given, None, ratio, hidden_factors, table, parts, hides_waves=hides_waves)
 
     def _without_kernels(self, value: Factored) -> Factored:
         """Return the factors that hold no kernel or wavenumber, over the ring without them."""

@@ -327,3 +327,28 @@ def test_a_budget_spent_beyond_what_was_asked_for_says_how_far_all_is_known(sear
 
     found = searching(Half(0, is_even=True), [ON], reached=20.0, tails=ENDLESS, again=Spent(0))
     assert found == RightHalfPlane((ON,), "poles have no end", 20.0)
+
+
+def test_distributed_parts_that_nothing_sees_are_not_said_to_be_stable():
+    text = """symflex = 1
+inputs = {{ F = {{ force = "y" }} }}
+outputs = {{ Y = "tip" }}
+[elements.arm]
+type = "beam"
+between = ["ground", "tip"]
+E = "2 Pa"
+I = "3 m^4"
+rho = "5 kg/m^3"
+A = "7 m^2"
+l = "1 m"
+[elements]
+m = {{ type = "mass", at = "y", m = "1 kg" }}
+k = {{ type = "spring", between = ["y", "ground"], k = "{k} N/m" }}
+"""
+    words = {}
+    for k in ("1", "-1"):
+        model = pipeline.loads(text.format(k=k))
+        (bound,) = pipeline.derive_bound(model, [("Y", "F")])
+        words[k] = pipeline.roots(bound).verdict.word
+    # The mass on the negative spring falls away, and the function, which is 0, holds nothing of it.
+    assert words == {"1": "stable", "-1": "unknown"}
