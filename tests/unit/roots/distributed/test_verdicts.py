@@ -9,6 +9,7 @@ from types import SimpleNamespace
 import pytest
 from flint import acb
 
+from symflex import pipeline
 from symflex.budget import Budget
 from symflex.errors import BudgetError, Diagnostic
 from symflex.roots.counting.winding import RootOnPathError
