@@ -388,19 +388,23 @@ def badges(part: object) -> Iterator[str]:
             yield from badges(getattr(part, name))
 
 
-def said(case: Case) -> dict[str, tuple[str, bool]]:
-    """Return what the commands, the report and Python say, each with whether they name hidden motion."""
-    study = Study(Path("loop.toml"), "loop", case.text, pipeline.loads(case.text))
-    found = pipeline.stability(study.model, StabilityOptions("K"))
+def proved(study: Study) -> dict[str, tuple[str, bool]]:
+    """Return the words that roots, stable gains and root loci have, and whether they name hidden motion."""
     closed = study.loop("K")
     verdicts = {
         "roots": study.maps[0].verdict,
-        "stability": found.verdict,
+        "stability": pipeline.stability(study.model, StabilityOptions("K")).verdict,
         "locus": closed_loop_roots(closed, nominal_gain(closed)).verdict,
     }
-    words = {name: (verdict.word, bool(verdict.hidden_motion)) for name, verdict in verdicts.items()}
+    return {name: (verdict.word, bool(verdict.hidden_motion)) for name, verdict in verdicts.items()}
+
+
+def said(case: Case) -> dict[str, tuple[str, bool]]:
+    """Return what the commands, the report and Python say, each with whether they name hidden motion."""
+    study = Study(Path("loop.toml"), "loop", case.text, pipeline.loads(case.text))
+    words = proved(study)
     words["report, loops"] = next(badges(loop_section(study))), "hidden" in str(loop_section(study).blocks)
-    words["report, roots"] = next(badges(root_section(study))), verdicts["roots"].hidden_motion != ""
+    words["report, roots"] = next(badges(root_section(study))), words["roots"][1]
     model = symflex.loads(case.text)
     for of in ("poles", "margins"):
         summary = sweep_json(model.sweep({"K": [case.gain]}, of=of, gain="K" if of == "margins" else ""))
@@ -436,3 +440,38 @@ def test_a_speed_loop_hides_its_shafts_angle_from_all():
 @pytest.mark.slow
 def test_all_commands_the_report_and_python_say_the_same_word():
     check(LOOPS)
+
+
+DELAY = """symflex = 1
+parameters = { K = "GAIN 1/s", T = "1 s" }
+blocks = { D = { type = "delay", T = "T" } }
+inputs = { r = {} }
+outputs = { Y = "y" }
+signals = { SIGNALS }
+"""
+ROD = """symflex = 1
+parameters = { K = "2 N*s/m", T = "1 s" }
+inputs = { v = { unit = "m/s" } }
+outputs = { V = "OUTPUT" }
+[elements]
+rod = { type = "rod", between = ["x", "END"], E = "2 Pa", A = "1 m^2", rho = "1 kg/m^3", l = "1 m" }
+drive = { type = "force_source", at = "x", f = "FORCE" }
+"""
+RATE = ROD.replace("FORCE", "K*(v - s*x)")
+ENDLESS = [
+    # s e^s + K is stable for K < pi/2; the damper K at an end of a rod of impedance sqrt(2) stops all waves.
+    (DELAY.replace("GAIN", "1").replace("SIGNALS", 'y = "K*D/s*(r - y)"'), "stable", False),
+    (DELAY.replace("GAIN", "1").replace("SIGNALS", 'y = "K*D/s*(r - y)", z = "y/(T*s)"'), "stable", True),
+    (RATE.replace("END", "z").replace("OUTPUT", "s*x"), "stable", True),
+    (RATE.replace("END", "z").replace("OUTPUT", "x"), "marginal", False),
+    (RATE.replace("END", "ground").replace("OUTPUT", "s*x"), "stable", False),
+    # Without losses a spring leaves all poles on the axis.
+    (ROD.replace("FORCE", "K*(v - x/T)").replace("OUTPUT", "x").replace("END", "z"), "marginal", False),
+]
+
+
+@pytest.mark.slow
+def test_loops_of_infinitely_many_poles_have_one_word_too():
+    for text, word, is_hidden in ENDLESS:
+        found = proved(Study(Path("loop.toml"), "loop", text, pipeline.loads(text)))
+        assert set(found.values()) == {(word, is_hidden)}, (text, found)
