@@ -375,7 +375,11 @@ def _ball(number: Fraction) -> arb:
 
 def value_along(value: Expression, x: arb, line: Line) -> arb | None:
     """Return what varies along x on a ball of x, None where a parameter has no value."""
-    return _enclosed(value, {**line.enclosures, COORDINATE: x})
+    known = {**line.enclosures, COORDINATE: x}
+    for name, expression in line.definitions.items():
+        if name not in known and (number := _enclosed(expression, known)) is not None:
+            known[name] = number
+    return _enclosed(value, known)
 
 
 def _enclosed(expression: Expression, values: Mapping[str, arb]) -> arb | None:
