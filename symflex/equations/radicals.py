@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from symflex.algebra import Factored, Radicals, Ring
 from symflex.expressions import Call, Expression, fold, format_expression
-from symflex.model.along import varies_along_x
+from symflex.model.along import COORDINATE, varies_along_x
 from symflex.model.linearity import integer_exponent
 
 if TYPE_CHECKING:
@@ -28,7 +28,9 @@ def radicals_of(
     ``value`` is what a parameter's name stands for, by default the generator of that name.
     """
     roots = [c.expression for c in constants if c.expression.name == "sqrt"]
-    roots = [c for c in roots if format_expression(c) in ring.index and not varies_along_x(c)]
+    if not any(p.name == COORDINATE for p in parameters):
+        roots = [c for c in roots if not varies_along_x(c)]
+    roots = [c for c in roots if format_expression(c) in ring.index]
     if not roots or ring.is_sparse:
         return Radicals(ring)
 

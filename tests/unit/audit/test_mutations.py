@@ -75,6 +75,10 @@ WRONG = {
         act(COLOCATED, VAUGHAN | {"a": "E*I/(rho*A)"}),
         [("line a", "E*I/(rho*A)", "sqrt(E*I/(rho*A))")],
     ),
+    "a quotient turned over": (
+        act(COLOCATED, VAUGHAN | {"a": "sqrt(rho*A/(E*I))"}),
+        [("line a", "sqrt(rho*A/(E*I))", "sqrt(E*I/(rho*A))")],
+    ),
 }
 
 

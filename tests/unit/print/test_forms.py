@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from symflex import pipeline
-from symflex.errors import ModelError
+from symflex.errors import ModelError, UncertifiedError
 from symflex.expressions import format_expression
 from symflex.print.forms import hidden_expressions, print_form
 from symflex.print.forms.printed import RATIONAL
@@ -177,6 +177,58 @@ def test_zpk_needs_every_value():
     with pytest.raises(ModelError) as caught:
         print_form(tf_of(TWO_MASS, "X", "F"), "zpk")
     assert caught.value.diagnostics[0].code == "SF229"
+
+
+def test_zpk_lists_roots_with_their_multiplicity_or_refuses():
+    text = """symflex = 1
+parameters = { w = "1 rad/s" }
+inputs = { u = {} }
+outputs = { y = "w^2*u/(s^2 + 2*sqrt(2)*w*s + 2*w^2)", z = "w^2*u/(s^2 + 2*exp(1)*w*s + exp(2)*w^2)" }
+"""
+    assert printed(tf_of(text, "y", "u"), "zpk", 6) == ("1", "(s + 1.41421)^2")
+    # e^2 is exp(2), and exp(1) twice: that relation is not known.
+    with pytest.raises(UncertifiedError, match="could not be told apart") as caught:
+        print_form(tf_of(text, "z", "u"), "zpk")
+    assert caught.value.diagnostics[0].code == "SF404"
+
+
+CRITICAL = """symflex = 1
+parameters = { m = "2 kg", k = "700 N/m" }
+[elements]
+body = { type = "mass", at = "x", m = "m" }
+wall = { type = "spring", between = ["x", "ground"], k = "k" }
+loss = { type = "damper", between = ["x", "ground"], b = "2*sqrt(k*m)" }
+[inputs]
+F = { force = "x" }
+[outputs]
+X = "x"
+"""
+
+
+def test_critical_damping_is_a_square():
+    assert printed(tf_of(CRITICAL, "X", "F"), "factored") == ("m", "(m*s + sqrt(k*m))^2")
+    assert printed(tf_of(CRITICAL, "X", "F"), "polynomial") == ("1", "m*s^2 + 2*sqrt(k*m)*s + k")
+    split = CRITICAL.replace("sqrt(k*m)", "sqrt(k)*sqrt(m)")
+    assert printed(tf_of(split, "X", "F"), "factored") == ("1", "(sqrt(m)*s + sqrt(k))^2")
+    by_frequency = CRITICAL.replace("2*sqrt(k*m)", "2*m*w_n").replace(
+        "[elements]", '[definitions]\nw_n = "sqrt(k/m)"\n[elements]'
+    )
+    assert printed(tf_of(by_frequency, "X", "F"), "factored") == ("1", "m*(s + w_n)^2")
+
+
+def test_the_square_of_a_root_is_what_is_under_it():
+    text = """symflex = 1
+parameters = { K_m = "0.05 N*m/W^(1/2)", R = "2 Ohm", J = "1e-4 kg*m^2", L = "1 mH" }
+[elements]
+motor = { type = "dc_motor", terminals = ["v", "ground"], shaft = "p", R = "R", L = "L", k_t = "K_m*sqrt(R)" }
+rotor = { type = "inertia", at = "p", J = "J" }
+[inputs]
+V = { voltage = "v" }
+[outputs]
+W = "s*p"
+"""
+    found = printed(tf_of(text, "W", "V"), "definitions")
+    assert found == ("K_m*sqrt(R)", "J*s*(L*s + R) + K_m^2*R")
 
 
 def test_an_undamped_pair_has_no_term_in_s():

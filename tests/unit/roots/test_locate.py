@@ -24,6 +24,25 @@ def places(roots):
     return sorted((round(float(r.re), 9), round(float(r.im), 9), r.multiplicity) for r in roots)
 
 
+@pytest.mark.slow
+def test_roots_over_square_roots_keep_multiplicity_and_axis():
+    for formula, poles, hidden in [
+        ("u/(s^2 + 2*sqrt(2)*s + 2)", [(-round(sqrt(2), 9), 0, 2)], []),
+        ("u/(s^2 + 2*sqrt(6)*s + (sqrt(2)*sqrt(3))^2)", [(-round(sqrt(6), 9), 0, 2)], []),
+        ("u*(s + sqrt(8))/(s^2 - 8)", [(round(sqrt(8), 9), 0, 1)], [(-round(sqrt(8), 9), 0, 1)]),
+        # (s^2 + 3)(s + sqrt(3)) multiplied out
+        (
+            "u/(s^3 + sqrt(3)*s^2 + 3*s + sqrt(27))",
+            [(-round(sqrt(3), 9), 0, 1), (0, -round(sqrt(3), 9), 1), (0, round(sqrt(3), 9), 1)],
+            [],
+        ),
+    ]:
+        found = locate(of(formula), digits=12)
+        assert (found.certificate.certified, places(found.poles)) == (True, poles), formula
+        assert places([h.root for h in found.hidden]) == hidden, formula
+        assert all(r.on_imaginary_axis for r in found.poles if r.im != 0), formula
+
+
 def test_roots_are_those_of_the_formula():
     for formula, poles, zeros in [
         ("u*(s + 3)/((s + 1)*(s + 2)^2)", [(-2, 0, 2), (-1, 0, 1)], [(-3, 0, 1)]),

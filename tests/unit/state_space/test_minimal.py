@@ -9,7 +9,7 @@ from hypothesis import given, settings
 
 import symflex
 from symflex import pipeline
-from symflex.errors import BudgetError, ModelError
+from symflex.errors import BudgetError, ModelError, UncertifiedError
 from symflex.model import with_numbers
 from symflex.state_space import minimal, realise
 from symflex.state_space.numeric import response, rounded
@@ -117,3 +117,42 @@ def test_a_random_network_has_as_many_minimal_states_as_proved_poles(network):
             for s, value in zip(POINTS, response(rounded(system), POINTS), strict=True):
                 if np.isfinite(bound(s)):
                     assert value[0][0] == pytest.approx(bound(s), rel=1e-9)
+
+
+def test_states_that_cancel_over_roots_are_left_out():
+    # R + L s beside R + 1/(C s) with R = sqrt(L/C) is R.
+    text = """symflex = 1
+parameters = { L = "0.5 mH", C = "7.8 uF" }
+definitions = { R = "sqrt(L/C)" }
+[elements]
+r1 = { type = "resistor", between = ["p", "a"], R = "R" }
+l1 = { type = "inductor", between = ["a", "ground"], L = "L" }
+r2 = { type = "resistor", between = ["p", "b"], R = "R" }
+c2 = { type = "capacitor", between = ["b", "ground"], C = "C" }
+[inputs]
+I = { current = "p" }
+[outputs]
+U = "p"
+"""
+    tf = symflex.loads(text).transfer_function("U", "I")
+    assert len(tf.state_space().states) == 2
+    found = tf.state_space(minimal=True)
+    inductance, capacitance = (sympy.Symbol(n, positive=True) for n in "LC")
+    assert found.states == ()
+    assert sympy.simplify(found.D[0, 0] - sympy.sqrt(inductance / capacitance)) == 0
+
+
+def test_a_filter_over_dependent_roots_is_proved_minimal():
+    # Butterworth's of fourth order: sqrt(2 - sqrt(2)) is sqrt(2)/sqrt(2 + sqrt(2)).
+    sections = "(s^2 + sqrt(2 - sqrt(2))*w*s + w^2)*(s^2 + sqrt(2 + sqrt(2))*w*s + w^2)"
+    text = f"""symflex = 1
+parameters = {{ w = "1 rad/s", x = {{ value = "-2 rad/s", assume = "real" }} }}
+inputs = {{ u = {{}} }}
+outputs = {{ y = "w^4*u/({sections})", z = "w*u/(s + sqrt(x^2))" }}
+"""
+    model = symflex.loads(text)
+    found = model.transfer_function("y", "u").state_space(minimal=True)
+    assert (len(found.states), found.is_minimal) == (4, True)
+    # The square root of x^2 is x or -x, and nothing is said of more.
+    with pytest.raises(UncertifiedError, match="SF401"):
+        pipeline.state_space(model.resolved, [("z", "u")], is_minimal=True)

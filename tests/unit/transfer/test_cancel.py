@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import cmath
 from fractions import Fraction
 from random import Random
 
 import pytest
 import sympy
 
+from symflex import pipeline
 from symflex.algebra import Factored, Ring
 from symflex.transfer.lowest_terms import LARGE, LineImages, cancel
 
@@ -141,3 +143,58 @@ def test_large_factors_are_proved_coprime_on_a_line_unless_they_share_something(
         assert images.prove_coprime(large, other) == coprime, other
     # What two polynomials share may have no s: then it divides the leading coefficients.
     assert not images.prove_coprime(large * (K + B), (S + B) * (K + B))
+
+
+ROOTED = [
+    # Orders of numerator and denominator in lowest terms, and how many roots cancel: by hand.
+    ("(s^4 + w^4)/(s^2 + sqrt(2)*w*s + w^2)^2", (2, 2), 2),
+    ("(s + 2*sqrt(2)*w)/(s^2 + 2*sqrt(8)*w*s + 8*w^2)*w", (0, 1), 1),
+    ("(s + sqrt(6)*w)/(s^2 + (sqrt(2)*sqrt(3) + 1)*w*s + sqrt(6)*w^2)*w", (0, 1), 1),
+    ("(s^2 + 2*s*sqrt(a*b) + a*b)/((s + sqrt(a)*sqrt(b))*(s + a))", (1, 1), 1),
+    ("(s + b*sqrt(a/b))/(s + sqrt(a*b))", (0, 0), 1),
+    ("(s^8 + w^8)/((s^2 + sqrt(2 - sqrt(2))*w*s + w^2)*(s^2 + sqrt(2 + sqrt(2))*w*s + w^2))^2", (4, 4), 4),
+    ("(s + (1 + sqrt(2))*w)/(s + sqrt(3 + 2*sqrt(2))*w)", (0, 0), 1),
+    ("(s - sqrt(a*b))/(s + sqrt(a*b))", (1, 1), 0),
+    ("s*w/(s + sqrt(2)*w)/(s + sqrt(3)*w)", (1, 2), 0),
+]
+
+
+@pytest.mark.slow
+def test_common_factors_over_roots_are_found():
+    for expression, order, count in ROOTED:
+        text = f"""symflex = 1
+parameters = {{ w = "3 rad/s", a = "5 rad/s", b = "7 rad/s" }}
+inputs = {{ u = {{}} }}
+outputs = {{ y = "{expression}*u" }}
+"""
+        tf = pipeline.derive(pipeline.assemble(pipeline.loads(text)), "y", "u")
+        assert tf.order == order, expression
+        hidden = sum(int(h.polynomial.degrees()[0]) * h.multiplicity for h in tf.hidden)
+        # What is cancelled at once where it is written is hidden as well.
+        assert hidden == count, expression
+        known = {"s": 0.3 + 1.1j, "w": 3, "a": 5, "b": 7, "sqrt": cmath.sqrt}
+        expected = complex(sympy.sympify(expression.replace("^", "**"), locals=known))
+        assert abs(pipeline.bind(tf)(known["s"]) - expected) < 1e-12 * abs(expected), expression
+
+
+@pytest.mark.slow
+def test_an_impedance_of_constant_resistance_is_its_root():
+    # Zobel: R + L s beside R + 1/(C s) is R where R^2 = L/C, (1 + R C s)^2 = L C s^2 + 2 R C s + 1.
+    for resistance in ("sqrt(L/C)", "sqrt(L)/sqrt(C)", "L/sqrt(L*C)", "sqrt(L*C)/C"):
+        text = f"""symflex = 1
+parameters = {{ L = "0.5 mH", C = "7.8 uF" }}
+definitions = {{ R = "{resistance}" }}
+[elements]
+r1 = {{ type = "resistor", between = ["p", "a"], R = "R" }}
+l1 = {{ type = "inductor", between = ["a", "ground"], L = "L" }}
+r2 = {{ type = "resistor", between = ["p", "b"], R = "{resistance}" }}
+c2 = {{ type = "capacitor", between = ["b", "ground"], C = "C" }}
+[inputs]
+I = {{ current = "p" }}
+[outputs]
+U = "p"
+"""
+        tf = pipeline.derive(pipeline.assemble(pipeline.loads(text)), "U", "I")
+        assert tf.order == (0, 0), resistance
+        assert abs(pipeline.bind(tf)(1j) - (0.5e-3 / 7.8e-6) ** 0.5) < 1e-14, resistance
+        assert sum(int(h.polynomial.degrees()[0]) * h.multiplicity for h in tf.hidden) == 2, resistance
