@@ -70,8 +70,6 @@ class Radicals:
     # Per root's position what its square is, in other generators and earlier roots; all independent.
     squares: Mapping[int, Factored] = field(default_factory=dict)
     images: Mapping[int, Factored] = field(default_factory=dict)  # what roots are that depend on others
-    # False when a root is left without its relation, as its sign or its dependence is not known.
-    is_complete: bool = True
     radicands: Mapping[int, Factored] = field(default_factory=dict)  # of all roots, as they are written
     _points: dict[int, Point | None] = field(default_factory=dict, repr=False)
 
@@ -93,6 +91,11 @@ class Radicals:
                 found = found.with_nested(i, found.reduced(radicand), root_of)
         return replace(found, radicands=radicands)
 
+    @property
+    def free(self) -> frozenset[int]:
+        """Roots that are as good as independent symbols, as their sign or their dependence is not known."""
+        return frozenset(self.radicands) - self.squares.keys() - self.images.keys()
+
     def __bool__(self) -> bool:
         return bool(self.radicands)
 
@@ -110,7 +113,7 @@ class Radicals:
             prime, values = point
             if fmpz(residue(square, values, prime)).jacobi(prime) < 0:
                 return replace(self, squares={**self.squares, position: square}, _points={})
-        return replace(self, is_complete=False, _points={})
+        return self
 
     def _root_of_nested(
         self, value: Factored, root_of: Callable[[Factored], Factored | None]
@@ -470,7 +473,7 @@ class Radicals:
     def point(self, seed: int = 0) -> Point | None:
         """Return a prime and a random number for every generator that satisfy all relations.
 
-        ``None`` when none is found, or a root has no relation: then nothing is proved at a point.
+        ``None`` when none is found.
         """
         if not self:
             return PRIME, dict(zip(self.ring.names, self._numbers(Random(20 + seed), PRIME), strict=True))
@@ -483,7 +486,7 @@ class Radicals:
         return [random.randrange(1, prime) ** 2 % prime for _ in self.ring.names]
 
     def _found_point(self, random: Random) -> Point | None:
-        for _ in range(TRIES if self.is_complete else 0):
+        for _ in range(TRIES):
             spend()
             prime = 4 * random.randrange(2**58, 2**59) + 3
             if fmpz(prime).is_prime():
@@ -598,7 +601,6 @@ def _independent(ring: Ring, radicands: Mapping[int, Factored], positive: frozen
     images: dict[int, Factored] = {}
     # Per independent root what is odd in it after elimination, and the roots whose product that is.
     rows: list[tuple[frozenset[str], frozenset[int]]] = []
-    is_complete = True
     for i in sorted(radicands, key=lambda i: (i == NEW, _simplicity(radicands[i], base))):
         radicand = radicands[i]
         if radicand.is_zero:
@@ -617,12 +619,11 @@ def _independent(ring: Ring, radicands: Mapping[int, Factored], positive: frozen
             rest = rest / radicands[j]
         root = base.root(rest)
         if root is None:
-            is_complete = False
             continue
         for j in sorted(parts):
             root = root * Factored.generator(ring, ring.names[j])
         images[i] = root
-    return Radicals(ring, squares, images, is_complete)
+    return Radicals(ring, squares, images)
 
 
 def _simplicity(radicand: Factored, base: _Base) -> tuple[int, tuple[int, int], int]:

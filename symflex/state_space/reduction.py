@@ -41,8 +41,12 @@ def minimal(system: StateSpace) -> StateSpace:
     It is minimal for almost all values of its parameters; special values may hide more. SF502 when the
     combinations of states become too large, SF401 when it is not known how roots depend on each other.
     """
-    if not system.radicals.is_complete:
-        message = "it is not known how the square roots in the model depend on each other"
+    used = system.ring.used_in(
+        p for _, rows, _ in system.matrices for r in rows for v in r.values() for p in (v.num, v.den)
+    )
+    free = [system.ring.names[i] for i in sorted(system.radicals.free) if system.ring.names[i] in used]
+    if free:
+        message = f"it is not known how {free[0]} depends on parameters and other roots"
         hint = "keep all states, or give parameters under roots a sign and write nested roots out"
         raise UncertifiedError(Diagnostic("SF401", message, None, hint))
     columns = transposed(system.a, system.order)
