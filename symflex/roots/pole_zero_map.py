@@ -26,6 +26,7 @@ REFINEMENTS = 4
 """Doublings of the digits before a root counts as on the boundary."""
 
 
+AT_REST = "at s = 0"
 MOST_NAMES = 3
 """Of what moves, in a line."""
 ON_AXIS = "a pole lies on the imaginary axis or too close to it to be told"
@@ -88,7 +89,7 @@ class StabilityVerdict:
         """The motion that input and output do not see and that does not decay, in a line; empty without."""
         if not self.hidden:
             return ""
-        if not self.moving:
+        if not self.moving or not self.hidden.endswith(AT_REST):  # elsewhere it is not known what moves
             return f"{self.hidden}, which input and output do not see"
         more = len(self.moving) - MOST_NAMES
         shown = [*self.moving[:MOST_NAMES], *([f"{more} more"] if more > 0 else [])]
@@ -210,7 +211,7 @@ def hidden_poles(at_rest: int, on_axis: int, right: int) -> str:
     >>> hidden_poles(0, 0, 2), hidden_poles(0, 0, 0)
     ('2 hidden poles in the right half plane', '')
     """
-    places = ((at_rest, "at s = 0"), (on_axis, "on the imaginary axis"), (right, "in the right half plane"))
+    places = ((at_rest, AT_REST), (on_axis, "on the imaginary axis"), (right, "in the right half plane"))
     said: list[str] = []
     for count, where in places:
         if count:
