@@ -120,6 +120,8 @@ def compare(
     Returns why they could not be compared; nothing where they agree. Raises InternalError: SF991 they differ.
     """
     reason = solve.direct.unsolved
+    if not reason and not all(solve.direct.has(each.pair) for each in agreements):
+        reason = "the function has been given other names than its equations have"
     for beside in () if reason else solve.parameters():
         parameters = beside if values is None else {**beside, **values}
         points = list(_points(parameters, is_lumped=solve.is_lumped))

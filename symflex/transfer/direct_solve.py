@@ -92,6 +92,13 @@ class DirectSolve:
         ends = any(law.singular is not None for c in self.equations.continua for _, law in c.parts)
         return "a stiffness vanishes at an end, where Taylor steps cannot begin" if ends else ""
 
+    def has(self, pair: tuple[str, str]) -> bool:
+        """Tell whether there are an output and an input of these names."""
+        output, source = pair
+        return any(o.name == output for o in self.equations.outputs) and any(
+            v.owner == source for v in self.equations.inputs
+        )
+
     def at(self, point: Point, pairs: Sequence[tuple[str, str]]) -> Solution:
         """Return the values at a point at the current precision.
 

@@ -274,7 +274,7 @@ def benign(count):
 def with_names(tf, outputs, inputs):
     """Return copies of a transfer function for every pair of names."""
     return tuple(
-        replace(tf, output=replace(tf.output, name=y), input=replace(tf.input, name=u))
+        replace(tf, output=replace(tf.output, name=y), input=replace(tf.input, name=u), solve=None)
         for y, u in zip(outputs, inputs, strict=True)
     )
 
