@@ -540,7 +540,9 @@ def _solution(field: FieldProblem, evaluator: ExactEvaluator, demands: _Demands)
     for part, number in medium.parts:
         if (
             part.coefficients
-            and number != POLYNOMIAL
+            and (
+                number != POLYNOMIAL or part.is_share
+            )  # a share of what has no names for its roots elsewhere
             and part.coefficients[0].is_zero
             and _is_loaded(part, system)
         ):

@@ -61,7 +61,7 @@ def factors(coefficients: Sequence[Factored]) -> list[tuple[tuple[Factored, ...]
     >>> k = Factored.generator(ring, "k")
     >>> found = factors([k * (k + 1), k * 0, k * 2 + 1, k * 0])
     >>> [([str(c) for c in p], m) for p, m in found]
-    [(['(k + 1)', '0'], 1), (['k', '0'], 1)]
+    [(['k', '0'], 1), (['(k + 1)', '0'], 1)]
     """
     ring = coefficients[0].ring
     wide = Ring((*ring.names, EXPONENT))

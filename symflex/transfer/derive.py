@@ -20,7 +20,6 @@ from symflex.model.along import is_tapered
 from symflex.transfer.against_equations import ModelSolve, agreement, compare
 from symflex.transfer.expansion import Expansion, Opening
 from symflex.transfer.lowest_terms import DeterminantsOnLine, LineImages, cancel
-from symflex.transfer.named_coefficients import named_coefficients
 from symflex.transfer.transfer_function import (
     ClosedForm,
     HiddenFactor,
@@ -68,6 +67,8 @@ def derive_all(
     """
     workshop = _CramerQuotients(equations, most)
     if not (workshop.is_sure or is_tapered(equations.model)):
+        from symflex.transfer.named_coefficients import named_coefficients  # only with beams
+
         named, kept = named_coefficients(equations)
         again = assemble(named, nested_transfer, is_joined=equations.is_joined)
         workshop = _CramerQuotients(again, most, equations, kept)
