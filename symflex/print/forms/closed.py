@@ -144,7 +144,12 @@ class _Taper:
 
     def way(self, place: Factored) -> Factored:
         """Return one over the distance of a place from where the length vanishes; 0 without a length."""
-        return place * 0 if self.length is None else self.length.slope(COORDINATE) / _put(self.length, place)
+        if self.length is None:
+            return place * 0
+        distance = _put(self.length, place)
+        if distance.is_zero:  # an inertia or a foundation vanishes there, and no stiffness
+            raise _NoClosedFormError
+        return self.length.slope(COORDINATE) / distance
 
     def rate(self, value: Factored, way: Factored) -> Factored:
         """Return the derivative of a coefficient over itself where the distance is one over ``way``."""

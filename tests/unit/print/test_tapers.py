@@ -107,6 +107,13 @@ def test_a_law_that_has_no_bessel_functions_stays_alone():
     assert "closed" not in derive_json(tf, form)
 
 
+def test_a_law_whose_inertia_vanishes_at_its_start_stays_alone():
+    # Airy's own equation w'' = k^2 x w, and others whose Bessel functions have no value at x = 0.
+    for inertia in ("x/l*s^2", "x^2/l^2*s^2", "s^2*(x/l)^3"):
+        _, form = string(**{**THICK, "equation": f"N*w'' = rhoA*{inertia}*w"})
+        assert form.laws and not form.closed, inertia
+
+
 def test_sympy_has_the_bessel_functions_of_a_closed_form():
     model = api.loads(STRING.format(extra="c", **HANGING))
     (called, value), (q, argument) = model.transfer_function("y", "u").form("hyperbolic").closed
