@@ -523,12 +523,12 @@ def test_hidden_modes_known_are_not_told_again_for_being_unstable(world):
 def test_wavenumbers_of_one_or_two_waves_vanish_or_meet():
     # gamma^2 = (s + 1)(s + 3)
     assert sorted(places(_degenerate_points(bound(LINE)))) == [(-3, 0, 1), (-1, 0, 1)]
-    # q^4 - (s + 5) q^2 + s + 4: none at -4, opposite at -5, and both the same where (s + 3)^2 = 0.
+    # q^4 - (s + 5) q^2 + s + 2: none at -2, opposite at -5, and both the same where (s + 3)^2 = -8.
     text = """
 symflex = 1
 [fields.w]
 domain = ["0", "l"]
-equation = "l^4*w'''' = (s*T + 5)*l^2*w'' - (s*T + 4)*w"
+equation = "l^4*w'''' = (s*T + 5)*l^2*w'' - (s*T + 2)*w"
 conditions = ["w(0) = 0", "w''(0) = 0", "w(l) = 0", "w'(l) = u"]
 [parameters]
 T = "1 s"
@@ -538,8 +538,11 @@ u = { }
 [outputs]
 y = "w(l/2)"
 """
-    found = [(round(re), im, times) for re, im, times in places(_degenerate_points(bound(text)))]
-    assert sorted(found) == [(-5, 0, 1), (-4, 0, 1), (-3, 0, 2)]
+    found = [(round(re), round(im, 3), times) for re, im, times in places(_degenerate_points(bound(text)))]
+    assert sorted(found) == [(-5, 0, 1), (-3, -2.828, 1), (-3, 2.828, 1), (-2, 0, 1)]
+    # (q^2 - 1)(q^2 - s - 4): none at -4, and both the same at -3.
+    found = places(_degenerate_points(bound(text.replace("s*T + 2", "s*T + 4"))))
+    assert {(round(re), im) for re, im, _ in found} == {(-4, 0), (-3, 0)}
 
 
 def test_before_a_search_it_came_nowhere():
