@@ -83,7 +83,7 @@ class ExactEvaluator:
 
     @cached_property
     def _of_constants(self) -> ExactEvaluator:
-        return self if self.is_constant else replace(self, is_constant=True)
+        return replace(self, is_constant=True)
 
     def along_x(self) -> ExactEvaluator:
         """Return the same for what may vary along x."""
@@ -95,7 +95,9 @@ class ExactEvaluator:
         Raises ModelError: SF224 when it divides by zero; BudgetError: SF501 when it would expand beyond the
         limits.
         """
-        value = self._of_constants.value(expression)
+        if not self.is_constant:
+            return self._of_constants.constant(expression)
+        value = self.value(expression)
         if isinstance(value, LinearForm):
             message = f"'{format_expression(expression)}' must be constant"
             raise ModelError(Diagnostic("SF212", message, expression.span))

@@ -158,7 +158,9 @@ class _CramerQuotients:
         self._cleared = self._expansion.expanded(
             self._equations.cleared or Factored.number(propagation.ring, 1)
         )
-        parameters = [*(p.name for p in self._equations.model.parameters), *kept]
+        from symflex.transfer.named_coefficients import in_order_of_use  # only with beams
+
+        parameters = [*in_order_of_use(self._equations.model), *kept]
         ring = self._expansion.ring
         return KernelReduction(ring, table.embedded(opened), parameters, propagation.coordinates)
 

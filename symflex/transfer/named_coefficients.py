@@ -101,6 +101,26 @@ def named_coefficients(equations: Equations) -> tuple[Model, tuple[str, ...]]:
     return named, tuple(d.name for d in found)
 
 
+def in_order_of_use(model: Model) -> tuple[str, ...]:
+    """Return the parameters in the order in which distributed parts use them, and then the others.
+
+    Which of several is expressed by a wavenumber does not depend on the order of declarations.
+    """
+    lines = [use for use in model.elements if isinstance(use.element, LineElement)]
+    used = [dict(use.values).get(p.name) for use in lines for p in use.element.parameters]
+    used += [side for field in model.fields for e in field.equations for side in (e.left, e.right)]
+    inside = {
+        d.name: dict.fromkeys(n.name for n in names(d.expression) if isinstance(n, Name))
+        for d in model.definitions
+    }
+    for name, own in inside.items():
+        inside[name] = dict.fromkeys(n for each in own for n in inside.get(each, {each: None}))
+    found = (n.name for e in used if e is not None for n in names(e) if isinstance(n, Name))
+    ordered = dict.fromkeys(n for each in found for n in inside.get(each, (each,)))
+    declared = {p.name: None for p in model.parameters}
+    return tuple(n for n in {**ordered, **declared} if n in declared)
+
+
 def _laws(equations: Equations) -> dict[str, Hashable]:
     """Return what is equal of line elements and fields with equal equations, however they are written."""
     expansion, propagation = Expansion.of(equations), equations.propagation

@@ -15,6 +15,7 @@ functions are evaluated at points.
 
 from __future__ import annotations
 
+from cmath import isfinite
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from math import prod
@@ -316,7 +317,16 @@ class BoundNested:
         if self.is_zero:
             return 0j
         # A wide ball may hold a zero divisor where the function has none: once more before a limit is sought.
-        return double_value(self.enclosed, self._first, s, 1)
+        value = double_value(self.enclosed, self._first, s, 1)
+        if isfinite(value) or self.solved(FIRST_BITS) is None:
+            return value
+
+        # A program may divide by what is zero for these values, such as the sine of an angle of 180 degrees.
+        def network(bits: int) -> Callable[[acb], acb]:
+            solved = self.solved(bits)
+            return lambda at: acb("nan") if solved is None else solved.value_and_slope(at)[0]
+
+        return double_value(network, network(FIRST_BITS), s, 1)
 
     def at(self, s: npt.ArrayLike) -> npt.NDArray[np.complex128]:
         """Return the values in double precision at many complex frequencies at once.

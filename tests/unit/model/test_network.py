@@ -90,6 +90,25 @@ def test_a_name_that_can_be_read_two_ways_is_one_problem():
     assert codes(text + more) == ["SF211"]
 
 
+def test_a_parameter_may_bear_the_name_of_a_node_where_only_a_parameter_can_stand():
+    text = """symflex = 1
+    parameters = { b = "3 N*s/m", l = "2 m", N = "8 N" }
+    inputs = { F = { force = "b" } }
+    outputs = { X = "w(l)", V = "l" }
+    elements.loss = { type = "damper", between = ["b", "ground"], b = "2*b" }
+    elements.mass = { type = "mass", at = "b", m = "1 kg" }
+    elements.link = { type = "spring", between = ["b", "c"], k = "5 N/m" }
+    elements.end = { type = "damper", between = ["c", "ground"], b = "b" }
+    fields.w = { domain = ["0", "l"], equation = "N*w'' = 0", conditions = ["w(0) = 0", "N*w'(l) = F"] }
+    """.replace("\n    ", "\n")
+    other = text.replace('"b"', '"x"').replace('b = "x"', 'b = "b"').replace('V = "l"', 'V = "c"')
+    text = text.replace('V = "l"', 'V = "c"')
+    found, wanted = (
+        [pipeline.bind(tf)(1 + 2j) for tf in pipeline.derive_all(pipeline.loads(t))] for t in (text, other)
+    )
+    assert found == wanted
+
+
 # -------------------------------------------------------------------------------------- nested models
 
 INNER = """symflex = 1

@@ -73,6 +73,13 @@ def test_a_stiffness_known_to_be_zero_or_negative_is_refused():
         assert codes(rod(E=modulus)) == ["SF209"], modulus
 
 
+def test_a_stiffness_divided_by_a_sum_has_the_sign_of_its_value():
+    # The modulus divided by 1 minus 1.2 is negative, that divided by 1 minus 0.5 is not.
+    for length, code in (("1.2", ["SF209"]), ("0.5", [])):
+        text = rod(E="E/(1 - r)").replace("[definitions]", f"r = {length}\n[definitions]")
+        assert codes(text) == code, length
+
+
 def test_what_may_be_zero_is_accepted_as_zero():
     for key in ["eta", "rho"]:
         assert codes(rod(**{key: "0"})) == [], key

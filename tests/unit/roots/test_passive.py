@@ -547,3 +547,41 @@ def test_an_s_behind_a_name_is_not_overlooked():
     text = HEAD + '[definitions]\nT_s = "T*(1 + eta*s)"\n'
     text += FIELD.replace("EQUATION", "T_s*w'' = rhoA*s^2*w")
     assert not known(pipeline.loads(text.replace("CONDITIONS", """["w(0) = 0", "T_s*w'(l) = F"]""")))
+
+
+def test_a_beam_is_passive_however_its_values_are_written():
+    text = """
+    symflex = 1
+    parameters = { E = "2 Pa", nu = NU, A = "1 m^2", mu = "1 kg/m", c = "1 1/m^2" }
+    inputs.F = { force = "tip" }
+    outputs.y = "tip"
+    definitions.shear = "E/(2*(1 + nu))"
+    [elements.arm]
+    type = "beam"
+    theory = "timoshenko"
+    between = ["ground", "tip"]
+    kappa = "10*(1 + nu)/(12 + 11*nu)"
+    E = "2*E/(1 + A*c)"
+    G = "shear"
+    rho = "mu/A"
+    A = "A"
+    I = "1 m^4"
+    l = "1 m"
+    """.replace("\n    ", "\n")
+    for ratio in ("0.25", "{}"):
+        assert is_passive(pipeline.loads(text.replace("NU", ratio))) == (ratio == "0.25")
+
+
+def test_a_parameter_that_cancels_leaves_a_rod_passive():
+    # Its stiffness times its length is k, its mass per length M/l, and the cross-section takes no part.
+    text = """
+    symflex = 1
+    parameters = { k = "100 N", M = "4 kg/m", A = AREA }
+    inputs.F = { force = "x" }
+    outputs.X = "x"
+    [elements]
+    coil = { type = "rod", between = ["ground", "x"], E = "k/A", A = "A", rho = "M/A", l = "1 m" }
+    """.replace("\n    ", "\n")
+    for area in ('"1 m^2"', '{ unit = "m^2" }'):
+        (bound,) = pipeline.derive_bound(pipeline.loads(text.replace("AREA", area)), [("X", "F")])
+        assert pipeline.roots(bound, Modes(1)).verdict.word == "marginal", area

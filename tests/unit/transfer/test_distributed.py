@@ -312,3 +312,93 @@ def test_wavenumbers_of_almost_equal_size_are_told_apart():
     (tf,) = pipeline.derive_all(pipeline.loads(ARCH))
     found = bind(tf)
     assert abs(found(4737689.687559328j) / found(4737689.7j) - 1) < 1e-3
+
+
+SLENDER = """symflex = 1
+[parameters]
+{parameters}
+[elements]
+{elements}
+[inputs]
+F = {{ force = "tip" }}
+[outputs]
+Y = "tip"
+"""
+PLAIN = dict(E="70 GPa", G="28 GPa", kappa="0.5", I="1e-8 m^4", A="1e-4 m^2", rho="2700 kg/m^3", l="1 m")
+
+
+def cantilever(parameters, theory="timoshenko", **values):
+    numbers = "\n".join(f'{name} = "{value}"' for name, value in parameters.items())
+    written = ", ".join(f'{name} = "{value}"' for name, value in {**PLAIN, **values}.items())
+    arm = f'arm = {{ type = "beam", theory = "{theory}", between = ["ground", "tip"], {written} }}'
+    return SLENDER.format(parameters=numbers, elements=arm)
+
+
+def transition(s, c):
+    """Return the state y, theta, f, tau at the end of a beam per state at its start, after Timoshenko."""
+    ei, kga = c["E"] * c["I"], c["kappa"] * c["G"] * c["A"]
+    rows = [
+        [0, 1, 1 / kga, 0],
+        [0, 0, 0, 1 / ei],
+        [c["rho"] * c["A"] * s**2 + c.get("c_f", 0) * s + c.get("k_f", 0), 0, 0, 0],
+        [0, c["rho"] * c["I"] * s**2, -1, 0],
+    ]
+    return mp.expm(mp.matrix(rows) * c["l"], method="taylor")
+
+
+def tip_receptance(whole):
+    # Clamped at its start; at the end the force is one and the moment zero.
+    root = mp.lu_solve(whole[2:4, 2:4], mp.matrix([1, 0]))
+    return (whole[0:1, 2:4] * root)[0]
+
+
+NATURAL = {"E": "70 GPa", "nu": "25 %"}, {"E": "E", "G": "E/(2*(1 + nu))"}
+
+
+def tip_agrees(text, values):
+    (tf,) = pipeline.derive_all(pipeline.loads(text))
+    bound = pipeline.bind(tf)
+    with mp.workdps(40):
+        for s in POINTS[:4]:
+            wanted = complex(tip_receptance(transition(s, values)))
+            assert abs(bound(complex(s)) - wanted) <= 1e-12 * abs(wanted)
+
+
+VALUES = {k: mp.mpf(v.split()[0]) for k, v in PLAIN.items()} | {"E": mp.mpf("70e9"), "G": mp.mpf("28e9")}
+
+
+def test_a_shear_modulus_may_follow_from_the_modulus_and_the_transverse_contraction():
+    tip_agrees(cantilever(NATURAL[0], **NATURAL[1]), VALUES)
+
+
+@pytest.mark.slow
+def test_a_section_may_follow_from_its_sides_and_a_density_from_the_mass_per_length():
+    for parameters, values in (
+        ({"E": "70 GPa", "nu": "25 %", "d": "10 mm"}, NATURAL[1] | {"A": "d^2", "I": "d^4"}),
+        ({"d": "10 mm"}, {"A": "d^2", "I": "d^4"}),
+        ({"mu": "0.27 kg/m", "S": "7 MN", "A": "1e-4 m^2"}, {"A": "A", "rho": "mu/A", "E": "S/A"}),
+        ({"b": "30 mm", "h": "10 mm"}, {"A": "b*h/3", "I": "4*b*h^3/12"}),
+    ):
+        tip_agrees(cantilever(parameters, **values), VALUES)
+
+
+@pytest.mark.slow
+def test_two_beams_may_differ_in_what_their_wavenumbers_are_not_tied_to_a_parameter_by():
+    shared = {"E": "2 Pa", "G": "0.8 Pa", "kappa": "0.5", "I": "0.3 m^4", "A": "0.7 m^2", "rho": "1.5 kg/m^3"}
+    own = {**shared, "l": "1.2 m"}
+    names = ", ".join(f'{name} = "{name}"' for name in own)
+    line = 'type = "beam", theory = "timoshenko"'
+    elements = (
+        f'one = {{ {line}, between = ["ground", "middle"], {names}, k_f = "k" }}\n'
+        f'two = {{ {line}, between = ["middle", "tip"], {names}, k_f = "k", c_f = "c" }}'
+    )
+    given = own | {"k": "3 N/m^2", "c": "0.2 N*s/m^2"}
+    text = SLENDER.format(parameters="\n".join(f'{k} = "{v}"' for k, v in given.items()), elements=elements)
+    (tf,) = pipeline.derive_all(pipeline.loads(text))
+    values = {k: mp.mpf(v.split()[0]) for k, v in given.items()}
+    with mp.workdps(40):
+        for s in (mp.mpc(0.1, 2), mp.mpc(1, 9)):
+            first = transition(s, values | {"k_f": values["k"]})
+            second = transition(s, values | {"k_f": values["k"], "c_f": values["c"]})
+            wanted = complex(tip_receptance(second * first))
+            assert abs(pipeline.bind(tf)(complex(s)) - wanted) <= 1e-11 * abs(wanted)
