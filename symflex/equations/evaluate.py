@@ -162,7 +162,8 @@ class ExactEvaluator:
         raise TypeError(message)
 
     def _name(self, expression: Name | Attribute) -> Factored | LinearForm:
-        meaning = self.scope.lookup(expression, constant=self.is_constant)
+        is_shared = len(self.scope.meanings.get(expression.name, ())) > 1
+        meaning = self.scope.lookup(expression, constant=self.is_constant and is_shared)
         if meaning.kind == "block":
             return self._block(expression, meaning.name)
         if meaning.kind == "through" and meaning.variable is not None:
