@@ -30,7 +30,14 @@ from symflex.errors import Diagnostic, InternalError, ModelError
 from symflex.model import ExactValue
 from symflex.model.along import is_tapered, varies_along_x
 from symflex.transfer.balls import at_centre, ball, enclosure, plan
-from symflex.transfer.direct_solve import DirectSolve, GeneratorValues, Point, SingularPointError, carried
+from symflex.transfer.direct_solve import (
+    DirectSolve,
+    GeneratorValues,
+    NotFollowedError,
+    Point,
+    SingularPointError,
+    carried,
+)
 from symflex.transfer.transfer_function import TransferFunction
 
 if TYPE_CHECKING:
@@ -130,6 +137,8 @@ def compare(
             try:
                 with ctx.workprec(precision):
                     reason = _compare_at(solve.direct, agreements, points)
+            except NotFollowedError:
+                return "a member that tapers needs too many Taylor steps"
             except (SingularPointError, ZeroDivisionError):
                 reason = "the equations or the function have no value at the points tried"
             except ModelError as error:

@@ -53,12 +53,16 @@ TERMS = 40
 TAYLOR_BITS = 80
 LAST_TERMS = 3
 """A coefficient may vanish by symmetry; so many in a row do not."""
-MOST_STEPS = 400
+MOST_STEPS = 64
 FIRST_STEPS = 4
 
 
 class SingularPointError(Exception):
     """The equations have no unique solution at a point, or no value there."""
+
+
+class NotFollowedError(Exception):
+    """Coefficients that vary along x are not analytic beside it, or waves too many for Taylor steps."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -333,6 +337,8 @@ def _stepped(
     with series_terms(TERMS):
         while done < 1:
             steps += 1
+            if steps > MOST_STEPS:
+                raise NotFollowedError
             step = min(step, 1 - done, key=lambda h: float(h.mid()))
             here = start + length * done
             series = {place: along.series(value, here) for place, value in entries.items()}
@@ -340,7 +346,7 @@ def _stepped(
                 step = step / 2
                 steps += 1
                 if steps > MOST_STEPS:
-                    raise SingularPointError
+                    raise NotFollowedError
             states = across * states
             done, step = (done + step).mid(), step * 2
     return states
