@@ -396,11 +396,12 @@ def _network_turns(
     roots = next((roots for roots in found if roots.certificate.certified), None)
     if roots is None:
         return None
-    steps, places = np.unique(np.abs(omega), return_inverse=True)
+    steps, first, places = np.unique(np.abs(omega), return_index=True, return_inverse=True)
     lowest = float(steps[steps > 0][0])
     below = np.geomspace(lowest / 1000, lowest, TO_REST, endpoint=False)
     path = np.concatenate((below, steps))
-    known = evaluate(bound, path)
+    there = np.where(omega < 0, np.conj(values), values)[first]
+    known = np.concatenate((evaluate(bound, below), there))
     order = _order_at_rest(roots)
     phase = order * np.pi / 2 + _phase_of(roots.zeros, path) - _phase_of(roots.poles, path)
     usable = np.isfinite(known) & (known != 0) & (path > 0)

@@ -12,6 +12,7 @@ from symflex.loops.find import find_stable_gains
 from symflex.loops.loop import pick_gain
 from symflex.loops.networks import network_loop
 from symflex.model import Model, with_numbers
+from symflex.model.along import is_tapered
 from symflex.options import (
     ColocationOptions,
     StabilityOptions,
@@ -51,16 +52,8 @@ def characteristic_loop(model: Model, gain: str, values: Mapping[str, Given] | N
     for name in given:
         pick_gain(model.parameters, name)
     is_large = is_large_network(model)
-    if is_large:
-        has_value = parameter.value is not None or gain in given
-        valued = tuple(p for p in model.parameters if p.name != gain or has_value)
-        known = dict(read_values(valued, given))
-        value = known.pop(gain, None)
-        nominal = None if value is None or value.pi_power else value.rational
-        sparse = assemble_sparse(with_numbers(model, (gain,), known, in_kernels=True))
-        network = network_loop(sparse, parameter, nominal)
-        if network is not None:
-            return network
+    if is_large and (network := _of_network(model, parameter, given)) is not None:
+        return network
     # Parameters that are given another value stay symbols until that is put in.
     prepared = with_numbers(model, (gain, *given))
     equations = assemble(prepared)
@@ -69,8 +62,12 @@ def characteristic_loop(model: Model, gain: str, values: Mapping[str, Given] | N
     try:
         tf = _seeing(prepared, pairs, parameter)
     except BudgetError as error:
-        if not is_large:
+        if not model.is_distributed or is_tapered(model):
             raise
+        # Where one member's motion is another's, nobody knows before that it is large.
+        network = None if is_large else _of_network(model, parameter, given)
+        if network is not None:
+            return network
         message = f"'{gain}' stands in several places of a network too large to be written out"
         raise loop_room.no_loop("SF803", message, parameter) from error
     return loop_room.characteristic_loop(tf, parameter, given)
@@ -83,6 +80,18 @@ def _seeing(model: Model, pairs: Sequence[tuple[str, str]], gain: ModelParameter
         if gain.name in tf.ratio.ring.index and tf.den.depends_on(gain.name):
             return tf
     return derive_all(model, pairs[:1])[0]
+
+
+def _of_network(model: Model, parameter: ModelParameter, given: Mapping[str, Given]) -> AnyLoop | None:
+    """Return the characteristic function of a network that is not written out; None where there is none."""
+    gain = parameter.name
+    has_value = parameter.value is not None or gain in given
+    valued = tuple(p for p in model.parameters if p.name != gain or has_value)
+    known = dict(read_values(valued, dict(given)))
+    value = known.pop(gain, None)
+    nominal = None if value is None or value.pi_power else value.rational
+    sparse = assemble_sparse(with_numbers(model, (gain,), known, in_kernels=True))
+    return network_loop(sparse, parameter, nominal)
 
 
 def stability(

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from symflex.report.structure import Compliance
     from symflex.report.study import Study
     from symflex.roots import PoleZeroMap, Root
-    from symflex.transfer import TransferFunction
+    from symflex.transfer import NestedTransferFunction, TransferFunction
 
 Place = Literal["origin", "imaginary axis", "real axis", "plane"]
 
@@ -337,6 +337,7 @@ def facts_of(study: Study) -> ModelFacts:
                 bracket_mathematics=None if bracket is None else mathematics(bracket, tf.model),
             )
         )
+    functions += [_of_nested(model, bound.source, found) for bound, found in study.nested]
     return replace(
         bare_facts(study.stem, model),
         functions=tuple(functions),
@@ -347,6 +348,26 @@ def facts_of(study: Study) -> ModelFacts:
             DataFact(c.measured.name, c.decibels, c.degrees, c.measured.is_synthetic)
             for c in study.comparisons
         ),
+    )
+
+
+def _of_nested(model: Model, tf: NestedTransferFunction, found: PoleZeroMap) -> TransferFacts:
+    """Return the facts about a function in nested form, from its roots alone."""
+    return TransferFacts(
+        tf=tf.name,
+        quantity=tf.quantity,
+        poles=tuple(map(_root_fact, found.all_poles)),
+        zeros=tuple(map(_root_fact, found.zeros)),
+        certified=found.certificate.certified,
+        is_infinite=found.is_infinite,
+        counts=None,
+        rigid=None,
+        undamped=None,
+        colocated=is_colocated(model, tf.output, tf.input),
+        explained="unknown",
+        condition="unknown",
+        reason="the formula is too large",
+        stability=found.verdict.word,
     )
 
 

@@ -18,7 +18,7 @@ from symflex.options import ColocationOptions
 from symflex.print.forms import print_forms
 from symflex.report.facts import facts_of
 from symflex.report.structure import rigid_counts, undamped_counts
-from symflex.transfer import BoundTransferFunction, TransferFunction
+from symflex.transfer import BoundNested, BoundTransferFunction, TransferFunction
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -86,14 +86,19 @@ class Study:
         Raises ModelError, BudgetError when the equations have no unique solution, or their symbolic one
         would be too large.
         """
-        return _result(self._derived)
+        return _result(self._derived)[0]
+
+    @property
+    def why_nested(self) -> str:
+        """Why the transfer functions are in nested form; empty where they are not, or there are none."""
+        return "" if isinstance(self._derived, SymflexError) else self._derived[1]
 
     @cached_property
-    def _derived(self) -> tuple[AnyTransferFunction, ...] | SymflexError:
+    def _derived(self) -> tuple[tuple[AnyTransferFunction, ...], str] | SymflexError:
         # A derivation that fails may take long: once is enough.
         if self.model.is_distributed:
-            return attempt(lambda: pipeline.derive_as(self.model, self.pairs)[0])
-        return attempt(lambda: pipeline.derive_all(self.model, self.pairs))
+            return attempt(lambda: pipeline.derive_as(self.model, self.pairs))
+        return attempt(lambda: (pipeline.derive_all(self.model, self.pairs), ""))
 
     @cached_property
     def exported(self) -> tuple[AnyTransferFunction, ...]:
@@ -165,6 +170,18 @@ class Study:
                 explained = pipeline.explain_zeros(self.model, bound, found)
                 rows.append((symbolic.get(bound.name, bound.source), found, explained))
         return tuple(rows)
+
+    @cached_property
+    def nested(self) -> tuple[tuple[BoundNested, PoleZeroMap], ...]:
+        """Every function in nested form with its roots, of which :attr:`located` has none."""
+        if isinstance(self._bound, SymflexError):
+            return ()
+        by_name = {each.tf: each for each in self.maps}
+        return tuple(
+            (bound, by_name[bound.name])
+            for bound in self.bounds
+            if isinstance(bound, BoundNested) and bound.name in by_name
+        )
 
     @cached_property
     def audits(self) -> tuple[Audit, ...]:

@@ -77,7 +77,13 @@ def locate(
     poles that coincide with one stay among the others.
     """
     if isinstance(bound, BoundNested):
-        return _locate_nested(bound, region, digits, budget or entered_budget())
+        # Figures, responses and tables of one function ask for the same roots.
+        known = bound.located.get((region, digits))
+        if not isinstance(known, PoleZeroMap):
+            known = _locate_nested(bound, region, digits, budget or entered_budget())
+            if known.certificate.certified:
+                bound.located[region, digits] = known
+        return known
     bound = without_lengths_of_zero(bound)
     if bound.is_distributed:
         return locate_distributed(bound, region, digits, budget or entered_budget(), with_zeros=with_zeros)

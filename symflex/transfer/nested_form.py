@@ -259,6 +259,7 @@ class BoundNested:
 
     source: NestedTransferFunction  # the symbolic function
     values: tuple[tuple[str, ExactValue], ...]  # every parameter's value, in declared order
+    located: dict[object, Any] = field(default_factory=dict)  # poles and zeros that are known, by region
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.name}, {self.source.size} operations>"

@@ -206,6 +206,7 @@ def derive_as(
     if representation == "expanded":
         return derive_all(model, pairs), ""
     solves = solves and model.is_distributed
+    has_nested = model.is_distributed and not is_tapered(model)
     if _may_be_large(model, 1 if solves else FEW_MEMBERS):
         equations = assemble_sparse(model)
         most = EXPANDED_PRODUCTS if model.is_distributed else EXPANDED_TERMS
@@ -218,7 +219,7 @@ def derive_as(
     try:
         if solves and not is_tapered(model) and assemble(with_numbers(model, in_kernels=True)).is_split:
             return derive_nested(model, pairs), SPLIT
-        found = _derive_expanded(model, pairs, UNASKED if model.is_distributed else None)
+        found = _derive_expanded(model, pairs, UNASKED if has_nested else None)
         # Where one beam's motion is another's, the estimate may be far too small.
         if solves and _may_be_large(model) and max(map(_kernel_products, found)) > CODE_PRODUCTS:
             return derive_nested(model, pairs), SOLVED

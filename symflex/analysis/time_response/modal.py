@@ -622,7 +622,10 @@ def _estimated_sum(bound: AnyBoundFunction, integrations: int, times: SampleTime
 
 
 def _begun(bound: AnyBoundFunction, integrations: int, far: arb, small: float) -> arb:
-    """Return what a response begins with, to something small, as the function shows it at a large s."""
+    """Return what a response begins with, as far as the transfer function at a large s shows it.
+
+    It is known to something ``small``, or to as many digits.
+    """
     bits = bits_for_digits(2 * DIGITS)
     # Between many members exponentials take each other out, and so far out these are large.
     while True:

@@ -195,7 +195,8 @@ class Minors(LaplaceExpansion["fmpz_mpoly", "fmpz_mpoly"]):
         if self._bytes > MEMORY_LIMIT:
             raise _too_large("the determinant has too many minors or terms")
         if self.most is not None and len(value) > self.most:
-            raise _too_large(f"its determinant would have more than {self.most} terms")
+            hint = "roots, plots, sweeps, stability and exports do without it; or split the model"
+            raise _too_large(f"its determinant would have more than {self.most} terms", hint)
 
     def _expand(self, entries: Mapping[int, fmpz_mpoly], below: int, columns: int) -> fmpz_mpoly:
         total = self.ring.constant(0)
@@ -234,15 +235,8 @@ class DegreeBounds(LaplaceExpansion[int, int]):
         return highest
 
 
-def _too_large(message: str) -> BudgetError:
-    return BudgetError(
-        Diagnostic(
-            "SF502",
-            f"the closed form is too large: {message}",
-            None,
-            "split the model or give it fewer nodes",
-        )
-    )
+def _too_large(message: str, hint: str = "split the model or give it fewer nodes") -> BudgetError:
+    return BudgetError(Diagnostic("SF502", f"the closed form is too large: {message}", None, hint))
 
 
 def expansion_order(rows: tuple[SparseRow, ...], columns: tuple[int, ...]) -> tuple[int, ...]:

@@ -103,6 +103,8 @@ def equation_section(study: Study) -> ChapterPart:
                 f"a report shows the first {MOST_FUNCTIONS}."
             )
         )
+    if study.why_nested:
+        blocks.append(text(f"Shown {study.why_nested}."))
     for i, (tf, form) in enumerate(zip(study.tfs, study.forms, strict=True)):
         shown = _of(tf, form, f"eq:{study.stem}:{i + 1}")
         blocks.append(Section(tf.name, shown, f"{study.stem}-tf-{i + 1}", ratio(tf)))

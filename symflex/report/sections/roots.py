@@ -47,6 +47,7 @@ HEADS: Final = columns(*((column.head, "number") for column in PAGE_COLUMNS))
 def root_section(study: Study) -> ChapterPart:
     """Return the poles and zeros of every transfer function, enclosed, and what its zeros mean."""
     explained = {found.tf: told for _, found, told in study.located}
+    nested = {found.tf for _, found in study.nested}
     derived = attempt(lambda: study.tfs)
     tfs = {} if isinstance(derived, SymflexError) else {tf.name: tf for tf in derived}
     blocks = []
@@ -54,6 +55,8 @@ def root_section(study: Study) -> ChapterPart:
     for i, found in enumerate(study.maps):
         tf = tfs.get(found.tf)
         content = _of(found, explained.get(found.tf))
+        if found.tf in nested:
+            content = (*content, text("What the zeros mean is not examined: the closed form is too large."))
         blocks.append(Section(found.tf, content, f"{study.stem}-roots-{i + 1}", ratio(tf) if tf else None))
         if not found.certificate.certified:
             warnings.append(f"{study.stem}: poles and zeros of {found.tf} are not certified")
