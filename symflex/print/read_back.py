@@ -33,6 +33,7 @@ from symflex.expressions import (
     Name,
     format_expression,
     names,
+    nodes,
     parse,
     parse_equation,
     product_of,
@@ -42,6 +43,7 @@ from symflex.model.along import COORDINATE
 from symflex.model.analysis import lines_in_order
 from symflex.transfer import NestedTransferFunction
 from symflex.transfer.balls import at_centre, principal_values
+from symflex.transfer.probes import SOLVED_BITS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -52,7 +54,7 @@ if TYPE_CHECKING:
     from symflex.transfer.balls import Value
     from symflex.transfer.probes import Probes
 
-PRECISIONS: Final = (64, 128, 256, 512)
+PRECISIONS: Final = (64, 192, 576)
 """Bits at which points are tried that are not decided with fewer."""
 LONGEST_TEXT: Final = 5000
 """Characters of one form that are parsed, at some 10 microseconds each."""
@@ -128,7 +130,7 @@ class _Reader:
         """Return at how many points the form is right."""
         pending: Sequence[int] = range(len(self.probes.points))
         agreed, is_printed, is_derived = 0, False, False
-        for bits in PRECISIONS[1:] if self.probes.is_solved else PRECISIONS:
+        for bits in (SOLVED_BITS, PRECISIONS[-1]) if self.probes.is_solved else PRECISIONS:
             spend()
             with ctx.workprec(bits):
                 pairs = self._pairs(bits, pending)
@@ -335,6 +337,8 @@ def _as_read(form: PrintedForm) -> PrintedForm:
 
     def read(expression: E, reader: Callable[..., E]) -> E:
         nonlocal room
+        if len(nodes(expression)) > room:
+            return expression
         text = format_expression(expression)
         room -= len(text)
         if room < 0:

@@ -15,7 +15,7 @@ from flint import acb, acb_series, arb, ctx, fmpq
 
 from symflex.algebra import FUNCTIONS, terms_of
 from symflex.errors import Diagnostic, ModelError
-from symflex.expressions import Expression, fold, format_expression
+from symflex.expressions import Expression, Number, fold, format_expression
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -158,7 +158,7 @@ def principal_values(
     """
 
     def raised(base: list[acb], exponent: Expression) -> list[acb]:
-        power = rational_value(exponent, {})
+        power = exponent.value if isinstance(exponent, Number) else rational_value(exponent, {})
         if power is not None and power.denominator == 1:
             return [x ** int(power) for x in base]
         exponents = principal_values(exponent, count, name, call)

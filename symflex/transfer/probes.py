@@ -33,6 +33,7 @@ from symflex.transfer.balls import (
     enclosure,
     evaluated,
     later,
+    plan,
     principal_values,
     summed,
 )
@@ -42,6 +43,7 @@ from symflex.transfer.nested_form import BoundNested, NestedTransferFunction
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    from symflex.transfer.balls import EvaluationPlan
     from symflex.transfer.nested_form import AnyTransferFunction
     from symflex.transfer.transfer_function import ClosedForm, TransferFunction
 
@@ -60,6 +62,8 @@ SOLVED_BITS: Final = 128
 """Bits with which the test points of laws that vary along x are solved; with half of them it may take two."""
 TINY: Final = 2.0**-40
 """Share of s by which a law that is solved at s may be varied."""
+LARGE: Final = 1000
+"""Terms or steps of a function from which it is evaluated at one point on either half only."""
 PARTS: Final = 64
 """Values are multiples of one over this."""
 TRIES: Final = 12
@@ -107,7 +111,8 @@ class Probes:
     @cached_property
     def points(self) -> tuple[tuple[ProbeSetting, tuple[Fraction, Fraction]], ...]:
         """All points."""
-        draw = _Draw(self._tf, Random(self._tf.name), self.is_solved)
+        tf = self._tf
+        draw = _Draw(tf, Random(tf.name), self.is_solved)
         settings: list[ProbeSetting | None]
         match self._kind:
             case "declared":
@@ -115,7 +120,10 @@ class Probes:
             case "solved":
                 settings = [draw.nearby(SOLVED) or draw.half(SOLVED, 0)]
             case _:
-                settings = [draw.half(FIRST, 0), draw.half(SECOND, 1), draw.nearby(NEARBY)]
+                count = 1 if _is_large(tf) else len(FIRST)
+                settings = [draw.half(FIRST[:count], 0), draw.half(SECOND[:count], 1)]
+                if count > 1:
+                    settings.append(draw.nearby(NEARBY))
         return tuple((setting, s) for setting in settings if setting is not None for s in setting.points)
 
     @cached_property
@@ -183,6 +191,14 @@ class Probes:
         return found
 
 
+def _is_large(tf: AnyTransferFunction) -> bool:
+    """Tell whether a function is so long that few points have to do."""
+    if isinstance(tf, NestedTransferFunction):
+        return tf.size > LARGE
+    sides = (tf.closed.num, tf.closed.den) if tf.closed is not None else (f for f, _ in tf.ratio.factors)
+    return sum(map(len, sides)) > LARGE
+
+
 @dataclass(frozen=True, eq=False)
 class _Draw:
     """Draws settings of one function; none of them is one that the model does not allow."""
@@ -239,9 +255,9 @@ class _Draw:
             if found is None:
                 return None
             # Where a constant is not real, or a coefficient not analytic along x, this says so.
-            found[0](None, SOLVED_BITS if self.is_solved else FIRST_BITS)(
-                acb(ball(points[0][0]), ball(points[0][1]))
-            )
+            function = found[0](None, SOLVED_BITS if self.is_solved else FIRST_BITS)
+            if self.is_solved:
+                function(acb(*map(ball, points[0])))
         except ModelError:
             return None
         return ProbeSetting(values, tuple(points), *found)
@@ -318,6 +334,7 @@ def _solved(bound: BoundTransferFunction, s: acb) -> dict[str, acb]:
 def _lumped(tf: TransferFunction, values: Values) -> Evaluate:
     """Return what evaluates functions of a lumped system; its own in closed sums, of which none is opened."""
     enclosures = {name: enclosure(value) for name, value in values.items()}
+    sides = () if tf.closed is None else (plan(tf.closed.num), plan(tf.closed.den))
 
     def evaluate(value: Factored | None, bits: int) -> Callable[[acb], acb]:
         with ctx.workprec(bits):
@@ -329,7 +346,7 @@ def _lumped(tf: TransferFunction, values: Values) -> Evaluate:
             known = {**numbers, LAPLACE: s}
             with ctx.workprec(bits):
                 if value is None and tf.closed is not None:
-                    return _in_closed_sums(tf, tf.closed, known)
+                    return _in_closed_sums(tf, tf.closed, sides, known)
                 return acb(evaluated(tf.ratio if value is None else value, known.__getitem__, acb(1)))
 
         return at
@@ -337,12 +354,14 @@ def _lumped(tf: TransferFunction, values: Values) -> Evaluate:
     return evaluate
 
 
-def _in_closed_sums(tf: TransferFunction, closed: ClosedForm, known: dict[str, acb]) -> acb:
+def _in_closed_sums(
+    tf: TransferFunction, closed: ClosedForm, sides: Sequence[EvaluationPlan], known: dict[str, acb]
+) -> acb:
     closure = closed.closure
     for name, definition in tf.definitions:
         known[name] = evaluated(definition, known.__getitem__, acb(1))
     for name, polynomial in closure.sums:
         known[name] = summed(terms_of(polynomial), closure.base.names, known.__getitem__, acb(1))
     names = closure.ring.names
-    num, den = (summed(terms_of(side), names, known.__getitem__, acb(1)) for side in (closed.num, closed.den))
-    return acb(num) / acb(den)
+    num, den = (side.value([known[names[i]] ** e for i, e in side.powers]) for side in sides)
+    return at_centre(num) / at_centre(den)

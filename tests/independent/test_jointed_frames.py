@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import pytest
 from mpmath import findroot, mp, mpc, mpf, pi
 
