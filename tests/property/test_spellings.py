@@ -1,0 +1,74 @@
+"""One specification has the same answers in all its spellings."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from random import Random
+
+import pytest
+
+from tests import random_models as made
+from tests.spellings import compared
+
+DERIVATIONS = Path(__file__).parents[2] / "derivations"
+BEAM = """symflex = 1
+[parameters]
+E = "70 GPa"
+nu = 0.33
+[definitions]
+kappa = "10*(1 + nu)/(12 + 11*nu)"
+[elements]
+arm = {{ type = "beam", theory = "timoshenko", between = ["ground", "tip"], {values}, rho = "9 kg/m^3", l = "1 m" }}
+[inputs]
+F = {{ force = "tip" }}
+[outputs]
+Y = "tip"
+"""  # noqa: E501 (one element a line)
+SECTIONS = (
+    'E = "E", G = "E/(2*(1 + nu))", kappa = "kappa", I = "1e-8 m^4", A = "1e-4 m^2"',
+    'E = "70 GPa", G = "26 GPa", kappa = "5/6", I = "1e-8 m^4", A = "1e-4 m^2"',
+)
+
+
+def members(seed: int) -> str:
+    """Return a member clamped at one end, with lumped elements at the other."""
+    random, kind = Random(seed), made.CARRIED[seed % 3]
+    parts = [made._member(random, kind, (made.GROUND, "n"))]
+    parts += [made._lump(random, kind, "n") for _ in range(random.randint(0, 2))]
+    key, domain = ("torque", "rotation") if kind == "shaft" else ("force", "translation")
+    named = tuple(replace(p, name=f"part_{i}") for i, p in enumerate(parts))
+    source, output = made.Input("F", key, ("n",)), ("X", (made.Term("n"),))
+    return made.to_toml(made.Network((("n", domain),), named, (source,), (output,)))
+
+
+def differences(texts, **options):
+    found = {name: {k: v for k, v in compared(t, **options).items() if v} for name, t in texts}
+    return {name: told for name, told in found.items() if told}
+
+
+def test_a_network_has_the_same_answers_in_all_spellings():
+    assert not differences([("1", made.to_toml(made.networks(Random(1))))])
+
+
+@pytest.mark.slow
+def test_many_networks_have_the_same_answers_in_all_spellings():
+    assert not differences([(n, made.to_toml(made.networks(Random(n)))) for n in range(20)])
+
+
+@pytest.mark.slow
+def test_members_have_the_same_values_in_all_spellings():
+    texts = [(n, members(n)) for n in range(12)]
+    texts += [(values, BEAM.format(values=values)) for values in SECTIONS]
+    assert not differences(texts, asks_roots=False)
+
+
+@pytest.mark.slow
+def test_worked_models_have_the_same_values_in_all_spellings():
+    texts = [(p.name, p.read_text("utf-8")) for p in sorted((DERIVATIONS / "classics").glob("*.toml"))]
+    assert not differences(texts, asks_roots=False)
+
+
+@pytest.mark.slow
+def test_a_beam_has_the_same_roots_and_verdict_in_all_spellings():
+    assert not differences([(SECTIONS[0], BEAM.format(values=SECTIONS[0]))])
