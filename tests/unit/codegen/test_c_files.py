@@ -214,7 +214,7 @@ def test_every_kind_of_kernel_agrees_with_balls(kind, tmp_path):
     tf = pipeline.derive_all(pipeline.loads(text))[0]
     files = C99.export(tf.model, [tf], stem="plant", is_alone=False, samples=5)
     solved = {f for f in ("cx_roots(", "cx_modal(", "cx_propagated(") if f in files.text}
-    assert solved == {PIPE: {"cx_roots(", "cx_modal("}, MASSLESS: {"cx_propagated("}}.get(text, set())
+    assert solved == {PIPE: {"cx_roots(", "cx_modal("}}.get(text, set())
     library, _ = compiled(tmp_path, files)
     omega = np.geomspace(*ends, 5 if kind in DEAR else 13)
     found, negative = response(library, 0, omega), response(library, 0, -omega)
