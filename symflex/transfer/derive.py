@@ -66,7 +66,7 @@ def derive_all(
     ``most`` refuses distributed systems earlier, whose formulas nobody would read.
     """
     workshop = _CramerQuotients(equations, most)
-    if not (workshop.is_sure or is_tapered(equations.model)):
+    if equations.model.parameters and not (workshop.is_sure or is_tapered(equations.model)):
         from symflex.transfer.named_coefficients import named_coefficients  # only with beams
 
         named, kept = named_coefficients(equations)

@@ -346,6 +346,7 @@ def _error(got: complex, wanted: complex) -> float:
     return abs(got - wanted) / abs(wanted)
 
 
+@pytest.mark.slow
 def test_values_are_those_of_matrix_exponentials():
     wrong = []
     with mp.workdps(DIGITS):

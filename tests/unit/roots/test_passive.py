@@ -334,6 +334,7 @@ def word(model):
     return pipeline.roots(tf, Modes(1)).verdict
 
 
+@pytest.mark.slow
 def test_signs_are_told_with_numbers_whatever_the_form_of_a_value():
     for text in (SHAFT.replace("SHEAR", "E/(2*(1 + nu))"), SHAFT.replace("SHEAR", "G"), PINNED, COIL):
         for nu in ("0.3", "-0.3"):
