@@ -70,8 +70,16 @@ def write_report(
     Examples
     --------
     >>> import symflex, tempfile
+    >>> from pathlib import Path
+    >>> text = '''symflex = 1
+    ... inputs = { F = { force = "x" } }
+    ... outputs = { X = "x" }
+    ... elements.m = { type = "mass", at = "x", m = "2 kg" }
+    ... elements.b = { type = "damper", between = ["x", "ground"], b = "3 N*s/m" }'''
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     written = symflex.write_report("derivations/eppinger1988/rigid_body.toml", folder, pdf=False)
+    ...     spec = Path(folder, "mass.toml")
+    ...     _ = spec.write_text(text, encoding="utf-8")
+    ...     written = symflex.write_report(spec, Path(folder, "report"), pdf=False)
     ...     written.page.name, written.is_certified, written.warnings
     ('index.html', True, ())
     """

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import pytest
 from mpmath import findroot, mp, mpc, mpf, pi
 
