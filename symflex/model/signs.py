@@ -269,11 +269,15 @@ class RangedValue:
         sign = line.sign(self.expression)
         if self.length is not None and sign is None:
             return self._complaint_inside(line, self.length)
-        if sign is None or (self.is_end and line.is_zero(self.expression)) or sign >= self._least:
+        if sign is None or sign >= self._least or (self.is_end and sign == 0 and self._may_vanish(line)):
             return ""
         value = None if literal_value(self.expression) is not None else line.nearly(self.expression)
         shown = f" ({value:.6g})" if value else ""
         return f"{self.what} is {'negative' if sign < 0 else '0'}{shown}; {self.reason}"
+
+    def _may_vanish(self, line: Line) -> bool:
+        """Tell whether a zero is one whatever the values, or of a form that is not read, such as a cube."""
+        return line.is_zero(self.expression) or line.value(self.expression) is None
 
     @property
     def _least(self) -> int:

@@ -115,3 +115,11 @@ def test_a_domain_without_length_by_value_is_refused():
             + 'conditions = ["u(0) = F", "u\'(0) = 0"]\n[inputs]\nF = {}\n[outputs]\nX = "u(0)"\n'
         )
         assert "SF240" in codes(text), end
+
+
+def test_a_section_may_end_in_a_tip_however_it_is_written():
+    for section in ('A = "a*(1 - x/l)", I = "i*(1 - x/l)^3"', 'A = "a - a*x/l", I = "i*((l - x)/l)^3"'):
+        text = 'symflex = 1\nparameters = { a = "1 m^2", i = "1 m^4", l = "1 m" }\n[elements]\n'
+        text += f'wedge = {{ type = "beam", between = ["root", "tip"], {section}, '
+        text += 'E = "1 Pa", rho = "1 kg/m^3", l = "l" }\n[inputs]\nz = { displacement = "root" }\n'
+        assert pipeline.loads(text + '[outputs]\nY = "wedge.y(l/2)"\n').elements
