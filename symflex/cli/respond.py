@@ -27,7 +27,8 @@ def respond(spec: Specification, given: RespondOptions) -> int:
     from proved poles, not from steps in time. An impulse that passes straight through to the output is said,
     and is not among the values; that at t = 0 is the limit from above. Of beams with controllers or imposed
     motions, and others of whose modes too little is known, what those beyond the lowest 25 add is estimated,
-    and the first line says that the values are not certified.
+    of networks beyond the lowest 12 where that is little; the first line says that the values are not
+    certified.
 
     With --shaped the input goes through the input shaper that 'symflex shape' prints for the same transfer
     function: it is convolved by its impulses, at their proved times.
