@@ -55,7 +55,7 @@ def test_a_step_response_is_that_of_the_formula_and_not_certified():
     written, network = (
         pipeline.time_response(bound_of(1, k), "step", times, 4) for k in ("expanded", "nested")
     )
-    assert not network.certified and "the lowest 25" in network.reason
+    assert not network.certified and "the lowest 12" in network.reason
     assert all(a.overlaps(b) for a, b in zip(network.enclosures, written.enclosures, strict=True))
     largest = max(abs(written.values))
     assert float(max(y.rad() for y in network.enclosures)) < 1e-3 * largest
