@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from symflex import pipeline
 from symflex.errors import Source, SpecError
 from symflex.model import load_model
 
