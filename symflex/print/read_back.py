@@ -33,7 +33,6 @@ from symflex.expressions import (
     Name,
     format_expression,
     names,
-    nodes,
     parse,
     parse_equation,
     product_of,
@@ -60,8 +59,6 @@ LONGEST_TEXT: Final = 5000
 """Characters of one form that are parsed, at some 10 microseconds each."""
 ENOUGH: Final = 24
 """Bits of a value that leave a wrong form no place to hide, as points have no meaning."""
-
-
 REPORT: Final = "this is a fault of symflex, not of the model; please report it with the specification"
 INSIDE: Final = Fraction(3, 8)
 """Part of a member at whose end coefficients that vary along it are compared."""
@@ -177,6 +174,8 @@ class _Reader:
     @cached_property
     def lines(self) -> Mapping[str, Expression]:
         """What names stand for, each after those it needs."""
+        if not (self.form.where or self.form.laws or self.form.closed):
+            return {}
         known = dict(self.form.where)
         known |= {left.name: e for left, e in self.form.closed if isinstance(left, Name)}
         laws = {name: law for name, law in self.form.laws if not isinstance(law.left, Derivative | Call)}
@@ -328,6 +327,15 @@ class _Points:
                 check(self._chosen, self.value(expression), self.value(left), format_expression(left))
 
 
+def _is_longer(expression: Expression, most: int) -> bool:
+    """Tell whether an expression has more parts than so many, without looking at all of these."""
+    pending = [expression]
+    while pending and most >= 0:
+        most -= 1
+        pending.extend(pending.pop().children)
+    return most < 0
+
+
 def _as_read(form: PrintedForm) -> PrintedForm:
     """Return a form as its text is read; what is longer than is worth while, or than limits allow, as it is.
 
@@ -337,7 +345,7 @@ def _as_read(form: PrintedForm) -> PrintedForm:
 
     def read(expression: E, reader: Callable[..., E]) -> E:
         nonlocal room
-        if len(nodes(expression)) > room:
+        if _is_longer(expression, room):
             return expression
         text = format_expression(expression)
         room -= len(text)

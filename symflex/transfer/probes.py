@@ -55,15 +55,16 @@ if TYPE_CHECKING:
 FIRST: Final = (("-1", "0"), ("0", "1"), ("-5/13", "12/13"), ("12/13", "-5/13"))
 SECOND: Final = (("0", "-1"), ("-1", "0"), ("-3/5", "-4/5"), ("4/5", "3/5"))
 NEARBY: Final = (("-1", "0"), ("0", "1"))
-SOLVED: Final = (("-1/4", "0"),)
 """Directions of s, of length 1: branches are told apart on an axis only where s lies on it exactly."""
+SOLVED: Final = (("-1/4", "0"),)
+"""The same where laws that vary along x are solved, with fewer waves."""
 FIRST_BITS: Final = 64
-SOLVED_BITS: Final = 128
+SOLVED_BITS: Final = 96
 """Bits with which the test points of laws that vary along x are solved; with half of them it may take two."""
 TINY: Final = 2.0**-40
 """Share of s by which a law that is solved at s may be varied."""
 LARGE: Final = 1000
-"""Terms or steps of a function from which it is evaluated at one point on either half only."""
+"""Terms or steps from which a function is evaluated at two points only."""
 PARTS: Final = 64
 """Values are multiples of one over this."""
 TRIES: Final = 12
@@ -120,10 +121,10 @@ class Probes:
             case "solved":
                 settings = [draw.nearby(SOLVED) or draw.half(SOLVED, 0)]
             case _:
-                count = 1 if _is_large(tf) else len(FIRST)
-                settings = [draw.half(FIRST[:count], 0), draw.half(SECOND[:count], 1)]
-                if count > 1:
-                    settings.append(draw.nearby(NEARBY))
+                if _is_large(tf):
+                    settings = [draw.half((FIRST[0], SECOND[0]), 0)]
+                else:
+                    settings = [draw.half(FIRST, 0), draw.half(SECOND, 1), draw.nearby(NEARBY)]
         return tuple((setting, s) for setting in settings if setting is not None for s in setting.points)
 
     @cached_property
@@ -243,7 +244,7 @@ class _Draw:
             step = Fraction(self.random.randrange(-PARTS, PARTS), PARTS * NEAR) if is_moved else 0
             values[parameter.name] = replace(value, rational=value.rational * (1 + step))
         low, high = model.analysis.band or DECLARED_BAND
-        return self._setting(values, directions, Fraction(tau * sqrt(low * high)).limit_denominator(PARTS))
+        return self._setting(values, directions, Fraction(f"{tau * sqrt(low * high):.3g}"))
 
     def _setting(self, values: Values, directions: Directions, scale: Fraction) -> ProbeSetting | None:
         points = []
@@ -255,9 +256,10 @@ class _Draw:
             if found is None:
                 return None
             # Where a constant is not real, or a coefficient not analytic along x, this says so.
-            function = found[0](None, SOLVED_BITS if self.is_solved else FIRST_BITS)
-            if self.is_solved:
-                function(acb(*map(ball, points[0])))
+            with ctx.workprec(SOLVED_BITS if self.is_solved else FIRST_BITS):
+                function = found[0](None, ctx.prec)
+                if self.is_solved:
+                    function(acb(*map(ball, points[0])))
         except ModelError:
             return None
         return ProbeSetting(values, tuple(points), *found)
