@@ -73,6 +73,7 @@ def pushed(control):
     return lambda s: control(s) / (1 + control(s) * receptance(s))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("controller", "control"),
     [(PD, pd), pytest.param("-8*k", lambda s: -32, marks=pytest.mark.slow)],
