@@ -193,9 +193,8 @@ class GeneratorValues:
 
     def polynomial(self, polynomial: fmpz_mpoly, names: Sequence[str]) -> acb:
         """Return the value of a polynomial in the generators named; where all are integers the engine's."""
-        if len(polynomial) > FEW_TERMS and all(
-            names[i] in self.whole for i, d in enumerate(polynomial.degrees()) if int(d)
-        ):
+        is_dense = isinstance(polynomial, fmpz_mpoly) and len(polynomial) > FEW_TERMS
+        if is_dense and all(names[i] in self.whole for i, d in enumerate(polynomial.degrees()) if int(d)):
             return acb(polynomial(*(self.whole.get(name, 0) for name in names)))
         total = ZERO
         for monomial, coefficient in terms_of(polynomial):
