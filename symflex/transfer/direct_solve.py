@@ -185,16 +185,16 @@ class GeneratorValues:
         """Return the value of a rational function."""
         total = acb(ball(value.unit))
         for factor, exponent in value.factors:
-            number = self.polynomial(factor, value.ring.names)
+            number = self.polynomial(factor, value.ring.names, is_sparse=value.ring.is_sparse)
             if exponent < 0 and number.contains(0):
                 raise SingularPointError
             total = total * number**exponent
         return total
 
-    def polynomial(self, polynomial: fmpz_mpoly, names: Sequence[str]) -> acb:
+    def polynomial(self, polynomial: fmpz_mpoly, names: Sequence[str], *, is_sparse: bool = False) -> acb:
         """Return the value of a polynomial in the generators named; where all are integers the engine's."""
-        is_dense = isinstance(polynomial, fmpz_mpoly) and len(polynomial) > FEW_TERMS
-        if is_dense and all(names[i] in self.whole for i, d in enumerate(polynomial.degrees()) if int(d)):
+        is_long = len(polynomial) > FEW_TERMS and not is_sparse
+        if is_long and all(names[i] in self.whole for i, d in enumerate(polynomial.degrees()) if int(d)):
             return acb(polynomial(*(self.whole.get(name, 0) for name in names)))
         total = ZERO
         for monomial, coefficient in terms_of(polynomial):

@@ -299,3 +299,24 @@ def test_code_of_many_equal_spans_is_solved_though_their_formula_is_short():
     )
     assert (type(formula).__name__, type(code).__name__) == ("TransferFunction", "NestedTransferFunction")
     assert "--representation expanded" in why
+
+
+def test_a_long_definition_is_compared_with_the_equations_in_nested_form():
+    # A cantilever of square section, 60 mm in six parts: l^3/(3 E I).
+    parts = [f"a_{i}" for i in range(6)]
+    text = f"""symflex = 1
+    inputs = {{ F = {{ force = "tip" }} }}
+    outputs = {{ Y = "tip" }}
+    definitions = {{ I = "({" + ".join(parts)})^4/12" }}
+    parameters = {{ {", ".join(f'{name} = "10 mm"' for name in parts)} }}
+    [elements.arm]
+    type = "beam"
+    between = ["ground", "tip"]
+    E = "70 GPa"
+    rho = "2700 kg/m^3"
+    A = "36 cm^2"
+    I = "I"
+    l = "1 m"
+    """.replace("\n    ", "\n")
+    (tf,) = pipeline.derive_nested(pipeline.loads(text))
+    assert bind_nested(tf)(0j) == pytest.approx(1 / (3 * 70e9 * 0.06**4 / 12), rel=1e-12)
