@@ -443,6 +443,8 @@ def bind(tf: TransferFunction, values: Mapping[str, Given] | None = None) -> Bou
         else:
             below = below * value**-exponent
     ratio, shared = cancel(above, below, radicals=None if tf.kernels else radicals)
+    if ratio.is_zero and not tf.kernels:
+        shared = below  # of a function that vanishes for these values every mode is hidden
     varying = [0, *(ring.index[k.generator] for k in tf.kernels.kernels)]
     hidden = [HiddenFactor(f, e) for f, e in shared.factors if any(degree_in(f, i) for i in varying)]
     for known in tf.hidden:

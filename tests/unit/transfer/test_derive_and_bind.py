@@ -311,3 +311,13 @@ def test_a_shared_elimination_gives_what_each_alone_gives():
     together = [as_text(tf.ratio) for tf in pipeline.derive_all(model)]
     alone = [as_text(derive(OSCILLATOR, o, i).ratio) for o, i in model.transfer_functions]
     assert together == alone
+
+
+def test_values_with_which_a_function_vanishes_hide_its_modes():
+    text = (
+        'symflex = 1\nparameters = { a = 2, b = 3 }\ninputs.u = {}\noutputs.y = "(a - b)/(s^2 + 2*s + 4)*u"\n'
+    )
+    (tf,) = pipeline.derive_all(pipeline.loads(text))
+    bound = pipeline.bind(tf, {"b": 2})
+    assert bound.is_zero
+    assert [str(h.polynomial) for h in bound.hidden] == ["s^2 + 2*s + 4"]
