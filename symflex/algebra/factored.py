@@ -18,6 +18,7 @@ from symflex.algebra.ring import (
     MEMORY_LIMIT,
     TERM_LIMIT,
     Ring,
+    by_powers,
     degree_in,
     highest_degree,
     terms_of,
@@ -253,6 +254,32 @@ def common_denominator(ring: Ring, values: Sequence[Factored]) -> Factored:
     """
     numbers = Factored.number(ring, lcm(*(v.unit.denominator for v in values)))
     return least_common_multiple(numbers, (v.denominator() for v in values))
+
+
+def composed(value: Factored, images: Mapping[str, Factored]) -> Factored:
+    """Return a value with rational functions of the same ring in place of some generators.
+
+    Examples
+    --------
+    >>> ring = Ring(("s", "k"))
+    >>> s, k = (Factored.generator(ring, name) for name in ring.names)
+    >>> str(composed((s + k) * k, {"k": 1 / s}))
+    's^-2*(s^2 + 1)'
+    """
+    return value.map_factors(value.ring, lambda factor: _composed(value.ring, factor, images))
+
+
+def _composed(ring: Ring, factor: fmpz_mpoly, images: Mapping[str, Factored]) -> Factored:
+    found = Factored.polynomial(ring, factor)
+    for name, image in images.items():
+        if not found.depends_on(name):
+            continue
+        total = Factored.number(ring, 0)
+        above = found.numerator().expand()
+        for power, part in by_powers(ring, above, ring.index[name]).items():
+            total = total + Factored.polynomial(ring, part) * image**power
+        found = total / found.denominator()
+    return found
 
 
 def _merge(

@@ -11,8 +11,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from symflex.algebra import Factored
-from symflex.algebra.ring import by_powers
+from symflex.algebra import composed
 from symflex.expressions import substitute
 from symflex.model.along import COORDINATE
 from symflex.model.brackets import slope_along_x
@@ -20,8 +19,7 @@ from symflex.model.brackets import slope_along_x
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from flint import fmpz_mpoly
-
+    from symflex.algebra import Factored
     from symflex.equations.evaluate import ExactEvaluator
     from symflex.expressions import Call, Expression
 
@@ -63,20 +61,4 @@ class AlongX:
         place = {COORDINATE: point}
         images = {COORDINATE: self.evaluator.constant(point)}
         images |= {n: self.evaluator.constant(substitute(call, place)) for n, call in self.functions}
-        return value.map_factors(value.ring, lambda factor: composed(value, factor, images))
-
-
-def composed(value: Factored, factor: fmpz_mpoly, images: Mapping[str, Factored]) -> Factored:
-    """Return a polynomial with rational functions in place of some generators, over the ring of a value."""
-    ring = value.ring
-    found = Factored.polynomial(ring, factor)
-    for name, image in images.items():
-        if not found.depends_on(name):
-            continue
-        total = value * 0
-        i = ring.index[name]
-        above = found.numerator().expand()
-        for power, part in by_powers(ring, above, i).items():
-            total = total + Factored.polynomial(ring, part) * image**power
-        found = total / found.denominator()
-    return found
+        return composed(value, images)

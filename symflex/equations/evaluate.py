@@ -18,11 +18,11 @@ from symflex.algebra import (
     Factored,
     Radicals,
     Ring,
+    composed,
     degree_in,
     least_common_multiple,
     residue,
 )
-from symflex.algebra.ring import by_powers
 from symflex.errors import BudgetError, Diagnostic, ModelError
 from symflex.expressions import (
     Attribute,
@@ -43,8 +43,6 @@ from symflex.library.elements import LinearForm, Variable
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping
-
-    from flint import fmpz_mpoly
 
     from symflex.model import ModelScope
 
@@ -221,20 +219,8 @@ class ExactEvaluator:
         """Return a value with its definitions opened, and with no squares of square roots in it."""
         for name in reversed(tuple(self.definitions)):
             if value.depends_on(name):
-                value = self._put_in(value, name, self.constant(self.definitions[name]))
+                value = composed(value, {name: self.constant(self.definitions[name])})
         return value if self.radicals is None else self.radicals.reduced(value)
-
-    def _put_in(self, value: Factored, name: str, image: Factored) -> Factored:
-        """Return a value with an image in place of a generator."""
-        ring = self.ring
-
-        def replaced(factor: fmpz_mpoly) -> Factored:
-            total = Factored.number(ring, 0)
-            for k, part in by_powers(ring, factor, ring.index[name]).items():
-                total = total + Factored.polynomial(ring, part) * image**k
-            return total
-
-        return value.map_factors(ring, replaced)
 
     def _call(self, expression: Call, name: str, argument: Expression) -> Factored:
         inner = self.constant(argument)

@@ -21,9 +21,8 @@ from typing import TYPE_CHECKING
 
 from flint import arb
 
-from symflex.algebra import LAPLACE, Factored, by_powers, degree_in
+from symflex.algebra import LAPLACE, Factored, by_powers, composed, degree_in
 from symflex.equations import assemble
-from symflex.equations.along import composed
 from symflex.expressions import Name
 from symflex.library.elements import LinearForm, put_in
 from symflex.model.along import COORDINATE, varies_along_x
@@ -344,4 +343,4 @@ def _reduced(form: LinearForm, known: Mapping[Variable, Terms]) -> Terms:
 def _at(value: Factored, place: Factored) -> Factored:
     """Return what varies along x at a place."""
     images = {COORDINATE: place} if COORDINATE in value.ring.index else {}
-    return value.map_factors(value.ring, lambda factor: composed(value, factor, images))
+    return composed(value, images)

@@ -7,16 +7,14 @@ of the null space of one that is singular somewhere in its balls.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
 from random import Random
 from typing import TYPE_CHECKING
 
 from flint import acb, acb_mat, arb, arb_mat
 
-from symflex.algebra import LAPLACE, Factored
+from symflex.algebra import LAPLACE, Factored, composed
 from symflex.algebra.propagators import EXPONENTIAL, Propagation
 from symflex.analysis.modes.shape import DistributedShape, VaryingCarrier
-from symflex.equations.along import composed
 from symflex.model.along import is_tapered, varies_along_x
 from symflex.transfer.balls import at_centre, enclose, enclosure, evaluated
 from symflex.transfer.enclose_kernels import fundamental_functions
@@ -205,7 +203,7 @@ class BoundEquations:
                 moving.add(name)
         for name, meant in reversed(self.equations.definitions):
             if name in moving and value.depends_on(name):
-                value = value.map_factors(value.ring, partial(composed, value, images={name: meant}))
+                value = composed(value, {name: meant})
         return value
 
 

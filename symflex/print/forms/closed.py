@@ -28,7 +28,7 @@ from functools import cached_property
 from math import factorial, prod
 from typing import TYPE_CHECKING, Final
 
-from symflex.algebra import Factored, by_powers, degree_in
+from symflex.algebra import Factored, composed, degree_in
 from symflex.expressions import (
     Bessel,
     Call,
@@ -49,8 +49,6 @@ from symflex.model.linearity import integer_exponent
 from symflex.print.forms.arrange import Sides, length_sides
 
 if TYPE_CHECKING:
-    from flint import fmpz_mpoly
-
     from symflex.algebra import Dispersion
     from symflex.print.forms.arrange import ProductPrinter
     from symflex.print.forms.notation import Naming
@@ -494,15 +492,7 @@ def _number(value: Factored) -> Fraction:
 
 def _put(value: Factored, place: Factored) -> Factored:
     """Return a function of x at a place."""
-    ring = value.ring
-
-    def image(factor: fmpz_mpoly) -> Factored:
-        total = Factored.number(ring, 0)
-        for exponent, part in by_powers(ring, factor, ring.index[COORDINATE]).items():
-            total = total + Factored.polynomial(ring, part) * place**exponent
-        return total
-
-    return value.map_factors(ring, image)
+    return composed(value, {COORDINATE: place})
 
 
 def _factored(expression: Expression, like: Factored) -> Factored:
