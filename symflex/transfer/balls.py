@@ -232,6 +232,44 @@ def summed(
     return total
 
 
+def binary_exponent(value: acb) -> int | None:
+    """Return about the binary logarithm of a ball's size, None for zero and what is not finite.
+
+    Examples
+    --------
+    >>> binary_exponent(acb(5)), binary_exponent(acb(0))
+    (3, None)
+    """
+    size = value.abs_upper()
+    if size == 0 or not size.is_finite():
+        return None
+    mantissa, exponent = size.man_exp()
+    return int(mantissa).bit_length() + int(exponent)
+
+
+def balancing(sizes: Sequence[Mapping[int, int]], columns: int, passes: int) -> tuple[list[int], list[int]]:
+    """Return exponents of two for rows and columns that bring their largest entries near one.
+
+    ``sizes`` are the binary exponents of what is not zero, row by row and by column; units make them differ.
+
+    Examples
+    --------
+    >>> balancing([{0: 10, 1: 0}, {0: 10, 1: 4}], 2, 2)
+    ([-10, -10], [0, 6])
+    """
+    left, right = [0] * len(sizes), [0] * columns
+    for _ in range(passes):
+        for i, row in enumerate(sizes):
+            left[i] = -max((e + right[j] for j, e in row.items()), default=0)
+        largest: list[int | None] = [None] * columns
+        for i, row in enumerate(sizes):
+            for j, e in row.items():
+                known = largest[j]
+                largest[j] = e + left[i] if known is None else max(known, e + left[i])
+        right = [0 if e is None else -e for e in largest]
+    return left, right
+
+
 Step = tuple[int, tuple[int, ...], int]
 """How many factors of the last product stay, which powers follow, and the term's integer."""
 

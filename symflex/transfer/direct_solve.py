@@ -19,7 +19,6 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 from heapq import heapify, heappop, heappush
-from math import inf, log
 from typing import TYPE_CHECKING
 
 from flint import acb, acb_mat, acb_series, arb, ctx
@@ -29,7 +28,17 @@ from symflex.budget import spend
 from symflex.errors import ModelError
 from symflex.expressions import fold
 from symflex.model.along import COORDINATE, varies_along_x
-from symflex.transfer.balls import ball, enclose, evaluated, later, raised, series_terms
+from symflex.model.linearity import integer_exponent
+from symflex.transfer.balls import (
+    balancing,
+    ball,
+    binary_exponent,
+    evaluated,
+    later,
+    raised,
+    series_terms,
+    summed,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -38,23 +47,27 @@ if TYPE_CHECKING:
 
     from symflex.algebra import Factored
     from symflex.equations import Continuum, Equations
-    from symflex.expressions import Call
+    from symflex.expressions import Call, Expression
     from symflex.library.elements import LinearForm, Variable
+    from symflex.transfer.balls import Arithmetic
 
 ZERO = acb(0)
-SMALL = 10.0
+SMALL = 10
 """Bits that a pivot may be smaller than its row, or balls would widen; of those left the column is short."""
 ROUNDS = 3
-"""Of balancing."""
+"""Passes of balancing over rows and columns."""
 FEW_TERMS = 16
-"""Of a polynomial that is summed term by term."""
+"""A polynomial of so many terms is summed term by term."""
 TERMS = 40
-"""Of a Taylor step, which is halved until the last of them are below the precision wanted."""
+"""Terms of a Taylor step, which is halved until the last of them are small."""
 TAYLOR_BITS = 80
+"""Bits by which the last terms are smaller than the states, twice what values are compared with."""
 LAST_TERMS = 3
 """A coefficient may vanish by symmetry; so many in a row do not."""
 MOST_STEPS = 64
+"""Taylor steps along a member, halved ones counted, beyond which it is not followed: a horn takes four."""
 FIRST_STEPS = 4
+"""Steps that a member is cut into at first."""
 
 
 class SingularPointError(Exception):
@@ -182,13 +195,11 @@ class GeneratorValues:
     whole: Mapping[str, int] = field(default_factory=dict)
 
     def __call__(self, value: Factored) -> acb:
-        """Return the value of a rational function."""
+        """Return the value of a rational function; not finite where it divides by zero."""
         total = acb(ball(value.unit))
         for factor, exponent in value.factors:
             number = self.polynomial(factor, value.ring.names, is_sparse=value.ring.is_sparse)
-            if exponent < 0 and number.contains(0):
-                raise SingularPointError
-            total = total * number**exponent
+            total = total * raised(number, exponent)
         return total
 
     def polynomial(self, polynomial: fmpz_mpoly, names: Sequence[str], *, is_sparse: bool = False) -> acb:
@@ -196,15 +207,12 @@ class GeneratorValues:
         is_long = len(polynomial) > FEW_TERMS and not is_sparse
         if is_long and all(names[i] in self.whole for i, d in enumerate(polynomial.degrees()) if int(d)):
             return acb(polynomial(*(self.whole.get(name, 0) for name in names)))
-        total = ZERO
-        for monomial, coefficient in terms_of(polynomial):
-            term = acb(coefficient)
-            for i, e in monomial:
-                if names[i] not in self.values:
-                    raise SingularPointError
-                term = term * self.values[names[i]] ** int(e)
-            total = total + term
-        return total
+        return acb(summed(terms_of(polynomial), names, self._named, acb(1)))
+
+    def _named(self, name: str) -> acb:
+        if name not in self.values:
+            raise SingularPointError
+        return self.values[name]
 
     def row(self, form: LinearForm, places: Mapping[Variable, int]) -> dict[int, acb]:
         """Return a linear form by its columns; what belongs to none is left out."""
@@ -302,14 +310,18 @@ class _AlongX:
             call,
             number=lambda x: acb_series([ball(x)]),
             name=named,
-            power=lambda base, exponent: raised(base, _whole(enclose(exponent, {}))),
+            power=_power,
             call=lambda inner, argument: _elementary(inner.name, argument),
         )
         return series
 
 
-def _whole(exponent: arb) -> int:
-    return round(float(exponent.mid()))  # the grammar has no other powers
+def _power(base: acb_series, exponent: Expression) -> acb_series:
+    whole = integer_exponent(exponent)
+    if whole is None:
+        raise NotFollowedError
+    power: acb_series = raised(base, whole)
+    return power
 
 
 def _elementary(name: str, x: acb_series) -> acb_series:
@@ -321,8 +333,9 @@ def _elementary(name: str, x: acb_series) -> acb_series:
             return quotient
         case "tan":
             return _elementary("sin", x) / _elementary("cos", x)
-    function: Callable[[acb_series], acb_series] = FUNCTIONS[name].evaluate  # type: ignore[assignment]
-    return function(x)
+    function: Callable[[Arithmetic], Arithmetic] = FUNCTIONS[name].evaluate
+    found: acb_series = function(x)
+    return found
 
 
 def _stepped(
@@ -382,24 +395,19 @@ def _taylor(series: Mapping[tuple[int, int], list[acb]], size: int, step: acb) -
 # ---------------------------------------------------------------------------------------------- elimination
 
 
-def _eliminated(  # noqa: PLR0912 (one loop over a workbench that is not worth a name)
-    rows: list[dict[int, acb]], size: int, sources: int
-) -> tuple[acb, list[list[acb]]]:
+def _eliminated(rows: list[dict[int, acb]], size: int, sources: int) -> tuple[acb, list[list[acb]]]:
     """Return the determinant of A but for its sign, and the unknowns per unit of each input.
 
     Rows have the unknowns' columns and then those of the inputs. The shortest row is next, and of its entries
     the one whose column is shortest, so that networks stay sparse.
     """
+    if len(rows) != size:
+        raise SingularPointError
     powers = _balance(rows, size)
     holders: list[set[int]] = [set() for _ in range(size)]
     for i, row in enumerate(rows):
-        for j in [j for j, x in row.items() if x == 0]:
-            del row[j]
-        for j in row:
-            if j < size:
-                holders[j].add(i)
-    if len(rows) != size:
-        raise SingularPointError
+        for j in _unknown(row, size):
+            holders[j].add(i)
     waiting = [(len(row), i) for i, row in enumerate(rows)]
     heapify(waiting)
     left, order, determinant = set(range(size)), [], acb(1)
@@ -410,77 +418,87 @@ def _eliminated(  # noqa: PLR0912 (one loop over a workbench that is not worth a
         count, i = heappop(waiting)
         if i not in left or count != len(rows[i]):
             continue
-        row = rows[i]
-        sizes = {j: _size(x) for j, x in row.items() if j < size and not x.contains(0)}
-        if not sizes:
+        chosen = _pivot(rows[i], size, holders)
+        if chosen is None:
             undecided.append((count, i))
             continue
-        least = max(sizes.values()) - SMALL
-        j = min((j for j, x in sizes.items() if x >= least), key=lambda j: len(holders[j]))
         left.remove(i)
-        pivot = row[j]
-        determinant = determinant * pivot
-        order.append((i, j))
-        for other in [x for x in holders[j] if x in left]:
-            _subtract(rows[other], row, j, rows[other][j] / pivot, holders, other, size)
+        order.append((i, chosen))
+        determinant = determinant * rows[i][chosen]
+        for other in [x for x in holders[chosen] if x in left]:
+            _subtract(rows[other], rows[i], chosen, holders, other, size)
             heappush(waiting, (len(rows[other]), other))
         for entry in undecided:
             heappush(waiting, entry)
         undecided.clear()
-        for k in row:
-            if k < size:
-                holders[k].discard(i)
-    unknowns: list[list[acb]] = [[] for _ in range(size)]
-    for i, j in reversed(order):
-        row = rows[i]
-        for k in range(sources):
-            total = row.get(size + k, ZERO)
-            for column, x in row.items():
-                if column < size and column != j:
-                    total = total + x * unknowns[column][k]
-            unknowns[j].append(-total / row[j])
+        for k in _unknown(rows[i], size):
+            holders[k].discard(i)
+    unknowns = _put_back(rows, order, size, sources)
     for power in powers:
         determinant = determinant / power
     return determinant, [[x * scale for x in own] for own, scale in zip(unknowns, powers, strict=True)]
 
 
+def _unknown(row: Mapping[int, acb], size: int) -> list[int]:
+    """Return the columns of a row that are those of unknowns."""
+    return [j for j in row if j < size]
+
+
+def _pivot(row: Mapping[int, acb], size: int, holders: Sequence[set[int]]) -> int | None:
+    """Return the column of a row's next pivot, None where no entry is proved to differ from zero."""
+    sizes = {j: e for j in _unknown(row, size) if (e := _exponent(row[j])) is not None}
+    proved = [j for j in sizes if not row[j].contains(0)]
+    least = max((sizes[j] for j in proved), default=0) - SMALL
+    return min((j for j in proved if sizes[j] >= least), key=lambda j: len(holders[j]), default=None)
+
+
+def _put_back(
+    rows: Sequence[Mapping[int, acb]], order: Sequence[tuple[int, int]], size: int, sources: int
+) -> list[list[acb]]:
+    """Return the unknowns per unit of each input, the last one eliminated first."""
+    unknowns: list[list[acb]] = [[] for _ in range(size)]
+    for i, j in reversed(order):
+        row = rows[i]
+        for k in range(sources):
+            total = row.get(size + k, ZERO)
+            for column in _unknown(row, size):
+                if column != j:
+                    total = total + row[column] * unknowns[column][k]
+            unknowns[j].append(-total / row[j])
+    return unknowns
+
+
 def _balance(rows: list[dict[int, acb]], size: int) -> list[arb]:
-    """Scale columns by powers of two, so that no entry is small because of its unit; return the powers."""
-    sizes = [{j: _size(x) for j, x in row.items() if j < size and x != 0} for row in rows]
-    shifts = [0.0] * size
-    for _ in range(ROUNDS):
-        most = [max((x + shifts[j] for j, x in own.items()), default=0.0) for own in sizes]
-        columns: list[list[float]] = [[] for _ in range(size)]
-        for own, largest in zip(sizes, most, strict=True):
-            for j, x in own.items():
-                columns[j].append(x - largest)
-        shifts = [-max(own, default=0.0) for own in columns]
-    powers = [arb(2) ** round(shift) for shift in shifts]
+    """Drop zeros, and scale columns so that no unit makes an entry small; return the powers of two."""
+    sizes: list[dict[int, int]] = []
     for row in rows:
-        for j in row:
-            if j < size:
-                row[j] = row[j] * powers[j]
+        for j in [j for j, x in row.items() if x == 0]:
+            del row[j]
+        sizes.append({j: e for j in _unknown(row, size) if (e := _exponent(row[j])) is not None})
+    powers = [arb(2) ** e for e in balancing(sizes, size, ROUNDS)[1]]
+    for row in rows:
+        for j in _unknown(row, size):
+            row[j] = row[j] * powers[j]
     return powers
 
 
-def _size(x: acb) -> float:
-    """Return the binary logarithm of what a ball encloses; far beyond doubles where bending is stiff."""
-    largest = abs(x).upper()
-    if not largest.is_finite():
+def _exponent(x: acb) -> int | None:
+    if not x.is_finite():
         raise SingularPointError
-    return float(largest.log().mid()) / log(2) if largest > 0 else -inf
+    return binary_exponent(x)
 
 
 def _subtract(
     target: dict[int, acb],
     row: Mapping[int, acb],
     pivot: int,
-    factor: acb,
     holders: list[set[int]],
     number: int,
     size: int,
 ) -> None:
     """Take a multiple of one row from another, which loses its entry in the pivot's column."""
+    factor = target.pop(pivot) / row[pivot]
+    holders[pivot].discard(number)
     for k, x in row.items():
         if k == pivot:
             continue
@@ -490,5 +508,3 @@ def _subtract(
             target[k] = -factor * x
             if k < size:
                 holders[k].add(number)
-    del target[pivot]
-    holders[pivot].discard(number)

@@ -16,7 +16,7 @@ from symflex.algebra import LAPLACE, Factored, composed
 from symflex.algebra.propagators import EXPONENTIAL, Propagation
 from symflex.analysis.modes.shape import DistributedShape, VaryingCarrier
 from symflex.model.along import is_tapered, varies_along_x
-from symflex.transfer.balls import at_centre, enclose, enclosure, evaluated
+from symflex.transfer.balls import at_centre, balancing, binary_exponent, enclose, enclosure, evaluated
 from symflex.transfer.enclose_kernels import fundamental_functions
 from symflex.transfer.varying_law import BoundLaw
 
@@ -107,24 +107,11 @@ def _solve(matrix: list[list[acb]], wanted: list[list[acb]]) -> list[list[acb]] 
 
 def _scales(rows: Sequence[Sequence[acb]]) -> tuple[list[arb], list[arb]]:
     """Return powers of two for rows and columns that bring their largest entries near one."""
-    sizes = [[_exponent(x) for x in row] for row in rows]
-    left, right = [0] * len(rows), [0] * len(rows)
-    for _ in range(PASSES):
-        for i, row in enumerate(sizes):
-            left[i] = -max((e + right[j] for j, e in enumerate(row) if e is not None), default=0)
-        for j, column in enumerate(zip(*sizes, strict=True)):
-            right[j] = -max((e + left[i] for i, e in enumerate(column) if e is not None), default=0)
+    exponents = ({j: binary_exponent(x) for j, x in enumerate(row)} for row in rows)
+    sizes = [{j: e for j, e in row.items() if e is not None} for row in exponents]
+    left, right = balancing(sizes, len(rows), PASSES)
     two = arb(2)
     return [two**e for e in left], [two**e for e in right]
-
-
-def _exponent(value: acb) -> int | None:
-    """Return about the binary logarithm of a ball's size, None for zero."""
-    size = value.abs_upper()
-    if size == 0 or not size.is_finite():
-        return None
-    mantissa, exponent = size.man_exp()
-    return int(mantissa).bit_length() + int(exponent)
 
 
 Values = dict[str, acb]
