@@ -538,14 +538,9 @@ def _solution(field: FieldProblem, evaluator: ExactEvaluator, demands: _Demands)
     span, ends = field.equations[0].span or field.span, (field.start, field.end)
     medium = demands.medium(field.name, system, span, ends)
     for part, number in medium.parts:
-        if (
-            part.coefficients
-            and (
-                number != POLYNOMIAL or part.is_share
-            )  # a share of what has no names for its roots elsewhere
-            and part.coefficients[0].is_zero
-            and _is_loaded(part, system)
-        ):
+        # A polynomial share of a law that splits is refused as the whole law would be.
+        is_refused = part.coefficients and (number != POLYNOMIAL or part.is_share)
+        if is_refused and part.coefficients[0].is_zero and _is_loaded(part, system):
             message = (
                 f"field '{field.name}' has a solution constant in x; a uniform load on it is not available"
             )

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from symflex.report.structure import Compliance
     from symflex.report.study import Study
     from symflex.roots import PoleZeroMap, Root
-    from symflex.transfer import NestedTransferFunction, TransferFunction
+    from symflex.transfer import AnyTransferFunction, TransferFunction
 
 Place = Literal["origin", "imaginary axis", "real axis", "plane"]
 
@@ -317,27 +317,21 @@ def facts_of(study: Study) -> ModelFacts:
         condition = minimum_phase(tf, explained) if study.has_symbols else PhaseCondition("unknown", "")
         bracket = condition.expression
         functions.append(
-            TransferFacts(
-                tf=tf.name,
-                quantity=tf.quantity,
-                poles=tuple(map(_root_fact, found.all_poles)),
-                zeros=tuple(map(_root_fact, found.zeros)),
-                certified=found.certificate.certified,
-                is_infinite=found.is_infinite,
+            replace(
+                _of_roots(model, tf, found, condition.reason),
                 counts=None if found.is_infinite else tf.order,
                 rigid=rigid.get(pair),
                 undamped=undamped.get(pair),
-                colocated=is_colocated(model, tf.output, tf.input),
                 explained=explained.kind,
                 condition=condition.kind,
-                reason=condition.reason,
                 truncation=_truncation(study, tf, found),
-                stability=found.verdict.word,
                 bracket="" if bracket is None else format_expression(bracket),
                 bracket_mathematics=None if bracket is None else mathematics(bracket, tf.model),
             )
         )
-    functions += [_of_nested(model, bound.source, found) for bound, found in study.nested]
+    functions += [
+        _of_roots(model, bound.source, found, "the formula is too large") for bound, found in study.nested
+    ]
     return replace(
         bare_facts(study.stem, model),
         functions=tuple(functions),
@@ -351,8 +345,8 @@ def facts_of(study: Study) -> ModelFacts:
     )
 
 
-def _of_nested(model: Model, tf: NestedTransferFunction, found: PoleZeroMap) -> TransferFacts:
-    """Return the facts about a function in nested form, from its roots alone."""
+def _of_roots(model: Model, tf: AnyTransferFunction, found: PoleZeroMap, reason: str) -> TransferFacts:
+    """Return what the roots of a function tell of it; ``reason`` says what its formula does, or why none."""
     return TransferFacts(
         tf=tf.name,
         quantity=tf.quantity,
@@ -366,7 +360,7 @@ def _of_nested(model: Model, tf: NestedTransferFunction, found: PoleZeroMap) -> 
         colocated=is_colocated(model, tf.output, tf.input),
         explained="unknown",
         condition="unknown",
-        reason="the formula is too large",
+        reason=reason,
         stability=found.verdict.word,
     )
 

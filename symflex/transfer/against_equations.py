@@ -15,7 +15,7 @@ Example: ``1/(m s^2 - k)`` for a mass m on a spring k at s = 1 + 1j rad/s, m = 2
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, partial
@@ -41,9 +41,9 @@ from symflex.transfer.direct_solve import (
 from symflex.transfer.transfer_function import TransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
 
-    from flint import acb_mat, fmpz_mpoly
+    from flint import acb_mat
 
     from symflex.algebra import Dispersion, Factored, Ring
     from symflex.equations import Equations
@@ -105,8 +105,8 @@ def _beside(value: ExactValue | None, share: Fraction) -> ExactValue:
     return ExactValue(value.rational * (1 + share), value.pi_power)
 
 
-Form = Callable[[Point, Mapping[str, acb]], acb]
-"""The value at a point, where the generators of the equations have the values given."""
+Values = Callable[[Point, Mapping[str, acb]], Sequence[acb]]
+"""Values at a point, where the generators of the equations have the values given."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,9 +114,9 @@ class Agreement:
     """What is said of one pair of output and input."""
 
     pair: tuple[str, str]
-    forms: Sequence[Form]  # each of which has the value the equations give
+    values: Values  # by every form there is; the equations give each
     # Of a lumped model the product of what remains of the determinant and of what cancelled from it.
-    determinant: Form | None = None
+    determinant: Callable[[Point, Mapping[str, acb]], acb] | None = None
 
 
 def compare(
@@ -129,8 +129,12 @@ def compare(
     reason = solve.direct.unsolved
     if not reason and not all(solve.direct.has(each.pair) for each in agreements):
         reason = "the function has been given other names than its equations have"
+    tried: list[Mapping[str, ExactValue]] = []
     for beside in () if reason else solve.parameters():
         parameters = beside if values is None else {**beside, **values}
+        if parameters in tried:
+            continue
+        tried.append(parameters)
         points = list(_points(parameters, is_lumped=solve.is_lumped))
         more = max(BITS, len(solve.direct.equations.unknowns))
         for precision in (BITS, BITS + more, BITS + 2 * more):
@@ -169,8 +173,7 @@ def _compare_at(direct: DirectSolve, agreements: Sequence[Agreement], points: Se
         quotients = []
         for here, solution in zip(points, solutions, strict=True):
             right = solution.values[agreement.pair]
-            for form in agreement.forms:
-                value = form(here, solution.generators)
+            for value in agreement.values(here, solution.generators):
                 if not (_is_narrow(value) and _is_narrow(right)):
                     return "values are not narrow enough to be compared"
                 if not value.overlaps(right):
@@ -194,60 +197,50 @@ def _is_narrow(value: acb) -> bool:
     return bool(value == 0 or is_zero or value.rel_accuracy_bits() >= WANTED)
 
 
-def agreement(tf: TransferFunction) -> Agreement:
-    """Return what a transfer function says: its closed form, its expanded one, and its two parts."""
-    forms: list[Form] = []
-    closed = tf.closed
-    if closed is not None:
-        forms.append(lambda here, known: _quotient(closed, here, known))
-    if tf.reduced is not None:
-        forms.append(partial(_value, tf))
-    return Agreement(
-        (tf.output.name, tf.input.name), forms, None if tf.is_distributed else partial(_determinant, tf)
-    )
+def agreement(tf: TransferFunction | BoundTransferFunction) -> Agreement:
+    """Return what a transfer function says: in its closed form, in its expanded one, and by its two parts."""
+    source = tf if isinstance(tf, TransferFunction) else tf.source
+    determinant = None if tf.is_distributed else partial(_determinant, tf)
+    return Agreement((source.output.name, source.input.name), partial(_values, tf), determinant)
 
 
-def bound_agreement(bound: BoundTransferFunction) -> Agreement:
-    """Return what a transfer function with numbers says."""
-    pair = bound.source.output.name, bound.source.input.name
-    return Agreement(
-        pair, [partial(_value, bound)], None if bound.is_distributed else partial(_determinant, bound)
-    )
-
-
-def _value(tf: TransferFunction | BoundTransferFunction, here: Point, known: Mapping[str, acb]) -> acb:
-    """Return the value of an expanded form."""
+def _values(tf: TransferFunction | BoundTransferFunction, here: Point, known: Mapping[str, acb]) -> list[acb]:
+    """Return the values of all forms; that of a large function is not opened."""
+    found = []
+    if (closed := _closed(tf)) is not None:
+        num, den = _sides(closed, here, known)
+        found.append(num / den)
     if tf.is_distributed:
-        return _with_kernels(tf, here, known)
-    return GeneratorValues(dict(known), here.whole)(tf.ratio)
+        whole, num, den = _with_kernels(tf, here, known)
+        found += [whole, num / den]
+    elif not isinstance(tf, TransferFunction) or tf.reduced is not None:
+        found.append(GeneratorValues(dict(known), here.whole)(tf.ratio))
+    return found
 
 
 def _determinant(tf: TransferFunction | BoundTransferFunction, here: Point, known: Mapping[str, acb]) -> acb:
     """Return the denominator times what cancelled from it."""
-    number = GeneratorValues(dict(known), here.whole)
-    closed = tf.closed if isinstance(tf, TransferFunction) else None
-    left = number(tf.den) if closed is None else _closed(closed, here, known)(closed.den)
+    number, closed = GeneratorValues(dict(known), here.whole), _closed(tf)
+    left = number(tf.den) if closed is None else _sides(closed, here, known)[1]
     ring = tf.ring if isinstance(tf, TransferFunction) else tf.ratio.ring
     for hidden in tf.hidden:
         left = left * number.polynomial(hidden.polynomial, ring.names) ** hidden.multiplicity
     return left
 
 
-def _closed(closed: ClosedForm, here: Point, known: Mapping[str, acb]) -> Callable[[fmpz_mpoly], acb]:
-    """Return what takes closed polynomials to their values."""
-    closure, number = closed.closure, GeneratorValues(dict(known), dict(here.whole))
-    for name, opened in closure.sums:
-        number.values[name] = number.polynomial(opened, closure.base.names)
-    return lambda polynomial: number.polynomial(polynomial, closure.ring.names)
+def _closed(tf: TransferFunction | BoundTransferFunction) -> ClosedForm | None:
+    return tf.closed if isinstance(tf, TransferFunction) else None
 
 
-def _quotient(closed: ClosedForm, here: Point, known: Mapping[str, acb]) -> acb:
-    number = _closed(closed, here, known)
-    return number(closed.num) / number(closed.den)
+def _sides(closed: ClosedForm, here: Point, known: Mapping[str, acb]) -> tuple[acb, acb]:
+    number = GeneratorValues(dict(known), here.whole)
+    return closed.sides(number.values, number.polynomial)
 
 
-def _with_kernels(tf: TransferFunction | BoundTransferFunction, here: Point, known: Mapping[str, acb]) -> acb:
-    """Return the value of a transfer function with kernels, where its parts have it as well."""
+def _with_kernels(
+    tf: TransferFunction | BoundTransferFunction, here: Point, known: Mapping[str, acb]
+) -> tuple[acb, acb, acb]:
+    """Return the values of a transfer function with kernels, of its numerator and of its denominator."""
     from symflex.algebra.modal_sum import ModalSums  # only with beams
     from symflex.transfer.enclose_kernels import KernelValues
 
@@ -268,8 +261,7 @@ def _with_kernels(tf: TransferFunction | BoundTransferFunction, here: Point, kno
                 )
             values[kernel.generator] = matrices[law, kernel.length][divmod(kernel.order, law.order)]
     whole, above, below = (at_centre(kernels.value(x, values)) for x in (tf.ratio, tf.num, tf.den))
-    parts = above / below
-    return whole if whole.overlaps(parts) else parts
+    return whole, above, below
 
 
 def _differs(agreement: Agreement, here: Point, fault: str) -> InternalError:

@@ -32,7 +32,7 @@ from symflex.model import ExactValue, with_numbers
 from symflex.model.along import COORDINATE, varies_along_x
 from symflex.model.declarations import assuming
 from symflex.quantities import parse_quantity, unit_of
-from symflex.transfer.against_equations import bound_agreement, compare
+from symflex.transfer.against_equations import agreement, compare
 from symflex.transfer.balls import (
     FIRST_BITS,
     EvaluationPlan,
@@ -467,7 +467,7 @@ def _compared(bound: BoundTransferFunction) -> BoundTransferFunction:
     Raises InternalError: SF991 it does not.
     """
     if bound.source.solve is not None:
-        compare(bound.source.solve, [bound_agreement(bound)], dict(bound.values))
+        compare(bound.source.solve, [agreement(bound)], dict(bound.values))
     return bound
 
 

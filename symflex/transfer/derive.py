@@ -152,14 +152,13 @@ class _CramerQuotients:
     def _kernel_reduction(self, propagation: Propagation, kept: Sequence[str]) -> KernelReduction:
         """Return how quotients of kernels are reduced, with definitions opened everywhere."""
         from symflex.transfer.distributed import KernelReduction  # only with beams
+        from symflex.transfer.named_coefficients import in_order_of_use
 
         table = propagation.table
         opened = [(v, _lowest(self._expansion.expanded(propagation.embed(v)))) for v in table.values]
         self._cleared = self._expansion.expanded(
             self._equations.cleared or Factored.number(propagation.ring, 1)
         )
-        from symflex.transfer.named_coefficients import in_order_of_use  # only with beams
-
         parameters = [*in_order_of_use(self._equations.model), *kept]
         ring = self._expansion.ring
         return KernelReduction(ring, table.embedded(opened), parameters, propagation.coordinates)

@@ -244,13 +244,13 @@ def derive_nested(
                 cut,
             )
         )
-    compare(solve, [Agreement((tf.output.name, tf.input.name), [partial(_value, tf)]) for tf in made])
+    compare(solve, [Agreement((tf.output.name, tf.input.name), partial(_only_value, tf)) for tf in made])
     return tuple(made)
 
 
-def _value(tf: NestedTransferFunction, _: Point, known: Mapping[str, acb]) -> acb:
+def _only_value(tf: NestedTransferFunction, _: Point, known: Mapping[str, acb]) -> list[acb]:
     num, den = _values(tf, {name: known[name] for name in tf.generators}, ball)
-    return acb(num) / acb(den)
+    return [acb(num) / acb(den)]
 
 
 @dataclass(frozen=True, eq=False)

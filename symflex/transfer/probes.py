@@ -16,14 +16,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, partial
 from math import sqrt, tau
 from random import Random
 from typing import TYPE_CHECKING, Final, Literal
 
 from flint import acb, arb, ctx
 
-from symflex.algebra import LAPLACE, Factored, terms_of
+from symflex.algebra import LAPLACE, Factored, PolynomialMemo
 from symflex.errors import ModelError
 from symflex.model import ExactValue
 from symflex.model.along import COORDINATE
@@ -35,7 +35,6 @@ from symflex.transfer.balls import (
     later,
     plan,
     principal_values,
-    summed,
 )
 from symflex.transfer.bind import BoundTransferFunction
 from symflex.transfer.nested_form import BoundNested, NestedTransferFunction
@@ -43,9 +42,10 @@ from symflex.transfer.nested_form import BoundNested, NestedTransferFunction
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from symflex.transfer.balls import EvaluationPlan
+    from flint import fmpz_mpoly
+
     from symflex.transfer.nested_form import AnyTransferFunction
-    from symflex.transfer.transfer_function import ClosedForm, TransferFunction
+    from symflex.transfer.transfer_function import TransferFunction
 
     Kind = Literal["drawn", "declared", "solved"]
     Directions = tuple[tuple[str, str], ...]
@@ -336,7 +336,11 @@ def _solved(bound: BoundTransferFunction, s: acb) -> dict[str, acb]:
 def _lumped(tf: TransferFunction, values: Values) -> Evaluate:
     """Return what evaluates functions of a lumped system; its own in closed sums, of which none is opened."""
     enclosures = {name: enclosure(value) for name, value in values.items()}
-    sides = () if tf.closed is None else (plan(tf.closed.num), plan(tf.closed.den))
+    plans = PolynomialMemo(plan)
+
+    def polynomial(value: fmpz_mpoly, names: Sequence[str], known: Mapping[str, acb]) -> acb:
+        steps = plans(value)
+        return at_centre(steps.value([known[names[i]] ** e for i, e in steps.powers]))
 
     def evaluate(value: Factored | None, bits: int) -> Callable[[acb], acb]:
         with ctx.workprec(bits):
@@ -348,22 +352,12 @@ def _lumped(tf: TransferFunction, values: Values) -> Evaluate:
             known = {**numbers, LAPLACE: s}
             with ctx.workprec(bits):
                 if value is None and tf.closed is not None:
-                    return _in_closed_sums(tf, tf.closed, sides, known)
+                    for name, definition in tf.definitions:
+                        known[name] = evaluated(definition, known.__getitem__, acb(1))
+                    num, den = tf.closed.sides(known, partial(polynomial, known=known))
+                    return num / den
                 return acb(evaluated(tf.ratio if value is None else value, known.__getitem__, acb(1)))
 
         return at
 
     return evaluate
-
-
-def _in_closed_sums(
-    tf: TransferFunction, closed: ClosedForm, sides: Sequence[EvaluationPlan], known: dict[str, acb]
-) -> acb:
-    closure = closed.closure
-    for name, definition in tf.definitions:
-        known[name] = evaluated(definition, known.__getitem__, acb(1))
-    for name, polynomial in closure.sums:
-        known[name] = summed(terms_of(polynomial), closure.base.names, known.__getitem__, acb(1))
-    names = closure.ring.names
-    num, den = (side.value([known[names[i]] ** e for i, e in side.powers]) for side in sides)
-    return at_centre(num) / at_centre(den)

@@ -15,9 +15,9 @@ from symflex.expressions import Name, names
 from symflex.quantities import unit_of
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence, Set
+    from collections.abc import Callable, Sequence, Set
 
-    from flint import fmpz_mpoly
+    from flint import acb, fmpz_mpoly
 
     from symflex.algebra import Factored, Radicals, Ring
     from symflex.algebra.modal_sum import ModalSums
@@ -69,6 +69,19 @@ class ClosedForm:
     def is_large(self) -> bool:
         """True when opening it may cost more than what else is done with a transfer function."""
         return len(self.num) + len(self.den) > LARGE or (self.length or 0) > LARGE
+
+    def sides(
+        self, known: dict[str, acb], value: Callable[[fmpz_mpoly, Sequence[str]], acb]
+    ) -> tuple[acb, acb]:
+        """Return the values of numerator and denominator, of which no sum is opened.
+
+        ``known`` are the values of s, parameters, definitions and functions of constants, and takes those of
+        the sums; ``value`` returns that of a polynomial in the generators named.
+        """
+        for name, opened in self.closure.sums:
+            known[name] = value(opened, self.closure.base.names)
+        names = self.closure.ring.names
+        return value(self.num, names), value(self.den, names)
 
     @cached_property
     def ratio(self) -> Factored:
