@@ -404,8 +404,8 @@ class Radicals:
     def split(self, factors: Iterable[tuple[fmpz_mpoly, int]]) -> list[tuple[fmpz_mpoly, int]]:
         """Return powers of polynomials as powers of square-free coprime ones, numbers free of s left out.
 
-        Of each, what divides the same with -s in place of s is a part of its own, as it may have roots on the
-        imaginary axis.
+        What each shares with its mirror image, -s in place of s, is a part of its own, as it may have roots on
+        the imaginary axis.
         """
         base: list[tuple[fmpz_mpoly, int]] = []
         for factor, exponent in factors:

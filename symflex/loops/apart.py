@@ -4,7 +4,7 @@ Input: a loop. Output: where these poles lie, and what they say of stability. A 
 
     J s^2 phi = K (w - s phi)    has the poles 0 and -K/J, and s phi/w = K/(J s + K) shows -K/J alone
 
-so that the shaft's angle, at rest anywhere, is told apart from what the gain decides.
+so the shaft's angle, which may rest anywhere, is no matter of the gain.
 """
 
 from __future__ import annotations

@@ -124,7 +124,7 @@ class StabilityMap:
     apart : PolesApart
         Poles that no gain moves, without kernels: hidden ones are not counted in ``intervals``.
     at_nominal : StabilityVerdict or None
-        Of a nominal gain that lies in none of the intervals, where it was examined alone.
+        What holds at a nominal gain that lies in none of the intervals and was examined alone.
     tf : str
         ``"OUT/IN"``, whose input and output see the poles that are not hidden; empty where nothing is.
     is_passive : bool

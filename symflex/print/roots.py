@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 KINDS: Final = {"poles": "Poles", "zeros": "Zeros", "hidden": "Hidden roots"}
 """What a :class:`~symflex.roots.PoleZeroMap` holds, and the titles of tables of it."""
 NEARLY_ZERO: Final = "~0"
-"""Of what is not told from 0."""
+"""A part of a root that may be 0."""
 _FREQUENCY_BITS: Final = 256
 
 

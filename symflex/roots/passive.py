@@ -152,7 +152,7 @@ class _Structure:
         damped = [at.ends for at, law in zip(places, laws, strict=True) if any(i == 1 for i, _ in law)]
         moved = [law for law in laws if not self.gain or any(j for _, j in law)]
         size = [float(sum(c.mid() for law in moved for (i, _), c in law.items() if i == n)) for n in range(3)]
-        # Of masses, and of loops in several places, no phase is known.
+        # The phase of a mass, or of a loop in several places, is not known.
         is_bounded = len(moved) == 1 and not size[INERTIA]
         return PassiveLoop(size[0], size[1] if is_bounded else 0.0, self._rests(damped))
 

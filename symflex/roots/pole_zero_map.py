@@ -28,7 +28,7 @@ REFINEMENTS = 4
 
 AT_REST = "at s = 0"
 MOST_NAMES = 3
-"""Of what moves, in a line."""
+"""Nodes and signals that one line of hidden motion names."""
 ON_AXIS = "a pole lies on the imaginary axis or too close to it to be told"
 
 

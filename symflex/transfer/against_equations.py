@@ -115,7 +115,7 @@ class Agreement:
 
     pair: tuple[str, str]
     values: Values  # by every form there is; the equations give each
-    # Of a lumped model the product of what remains of the determinant and of what cancelled from it.
+    # The denominator times what cancelled from it, which is the determinant of a lumped model.
     determinant: Callable[[Point, Mapping[str, acb]], acb] | None = None
 
 

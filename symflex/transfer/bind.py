@@ -145,7 +145,7 @@ class BoundTransferFunction:
     kernels: KernelTable = NO_KERNELS
     parts: tuple[Factored, Factored] | None = None  # of a distributed system, :attr:`num` and :attr:`den`
     is_of_model: bool = True  # its poles are those of the source's model; not so of a loop gain
-    # Of one that was derived with numbers in place of some parameters, the function with all of them.
+    # The function with all parameters, where numbers stood for some of them from the start.
     symbolic: TransferFunction | None = None
 
     def __repr__(self) -> str:
@@ -514,7 +514,7 @@ def _derived_with_numbers(
 ) -> BoundTransferFunction:
     """Return a function derived with the values of some parameters from the start.
 
-    Of a large one none of its terms is made; where wavenumbers are equal, they are seen to be.
+    No term of a large function is made, and wavenumbers that are equal are seen to be.
     """
     symbolic = [p.name for p in tf.model.parameters if p.name not in names]
     numeric = with_numbers(tf.model, symbolic, dict(values), in_kernels=True)

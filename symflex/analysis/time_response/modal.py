@@ -88,11 +88,11 @@ NEXT_TO = 0.05
 ESTIMATED_MODES = 25
 """Where the rest is estimated."""
 FEW_ESTIMATED = 12
-"""The same of networks at first: 25 modes of two links that lose energy in the material take a minute."""
+"""Modes of a network tried first: 25 modes of two links with loss in the material take a minute."""
 LITTLE = 1e-3
-"""Estimated rest over the largest value for which these few are enough."""
+"""Estimated rest over the largest value below which these few are enough."""
 HOPELESS = 10
-"""The same from which on more of them do not help."""
+"""Estimated rest over the largest value above which more modes do not help."""
 LAST_MODES = 5
 """From whose residues the rest is estimated."""
 SLOWEST = 0.9
@@ -100,9 +100,9 @@ SLOWEST = 0.9
 FAR = 100
 """Of the highest pole, where the transfer function shows how a response begins; 1 where members taper."""
 MOST_BITS = 16_384
-"""To which it shows that."""
+"""Highest precision with which that value is computed."""
 CLOSELY = 1e-12
-"""Of the largest term, how well that is known."""
+"""Radius of that value over the largest term, at which it is known well enough."""
 SURER = 2
 """By what the lack at t = 0 is multiplied: terms that differ in sign may add up to more later."""
 TOO_MUCH = 0.3
