@@ -404,7 +404,7 @@ class Radicals:
     def split(self, factors: Iterable[tuple[fmpz_mpoly, int]]) -> list[tuple[fmpz_mpoly, int]]:
         """Return powers of polynomials as powers of square-free coprime ones, numbers free of s left out.
 
-        What each shares with its mirror image, -s in place of s, is a part of its own, as it may have roots on
+        What each shares with its mirror image, -s in place of s, is a part of its own: it may have roots on
         the imaginary axis.
         """
         base: list[tuple[fmpz_mpoly, int]] = []
