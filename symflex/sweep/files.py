@@ -27,8 +27,8 @@ from symflex.errors.optional import installed
 from symflex.files import write
 from symflex.files.write import write_atomically
 from symflex.model.spec.read import read_bytes
-from symflex.sweep.points import MARGINS
-from symflex.sweep.sweep import DRAW, FREQUENCY, MODE, SCHEMA, Labelled, Sweep
+from symflex.sweep.points import MARGINS, VERDICTS
+from symflex.sweep.sweep import DRAW, FREQUENCY, MODE, SCHEMA, STABILITY, Labelled, Sweep
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -268,10 +268,16 @@ def _sweep(attributes: Mapping[str, str], arrays: list[Labelled], coordinates: s
     swept = found.attribute("parameters").split()
     expected = {name: (points + own, "fiub") for name in names} | {dim: ((dim,), "fiu") for dim in own}
     expected |= {"point_status": (points, "fiu"), "code": (points, "U")}
+    if any(name in known for name in STABILITY):  # files of earlier versions hold none of them
+        expected |= dict.fromkeys(STABILITY, (points, "iu"))
     expected |= {name: ((DRAW,) if (name,) != known[name].dims else (name,), "fiu") for name in swept}
     for name, (dims, kinds) in expected.items():
         fits = name in known and known[name].dims == dims and known[name].values.dtype.kind in kinds
         require(fits, f"'{name[:40]}' is missing, or of another shape or kind")
+    words = known["verdict"].values if "verdict" in known else 0
+    require(
+        bool(np.all((words >= 0) & (words < len(VERDICTS)))), "a verdict on stability is none of the known"
+    )
     are_swept = set(points) <= {*swept, DRAW} and 0 not in known["point_status"].values.shape
     require(are_swept, "its axes are not parameters, or are empty")
     return found
