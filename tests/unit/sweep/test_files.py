@@ -3,6 +3,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -104,6 +105,18 @@ def test_files_cut_short_are_refused(sweep, tmp_path):
             path.write_bytes(whole[: int(share * len(whole))])
             with pytest.raises(DataError, match="SF915"):
                 read_sweep(path)
+
+
+def test_what_is_said_of_stability_is_said_whole_and_in_known_words(sweep, tmp_path):
+    path = tmp_path / "a.npz"
+    odd = [replace(v, values=v.values + 9) if v.name == "verdict" else v for v in sweep.variables]
+    for variables in (odd, [v for v in sweep.variables if v.name != "hidden_motion"]):
+        path.write_bytes(npz_bytes(replace(sweep, variables=tuple(variables))))
+        with pytest.raises(DataError, match="SF915"):
+            read_sweep(path)
+    former = tuple(v for v in sweep.variables if v.name not in ("verdict", "hidden_motion"))
+    path.write_bytes(npz_bytes(replace(sweep, variables=former)))
+    assert read_sweep(path).of == "poles"
 
 
 # ------------------------------------------------------------------------------------------- command line
