@@ -66,15 +66,22 @@ def derive_all(
     ``most`` refuses distributed systems earlier, whose formulas nobody would read.
     """
     workshop = _CramerQuotients(equations, most)
-    if equations.model.parameters and not (workshop.is_sure or is_tapered(equations.model)):
+    found = tuple(workshop.finish(output, source) for output, source in pairs)
+    if not (workshop.is_sure or is_tapered(equations.model)):
         from symflex.transfer.named_coefficients import named_coefficients  # only with beams
 
+        # Common factors may be left; with names for coefficients others may be, once these are opened.
         named, kept = named_coefficients(equations)
         again = assemble(named, nested_transfer, is_joined=equations.is_joined)
-        workshop = _CramerQuotients(again, most, equations, kept)
-    found = tuple(workshop.finish(output, source) for output, source in pairs)
+        other = _CramerQuotients(again, most, equations, kept)
+        found = tuple(min(tf, other.finish(*pair), key=_terms) for tf, pair in zip(found, pairs, strict=True))
     compare(workshop.solve, [agreement(tf) for tf in found])
     return found
+
+
+def _terms(tf: TransferFunction) -> int:
+    """Return how many terms the factors of an expanded function have, and what they are divided by."""
+    return sum(len(f) * abs(e) for f, e in tf.ratio.factors)
 
 
 class _CramerQuotients:

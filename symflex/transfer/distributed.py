@@ -92,11 +92,13 @@ class KernelReduction:
         relations = sum(len(_relations(ring, d)) for d in table.dispersions)
         self._is_solved = len(self.solved) == relations
         self._kernels = [ring.index[k.generator] for k in table.kernels]
+        self._parameters = parameters
 
     @property
     def is_sure(self) -> bool:
-        """True where no common factor is overlooked: relations of pairs of wavenumbers are solved."""
-        return self._is_solved or all(d.kind != "pair" for d in self.table.dispersions)
+        """True where no common factor is overlooked: pairs of wavenumbers belong to parameters or numbers."""
+        coefficients = (c for d in self.table.dispersions if d.kind == "pair" for c in d.characteristic)
+        return self._is_solved or not any(c.depends_on(p) for c in coefficients for p in self._parameters)
 
     def has_kernels(self, factor: fmpz_mpoly) -> bool:
         """Tell whether a polynomial over the ring contains a kernel."""

@@ -199,3 +199,42 @@ def test_there_may_be_no_bandwidth_or_no_limit_to_it(loop):
     # Half of the limit is a loop gain of 1/2 where it is largest.
     assert np.isnan(loop("K*D/(s + 1)", T="10 s").stability("K", (0, 2)).bandwidth_hz)
     assert np.isnan(loop("K/(s - 1)").stability("K").bandwidth_hz)
+
+
+@pytest.mark.slow
+def test_a_servo_with_a_timoshenko_arm_is_stable_for_every_gain_below_the_frequency_asked_for():
+    # Position and velocity are fed back where the torque acts: a spring and a damper there, whatever the arm.
+    arm = {
+        "type": "beam",
+        "theory": "timoshenko",
+        "between": ["hub", "tip"],
+        "rho": "2700 kg/m^3",
+        "l": "0.7 m",
+    }
+    section = {"E": "E", "G": "E/(2*(1 + nu))", "kappa": "5/6", "I": "b*h^3/12", "A": "b*h"}
+    model = symflex.Model(
+        parameters={
+            "E": "70 GPa",
+            "nu": 0.33,
+            "b": "3 cm",
+            "h": "5 cm",
+            "k_p": "400 N*m/rad",
+            "k_d": "30 N*m*s/rad",
+        },
+        elements={
+            "hinge": {"type": "pin", "at": "hub"},
+            "rotor": {"type": "inertia", "at": "hub.theta", "J": "0.05 kg*m^2"},
+            "arm": {**arm, **section},
+            "load": {"type": "mass", "at": "tip", "m": "1.2 kg"},
+            "servo": {
+                "type": "torque_source",
+                "at": "hub.theta",
+                "tau": "k_p*(r - hub.theta) - k_d*s*hub.theta",
+            },
+        },
+        inputs={"r": {"unit": "rad"}},
+        outputs={"Y": "tip"},
+    )
+    found = model.stability("k_p", (100, 1000), up_to_hz=1000)
+    assert counts(found) == [(0, 0)]
+    assert abs(found.counted_up_to_hz - 1000) < 1e-9
