@@ -54,8 +54,8 @@ def characteristic_loop(model: Model, gain: str, values: Mapping[str, Given] | N
     is_large = is_large_network(model)
     if is_large and (network := _of_network(model, parameter, given)) is not None:
         return network
-    # Parameters that are given another value stay symbols until that is put in. Numbers stand in kernels, too:
-    # between symbols, factors that two wavenumbers share may be left in the characteristic function.
+    # Parameters that are given another value stay symbols until that is put in. Numbers stand in kernels,
+    # too: between symbols, factors that two wavenumbers share may be left in the characteristic function.
     prepared = with_numbers(model, (gain, *given), in_kernels=not is_tapered(model))
     equations = assemble(prepared)
     plain = {row.name for row in equations.outputs if row.divisor.is_one}

@@ -16,6 +16,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
+from itertools import islice
 from typing import TYPE_CHECKING, Final, TypeVar
 
 from flint import acb, arb, ctx, fmpq
@@ -215,13 +216,13 @@ class _Reader:
     @cached_property
     def matrices(self) -> Sequence[tuple[Dispersion, tuple[tuple[str, Equation], ...]]]:
         """The laws that vary along x, each with the printed line of every row."""
-        if isinstance(self.tf, NestedTransferFunction):
+        if isinstance(self.tf, NestedTransferFunction) or not self.form.laws:
             return ()
         rows = iter([(name, law) for name, law in self.form.laws if isinstance(law.left, Derivative)])
         used = self.tf.ratio.ring.used_in(f for f, _ in self.tf.ratio.factors)
         table = self.tf.kernels
         return [
-            (d, tuple(row for row, _ in zip(rows, range(d.order), strict=False)))
+            (d, tuple(islice(rows, d.order)))
             for d in table.dispersions
             if any(k.function == "entry" and k.generator in used for k in table.kernels_of(d))
         ]

@@ -150,7 +150,7 @@ BROKEN = {
     "tension_that_turns_negative": (
         arm('N = "«N_0*cos(2*x/l)»", A = "A_0"', kind="string").replace('E = "E", ', ""),
         "SF209",
-        "N of string 'arm' at x = 0.796875 m is negative (-45.9033); a tension is positive",
+        "N of string 'arm' at x = l is negative (-832.294); a tension is positive",
     ),
     # x where it means nothing.
     "x_in_a_domain": (tapered(domain='"0", "«x»"'), "SF210", NO_X),

@@ -70,10 +70,10 @@ def test_models_run_in_julia_agree_with_balls(julia):
             keys = [julia.keep(f"{function}.({julia.points(1j * w)})")]
             if f"function {public_name(tf)}_at(" in made.text:
                 keys.append(julia.keep(f"{function}_at.(real.({julia.points(w)}))"))
-            asked.append((tf, w, 1e-8 if name == "massless_beam" else ACCURACY, keys))
+            asked.append((tf, w, keys))
     julia.run()
-    for tf, w, worst, keys in asked:
-        assert max(worst_errors(tf, 1j * w, *(julia.value(k) for k in keys))) <= worst, tf.name
+    for tf, w, keys in asked:
+        assert max(worst_errors(tf, 1j * w, *(julia.value(k) for k in keys))) <= ACCURACY, tf.name
 
 
 @needs_julia

@@ -79,7 +79,7 @@ Y = "w(l/2)"
 band = ["0.1 Hz", "20 Hz"]
 """
 
-# Roots that are equal at every s: matrix exponentials.
+# Roots that are equal at every s.
 MASSLESS = """symflex = 1
 [parameters]
 EI = "4e-3 N*m^2"

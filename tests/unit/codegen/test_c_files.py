@@ -201,7 +201,7 @@ KINDS = {
     "axial force": (specification("tension"), (1e-2, 1e5), 1e-13),
     "a delay": (DELAY, (1e-2, 1e3), 1e-13),
     "no formula for wavenumbers": (PIPE, (0.6, 120), 1e-13),
-    "roots that are equal at every s": (MASSLESS, (0.6, 120), 2e-8),  # the numpy module reaches no more
+    "roots that are equal at every s": (MASSLESS, (0.6, 120), 1e-13),
 }
 
 
