@@ -124,9 +124,13 @@ def _signature(name: str, keys: Sequence[str]) -> str:
 
 
 def _element_keys(element: Element) -> list[str]:
-    """Return the keys of an element's table: those that must be given, then choices and options."""
-    required = [p.name for p in element.parameters if p.default is None and not p.only]
-    options = [p.name for p in element.parameters if p.name not in required]
+    """Return the keys of an element's table: those that must be given, then choices and options.
+
+    Products in place of their factors, and what goes with one choice only, are left out.
+    """
+    every = [p for p in element.parameters if not (p.only or p.of)]
+    required = [p.name for p in every if p.default is None]
+    options = [p.name for p in every if p.default is not None]
     return [*(p.name for p in element.ports), *required, *(c.name for c in element.choices), *options]
 
 
@@ -156,7 +160,7 @@ def _describe(element: Element) -> None:
         say(_parameter(parameter, _only(parameter)))
     for choice in element.choices:
         words = ", ".join(f'"{v}"' + " (default)" * (v == choice.default) for v in choice.values)
-        say(_key(choice.name, f"{choice.doc}: {words}"))
+        say(_key(choice.name, f"{choice.doc}: {'true or false (default)' if choice.is_flag else words}"))
     if element.through:
         say(_key("offers", ", ".join(f"name.{q}" for q in element.through)))
 
@@ -177,6 +181,7 @@ def _describe_model_block() -> None:
 
 def _parameter(parameter: ParameterPort, only: str = "") -> str:
     default = f", default {parameter.default}" if parameter.default is not None else ""
+    default = f", in place of {'*'.join(parameter.of)}" if parameter.of else default
     unit = f" [{parameter.unit}]" if parameter.unit else ""
     return _key(parameter.name, f"{parameter.doc}{unit}{default}{only}")
 
@@ -242,6 +247,7 @@ def _parameter_json(parameter: ParameterPort) -> dict[str, object]:
         "unit": parameter.unit or None,
         "doc": parameter.doc,
         "default": parameter.default,
+        **({"of": list(parameter.of)} if parameter.of else {}),
     }
 
 

@@ -372,7 +372,9 @@ def _label(use: PlacedElement, labels: Labels) -> tuple[str, tuple[str, ...]]:
     if isinstance(use.element, LineElement):
         by_name = dict(given)
         first, second = STIFF.get(use.element.type_name, ((), ""))
+        wanted: tuple[tuple[str, ...], ...]
         wanted = (first, ("rho", second), ("eta",), ("l",)) if first else ()
+        wanted = tuple(("".join(g),) if "".join(g) in by_name else g for g in wanted)
         groups = [
             [labels.quantity(by_name[n], "") for n in g] for g in wanted if all(n in by_name for n in g)
         ]

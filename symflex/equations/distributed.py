@@ -487,7 +487,8 @@ def _line(
     values = {name: evaluator.constant(e) for name, e in use.all_values}
     zero = s * 0
     for parameter in element.parameters:
-        values.setdefault(parameter.name, zero)
+        if not parameter.of:
+            values.setdefault(parameter.name, zero)
     chosen = {c.name: c.default for c in element.choices} | dict(use.choices)
     try:
         system = FIELDS[element.theory(chosen)](s, values)

@@ -29,6 +29,7 @@ class ParameterPort:
     # ``cos`` and ``sin``, and their products ``cos_cos`` and ``cos_sin``.
     is_direction: bool = False
     varies: bool = False  # true when the value may vary along x, from 0 at the first end
+    of: tuple[str, ...] = ()  # the parameters whose product it is, and in place of which it may be given
 
     def applies(self, chosen: Collection[str]) -> bool:
         """Tell whether the key may be given with the chosen values."""

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from math import comb
+from math import comb, prod
 from typing import TYPE_CHECKING, Protocol
 
 from symflex.algebra.dispersion import DispersionKind
@@ -154,10 +154,22 @@ def first_order(
     return FieldSystem(tuple(u + "'" * k for u, k in states), tuple(matrix), columns)
 
 
+def product(values: Mapping[str, Factored], *names: str) -> Factored:
+    """Return a product of values, such as E*I, which may be given by itself as EI."""
+    own = values.get("".join(names))
+    return prod((values[name] for name in names[1:]), start=values[names[0]]) if own is None else own
+
+
 def rod(s: Factored, values: Mapping[str, Factored]) -> FieldSystem:
     """Return ``E A (1 + eta s) u'' = (rho A s^2 + c_f s + k_f) u`` (Graff 1975, section 2.1)."""
-    stiffness = values["E"] * values["A"] * (values["eta"] * s + 1)
+    stiffness = product(values, "E", "A") * (values["eta"] * s + 1)
     return _second_order(("u", "f"), s, stiffness, foundation(s, values))
+
+
+def inextensible(s: Factored, values: Mapping[str, Factored]) -> FieldSystem:
+    """Return ``u' = 0`` and ``f' = (rho A s^2 + c_f s + k_f) u``: a rod that moves as one."""
+    zero = s * 0
+    return system_of(("u", "f"), {("f", "u"): foundation(s, values)}, zero)
 
 
 def shaft(s: Factored, values: Mapping[str, Factored]) -> FieldSystem:
@@ -165,8 +177,8 @@ def shaft(s: Factored, values: Mapping[str, Factored]) -> FieldSystem:
 
     J is the polar second moment of area [m^4] of a circular section.
     """
-    stiffness = values["G"] * values["J"] * (values["eta"] * s + 1)
-    inertia = values["rho"] * values["J"] * s**2 + values["c_f"] * s + values["k_f"]
+    stiffness = product(values, "G", "J") * (values["eta"] * s + 1)
+    inertia = product(values, "rho", "J") * s**2 + values["c_f"] * s + values["k_f"]
     return _second_order(("theta", "tau"), s, stiffness, inertia)
 
 
@@ -188,7 +200,7 @@ BENDING_STATES = ("y", "theta", "f", "tau")
 
 def foundation(s: Factored, values: Mapping[str, Factored]) -> Factored:
     """Return ``rho*A*s^2 + c_f*s + k_f``, inertia and foundation per length [N/m^2]."""
-    return values["rho"] * values["A"] * s**2 + values["c_f"] * s + values["k_f"]
+    return product(values, "rho", "A") * s**2 + values["c_f"] * s + values["k_f"]
 
 
 def euler_bernoulli(s: Factored, values: Mapping[str, Factored]) -> FieldSystem:
@@ -203,12 +215,12 @@ def euler_bernoulli(s: Factored, values: Mapping[str, Factored]) -> FieldSystem:
 
 def rayleigh(s: Factored, values: Mapping[str, Factored]) -> FieldSystem:
     """Return Euler-Bernoulli's equations with rotary inertia ``rho I`` (Rayleigh 1877)."""
-    return _slender(s, values, values["N"] + values["rho"] * values["I"] * s**2)
+    return _slender(s, values, values["N"] + product(values, "rho", "I") * s**2)
 
 
 def _slender(s: Factored, values: Mapping[str, Factored], slope_moment: Factored) -> FieldSystem:
     one = s**0
-    stiffness = values["E"] * values["I"] * (values["eta"] * s + 1)
+    stiffness = product(values, "E", "I") * (values["eta"] * s + 1)
     entries = {
         ("y", "theta"): one,
         ("theta", "tau"): one / stiffness,
@@ -230,25 +242,26 @@ def timoshenko(s: Factored, values: Mapping[str, Factored]) -> FieldSystem:
     loss = values["eta"] * s + 1
     entries = {
         ("y", "theta"): one,
-        ("y", "f"): one / (values["kappa"] * values["G"] * values["A"] * loss),
-        ("theta", "tau"): one / (values["E"] * values["I"] * loss),
+        ("y", "f"): one / (product(values, "kappa", "G", "A") * loss),
+        ("theta", "tau"): one / (product(values, "E", "I") * loss),
         ("tau", "f"): -one,
-        ("tau", "theta"): values["rho"] * values["I"] * s**2,
+        ("tau", "theta"): product(values, "rho", "I") * s**2,
         ("f", "y"): foundation(s, values),
     }
     return system_of(BENDING_STATES, entries, one * 0)
 
 
+BENDING = ("euler-bernoulli", "rayleigh", "timoshenko")
 FRAME_STATES = ("u", "v", "theta", "f_u", "f_v", "tau")
 VECTORS = ((0, 1), (3, 4))
 """The pairs of states of a member of a frame that turn with the axes."""
 
 
-def _in_the_plane(bending: FieldTheory) -> FieldTheory:
-    """Return the theory of a member that bends after the given one and stretches, along the plane's axes."""
+def _in_the_plane(bending: FieldTheory, along: FieldTheory) -> FieldTheory:
+    """Return the theory of a member that bends and stretches after the given ones, along the plane's axes."""
 
     def frame(s: Factored, values: Mapping[str, Factored]) -> FieldSystem:
-        across, stretching = bending(s, values), rod(s, values)
+        across, stretching = bending(s, values), along(s, values)
         zero = s * 0
         names = [dict(zip(BENDING_STATES, ("v", "theta", "f_v", "tau"), strict=True)), {"u": "u", "f": "f_u"}]
         entries = {
@@ -268,13 +281,12 @@ FIELDS: dict[str, FieldTheory] = {
     "euler-bernoulli": euler_bernoulli,
     "rayleigh": rayleigh,
     "timoshenko": timoshenko,
-    "frame-euler-bernoulli": _in_the_plane(euler_bernoulli),
-    "frame-rayleigh": _in_the_plane(rayleigh),
-    "frame-timoshenko": _in_the_plane(timoshenko),
     "rod": rod,
     "shaft": shaft,
     "string": string,
 }
+FIELDS |= {f"frame-{name}": _in_the_plane(FIELDS[name], rod) for name in BENDING}
+FIELDS |= {f"inextensible-frame-{name}": _in_the_plane(FIELDS[name], inextensible) for name in BENDING}
 
 
 TERM_LIMIT = 5_000

@@ -24,7 +24,7 @@ from symflex.model.model import (
 )
 from symflex.model.reading import NAME, Reader, read_entries, signed_number
 from symflex.model.scope import RESERVED
-from symflex.model.spec import ArrayValue, StringValue, TableValue
+from symflex.model.spec import ArrayValue, BooleanValue, StringValue, TableValue
 from symflex.quantities import parse_unit, unit_of
 
 if TYPE_CHECKING:
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
     from symflex.errors import Span, Text
     from symflex.expressions import Expression
+    from symflex.library import ParameterPort
     from symflex.library.elements import Domain
     from symflex.library.elements.element import PortDomain
     from symflex.model.spec import KeyValue
@@ -128,6 +129,12 @@ def _choices(
     for choice in element.choices:
         given = table.get(choice.name)
         what = f"{choice.name} of {element.type_name} '{entry.key}'"
+        if given is not None and choice.is_flag:
+            if isinstance(given.value, BooleanValue):
+                found.append((choice.name, choice.name if given.value.value else choice.default))
+            else:
+                reader.misfit(f"{what} must be true or false", given.value)
+            continue
         text = reader.string(given, what) if given else None
         if given is None:
             found.append((choice.name, choice.default))
@@ -148,9 +155,12 @@ def _values(
     who = f"{element.type_name} '{entry.key}'"
     given: dict[str, Expression] = {}
     complete = True
+    spare = _spare(table, element, choices)
     for parameter in element.parameters:
         expression: Expression | None = None
         found, applies = table.get(parameter.name), parameter.applies(choices.values())
+        if found is None and (parameter.of or parameter.name in spare):
+            continue
         if found is not None and not applies:
             chosen = ", ".join(f'{name} = "{value}"' for name, value in choices.items())
             others = " or ".join(f'"{value}"' for value in parameter.only)
@@ -160,18 +170,25 @@ def _values(
                 found.key_span,
                 f"it goes with {others}",
             )
+        elif found is not None and parameter.name in spare:
+            product = spare[parameter.name]
+            place = f"{product.name} in place of {'*'.join(product.of)}"
+            message = f"{who} has {place}, and {parameter.name} besides"
+            reader.note("SF247", message, found.key_span, f"leave {parameter.name} or {product.name} out")
         elif found is not None:
             expression = reader.expression(found.value, f"{parameter.name} of {who}")
         elif parameter.default is not None:
             like = any(p.name == parameter.default for p in element.parameters)
             expression = given.get(parameter.default) if like else signed_number(Fraction(parameter.default))
         elif applies:
-            names = ", ".join(p.name for p in element.parameters if p.applies(choices.values()))
+            possible = [p for p in element.parameters if p.applies(choices.values())]
+            listed = ", ".join(p.name for p in possible if not p.of)
+            products = ", ".join(f"{p.name} for {'*'.join(p.of)}" for p in possible if p.of)
             reader.note(
                 "SF214",
                 f"{who} lacks {parameter.name}, {parameter.doc}",
                 entry.key_span,
-                f"parameters of {element.type_name}: {names}",
+                f"parameters of {element.type_name}: {listed}" + f"; {products}" * bool(products),
             )
         else:
             continue
@@ -180,6 +197,14 @@ def _values(
         else:
             given[parameter.name] = expression
     return tuple(given.items()) if complete else None
+
+
+def _spare(table: TableValue, element: Element, choices: Mapping[str, str]) -> Mapping[str, ParameterPort]:
+    """Return the parameters that nothing needs, as products of them are given, each with its product."""
+    products = [p for p in element.parameters if p.of and p.applies(choices.values())]
+    given = [p for p in products if table.get(p.name) is not None]
+    needed = {factor for p in products if p not in given for factor in p.of}
+    return {factor: p for p in given for factor in p.of if factor not in needed}
 
 
 def _element_type(reader: Reader, table: TableValue, entry: KeyValue) -> Element | None:

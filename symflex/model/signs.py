@@ -569,4 +569,7 @@ def parameter_signs(use: PlacedElement, line: Line) -> dict[str, int | None]:
         along = {p.name for p in element.parameters if p.varies}
         for name in (n for n, sign in signs.items() if sign is None and n in along and line.value(length)):
             signs[name] = _sign_along(given[name], length, line)
+    for port in element.parameters:
+        for factor in port.of if port.name in signs else ():
+            signs.setdefault(factor, signs[port.name])
     return signs

@@ -187,8 +187,10 @@ def _judged(roots: Sequence[Root], hidden: Sequence[Root], unproved: str, proof:
         if unproved and not proof:  # a pole that grows may lie beyond what was counted
             return StabilityVerdict("unknown", None, False, f"{where}; {unproved}")
         return StabilityVerdict("marginal", 0, True, f"{where}; {proof}" if proof else where)
-    if proof:
+    if proof and not unclear:
         return StabilityVerdict("stable", 0, True, f"{proof}; {unproved}" if unproved else proof)
+    if proof:
+        return StabilityVerdict("unknown", 0, False, f"{proof}; {ON_AXIS}")
     if unproved or unclear:
         return StabilityVerdict("unknown", None, False, unproved or ON_AXIS)
     return StabilityVerdict("stable", 0, True)

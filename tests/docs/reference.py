@@ -143,6 +143,7 @@ def _port_row(port: Port) -> tuple[str, ...]:
 def _parameter_row(parameter: ParameterPort) -> tuple[str, ...]:
     unit = f"`{parameter.unit}`" if parameter.unit else "inferred"
     default = "required" if parameter.default is None else f"`{parameter.default}`"
+    default = f"in place of `{'*'.join(parameter.of)}`" if parameter.of else default
     return f"`{parameter.name}`", unit, parameter.doc, default
 
 
@@ -153,6 +154,8 @@ def _element_parameter_row(parameter: ParameterPort) -> tuple[str, ...]:
 
 
 def _choice_row(choice: Choice) -> tuple[str, ...]:
+    if choice.is_flag:
+        return f"`{choice.name}`", "`true`, `false`", choice.doc, "`false`"
     words = ", ".join(f'`"{value}"`' for value in choice.values)
     return f"`{choice.name}`", words, choice.doc, f'`"{choice.default}"`'
 

@@ -179,6 +179,11 @@ class Choice:
     default: str  # what holds when the key is missing
     doc: str  # what it decides, in the words of an error message: "a theory"
 
+    @property
+    def is_flag(self) -> bool:
+        """Whether it is written true or false: true chooses its name."""
+        return self.name in self.values
+
 
 @dataclass(frozen=True, slots=True)
 class Passivity:

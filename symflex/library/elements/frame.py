@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from symflex.library import ParameterPort
-from symflex.library.elements.element import Passivity, Port
-from symflex.library.elements.line import Beam, LineElement
+from symflex.library.elements.element import Choice, Passivity, Port
+from symflex.library.elements.line import AXIAL_STIFFNESS, Beam, LineElement
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -22,8 +23,8 @@ class FrameMember(LineElement):
     direction. ``f_x``, ``f_y``, ``tau`` and ``f_u``, ``f_v`` are there what the part beyond the point exerts
     on the part before it: ``f_u = EA u'`` is positive in tension, ``tau = EI v''`` and ``f_v = -EI v'''``
     after Euler and Bernoulli. ``N`` [N] is an axial force at rest, positive in tension, ``c_f`` and ``k_f`` a
-    foundation per length that acts along and across. All else is as of ``beam`` and ``rod``. Valid for small
-    motions, in which bending and stretching do not act on each other.
+    foundation per length that acts along and across, an ``inextensible`` member bends only. All else is as of
+    ``beam`` and ``rod``. Valid for small motions, in which bending and stretching do not act on each other.
     Source: Clough & Penzien 1993, Dynamics of Structures, chapters 11 and 17.
     """
 
@@ -32,9 +33,13 @@ class FrameMember(LineElement):
     ports = (Port("between", 2, "plane", "the two ends, the second one l further in its direction"),)
     parameters = (
         *Beam.parameters,
+        replace(AXIAL_STIFFNESS, only=("extensible",)),
         ParameterPort("angle", "rad", "an angle from the x axis", "0", is_direction=True),
     )
-    choices = Beam.choices
+    choices = (
+        *Beam.choices,
+        Choice("inextensible", ("extensible", "inextensible"), "extensible", "an axis that does not stretch"),
+    )
     through = ("f_x", "f_y", "tau")
     ends = ("x", "y", "theta")
     passive = Passivity(of_any_sign=("angle",))
@@ -47,4 +52,5 @@ class FrameMember(LineElement):
 
     def theory(self, choices: Mapping[str, str]) -> str:
         """Return the field theory chosen."""
-        return f"{self.type_name}-{choices['theory']}"
+        kind = "" if choices["inextensible"] == "extensible" else "inextensible-"
+        return f"{kind}{self.type_name}-{choices['theory']}"

@@ -5,7 +5,7 @@ Rods in tension, shafts in torsion, stretched strings, and beams in bending in a
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, Final
 
 from symflex.library import ParameterPort
 from symflex.library.elements.element import (
@@ -25,6 +25,14 @@ if TYPE_CHECKING:
 
     from symflex.algebra import Factored
     from symflex.library.elements.element import PortTerminal, Variable
+
+
+AXIAL_STIFFNESS: Final = ParameterPort(
+    "EA", "N", "an axial stiffness", sign="positive", varies=True, of=("E", "A")
+)
+MASS_PER_LENGTH: Final = ParameterPort(
+    "rhoA", "kg/m", "a mass per length", sign="nonnegative", varies=True, of=("rho", "A")
+)
 
 
 class LineElement(Element):
@@ -122,6 +130,8 @@ class Rod(LineElement):
         ParameterPort("eta", "s", "a Kelvin-Voigt loss time", "0", sign="nonnegative"),
         ParameterPort("c_f", "N*s/m^2", "a viscous foundation", "0", varies=True),
         ParameterPort("k_f", "N/m^2", "an elastic foundation", "0", varies=True),
+        AXIAL_STIFFNESS,
+        MASS_PER_LENGTH,
     )
     through = ("f",)
     ends = ("across",)
@@ -149,6 +159,10 @@ class Shaft(LineElement):
         ParameterPort("eta", "s", "a Kelvin-Voigt loss time", "0", sign="nonnegative"),
         ParameterPort("c_f", "N*m*s/m", "a viscous foundation", "0", varies=True),
         ParameterPort("k_f", "N*m/m", "an elastic foundation", "0", varies=True),
+        ParameterPort("GJ", "N*m^2", "a torsional stiffness", sign="positive", varies=True, of=("G", "J")),
+        ParameterPort(
+            "rhoJ", "kg*m", "an inertia per length", sign="nonnegative", varies=True, of=("rho", "J")
+        ),
     )
     through = ("tau",)
     ends = ("across",)
@@ -174,6 +188,7 @@ class String(LineElement):
         ParameterPort("l", "m", "a length"),
         ParameterPort("c_f", "N*s/m^2", "a viscous foundation", "0", varies=True),
         ParameterPort("k_f", "N/m^2", "an elastic foundation", "0", varies=True),
+        MASS_PER_LENGTH,
     )
     through = ("f",)
     ends = ("across",)
@@ -210,6 +225,26 @@ class Beam(LineElement):
         ParameterPort("N", "N", "an axial force", "0", only=("euler-bernoulli", "rayleigh"), varies=True),
         ParameterPort("kappa", "1", "a shear coefficient", only=("timoshenko",), sign="positive"),
         ParameterPort("G", "Pa", "a shear modulus", only=("timoshenko",), sign="positive"),
+        ParameterPort("EI", "N*m^2", "a bending stiffness", sign="positive", varies=True, of=("E", "I")),
+        MASS_PER_LENGTH,
+        ParameterPort(
+            "rhoI",
+            "kg*m",
+            "a rotary inertia per length",
+            only=("rayleigh", "timoshenko"),
+            sign="nonnegative",
+            varies=True,
+            of=("rho", "I"),
+        ),
+        ParameterPort(
+            "kappaGA",
+            "N",
+            "a shear stiffness",
+            only=("timoshenko",),
+            sign="positive",
+            varies=True,
+            of=("kappa", "G", "A"),
+        ),
     )
     choices = (Choice("theory", THEORIES, THEORIES[0], "a beam theory"),)
     through = ("f", "tau")

@@ -205,6 +205,9 @@ class _NetworkReading:
         try:
             if any(v in inputs or v in self.delivered for v in form):
                 _refuse("the output reads what is no motion of a node")
+            for member in members:
+                if not all(any(not x.is_zero for x in row) for row in member.system):
+                    _refuse(f"member '{member.name}' is rigid in one direction")
             driven_power, driven_row = self._without_s(driven)
             read_power, read_row = self._without_s(form)
             divisor = self._power(read.divisor)

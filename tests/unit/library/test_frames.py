@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 
+import numpy as np
 import pytest
 
+import symflex
 from symflex import pipeline
 from symflex.errors import ModelError, SpecError
 from symflex.expressions import Name, Number, Product, Quotient, Sum, format_expression, negative
@@ -239,3 +242,45 @@ def test_an_angle_is_measured_in_radians():
     found = problems(HEAD.replace("angle = 0", 'angle = "3 kg"') + TAIL)
     message = "angle of frame 'm' is in 'kg'; an angle from the x axis is in 'rad'"
     assert [(code, text) for code, text, _ in found] == [("SF203", message)]
+
+
+@pytest.mark.slow
+def test_poles_of_a_portal_that_does_not_stretch_are_those_of_its_dynamic_stiffness():
+    # Sway and two turns: the beam moves as a mass besides (Clough & Penzien 1993, chapter 17).
+    height, span, stiffness, mass = 3.0, 4.0, 2e6, 50.0
+
+    def end(omega, length):
+        """Return the stiffnesses y-y, y-theta, theta-theta of an end, and the last one to the far end."""
+        b = (mass * omega**2 / stiffness) ** 0.25
+        c, s, ch, sh = (f(b * length) for f in (math.cos, math.sin, math.cosh, math.sinh))
+        d = stiffness / (1 - c * ch)
+        near = b**3 * (c * sh + s * ch) * d, b**2 * s * sh * d, b * (s * ch - c * sh) * d
+        return *near, b * (sh - s) * d
+
+    def determinant(omega):
+        yy, yt, tt, _ = end(omega, height)
+        _, _, turn, far = end(omega, span)
+        sway = 2 * yy - mass * span * omega**2
+        return np.linalg.det([[sway, yt, yt], [yt, tt + turn, far], [yt, far, tt + turn]])
+
+    column = 'EI = 2e6, rhoA = 50, l = "h", inextensible = true'
+    portal = f"""symflex = 1
+[parameters]
+h = "3 m"
+l = "4 m"
+[elements]
+foot = {{ type = "fixed", at = "a" }}
+other = {{ type = "fixed", at = "d" }}
+left = {{ type = "frame", between = ["a", "b"], angle = "90 deg", {column} }}
+beam = {{ type = "frame", between = ["b", "c"], EI = 2e6, rhoA = 50, l = "l", inextensible = true }}
+right = {{ type = "frame", between = ["c", "d"], angle = "-90 deg", {column} }}
+[inputs]
+F = {{ force = "b.x" }}
+[outputs]
+X = "b.x"
+"""
+    found = symflex.loads(portal).transfer_functions()[0].bind().pole_zero_map(modes=3)
+    assert found.verdict.word == "marginal"
+    poles = [abs(float(p.im)) for p in found.poles]
+    for omega in poles:
+        assert determinant(omega * (1 - 1e-9)) * determinant(omega * (1 + 1e-9)) < 0, omega

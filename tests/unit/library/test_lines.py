@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import cmath
+import re
 from itertools import product
 
 import pytest
 
 from symflex import pipeline
+from symflex.errors import SpecError
 
 VALUES = {"E": 2, "I": 3, "rho": 5, "A": 7, "l": 2, "G": 4, "J": 3, "N": 3, "kappa": 0.5}
 PARAMETERS = "".join(f"{name} = {value}\n" for name, value in VALUES.items())
@@ -83,3 +85,56 @@ def test_a_kelvin_voigt_rod_on_a_foundation_answers_with_a_hyperbolic_tangent():
     part = 'part = { type = "rod", between = ["ground", "b"], E = "E", A = "A", rho = "rho", l = "l"'
     found = response(part + ", eta = 0.1, c_f = 0.2, k_f = 0.7 }\n", '{ force = "b" }', "b", s)
     assert found == pytest.approx(cmath.tanh(2 * g) / (stiffness * g), rel=1e-12)
+
+
+# EI = 6, EA = 14, rhoA = 35, rhoI = 15, kappaGA = 14, GJ = 12, rhoJ = 15 are those of VALUES.
+TWICE = {
+    "beam": (
+        ('E = "E", I = "I", rho = "rho", A = "A"', "EI = 6, rhoA = 35"),
+        ('E = "E", I = "I", rho = "rho", A = "A"', 'EI = 6, rho = "rho", A = "A"'),
+        (
+            'E = "E", I = "I", rho = "rho", A = "A", theory = "rayleigh"',
+            'EI = 6, rhoA = 35, rhoI = 15, theory = "rayleigh"',
+        ),
+        (
+            f'E = "E", I = "I", rho = "rho", A = "A"{SHEAR}',
+            'EI = 6, rhoA = 35, rhoI = 15, kappaGA = 14, theory = "timoshenko"',
+        ),
+    ),
+    "frame": (('E = "E", I = "I", rho = "rho", A = "A"', "EI = 6, rhoA = 35, EA = 14"),),
+    "rod": (('E = "E", A = "A", rho = "rho"', "EA = 14, rhoA = 35"),),
+    "shaft": (('G = "G", J = "J", rho = "rho"', "GJ = 12, rhoJ = 15"),),
+    "string": (('N = "N", A = "A", rho = "rho"', 'N = "N", rhoA = 35'),),
+}
+
+
+def test_products_stand_in_place_of_their_factors():
+    for kind, pairs in TWICE.items():
+        end, load = ("a", "torque") if kind == "shaft" else ("a.y" if kind == "frame" else "a", "force")
+        support = FIXED.format("b") if kind in ("beam", "frame") else ""
+        far = "b" if support else "ground"
+        for pair in pairs:
+            both = [
+                response(
+                    f'{support}arm = {{ type = "{kind}", between = ["a", "{far}"], l = "l", {given} }}\n',
+                    f'{{ {load} = "{end}" }}',
+                    end,
+                    0.3 + 2j,
+                )
+                for given in pair
+            ]
+            assert abs(both[0] / both[1] - 1) < 1e-12, pair
+
+
+def test_what_a_product_makes_spare_or_leaves_open_is_refused():
+    for given, message in (
+        ('EI = 6, E = "E", rhoA = 35', "beam 'arm' has EI in place of E*I, and E besides"),
+        ('EI = 6, rho = "rho"', "beam 'arm' lacks A, a cross-section"),
+        ("EI = 6, rhoA = 35, kappaGA = 14", "kappaGA of beam 'arm' does not go with"),
+    ):
+        with pytest.raises(SpecError, match=re.escape(message)):
+            response(
+                f'{FIXED.format("b")}arm = {{ type = "beam", between = ["a", "b"], l = "l", {given} }}\n',
+                '{ force = "a" }',
+                "a",
+            )

@@ -19,7 +19,14 @@ from symflex.roots import (
     find_pole_zero_map,
     pole_zero_map,
 )
-from symflex.roots.pole_zero_map import Certificate, Exclusion, PoleZeroMap, right_beyond
+from symflex.roots.pole_zero_map import (
+    ON_AXIS,
+    Certificate,
+    Exclusion,
+    PoleZeroMap,
+    judge,
+    right_beyond,
+)
 from symflex.roots.region import Everything
 from symflex.roots.root import Root
 from tests.unit.roots.root_problems import problem, with_root_of_two
@@ -114,6 +121,12 @@ def test_all_found_and_apart_is_certified_and_zeros_right_of_the_axis_make_nothi
     assert shown.certificate == Certificate("polynomial", True, 3, 3)
     assert (shown.verdict.word, shown.verdict.right) == ("unstable", 1)
     assert mapped(real(-1, -2), real(3))[0].verdict.word == "stable"
+
+
+def test_a_passive_system_with_a_pole_that_may_lie_on_the_axis_is_not_called_stable():
+    near = real((0, "1e-20"))
+    assert judge(near, "", "passive").sentence == f"stability not known: passive; {ON_AXIS}"
+    assert judge(real((-1, "1e-20")), "", "passive").word == "stable"
 
 
 def test_a_root_that_is_missing_or_not_told_apart_is_no_certificate():
