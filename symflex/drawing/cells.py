@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final
 from symflex.drawing.geometry import BOLD, LINE, THIN, Lettering, Placed, union
 from symflex.drawing.lettering import SMALL, column_of, name_latex, text
 from symflex.drawing.symbols import HATCH, arrow, earth, half_depth, head, line, wall
+from symflex.library.elements import CIRCUITS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -144,6 +145,8 @@ def build(cell: SymbolCell, spacing: Spacing, width: float = 0.0) -> Built:
     if part.type_name == "dc_motor" and (letter := text(r"\mathrm{M}")):
         half = (letter.width / 2, letter.height / 2)
         items.append(Placed("label", part.name, (), (letter.moved(start + length / 2 - half[0], -half[1]),)))
+    if part.type_name == "op_amp":
+        items += _signs(cell, start, length)
     items += _points(cell, start, length)
     boxes = [i.box for i in items]
     above, below = max(b.y1 for b in boxes), min(b.y0 for b in boxes)
@@ -164,6 +167,20 @@ def build(cell: SymbolCell, spacing: Spacing, width: float = 0.0) -> Built:
     return Built(width, tuple(items), below, above)
 
 
+def _signs(cell: SymbolCell, start: float, length: float) -> list[Placed]:
+    """Return the signs of an amplifier's inputs, the first of which is not inverted."""
+    found = []
+    x = start + length * (0.73 if cell.is_reversed else 0.27)
+    for end, sign in zip(cell.part.ends, ("+", "-"), strict=False):
+        side = cell.left if any(e is end for e in cell.left) else cell.right
+        place = next(i for i, e in enumerate(side) if e is end)
+        y = max(-USUAL_PITCH / 2, min(USUAL_PITCH / 2, cell.offsets(side)[place]))
+        if written := text(sign, SMALL):
+            low = y - (written.height - written.depth) / 2
+            found.append(Placed("label", cell.part.name, (), (written.moved(x - written.width / 2, low),)))
+    return found
+
+
 def _wires(
     cell: SymbolCell, left: tuple[float, float, float], right: tuple[float, float, float]
 ) -> list[Placed]:
@@ -182,7 +199,7 @@ def _wires(
                     route = [(at, y), (inner, y), (inner, level), (reach, level)]
                 found.append(Placed("wire", part.name, (line(*route, width=bold),)))
             if not one.node:
-                is_wall = one.domain != "electrical"
+                is_wall = one.domain not in CIRCUITS
                 strokes = wall(y - WALL, y + WALL, -sign, at) if is_wall else earth(at, y)
                 found.append(Placed("ground", "", strokes))
     return found

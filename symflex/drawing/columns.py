@@ -11,7 +11,7 @@ from symflex.drawing.geometry import BOLD, FILLED, LINE, THIN, Placed, around, u
 from symflex.drawing.lettering import SMALL, text
 from symflex.drawing.scheme import Mark, Style
 from symflex.drawing.symbols import Strokes, arc, arrow, circle, head, line, rectangle, turning
-from symflex.library.elements import COMPONENTS
+from symflex.library.elements import CIRCUITS, COMPONENTS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -67,7 +67,7 @@ class Column:
     @property
     def is_electrical(self) -> bool:
         """Whether it is a wire."""
-        return self.kind == "electrical"
+        return self.kind in CIRCUITS
 
     @property
     def upright(self) -> list[Mark]:

@@ -20,7 +20,7 @@ MOST_MOVES: Final = 40
 """Rounds of moving single nodes; small networks need three or four."""
 LARGEST: Final = 40
 """Nodes of a network whose order is improved; longer ones are chains."""
-LANES: Final = {"electrical": 0, "rotation": 1, "translation": 2, "planar": 2, "plane": 2}
+LANES: Final = {"electrical": 0, "acoustic": 0, "rotation": 1, "translation": 2, "planar": 2, "plane": 2}
 """Which domain stands to the left of which, where a part joins both."""
 
 

@@ -52,6 +52,7 @@ from symflex.drawing.lettering import text
 from symflex.drawing.order import ordered
 from symflex.drawing.scheme import Distance, Mark
 from symflex.drawing.symbols import DOT, HATCH, arrow, circle, earth, floor, guide, line, rectangle, wall
+from symflex.library.elements import CIRCUITS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -229,14 +230,19 @@ class _Layout:
     def _is_ground_left(self, part: DrawnPart, index: int, gap: int) -> bool:
         """Tell on which side an end at the ground is drawn.
 
-        Of two terminals it stands beside the other; the two ends of a stack face each other.
+        One of a pair stands beside the other; the two ends of a stack face each other.
         """
         end = part.ends[index]
-        alike = [e for i, e in enumerate(part.ends) if i != index and e.domain == end.domain and e.node]
+        # The other of its pair first: terminals, windings and sides are listed in pairs.
+        others = [
+            part.ends[i] for i in sorted(range(len(part.ends)), key=lambda i: i != index ^ 1) if i != index
+        ]
+        alike = [e for e in others if e.domain == end.domain and e.node]
         if not alike:
             others = [e for e in part.ends if e.node]
             return not any(self.at[e.node] < gap for e in others)
-        is_beside = end.domain == "electrical" and len(part.ends) > 2  # noqa: PLR2004
+        is_stack = part.type_name == "piezo" and end.domain not in CIRCUITS
+        is_beside = len(part.ends) > 2 and not is_stack  # noqa: PLR2004
         return (self.at[alike[0].node] < gap) is is_beside
 
     def _sort_marks(self) -> None:

@@ -41,7 +41,7 @@ from symflex.expressions import (
     fold,
     names,
 )
-from symflex.library.elements import COMPONENT_DOMAIN, COMPONENTS, LineElement
+from symflex.library.elements import CIRCUITS, COMPONENT_DOMAIN, COMPONENTS, LineElement
 from symflex.model.along import COORDINATE, is_tapered
 from symflex.model.model import INPUT_KINDS
 
@@ -139,7 +139,7 @@ def scheme_of(model: Model, labels: Labels) -> Scheme:
     domains = _domains(model)
     found = _Collected([_part(use, labels, domains) for use in model.elements])
     for one in model.inputs:
-        if len(one.nodes) > 1 or (one.nodes and INPUT_KINDS[one.kind].domain == "electrical"):
+        if len(one.nodes) > 1 or (one.nodes and INPUT_KINDS[one.kind].domain in CIRCUITS):
             found.parts.append(_input_part(one, labels))
         elif one.nodes:
             found.marks.append(_input_mark(one, labels, domains))
@@ -265,8 +265,10 @@ def _part(use: PlacedElement, labels: Labels, domains: Domains) -> DrawnPart:
     kind = use.element.type_name
     symbol = symbol_of(kind)
     if kind == "transformer":
-        pair = (ends[0].domain, ends[1].domain)
-        symbol = ElementSymbol("coupling", TRANSFORMERS.get(pair, box), 34.0)
+        first = [_end(found[0], by_port[port], domains) for port, found in use.nodes]
+        pair = (first[0].domain, first[1].domain)
+        drawn = TRANSFORMERS.get(pair, box) if len(ends) == len(pair) else box
+        symbol = ElementSymbol("coupling", drawn, 34.0)
     if wanted := dict(labels.model.drawing.symbols).get(use.name):
         symbol = replace(symbol, draw=TRANSFORMER_SYMBOLS[wanted])
     label, lines = _label(use, labels)
@@ -302,15 +304,22 @@ def _centre(use: PlacedElement, labels: Labels) -> tuple[str, int]:
     return labels.quantity(offset, "m"), -1 if value is not None and value < 0 else 1
 
 
-TAPERS: Final = {"beam": ("I", "A"), "rod": ("A", "A"), "shaft": ("J", "J")}
-"""Measures of a section that may vary along a member: how stiff it is, and how heavy."""
+TAPERS: Final = {
+    "beam": (("I", "EI"), ("A", "rhoA")),
+    "rod": (("A", "EA", "rhoA"), ("A", "rhoA", "EA")),
+    "shaft": (("J", "GJ", "rhoJ"), ("J", "rhoJ", "GJ")),
+}
+"""Measures of a section that may vary along a member, the first that is given: how stiff it is, and heavy."""
 
 
 def _sections(use: PlacedElement, model: Model) -> Depths:
     if not is_tapered(model):
         return ()
     known, values = values_of(model), dict(use.values)
-    stiff, heavy = (values[name] for name in TAPERS[use.element.type_name])
+    stiff, heavy = (
+        next(values[name] for name in measures if name in values)
+        for measures in TAPERS[use.element.type_name]
+    )
     ends = (0.0, evaluate(values["l"], known) or UNKNOWN)
     return sections(stiff, heavy, ends, known, {"rod": 2, "shaft": 4}.get(use.element.type_name))
 
@@ -449,7 +458,7 @@ def _node(expression: Expression, domains: Domains) -> End | None:
 
 
 def _style(end: End, domains: Domains) -> Style:
-    if end.domain == "electrical":
+    if end.domain in CIRCUITS:
         return "probe"
     if end.domain == "rotation":
         return "turn"

@@ -326,6 +326,82 @@ def dc_motor(length: float) -> Strokes:
     return (*brushes, circle(m, 0, r))
 
 
+def voice_coil(length: float) -> Strokes:
+    """Return a winding in the gap of a magnet."""
+    a, b = 0.2 * length, 0.8 * length
+    turns = [line((a + 4 + 2.6 * i, -4.2), (a + 4 + 2.6 * i, 4.2), width=THIN) for i in range(4)]
+    return (
+        outline(
+            (a, -7.5),
+            (b - 3, -7.5),
+            (b - 3, -5.2),
+            (a + 2.4, -5.2),
+            (a + 2.4, 5.2),
+            (b - 3, 5.2),
+            (b - 3, 7.5),
+            (a, 7.5),
+            fill=FILLED,
+        ),
+        *turns,
+        rectangle(a + 4, -1.2, b, 1.2),
+        line((b, 0), (length, 0)),
+    )
+
+
+def op_amp(length: float) -> Strokes:
+    """Return a triangle that points at its output; the layout knows the signs of its inputs."""
+    a, b = 0.2 * length, 0.85 * length
+    return (
+        outline((a, -9), (b, 0), (a, 9)),
+        line((b, 0), (length, 0)),
+    )
+
+
+def planetary(length: float) -> Strokes:
+    """Return a ring with its sun and three planets, seen from the front."""
+    m, between = length / 2, 6.2
+    planets = [
+        circle(m + between * cos(turn), between * sin(turn), 2.6)
+        for turn in (pi / 2, pi / 2 + 2 * pi / 3, pi / 2 - 2 * pi / 3)
+    ]
+    return (circle(m, 0, 10.0), *planets, circle(m, 0, 3.2), line((0, 0), (m - 10, 0), width=BOLD))
+
+
+def windings(length: float) -> Strokes:
+    """Return two windings on a core, each with both of its ends."""
+    m, half = length / 2, 4.5
+    sides = []
+    for side in (-1, 1):
+        turns = [
+            p
+            for i in range(3)
+            for p in arc(m + 3 * side, half * (2 - 2 * i) / 3, half / 3, 90, 90 + 180 * side).points
+        ]
+        a = m + side * 0.3 * length
+        sides.append(line((a, half), *turns, (a, -half)))
+    cores = [line((m + x, -half - 1), (m + x, half + 1), width=THIN) for x in (-0.7, 0.7)]
+    return (*sides, *cores)
+
+
+def controlled_source(length: float) -> Strokes:
+    """Return a box with the diamond of a source that something controls."""
+    a, m, b = 0.2 * length, length / 2, 0.8 * length
+    return (rectangle(a, -8, b, 8), outline((m - 6, 0), (m, 6), (m + 6, 0), (m, -6)))
+
+
+def piston(length: float) -> Strokes:
+    """Return a piston in a cylinder."""
+    a, m, b = 0.15 * length, 0.45 * length, 0.9 * length
+    return (
+        line((0, 0), (m, 0)),
+        line((a, 6), (b, 6)),
+        line((a, -6), (b, -6)),
+        line((b, -6), (b, 6)),
+        rectangle(m, -5.4, m + 3, 5.4, FILLED),
+        line((b, 0), (length, 0)),
+    )
+
+
 def gears(length: float) -> Strokes:
     """Return two wheels that mesh, seen from the side."""
     m = length / 2
@@ -496,6 +572,20 @@ SYMBOLS: Final[dict[str, ElementSymbol]] = {
     "piezo": ElementSymbol("coupling", piezo, 36.0),
     "transformer": ElementSymbol("coupling", gears, 34.0),
     "gyrator": ElementSymbol("coupling", crossing, 32.0),
+    "voice_coil": ElementSymbol("coupling", voice_coil, 34.0),
+    "planetary_gear": ElementSymbol("coupling", planetary, 34.0),
+    "coupled_inductors": ElementSymbol("coupling", windings, 34.0),
+    "op_amp": ElementSymbol("coupling", op_amp, 34.0),
+    "vcvs": ElementSymbol("coupling", controlled_source, 34.0),
+    "vccs": ElementSymbol("coupling", controlled_source, 34.0),
+    "ccvs": ElementSymbol("coupling", controlled_source, 34.0),
+    "cccs": ElementSymbol("coupling", controlled_source, 34.0),
+    "piston": ElementSymbol("coupling", piston, 34.0),
+    "acoustic_mass": ElementSymbol("branch", inductor, 26.0),
+    "acoustic_resistance": ElementSymbol("branch", resistor, 24.0),
+    "acoustic_compliance": ElementSymbol("branch", capacitor, 20.0),
+    "pressure_source": ElementSymbol("source", voltage_source),
+    "flow_source": ElementSymbol("source", current_source),
 }
 """By the type of an element; a new element is a line."""
 

@@ -410,6 +410,8 @@ INPUT_KINDS: dict[str, InputKind] = {
     "torque": InputKind("rotation", "N*m"),
     "current": InputKind("electrical", "A"),
     "voltage": InputKind("electrical", "V", 0),
+    "flow": InputKind("acoustic", "m^3/s"),
+    "pressure": InputKind("acoustic", "Pa", 0),
     "displacement": InputKind("translation", "m", 0),
     "velocity": InputKind("translation", "m/s", 1),
     "acceleration": InputKind("translation", "m/s^2", 2),

@@ -8,7 +8,15 @@ from heapq import heapify, heappop, heappush
 from typing import TYPE_CHECKING
 
 from symflex.errors import Diagnostic, SpecError, nearest
-from symflex.library.elements import COMPONENT_DOMAIN, COMPONENTS, ELEMENTS, Element, Port, Variable
+from symflex.library.elements import (
+    CIRCUITS,
+    COMPONENT_DOMAIN,
+    COMPONENTS,
+    ELEMENTS,
+    Element,
+    Port,
+    Variable,
+)
 from symflex.model.declarations import DeclaredParameter, read_label
 from symflex.model.model import (
     INPUT_KINDS,
@@ -38,6 +46,8 @@ if TYPE_CHECKING:
     from symflex.model.spec import KeyValue
     from symflex.quantities import Dimension
 
+RESTS = {"electrical": "a terminal at earth", "acoustic": "an open end"}
+"""What is at ground, where that is no end that does not move."""
 TYPES_HINT = "'symflex elements' lists the types"
 
 
@@ -70,7 +80,8 @@ class DraftElement:
         for other, references in self.nodes:
             if other is not port:
                 dimension = measure(ratio) if ratio is not None else None
-                return Coupling(self.element, port.name, other.name, references[0], dimension)
+                partner = next((r for r in references if not r.is_ground), references[0])
+                return Coupling(self.element, port.name, other.name, partner, dimension)
         return None
 
 
@@ -249,13 +260,17 @@ def _references(
     texts = reader.strings(found, what, kind)
     if texts is None:
         return None
+    if port.reacts and len(texts) == 2:  # noqa: PLR2004
+        wanted = 2
     if len(texts) != wanted:
         plural = "node" if wanted == 1 else "nodes"
         hint = f"two nodes are written {port.pair} = [...]" if port.pair else None
+        if port.reacts:
+            hint = f'two nodes at most, the second for the reaction: {port.name} = ["a", "b"]'
         if len(texts) < wanted:
             given = [text.value[:60] for text in texts] or ["..."]
             ends = ", ".join(f'"{name}"' for name in (*given, *["ground"] * (wanted - len(given))))
-            rests = "a terminal at earth" if port.domain == "electrical" else "an end that does not move"
+            rests = RESTS.get(port.domain, "an end that does not move")
             hint = f'{rests} is at "ground": [{ends}]'
         reader.note(
             "SF217",
@@ -294,8 +309,8 @@ def _reference(reader: Reader, text: Text, domain: PortDomain, what: str) -> Nod
         kind = "translational" if domain == "translation" else "rotational"
         reader.note("SF219", f"{what} is {kind}; '{text.value}' is not", text.span)
         return None
-    if dot and domain == "electrical":
-        reader.note("SF219", f"{what} is electrical; '{text.value}' is mechanical", text.span)
+    if dot and domain in CIRCUITS:
+        reader.note("SF219", f"{what} is {domain}; '{text.value}' is mechanical", text.span)
         return None
     return NodeReference(node, component, text.span)
 
@@ -340,7 +355,7 @@ def _read_input(reader: Reader, entry: KeyValue) -> DraftInput | None:
     if len(kept) != len(texts):
         return None
     if all(r.is_ground for r in kept):
-        verb = "moves the ground" if law.is_imposed and law.domain != "electrical" else "acts on ground only"
+        verb = "moves the ground" if law.is_imposed and law.domain not in CIRCUITS else "acts on ground only"
         hint = "the ground does not move; name a node of its own, to which the elements are attached"
         reader.note("SF218", f"{what} {verb}", place.value.span, hint if law.is_imposed else None)
         return None
@@ -404,11 +419,12 @@ class Attachment:
     is_carried: bool = False  # where another node of the same element moves along x, this one does, too
 
 
-DOMAINS: tuple[Domain, ...] = ("translation", "rotation", "electrical")
+DOMAINS: tuple[Domain, ...] = ("translation", "rotation", *CIRCUITS)
 WORDS = {
     "translation": "a displacement",
     "rotation": "an angle",
     "electrical": "a voltage",
+    "acoustic": "a pressure",
     "planar": "a planar node",
     "plane": "a node of the plane",
 }
@@ -437,8 +453,8 @@ def infer_nodes(attachments: Sequence[Attachment]) -> tuple[tuple[NetworkNode, .
         span = first[name].reference.span
         definite = [d for d in claimed if d in DOMAINS]
         if any(d in COMPONENTS for d in claimed):
-            if "electrical" in claimed:
-                one, other, *_ = (d for d in claimed if d in (*COMPONENTS, "electrical"))
+            if any(d in CIRCUITS for d in claimed):
+                one, other, *_ = (d for d in claimed if d in (*COMPONENTS, *CIRCUITS))
                 problems.append(_contradiction(name, claimed[one], claimed[other]))
             nodes[name] = NetworkNode(name, "plane" if name in moving else "planar", span)
             continue
@@ -448,6 +464,7 @@ def infer_nodes(attachments: Sequence[Attachment]) -> tuple[tuple[NetworkNode, .
             nodes[name] = NetworkNode(name, definite[0], span)
     _spread(attachments, nodes, first)
     problems += _undirected(attachments, nodes)
+    problems += _mixed(attachments, nodes)
     return tuple(nodes[name] for name in first), problems
 
 
@@ -486,6 +503,21 @@ def _undirected(attachments: Sequence[Attachment], nodes: Mapping[str, NetworkNo
             message = f"node '{name}' moves along x and y; {attachment.who} acts on one of them"
             hint = f"write '{name}.x' or '{name}.y'; a mass that moves both ways is a rigid_body"
             yield Diagnostic("SF219", message, attachment.reference.span, hint)
+
+
+def _mixed(attachments: Sequence[Attachment], nodes: Mapping[str, NetworkNode]) -> Iterator[Diagnostic]:
+    """Yield pairs of nodes of one side of a coupling that do not move alike."""
+    first: dict[tuple[str, str], Attachment] = {}
+    for attachment in attachments:
+        if attachment.coupling is None or attachment.reference.is_ground:
+            continue
+        other = first.setdefault((attachment.who, attachment.coupling.port), attachment)
+        kinds = [domain_of(a.reference, nodes[a.reference.node]) for a in (other, attachment)]
+        if kinds[0] != kinds[1]:
+            names = f"'{other.reference.node}' and '{attachment.reference.node}'"
+            words = f"{WORDS[kinds[0]]} and {WORDS[kinds[1]]}"
+            message = f"{names} of {attachment.who} are {words}, and a pair is of one kind"
+            yield Diagnostic("SF220", message, attachment.reference.span)
 
 
 def _spread(
@@ -536,6 +568,8 @@ def _contradiction(name: str, one: Attachment, other: Attachment) -> Diagnostic:
     )
     if "electrical" in claims:
         hint = "use two nodes and couple them, with a dc_motor or a gyrator for instance"
+    elif "acoustic" in claims:
+        hint = "use two nodes and couple them with a piston"
     return Diagnostic(
         "SF220",
         f"node '{name}' is {WORDS[claims[0]]} for {one.who} and {WORDS[claims[1]]} for {other.who}",

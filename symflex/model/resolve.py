@@ -397,7 +397,7 @@ def _place(draft: DraftElement, nodes: Mapping[str, NetworkNode]) -> PlacedEleme
         live = next((r for r in references if not r.is_ground), None)
         domain: Placing
         match port.domain:
-            case "translation" | "rotation" | "electrical":
+            case "translation" | "rotation" | "electrical" | "acoustic":
                 domain = port.domain
             case _ if live is None:
                 domain = "translation"

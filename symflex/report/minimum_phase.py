@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Literal
 
 from symflex.algebra import LAPLACE, by_powers, degree_in, irreducible_factors
+from symflex.library.elements import CIRCUITS
 from symflex.model import Model
 from symflex.print.forms import Arranger
 
@@ -144,7 +145,7 @@ def _is_passive(model: Model) -> bool:
 def _is_passive_mechanism(use: PlacedElement) -> bool:
     """Tell whether an element supplies no energy for any positive values of its parameters."""
     element = use.element
-    return element.passive is not None and all(port.domain != "electrical" for port in element.ports)
+    return element.passive is not None and all(port.domain not in CIRCUITS for port in element.ports)
 
 
 def _has_one_scale(tf: TransferFunction) -> bool:

@@ -101,7 +101,13 @@ def is_colocated(model: Model, output: Output, source: Input) -> bool | None:
     if not starts or not ends:
         return None
     joined = set(starts)
-    groups = [_places(use) for use in model.elements if use.element.moves_as_one]
+    groups = [
+        _places(use)
+        for use in model.elements
+        # Of two nodes at a side only the difference follows.
+        if use.element.moves_as_one
+        and not any(p.reacts and len(dict(use.nodes)[p.name]) > 1 for p in use.element.ports)
+    ]
     groups += [{_place_of(model, value) for value in group} for group in joined_values(model)]
     grown = True
     while grown:

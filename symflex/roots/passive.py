@@ -24,7 +24,7 @@ from flint import arb
 from symflex.algebra import LAPLACE, Factored
 from symflex.algebra.ring import terms_of
 from symflex.expressions import Name
-from symflex.library.elements.element import LinearForm, Variable
+from symflex.library.elements.element import CIRCUITS, LinearForm, Variable
 from symflex.library.elements.line import Beam, LineElement
 from symflex.library.elements.lumped import ThroughSource
 from symflex.model import Signal
@@ -111,7 +111,7 @@ class _Acting:
 
     @staticmethod
     def of(source: PlacedElement, model: Model) -> _Acting:
-        return _Acting(_ends(source, model), int("electrical" in dict(source.domains).values()))
+        return _Acting(_ends(source, model), int(any(d in CIRCUITS for _, d in source.domains)))
 
 
 def _supply(number: int) -> str:

@@ -24,7 +24,7 @@ from symflex.equations.elimination import explain_singular
 from symflex.errors import Diagnostic, ModelError
 from symflex.expressions import Attribute, Expression, Name, names, product_of
 from symflex.expressions import power as power_of
-from symflex.library.elements import LinearForm, Variable
+from symflex.library.elements import CIRCUITS, LinearForm, Variable
 from symflex.library.elements.element import ACROSS_UNIT, COMPONENT_DOMAIN, COMPONENT_UNIT
 from symflex.quantities import unit_of
 from symflex.state_space.opened import opened, with_filters_apart
@@ -286,7 +286,7 @@ def _weights(rows: _Rows, model: Model, shown: set[str]) -> list[tuple[int, int]
     columns = {variable: j for j, variable in enumerate(rows.unknowns)}
     stores, is_constraint = set(), set()
     for (variable, role), row in zip(rows.about, rows.rows, strict=True):
-        is_moving = variable.kind == "node" and domains.get(variable.owner) != "electrical"
+        is_moving = variable.kind == "node" and domains.get(variable.owner) not in CIRCUITS
         if variable in columns and (columns[variable], 2 if is_moving else 1) in row:
             stores.add(variable)
         if role == "constraint":
@@ -294,7 +294,7 @@ def _weights(rows: _Rows, model: Model, shown: set[str]) -> list[tuple[int, int]
 
     def weight(variable: Variable) -> int:
         if variable.kind == "node":
-            return VOLTAGE if domains.get(variable.owner) == "electrical" else DISPLACEMENT
+            return VOLTAGE if domains.get(variable.owner) in CIRCUITS else DISPLACEMENT
         return FLOW if variable.kind == "through" else SIGNAL
 
     def readiness(j: int) -> tuple[bool, bool, bool, int]:

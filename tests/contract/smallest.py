@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 HEADER = "symflex = 1\n"
-OTHER = {"translation": "spring", "rotation": "torsion_spring", "electrical": "resistor"}
-VALUE = {"translation": "k", "rotation": "k", "electrical": "R"}
-DRIVE = {"translation": "force", "rotation": "torque", "electrical": "current"}
 
 LINE = 'rho = "q", A = "q", l = "q"'
+
+WINDINGS = 'L_1 = "p", L_2 = "q", M = 1'
 
 MODELS = {
     "mass": ("x", "force", 'at = "x", m = "p"'),
@@ -38,6 +37,20 @@ MODELS = {
     "piezo": ("x", "force", 'terminals = ["v", "ground"], between = ["x", "ground"], alpha = "p", k = "q"'),
     "transformer": ("x", "force", 'from = "x", to = "y", ratio = "p"'),
     "gyrator": ("x", "force", 'from = "x", to = "y", ratio = "p"'),
+    "voice_coil": ("x", "force", 'terminals = ["v", "ground"], mover = "x", R = "p", k_f = "q"'),
+    "planetary_gear": ("x", "torque", 'sun = "x", ring = "y", carrier = "ground", rho = "p"'),
+    "coupled_inductors": ("x", "current", f'terminals = ["x", "ground", "y", "ground"], {WINDINGS}'),
+    "op_amp": ("x", "current", 'inputs = ["ground", "x"], out = "y", A = "p"'),
+    "vcvs": ("x", "current", 'inputs = ["ground", "x"], terminals = ["y", "ground"], mu = "p"'),
+    "vccs": ("x", "current", 'inputs = ["ground", "x"], terminals = ["x", "ground"], g = "p"'),
+    "ccvs": ("x", "current", 'inputs = ["x", "y"], terminals = ["y", "ground"], r = "p"'),
+    "cccs": ("x", "current", 'inputs = ["y", "ground"], terminals = ["ground", "x"], beta = "p"'),
+    "acoustic_mass": ("x", "flow", 'between = ["x", "ground"], M = "p"'),
+    "acoustic_resistance": ("x", "flow", 'between = ["x", "ground"], R = "p"'),
+    "acoustic_compliance": ("x", "flow", 'at = "x", C = "p"'),
+    "pressure_source": ("x", None, 'at = "x", p = "p*U"'),
+    "flow_source": ("x", None, 'at = "x", q = "p*U"'),
+    "piston": ("x", "force", 'mover = "x", chamber = "y", A = "p"'),
 }
 REST = {
     "force_source": 'load = { type = "spring", between = ["x", "ground"], k = "q" }',
@@ -55,6 +68,17 @@ REST = {
     "piezo": 'load = { type = "resistor", between = ["v", "ground"], R = "q" }',
     "transformer": 'load = { type = "spring", between = ["y", "ground"], k = "q" }',
     "gyrator": 'load = { type = "spring", between = ["y", "ground"], k = "q" }',
+    "voice_coil": 'load = { type = "resistor", between = ["v", "ground"], R = "q" }',
+    "planetary_gear": 'load = { type = "torsion_spring", between = ["y", "ground"], k = "q" }',
+    "coupled_inductors": 'load = { type = "resistor", between = ["y", "ground"], R = "q" }',
+    "op_amp": 'back = { type = "resistor", between = ["x", "y"], R = "q" }',
+    "vcvs": 'back = { type = "resistor", between = ["x", "y"], R = "q" }',
+    "vccs": 'load = { type = "resistor", between = ["x", "ground"], R = "q" }',
+    "ccvs": 'load = { type = "resistor", between = ["y", "ground"], R = "q" }',
+    "cccs": 'sense = { type = "resistor", between = ["x", "y"], R = "q" }',
+    "pressure_source": 'load = { type = "acoustic_resistance", between = ["x", "ground"], R = "q" }',
+    "flow_source": 'load = { type = "acoustic_resistance", between = ["x", "ground"], R = "q" }',
+    "piston": 'load = { type = "acoustic_compliance", at = "y", C = "q" }',
 }
 
 BLOCK_VALUES = {

@@ -11,6 +11,7 @@ from symflex.algebra import Factored, Ring
 from symflex.cli import run
 from symflex.library.elements import (
     ACROSS_UNIT,
+    CIRCUITS,
     COMPONENTS,
     ELEMENTS,
     THROUGH_NAME,
@@ -25,7 +26,7 @@ from symflex.library.fields import FIELDS
 from symflex.quantities import unit_of
 from tests.contract.smallest import MODELS, element_model
 
-PORT_DOMAINS = ("translation", "rotation", "electrical", "planar", "plane", "any", "whole")
+PORT_DOMAINS = ("translation", "rotation", *CIRCUITS, "planar", "plane", "any", "whole")
 RING = Ring(("s", "p", "q"))
 DIRECTION = ("cos", "sin", "cos_cos", "cos_sin")
 
@@ -89,7 +90,7 @@ def test_its_ports_are_documented_and_of_a_known_domain():
         for port in element.ports:
             assert port.doc.strip(), kind
             assert port.domain in PORT_DOMAINS, kind
-            assert port.terminals in (1, 2), kind
+            assert port.terminals in (1, 2, 4), kind
 
 
 def test_its_parameters_and_choices_are_documented_with_the_defaults_they_may_have():
@@ -154,7 +155,7 @@ def test_it_is_derivable_in_a_smallest_model_where_its_value_matters():
 def assert_passive(kind, bound):
     """A passive port's flow over effort has no negative real part where Re(s) > 0 (Brune 1931)."""
     for s in (0.1 + 0.3j, 1 + 2j, 3 - 1j, 0.01 + 5j, 0.5 + 0j):
-        flow = complex(bound(s)) * (1 if MODELS[kind][1] == "current" else s)
+        flow = complex(bound(s)) * (1 if MODELS[kind][1] in ("current", "flow") else s)
         assert flow.real >= -1e-12 * abs(flow), kind
 
 
@@ -252,8 +253,8 @@ def test_every_element_has_a_smallest_model():
 
 
 def test_across_times_through_is_an_energy_or_a_power():
-    """Newton metres for motion, volt amperes for electricity (IEC 80000)."""
+    """Newton metres for motion, volt amperes for electricity, Pa m^3/s for sound (IEC 80000)."""
     for domain, across in ACROSS_UNIT.items():
         energy = unit_of(across).dimension * unit_of(THROUGH_UNIT[domain]).dimension
-        assert energy == unit_of("W" if domain == "electrical" else "J").dimension, domain
-        assert THROUGH_NAME[domain] in ("f", "tau", "i"), domain
+        assert energy == unit_of("W" if domain in CIRCUITS else "J").dimension, domain
+        assert THROUGH_NAME[domain] in ("f", "tau", "i", "q"), domain

@@ -22,7 +22,7 @@ from symflex.analysis.explanation.coordinates import in_one_way
 from symflex.analysis.time_response.exponentials import ExponentialTerm
 from symflex.analysis.time_response.partial_fractions import EnclosedQuotient, at_infinity, partial_fractions
 from symflex.analysis.time_response.passive_modes import force_on
-from symflex.library.elements import Variable
+from symflex.library.elements import CIRCUITS, Variable
 from symflex.model.model import Input, NodeReference
 from symflex.model.signs import is_passive
 from symflex.roots.polynomial_roots import find_polynomial_roots
@@ -95,7 +95,7 @@ def filtered(bound: BoundTransferFunction, digits: int) -> Filtered | None:
     places = [
         Variable("node", node.name, component)
         for node in model.nodes
-        if node.domain != "electrical"
+        if node.domain not in CIRCUITS
         for component in node.components
     ]
     if len(places) > MOST_NODES:

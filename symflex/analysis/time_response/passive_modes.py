@@ -36,7 +36,7 @@ from symflex.algebra import Factored
 from symflex.analysis.explanation.coordinates import PAIR, acting, in_one_way, measured, parted_at
 from symflex.analysis.time_response.function_size import BITS, Rest, SizeOfFunction
 from symflex.expressions import Attribute, Expression, Name, Negative, Sum
-from symflex.library.elements import COMPONENT_DOMAIN
+from symflex.library.elements import CIRCUITS, COMPONENT_DOMAIN
 from symflex.model.model import INPUT_KINDS, Input, NodeReference, Output
 from symflex.model.signs import is_passive
 from symflex.roots.precision import precision
@@ -153,11 +153,11 @@ def _colocated(
 
 
 def force_on(model: Model, variable: Variable) -> str | None:
-    """Return the kind of input that does work on a coordinate; None for a voltage."""
+    """Return the kind of input that does work on a coordinate; None for a voltage or a pressure."""
     domain = next(n.domain for n in model.nodes if n.name == variable.owner)
     own = COMPONENT_DOMAIN.get(variable.component, domain)
     kinds = (k for k, kind in INPUT_KINDS.items() if kind.domain == own and not kind.is_imposed)
-    return None if own == "electrical" else next(kinds, None)
+    return None if own in CIRCUITS else next(kinds, None)
 
 
 def _written(coordinates: Coordinates) -> Expression:

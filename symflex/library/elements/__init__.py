@@ -1,9 +1,19 @@
 """The element library. A new element is one file and one line in ``ELEMENTS``."""
 
 from symflex.library import ParameterPort, Sign
-from symflex.library.elements.coupling import DcMotor, Gyrator, Piezo, Transformer
+from symflex.library.elements.circuits import Cccs, Ccvs, CoupledInductors, OpAmp, Vccs, Vcvs
+from symflex.library.elements.coupling import (
+    DcMotor,
+    Gyrator,
+    Piezo,
+    Piston,
+    PlanetaryGear,
+    Transformer,
+    VoiceCoil,
+)
 from symflex.library.elements.element import (
     ACROSS_UNIT,
+    CIRCUITS,
     COMPONENT_DOMAIN,
     COMPONENT_UNIT,
     COMPONENTS,
@@ -28,13 +38,18 @@ from symflex.library.elements.element import (
 from symflex.library.elements.frame import FrameMember
 from symflex.library.elements.line import Beam, LineElement, Rod, Shaft, String
 from symflex.library.elements.lumped import (
+    AcousticCompliance,
+    AcousticMass,
+    AcousticResistance,
     Capacitor,
     CurrentSource,
     Damper,
+    FlowSource,
     ForceSource,
     Inductor,
     Inertia,
     Mass,
+    PressureSource,
     Resistor,
     RotaryDamper,
     Spring,
@@ -75,11 +90,26 @@ ELEMENTS: dict[str, Element] = {
         Piezo(),
         Transformer(),
         Gyrator(),
+        VoiceCoil(),
+        PlanetaryGear(),
+        CoupledInductors(),
+        OpAmp(),
+        Vcvs(),
+        Vccs(),
+        Ccvs(),
+        Cccs(),
+        AcousticMass(),
+        AcousticResistance(),
+        AcousticCompliance(),
+        PressureSource(),
+        FlowSource(),
+        Piston(),
     )
 }
 
 __all__ = [
     "ACROSS_UNIT",
+    "CIRCUITS",
     "COMPONENTS",
     "COMPONENT_DOMAIN",
     "COMPONENT_UNIT",

@@ -1,13 +1,15 @@
-"""What couples ports: gears, levers and gyrators of any domains, motors and piezoelectric transducers."""
+"""What couples ports: gears, levers and gyrators of any domains, motors, pistons, transducers."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from symflex.library import ParameterPort
 from symflex.library.elements.element import (
     ACROSS_UNIT,
+    CIRCUITS,
     THROUGH_NAME,
+    THROUGH_UNIT,
     Element,
     ElementUse,
     EquationRow,
@@ -16,22 +18,29 @@ from symflex.library.elements.element import (
     Passivity,
     Port,
     Stamp,
+    delivered,
+    difference,
 )
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from symflex.algebra import Factored
     from symflex.library.elements.element import Placing, Variable
+
+
+PER_FLOW = {"translation": "*s/m", "rotation": "*s/rad", "electrical": "/A", "acoustic": "*s/m^3"}
+"""One over the unit of what flows: a velocity, a current or a volume flow."""
 
 
 class TwoPort(Element):
     """Base of what joins two nodes of any domains, and is named after what it delivers at ``to``."""
 
     ports = (
-        Port("from", 1, "any", "node of the driving side"),
-        Port("to", 1, "any", "node of the driven side"),
+        Port("from", 1, "any", "node of the driving side", reacts=True),
+        Port("to", 1, "any", "node of the driven side", reacts=True),
     )
-    through = ("f", "tau", "i")
+    through = ("f", "tau", "i", "q")
 
     def quantities(self, domains: Mapping[str, Placing]) -> tuple[str, ...]:
         """Return the quantity delivered at ``to``."""
@@ -41,7 +50,8 @@ class TwoPort(Element):
 class Transformer(TwoPort):
     """A gear, rack, screw, lever or electrical transformer: ``to = ratio * from``.
 
-    The across variables (displacement [m], angle [rad], voltage [V]) are in the given ratio;
+    Each side is a node, or a pair of nodes: what the first is over the second. The across variables
+    (displacement [m], angle [rad], voltage [V]) are in the given ratio;
     the force, torque or current delivered at ``to`` is drawn ``ratio`` times at ``from``, so no
     power is lost. ``f``, ``tau`` or ``i`` (by the domain of ``to``) is what is delivered at ``to``.
     """
@@ -61,22 +71,18 @@ class Transformer(TwoPort):
 
     def stamp(self, use: ElementUse) -> Stamp:
         """Contribute the through variable at ``to`` and the row ``to - ratio*from = 0``."""
-        (source,), (target,) = use.across("from"), use.across("to")
         quantity = THROUGH_NAME[use.domains["to"]]
         through = use.unknown(quantity)
         ratio = use.values["ratio"]
         denominator, numerator = ratio.denominator(), ratio * ratio.denominator()
         # The unknown is the through variable over the ratio's denominator: both sides stay polynomial.
-        law = LinearForm.of((target, denominator), (source, -numerator))
-        delivered = LinearForm.of((through, denominator))
+        law = difference(use, "to", denominator) + difference(use, "from", -numerator)
+        given, drawn = LinearForm.of((through, denominator)), LinearForm.of((through, -numerator))
         return Stamp(
             unknowns=(through,),
             rows=(EquationRow(through, law, "constraint"),),
-            injections=(
-                Injection(target, delivered),
-                Injection(source, LinearForm.of((through, -numerator))),
-            ),
-            through=((quantity, delivered),),
+            injections=(*delivered(use, "to", given), *delivered(use, "from", drawn)),
+            through=((quantity, given),),
         )
 
 
@@ -97,59 +103,87 @@ class Gyrator(TwoPort):
     def unit_of(self, quantity: str, domains: Mapping[str, Placing]) -> str:
         """Return the ratio's unit, effort at ``from`` over flow at ``to``."""
         if quantity == "ratio":
-            effort = {"translation": "N", "rotation": "N*m", "electrical": "V"}[domains["from"]]
-            per_flow = {"translation": "*s/m", "rotation": "*s/rad", "electrical": "/A"}[domains["to"]]
-            return effort + per_flow
+            source, target = domains["from"], domains["to"]
+            effort = ACROSS_UNIT[source] if source in CIRCUITS else THROUGH_UNIT[source]
+            return effort + PER_FLOW[target]
         return super().unit_of(quantity, domains)
 
     def stamp(self, use: ElementUse) -> Stamp:
         """Contribute the through variables of both ports and the two crossing rows."""
-        (source,), (target,) = use.across("from"), use.across("to")
         ratio = use.values["ratio"]
         denominator, numerator = ratio.denominator(), ratio * ratio.denominator()
         quantity = THROUGH_NAME[use.domains["to"]]
-        drawn, delivered = use.unknown("drawn"), use.unknown(quantity)
-        effort_from = source if use.domains["from"] == "electrical" else drawn
-        effort_to = target if use.domains["to"] == "electrical" else delivered
-        flow_from = self._flow(use, "from", source, drawn)
-        flow_to = self._flow(use, "to", target, delivered)
+        drawn, given = use.unknown("drawn"), use.unknown(quantity)
         rows = (
             EquationRow(
-                drawn, LinearForm.of((effort_from, denominator)) + flow_to * (-numerator), "constraint"
+                drawn,
+                self._effort(use, "from", drawn, denominator) + self._flow(use, "to", given, -numerator),
+                "constraint",
             ),
             EquationRow(
-                delivered, LinearForm.of((effort_to, denominator)) + flow_from * (-numerator), "constraint"
+                given,
+                self._effort(use, "to", given, denominator) + self._flow(use, "from", drawn, -numerator),
+                "constraint",
             ),
         )
+        into, out_of = LinearForm.of((given, use.one)), LinearForm.of((drawn, -use.one))
         return Stamp(
-            unknowns=(drawn, delivered),
+            unknowns=(drawn, given),
             rows=rows,
-            injections=(
-                Injection(source, LinearForm.of((drawn, -use.one))),
-                Injection(target, LinearForm.of((delivered, use.one))),
-            ),
-            through=((quantity, LinearForm.of((delivered, use.one))),),
+            injections=(*delivered(use, "from", out_of), *delivered(use, "to", into)),
+            through=((quantity, into),),
         )
 
     @staticmethod
-    def _flow(use: ElementUse, port: str, across: Variable | None, through: Variable) -> LinearForm:
-        if use.domains[port] == "electrical":
-            return LinearForm.of((through, use.one))
-        return LinearForm.of((across, use.s))
+    def _effort(use: ElementUse, port: str, through: Variable, scale: Factored) -> LinearForm:
+        if use.domains[port] in CIRCUITS:
+            return difference(use, port, scale)
+        return LinearForm.of((through, scale))
+
+    @staticmethod
+    def _flow(use: ElementUse, port: str, through: Variable, scale: Factored) -> LinearForm:
+        if use.domains[port] in CIRCUITS:
+            return LinearForm.of((through, scale))
+        return difference(use, port, scale * use.s)
 
 
-class DcMotor(Element):
+class ElectricMotor(Element):
+    """Base of motors: a winding whose current pushes what moves, and is pushed against by its motion."""
+
+    constants: ClassVar[tuple[str, str]]
+    """The force or torque per current, and the voltage per velocity."""
+    moves_as_one = True
+
+    def stamp(self, use: ElementUse) -> Stamp:
+        """Contribute the winding current, its row, and what it delivers."""
+        moved, quantity = self.ports[1].name, self.through[1]
+        effort, voltage = (use.values[name] for name in self.constants)
+        current = use.unknown("i")
+        winding = use.values["L"] * use.s + use.values["R"]
+        law = LinearForm.of((current, winding)) + difference(use, moved, voltage * use.s)
+        law += difference(use, "terminals", -use.one)
+        flow, pushed = LinearForm.of((current, use.one)), LinearForm.of((current, effort))
+        return Stamp(
+            unknowns=(current,),
+            rows=(EquationRow(current, law),),
+            injections=(*delivered(use, "terminals", flow * (-use.one)), *delivered(use, moved, pushed)),
+            through=(("i", flow), (quantity, pushed)),
+        )
+
+
+class DcMotor(ElectricMotor):
     """A dc motor: ``(L*s + R)*i + k_e*s*theta = v_a - v_b`` and torque ``k_t*i`` on the shaft.
 
     ``i`` [A] flows from the first terminal to the second; ``tau`` [N m] is the torque delivered
-    to the shaft. k_e [V s/rad] defaults to k_t [N m/A], to which it is equal in SI units.
+    to the shaft. k_e [V s/rad] defaults to k_t [N m/A], to which it is equal in SI units. A second node of
+    the shaft is the stator: it takes the reaction, and theta is the rotor's angle relative to it.
     """
 
     type_name = "dc_motor"
     summary = "Direct-current motor with winding resistance and inductance"
     ports = (
         Port("terminals", 2, "electrical", "the two electrical terminals"),
-        Port("shaft", 1, "rotation", "node of the shaft's angle"),
+        Port("shaft", 1, "rotation", "node of the shaft's angle", reacts=True),
     )
     parameters = (
         ParameterPort("L", "H", "an inductance", "0"),
@@ -158,29 +192,95 @@ class DcMotor(Element):
         ParameterPort("k_e", "V*s/rad", "a back-emf constant", "k_t"),
     )
     through = ("i", "tau")
-    passive = Passivity(of_any_sign=("k_t", "k_e"), equal=("k_t", "k_e"))
-    moves_as_one = True
+    constants = ("k_t", "k_e")
+    passive = Passivity(of_any_sign=constants, equal=constants)
+
+
+class VoiceCoil(ElectricMotor):
+    """A voice coil or linear motor: ``(L*s + R)*i + k_e*s*x = v_a - v_b`` and force ``k_f*i`` on the mover.
+
+    ``i`` [A] flows from the first terminal to the second; ``f`` [N] is the force delivered to the mover.
+    k_e [V s/m] defaults to k_f [N/A], to which it is equal in SI units. A second node of the mover carries
+    the magnet: it takes the reaction, and x is the motion relative to it.
+    """
+
+    type_name = "voice_coil"
+    summary = "Voice coil or linear motor with resistance and inductance"
+    ports = (
+        Port("terminals", 2, "electrical", "the two electrical terminals"),
+        Port("mover", 1, "translation", "node that moves with the coil", reacts=True),
+    )
+    parameters = (
+        ParameterPort("L", "H", "an inductance", "0"),
+        ParameterPort("R", "Ohm", "a resistance", "0"),
+        ParameterPort("k_f", "N/A", "a force constant"),
+        ParameterPort("k_e", "V*s/m", "a back-emf constant", "k_f"),
+    )
+    through = ("i", "f")
+    constants = ("k_f", "k_e")
+    passive = Passivity(of_any_sign=constants, equal=constants)
+
+
+class PlanetaryGear(Element):
+    """A planetary gear without losses: ``sun + rho*ring = (1 + rho)*carrier``, of the three angles [rad].
+
+    rho is the teeth of the ring over those of the sun; ``tau`` [N m] is the torque delivered to the sun,
+    while the ring gets ``rho*tau`` and the carrier ``-(1 + rho)*tau``. With one of the three at ``"ground"``
+    it is a gear of one ratio. Source: Willis 1841, Principles of Mechanism.
+    """
+
+    type_name = "planetary_gear"
+    summary = "Planetary gear of sun, ring and carrier"
+    ports = (
+        Port("sun", 1, "rotation", "node of the sun's angle"),
+        Port("ring", 1, "rotation", "node of the ring's angle"),
+        Port("carrier", 1, "rotation", "node of the carrier's angle"),
+    )
+    parameters = (ParameterPort("rho", "1", "a ratio of teeth, ring over sun"),)
+    through = ("tau",)
+    passive = Passivity(of_any_sign=("rho",))
 
     def stamp(self, use: ElementUse) -> Stamp:
-        """Contribute the winding current, its row, and the torque on the shaft."""
-        a, b = use.across("terminals")
-        (shaft,) = use.across("shaft")
-        current = use.unknown("i")
-        winding = use.values["L"] * use.s + use.values["R"]
-        law = LinearForm.of(
-            (current, winding), (shaft, use.values["k_e"] * use.s), (a, -use.one), (b, use.one)
-        )
-        flow = LinearForm.of((current, use.one))
-        torque = LinearForm.of((current, use.values["k_t"]))
+        """Contribute the torque on the sun, and Willis' equation."""
+        rho, torque = use.values["rho"], use.unknown("tau")
+        denominator = rho.denominator()
+        shares = (denominator, rho * denominator, -(denominator + rho * denominator))
+        nodes = [use.across(port.name)[0] for port in self.ports]
+        law = LinearForm.of(*zip(nodes, shares, strict=True))
+        given = LinearForm.of((torque, use.one))
         return Stamp(
-            unknowns=(current,),
-            rows=(EquationRow(current, law),),
-            injections=(
-                Injection(a, flow * (-use.one)),
-                Injection(b, flow),
-                Injection(shaft, torque),
-            ),
-            through=(("i", flow), ("tau", torque)),
+            unknowns=(torque,),
+            rows=(EquationRow(torque, law, "constraint"),),
+            injections=tuple(Injection(n, given * c) for n, c in zip(nodes, shares, strict=True)),
+            through=(("tau", given * denominator),),
+        )
+
+
+class Piston(Element):
+    """A piston or diaphragm of area A [m^2]: its motion pushes air or liquid, and is pushed by the pressure.
+
+    As the mover goes along x, ``q = A*s*x`` [m^3/s] flows into the first node of ``chamber``, out of the
+    second where there is one; the mover is pushed by ``f = -A*(p_1 - p_2)`` [N]. Source: Beranek 1954,
+    Acoustics, chapter 3.
+    """
+
+    type_name = "piston"
+    summary = "Piston, diaphragm or cylinder between motion and pressure"
+    ports = (
+        Port("mover", 1, "translation", "node that moves with the piston", reacts=True),
+        Port("chamber", 1, "acoustic", "node of the pressure before it", reacts=True),
+    )
+    parameters = (ParameterPort("A", "m^2", "an area"),)
+    through = ("f", "q")
+    passive = Passivity(of_any_sign=("A",))
+
+    def stamp(self, use: ElementUse) -> Stamp:
+        """Contribute the flow and the force, which need no unknowns."""
+        area = use.values["A"]
+        flow, force = difference(use, "mover", area * use.s), difference(use, "chamber", -area)
+        return Stamp(
+            injections=(*delivered(use, "chamber", flow), *delivered(use, "mover", force)),
+            through=(("f", force), ("q", flow)),
         )
 
 

@@ -16,20 +16,27 @@ if TYPE_CHECKING:
     from symflex.algebra import Factored
     from symflex.library import ParameterPort
 
-Domain = Literal["translation", "rotation", "electrical"]
-PortDomain = Literal["translation", "rotation", "electrical", "planar", "plane", "any", "whole"]
+Domain = Literal["translation", "rotation", "electrical", "acoustic"]
+PortDomain = Literal["translation", "rotation", "electrical", "acoustic", "planar", "plane", "any", "whole"]
 
 Role = Literal["balance", "law", "constraint", "signal", "condition"]
 
-Placing = Literal["translation", "rotation", "electrical", "planar", "plane"]
+Placing = Literal["translation", "rotation", "electrical", "acoustic", "planar", "plane"]
 
 COMPONENTS: dict[str, tuple[str, ...]] = {"planar": ("y", "theta"), "plane": ("x", "y", "theta")}
 """What a node of several degrees of freedom is made of; one ``plane`` moves along x, too."""
 COMPONENT_DOMAIN: dict[str, Domain] = {"x": "translation", "y": "translation", "theta": "rotation"}
 
-ACROSS_UNIT: dict[str, str] = {"translation": "m", "rotation": "rad", "electrical": "V"}
-THROUGH_UNIT: dict[str, str] = {"translation": "N", "rotation": "N*m", "electrical": "A"}
-THROUGH_NAME: dict[str, str] = {"translation": "f", "rotation": "tau", "electrical": "i"}
+ACROSS_UNIT: dict[str, str] = {"translation": "m", "rotation": "rad", "electrical": "V", "acoustic": "Pa"}
+THROUGH_UNIT: dict[str, str] = {
+    "translation": "N",
+    "rotation": "N*m",
+    "electrical": "A",
+    "acoustic": "m^3/s",
+}
+THROUGH_NAME: dict[str, str] = {"translation": "f", "rotation": "tau", "electrical": "i", "acoustic": "q"}
+CIRCUITS: tuple[Domain, ...] = ("electrical", "acoustic")
+"""Domains of nodes whose voltage or pressure is an effort; mechanical ones have a motion."""
 COMPONENT_UNIT: dict[str, str] = {
     "f": "N",
     "f_x": "N",
@@ -38,7 +45,11 @@ COMPONENT_UNIT: dict[str, str] = {
     "f_v": "N",
     "tau": "N*m",
     "i": "A",
+    "i_1": "A",
+    "i_2": "A",
+    "q": "m^3/s",
     "supplied": "A",
+    "supplied_q": "m^3/s",
     "supplied_f": "N",
     "supplied_tau": "N*m",
 }
@@ -168,6 +179,7 @@ class Port:
     default: tuple[str, ...] | None = None  # nodes used when the key is missing
     # The key that names two nodes in its place, the second one for the reaction; empty without one.
     pair: str = ""
+    reacts: bool = False  # whether two nodes may be listed under the key itself, the second for the reaction
 
 
 @dataclass(frozen=True, slots=True)
@@ -283,6 +295,17 @@ class Element(ABC):
     @abstractmethod
     def stamp(self, use: ElementUse) -> Stamp:
         """Contribute this element's unknowns, rows, branches and injections."""
+
+
+def difference(use: ElementUse, port: str, scale: Factored) -> LinearForm:
+    """Return ``scale*(a - b)`` of the nodes at a port, ``scale*a`` where there is one."""
+    return LinearForm.of(*zip(use.across(port), (scale, -scale), strict=False))
+
+
+def delivered(use: ElementUse, port: str, form: LinearForm) -> tuple[Injection, ...]:
+    """Return what is delivered into the node at a port, with the reaction where there is a second one."""
+    signs = (use.one, -use.one)
+    return tuple(Injection(n, form * sign) for n, sign in zip(use.across(port), signs, strict=False))
 
 
 def two_terminal(use: ElementUse, port: str, quantity: str, admittance: Factored) -> Stamp:

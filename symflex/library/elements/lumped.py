@@ -1,4 +1,4 @@
-"""Lumped elements of two terminals: what moves, what turns, what conducts, and ideal sources."""
+"""Lumped elements of two terminals: what moves, turns, conducts or carries sound, and ideal sources."""
 
 from __future__ import annotations
 
@@ -14,6 +14,8 @@ from symflex.library.elements.element import (
     Passivity,
     Port,
     Stamp,
+    delivered,
+    difference,
     two_terminal,
 )
 
@@ -103,7 +105,7 @@ class RotaryDamper(Branch):
 
 
 class Impedance(Element):
-    """Base of what is one impedance, ``value * s^order * i = v_a - v_b``; i [A] flows from a to b."""
+    """Base of what is one impedance, ``value * s^order * flow = v_a - v_b``; the flow is from a to b."""
 
     passive = Passivity()
     order: ClassVar[int] = 0
@@ -111,7 +113,8 @@ class Impedance(Element):
     def stamp(self, use: ElementUse) -> Stamp:
         """Contribute the current, an unknown so that nothing is divided by an impedance, and its row."""
         a, b = use.across("between")
-        current = use.unknown("i")
+        (quantity,) = self.through
+        current = use.unknown(quantity)
         impedance = use.values[self.parameters[0].name] * use.s**self.order
         denominator = impedance.denominator()
         law = LinearForm.of((current, impedance * denominator), (a, -denominator), (b, denominator))
@@ -120,7 +123,7 @@ class Impedance(Element):
             unknowns=(current,),
             rows=(EquationRow(current, law),),
             injections=(Injection(a, flow * (-use.one)), Injection(b, flow)),
-            through=(("i", flow),),
+            through=((quantity, flow),),
         )
 
 
@@ -156,12 +159,6 @@ class Capacitor(Branch):
     order = 1
 
 
-def _delivered(use: ElementUse, form: LinearForm) -> tuple[Injection, ...]:
-    """Return what is delivered into the node, with the reaction where there is a second one."""
-    signs = (use.one, -use.one)
-    return tuple(Injection(n, form * sign) for n, sign in zip(use.across("at"), signs, strict=False))
-
-
 class ThroughSource(Element):
     """Base of the sources whose value is what they deliver."""
 
@@ -171,7 +168,7 @@ class ThroughSource(Element):
         """Contribute one injection, and its reaction where there is a second node."""
         (quantity,) = self.through
         form = use.forms[quantity]
-        return Stamp(injections=_delivered(use, form), through=((quantity, form),))
+        return Stamp(injections=delivered(use, "at", form), through=((quantity, form),))
 
 
 class ForceSource(ThroughSource):
@@ -204,7 +201,26 @@ class CurrentSource(ThroughSource):
     through = ("i",)
 
 
-class VoltageSource(Element):
+class AcrossSource(Element):
+    """Base of the sources whose value is what they impose."""
+
+    is_source = True
+
+    def stamp(self, use: ElementUse) -> Stamp:
+        """Contribute what flows, and the row ``v_node = v``."""
+        (quantity,), (imposed,) = self.through, self.parameters
+        current = use.unknown(quantity)
+        flow = LinearForm.of((current, use.one))
+        law = difference(use, "at", use.one) + use.forms[imposed.name] * (-use.one)
+        return Stamp(
+            unknowns=(current,),
+            rows=(EquationRow(current, law, "constraint"),),
+            injections=delivered(use, "at", flow),
+            through=((quantity, flow),),
+        )
+
+
+class VoltageSource(AcrossSource):
     """A voltage v [V] of a node over ground, or over a second node; ``i`` [A] is delivered into the first."""
 
     type_name = "voltage_source"
@@ -212,17 +228,66 @@ class VoltageSource(Element):
     ports = (Port("at", 1, "electrical", "node held at the voltage", pair="between"),)
     parameters = (ParameterPort("v", "V", "a voltage", signal=True),)
     through = ("i",)
-    is_source = True
 
-    def stamp(self, use: ElementUse) -> Stamp:
-        """Contribute the delivered current and the row ``v_node = v``."""
-        current = use.unknown("i")
-        flow = LinearForm.of((current, use.one))
-        ends = zip(use.across("at"), (use.one, -use.one), strict=False)
-        law = LinearForm.of(*ends) + use.forms["v"] * (-use.one)
-        return Stamp(
-            unknowns=(current,),
-            rows=(EquationRow(current, law, "constraint"),),
-            injections=_delivered(use, flow),
-            through=(("i", flow),),
-        )
+
+class AcousticMass(Impedance):
+    """The mass of air in a port or tube, ``p_a - p_b = M*s*q``; ``q`` [m^3/s] flows from a to b.
+
+    ``M = rho*l/A`` [kg/m^4] of a tube of length l and section A; of a liquid, an inertance.
+    Source: Beranek 1954, Acoustics, chapter 5.
+    """
+
+    type_name = "acoustic_mass"
+    summary = "Air in a port or tube; inertance of a liquid"
+    ports = (Port("between", 2, "acoustic", "the two ends"),)
+    parameters = (ParameterPort("M", "kg/m^4", "an acoustic mass"),)
+    through = ("q",)
+    order = 1
+
+
+class AcousticResistance(Impedance):
+    """A mesh, slit or orifice, ``p_a - p_b = R*q``; the flow ``q`` [m^3/s] is from a to b.
+
+    Source: Beranek 1954, Acoustics, chapter 5.
+    """
+
+    type_name = "acoustic_resistance"
+    summary = "Mesh, slit or orifice in a flow"
+    ports = (Port("between", 2, "acoustic", "the two ends"),)
+    parameters = (ParameterPort("R", "Pa*s/m^3", "an acoustic resistance"),)
+    through = ("q",)
+
+
+class AcousticCompliance(Branch):
+    """The air in a box, or an accumulator, ``q = C*s*p``; the flow ``q`` [m^3/s] is into it.
+
+    ``C = V/(rho*c^2)`` [m^3/Pa] of a volume V of a gas or liquid in which sound travels at c.
+    Source: Beranek 1954, Acoustics, chapter 5.
+    """
+
+    type_name = "acoustic_compliance"
+    summary = "Air in a box; accumulator or compressed liquid"
+    ports = (Port("at", 1, "acoustic", "node of its pressure"),)
+    parameters = (ParameterPort("C", "m^3/Pa", "an acoustic compliance"),)
+    through = ("q",)
+    order = 1
+
+
+class FlowSource(ThroughSource):
+    """A volume flow q [m^3/s] delivered into a node, or into the first of two from the second."""
+
+    type_name = "flow_source"
+    summary = "Volume flow delivered into a node"
+    ports = (Port("at", 1, "acoustic", "node the flow enters", pair="between"),)
+    parameters = (ParameterPort("q", "m^3/s", "a volume flow", signal=True),)
+    through = ("q",)
+
+
+class PressureSource(AcrossSource):
+    """A pressure p [Pa] of a node, or over a second one; ``q`` [m^3/s] is delivered into the first."""
+
+    type_name = "pressure_source"
+    summary = "Pressure imposed on a node"
+    ports = (Port("at", 1, "acoustic", "node held at the pressure", pair="between"),)
+    parameters = (ParameterPort("p", "Pa", "a pressure", signal=True),)
+    through = ("q",)
