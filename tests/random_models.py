@@ -66,9 +66,10 @@ def drawn(draw: Callable, recipe: Callable) -> object:
 GROUND = "ground"
 MAX_COORDINATES = 7
 
-ACROSS = {"translation": "m", "rotation": "rad", "electrical": "V"}
-THROUGH = {"translation": "N", "rotation": "N*m", "electrical": "A"}
-INPUT_KEYS = {"translation": "force", "rotation": "torque", "electrical": "current"}
+ACROSS = {"translation": "m", "rotation": "rad", "electrical": "V", "acoustic": "Pa"}
+THROUGH = {"translation": "N", "rotation": "N*m", "electrical": "A", "acoustic": "m^3/s"}
+INPUT_KEYS = {"translation": "force", "rotation": "torque", "electrical": "current", "acoustic": "flow"}
+IMPOSED = {"electrical": "voltage", "acoustic": "pressure"}
 
 # kind: (domain, name of the value, its unit, name of the quantity it carries)
 TWO_TERMINAL = {
@@ -79,23 +80,46 @@ TWO_TERMINAL = {
     "resistor": ("electrical", "R", "ohm", "i"),
     "inductor": ("electrical", "L", "H", "i"),
     "capacitor": ("electrical", "C", "F", "i"),
+    "acoustic_mass": ("acoustic", "M", "kg/m^4", "q"),
+    "acoustic_resistance": ("acoustic", "R", "Pa*s/m^3", "q"),
 }
 CARRYING = {kind: entry[::3] for kind, entry in TWO_TERMINAL.items()} | {"dc_motor": ("electrical", "i")}
-ONE_TERMINAL = {"mass": ("translation", "m", "kg"), "inertia": ("rotation", "J", "kg*m^2")}
+ONE_TERMINAL = {
+    "mass": ("translation", "m", "kg"),
+    "inertia": ("rotation", "J", "kg*m^2"),
+    "acoustic_compliance": ("acoustic", "C", "m^3/Pa"),
+}
 SOURCES = {
     "force_source": ("translation", "f", "N"),
     "torque_source": ("rotation", "tau", "N*m"),
     "current_source": ("electrical", "i", "A"),
     "voltage_source": ("electrical", "v", "V"),
+    "flow_source": ("acoustic", "q", "m^3/s"),
+    "pressure_source": ("acoustic", "p", "Pa"),
 }
 PLANAR = ("rigid_body", "rigid_link", "massless_beam", "fixed", "slider", "pin")
-COUPLINGS = ("dc_motor", "transformer", "gyrator")
+CONTROLLED = {"vcvs": ("mu", ""), "vccs": ("g", "A/V"), "ccvs": ("r", "Ohm"), "cccs": ("beta", "")}
+COUPLINGS = (
+    "dc_motor",
+    "voice_coil",
+    "transformer",
+    "gyrator",
+    "planetary_gear",
+    "piston",
+    "coupled_inductors",
+    "op_amp",
+    *CONTROLLED,
+)
 ELEMENTS = (*TWO_TERMINAL, *ONE_TERMINAL, *SOURCES, *PLANAR, *COUPLINGS)
 UNITS_OF = {
     **{kind: {entry[1]: entry[2]} for kind, entry in (TWO_TERMINAL | ONE_TERMINAL).items()},
     "rigid_body": {"m": "kg", "J": "kg*m^2"},
     "massless_beam": {"EI": "N*m^2", "l": "m"},
     "dc_motor": {"R": "ohm", "k_t": "N*m/A"},
+    "voice_coil": {"R": "ohm", "k_f": "N/A"},
+    "piston": {"A": "m^2"},
+    "coupled_inductors": {"L_1": "H", "L_2": "H"},
+    **{kind: {name: unit} for kind, (name, unit) in CONTROLLED.items()},
 }
 """The units of the values that each kind of element must have."""
 TIMES = {"T_1": "s", "T_2": "s"}
@@ -110,7 +134,7 @@ BLOCKS = {
     ),
 }
 """The values each kind of block may have; only an integrator without a gain has a dimension."""
-LISTED_PORTS = ("between", "terminals")
+LISTED_PORTS = ("between", "terminals", "inputs")
 
 
 # ------------------------------------------------------------------------------------------------- data
@@ -199,7 +223,10 @@ class Element:
             lag = [parameter.name for _, parameter in self.values]
             names = {"num": f'"1 + {lag[0]}*s"', "den": f'"(1 + {lag[1]}*s)*(1 + {lag[2]}*s)"'}
         parts = [f'type = "{self.kind}"']
-        parts += [f"{key} = {_nodes(nodes, listed=key in LISTED_PORTS)}" for key, nodes in self.ports]
+        parts += [
+            f"{key} = {_nodes(nodes, listed=key in LISTED_PORTS or len(nodes) > 1)}"
+            for key, nodes in self.ports
+        ]
         parts += [f"{key} = {text}" for key, text in names.items()]
         if self.source:
             parts.append(f'{SOURCES[self.kind][1]} = "{sum_text(self.source)}"')
@@ -398,13 +425,15 @@ class _Builder:
         self.add("rigid_body", {"at": name}, **more)
 
     def add_scalar(self, domain: str) -> None:
-        letter = {"translation": "x", "rotation": "a", "electrical": "v"}[domain]
+        letter = {"translation": "x", "rotation": "a", "electrical": "v", "acoustic": "b"}[domain]
         name = f"{letter}_{1 + sum(n.startswith(letter) for n in self.coordinates)}"
         others = self.moving(self.of(domain))
         reached = [GROUND] if not others or self.chance(4) else others
         self.coordinates[name] = domain
         if domain != "electrical" and self.chance(4):
-            self.add({"translation": "mass", "rotation": "inertia"}[domain], {"at": self.port(name)})
+            self.add(
+                next(k for k, entry in ONE_TERMINAL.items() if entry[0] == domain), {"at": self.port(name)}
+            )
         else:
             kinds = [kind for kind, entry in TWO_TERMINAL.items() if entry[0] == domain]
             self.add_two_terminal(self.pick(kinds), name, self.pick(reached))
@@ -428,17 +457,78 @@ class _Builder:
 
     # -- couplings and supports
 
+    def side(self, names: Sequence[str]) -> tuple[str, ...]:
+        """Return one of the coordinates, or now and then two for a motion between them."""
+        first = self.pick(names)
+        others = [n for n in names if n != first]
+        return (first, self.pick(others)) if others and self.chance(3) else (first,)
+
+    def terminals(self, names: Sequence[str]) -> tuple[str, str]:
+        """Return two nodes, one of which may be ground."""
+        a = self.pick(names)
+        b = self.pick([GROUND, *(n for n in names if n != a)])
+        return (a, b) if self.chance(2) else (b, a)
+
     def add_motor(self, *, reciprocal: bool) -> None:
-        shafts, terminals = self.of("rotation"), self.of("electrical")
-        if not shafts or not terminals:
+        kind, port, domain, per = self.pick(
+            (("dc_motor", "shaft", "rotation", "rad"), ("voice_coil", "mover", "translation", "m"))
+        )
+        moving, terminals = self.of(domain), self.of("electrical")
+        if not moving or not terminals:
             return
-        a = self.pick(terminals)
-        b = self.pick([GROUND, *(n for n in terminals if n != a)])
         more = {"L": self.parameter("H")} if self.chance(2) else {}
         if not reciprocal and self.chance(2):
-            more["k_e"] = self.parameter("V*s/rad")
-        ends = (a, b) if self.chance(2) else (b, a)
-        self.add("dc_motor", {"terminals": ends, "shaft": self.pick(shafts)}, **more)
+            more["k_e"] = self.parameter(f"V*s/{per}")
+        self.add(kind, {"terminals": self.terminals(terminals), port: self.side(moving)}, **more)
+
+    def add_piston(self) -> None:
+        moving, pressures = self.of("translation"), self.of("acoustic")
+        if moving and pressures:
+            self.add("piston", {"mover": self.side(moving), "chamber": self.side(pressures)})
+
+    def add_planetary_gear(self) -> None:
+        names = self.of("rotation")
+        if len(names) < 2:
+            return
+        nodes = self.random.sample([*names, GROUND] if len(names) < 3 else names, 3)
+        rho = self.parameter("")
+        shares = (1, float(rho.value), -1 - float(rho.value))
+        if self.constrain({n: c for n, c in zip(nodes, shares, strict=True) if n != GROUND}):
+            self.add("planetary_gear", dict(zip(("sun", "ring", "carrier"), nodes, strict=True)), rho=rho)
+
+    def add_coupled_inductors(self) -> None:
+        names = self.of("electrical")
+        if names:
+            windings = (*self.terminals(names), *self.terminals(names))
+            # Other inductances are 0.2 H at least, so that windings on one core are real ones.
+            self.add("coupled_inductors", {"terminals": windings}, M=Parameter("", "0.1", "H"))
+
+    def add_active(self) -> None:
+        """Add an amplifier of finite gain, or a controlled source."""
+        names = self.of("electrical")
+        kind = self.pick(("op_amp", *CONTROLLED))
+        if len(names) < 2:
+            return
+        out, *_ = self.random.sample(names, 2)
+        inputs = self.terminals(names)
+        felt = {n: c for n, c in zip(inputs, (1, -1), strict=True) if n != GROUND}
+        if kind == "op_amp":
+            more = {"A": self.parameter(""), **({"f_u": self.parameter("rad/s")} if self.chance(2) else {})}
+            needed = 1 / float(more["A"].value) + (0.31 + 0.57j) * ("f_u" in more)
+            law = {n: -felt.get(n, 0) + needed * (n == out) for n in {*felt, out}}
+            if self.constrain(law):
+                self.add(kind, {"inputs": inputs, "out": out}, **more)
+            return
+        ends = (out, self.pick([GROUND, *(n for n in names if n != out)]))
+        gain = self.parameter(CONTROLLED[kind][1])
+        rows = [felt] if kind in ("ccvs", "cccs") else []
+        if kind in ("vcvs", "ccvs"):
+            own = {n: c for n, c in zip(ends, (1, -1), strict=True) if n != GROUND}
+            # A current that controls may be any: its law alone does not tell whether voltages are determined.
+            follow = float(gain.value) if kind == "vcvs" else 0.0
+            rows.append({n: own.get(n, 0) - follow * felt.get(n, 0) for n in {*own, *felt}})
+        if not rows or self.constrain(*rows):
+            self.add(kind, {"inputs": inputs, "terminals": ends}, **{CONTROLLED[kind][0]: gain})
 
     def add_transformer(self) -> None:
         groups = (("translation", "rotation"), ("electrical",))
@@ -446,12 +536,14 @@ class _Builder:
         if len(nodes) < 2:
             return
         source, target = self.random.sample(nodes, 2)
-        self.transform(source, target)
+        others = [n for n in self.of(self.coordinates[source]) if n not in (source, target)]
+        self.transform((source, self.pick(others)) if others and self.chance(3) else (source,), (target,))
 
-    def transform(self, source: str, target: str) -> None:
-        above, below = (ACROSS[self.coordinates[name]] for name in (target, source))
+    def transform(self, source: tuple[str, ...], target: tuple[str, ...]) -> None:
+        above, below = (ACROSS[self.coordinates[names[0]]] for names in (target, source))
         ratio = self.parameter("" if above == below else f"{above}/{below}")
-        if self.constrain({target: 1, source: -float(ratio.value)}):
+        size = float(ratio.value)
+        if self.constrain({target[0]: 1, **dict(zip(source, (-size, size), strict=False))}):
             self.add("transformer", {"from": source, "to": target}, ratio=ratio)
 
     def add_geared_tip(self) -> None:
@@ -460,7 +552,7 @@ class _Builder:
         if source is not None:
             name = f"x_{1 + sum(n.startswith('x') for n in self.coordinates)}"
             self.coordinates[name] = "translation"
-            self.transform(source, name)
+            self.transform((source,), (name,))
 
     def add_gyrator(self, *, reciprocal: bool) -> None:
         nodes = list(self.coordinates)
@@ -468,14 +560,14 @@ class _Builder:
             return
         source, target = self.random.sample(nodes, 2)
         domains = (self.coordinates[source], self.coordinates[target])
-        electrical = domains.count("electrical")
-        if reciprocal and electrical != 1:
+        efforts = sum(d in IMPOSED for d in domains)
+        if reciprocal and efforts != 1:
             return
-        effort = {**THROUGH, "electrical": "V"}[domains[0]]
-        flow = {"translation": "m", "rotation": "rad", "electrical": "A"}[domains[1]]
-        ratio = self.parameter(f"{effort}/A" if flow == "A" else f"{effort}*s/{flow}")
-        if electrical == 1:  # ties a voltage to a velocity
-            voltage, motion = (source, target) if domains[0] == "electrical" else (target, source)
+        effort = {**THROUGH, "electrical": "V", "acoustic": "Pa"}[domains[0]]
+        flow = {"translation": "*s/m", "rotation": "*s/rad", "electrical": "/A", "acoustic": "*s/m^3"}
+        ratio = self.parameter(f"{effort}{flow[domains[1]]}")
+        if efforts == 1:  # ties a voltage to a velocity
+            voltage, motion = (source, target) if domains[0] in IMPOSED else (target, source)
             if not self.constrain({voltage: 1, motion: -float(ratio.value) * (0.83 + 0.47j)}):
                 return
         self.add("gyrator", {"from": source, "to": target}, ratio=ratio)
@@ -511,7 +603,8 @@ class _Builder:
         if carried and self.chance(3):
             element = self.pick(carried)
             domain, quantity = CARRYING[element.kind]
-            per = {"translation": "N", "rotation": "N/m", "electrical": "A"}[domain]  # dividing by N*m
+            per = {**THROUGH, "rotation": "N/m"}[domain]  # dividing by N*m
+            per = f"({per})" if "/" in per and domain == "acoustic" else per
             gain = self.parameter(f"{unit}/{per}")
             return Term(f"{element.name}.{quantity}", sign, (gain,))
         name = self.pick(self.coordinates)
@@ -542,7 +635,7 @@ class _Builder:
         domain, _, unit = SOURCES[kind]
         node = self.pick(self.moving(self.of(domain)))
         terms = [Term(quantity, self.pick((1, -1)), (self.parameter("" if unit == "V" else f"{unit}/V"),))]
-        if kind == "voltage_source":
+        if kind in ("voltage_source", "pressure_source"):
             if not self.constrain({node: 1}):
                 return False
         elif self.chance(2):
@@ -554,8 +647,8 @@ class _Builder:
         """Return an input that acts on the network directly."""
         node = self.pick(self.moving(self.coordinates))
         domain = self.coordinates[node]
-        if domain == "electrical" and self.chance(2) and self.constrain({node: 1}):
-            return Input(f"U_{number}", "voltage", (node,))
+        if domain in IMPOSED and self.chance(2) and self.constrain({node: 1}):
+            return Input(f"U_{number}", IMPOSED[domain], (node,))
         others = [name for name in self.of(domain) if name != node]
         pair = (self.pick(others),) if others and self.chance(3) else ()
         return Input(f"U_{number}", INPUT_KEYS[domain], tuple(self.port(end) for end in (node, *pair)))
@@ -599,6 +692,10 @@ def _passive_part(random: Random, *, reciprocal: bool) -> _Builder:
         builder.add_transformer,
         builder.add_geared_tip,
         lambda: builder.add_gyrator(reciprocal=reciprocal),
+        builder.add_piston,
+        builder.add_planetary_gear,
+        builder.add_coupled_inductors,
+        *(() if reciprocal else (builder.add_active,)),
     )
     for _ in range(random.randint(0, 3)):
         builder.add_extra()
@@ -649,7 +746,7 @@ def reciprocal_networks(random: Random) -> Network:
     Y_2/U_1 = Y_1/U_2.
     """
     builder = _passive_part(random, reciprocal=True)
-    groups = [builder.of("translation", "rotation"), builder.of("electrical")]
+    groups = [builder.of("translation", "rotation"), builder.of("electrical", "acoustic")]
     nodes = builder.moving(builder.pick([group for group in groups if group]))
     first = builder.pick(nodes)
     pair = [first, builder.pick([name for name in builder.linked(first) if name in nodes])]
@@ -780,6 +877,22 @@ PARTS = (
     'type = "transformer", from = "{r}", to = "{r}", ratio = 3',
     'type = "gyrator", from = "{v}", to = "{t}", ratio = 3',
     'type = "piezo", terminals = {v_2}, between = {t_2}, alpha = "12 N/V"',
+    'type = "voice_coil", terminals = {v_2}, mover = {t_2}, R = "2 Ohm", k_f = "3 N/A"',
+    'type = "dc_motor", terminals = {v_2}, shaft = {r_2}, R = "2 Ohm", k_t = "0.1 N*m/A"',
+    'type = "planetary_gear", sun = "{r}", ring = "{r}", carrier = "{r}", rho = 3',
+    'type = "transformer", from = {r_2}, to = {r_2}, ratio = 3',
+    'type = "coupled_inductors", terminals = ["{v}", "ground", "ground", "{v}"], L_1 = 1, L_2 = 2, M = 1',
+    'type = "op_amp", inputs = {v_2}, out = "{v}"',
+    'type = "vcvs", inputs = {v_2}, terminals = {v_2}, mu = 3',
+    'type = "vccs", inputs = {v_2}, terminals = {v_2}, g = "3 A/V"',
+    'type = "ccvs", inputs = {v_2}, terminals = {v_2}, r = "3 Ohm"',
+    'type = "cccs", inputs = {v_2}, terminals = {v_2}, beta = 3',
+    'type = "acoustic_mass", between = {b_2}, M = "2 kg/m^4"',
+    'type = "acoustic_resistance", between = {b_2}, R = "2 Pa*s/m^3"',
+    'type = "acoustic_compliance", at = "{b}", C = "2 m^3/Pa"',
+    'type = "piston", mover = "{moving}", chamber = {b_2}, A = "3 cm^2"',
+    'type = "pressure_source", at = "{b}", p = "u"',
+    'type = "flow_source", between = {b_2}, q = "u"',
     f'type = "beam", between = {{p_2}}, {MEMBER_VALUES}',
     'type = "massless_beam", between = {p_2}, EI = "2 N*m^2", l = "l"',
     'type = "rigid_link", between = {p_2}, length = "0.1 m"',
@@ -846,6 +959,7 @@ DRIVEN = {
     "x": ["force", "displacement", "velocity", "acceleration"],
     "r": ["torque", "angle", "angular_velocity", "angular_acceleration"],
     "v": ["voltage", "current"],
+    "b": ["pressure", "flow"],
     "p": ["force", "torque", "displacement", "velocity", "angle", "angular_velocity"],
     "q": ["torque", "angle"],
 }
@@ -890,8 +1004,16 @@ def _signals(rng, nodes):
 def anything(seed):
     """Return the text of a model, or None; not all are sound."""
     rng = Random(seed)
-    t, r, v, p = ([f"{letter}_{i}" for i in range(rng.randint(1, 4))] for letter in "xrvp")
-    nodes = {"t": t, "r": r, "v": v, "p": p, "moving": [*t, *p], "theta": [*r, *(f"{n}.theta" for n in p)]}
+    t, r, v, p, b = ([f"{letter}_{i}" for i in range(rng.randint(1, 4))] for letter in "xrvpb")
+    nodes = {
+        "t": t,
+        "r": r,
+        "v": v,
+        "p": p,
+        "b": b,
+        "moving": [*t, *p],
+        "theta": [*r, *(f"{n}.theta" for n in p)],
+    }
     chosen = _Chosen({f"{key}s": options for key, options in (CHOSEN | nodes).items()})
     chosen.rng = rng
     liked = rng.sample(PARTS, rng.randint(3, 12))
@@ -902,7 +1024,7 @@ def anything(seed):
         except IndexError:  # a pair of a single node
             continue
     body = "\n".join(lines)
-    used = [n for n in (*t, *r, *v, *p, "q_0", "q_1", "q_2") if f'"{n}"' in body or f'"{n}.' in body]
+    used = [n for n in (*t, *r, *v, *p, *b, "q_0", "q_1", "q_2") if f'"{n}"' in body or f'"{n}.' in body]
     if not used:
         return None
     inputs, outputs, more = ["u = {}"], [], ""

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 
 from symflex.drawing.geometry import BOLD, LINE, THIN, Lettering, Placed, union
 from symflex.drawing.lettering import SMALL, column_of, name_latex, text
-from symflex.drawing.symbols import HATCH, arrow, earth, half_depth, head, line, wall
+from symflex.drawing.symbols import HATCH, arrow, box, earth, half_depth, head, line, wall
 from symflex.library.elements import CIRCUITS
 
 if TYPE_CHECKING:
@@ -71,8 +71,13 @@ class SymbolCell:
     def offsets(self, side: Sequence[End]) -> list[float]:
         """Return where the ends of a side are, upwards from the axis."""
         usual = GROUNDED_PITCH if any(not e.node for e in side) else USUAL_PITCH
-        pitch = PITCH.get(self.part.type_name, usual)
+        pitch = usual if self.is_crowded else PITCH.get(self.part.type_name, usual)
         return [pitch * ((len(side) - 1) / 2 - i) for i in range(len(side))]
+
+    @property
+    def is_crowded(self) -> bool:
+        """Whether more ends meet on a side than its own symbol has places for: it is a box then."""
+        return self.part.symbol.role == "coupling" and max(len(self.left), len(self.right)) > 2  # noqa: PLR2004
 
     @property
     def is_member(self) -> bool:
@@ -139,13 +144,14 @@ def build(cell: SymbolCell, spacing: Spacing, width: float = 0.0) -> Built:
     if is_member:
         length = end - begin
     start = begin + (end - begin - length) / 2
-    strokes = strokes_of(part, length, is_reversed=cell.is_reversed)
+    drawn = replace(part, symbol=replace(part.symbol, draw=box)) if cell.is_crowded else part
+    strokes = strokes_of(drawn, length, is_reversed=cell.is_reversed)
     symbol = Placed(part.kind, part.name, strokes).moved(start, 0)
     items = [*_wires(cell, (0.0, begin, start), (width, end, start + length)), symbol]
-    if part.type_name == "dc_motor" and (letter := text(r"\mathrm{M}")):
+    if part.type_name == "dc_motor" and not cell.is_crowded and (letter := text(r"\mathrm{M}")):
         half = (letter.width / 2, letter.height / 2)
         items.append(Placed("label", part.name, (), (letter.moved(start + length / 2 - half[0], -half[1]),)))
-    if part.type_name == "op_amp":
+    if part.type_name == "op_amp" and not cell.is_crowded:
         items += _signs(cell, start, length)
     items += _points(cell, start, length)
     boxes = [i.box for i in items]
@@ -186,7 +192,7 @@ def _wires(
 ) -> list[Placed]:
     """Draw what leads to a symbol: from the edge of its place, or from the ground."""
     part, found = cell.part, []
-    insets = INSET.get(part.type_name, (0.0, 0.2))
+    insets = (0.0, 0.2) if cell.is_crowded else INSET.get(part.type_name, (0.0, 0.2))
     for side, (edge, ground, inner), sign in ((cell.left, left, 1), (cell.right, right, -1)):
         inset = insets[len(side) > 1] * abs(right[2] - left[2])
         for one, y in zip(side, cell.offsets(side), strict=True):
@@ -194,7 +200,11 @@ def _wires(
             if at != reach:
                 bold = BOLD if one.domain == "rotation" else LINE
                 route = [(at, y), (reach, y)]
-                if len(side) > 1 and abs(y) > USUAL_PITCH / 2 and part.type_name not in PITCH:
+                if (
+                    len(side) > 1
+                    and abs(y) > USUAL_PITCH / 2
+                    and (cell.is_crowded or part.type_name not in PITCH)
+                ):
                     level = USUAL_PITCH / 2 if y > 0 else -USUAL_PITCH / 2
                     route = [(at, y), (inner, y), (inner, level), (reach, level)]
                 found.append(Placed("wire", part.name, (line(*route, width=bold),)))

@@ -198,6 +198,8 @@ class _CramerQuotients:
         numerator = self._expansion.expanded(self._closure.open(num_closed))
         num_closed, den_closed = self._without_squares(num_closed, den_closed)
         ratio, cancelled = cancel(numerator, denominator, self._images, self._radicals)
+        if numerator.is_zero:
+            cancelled = denominator
         closed = ClosedForm(self._opening, num_closed, den_closed) if cancelled.is_one else None
         return self._made(output, given, closed, ratio, self._hidden(shared * cancelled))
 

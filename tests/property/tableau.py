@@ -131,6 +131,8 @@ class _Tableau:
             "capacitor": (value * self.s, 1),
             "resistor": (1, value),
             "inductor": (1, value * self.s),
+            "acoustic_resistance": (1, value),
+            "acoustic_mass": (1, value * self.s),
         }[element.kind]
         self.law(((through, impedance), (a, -admittance), (b, admittance)))
         self.deliver(a, through, -1)
@@ -139,7 +141,7 @@ class _Tableau:
     def add_source(self, element: Element) -> None:
         domain, _, _ = SOURCES[element.kind]
         node, through = self.axis(element.port("at")[0], domain), f"{element.name}.given"
-        given = node if element.kind == "voltage_source" else through
+        given = node if element.kind in ("voltage_source", "pressure_source") else through
         self.law(((given, 1), *self.negative(element.source)))
         self.deliver(node, through, 1)
 
@@ -152,6 +154,11 @@ class _Tableau:
         node, torque = self.axis(element.port("at")[0], "rotation"), f"{element.name}.tau"
         self.law(((torque, 1), (node, -element.value("J") * self.s**2)))
         self.deliver(node, torque, -1)
+
+    def add_acoustic_compliance(self, element: Element) -> None:
+        (node,), flow = element.port("at"), f"{element.name}.q"
+        self.law(((flow, 1), (node, -element.value("C") * self.s)))
+        self.deliver(node, flow, -1)
 
     def add_rigid_body(self, element: Element) -> None:
         (node,), cg = element.port("at"), element.value("cg")
@@ -186,22 +193,89 @@ class _Tableau:
         flexibility = (length**3 / (3 * stiffness), length**2 / (2 * stiffness), length / stiffness)
         self.add_flexible_link(element, length, flexibility)
 
-    def add_dc_motor(self, element: Element) -> None:
-        (a, b), (shaft,) = element.port("terminals"), element.port("shaft")
-        current, k_t = f"{element.name}.i", element.value("k_t")
-        k_e = element.value("k_e") or k_t
+    def side(self, nodes: tuple[str, ...], factor: complex = 1) -> tuple:
+        """Return the terms of what the first node is over the second, or over ground."""
+        return tuple((node, sign * factor) for node, sign in zip(nodes, (1, -1), strict=False))
+
+    def push(self, nodes: tuple[str, ...], unknown: str, coefficient: complex = 1) -> None:
+        """Deliver into the first node, and out of the second where there is one."""
+        for node, sign in zip(nodes, (1, -1), strict=False):
+            self.deliver(node, unknown, sign * coefficient)
+
+    def add_winding(self, element: Element, moved: str, constant: str) -> None:
+        current, force = f"{element.name}.i", element.value(constant)
         impedance = element.value("L") * self.s + element.value("R")
-        self.law(((current, impedance), (shaft, k_e * self.s), (a, -1), (b, 1)))
-        self.deliver(a, current, -1)
-        self.deliver(b, current, 1)
-        self.deliver(shaft, current, k_t)
+        moving = self.side(element.port(moved), (element.value("k_e") or force) * self.s)
+        self.law(((current, impedance), *moving, *self.side(element.port("terminals"), -1)))
+        self.push(element.port("terminals"), current, -1)
+        self.push(element.port(moved), current, force)
+
+    def add_dc_motor(self, element: Element) -> None:
+        self.add_winding(element, "shaft", "k_t")
+
+    def add_voice_coil(self, element: Element) -> None:
+        self.add_winding(element, "mover", "k_f")
+
+    def add_piston(self, element: Element) -> None:
+        flow, force, area = f"{element.name}.q", f"{element.name}.f", element.value("A")
+        mover, chamber = element.port("mover"), element.port("chamber")
+        self.law(((flow, 1), *self.side(mover, -area * self.s)))
+        self.law(((force, 1), *self.side(chamber, area)))
+        self.push(chamber, flow)
+        self.push(mover, force)
+
+    def add_planetary_gear(self, element: Element) -> None:
+        rho, torque = element.value("rho"), f"{element.name}.tau"
+        teeth = zip(("sun", "ring", "carrier"), (1, rho, -1 - rho), strict=True)
+        shares = [(element.port(key)[0], share) for key, share in teeth]
+        self.law(tuple(shares))
+        for node, share in shares:
+            self.deliver(node, torque, share)
+
+    def add_coupled_inductors(self, element: Element) -> None:
+        a, b, c, d = element.port("terminals")
+        mutual = element.value("M") * self.s
+        for k, (start, end) in enumerate(((a, b), (c, d)), 1):
+            own, other = f"{element.name}.i_{k}", f"{element.name}.i_{3 - k}"
+            self.law(((own, element.value(f"L_{k}") * self.s), (other, mutual), (start, -1), (end, 1)))
+            self.push((start, end), own, -1)
+
+    def add_op_amp(self, element: Element) -> None:
+        (out,), current = element.port("out"), f"{element.name}.i"
+        needed = 1 / element.value("A")
+        if element.value("f_u"):
+            needed += self.s / element.value("f_u")
+        self.law(((out, needed), *self.side(element.port("inputs"), -1)))
+        self.deliver(out, current)
+
+    def add_controlled(self, element: Element, key: str, *, is_voltage: bool, by_current: bool) -> None:
+        gain, given, felt = element.value(key), f"{element.name}.i", f"{element.name}.felt"
+        inputs, ends = element.port("inputs"), element.port("terminals")
+        control = ((felt, -gain),) if by_current else self.side(inputs, -gain)
+        if by_current:
+            self.law(self.side(inputs))
+            self.push(inputs, felt, -1)
+        self.law((*(self.side(ends) if is_voltage else ((given, 1),)), *control))
+        self.push(ends, given)
+
+    def add_vcvs(self, element: Element) -> None:
+        self.add_controlled(element, "mu", is_voltage=True, by_current=False)
+
+    def add_vccs(self, element: Element) -> None:
+        self.add_controlled(element, "g", is_voltage=False, by_current=False)
+
+    def add_ccvs(self, element: Element) -> None:
+        self.add_controlled(element, "r", is_voltage=True, by_current=True)
+
+    def add_cccs(self, element: Element) -> None:
+        self.add_controlled(element, "beta", is_voltage=False, by_current=True)
 
     def add_transformer(self, element: Element) -> None:
-        (source,), (target,) = element.port("from"), element.port("to")
+        source, target = element.port("from"), element.port("to")
         ratio, through = element.value("ratio"), f"{element.name}.f"
-        self.law(((target, 1), (source, -ratio)))
-        self.deliver(target, through, 1)
-        self.deliver(source, through, -ratio)
+        self.law((*self.side(target), *self.side(source, -ratio)))
+        self.push(target, through)
+        self.push(source, through, -ratio)
 
     def add_gyrator(self, element: Element) -> None:
         (source,), (target,) = element.port("from"), element.port("to")
@@ -215,7 +289,7 @@ class _Tableau:
 
     def port_variables(self, node: str, through: str) -> tuple:
         """Return a gyrator port's effort, and its flow as (unknown, factor)."""
-        if dict(self.network.coordinates)[node] == "electrical":
+        if dict(self.network.coordinates)[node] in ("electrical", "acoustic"):
             return node, (through, 1)
         return through, (node, self.s)
 
@@ -243,7 +317,7 @@ class _Tableau:
                 continue
             domain = "rotation" if entry.key == "torque" else "translation"
             nodes, through = [self.axis(node, domain) for node in entry.nodes], f"{entry.name}.given"
-            self.law(((nodes[0] if entry.key == "voltage" else through, 1), (entry.name, -1)))
+            self.law(((nodes[0] if entry.key in ("voltage", "pressure") else through, 1), (entry.name, -1)))
             for node, sign in zip(nodes, (1, -1), strict=False):
                 self.deliver(node, through, sign)
 

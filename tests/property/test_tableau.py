@@ -145,8 +145,8 @@ def test_random_networks_hold_every_element_and_block_and_respond_somewhere():
 def test_the_driving_point_of_a_passive_network_is_positive_real(network):
     for at in POINTS:
         response = respond(network, "Y_1", "U_1", at)
-        electrical = network.inputs[0].key == "current"
-        immittance = response.value * (1 if electrical else at)
+        is_effort = network.inputs[0].key in ("current", "flow")
+        immittance = response.value * (1 if is_effort else at)
         assert immittance.real >= -1e-12 * response.scale
 
 

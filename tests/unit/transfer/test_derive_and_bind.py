@@ -321,3 +321,25 @@ def test_values_with_which_a_function_vanishes_hide_its_modes():
     bound = pipeline.bind(tf, {"b": 2})
     assert bound.is_zero
     assert [str(h.polynomial) for h in bound.hidden] == ["s^2 + 2*s + 4"]
+
+
+def test_a_function_that_vanishes_only_when_it_is_opened_hides_its_modes():
+    # c = (1 + rho) a and b = rho a, so that c - b - a = 0; the damped wheel turns all the same.
+    (tf,) = pipeline.derive_all(
+        pipeline.loads("""symflex = 1
+[parameters]
+rho = 1.7
+[elements]
+wheel = { type = "inertia", at = "a", J = 2 }
+oil = { type = "rotary_damper", between = ["a", "ground"], b = 3 }
+up = { type = "transformer", from = "a", to = "c", ratio = "1 + rho" }
+down = { type = "transformer", from = "a", to = "b", ratio = "rho" }
+[inputs]
+T = { torque = "a" }
+[outputs]
+Z = "c - b - a"
+""")
+    )
+    assert tf.ratio.is_zero
+    for each in (tf, pipeline.bind(tf)):
+        assert sorted((str(h.polynomial), h.multiplicity) for h in each.hidden) == [("2*s + 3", 1), ("s", 1)]
