@@ -125,6 +125,8 @@ UNITS_OF = {
 TIMES = {"T_1": "s", "T_2": "s"}
 BLOCKS = {
     "resonance": ({"omega_p": "rad/s", "zeta_p": "", "omega_z": "rad/s", "zeta_z": ""},),
+    "notch": ({"omega": "rad/s", "zeta_p": "", "zeta_z": ""}, {"omega": "rad/s", "zeta_p": ""}),
+    "low_pass": ({"omega": "rad/s", "zeta": ""}, {"omega": "rad/s", "zeta": "", "k": ""}),
     "tf": ({**TIMES, "T_3": "s"},),
     "integrator": ({"k": "1/s"}, {}),
     "lead_lag": (TIMES, {**TIMES, "k": ""}),
@@ -948,6 +950,8 @@ ENDS = {  # of a beam, at 0 or l
 BARS = ("w({x}) = 0", "w'({x}) = 0", "E*A*w'({x}) = F_w", "w({x}) = F_w")
 ANY_BLOCKS = (
     'type = "lag", T = "3 ms"',
+    'type = "notch", omega = "5 Hz", zeta_p = 0.3, zeta_z = 0.01',
+    'type = "low_pass", omega = "20 Hz", zeta = 0.7',
     'type = "integrator"',
     'type = "lead_lag", T_1 = "2 s", T_2 = "50 ms"',
     'type = "pid", k_p = 3, k_i = 2, k_d = 1, T_f = "1 ms"',

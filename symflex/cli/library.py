@@ -88,9 +88,12 @@ def elements(name: str | None, *, as_json: bool) -> int:
     """List the element and block library, or describe one entry NAME."""
     from symflex.library.blocks import BLOCKS
     from symflex.library.elements import ELEMENTS
+    from symflex.library.words import thing
 
     if name is not None and name not in (*ELEMENTS, *BLOCKS, MODEL_BLOCK):
-        hint = nearest(name, (*ELEMENTS, *BLOCKS, MODEL_BLOCK)) or "symflex elements lists them"
+        meant = thing(name)
+        nearby = nearest(name, (*ELEMENTS, *BLOCKS, MODEL_BLOCK)) or "symflex elements lists them"
+        hint = meant.hint(name) if meant else nearby
         raise UsageError(Diagnostic("SF902", f"there is no element or block '{name[:64]}'", None, hint))
     elements = [e for e in ELEMENTS.values() if name in (None, e.type_name)]
     blocks = [b for b in BLOCKS.values() if name in (None, b.type_name)]
@@ -154,6 +157,7 @@ def _describe(element: Element) -> None:
         nodes = "node" if port.terminals == 1 else f"{port.terminals} nodes"
         default = f", default {', '.join(port.default)}" if port.default is not None else ""
         pair = f"; or {port.pair}, 2 nodes, with the reaction on the second" if port.pair else ""
+        pair = "; or 2 nodes, with the reaction on the second" if port.reacts else pair
         words = DOMAIN_WORDS.get(port.domain, port.domain)
         say(_key(port.name, f"{nodes}, {words}: {port.doc}{default}{pair}"))
     for parameter in element.parameters:

@@ -55,6 +55,44 @@ class Resonance(Block):
         return omega_p**2 / omega_z**2 * zeros / poles
 
 
+class Notch(Block):
+    """A pair of poles and a pair of zeros at one frequency: unit gain at low and at high ones.
+
+    The gain at omega is ``zeta_z/zeta_p``.
+    """
+
+    type_name = "notch"
+    summary = "(s^2 + 2 zeta_z omega s + omega^2)/(s^2 + 2 zeta_p omega s + omega^2)"
+    parameters = (
+        ParameterPort("omega", "rad/s", "an angular frequency"),
+        ParameterPort("zeta_p", "1", "a damping ratio"),
+        ParameterPort("zeta_z", "1", "a damping ratio", "0"),
+    )
+
+    def transfer(self, s: Factored, values: Mapping[str, Factored]) -> Factored:
+        """Return the filter's transfer function."""
+        omega = values["omega"]
+        above, below = (s**2 + values[zeta] * omega * s * 2 + omega**2 for zeta in ("zeta_z", "zeta_p"))
+        return above / below
+
+
+class LowPass(Block):
+    """A pair of poles with unit gain at low frequency, times k: a second-order low-pass filter."""
+
+    type_name = "low_pass"
+    summary = "k omega^2/(s^2 + 2 zeta omega s + omega^2)"
+    parameters = (
+        ParameterPort("k", "", "a gain", "1"),
+        ParameterPort("omega", "rad/s", "an angular frequency"),
+        ParameterPort("zeta", "1", "a damping ratio"),
+    )
+
+    def transfer(self, s: Factored, values: Mapping[str, Factored]) -> Factored:
+        """Return the filter's transfer function."""
+        omega = values["omega"]
+        return values["k"] * omega**2 / (s**2 + values["zeta"] * omega * s * 2 + omega**2)
+
+
 class TransferFunctionBlock(Block):
     """A numerator over a denominator: expressions in s, or lists of coefficients, highest power first."""
 
@@ -149,6 +187,8 @@ BLOCKS: dict[str, Block] = {
     block.type_name: block
     for block in (
         Resonance(),
+        Notch(),
+        LowPass(),
         TransferFunctionBlock(),
         Integrator(),
         LeadLag(),

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE
 from symflex.budget import spend
-from symflex.errors import SymflexError, nearest
+from symflex.errors import SymflexError
 from symflex.expressions import (
     Expression,
     Name,
@@ -22,6 +22,8 @@ from symflex.expressions import (
     sum_of,
 )
 from symflex.library.blocks import BLOCKS, MODEL_BLOCK
+from symflex.library.elements import ELEMENTS
+from symflex.library.words import hint_of_type
 from symflex.model.analysis import named_pairs, pick_tf
 from symflex.model.linearity import EXPONENT_LIMIT
 from symflex.model.model import PlacedBlock
@@ -113,7 +115,8 @@ def _read_block(reader: Reader, entry: KeyValue, origin: Origin) -> PlacedBlock 
         return _read_model_block(reader, entry, table, origin)
     block = BLOCKS.get(text.value)
     if block is None:
-        hint = nearest(text.value, (*BLOCKS, MODEL_BLOCK)) or "types: " + ", ".join((*BLOCKS, MODEL_BLOCK))
+        hint = hint_of_type(text.value, (*BLOCKS, MODEL_BLOCK), ELEMENTS, "an element, of [elements]")
+        hint = hint or "types: " + ", ".join((*BLOCKS, MODEL_BLOCK))
         reader.note("SF216", f"unknown block type '{text.value[:60]}'", text.span, hint)
         return None
     values = _read_values(reader, entry, table, block)

@@ -8,6 +8,7 @@ from heapq import heapify, heappop, heappush
 from typing import TYPE_CHECKING
 
 from symflex.errors import Diagnostic, SpecError, nearest
+from symflex.library.blocks import BLOCKS
 from symflex.library.elements import (
     CIRCUITS,
     COMPONENT_DOMAIN,
@@ -17,6 +18,7 @@ from symflex.library.elements import (
     Port,
     Variable,
 )
+from symflex.library.words import hint_of_type
 from symflex.model.declarations import DeclaredParameter, read_label
 from symflex.model.model import (
     INPUT_KINDS,
@@ -228,7 +230,7 @@ def _element_type(reader: Reader, table: TableValue, entry: KeyValue) -> Element
         return None
     element = ELEMENTS.get(text.value)
     if element is None:
-        hint = nearest(text.value, ELEMENTS) or TYPES_HINT
+        hint = hint_of_type(text.value, ELEMENTS, BLOCKS, "a block, of [blocks]") or TYPES_HINT
         reader.note("SF216", f"unknown element type '{text.value[:60]}'", text.span, hint)
     return element
 

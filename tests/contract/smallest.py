@@ -83,6 +83,8 @@ REST = {
 
 BLOCK_VALUES = {
     "resonance": 'omega_p = "p", zeta_p = 0.1, omega_z = "q", zeta_z = 0.2',
+    "notch": 'omega = "p", zeta_p = "q"',
+    "low_pass": 'omega = "p", zeta = "q"',
     "tf": 'num = "p", den = "1 + q*s"',
     "integrator": "",
     "lead_lag": 'T_1 = "p", T_2 = "q"',

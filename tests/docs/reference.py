@@ -20,6 +20,7 @@ from symflex.errors import Text
 from symflex.expressions import parse_equation
 from symflex.library.blocks import BLOCKS
 from symflex.library.elements import ELEMENTS
+from symflex.library.words import THINGS
 from symflex.print.latex.expression import Writer
 from symflex.quantities.units import PLAIN_UNITS, PREFIXABLE_UNITS, PREFIXES
 from tests.house.repository import ROOT
@@ -69,6 +70,14 @@ def elements() -> str:
 def blocks() -> str:
     """Return one section per block, in the registry's order."""
     return "\n\n".join(_block(name, block) for name, block in BLOCKS.items())
+
+
+def things() -> str:
+    """Return what engineers call things, and what these are here."""
+    rows = [
+        (", ".join(w.replace("_", " ") for w in t.words), f"`{t.use}`" * bool(t.use), t.how) for t in THINGS
+    ]
+    return _table(rows, ("you have", "write", "how"))
 
 
 def commands() -> str:
@@ -129,13 +138,15 @@ def _text(content: str) -> str:
     return f"```text\n{content.rstrip()}\n```"
 
 
-def _table(rows: Iterable[tuple[str, ...]]) -> str:
-    head = [("key", "value", "meaning", "default"), ("---",) * 4]
-    return "\n".join(f"| {' | '.join(row)} |" for row in [*head, *rows])
+def _table(
+    rows: Iterable[tuple[str, ...]], head: tuple[str, ...] = ("key", "value", "meaning", "default")
+) -> str:
+    return "\n".join(f"| {' | '.join(row)} |" for row in [head, ("---",) * len(head), *rows])
 
 
 def _port_row(port: Port) -> tuple[str, ...]:
     count = "a node" if port.terminals == 1 else f"{port.terminals} nodes"
+    count += ", or two" * port.reacts
     default = "required" if port.default is None else ", ".join(f"`{node}`" for node in port.default)
     return f"`{port.name}`", f"{count} ({port.domain})", port.doc, default
 
@@ -163,6 +174,7 @@ def _choice_row(choice: Choice) -> tuple[str, ...]:
 PARTS: dict[str, Callable[[], str]] = {
     "elements": elements,
     "blocks": blocks,
+    "things": things,
     "commands": commands,
     "units": units,
 }

@@ -55,6 +55,12 @@ def block_value(block: Element, s: np.clongdouble) -> np.clongdouble:
         zeros = s**2 + 2 * v("zeta_z") * v("omega_z") * s + v("omega_z") ** 2
         poles = s**2 + 2 * v("zeta_p") * v("omega_p") * s + v("omega_p") ** 2
         return v("omega_p") ** 2 / v("omega_z") ** 2 * zeros / poles
+    if block.kind in ("notch", "low_pass"):
+        omega, zeta = v("omega"), v("zeta_p" if block.kind == "notch" else "zeta")
+        above = (
+            s**2 + 2 * v("zeta_z") * omega * s + omega**2 if block.kind == "notch" else v("k", 1) * omega**2
+        )
+        return above / (s**2 + 2 * zeta * omega * s + omega**2)
     if block.kind == "tf":
         return (1 + v("T_1") * s) / ((1 + v("T_2") * s) * (1 + v("T_3") * s))
     if block.kind == "integrator":

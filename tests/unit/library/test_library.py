@@ -14,6 +14,10 @@ BLOCKS = {
     'type = "resonance", omega_p = "p", zeta_p = "u", omega_z = "q", zeta_z = "v"': (p / q) ** 2
     * (s**2 + 2 * v * q * s + q**2)
     / (s**2 + 2 * u * p * s + p**2),
+    'type = "notch", omega = "p", zeta_p = "u", zeta_z = "v"': (s**2 + 2 * v * p * s + p**2)
+    / (s**2 + 2 * u * p * s + p**2),
+    'type = "notch", omega = "p", zeta_p = "u"': (s**2 + p**2) / (s**2 + 2 * u * p * s + p**2),
+    'type = "low_pass", omega = "p", zeta = "u", k = "v"': v * p**2 / (s**2 + 2 * u * p * s + p**2),
     'type = "tf", num = "p*s + 1", den = "q*s^2 + u"': (p * s + 1) / (q * s**2 + u),
     'type = "tf", num = ["p", 0, 1], den = ["q", "u"]': (p * s**2 + 1) / (q * s + u),
     'type = "tf", num = [1, 1], den = [1, -1, 1, 0]': (s + 1) / (s**3 - s**2 + s),

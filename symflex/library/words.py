@@ -1,0 +1,160 @@
+"""What engineers call things, and what these are here: for messages, ``symflex elements`` and a page.
+
+Input: a word, as somebody writes it where a type is expected.
+Output: the :class:`Thing` it names, with the element, block or command for it and a line of how.
+
+    "belt"   ->   transformer, ratio = "r_1/r_2"
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from symflex.errors import nearest
+
+if TYPE_CHECKING:
+    from collections.abc import Container, Iterable
+
+
+@dataclass(frozen=True, slots=True)
+class Thing:
+    """Something a model may have, by all its names."""
+
+    words: tuple[str, ...]  # the first one is how the page calls it
+    use: str  # element or block, or several; empty where there is none
+    how: str = ""  # what to write, where that is not plain
+
+    def hint(self, word: str) -> str:
+        """Return what to say to somebody who wrote one of the words as a type."""
+        if not self.use:
+            return f"there is no {word}: {self.how}"
+        return f"for {word} write {self.use}" + (f": {self.how}" if self.how else "")
+
+
+THINGS: tuple[Thing, ...] = (
+    # What moves
+    Thing(("mass", "body", "block", "cart", "payload", "load", "weight"), "mass"),
+    Thing(("wheel", "disc", "disk", "flywheel", "rotor", "pulley_inertia"), "inertia"),
+    Thing(
+        ("bar", "link", "rigid_bar", "rigid_beam", "rigid_arm"), "rigid_link", "with rigid_body for its mass"
+    ),
+    Thing(
+        ("pendulum", "inverted_pendulum", "pole"),
+        "rigid_body",
+        "at a pin; gravity is a torsion_spring of m*g*l, negative where it stands on its head",
+    ),
+    Thing(("damper", "dashpot", "shock_absorber", "viscous_friction"), "damper, rotary_damper"),
+    Thing(("tyre", "tire", "mount", "isolator", "bearing", "contact"), "spring", "with a damper beside it"),
+    Thing(("coupling", "joint_stiffness", "harmonic_drive", "flexspline"), "torsion_spring"),
+    Thing(("inerter",), "transformer", "to an inertia of its own: J = b*r^2, ratio = 1/r"),
+    Thing(("dry_friction", "coulomb_friction", "stiction", "backlash"), "", "it is not linear; linearise it"),
+    # Transmissions
+    Thing(
+        ("gear", "gearbox", "gears", "reducer"),
+        "transformer",
+        "ratio = what turns behind over what turns before",
+    ),
+    Thing(("planetary", "epicyclic", "differential", "power_split"), "planetary_gear"),
+    Thing(("rack", "rack_and_pinion", "pinion", "drum", "winch"), "transformer", 'ratio = "r" [m/rad]'),
+    Thing(
+        ("screw", "ball_screw", "ballscrew", "lead_screw", "leadscrew", "spindle"),
+        "transformer",
+        'ratio = "10 mm/rev"',
+    ),
+    Thing(
+        ("belt", "timing_belt", "chain", "pulley"),
+        "transformer",
+        'ratio = "r_1/r_2", with a spring for its stretch',
+    ),
+    Thing(("lever", "rocker", "bell_crank"), "transformer, rigid_link"),
+    # Structures
+    Thing(
+        ("cantilever", "flexible_arm", "arm", "flexible_link", "blade", "boom"), "beam", "fixed at one end"
+    ),
+    Thing(("flexure", "leaf_spring", "massless_arm"), "massless_beam"),
+    Thing(
+        ("truss", "truss_member", "portal", "frame_member"), "frame", "at an angle; pins join without moments"
+    ),
+    Thing(("axial_bar", "strut", "tie_rod", "drill_string"), "rod"),
+    Thing(
+        ("rope", "cable", "wire", "thread"), "string", "deflected across; a rope that pulls along is a rod"
+    ),
+    Thing(("torsion_bar", "drive_shaft", "driveshaft", "drill_pipe"), "shaft"),
+    Thing(("clamp", "clamped", "wall", "encastre", "built_in"), "fixed"),
+    Thing(("hinge", "hinged", "pinned", "simply_supported", "simple_support", "revolute"), "pin"),
+    Thing(("roller", "guide", "guided", "sliding", "prismatic"), "slider"),
+    Thing(
+        ("membrane", "plate", "shell", "solid"),
+        "",
+        "fields have one coordinate, x; take modes as resonances",
+    ),
+    # Circuits
+    Thing(("motor", "dc", "dcmotor", "servo_motor", "servomotor", "brushless", "bldc", "pmsm"), "dc_motor"),
+    Thing(("generator", "tachogenerator"), "dc_motor", "with a resistor at its terminals"),
+    Thing(
+        ("linear_motor", "solenoid", "shaker", "coil", "lorentz_actuator", "moving_coil", "vca"), "voice_coil"
+    ),
+    Thing(
+        ("loudspeaker", "speaker", "driver", "woofer", "microphone"), "voice_coil", "with a piston to its box"
+    ),
+    Thing(("piezo_actuator", "pzt", "stack", "piezoelectric"), "piezo"),
+    Thing(
+        ("electrical_transformer", "transformer_windings", "mutual_inductance"),
+        "coupled_inductors, transformer",
+    ),
+    Thing(
+        ("opamp", "operational_amplifier", "amp", "amplifier"),
+        "op_amp",
+        "a gain alone is a factor in a signal",
+    ),
+    Thing(("choke", "winding", "solenoid_coil"), "inductor"),
+    Thing(("battery", "supply", "inverter"), "voltage_source", "or an input { voltage = ... }"),
+    Thing(("controlled_source", "dependent_source", "transconductance", "ota"), "vccs, vcvs, ccvs, cccs"),
+    Thing(("transmission_line", "rlgc_line", "telegraph_line"), "[fields]", "two unknowns, v and i, along x"),
+    # Sound, liquids, heat
+    Thing(("box", "enclosure", "cavity", "volume", "accumulator"), "acoustic_compliance"),
+    Thing(("port", "vent", "tube", "neck", "inertance"), "acoustic_mass"),
+    Thing(("orifice", "valve", "leak", "restrictor", "mesh"), "acoustic_resistance"),
+    Thing(("cylinder", "diaphragm", "hydraulic_cylinder", "cone"), "piston"),
+    Thing(("pump",), "flow_source", "or an input { flow = ... }"),
+    Thing(
+        ("thermal_resistance", "thermal_capacitance", "heat"), "resistor, capacitor", "1 V is 1 K, 1 A is 1 W"
+    ),
+    # Control
+    Thing(("notch", "notch_filter", "antiresonance"), "notch"),
+    Thing(("low_pass", "lowpass", "first_order", "rc_filter", "time_constant"), "lag, low_pass"),
+    Thing(("lead", "compensator", "lead_compensator", "lag_compensator"), "lead_lag"),
+    Thing(("pi", "pd", "controller", "regulator"), "pid"),
+    Thing(("dead_time", "transport_delay", "pure_delay", "latency", "zoh", "sampling"), "delay"),
+    Thing(
+        ("gain", "summer", "sum", "sensor", "encoder", "accelerometer", "tachometer"),
+        "[signals]",
+        'e = "r - k*x"',
+    ),
+    Thing(("transfer_function", "zpk", "filter", "plant"), "tf"),
+    Thing(("saturation", "limiter", "relay", "deadzone", "quantizer"), "", "it is not linear"),
+)
+
+
+def thing(word: str) -> Thing | None:
+    """Return what a word names, in any case, with blanks or hyphens; None where nothing is known of it.
+
+    Examples
+    --------
+    >>> thing("Op-Amp").use, thing("ball screw").how
+    ('op_amp', 'ratio = "10 mm/rev"')
+    >>> thing("x") is None
+    True
+    """
+    plain = word.strip().lower().replace("-", "_").replace(" ", "_")
+    wanted = {plain, plain.replace("_", "")}
+    return next((t for t in THINGS if any({w, w.replace("_", "")} & wanted for w in t.words)), None)
+
+
+def hint_of_type(word: str, known: Iterable[str], others: Container[str], elsewhere: str) -> str | None:
+    """Return what somebody may have meant by an unknown type; ``others`` are the types of ``elsewhere``."""
+    if word in others:
+        return f"'{word}' is {elsewhere}"
+    meant = thing(word)
+    return meant.hint(word) if meant else nearest(word, known)

@@ -1,0 +1,25 @@
+"""Engineers' words, and what they lead to."""
+
+from __future__ import annotations
+
+from symflex.library.blocks import BLOCKS
+from symflex.library.elements import ELEMENTS
+from symflex.library.words import THINGS, hint_of_type
+
+
+def test_engineers_words_lead_to_elements_and_blocks_that_exist():
+    for each in THINGS:
+        assert set(each.use.split(", ")) <= {*ELEMENTS, *BLOCKS, "[fields]", "[signals]", ""}, each
+        assert each.use or each.how, each
+    words = [word for each in THINGS for word in each.words]
+    assert len(words) == len(set(words))
+    for word, hint in (
+        ("voice coil actuator", None),
+        ("rack", "for rack write transformer"),
+        ("Op-Amp", "for Op-Amp write op_amp"),
+        ("sprnig", "did you mean 'spring'?"),
+        ("pid", "'pid' is a block"),
+        ("relay", "there is no relay: it is not linear"),
+    ):
+        found = hint_of_type(word, ELEMENTS, BLOCKS, "a block")
+        assert found is None if hint is None else found.startswith(hint), word
