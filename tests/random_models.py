@@ -331,6 +331,7 @@ class _Builder:
     blocks: list[Element] = field(default_factory=list)
     pool: list[Parameter] = field(default_factory=list)
     constraints: list[dict[str, complex]] = field(default_factory=list)
+    reactions: list[dict[str, complex]] = field(default_factory=list)
 
     def chance(self, one_in: int) -> bool:
         return self.random.randrange(one_in) == one_in - 1
@@ -382,14 +383,18 @@ class _Builder:
         new = Element(kind, f"{kind}_{number}", tuple(ports.items()), tuple(values.items()), source)
         self.elements.append(new)
 
-    def constrain(self, *rows: dict[str, complex]) -> bool:
-        """Keep the rows if they are independent of those kept before; say whether they are."""
+    def constrain(self, *rows: dict[str, complex], reactions: Sequence[dict[str, complex]] = ()) -> bool:
+        """Keep the rows if they are independent of those kept before; say whether they are.
+
+        So must be the forces that keep them, which act where the rows do if not otherwise said.
+        """
         order = list(self.coordinates)
-        kept = [*self.constraints, *rows]
-        matrix = np.array([[row.get(name, 0) for name in order] for row in kept])
-        if np.linalg.matrix_rank(matrix, tol=1e-6) < len(kept):
-            return False
+        for kept in ([*self.constraints, *rows], [*self.reactions, *(reactions or rows)]):
+            matrix = np.array([[row.get(name, 0) for name in order] for row in kept])
+            if np.linalg.matrix_rank(matrix, tol=1e-6) < len(kept):
+                return False
         self.constraints.extend(rows)
+        self.reactions.extend(reactions or rows)
         return True
 
     # -- the tree
@@ -518,18 +523,20 @@ class _Builder:
             more = {"A": self.parameter(""), **({"f_u": self.parameter("rad/s")} if self.chance(2) else {})}
             needed = 1 / float(more["A"].value) + (0.31 + 0.57j) * ("f_u" in more)
             law = {n: -felt.get(n, 0) + needed * (n == out) for n in {*felt, out}}
-            if self.constrain(law):
+            if self.constrain(law, reactions=[{out: 1}]):
                 self.add(kind, {"inputs": inputs, "out": out}, **more)
             return
         ends = (out, self.pick([GROUND, *(n for n in names if n != out)]))
         gain = self.parameter(CONTROLLED[kind][1])
         rows = [felt] if kind in ("ccvs", "cccs") else []
+        reactions = list(rows)
         if kind in ("vcvs", "ccvs"):
             own = {n: c for n, c in zip(ends, (1, -1), strict=True) if n != GROUND}
             # A current that controls may be any: its law alone does not tell whether voltages are determined.
             follow = float(gain.value) if kind == "vcvs" else 0.0
             rows.append({n: own.get(n, 0) - follow * felt.get(n, 0) for n in {*own, *felt}})
-        if not rows or self.constrain(*rows):
+            reactions.append(own)
+        if not rows or self.constrain(*rows, reactions=reactions):
             self.add(kind, {"inputs": inputs, "terminals": ends}, **{CONTROLLED[kind][0]: gain})
 
     def add_transformer(self) -> None:
@@ -711,6 +718,10 @@ def _passive_part(random: Random, *, reciprocal: bool) -> _Builder:
 def networks(random: Random) -> Network:
     """Return a network of any elements, with signals, blocks and sources."""
     builder = _passive_part(random, reciprocal=False)
+    if builder.chance(3):
+        for _ in range(2):
+            builder.add_scalar("electrical")
+        builder.add_active()
     inputs, signals = [], []
     if builder.chance(2):
         signals = builder.add_signals("U_1")

@@ -127,7 +127,7 @@ def test_random_networks_hold_every_element_and_block_and_respond_somewhere():
     kinds = set()
 
     @given(networks())
-    @settings(max_examples=120)
+    @settings(max_examples=250)
     def draw(network):
         kinds.update(network.kinds)
         entries = tomllib.loads(to_toml(network))
