@@ -28,6 +28,7 @@ TEMPLATES: dict[str, str] = {
     "two_mass": "Two masses joined by a spring and a damper.",
     "motor_axis": "A motor with a current loop, a ball screw and a carriage.",
     "motor_loop": "Current, velocity and position loop of a motor with a load.",
+    "servo": "PI speed loop of a servo drive with an elastic shaft.",
     "bending_beam": "A sliding mass, a massless beam and a rigid body at its end.",
     "sliding_beam": "A beam that slides at one end, as a boundary-value problem.",
     "flexible_arm": "A flexible arm on a driven hub, with a gripper at its tip.",
