@@ -438,6 +438,12 @@ class FitOptions:
     slope: int | None = option(
         None, "--slope", least=-6, most=6, help="Without --base: the power of s; chosen if absent."
     )
+    columns: str = option(
+        "",
+        "--columns",
+        metavar="WORDS",
+        help="What the columns are, such as f,re,im or f_khz,-,mag_db,phase_deg; arrays f=NAME,h=NAME; s21.",
+    )
     averages: float | None = option(
         None, "--averages", type=float, least=1, help="Independent averages, where the file does not say."
     )

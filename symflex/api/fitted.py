@@ -138,6 +138,7 @@ def fit(
     start: Literal["auto", "peaks", "vector", "aaa"] = "auto",
     criterion: Literal["bic", "aicc"] = "bic",
     band: tuple[float, float] | None = None,
+    columns: str = "",
     averages: float | None = None,
     window: Literal["hann", "none"] | None = None,
     gain: bool = False,
@@ -151,7 +152,7 @@ def fit(
     Parameters
     ----------
     data : str, Path, MeasuredResponse or a sequence of them
-        Files (.csv, .uff, .mat, .npz) or responses; several are fitted together and share their poles.
+        Files (see :func:`read_measurement`) or responses; several are fitted together and share their poles.
     base : str or Path, optional
         The specification whose transfer function the resonances are multiplied by; without it a gain and a
         power of s.
@@ -165,6 +166,8 @@ def fit(
         ``bic`` (Schwarz 1978) or ``aicc`` (Hurvich and Tsai 1989).
     band : (float, float), optional
         Only lines between these frequencies [Hz].
+    columns : str
+        What the columns of the files are, where these do not say: see :func:`read_measurement`.
     averages : float, optional
         Independent averages, where the data do not say.
     window : str, optional
@@ -209,7 +212,7 @@ def fit(
     given = [data] if isinstance(data, str | Path | MeasuredResponse) else list(data)
     responses: list[MeasuredResponse] = []
     for one in given:
-        responses += [one] if isinstance(one, MeasuredResponse) else read_measurement(one)
+        responses += [one] if isinstance(one, MeasuredResponse) else read_measurement(one, columns)
     asked = FitOptions(
         base=base,
         tfs=[tf] if isinstance(tf, str) else list(tf),

@@ -4,18 +4,25 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from symflex.cli.command import Specification, bare_command, command_of, first_pair
 from symflex.cli.reporting import check_place, emit_json, note, say, terminal_width
 from symflex.errors import Diagnostic, FitError, SymflexError, UsageError
 from symflex.options import FitOptions, MeasureOptions
 
+if TYPE_CHECKING:
+    from symflex.data.measurement import MeasuredResponse
+
 SUFFIXES = (".pdf", ".png", ".svg")
 
 
 @bare_command("fit", FitOptions)
 def fit(given: FitOptions) -> int:
-    """Fit resonances to the frequency responses in DATA: .csv, .uff, .mat or .npz.
+    """Fit resonances to the frequency responses in DATA: text, .frd, .zma, .s1p, .s2p, .uff, .mat, .npz, .npy.
+
+    Text in columns is read as instruments and programs save it. What a file does not say is guessed and
+    printed, one line a guess, and --columns overrules it; what could mean two things is asked for.
 
     On top of the transfer function --base SPEC --tf OUT/IN, or of a gain and a power of s, each resonance
     adds a pair of poles and a pair of zeros. Several responses are fitted together and share their poles.
@@ -29,7 +36,7 @@ def fit(given: FitOptions) -> int:
     from symflex import pipeline
     from symflex.data.fitting import mode_shapes
     from symflex.data.fitting.text import fit_json, fit_text
-    from symflex.data.measurement import prepared, read_measurement
+    from symflex.data.measurement import prepared
     from symflex.files.write import write_atomically
 
     if given.tfs and given.base is None:
@@ -41,7 +48,7 @@ def fit(given: FitOptions) -> int:
             check_place(name, endings)
     if given.base is not None:
         Specification(str(given.base), tuple(map(str, given.allow_outside)), {}).load()
-    read = [response for path in given.data for response in read_measurement(str(path))]
+    read = _read(given)
     every = prepared(read, given.band, given.averages, given.window)
     measured = every
     if given.driving:
@@ -80,6 +87,19 @@ def fit(given: FitOptions) -> int:
             save(draw_fit(found, r), one)
             note(f"wrote {one}")
     return 0
+
+
+def _read(given: FitOptions) -> list[MeasuredResponse]:
+    """Return the responses of all files, and print what was guessed of each."""
+    from symflex.data.measurement import read_measurement
+
+    read: list[MeasuredResponse] = []
+    for path in given.data:
+        responses = read_measurement(str(path), given.columns)
+        for guess in dict.fromkeys(guess for one in responses for guess in one.guesses):
+            note(f"{path}: {guess}")
+        read += responses
+    return read
 
 
 @command_of("measure", MeasureOptions)

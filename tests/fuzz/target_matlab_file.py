@@ -19,7 +19,8 @@ def seeds():
     found = []
     for form, is_compressed in (("4", False), ("5", False), ("5", True)):
         buffer = io.BytesIO()
-        more = {"tf": np.array(["X/F"], object), "s": {"a": 1}} if form == "5" else {}
+        nested = {"w": RESPONSE.frequency_hz, "P": {"mag": np.abs(RESPONSE.values), "phase": np.ones(6)}}
+        more = {"tf": np.array(["X/F"], object), "s": nested} if form == "5" else {}
         scipy.io.savemat(buffer, arrays | more, format=form, do_compression=is_compressed)
         found.append(buffer.getvalue())
     return found

@@ -18,7 +18,8 @@ from __future__ import annotations
 import re
 import zipfile
 import zlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from io import BytesIO
 from math import prod
 from typing import Any, Final, Literal
@@ -131,7 +132,7 @@ def read_archive(data: bytes, limit: int, members: int) -> Arrays:
             infos = file.infolist()
             if len(infos) > members or sum(info.file_size for info in infos) > limit:
                 raise OverflowError
-            return {info.filename.removesuffix(_ENDING): _array(_member(file, info)) for info in infos}
+            return {info.filename.removesuffix(_ENDING): read_array(_member(file, info)) for info in infos}
     except (zipfile.BadZipFile, zlib.error, OSError, EOFError, KeyError, NotImplementedError) as error:
         raise ValueError(str(error)[:100] or CUT) from None
 
@@ -157,8 +158,8 @@ def _member(file: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:
     return content
 
 
-def _array(content: bytes) -> npt.NDArray[Any]:
-    """Return the array of an .npy file."""
+def read_array(content: bytes) -> npt.NDArray[Any]:
+    """Return the array of an .npy file; ValueError with the reason when it is none of numbers or texts."""
     reader = ByteReader(content)
     require(bytes(reader.take(len(_MAGIC))) == _MAGIC, "a member is not an array")
     major = reader.integer("u1")
@@ -264,7 +265,7 @@ _STORED: Final = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4",
 _TEXT_KINDS: Final = {2: "utf-8", 16: "utf-8", 4: "utf-16", 17: "utf-16", 18: "utf-32"}
 _MATRIX, _COMPRESSED = 14, 15
 """Data types of elements: an array, and a compressed element."""
-_CELL, _CHAR, _NUMERIC = 1, 4, range(6, 16)
+_CELL, _STRUCT, _OBJECT, _CHAR, _NUMERIC, _OPAQUE = 1, 2, 3, 4, range(6, 16), 17
 _COMPLEX_FLAG = 0x0800
 _STORED_4: Final = ("f8", "f4", "i4", "i2", "u2", "u1")
 _TEXT_4, _LAST_MOPT = 1, 4999
@@ -276,7 +277,16 @@ VARIABLES_LIMIT: Final = 10_000
 TEXT_LIMIT = 1000
 """Characters of a line: of texts, numpy gives each the room of the longest."""
 _OTHER: Final[npt.NDArray[Any]] = np.empty(0, object)
-"""What stands for a structure, a sparse matrix and the like, whose content nobody asks for."""
+"""What stands for a sparse matrix and the like, whose content nobody asks for."""
+DEEPEST = 8
+"""Levels of structures in structures, and of cells."""
+
+
+@dataclass(frozen=True, slots=True)
+class ClassName:
+    """What stands for an object of MATLAB, whose content only MATLAB can read."""
+
+    name: str
 
 
 class NewerFileError(ValueError):
@@ -287,7 +297,9 @@ def read_variables(data: bytes, limit: int) -> Arrays:
     """Return the variables of a MATLAB file by name; compressed ones may grow to ``limit`` bytes together.
 
     Numbers and logical values have their shape without dimensions of size one, text is an array of lines,
-    cells of text an array of their texts; of what is none of these there is an empty array of objects.
+    cells of text an array of their texts, an object one :class:`ClassName`; a field of a structure is called
+    ``data.P.frf``, of the second of several ``data(2).P.frf``, a cell ``c{3}``. Of what is none of these
+    there is an empty array of objects.
     ValueError with the reason: no such file, or cut short; OverflowError too large, or too many variables.
     """
     if 0 in data[:4]:  # in version 5 text stands there
@@ -316,9 +328,22 @@ def read_variables(data: bytes, limit: int) -> Arrays:
             require(stream.eof, CUT)
             kind, content = _element(ByteReader(inflated, order))
         if kind == _MATRIX:
-            name, array = _matrix(ByteReader(content, order), are_cells_read=True)
-            found[name] = array
+            name, value = _matrix(ByteReader(content, order), DEEPEST)
+            _flatten(name, value, found)
+            if len(found) > VARIABLES_LIMIT:
+                raise OverflowError
     raise OverflowError
+
+
+_Value = npt.NDArray[Any] | Mapping[str, "_Value"]
+
+
+def _flatten(name: str, value: _Value, found: Arrays) -> None:
+    if not isinstance(value, Mapping):
+        found[name] = value
+        return
+    for field, inner in value.items():
+        _flatten(f"{name}{field}", inner, found)
 
 
 def _element(reader: ByteReader) -> tuple[int, memoryview]:
@@ -332,31 +357,65 @@ def _element(reader: ByteReader) -> tuple[int, memoryview]:
     return kind, content
 
 
-def _matrix(reader: ByteReader, *, are_cells_read: bool) -> tuple[str, npt.NDArray[Any]]:
+def _matrix(reader: ByteReader, depth: int) -> tuple[str, _Value]:
     """Return name and value of an array: flags, dimensions, name, then what its class asks for."""
     flags = ByteReader(_element(reader)[1], reader.order).integer("u4")
+    kind = flags & 0xFF
+    if kind == _OPAQUE:
+        name, _, of = (bytes(_element(reader)[1]).decode("latin-1")[:_NAME_LIMIT] for _ in range(3))
+        return name, np.array([ClassName(of)], object)
     dimensions = _numbers(*_element(reader), reader.order)
     shape = [int(size) for size in dimensions]
     name = bytes(_element(reader)[1]).decode("latin-1")[:_NAME_LIMIT]
-    kind = flags & 0xFF
     if kind == _CHAR:
         return name, _lines(*_element(reader), reader.order, shape)
-    if kind == _CELL and are_cells_read:
-        cells = []
-        while reader.left:
-            inner, content = _element(reader)
-            if inner == _MATRIX and content:
-                cells.append(_matrix(ByteReader(content, reader.order), are_cells_read=False)[1])
-                if len(cells) > VARIABLES_LIMIT:
-                    raise OverflowError
-        is_text = all(cell.dtype.kind == "U" and cell.size == 1 for cell in cells)
-        return name, np.array([str(cell.item()) for cell in cells]) if cells and is_text else _OTHER
+    if kind == _OBJECT:
+        of = bytes(_element(reader)[1]).decode("latin-1")[:_NAME_LIMIT]
+        return name, np.array([ClassName(of)], object)
+    if kind == _CELL and depth:
+        return name, _cells(_inner(reader, depth))
+    if kind == _STRUCT and depth:
+        return name, _fields(reader, depth)
     if kind not in _NUMERIC:
         return name, _OTHER
     values = _shaped(_numbers(*_element(reader), reader.order), shape)
     if flags & _COMPLEX_FLAG:
         values = _complex(values, _shaped(_numbers(*_element(reader), reader.order), shape))
     return name, values
+
+
+def _inner(reader: ByteReader, depth: int) -> list[_Value]:
+    """Return the arrays that follow, which are those of a cell array or a structure."""
+    values: list[_Value] = []
+    while reader.left:
+        inner, content = _element(reader)
+        if inner == _MATRIX:
+            values.append(_matrix(ByteReader(content, reader.order), depth - 1)[1] if content else _OTHER)
+            if len(values) > VARIABLES_LIMIT:
+                raise OverflowError
+    return values
+
+
+def _cells(values: Sequence[_Value]) -> _Value:
+    texts = [v for v in values if not isinstance(v, Mapping) and v.dtype.kind == "U" and v.size == 1]
+    if values and len(texts) == len(values):
+        return np.array([str(text.item()) for text in texts])
+    return {f"{{{i + 1}}}": value for i, value in enumerate(values)}
+
+
+def _fields(reader: ByteReader, depth: int) -> _Value:
+    """Return the fields of a structure, or of an array of them: the names' common length, names, values."""
+    length = ByteReader(_element(reader)[1], reader.order).integer("i4")
+    text = bytes(_element(reader)[1])
+    require(0 < length <= _NAME_LIMIT + 1, "names of fields of an unknown length")
+    names = [text[i : i + length].split(b"\0")[0].decode("latin-1") for i in range(0, len(text), length)]
+    values = _inner(reader, depth)
+    many = len(values) > len(names)
+    return {
+        (f"({i // len(names) + 1})" if many else "") + f".{names[i % len(names)]}": value
+        for i, value in enumerate(values)
+        if names
+    }
 
 
 def _numbers(kind: int, content: memoryview, order: str) -> npt.NDArray[Any]:

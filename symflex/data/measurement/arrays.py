@@ -1,14 +1,23 @@
-"""Frequency responses as named arrays: what .npz and .mat files hold."""
+"""Frequency responses as named arrays: what .npz, .npy and .mat files hold."""
 
 from __future__ import annotations
 
 import zlib
-from collections.abc import Mapping
-from typing import Final
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any, Final
 
 import numpy as np
+import numpy.typing as npt
 
-from symflex.data.measurement.array_files import NewerFileError, read_archive, read_variables
+from symflex.data.measurement.array_files import (
+    ClassName,
+    NewerFileError,
+    read_archive,
+    read_array,
+    read_variables,
+)
+from symflex.data.measurement.columns import Column, Meaning, assembled, columns_asked
 from symflex.data.measurement.measured_response import (
     MAX_BYTES,
     MAX_RESPONSES,
@@ -20,17 +29,40 @@ from symflex.data.measurement.measured_response import (
     unit_of,
     window_of,
 )
-from symflex.errors import DataError, Diagnostic
+from symflex.errors import DataError, Diagnostic, UsageError
 
-FREQUENCY: Final = ("frequency_hz", "frequency", "freq", "f", "f_hz")
-ANGULAR: Final = ("omega", "w")
-VALUES: Final = ("values", "h", "frf", "g", "response", "h1", "tf_values")
-COHERENCE: Final = ("coherence", "coh", "gamma2")
+Array = npt.NDArray[Any]
+Arrays = Mapping[str, Array]
+
+FREQUENCY: Final = (
+    "frequency_hz", "frequency", "freq", "f", "f_hz", "freq_hz", "fhz", "freqs", "frequencies", "hz", "faxis",
+    "f_axis", "freqaxis", "freq_axis", "fvec", "freq_vec", "freqvec", "frequency_vector",
+)  # fmt: skip
+ANGULAR: Final = ("omega", "w", "wout", "om", "w_rad", "omega_rad", "freq_rad", "rad_s")
+VALUES: Final = (
+    "values", "h", "frf", "frfs", "g", "response", "responsedata", "h1", "txy", "tf_values", "tf_data", "hf",
+    "frf_avg", "h_avg", "tfe", "resp", "z", "p",
+)  # fmt: skip
+COHERENCE: Final = ("coherence", "coh", "gamma2", "cxy", "cohere")
 PARTS: Final = (("re", "im"), ("real", "imag"))
+MAGNITUDES: Final = (
+    "mag",
+    "magnitude",
+    "mag_db",
+    "magdb",
+    "magnitude_db",
+    "amplitude",
+    "amp",
+    "gain",
+    "gain_db",
+)
+PHASES: Final = ("phase", "phase_deg", "phase_rad", "ph", "phi", "angle")
 _HINT: Final = "arrays: frequency_hz (n), values (n or m x n, complex), coherence, averages, window, tf"
+ROUND: Final = 1e-7
+"""Relative deviation from a decimal of three digits, below which a number was meant to be one."""
 
 
-def read_npz(name: str, data: bytes, stem: str) -> tuple[MeasuredResponse, ...]:
+def read_npz(name: str, data: bytes, stem: str, asked: str = "") -> tuple[MeasuredResponse, ...]:
     """Read responses from a numpy archive; nothing in it is unpickled.
 
     SF601 no such archive; otherwise as :func:`responses_of`; SF607 too large.
@@ -41,35 +73,62 @@ def read_npz(name: str, data: bytes, stem: str) -> tuple[MeasuredResponse, ...]:
         raise _unreadable(name, "a numpy archive (.npz)", error) from None
     except OverflowError:
         raise _too_large(name) from None
-    return responses_of(arrays, name, stem)
+    return responses_of(arrays, name, stem, asked)
 
 
-def read_mat(name: str, data: bytes, stem: str) -> tuple[MeasuredResponse, ...]:
+def read_npy(name: str, data: bytes, stem: str, asked: str = "") -> tuple[MeasuredResponse, ...]:
+    """Read responses from one array, a matrix of columns; SF601 where it is none."""
+    try:
+        array = read_array(data)
+    except ValueError as error:
+        raise _unreadable(name, "a numpy array (.npy)", error) from None
+    return responses_of({"array": array}, name, stem, asked)
+
+
+def read_mat(name: str, data: bytes, stem: str, asked: str = "") -> tuple[MeasuredResponse, ...]:
     """Read responses from a MATLAB file of version 4 to 7.
 
-    SF601 no such file, or version 7.3; otherwise as :func:`responses_of`; SF607 too large.
+    SF601 no such file, version 7.3, or a file of objects alone; otherwise as :func:`responses_of`; SF607 too
+    large.
     """
     try:
         arrays = read_variables(data, MAX_BYTES)
     except NewerFileError:
         message = f"'{name}' is a MATLAB file of version 7.3"
-        raise DataError(Diagnostic("SF601", message, None, "save it with -v7")) from None
+        hint = "in MATLAB: load('FILE.mat'), then save('FILE.mat', '-v7')"
+        raise DataError(Diagnostic("SF601", message, None, hint)) from None
     except (ValueError, zlib.error) as error:
         raise _unreadable(name, "a MATLAB file (.mat)", error) from None
     except OverflowError:
         raise _too_large(name) from None
-    return responses_of(arrays, name, stem)
+    objects = {k: a.item() for k, a in arrays.items() if a.dtype.kind == "O" and a.size}
+    plain = {k: a for k, a in arrays.items() if a.dtype.kind != "O" and not k.startswith("__") and k}
+    objects = {k: o for k, o in objects.items() if isinstance(o, ClassName) and k}
+    if objects and not any(a.size > 2 and a.dtype.kind in "fciu" for a in plain.values()):  # noqa: PLR2004
+        variable, of = next(iter(objects.items()))
+        message = (
+            f"'{name}': {variable[:40]} is an object of the class {of.name[:40]}, which MATLAB alone reads"
+        )
+        hint = (
+            f"in MATLAB: [H, w] = frdata({variable}); save('FILE.mat', 'H', 'w', '-v7') "
+            f"(w in rad/s, unless {variable}.FrequencyUnit says Hz: then call it f)"
+        )
+        raise DataError(Diagnostic("SF601", message, None, hint))
+    return responses_of(plain, name, stem, asked)
 
 
-def responses_of(arrays: Mapping[str, np.ndarray], name: str, stem: str) -> tuple[MeasuredResponse, ...]:
+def responses_of(arrays: Arrays, name: str, stem: str, asked: str = "") -> tuple[MeasuredResponse, ...]:
     """Return the responses that named arrays hold.
 
-    These are ``frequency_hz`` (n) or ``omega`` [rad/s]; ``values`` (n, or m rows of n), or ``re`` and ``im``;
-    names are compared without case, and some usual ones are understood. ``coherence``, ``averages``,
-    ``window``, ``unit``, ``tf`` (m names), ``synthetic`` where known. Messages call the file ``name``;
+    These are ``frequency_hz`` (n) or ``omega`` [rad/s]; ``values`` (n, or m rows of n, or more dimensions of
+    which the last is n), ``re`` and ``im``, or ``mag`` and ``phase``; names are compared without case, and
+    some usual ones are understood. ``coherence``, ``averages``, ``window``, ``unit``, ``tf`` (m names),
+    ``synthetic`` where known. Fields of structures are found by their last names, each with the frequency
+    nearest above it. A matrix alone has columns: the frequency, then values. ``asked`` names arrays
+    (``f=freq,h=G``) or columns of a matrix, as ``--columns`` does. Messages call the file ``name``;
     responses are called ``stem`` when the file gives no name.
 
-    SF602 arrays missing or of the wrong shape; SF603, SF604 values; SF605 none, or too few.
+    SF602 arrays missing, ambiguous or of the wrong shape; SF603, SF604 values; SF605 none, or too few.
 
     Examples
     --------
@@ -77,15 +136,80 @@ def responses_of(arrays: Mapping[str, np.ndarray], name: str, stem: str) -> tupl
     >>> one.name, one.frequency_hz.size
     ('a', 8)
     """
-    known = {key.lower(): value for key, value in arrays.items()}
+    if "=" in asked:
+        arrays = _renamed(arrays, asked, name)
+    matrix = _matrix_of(arrays)
+    if matrix is not None and "=" not in asked:
+        return _from_matrix(*matrix, name, stem, asked)
+    if asked and "=" not in asked:
+        hint = f"such as --columns f=NAME,h=NAME; it has {listed_names(list(arrays))}"
+        raise UsageError(
+            Diagnostic("SF902", f"'{name}' holds several arrays: --columns names them", None, hint)
+        )
+    scopes = list(dict.fromkeys(key.rpartition(".")[0] for key in arrays))
+    found: list[MeasuredResponse] = []
+    for scope in scopes:
+        own = {k.rpartition(".")[2].lower(): a for k, a in arrays.items() if k.rpartition(".")[0] == scope}
+        if _has_values(own):
+            above = _seen_from(arrays, scope)
+            called = stem if sum(_has_values_in(arrays, s) for s in scopes) == 1 else scope or stem
+            found += _from_scope(above | own, name, called)
+    return tuple(found) if found else _from_unknown(arrays, name, stem)
 
-    def first(names: tuple[str, ...]) -> np.ndarray | None:
-        return next((known[n] for n in names if n in known), None)
 
-    frequency = first(FREQUENCY)
-    if frequency is None and (angular := first(ANGULAR)) is not None:
-        frequency = _numeric(angular, name, "omega").real / (2 * np.pi)
-    values = first(VALUES)
+def _renamed(arrays: Arrays, asked: str, name: str) -> dict[str, Array]:
+    """Return the arrays that ``f=freq,h=G`` names; SF902 where there is none, or the left side is unknown."""
+    words = {"f": "frequency_hz", "omega": "omega", "w": "omega", "h": "values", "coh": "coherence"}
+    known = {*words, "re", "im", "mag", "mag_db", "phase", "phase_deg", "phase_rad"}
+    found: dict[str, Array] = {}
+    for part in asked.split(","):
+        kind, _, key = (text.strip() for text in part.partition("="))
+        if kind not in known or key not in arrays:
+            what = f"--columns {part[:60]}: " + (
+                f"no array '{key[:40]}'" if kind in known else f"unknown '{kind}'"
+            )
+            hint = f"left of = stand {', '.join(sorted(known))}, right of it {listed_names(list(arrays))}"
+            raise UsageError(Diagnostic("SF902", f"'{name}': {what}", None, hint))
+        found[words.get(kind, kind)] = arrays[key]
+    return found
+
+
+def _has_values(own: Arrays) -> bool:
+    return (
+        any(v in own for v in VALUES)
+        or any(a in own and b in own for a, b in PARTS)
+        or _polar(own) is not None
+    )
+
+
+def _has_values_in(arrays: Arrays, scope: str) -> bool:
+    return _has_values(
+        {k.rpartition(".")[2].lower(): a for k, a in arrays.items() if k.rpartition(".")[0] == scope}
+    )
+
+
+def _seen_from(arrays: Arrays, scope: str) -> dict[str, Array]:
+    """Return by their last names the arrays of the structures around a scope; the nearest one counts."""
+    found: dict[str, Array] = {}
+    parts = scope.split(".") if scope else []
+    for depth in range(len(parts)):
+        outer = ".".join(parts[:depth])
+        found |= {k.rpartition(".")[2].lower(): a for k, a in arrays.items() if k.rpartition(".")[0] == outer}
+    return {
+        k: a for k, a in found.items() if k in (*FREQUENCY, *ANGULAR, "frequencyunit", "units", "averages")
+    }
+
+
+def _polar(own: Arrays) -> tuple[str, str] | None:
+    size = next((n for n in MAGNITUDES if n in own), None)
+    turn = next((n for n in PHASES if n in own), None)
+    return None if size is None or turn is None else (size, turn)
+
+
+def _from_scope(known: Arrays, name: str, stem: str) -> list[MeasuredResponse]:
+    guesses: list[str] = []
+    lines = _frequency(known, name, guesses)
+    values = next((known[n] for n in VALUES if n in known), None)
     if values is None:
         values = next(
             (
@@ -95,13 +219,69 @@ def responses_of(arrays: Mapping[str, np.ndarray], name: str, stem: str) -> tupl
             ),
             None,
         )
-    if frequency is None or values is None:
-        what = "frequency_hz" if frequency is None else "values"
-        message = f"'{name}' has no array {what}; it has {listed_names(list(arrays)) or 'none'}"
+    if lines is None or (values is None and _polar(known) is None):
+        what = "frequency_hz" if lines is None else "values"
+        message = f"'{name}' has no array {what}; it has {listed_names(list(known)) or 'none'}"
         raise DataError(Diagnostic("SF602", message, None, _HINT))
-    lines = _numeric(frequency, name, "frequency_hz").real.ravel()
-    table = _rows(_numeric(values, name, "values"), lines.size, name, "values")
-    coherence = first(COHERENCE)
+    if values is None:
+        table = _polar_rows(known, lines, name, guesses)
+    else:
+        table = _rows(_numeric(values, name, "values"), lines.size, name, "values")
+    return _responses(known, lines, table, name, stem, guesses)
+
+
+def _frequency(known: Arrays, name: str, guesses: list[str]) -> Array | None:
+    """Return the frequencies [Hz], None where no array is called so."""
+    key = next((n for n in (*FREQUENCY, *ANGULAR) if n in known), None)
+    if key is None:
+        return None
+    lines = np.asarray(_numeric(known[key], name, key).real.ravel(), np.float64)
+    unit = next(
+        (_word(known[u]).lower() for u in ("frequencyunit", "frequency_unit", "units") if u in known), ""
+    )
+    if key in ANGULAR:
+        guesses.append(f"'{key}' is read in rad/s")
+        return lines / (2 * np.pi)
+    if "rad" in unit:
+        return lines / (2 * np.pi)
+    if key == "frequency" and "responsedata" in known and unit not in ("hz", "khz", "mhz", "ghz"):
+        guesses.append("'Frequency' beside 'ResponseData' is read in rad/s, MATLAB's default")
+        return lines / (2 * np.pi)
+    scale = {"khz": 1e3, "mhz": 1e6, "ghz": 1e9}.get(unit, 1.0)
+    if not unit and "hz" not in key:
+        guesses.append(f"'{key}' is read in Hz")
+    return lines * scale
+
+
+def _polar_rows(known: Arrays, lines: Array, name: str, guesses: list[str]) -> Array:
+    """Return rows of values from magnitudes and phases, with units as names or numbers say."""
+    size, turn = _polar(known) or ("", "")
+    sizes = _rows(_numeric(known[size], name, size), lines.size, name, size)
+    turns = _rows(_numeric(known[turn], name, turn), lines.size, name, turn)
+    if len(sizes) != len(turns):
+        message = f"'{name}': {len(sizes)} rows of {size} for {len(turns)} of {turn}"
+        raise DataError(Diagnostic("SF602", message, None, _HINT))
+    rows = []
+    words = [size if "_" in size or not size.endswith("db") else "mag_db", turn]
+    of_size, of_turn = columns_asked(",".join(words).replace("ph,", "phase,"), 2)
+    if "db" not in size:
+        of_size = replace(of_size, scale="unknown", word=size)
+    for one, two in zip(sizes, turns, strict=True):
+        columns = [
+            Column("frequency", Meaning("frequency"), lines),
+            Column(size, of_size, one.real),
+            Column(turn, replace(of_turn, kind="phase"), two.real),
+        ]
+        made, said = assembled(columns, name, None)
+        guesses += [s for s in said if s not in guesses]
+        rows.append(made[0].values)
+    return np.array(rows)
+
+
+def _responses(
+    known: Arrays, lines: Array, table: Array, name: str, stem: str, guesses: Sequence[str]
+) -> list[MeasuredResponse]:
+    coherence = next((known[n] for n in COHERENCE if n in known), None)
     weights = (
         None
         if coherence is None
@@ -114,7 +294,7 @@ def responses_of(arrays: Mapping[str, np.ndarray], name: str, stem: str) -> tupl
     names = [str(n) for n in np.atleast_1d(known["tf"]).ravel()] if "tf" in known else []
     if len(names) != len(table):
         names = [stem] if len(table) == 1 else [f"{stem} {i + 1}" for i in range(len(table))]
-    found_responses = []
+    found = []
     for i, row in enumerate(table):
         response = MeasuredResponse(
             names[i],
@@ -126,24 +306,136 @@ def responses_of(arrays: Mapping[str, np.ndarray], name: str, stem: str) -> tupl
             unit_of(_word(known["unit"]), name) if "unit" in known else "",
             "synthetic" in known and _word(known["synthetic"]).lower() in ("yes", "true", "1", "1.0"),
             (_word(known["note"]),) if "note" in known else (),
+            tuple(guesses),
         )
-        found_responses.append(checked_response(response, name, nowhere))
-    return tuple(found_responses)
+        found.append(checked_response(response, name, nowhere))
+    return found
 
 
-def _word(array: np.ndarray) -> str:
+def _matrix_of(arrays: Arrays) -> tuple[str, Array] | None:
+    """Return the matrix that is all a file holds, its first column going up; rows are turned to columns."""
+    large = [(k, a) for k, a in arrays.items() if a.size > 2 and a.dtype.kind in "fciu"]  # noqa: PLR2004
+    if len(large) != 1 or large[0][1].ndim != 2:  # noqa: PLR2004
+        return None
+    key, array = large[0]
+    for matrix in (array, array.T):
+        if matrix.shape[0] > matrix.shape[1] >= 2 and _goes_up(matrix[:, 0]):  # noqa: PLR2004
+            return key, matrix
+    return None
+
+
+def _goes_up(array: Array) -> bool:
+    with np.errstate(all="ignore"):
+        steps = np.diff(array.real)
+    return bool(array.size > 2 and np.all(np.imag(array) == 0) and np.all(steps > 0) and array[0].real >= 0)  # noqa: PLR2004
+
+
+def _from_matrix(key: str, matrix: Array, name: str, stem: str, asked: str) -> tuple[MeasuredResponse, ...]:
+    """Read a matrix of columns: the frequency, then complex values; real ones only as ``asked``."""
+    width = matrix.shape[1]
+    numbers = [matrix[:, 0].real.astype(np.float64), *(matrix[:, i] for i in range(1, width))]
+    if matrix.dtype.kind != "c":
+        numbers = [n.astype(np.float64) for n in numbers]
+    guesses: list[str] = []
+    names = [f"column {i + 1}" for i in range(width)]
+    if asked:
+        meanings = columns_asked(asked, width)
+    elif matrix.dtype.kind == "c":
+        unit = unit_by_round_ends(numbers[0])
+        if unit is None:
+            raise _ask_unit(f"the first column of {key}", name, "--columns f,h", "--columns omega,h")
+        guesses.append(f"the first column of '{key}' is read in {unit}, in which its ends are round numbers")
+        first = Meaning("frequency", 1.0 if unit == "Hz" else 1 / (2 * np.pi))
+        meanings = [first, *(Meaning("complex") for _ in range(width - 1))]
+    else:
+        unit = unit_by_round_ends(numbers[0])
+        word = "omega" if unit == "rad/s" else "f"
+        message = f"'{name}': {key} is a matrix of {width} real columns without names"
+        hint = (
+            f"say what they are: --columns {word},re,im or --columns {word},mag,phase_deg (omega for rad/s)"
+        )
+        raise DataError(Diagnostic("SF602", message, None, hint))
+    columns = [
+        Column(n, m, v if m.kind in ("complex", "") or v.dtype.kind != "c" else v.real)
+        for n, m, v in zip(names, meanings, numbers, strict=True)
+    ]
+    made, said = assembled(columns, name, None, is_asked=True)
+    lines = made[0].frequency_hz
+    return tuple(_responses({}, lines, np.array([m.values for m in made]), name, stem, [*guesses, *said]))
+
+
+def _from_unknown(arrays: Arrays, name: str, stem: str) -> tuple[MeasuredResponse, ...]:
+    """Read the one complex array and the one that goes up and is as long, whatever they are called."""
+    complexes = {k: a for k, a in arrays.items() if a.dtype.kind == "c" and a.size > 2}  # noqa: PLR2004
+    rising = {k: a for k, a in arrays.items() if a.dtype.kind in "fiu" and a.ndim == 1 and _goes_up(a)}
+    named = {k: a for k, a in rising.items() if k.rpartition(".")[2].lower() in (*FREQUENCY, *ANGULAR)}
+    pairs = [(f, h) for f, a in (named or rising).items() for h, b in complexes.items() if a.size in b.shape]
+    if len(pairs) != 1:
+        what = "values" if named else "frequency_hz"
+        shapes = [
+            f"{k} ({' x '.join(map(str, a.shape)) or 1})" for k, a in arrays.items() if a.dtype.kind in "fciu"
+        ]
+        message = f"'{name}' has no array {what}; it has {listed_names(shapes) or 'none'}"
+        option = f"--columns f={next(iter(named or rising), 'NAME')},h={next(iter(complexes), 'NAME')}"
+        hint = f"say which arrays: {option} (omega= for rad/s; re=, im=; mag=, phase_deg=)"
+        raise DataError(Diagnostic("SF602", message, None, hint))
+    ((f, h),) = pairs
+    own = f.rpartition(".")[2].lower()
+    guesses = [f"'{h}' is taken as the values, the only complex array as long as '{f}'"]
+    key = own if own in (*FREQUENCY, *ANGULAR) else ""
+    if not key:
+        unit = unit_by_round_ends(np.asarray(arrays[f], np.float64))
+        if unit is None:
+            raise _ask_unit(f, name, f"--columns f={f},h={h}", f"--columns omega={f},h={h}")
+        guesses.append(f"'{f}' is read as the frequency in {unit}, in which its ends are round numbers")
+        key = "frequency_hz" if unit == "Hz" else "omega"
+    lines = _frequency({key: arrays[f]}, name, [] if key in ("frequency_hz", "omega") else guesses)
+    assert lines is not None
+    table = _rows(_numeric(arrays[h], name, h), lines.size, name, h)
+    plain = {k.lower(): a for k, a in arrays.items() if "." not in k}
+    return tuple(_responses(plain, lines, table, name, stem, guesses))
+
+
+def unit_by_round_ends(lines: Array) -> str | None:
+    """Return the unit, Hz or rad/s, in which the ends of a band are round numbers; None where it is not one.
+
+    Examples
+    --------
+    >>> unit_by_round_ends(2 * np.pi * np.array([1.0, 50])), unit_by_round_ends(np.array([1.0, 50]))
+    ('rad/s', 'Hz')
+    """
+    ends = [
+        x for x in (lines[0], lines[1] if lines[0] == 0 else lines[0], lines[-1]) if x > 0 and np.isfinite(x)
+    ]
+
+    def is_round(x: float) -> bool:
+        return abs(float(f"{x:.2e}") - x) <= ROUND * abs(x)
+
+    in_hz, in_rad = all(map(is_round, ends)), all(is_round(x / (2 * np.pi)) for x in ends)
+    return None if in_hz == in_rad or not ends else "Hz" if in_hz else "rad/s"
+
+
+def _ask_unit(what: str, name: str, in_hz: str, in_rad: str) -> DataError:
+    message = f"'{name}': {what[:60]} is in Hz or in rad/s, and nothing says which"
+    return DataError(Diagnostic("SF602", message, None, f"add {in_hz} for Hz, or {in_rad} for rad/s"))
+
+
+def _word(array: Array) -> str:
     return str(array.ravel()[0])[:200] if array.size else ""
 
 
-def _numeric(array: np.ndarray, name: str, what: str) -> np.ndarray:
-    if array.dtype.kind not in "fciub" or array.ndim > 2:  # noqa: PLR2004
+def _numeric(array: Array, name: str, what: str) -> Array:
+    if array.dtype.kind not in "fciub":
         message = f"'{name}': {what} is not an array of numbers"
         raise DataError(Diagnostic("SF602", message, None, _HINT))
     return array.astype(np.complex128)
 
 
-def _rows(array: np.ndarray, size: int, name: str, what: str) -> np.ndarray:
+def _rows(array: Array, size: int, name: str, what: str) -> Array:
     table = np.atleast_2d(array)
+    if table.ndim > 2:  # noqa: PLR2004 (outputs x inputs x frequencies, or the frequencies first)
+        last = table.shape[-1] == size
+        table = table.reshape(-1, table.shape[-1]) if last else table.reshape(table.shape[0], -1)
     if table.shape[1] != size and table.shape[0] == size:
         table = table.T
     if table.shape[1] != size:

@@ -1,21 +1,31 @@
 r"""Frequency responses as text in columns.
 
-A header line names the columns; comment lines begin with ``#``, ``%`` or ``!``, and such a line may hold
-what the columns cannot: ``# tf: A_tip/V_cmd``, ``# averages: 40``, ``# window: hann``, ``# unit:
-m/(V*s^2)``, ``# synthetic: yes``.
+What stands above the numbers names the columns, and comment lines may hold what the columns cannot:
+``# tf: A_tip/V_cmd``, ``# averages: 40``, ``# window: hann``, ``# unit: m/(V*s^2)``, ``# synthetic: yes``.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
 from typing import Final
 
 import numpy as np
 
+from symflex.data.measurement.columns import (
+    HINT,
+    UNITS,
+    Assembled,
+    Column,
+    Meaning,
+    ask,
+    assembled,
+    columns_asked,
+    meaning_of,
+)
 from symflex.data.measurement.measured_response import (
-    MAX_ERRORS,
     MAX_LINES,
     MeasuredResponse,
     averages_of,
@@ -23,124 +33,212 @@ from symflex.data.measurement.measured_response import (
     unit_of,
     window_of,
 )
-from symflex.errors import DataError, Diagnostic, Source, Span, nearest
+from symflex.data.measurement.text_table import COMMENTS, SIGNS, Block, TextTable, bare, cut
+from symflex.errors import DataError, Diagnostic, Source, Span
 
-COMMENTS: Final = ("#", "%", "!", "//")
-_CELL = re.compile(r"[^,;\t ]+(?: +[^,;\t ]+)*")
 _COMMENT_FIELD = re.compile(r"\W*\s*(?P<key>tf|averages|window|unit|synthetic)\s*[:=]\s*(?P<value>.*)", re.I)
-_UNIT = re.compile(
-    r"\s*[\[(](?P<bracket>[^\])]*)[\])]\s*$|[_ ](?P<suffix>hz|khz|rad/s|rad_s|db|deg|rad)$", re.I
-)
-_NAMES: Final = {
-    "frequency": ("frequency", "freq", "f", "frequencies"),
-    "omega": ("omega", "w", "angular frequency"),
-    "real": ("re", "real", "real part", "re(h)", "h_re", "real(h)"),
-    "imaginary": ("im", "imag", "imaginary", "imaginary part", "im(h)", "h_im", "imag(h)"),
-    "magnitude": ("magnitude", "mag", "gain", "amplitude", "abs", "level", "|h|"),
-    "decibel": ("db",),
-    "phase": ("phase", "angle", "arg", "phi"),
-    "coherence": ("coherence", "coh", "gamma2", "gamma^2"),
+_AXIS_UNIT = re.compile(r"(?:axis|freq|x)[\w .]*unit\w*\W+(hz|khz|mhz|rad/s)\b", re.I)
+_IMPLIED: Final = {
+    ".frd": ("f,mag_db,phase_deg", "Hz, dB, degrees"),
+    ".zma": ("f,mag,phase_deg", "Hz, Ohm, degrees"),
 }
-_KINDS: Final = {name: kind for kind, names in _NAMES.items() for name in names}
-_UNITS: Final[dict[str, dict[str, float]]] = {
-    "frequency": {"": 1.0, "hz": 1.0, "khz": 1000.0, "rad/s": 1 / (2 * np.pi), "rad_s": 1 / (2 * np.pi)},
-    "phase": {"deg": np.pi / 180, "degrees": np.pi / 180, "°": np.pi / 180, "rad": 1.0, "radians": 1.0},
-}
-_HEADER_HINT: Final = (
-    "columns: frequency_hz; re, im or magnitude_db, phase_deg or magnitude, phase_rad; coherence if known"
-)
+"""Columns of files without a header, by the end of their names (loudspeaker programs)."""
+NEAR: Final = 60
+"""Lines above the numbers among which the names of columns are looked for."""
 
 
-@dataclass(frozen=True, slots=True)
-class DataColumn:
-    """One column: what it is, the factor to its SI unit, and whether it is in decibels."""
+def read_columns(name: str, data: bytes, stem: str, asked: str = "") -> tuple[MeasuredResponse, ...]:
+    """Read responses from text in columns; a single one is called ``stem`` when the file gives no name.
 
-    kind: str
-    index: int
-    factor: float = 1.0
-    is_decibel: bool = False
-
-
-def read_columns(name: str, data: bytes, stem: str) -> tuple[MeasuredResponse, ...]:
-    """Read one response from text in columns; it is called ``stem`` when the file gives no name.
-
-    SF601 no text; SF602 columns missing, unknown or in an unknown unit; SF603, SF604, SF605, SF607 values.
+    ``asked`` says what the columns are, as ``--columns`` does. SF601 no text; SF602 columns missing, unknown
+    or in an unknown unit; SF603, SF604, SF605, SF607 values; SF902 for columns asked that are not there.
     """
-    text = decoded_text(name, data)
-    source = Source(name, text)
-    lines = data_lines(source)
-    fields = _comment_fields(source)
-    if not lines:
-        raise DataError(Diagnostic("SF605", f"'{name}' holds no data", None, _HEADER_HINT))
-    if len(lines) > MAX_LINES + 1:
+    table = TextTable.of(name, data)
+    fields = _comment_fields(table.source)
+    blocks = table.blocks()
+    if not blocks:
+        raise DataError(Diagnostic("SF605", f"'{name}' holds no rows of numbers", None, HINT))
+    if sum(len(block.rows) for block in blocks) > MAX_LINES:
         raise DataError(Diagnostic("SF607", f"'{name}' has more than {MAX_LINES} lines"))
-    split = cell_splitter(text[lines[0][0] : lines[0][1]])
-    columns = _columns(source, split, *lines[0])
-    table = _numbers(source, split, lines[1:], columns)
+    guesses = list(table.guesses)
+    made, found = _responses(name, table, blocks, asked, guesses)
+    guesses += found
     unit_span = fields.get("averages")
     averages = None if unit_span is None else averages_of(unit_span.text, name, unit_span)
-    by_kind = {column.kind: i for i, column in enumerate(columns)}
-
-    def span_of(index: int, kind: str) -> Span | None:
-        wanted = {"value": "real" if "real" in by_kind else "magnitude"}.get(kind, kind)
-        cells = split(source, *lines[1 + index])
-        return cells[columns[by_kind[wanted]].index]
 
     def told(key: str) -> str:
         return fields[key].text.strip() if key in fields else ""
 
-    with np.errstate(all="ignore"):  # what overflows is reported as no finite number
-        values = _complex(columns, table, by_kind)
-    response = MeasuredResponse(
-        told("tf") or stem,
-        table[:, by_kind["frequency"]] * columns[by_kind["frequency"]].factor,
-        values,
-        table[:, by_kind["coherence"]] if "coherence" in by_kind else None,
-        averages,
-        window_of(told("window")),
-        unit_of(told("unit"), name, fields.get("unit")),
-        told("synthetic").lower() in ("yes", "true", "1")
-        or "synthetic" in " ".join(_comments(source)).lower(),
-        tuple(_comments(source)),
+    comments = tuple(_comments(table.source))
+    unit = unit_of(told("unit"), name, fields.get("unit"))
+    is_synthetic = (
+        told("synthetic").lower() in ("yes", "true", "1") or "synthetic" in " ".join(comments).lower()
     )
-    return (checked_response(response, name, span_of),)
+    names = [told("tf") or stem] if len(made) == 1 else _names(made, stem)
+    responses = []
+    for one, called in zip(made, names, strict=True):
+        response = MeasuredResponse(
+            called, one.frequency_hz, one.values, one.coherence, averages, window_of(told("window")),
+            unit or one.unit, is_synthetic, comments, tuple(dict.fromkeys(guesses)),
+        )  # fmt: skip
+        frequency, value, *_ = one.columns
+        by_kind = {"frequency": frequency, "coherence": one.columns[-1]}
+
+        def span_of(
+            index: int, kind: str, by_kind: dict[str, Column] = by_kind, value: Column = value
+        ) -> Span | None:
+            return by_kind.get(kind, value).place(index)
+
+        responses.append(checked_response(response, name, span_of))
+    return tuple(responses)
 
 
-def _complex(columns: list[DataColumn], table: np.ndarray, by_kind: dict[str, int]) -> np.ndarray:
-    if "real" in by_kind:
-        return np.asarray(table[:, by_kind["real"]] + 1j * table[:, by_kind["imaginary"]])
-    magnitude, phase = by_kind["magnitude"], by_kind["phase"]
-    size = table[:, magnitude]
-    size = 10 ** (size / 20) if columns[magnitude].is_decibel else np.where(size < 0, np.nan, size)
-    return np.asarray(size * np.exp(1j * columns[phase].factor * table[:, phase]))
+def _names(made: Sequence[Assembled], stem: str) -> list[str]:
+    labels = [one.label for one in made]
+    return (
+        labels
+        if all(labels) and len(set(labels)) == len(labels)
+        else [f"{stem} {i + 1}" for i in range(len(made))]
+    )
 
 
-def decoded_text(name: str, data: bytes) -> str:
-    """Return the text of a file, with newlines as line ends; DataError SF601 when it is none."""
-    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
-        message = f"'{name}' is UTF-16 text"
-        raise DataError(Diagnostic("SF601", message, None, "save the file as UTF-8"))
-    try:
-        text = data.decode("utf-8").removeprefix("\ufeff")
-    except UnicodeDecodeError as error:
-        message = f"'{name}' is not text: byte 0x{data[error.start]:02x} at byte offset {error.start}"
-        raise DataError(
-            Diagnostic("SF601", message, None, "binary formats end in .npz, .mat, .uff")
-        ) from None
-    if "\0" in text:
-        message = f"'{name}' is not text: it holds NUL characters"
-        raise DataError(Diagnostic("SF601", message, None, "binary formats end in .npz, .mat, .uff"))
-    return text.replace("\r\n", "\n").replace("\r", "\n")
+def _responses(
+    name: str, table: TextTable, blocks: Sequence[Block], asked: str, guesses: list[str]
+) -> tuple[list[Assembled], list[str]]:
+    """Return the responses of blocks: each alone, or all side by side where each holds a part of the values."""
+    parts = [_columns(table, block, guesses) for block in blocks]
+    for i in range(1, len(parts)):  # a table below another one of the same shape has its names
+        if parts[i][1] is None and len(parts[i][0]) == len(parts[0][0]) and parts[0][1] is not None:
+            above = parts[0][0]
+            parts[i] = (
+                [replace(c, meaning=c.meaning if c.meaning.kind else a.meaning, name=a.name)
+                 for c, a in zip(parts[i][0], above, strict=True)],
+                parts[0][1],
+            )  # fmt: skip
+    columns, header = parts[0]
+    for others, _ in parts[1:]:
+        first, other = columns[0].numbers.real, others[0].numbers.real
+        if first.shape == other.shape and np.allclose(first, other, rtol=1e-6, equal_nan=True):
+            columns = columns + others[1:]
+    if asked:
+        meanings = columns_asked(asked, len(columns), [c.name for c in columns])
+        return assembled(
+            [replace(c, meaning=m) for c, m in zip(columns, meanings, strict=True)],
+            name,
+            header,
+            is_asked=True,
+        )
+    implied = _IMPLIED.get(Path(name).suffix.lower())
+    if implied and header is None and len(columns) == 3:  # noqa: PLR2004
+        said = f"no line names the columns: {implied[1]}, as in {Path(name).suffix} files"
+        meanings = columns_asked(implied[0], len(columns))
+        columns = [replace(c, meaning=m) for c, m in zip(columns, meanings, strict=True)]
+        made, more = assembled(columns, name, header)
+        return made, [said, *more]
+    if not any(c.meaning.kind for c in columns):
+        span = table.line(blocks[0].lines[0])
+        message = "no line above the numbers names the columns"
+        raise DataError(Diagnostic("SF602", message, span, ask(columns)))
+    if len(parts) > 1 and len(columns) == len(parts[0][0]):
+        each = [assembled(one, name, line) for one, line in parts]
+        return [m for made, _ in each for m in made], [s for _, said in each for s in said]
+    return assembled(columns, name, header)
 
 
-def data_lines(source: Source) -> list[tuple[int, int]]:
-    """Return start and end of every line that is neither empty nor a comment."""
-    found, start = [], 0
-    for line in source.text.split("\n"):
-        stripped = line.strip()
-        if stripped and not stripped.startswith(COMMENTS):
-            found.append((start, start + len(line)))
-        start += len(line) + 1
+def _columns(table: TextTable, block: Block, guesses: list[str]) -> tuple[list[Column], Span | None]:
+    """Return the columns of a block, and the line that names them, None where there is none."""
+    width = block.width
+    numbers = [block.numbers(i) for i in range(width)]
+    line, cells, below = _header(table, block, [n.dtype.kind == "c" for n, _ in numbers])
+    meanings = [meaning_of(c, u) for c, u in zip(cells, below, strict=True)]
+    for i, (values, _) in enumerate(numbers):
+        if values.dtype.kind == "c":
+            meanings[i] = Meaning("complex", label=cells[i])
+    header = None if line is None else table.line(line)
+    above = [i for i in block.above if table.lines[i].strip()]
+    is_comment = all(table.lines[i].strip().startswith(COMMENTS) for i in above if i != line)
+    if line is not None and not is_comment and len(above) > 1:
+        guesses.append(
+            f"line {line + 1} names the columns, and the numbers begin in line {block.lines[0] + 1}"
+            ": the other lines above are skipped"
+        )
+    elif line is None and above and not all(table.lines[i].strip().startswith(COMMENTS) for i in above):
+        guesses.append(f"the numbers begin in line {block.lines[0] + 1}")
+    title = _title(table, above)
+    if width == 2 and title and not meanings[1].kind:  # noqa: PLR2004
+        meanings[1] = title
+    unit = next((m[1] for i in above if (m := _AXIS_UNIT.search(table.lines[i]))), "")
+    if unit and not meanings[0].kind:
+        meanings[0] = replace(meanings[0], unit=unit)
+    columns = []
+    for i, (cell, meaning) in enumerate(zip(cells, meanings, strict=True)):
+        span = None if line is None else table.cell(line, cells, i) if cell else header
+        columns.append(Column(cell, meaning, *numbers[i], span, block.place(i)))
+    return columns, header
+
+
+def _title(table: TextTable, above: Sequence[int]) -> Meaning | None:
+    """Return what a line above a table says it holds: ``Phase (deg)``, ``TRACE B: Magnitude [dB]``."""
+    for i in reversed(above[-NEAR:]):
+        meaning = meaning_of(table.lines[i].strip(SIGNS + '"'))
+        if meaning.kind not in ("", "frequency") and len(meaning.label) < 30:  # noqa: PLR2004
+            return replace(meaning, label="")
+    return None
+
+
+def _header(
+    table: TextTable, block: Block, is_complex: Sequence[bool]
+) -> tuple[int | None, list[str], list[str]]:
+    """Return the line that names most columns, its cells, and the units below; the nearest of equals."""
+    width = block.width
+    best: tuple[float, int, list[str]] | None = None
+    for line in block.above[-NEAR:]:
+        for cells in _ways_to_cut(table, line, width):
+            kinds = ["complex" if is_complex[i] else meaning_of(c).kind for i, c in enumerate(cells[:width])]
+            values = sum(kind not in ("", "frequency") for kind in kinds)
+            known = values + ("frequency" in kinds) if values else 0
+            score = known + (len(cells) == width) / 2
+            is_better = best is None or score > best[0] or (score == best[0] and line > best[1])
+            if known >= 2 and is_better:  # noqa: PLR2004
+                best = score, line, cells[:width]
+    if best is None:
+        return None, [""] * width, [""] * width
+    _, line, cells = best
+    following = next((i for i in block.above if i > line and table.lines[i].strip()), None)
+    return line, cells, [""] * width if following is None else _units(table, following, width)
+
+
+def _units(table: TextTable, line: int, width: int) -> list[str]:
+    """Return the units in the row below the names; empty ones where it is no such row."""
+    text = table.lines[line].strip()
+    units = cut(text, table.delimiter)
+    units = units if len(units) == width else cut(text.lstrip("#%!/*"), table.delimiter)
+    is_row = 2 <= len(units) <= width and any(u.strip("[]()").lower() in UNITS for u in units)  # noqa: PLR2004
+    return units + [""] * (width - len(units)) if is_row else [""] * width
+
+
+def _ways_to_cut(table: TextTable, line: int, width: int) -> list[list[str]]:
+    """Return the ways to cut a line into as many names as there are columns, or one less: the frequency's."""
+    text = table.lines[line].strip()
+    if text.startswith(COMMENTS):
+        text = text.strip('"').lstrip(SIGNS)
+    ways = [cut(text, table.delimiter)]
+    if table.delimiter in " " or table.delimiter not in text:
+        joined = re.sub(r"\s+(?=[\[(])", "\0", text)
+        ways += [cut(text, d) for d in "\t;,"] + [re.split(r"\s{2,}", text)]
+        ways.append([c.replace("\0", " ") for c in joined.split()])
+    found = []
+    for cells in ways:
+        names = [bare(c) for c in cells]
+        has_frequency = any(meaning_of(n).kind == "frequency" for n in names)
+        if len(names) == width - 1 and has_frequency and table.lines[line].startswith(table.delimiter):
+            names = ["", *names]
+        if len(names) == width - 1 and not has_frequency:
+            names = ["", *names] if all(meaning_of(n).kind for n in names) else []
+        if 1 < len(names) < width and has_frequency:
+            names += [""] * (width - len(names))
+        if len(names) >= width:
+            found.append(names)
     return found
 
 
@@ -149,7 +247,7 @@ def _comments(source: Source) -> list[str]:
     for line in source.text.split("\n"):
         stripped = line.strip()
         if stripped.startswith(COMMENTS):
-            found.append(stripped.lstrip("#%!/ "))
+            found.append(stripped.lstrip("#%!/*; "))
     return found
 
 
@@ -163,123 +261,3 @@ def _comment_fields(source: Source) -> dict[str, Span]:
             found[match["key"].lower()] = Span(source, start + match.start("value"), end)
         start += len(line) + 1
     return found
-
-
-def cell_splitter(header: str) -> Callable[[Source, int, int], list[Span]]:
-    """Return the function that cuts a line into cells, as the header, or the first line, is cut."""
-    separator = next((c for c in (";", "\t", ",") if c in header), None)
-
-    def split(source: Source, start: int, end: int) -> list[Span]:
-        text = source.text[start:end]
-        if separator is None:
-            return [Span(source, start + m.start(), start + m.end()) for m in re.finditer(r"\S+", text)]
-        cells, offset = [], 0
-        for part in text.split(separator):
-            left = len(part) - len(part.lstrip())
-            begin = start + offset + left
-            cells.append(Span(source, begin, begin + len(part.strip())))
-            offset += len(part) + 1
-        return cells
-
-    return split
-
-
-def _columns(
-    source: Source, split: Callable[[Source, int, int], list[Span]], start: int, end: int
-) -> list[DataColumn]:
-    cells = split(source, start, end)
-    if all(_number(cell.text) is not None for cell in cells):
-        message = "the first line holds numbers: without a header, columns have no meaning"
-        raise DataError(Diagnostic("SF602", message, cells[0], _HEADER_HINT))
-    found: list[DataColumn] = []
-    problems: list[Diagnostic] = []
-    for i, cell in enumerate(cells):
-        column = _column(cell, i, problems)
-        if column is None:
-            continue
-        if any(column.kind == other.kind for other in found):
-            problems.append(Diagnostic("SF602", f"a second column of {column.kind}", cell, _HEADER_HINT))
-        found.append(column)
-    kinds = {column.kind for column in found}
-    line = Span(source, start, end)
-    if not problems:
-        if "frequency" not in kinds:
-            problems.append(Diagnostic("SF602", "no column is the frequency", line, _HEADER_HINT))
-        pairs = [{"real", "imaginary"}, {"magnitude", "phase"}]
-        if not any(pair <= kinds for pair in pairs):
-            missing = next((next(iter(p - kinds)) for p in pairs if p & kinds), None)
-            message = f"a column of {missing} is missing" if missing else "no columns hold the values"
-            problems.append(Diagnostic("SF602", message, line, _HEADER_HINT))
-    if problems:
-        raise DataError(*problems[:MAX_ERRORS])
-    return found
-
-
-def _column(cell: Span, index: int, problems: list[Diagnostic]) -> DataColumn | None:
-    written = cell.text.strip("\"' ").lower()
-    name, unit = written, ""
-    if written not in _KINDS and (match := _UNIT.search(written)):
-        name, unit = (
-            written[: match.start()].strip(),
-            (match["bracket"] or match["suffix"] or "").strip().lower(),
-        )
-    kind = _KINDS.get(name)
-    if kind is None:
-        hint = nearest(name, _KINDS) or _HEADER_HINT
-        problems.append(Diagnostic("SF602", f"unknown column '{cell.text[:40]}'", cell, hint))
-        return None
-    if kind == "omega":
-        kind, unit = "frequency", unit or "rad/s"
-    if kind == "decibel":
-        return DataColumn("magnitude", index, is_decibel=True)
-    if kind in _UNITS:
-        factor = _UNITS[kind].get(unit)
-        if factor is None:
-            known = ", ".join(u for u in _UNITS[kind] if u)
-            said = f"unknown unit '{unit[:20]}'" if unit else "no unit"
-            problems.append(Diagnostic("SF602", f"{said} of column '{name}'", cell, f"units: {known}"))
-            return None
-        return DataColumn(kind, index, factor)
-    return DataColumn(kind, index, is_decibel=kind == "magnitude" and unit == "db")
-
-
-def _number(text: str) -> float | None:
-    if "_" in text:
-        return None
-    try:
-        return float(text)
-    except ValueError:
-        return None
-
-
-def _numbers(
-    source: Source,
-    split: Callable[[Source, int, int], list[Span]],
-    lines: list[tuple[int, int]],
-    columns: list[DataColumn],
-) -> np.ndarray:
-    table = np.empty((len(lines), len(columns)))
-    problems: list[Diagnostic] = []
-    width = 1 + max(column.index for column in columns)
-    for row, (start, end) in enumerate(lines):
-        if len(problems) >= MAX_ERRORS:
-            break
-        cells = split(source, start, end)
-        if len(cells) < width:
-            message = f"{len(cells)} columns where the header has {width}"
-            problems.append(Diagnostic("SF602", message, Span(source, start, end)))
-            continue
-        for place, column in enumerate(columns):
-            cell = cells[column.index]
-            number = _number(cell.text)
-            if number is None:
-                is_comma = re.fullmatch(r"[-+]?\d+,\d*(e[-+]?\d+)?", cell.text, re.I)
-                hint = "write decimals with a point" if is_comma else None
-                shown = f"'{cell.text[:40]}' is not a number" if cell.text else "a number is missing"
-                span = cell if cell.text else Span(source, start, end)
-                problems.append(Diagnostic("SF603", shown, span, hint))
-                number = 1.0
-            table[row, place] = number
-    if problems:
-        raise DataError(*problems)
-    return table

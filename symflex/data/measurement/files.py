@@ -11,12 +11,14 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 
-from symflex.data.measurement.arrays import read_mat, read_npz
+from symflex.data.measurement.arrays import read_mat, read_npy, read_npz
 from symflex.data.measurement.comma_separated import read_columns
 from symflex.data.measurement.measured_response import MAX_BYTES, MOST_AVERAGES, MeasuredResponse
+from symflex.data.measurement.touchstone import read_touchstone
 from symflex.data.measurement.universal_file import (
     COHERENCE,
     FREQUENCY_AXIS,
@@ -27,32 +29,63 @@ from symflex.errors import DataError, Diagnostic, UsageError
 from symflex.errors.optional import installed
 from symflex.model.spec.read import read_file
 
-READERS: Mapping[str, Callable[[str, bytes, str], tuple[MeasuredResponse, ...]]] = {
+READERS: Mapping[str, Callable[[str, bytes, str, str], tuple[MeasuredResponse, ...]]] = {
     ".csv": read_columns,
     ".txt": read_columns,
     ".dat": read_columns,
     ".tsv": read_columns,
+    ".frd": read_columns,
+    ".zma": read_columns,
+    ".s1p": read_touchstone,
+    ".s2p": read_touchstone,
     ".npz": read_npz,
+    ".npy": read_npy,
     ".mat": read_mat,
     ".uff": read_universal_file,
     ".unv": read_universal_file,
     ".uf": read_universal_file,
 }
-"""Readers by the end of a file's name. Each takes what messages call the file, its bytes, and a name."""
+"""Readers by the end of a file's name.
+
+Each takes what messages call the file, its bytes, a name, and what ``--columns`` says. Files with other
+endings are read as text in columns where they are text.
+"""
+SAVE_AS: Final = {
+    ".xlsx": "save the sheet as .csv",
+    ".xls": "save the sheet as .csv",
+    ".ods": "save the sheet as .csv",
+    ".tdms": "export the channels as text, or read them with nptdms and save them with numpy.savez",
+    ".h5": "save the arrays with numpy.savez",
+    ".hdf5": "save the arrays with numpy.savez",
+    ".wav": "frequency responses are read, not samples in time",
+    ".toml": "a specification is no measured data",
+}
+"""What to do with files that are not read."""
 
 
-def read_measurement(path: str | Path) -> tuple[MeasuredResponse, ...]:
+def read_measurement(path: str | Path, columns: str = "") -> tuple[MeasuredResponse, ...]:
     """Read the frequency responses of a data file.
 
     Parameters
     ----------
     path : str or Path
-        A regular file of at most 50 MB; the end of its name says what it holds, see :data:`READERS`.
+        A regular file of at most 50 MB; the end of its name says what it holds, see :data:`READERS`. Files
+        with other endings are read as text in columns.
+    columns : str
+        What the columns are, where the file does not say or says it wrongly: words such as ``f,re,im`` or
+        ``f_khz,-,mag_db,phase_deg`` for text and matrices, ``f=NAME,h=NAME`` for named arrays, ``s21`` or
+        ``z11`` for Touchstone files.
+
+    Returns
+    -------
+    tuple of MeasuredResponse
+        What was guessed stands in their ``guesses``.
 
     Raises
     ------
     UsageError
-        SF901 when there is no such regular file; SF902 when a library for its format is not installed.
+        SF901 when there is no such regular file; SF902 when a library for its format is not installed, or
+        columns are asked that are not there.
     DataError
         SF601 to SF607: what is wrong with it, as far as can be with line and column.
 
@@ -64,15 +97,23 @@ def read_measurement(path: str | Path) -> tuple[MeasuredResponse, ...]:
     """
     name = os.fspath(path)
     suffix = Path(name).suffix.lower()
-    if suffix not in READERS:
+    if suffix in SAVE_AS:
         message = f"'{name}': data files end in {', '.join(READERS)}"
-        raise DataError(Diagnostic("SF606", message))
+        raise DataError(Diagnostic("SF606", message, None, SAVE_AS[suffix]))
     data = read_file(name, MAX_BYTES)
     if len(data) > MAX_BYTES:
         raise DataError(Diagnostic("SF607", f"'{name}' is larger than {MAX_BYTES} bytes"))
     if not data.strip():
         raise DataError(Diagnostic("SF605", f"'{name}' is empty"))
-    return READERS[suffix](name, data, Path(name).stem)
+    if suffix in READERS:
+        return READERS[suffix](name, data, Path(name).stem, columns)
+    try:
+        return read_columns(name, data, Path(name).stem, columns)
+    except DataError as error:
+        if error.diagnostics[0].code not in ("SF601", "SF605"):
+            raise
+        message = f"'{name}' is no table in text; other data files end in {', '.join(READERS)}"
+        raise DataError(Diagnostic("SF606", message)) from None
 
 
 def prepared(

@@ -17,9 +17,9 @@ from decimal import Decimal, InvalidOperation
 from fractions import Fraction
 from typing import TYPE_CHECKING, Final
 
-from symflex.data.measurement.comma_separated import cell_splitter, data_lines, decoded_text
 from symflex.data.measurement.measured_response import MAX_ERRORS, MAX_LINES
-from symflex.errors import DataError, Diagnostic, Source, Span
+from symflex.data.measurement.text_table import TextTable
+from symflex.errors import DataError, Diagnostic, Span
 from symflex.model.spec.read import read_file
 
 if TYPE_CHECKING:
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 MAX_BYTES: Final = 50_000_000
 SECONDS: Final = {"": Fraction(1), "s": Fraction(1), "ms": Fraction(1, 10**3), "us": Fraction(1, 10**6)}
 _TIME = re.compile(r"(?:t|time)(?:[ _]*[\[(]?(?P<unit>s|ms|us|µs)[\])]?)?", re.I)
+COMMENTS: Final = ("#", "%", "!", "//")
 HINT: Final = "two columns: time_s, and the value"
 LARGEST_EXPONENT: Final = 400
 """Of a decimal: far beyond what doubles hold."""
@@ -55,7 +56,7 @@ def read_signal(path: str | Path) -> InputSignal:
     data = read_file(name, MAX_BYTES)
     if len(data) > MAX_BYTES:
         raise DataError(Diagnostic("SF607", f"'{name}' is larger than {MAX_BYTES} bytes"))
-    return signal_of(name, decoded_text(name, data))
+    return _signal(TextTable.of(name, data))
 
 
 def signal_of(name: str, text: str) -> InputSignal:
@@ -66,23 +67,27 @@ def signal_of(name: str, text: str) -> InputSignal:
     >>> signal_of("u.csv", "time_ms,u\n0,0\n1,0.5\n").times
     (Fraction(0, 1), Fraction(1, 1000))
     """
-    source = Source(name, text)
-    lines = data_lines(source)
+    return _signal(TextTable.of(name, text.encode()))
+
+
+def _signal(table: TextTable) -> InputSignal:
+    name = table.source.name
+    lines = [
+        i for i, line in enumerate(table.lines) if line.strip() and not line.strip().startswith(COMMENTS)
+    ]
     if len(lines) > MAX_LINES + 1:
         raise DataError(Diagnostic("SF607", f"'{name}' has more than {MAX_LINES} lines"))
-    split = cell_splitter(text[lines[0][0] : lines[0][1]]) if lines else cell_splitter("")
-    unit, width = Fraction(1), len(split(source, *lines[0])) if lines else 0
-    if lines and _decimal(split(source, *lines[0])[0].text) is None:
-        unit = _unit_of(split(source, *lines[0]), Span(source, *lines[0]))
+    unit, width = Fraction(1), len(table.cells(lines[0])) if lines else 0
+    if lines and _decimal(table.cells(lines[0])[0].text) is None:
+        unit = _unit_of(table.cells(lines[0]), table.line(lines[0]))
         lines = lines[1:]
     times: list[Fraction] = []
     values: list[Fraction] = []
     problems: list[Diagnostic] = []
-    for start, end in lines:
+    for index in lines:
         if len(problems) >= MAX_ERRORS:
             break
-        cells = split(source, start, end)
-        line = Span(source, start, end)
+        cells, line = table.cells(index), table.line(index)
         if len(cells) < 2:  # noqa: PLR2004 (time and value)
             problems.append(Diagnostic("SF602", "a line has a time and no value", line, HINT))
             continue

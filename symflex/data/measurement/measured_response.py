@@ -42,6 +42,8 @@ class MeasuredResponse:
         True for computed data.
     notes : tuple of str
         What the file says about itself.
+    guesses : tuple of str
+        What was taken for granted when the file was read, because it does not say so.
 
     Notes
     -----
@@ -63,6 +65,7 @@ class MeasuredResponse:
     unit: str = ""
     is_synthetic: bool = False
     notes: tuple[str, ...] = field(default=(), repr=False)
+    guesses: tuple[str, ...] = field(default=(), repr=False)
 
     def __repr__(self) -> str:
         ends = f"{self.frequency_hz[0]:g} to {self.frequency_hz[-1]:g} Hz" if self.frequency_hz.size else "no"
@@ -117,10 +120,13 @@ class MeasuredResponse:
 
     def between(self, low_hz: float, high_hz: float) -> MeasuredResponse:
         """Return the lines within a band [Hz], its ends included."""
-        kept = (self.frequency_hz >= low_hz) & (self.frequency_hz <= high_hz)
-        coherence = None if self.coherence is None else self.coherence[kept]
+        return self.taken(np.flatnonzero((self.frequency_hz >= low_hz) & (self.frequency_hz <= high_hz)))
+
+    def taken(self, lines: npt.NDArray[np.intp]) -> MeasuredResponse:
+        """Return some lines, in the order of their numbers."""
+        coherence = None if self.coherence is None else self.coherence[lines]
         return replace(
-            self, frequency_hz=self.frequency_hz[kept], values=self.values[kept], coherence=coherence
+            self, frequency_hz=self.frequency_hz[lines], values=self.values[lines], coherence=coherence
         )
 
 
@@ -146,23 +152,30 @@ SMALLEST, LARGEST = 1e-100, 1e100
 def checked_response(
     response: MeasuredResponse, file: str, span_of: Callable[[int, str], Span | None]
 ) -> MeasuredResponse:
-    """Return a response whose lines are in order, without the one at 0 Hz.
+    """Return a response whose lines are in order, without the one at 0 Hz, and reversed where all go down.
 
     ``span_of`` says where a line's ``frequency``, ``value`` or ``coherence`` stands. SF603 values that are
     not numbers, or out of range; SF604 frequencies that repeat or do not increase; SF605 too few lines; SF607
     too many.
     """
-    frequency, values, coherence = response.frequency_hz, response.values, response.coherence
-    if frequency.size > MAX_LINES:
+    if response.frequency_hz.size > MAX_LINES:
         raise DataError(Diagnostic("SF607", f"'{file}' has more than {MAX_LINES} lines"))
+    lines = np.flatnonzero(response.frequency_hz != 0)
+    guesses = response.guesses
+    if lines.size < response.frequency_hz.size:
+        guesses += ("the line at 0 Hz is left out",)
+    if lines.size > 1 and np.all(np.diff(response.frequency_hz[lines]) < 0):
+        lines, guesses = lines[::-1], (*guesses, "the lines go down in frequency, and are reversed")
+    response = replace(response.taken(lines), guesses=guesses)
+    frequency, values, coherence = response.frequency_hz, response.values, response.coherence
     problems: list[Diagnostic] = []
 
     def note(
         code: str, wrong: npt.NDArray[np.bool_], column: str, say: Callable[[int], str], hint: str
     ) -> None:
         for i in np.flatnonzero(wrong)[: MAX_ERRORS - len(problems)].tolist():
-            span = span_of(i, column)
-            place = "" if span else f"'{file}', line {i + 1} of {response.name}: "
+            span = span_of(int(lines[i]), column)
+            place = "" if span else f"'{file}', line {lines[i] + 1} of {response.name}: "
             problems.append(Diagnostic(code, place + say(i), span, hint))
 
     def note_value(wrong: npt.NDArray[np.bool_], say: Callable[[int], str], hint: str) -> None:
@@ -203,11 +216,10 @@ def checked_response(
         )
     if problems:
         raise DataError(*problems)
-    kept = response.between(np.nextafter(0.0, 1.0), np.inf)
-    if kept.values.size < FEWEST_LINES:
-        message = f"'{file}' has {kept.values.size} lines of data; at least {FEWEST_LINES} are needed"
+    if values.size < FEWEST_LINES:
+        message = f"'{file}' has {values.size} lines of data; at least {FEWEST_LINES} are needed"
         raise DataError(Diagnostic("SF605", message))
-    return kept
+    return response
 
 
 def nowhere(index: int, column: str) -> Span | None:

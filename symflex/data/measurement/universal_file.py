@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import tempfile
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import ModuleType
 from typing import Any, Final
 
@@ -21,8 +21,9 @@ from symflex.data.measurement.measured_response import (
     MeasuredResponse,
     checked_response,
     nowhere,
+    unit_of,
 )
-from symflex.errors import DataError, Diagnostic
+from symflex.errors import DataError, Diagnostic, UsageError
 from symflex.errors.optional import installed
 
 MARK: Final = b"    -1"
@@ -32,6 +33,22 @@ RESPONSE, TRANSMISSIBILITY, COHERENCE, MULTIPLE_COHERENCE = 4, 5, 6, 26
 """Function types of datasets 58."""
 FREQUENCY_AXIS: Final = 18
 """Data type of an abscissa that is a frequency."""
+SPECIFIC_TYPES: Final = {
+    8: ("X", "m"), 9: ("F", "N"), 11: ("V", "m/s"), 12: ("A", "m/s^2"), 13: ("F", "N"), 15: ("P", "Pa"),
+}  # fmt: skip
+"""Letter and SI unit of a quantity by its specific data type."""
+DIRECTIONS: Final = {0: "", 1: "X", 2: "Y", 3: "Z", 4: "RX", 5: "RY", 6: "RZ"}
+SI: Final = 1
+"""Code of a dataset 164 for metres, newtons and seconds."""
+FUNCTIONS: Final = {
+    0: "general", 1: "time response", 2: "auto spectrum", 3: "cross spectrum", 6: "coherence",
+    7: "auto correlation", 8: "cross correlation", 9: "power spectral density", 12: "spectrum",
+    26: "multiple coherence",
+}  # fmt: skip
+DATASETS: Final = {
+    15: "nodes", 55: "data at nodes", 58: "functions", 82: "trace lines", 151: "header", 164: "units",
+    2411: "nodes", 2412: "elements", 2414: "analysis data", 2420: "coordinate systems",
+}  # fmt: skip
 ORDINATE_TYPES: Final = (2, 4, 5, 6)
 """Real in single and double precision, complex in single and double precision."""
 
@@ -44,15 +61,21 @@ class DatasetPlace:
     number: int
 
 
-def read_universal_file(name: str, data: bytes, stem: str) -> tuple[MeasuredResponse, ...]:
+def read_universal_file(name: str, data: bytes, stem: str, asked: str = "") -> tuple[MeasuredResponse, ...]:
     """Read all frequency responses of a universal file; coherence functions of the same ends become weights.
 
-    SF902 when pyuff is not installed; SF601 no universal file, or a dataset that cannot be read; SF602 none
+    Responses are called by quantity, node and direction, ``A_2Z/F_1X``, unless their titles are such names.
+
+    SF902 when pyuff is not installed, or columns are ``asked``; SF601 no universal file, or a dataset that cannot be read; SF602 none
     with a frequency response; SF603, SF604, SF605 values; SF607 too many datasets or lines.
     """
-    places = _datasets(name, data)
+    if asked:
+        raise UsageError(Diagnostic("SF902", f"'{name}' says itself what it holds: it has no --columns"))
+    places, kinds = _datasets(name, data)
     if not places:
+        held = ", ".join(f"{k} ({DATASETS.get(k, 'not read')})" for k in sorted(set(kinds))[:8])
         message = f"'{name}' holds no dataset 58 (function at nodal degree of freedom)"
+        message += f"; it holds datasets {held}" if held else ""
         raise DataError(
             Diagnostic("SF601", message, None, "datasets stand between lines with -1 in columns 5 and 6")
         )
@@ -61,28 +84,38 @@ def read_universal_file(name: str, data: bytes, stem: str) -> tuple[MeasuredResp
     pyuff = installed("pyuff")
     sets = _read(pyuff, name, data, places)
     coherences = {_ends(s): s for s in sets if s.get("func_type") in (COHERENCE, MULTIPLE_COHERENCE)}
-    found = []
+    system = kinds.get(164, SI)
+    found: list[MeasuredResponse] = []
     for place, entry in zip(places, sets, strict=True):
-        if entry.get("func_type") not in (RESPONSE, TRANSMISSIBILITY):
+        is_general = entry.get("func_type") == 0 and np.iscomplexobj(entry["data"])
+        if entry.get("func_type") not in (RESPONSE, TRANSMISSIBILITY) and not is_general:
             continue
         if entry.get("abscissa_spec_data_type") not in (FREQUENCY_AXIS, 0, 1):
             message = f"{name}:{place.line}:1: the abscissa of this dataset is not a frequency"
             raise DataError(Diagnostic("SF602", message))
-        found.append(_response(name, stem, place, entry, coherences.get(_ends(entry))))
+        one = _response(name, stem, place, entry, coherences.get(_ends(entry)), system)
+        same = sum(one.name == other.name.partition(" ")[0] for other in found)
+        found.append(replace(one, name=f"{one.name} {same + 1}") if same else one)
     if not found:
-        message = f"'{name}' holds no frequency response: its datasets 58 are of other function types"
+        types = sorted({int(entry.get("func_type", 0)) for entry in sets})
+        held = ", ".join(f"{t} ({FUNCTIONS.get(t, 'not read')})" for t in types[:8])
+        message = f"'{name}' holds no frequency response: its datasets 58 are of the function types {held}"
         raise DataError(Diagnostic("SF602", message, None, "function type 4 is a frequency response"))
     return tuple(found)
 
 
-def _datasets(name: str, data: bytes) -> list[DatasetPlace]:
-    """Return the datasets 58, each with a header that can be read and counts within limits."""
+def _datasets(name: str, data: bytes) -> tuple[list[DatasetPlace], dict[int, int]]:
+    """Return the datasets 58, each with a header that can be read and counts within limits, and all kinds.
+
+    With each kind goes the first number of its first line, which of units says the system.
+    """
     found: list[DatasetPlace] = []
+    kinds: dict[int, int] = {}
     number, place = -1, 0
     while True:
         start = _next_mark(data, place)
         if start < 0:
-            return found
+            return found, kinds
         number += 1
         end = _next_mark(data, start + len(MARK))
         line = data.count(b"\n", 0, start) + 2
@@ -91,6 +124,9 @@ def _datasets(name: str, data: bytes) -> list[DatasetPlace]:
             raise DataError(Diagnostic("SF601", message, None, "a line with -1 in columns 5 and 6 ends it"))
         block = data[start:end].split(b"\n", HEADER_LINES + 2)
         kind = block[1].strip() if len(block) > 1 else b""
+        if kind[:6].isdigit():
+            first = block[2][:10].strip() if len(block) > 2 else b""  # noqa: PLR2004
+            kinds.setdefault(int(kind[:6]), int(first) if first.isdigit() else 0)
         if kind[:2] == b"58" and kind[2:3] in (b"", b"b", b" ", b"B"):
             _check_header(name, line, block[1:])
             found.append(DatasetPlace(line, number))
@@ -152,7 +188,12 @@ def _ends(entry: Mapping[str, Any]) -> tuple[object, ...]:
 
 
 def _response(
-    name: str, stem: str, place: DatasetPlace, entry: Mapping[str, Any], coherence: Mapping[str, Any] | None
+    name: str,
+    stem: str,
+    place: DatasetPlace,
+    entry: Mapping[str, Any],
+    coherence: Mapping[str, Any] | None,
+    system: int,
 ) -> MeasuredResponse:
     lines, values = np.asarray(entry["x"]), np.asarray(entry["data"])
     if (
@@ -168,7 +209,8 @@ def _response(
         weights = np.clip(np.real(np.asarray(coherence["data"])), 0, 1)
     title = str(entry.get("id1", "")).strip()
     note = "; ".join(t for k in ("id1", "id2", "id3", "id4", "id5") if (t := str(entry.get(k, "")).strip()))
-    tf = title if "/" in title and " " not in title else stem
+    tf = title if "/" in title and " " not in title else _ends_name(entry) or stem
+    unit, guesses = _unit(entry, system)
     fields = dict(part.split("=", 1) for part in str(entry.get("id4", "")).split() if "=" in part)
     count = fields.get("averages", "")
     response = MeasuredResponse(
@@ -178,7 +220,39 @@ def _response(
         weights,
         float(count) if count.replace(".", "", 1).isdigit() and float(count) >= 1 else None,
         "hann" if fields.get("window") == "hann" else "",
+        unit,
+        guesses=guesses,
         is_synthetic="synthetic" in note.lower(),
         notes=(note,) if note else (),
     )
     return checked_response(response, f"{name}:{place.line}", nowhere)
+
+
+def _ends_name(entry: Mapping[str, Any]) -> str:
+    """Return ``A_2Z/F_1X`` for an acceleration in node 2 along Z over a force in node 1 along X."""
+    ends = []
+    for end, axis, unknown in (("rsp", "ordinate", "y"), ("ref", "orddenom", "u")):
+        node, direction = entry.get(f"{end}_node"), entry.get(f"{end}_dir")
+        if not isinstance(node, int) or not isinstance(direction, int) or node < 0 or not (node or direction):
+            return ""
+        letter, _ = SPECIFIC_TYPES.get(int(entry.get(f"{axis}_spec_data_type", 0)), (unknown, ""))
+        ends.append(f"{letter}_{node}{'n' * (direction < 0)}{DIRECTIONS.get(abs(direction), '')}")
+    return "/".join(ends)
+
+
+def _unit(entry: Mapping[str, Any], system: int) -> tuple[str, tuple[str, ...]]:
+    """Return the unit of the values by the types of ordinate and denominator, and what was guessed."""
+    kinds = [int(entry.get(f"{axis}_spec_data_type", 0)) for axis in ("ordinate", "orddenom")]
+    labels = [str(entry.get(f"{axis}_axis_units_lab", "")).strip() for axis in ("ordinate", "orddenom")]
+    if not all(kind in SPECIFIC_TYPES for kind in kinds):
+        return "", ()
+    over = " over ".join(map(str, kinds))
+    if all(label.lower() not in ("", "none", "g") for label in labels):
+        try:
+            return unit_of(f"({labels[0]})/({labels[1]})", ""), ()
+        except DataError:
+            return "", (f"the units {labels[0]}/{labels[1]} are not known here, the values have none",)
+    if system != SI or labels[0].lower() == "g":
+        return "", (f"values of the types {over} are in units that are not SI, and are taken without a unit",)
+    unit = f"({SPECIFIC_TYPES[kinds[0]][1]})/{SPECIFIC_TYPES[kinds[1]][1]}"
+    return unit, (f"the ordinate types {over} are read in SI units, {unit}",)

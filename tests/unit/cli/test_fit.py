@@ -19,7 +19,7 @@ def oscillator(shell):
     x, y = f / 25, f / 20
     h = 3 * (1 + 0.02j * x - x**2) / (1 + 0.04j * y - y**2)
     rows = [f"{a},{b.real!r},{b.imag!r}" for a, b in zip(f.tolist(), h.tolist(), strict=True)]
-    (shell.folder / "one.csv").write_text("\n".join(["f,re,im", *rows]) + "\n")
+    (shell.folder / "one.csv").write_text("\n".join(["frequency_hz,re,im", *rows]) + "\n")
     return shell
 
 
@@ -75,6 +75,24 @@ def test_a_fit_without_base_is_a_specification_of_its_own(oscillator):
     assert G(2j * np.pi * 20) == pytest.approx(3 * (1 + 0.016j - 0.64) / 0.04j, rel=1e-6)
     assert oscillator("roots", "one.toml").code == 0
     assert oscillator("export", "one.toml", "--to", "numpy").code == 0
+
+
+def test_guesses_are_printed_one_line_each_and_columns_overrules_them(oscillator):
+    text = (oscillator.folder / "one.csv").read_text().replace("frequency_hz,re,im", "f;Point 1;")
+    (oscillator.folder / "two.csv").write_text(text.replace("f;Point 1;\n", ""))
+    asked = oscillator("fit", "two.csv", "--modes", "1")
+    assert (asked.code, asked.out) == (3, "")
+    assert "two.csv:1:1: error[SF602]" in asked.err
+    assert "--columns f,re,im" in asked.err
+    done = oscillator("fit", "two.csv", "--modes", "1", "--columns", "f,re,im", "--json")
+    assert (done.code, done.err) == (0, "")
+    (oscillator.folder / "three.csv").write_text("Analyser\n" + text.replace("f;Point 1;", "Freq,Real,Imag"))
+    said = oscillator("fit", "three.csv", "--modes", "1", "--json")
+    assert said.json["poles"] == done.json["poles"]
+    assert said.err.splitlines() == [
+        "three.csv: line 2 names the columns, the numbers begin in line 3; 1 other lines above are not read",
+        "three.csv: 'Freq' has no unit and is read in Hz",
+    ]
 
 
 @pytest.mark.slow

@@ -97,8 +97,17 @@ def test_cells_of_text_are_read_as_texts():
     assert read_variables(mat(arrays={"tf": cells}), 1000)["tf"].tolist() == ["X/F", "longer/F"]
 
 
+def test_fields_of_structures_are_called_by_their_path():
+    inner = np.array([{"b": np.arange(2)}, {"b": np.arange(4)}], object)
+    found = read_variables(mat(arrays={"s": {"a": np.arange(3), "t": {"u": 1.5}}, "c": inner}), 10_000)
+    assert {k: v.tolist() for k, v in found.items()} == {
+        "s.a": [0, 1, 2], "s.t.u": 1.5, "c{1}.b": [0, 1], "c{2}.b": [0, 1, 2, 3],
+    }  # fmt: skip
+
+
 def test_what_nobody_asks_for_is_left_unread():
-    found = read_variables(mat(arrays={"s": {"a": np.arange(3)}, "f": np.arange(3.0)}), 10_000)
+    sparse = scipy.sparse.csc_matrix(np.eye(3))
+    found = read_variables(mat(arrays={"s": sparse, "f": np.arange(3.0)}), 10_000)
     assert found["s"].size == 0
     assert found["f"].tolist() == [0, 1, 2]
 

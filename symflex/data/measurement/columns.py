@@ -1,0 +1,525 @@
+"""What columns mean, by their names or as ``--columns`` says, and the responses they make.
+
+    "Trace 1: Gain: Magnitude (dB)"   ->  magnitude in dB, of "Trace 1"
+    "-Im(Z)/Ohm"                      ->  imaginary part times -1
+
+A unit that is not said is found from the numbers. Logarithm of magnitude and phase of a causal function are
+Hilbert transforms of each other, so their slopes have equal energy (Titchmarsh 1937, theorem 90), and so has
+circular noise: a phase read in the wrong unit is 57 times too steep or too flat. Straight lines, which powers
+of s and dead times add, are taken out before. What stays open is asked for.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise, product
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from symflex.data.measurement.measured_response import MAX_ERRORS, MAX_RESPONSES, unit_of
+from symflex.errors import DataError, Diagnostic, Span, UsageError, nearest
+
+Real = npt.NDArray[np.float64]
+Complex = npt.NDArray[np.complex128]
+
+_WORDS: Final = {
+    "coherence": "coherence coh gamma2 gamma^2 coherency kohärenz cohérence",
+    "phase": "phase phas angle ang arg phi φ θ θz theta zphz",
+    "imaginary": "im imag imaginary imaginär zim zimag z'' quadrature",
+    "real": "re real zre zreal z' inphase",
+    "power": "psd power pxx autopower",
+    "magnitude": "magnitude mag gain amplitude ampl amp abs modulus module level spl |h| |z| z impedance zmod betrag "
+    "db dbspl dbv dbr lin",
+    "omega": "omega w ω angular",
+    "frequency": "frequency freq frequencies freqs f hz fhz khz mhz ghz stimulus "
+    "frequenz fréquence frequenza frecuencia",
+}  # fmt: skip
+"""Words by which a column is known, the first kind that has one of them."""
+KINDS: Final = {word: kind for kind, words in _WORDS.items() for word in words.split()}
+_PARTS: Final = r"gamma\^?2|[^\W\d_]+'*|\|\w\|"
+_OHMS: Final = ("ohm", "ohms", "\u03c9", "\u2126")
+_FREQUENCY_UNITS: Final = {
+    "hz": 1.0, "khz": 1e3, "mhz": 1e6, "ghz": 1e9, "1/s": 1.0, **dict.fromkeys(
+        ("rad/s", "rad_s", "rads", "rad/sec", "rad/second", "rad s^-1", "1/s rad"), 1 / (2 * np.pi)
+    ),
+}  # fmt: skip
+_DEGREES: Final = ("deg", "degree", "degrees", "grad", "°", "º", "ø", "*", "\ufffd", "degs")
+_PHASE_UNITS: Final = dict.fromkeys(_DEGREES, np.pi / 180) | dict.fromkeys(
+    ("rad", "radian", "radians", "rads"), 1.0
+)
+UNITS: Final = frozenset((*_FREQUENCY_UNITS, *_PHASE_UNITS, "db", *_OHMS))
+_BRACKET = re.compile(r"[\[({<]\s*([^\[\](){}<>]*(?:\([^()]*\)[^\[\](){}<>]*)?)\s*[\])}>]")
+_SUFFIX = re.compile(
+    r"(?:[\s_/,:]|\bin )\s*(hz|khz|mhz|ghz|rad/s|rad_s|db|deg|degrees?|rad|radians?|ohms?)\s*$", re.I
+)
+HINT: Final = (
+    "columns: frequency_hz; re, im or magnitude_db, phase_deg or magnitude, phase_rad; coherence if known"
+)
+UNDECIDED: Final = 1.5
+"""Of two readings, the natural logarithm by which one has to be less like a causal function."""
+WRAPPED: Final = 2 * np.pi * 1.001
+"""The largest range of phases that may have been wrapped, and not written as they go on."""
+FEWEST_TO_DECIDE: Final = 8
+BEYOND: Final = 7.0
+"""How far a magnitude is continued beyond its ends: a factor e^7 in frequency."""
+
+
+@dataclass(frozen=True, slots=True)
+class Meaning:
+    """What a column is."""
+
+    kind: str = ""  # of _WORDS without omega, or complex; empty where it is none of these
+    factor: float | None = 1.0  # to Hz or radians; None where no unit is said
+    scale: str = "linear"  # or decibel, logarithm (of a frequency, to base 10), unknown
+    label: str = ""  # of which response
+    unit: str = ""  # as written
+    word: str = ""  # the one by which it is known
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Column:
+    """One column of a table."""
+
+    name: str
+    meaning: Meaning
+    numbers: npt.NDArray[Any]  # nan where there is none
+    wrong: tuple[int, ...] = ()  # rows without a number
+    span: Span | None = None  # of its name
+    place: Callable[[int], Span | None] = lambda _: None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Assembled:
+    """A response that columns make."""
+
+    label: str
+    frequency_hz: Real
+    values: Complex
+    coherence: Real | None
+    unit: str
+    columns: tuple[Column, ...]  # frequency, value, coherence
+
+
+def meaning_of(name: str, unit_below: str = "") -> Meaning:
+    """Return what a name, and the unit in a row below it, say a column is.
+
+    Examples
+    --------
+    >>> meaning_of("Trace 2: Gain: Phase (°)").factor, meaning_of("Freq(kHz)").factor
+    (0.017453292519943295, 1000.0)
+    >>> meaning_of("S11(REAL)").kind, meaning_of("S11(REAL)").label, meaning_of("Time").kind
+    ('real', 'S11', '')
+    """
+    written = name.strip(" \"'#*%!;:").replace("µ", "u")
+    unit = unit_below.strip("[]<> ").replace("µ", "u")
+    unit = unit[1:-1] if re.fullmatch(r"\([^()]*\)", unit) else unit
+    text = written.replace("\u2220", "phase ")
+    text = re.sub(r"\|([^|]{2,})\|", r"mag \1", text)
+    for bracket in _BRACKET.finditer(text):
+        inside = bracket[1].strip()
+        parts = re.findall(_PARTS, inside.lower())
+        is_unit = inside.lower() in UNITS
+        is_argument = re.search(r"\w$", text[: bracket.start()]) and re.fullmatch(r"[\w .]+", inside)
+        if is_unit or not (is_argument or any(p in KINDS for p in parts)):
+            unit, text = inside, text.replace(bracket[0], " " * len(bracket[0]))
+    if not unit and (match := _SUFFIX.search(text)):
+        unit, text = match[1], text[: match.start()]
+    low = text.lower().replace("in-phase", "inphase")
+    words = re.findall(_PARTS, low)
+    kind = next((k for k in _WORDS if any(KINDS.get(w) == k for w in words)), "")
+    if not kind and unit:
+        is_hz = unit.lower() in _FREQUENCY_UNITS and unit.lower() != "1/s"
+        kind = "frequency" if is_hz else "phase" if unit.lower() in _DEGREES[:-2] else ""
+        kind = "magnitude" if unit.lower() == "db" else kind
+    if kind in ("frequency", "omega") and {"response", "function"} & set(words):
+        kind = ""
+    word = next((w for w in words if KINDS.get(w) == kind), "")
+
+    def kept(match: re.Match[str]) -> str:
+        part = match[0].lower()
+        return "" if part == word or (len(part) > 1 and part in KINDS) else match[0]
+
+    label = " ".join(re.sub(_PARTS, kept, text).split())
+    label = re.sub(r"[(\[]\W*[)\]]", "", label).strip(" :;,.-_'|")
+    label = label[1:-1] if re.fullmatch(r"\([^()]*\)", label) else label
+    if kind == "magnitude" and not unit and {"abs", "lin", "linear"} & set(words):
+        unit = "lin"
+    found = Meaning(kind, label=label, unit=unit, word=word)
+    sign = -1.0 if re.match(r"-\s*\D", written) else 1.0
+    return _with_unit(found, unit, sign, "log" in words or low.startswith("log"))
+
+
+def _with_unit(found: Meaning, unit: str, sign: float, is_log: bool) -> Meaning:
+    small = unit.lower().replace("\u03bc", "u")
+    if found.kind in ("frequency", "omega"):
+        own = "rad/s" if found.kind == "omega" else found.word if found.word in _FREQUENCY_UNITS else ""
+        factor = _FREQUENCY_UNITS.get(small or own)
+        factor = 1e-3 if unit == "mHz" else factor
+        return replace(found, kind="frequency", factor=factor, scale="logarithm" if is_log else "linear")
+    if found.kind == "phase":
+        factor = _PHASE_UNITS.get(small)
+        return replace(found, factor=None if factor is None else sign * factor)
+    if found.kind == "magnitude":
+        is_level = small.startswith("db") or found.word.startswith("db") or found.word == "spl"
+        is_plain = bool(small) and not is_level and small != "-"
+        return replace(found, scale="decibel" if is_level else "linear" if is_plain else "unknown")
+    return replace(found, factor=sign)
+
+
+def columns_asked(asked: str, width: int, names: Sequence[str] = ()) -> list[Meaning]:
+    """Return what ``--columns`` says of columns, in order; SF902 for an unknown word or too many of them.
+
+    Examples
+    --------
+    >>> [m.kind for m in columns_asked("f,-,mag_db,phase", 4)]
+    ['frequency', '', 'magnitude', 'phase']
+    """
+    words = [word.strip() for word in asked.split(",")]
+    hint = "such as f,re,im or f_khz,-,mag_db,phase_deg: f, omega, re, im, mag, mag_db, phase, coh, h, psd, -"
+    if len(words) > width:
+        listed = f": {', '.join(name[:30] for name in names[:12])}" if names else ""
+        message = f"--columns has {len(words)} words, and there are {width} columns{listed}"
+        raise UsageError(Diagnostic("SF902", message, None, hint))
+    found = []
+    for word in words:
+        meaning = Meaning("complex") if word in ("h", "H", "complex") else meaning_of(word)
+        if not meaning.kind and word not in ("", "-"):
+            raise UsageError(Diagnostic("SF902", f"--columns: unknown column '{word[:40]}'", None, hint))
+        if meaning.kind == "frequency" and meaning.factor is None and not meaning.unit:
+            meaning = replace(meaning, factor=1.0)
+        if meaning.kind == "magnitude" and meaning.scale == "unknown":
+            meaning = replace(meaning, scale="linear")
+        found.append(meaning)
+    return found + [Meaning()] * (width - len(words))
+
+
+def assembled(
+    columns: Sequence[Column], file: str, header: Span | None, *, is_asked: bool = False
+) -> tuple[list[Assembled], list[str]]:
+    """Return the responses that columns make, and what was guessed.
+
+    SF602 where columns are missing, ambiguous or in an unknown unit; SF603 where a number is missing. Without
+    a phase, that of a minimum-phase function is taken for a power spectrum, and where ``is_asked``.
+    """
+    guesses: list[str] = []
+    columns = _with_frequency(list(columns), file, header, guesses)
+    sections = _sections(columns)
+    made: list[Assembled] = []
+    used: set[int] = set()
+    for section in sections:
+        frequency, *rest = section
+        lines = _hertz(frequency, guesses)
+        for label, group in _groups(rest, is_asked=is_asked, guesses=guesses):
+            values = _values(group, lines, guesses)
+            coherence = group.get("coherence")
+            unit = _unit(next(iter(group.values())).meaning.unit, file)
+            shares = None if coherence is None else coherence.numbers.real
+            kept = tuple(c for c in (frequency, *group.values()))
+            used |= {id(c) for c in kept}
+            if not any(np.array_equal(values, m.values, equal_nan=True) for m in made):
+                made.append(Assembled(label, lines, values, shares, unit, kept))
+    if not made:
+        raise DataError(*_missing(columns, file, header))
+    if len(made) > MAX_RESPONSES:
+        raise DataError(Diagnostic("SF607", f"'{file}' holds more than {MAX_RESPONSES} responses"))
+    problems = [d for m in made for c in m.columns for d in _wrong(c, m.frequency_hz)]
+    if problems:
+        raise DataError(*problems[:MAX_ERRORS])
+    unused = [c.name for c in columns if id(c) not in used and c.name and not is_asked]
+    if unused:
+        listed = ", ".join(f"'{name[:30]}'" for name in unused[:6]) + (", ..." if len(unused) > 6 else "")  # noqa: PLR2004
+        guesses.append(f"{'columns' if len(unused) > 1 else 'column'} {listed} not used")
+    return made, list(dict.fromkeys(guesses))
+
+
+def _with_frequency(
+    columns: list[Column], file: str, header: Span | None, guesses: list[str]
+) -> list[Column]:
+    problems = []
+    for c in columns:
+        is_unknown = c.meaning.kind in ("frequency", "phase") and c.meaning.factor is None
+        if is_unknown and c.meaning.unit not in ("-", ""):
+            known = _FREQUENCY_UNITS if c.meaning.kind == "frequency" else _PHASE_UNITS
+            said = f"unknown unit '{c.meaning.unit[:20]}' of column '{c.name[:40]}'"
+            problems.append(Diagnostic("SF602", said, c.span, f"units: {', '.join(list(known)[:5])}"))
+    if problems:
+        raise DataError(*problems[:MAX_ERRORS])
+    if any(c.meaning.kind == "frequency" for c in columns):
+        return columns
+    first = columns[0]
+    steps = np.diff(first.numbers.real)
+    if first.meaning.kind or not steps.size or not (np.all(steps > 0) or np.all(steps < 0)):
+        place = "" if header else f"'{file}': "
+        raise DataError(Diagnostic("SF602", f"{place}no column is the frequency", header, ask(columns)))
+    unit = first.meaning.unit
+    factor = _FREQUENCY_UNITS.get(unit.lower())
+    guesses.append(f"column 1 has no name and is taken as the frequency in {unit if factor else 'Hz'}")
+    return [replace(first, meaning=Meaning("frequency", factor or 1.0)), *columns[1:]]
+
+
+def _sections(columns: Sequence[Column]) -> list[list[Column]]:
+    """Return each frequency column with the columns that belong to it."""
+    lines = [c for c in columns if c.meaning.kind == "frequency"]
+    lines.sort(key=lambda c: (c.meaning.scale == "logarithm", c.meaning.factor is None))
+    first = lines[0]
+    own = [first]
+    for other in lines[1:]:
+        a, b = _hertz(first, []), _hertz(other, [])
+        if a.shape != b.shape or not np.allclose(a, b, rtol=1e-3, equal_nan=True):
+            own.append(other)
+    rest = [c for c in columns if c.meaning.kind != "frequency"]
+    if len(own) == 1:
+        return [[first, *rest]]
+    order = list(columns)
+    begins = sorted(map(order.index, own))
+    cut = [*begins, len(order)]
+    found = [[c for c in order[a:b] if c.meaning.kind != "frequency"] for a, b in pairwise(cut)]
+    if not all(any(c.meaning.kind for c in one) for one in found):
+        message = "a second column of frequency, which differs from the first"
+        raise DataError(Diagnostic("SF602", message, own[1].span, ask(columns)))
+    return [[order[a], *one] for a, one in zip(begins, found, strict=True)]
+
+
+def _hertz(column: Column, guesses: list[str]) -> Real:
+    numbers = np.asarray(column.numbers.real, np.float64)
+    if column.meaning.factor is None:
+        guesses.append(f"'{column.name[:30]}' has no unit and is read in Hz")
+    if column.meaning.scale == "logarithm":
+        guesses.append(f"'{column.name[:30]}' is read as the decimal logarithm of the frequency")
+        with np.errstate(over="ignore"):
+            numbers = 10.0**numbers
+    return numbers * (column.meaning.factor or 1.0)
+
+
+def _groups(
+    rest: Sequence[Column], *, is_asked: bool, guesses: list[str]
+) -> list[tuple[str, dict[str, Column]]]:
+    """Return label and columns by kind of every response."""
+    labels = list(dict.fromkeys(c.meaning.label for c in rest if c.meaning.kind))
+    found = [
+        (label, group) for label in labels for group in _pairs([c for c in rest if c.meaning.label == label])
+    ]
+    if not found:
+        found = [("", group) for group in _pairs(rest)]
+    coherences = [c for c in rest if c.meaning.kind == "coherence"]
+    if len(coherences) in (1, len(found)):
+        for i, (_, group) in enumerate(found):
+            group.setdefault("coherence", coherences[i % len(coherences)])
+    powers = [c for c in rest if c.meaning.kind == "power"]
+    if not found and powers:
+        best = max((c for c in powers if c.meaning.label != "xyz"), key=_power, default=powers[0])
+        others = f", the strongest of {len(powers)}" if len(powers) > 1 else ""
+        guesses.append(
+            f"'{best.name[:30]}'{others}: its square root is the magnitude, the excitation taken as flat"
+        )
+        found = [(best.meaning.label, {"power": best})]
+    sizes = [c for c in rest if c.meaning.kind == "magnitude"]
+    if not found and is_asked and len(sizes) == 1:
+        found = [("", {"magnitude": sizes[0]})]
+    return found
+
+
+def _power(column: Column) -> float:
+    with np.errstate(all="ignore"):
+        return float(np.nan_to_num(np.nansum(np.abs(column.numbers))))
+
+
+def _pairs(columns: Sequence[Column]) -> list[dict[str, Column]]:
+    by_kind: dict[str, list[Column]] = {}
+    for c in columns:
+        kind = "complex" if c.numbers.dtype.kind == "c" and c.meaning.kind != "frequency" else c.meaning.kind
+        by_kind.setdefault(kind, []).append(c)
+    if by_kind.get("complex"):
+        return [{"complex": c} for c in by_kind["complex"]]
+    sizes, phases = by_kind.get("magnitude", []), by_kind.get("phase", [])
+    if len(phases) == 1:  # a magnitude once as it is and once in dB, or besides an amplitude
+        sizes = sorted(sizes, key=lambda c: (c.meaning.scale != "decibel", c.meaning.word.startswith("amp")))[
+            :1
+        ]
+    first, second = ("real", "imaginary"), ("magnitude", "phase")
+    for (a, b), one, two in (
+        (first, by_kind.get("real", []), by_kind.get("imaginary", [])),
+        (second, sizes, phases[: len(sizes)] if len(sizes) == 1 else phases),
+    ):
+        if one and len(one) == len(two):
+            return [{a: c, b: d} for c, d in zip(one, two, strict=True)]
+    return []
+
+
+def _values(group: dict[str, Column], lines: Real, guesses: list[str]) -> Complex:
+    with np.errstate(all="ignore"):  # what overflows is reported as no finite number
+        if "complex" in group:
+            return np.asarray(group["complex"].numbers, np.complex128)
+        if "real" in group:
+            one, two = group["real"], group["imaginary"]
+            if (two.meaning.factor or 1) < 0:
+                guesses.append(f"'{two.name[:30]}' is the imaginary part times -1")
+            parts = one.numbers.real * (one.meaning.factor or 1), two.numbers.real * (two.meaning.factor or 1)
+            return np.asarray(parts[0] + 1j * parts[1], np.complex128)
+        if "phase" in group:
+            size, phase = _decided(group["magnitude"], group["phase"], lines, guesses)
+        elif "power" in group:
+            size = np.sqrt(group["power"].numbers.real)
+            phase = _minimum_phase(lines, size, guesses)
+        else:
+            one = group["magnitude"]
+            size = _size(one, one.meaning.scale)
+            phase = _minimum_phase(lines, size, guesses)
+        return np.asarray(size * np.exp(1j * phase), np.complex128)
+
+
+def _size(column: Column, scale: str) -> Real:
+    numbers = column.numbers.real
+    return np.asarray(10 ** (numbers / 20) if scale == "decibel" else np.where(numbers < 0, np.nan, numbers))
+
+
+def _decided(magnitude: Column, phase: Column, lines: Real, guesses: list[str]) -> tuple[Real, Real]:
+    """Return magnitude and phase [rad], with the scale and unit that names or numbers say."""
+    scales = ["linear", "decibel"] if magnitude.meaning.scale == "unknown" else [magnitude.meaning.scale]
+    if len(scales) > 1 and np.any(magnitude.numbers.real <= 0):
+        scales = ["decibel"]
+    factors = [np.pi / 180, 1.0] if phase.meaning.factor is None else [phase.meaning.factor]
+    costs = {
+        (s, f): _unlikeness(lines, _size(magnitude, s), f * phase.numbers.real)
+        for s, f in product(scales, factors)
+    }
+
+    def choose(index: int, options: Sequence[str | float]) -> str | float | None:
+        best = sorted((min(c for key, c in costs.items() if key[index] == o), str(o), o) for o in options)
+        return best[0][2] if len(best) == 1 or best[1][0] - best[0][0] > UNDECIDED else None
+
+    factor = choose(1, factors)
+    if factor is None:
+        message = f"no unit of column '{phase.name[:40]}', and the numbers fit degrees as well as radians"
+        hint = "say phase_deg or phase_rad with --columns, such as --columns f,mag_db,phase_deg"
+        raise DataError(Diagnostic("SF602", message, phase.span, hint))
+    scale = choose(0, scales)
+    if scale is None and magnitude.meaning.word in ("gain", "level"):
+        message = (
+            f"no unit of column '{magnitude.name[:40]}', and the numbers fit dB as well as a plain ratio"
+        )
+        hint = "say mag or mag_db with --columns, such as --columns f,mag_db,phase_deg"
+        raise DataError(Diagnostic("SF602", message, magnitude.span, hint))
+    scale = scale or "linear"
+    if phase.meaning.factor is None:
+        unit = "radians" if factor == 1 else "degrees"
+        guesses.append(f"'{phase.name[:30]}' has no unit and is read in {unit}, which fits the magnitude")
+    elif phase.meaning.factor < 0:
+        guesses.append(f"'{phase.name[:30]}' is the phase times -1")
+    if magnitude.meaning.scale == "unknown":
+        said = "in dB" if scale == "decibel" else "as a ratio, not in dB"
+        guesses.append(f"'{magnitude.name[:30]}' has no unit and is read {said}")
+    return _size(magnitude, scale), np.asarray(factor * phase.numbers.real)
+
+
+def _unlikeness(lines: Real, size: Real, phase: Real) -> float:
+    """Return the logarithm of the ratio of the energies that the slopes of ln(size) and phase have."""
+    kept = (lines > 0) & (size > 0) & np.isfinite(size) & np.isfinite(phase) & np.isfinite(lines)
+    if kept.sum() < FEWEST_TO_DECIDE:
+        return 0.0
+    x, neper, turn = lines[kept], np.log(size[kept]), phase[kept]
+    if np.ptp(turn) <= WRAPPED:
+        turn = np.unwrap(turn)
+    energies = [
+        float(np.linalg.norm(np.diff(y - slope * (t - t.mean()))))
+        for t, y in ((np.log(x), neper), (x, turn))
+        for slope in [np.cov(t, y)[0, 1] / max(float(np.var(t, ddof=1)), 1e-300)]
+    ]
+    return abs(float(np.log((energies[1] + 1e-12) / (energies[0] + 1e-12))))
+
+
+def _minimum_phase(lines: Real, size: Real, guesses: list[str]) -> Real:
+    """Return the phase [rad] that the magnitude of a function without zeros on the right has.
+
+    2 w/pi times the integral of (ln|H(v)| - ln|H(w)|)/(v^2 - w^2) over v (Bode 1945, chapter 14); beyond
+    its ends the magnitude goes on with the power of frequency that it has there, rounded.
+    """
+    guesses.append("there is no phase: that of a minimum-phase response with this magnitude is computed")
+    kept = (lines > 0) & (size > 0) & np.isfinite(size) & np.isfinite(lines)
+    x, y = np.log(lines[kept]), np.log(size[kept])
+    phase = np.zeros(lines.size)
+    if x.size < FEWEST_TO_DECIDE or np.any(np.diff(x) <= 0):
+        return phase
+    end = max(x.size // 20, 3)
+    low, high = (round(float(np.polyfit(x[s], y[s], 1)[0])) for s in (slice(end), slice(-end, None)))
+    step = max((x[-1] - x[0] + 2 * BEYOND) / 2**19, float(np.quantile(np.diff(x), 0.05)))
+    grid = np.arange(x[0] - BEYOND, x[-1] + BEYOND, step)
+    slope = np.diff(np.interp(grid, x, y)) + step * np.where(grid[1:] < x[0], low, high * (grid[1:] > x[-1]))
+    # By parts the kernel is ln(coth(|u|/2)), u = ln(v/w); over the step at u = 0 its mean is 1 + ln(4/step).
+    u = step * np.abs(np.arange(-slope.size, slope.size))
+    kernel = -np.log(np.tanh(np.where(u == 0, 1.0, u) / 2))
+    kernel[slope.size] = 1 + np.log(4 / step)
+    size_2 = 2 ** int(np.ceil(np.log2(3 * slope.size)))
+    folded = np.fft.irfft(np.fft.rfft(slope, size_2) * np.fft.rfft(kernel, size_2), size_2)
+    turn = folded[slope.size : 2 * slope.size] / np.pi
+    phase[kept] = np.interp(x, grid[1:] - step / 2, turn)
+    return phase
+
+
+def _unit(text: str, file: str) -> str:
+    """Return a unit that a header gives, where it is one of a ratio; g may be the gram and is not taken."""
+    small = "Ohm" if text.lower() in _OHMS else text
+    if "/" not in small.replace("Ohm", "/") or re.search(r"\bg\b", small):
+        return ""
+    try:
+        return unit_of(small, file)
+    except DataError:
+        return ""
+
+
+def _wrong(column: Column, lines: Real) -> list[Diagnostic]:
+    """Return what is to be said of cells without a number; a line at 0 Hz is not looked at."""
+    problems = []
+    for row in [row for row in column.wrong if lines[row] != 0][:MAX_ERRORS]:
+        span = column.place(row)
+        is_line = span is None or span.start == span.source.text.rfind("\n", 0, span.start) + 1
+        text = span.text if span and not (is_line and len(span.text.split()) > 1) else ""
+        shown = f"'{text[:40]}' is not a number" if text else "a number is missing"
+        problems.append(Diagnostic("SF603", shown, span, "leave the line out, or the column with --columns"))
+    return problems
+
+
+def _missing(columns: Sequence[Column], file: str, header: Span | None) -> list[Diagnostic]:
+    """Return why columns make no response, and which option says what they are."""
+    kinds = {c.meaning.kind for c in columns}
+    place = "" if header else f"'{file}': "
+    unknown = [c for c in columns if not c.meaning.kind and c.name]
+    pairs = [("real", "imaginary"), ("magnitude", "phase")]
+    missing = next((b if a in kinds else a for a, b in pairs if (a in kinds) != (b in kinds)), None)
+    message = f"{place}a column of {missing} is missing" if missing else f"{place}no columns hold the values"
+    hint = ask(columns)
+    if unknown and missing and header:
+        close = nearest(unknown[0].name.lower(), KINDS)
+        hint = f"{close} {hint}" if close else hint
+        return [
+            Diagnostic("SF602", f"{message}: unknown column '{unknown[0].name[:40]}'", unknown[0].span, hint)
+        ]
+    if missing == "phase" and len(columns) == 2:  # noqa: PLR2004
+        scale = next(c.meaning.scale for c in columns if c.meaning.kind == "magnitude")
+        word = "mag_db" if scale == "decibel" else "mag"
+        hint = f"--columns f,{word} computes the phase of a minimum-phase response"
+    return [Diagnostic("SF602", message, header, hint)]
+
+
+def ask(columns: Sequence[Column]) -> str:
+    """Return the hint with the option that says what columns are, the likelier reading first."""
+    places = [i for i, c in enumerate(columns) if c.meaning.kind == "frequency"] or [0]
+    rest = [i for i, c in enumerate(columns) if i not in places and c.meaning.kind != "coherence"]
+    if len(rest) < 2:  # noqa: PLR2004
+        return HINT
+    one, two = (columns[i].numbers.real for i in rest[:2])
+    with np.errstate(all="ignore"):
+        is_phase = bool(np.nanmax(np.abs(two), initial=0) > 7 and np.nanmax(np.abs(two), initial=0) < 1e4)  # noqa: PLR2004
+        sizes = ("mag_db", "mag") if np.any(one < 0) else ("mag", "mag_db")
+    readings = [("re", "im"), *((s, "phase_deg") for s in sizes)]
+    readings = readings[1:] + readings[:1] if is_phase else readings
+    options = []
+    for reading in readings:
+        words = ["-"] * (rest[1] + 1)
+        words[places[0]], words[rest[0]], words[rest[1]] = "f", *reading
+        options.append("--columns " + ",".join(words))
+    return f"say what the columns are: {options[0]}, or {', or '.join(options[1:])}"

@@ -1,0 +1,278 @@
+"""Tables of numbers in text that instruments and programs write: encoding, delimiter, decimal sign, blocks.
+
+    Analyser 3000;V1.2              text above
+    Frequency;Real;Imag.            text above, of which columns.py finds the names
+    1,0E+00;2,5E-04;-9,0E-07        a block of two rows: delimiter ";", decimal comma
+    2,0E+00;2,6E-04;-8,8E-07
+
+Every combination of delimiter and decimal sign cuts the lines, and the one by which most cells are numbers is
+taken. A block is a run of lines that begin with a number and have as many cells; text between two blocks
+belongs to the second.
+"""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from symflex.errors import DataError, Diagnostic, Source, Span
+
+COMMENTS: Final = ("#", "%", "!", "//", "*", ";", '"#', '"*', '"!')
+SIGNS: Final = "#%!/*; \t"
+"""What stands before the text of a comment."""
+_NUMBER: Final = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_LEVEL = re.compile(rf"\(?({_NUMBER})\s*dB\s*[,;]\s*({_NUMBER})\s*\S{{0,3}}\)?", re.I)
+_CARTESIAN = re.compile(rf"\(?({_NUMBER})\s*([-+])\s*(?:[ij]\s*\*?\s*)?({_NUMBER})\s*\*?\s*[ij]?\)?", re.I)
+_PAIR = re.compile(rf"\(?({_NUMBER}),\s*({_NUMBER})\)?")
+_GROUPED = re.compile(r"[-+]?\d{1,3}(?:\.\d{3})+,\d+")
+_CONTROL = re.compile("[\0-\x08\x0e-\x19\x1b-\x1f]")
+_CANDIDATES: Final = (
+    (";", "."), (";", ","), ("\t", "."), ("\t", ","), (",", "."), (" ", "."), (" ", ","), (",", ","),
+)  # fmt: skip
+"""Delimiters and decimal signs; of equals the first is taken."""
+SAMPLE: Final = 400
+"""Lines from the middle of a file by which delimiter and decimal sign are chosen."""
+LONGEST_LINE: Final = 20_000
+FEWEST_ROWS: Final = 3
+SMALL_SHARE: Final = 10
+"""Blocks with less than a tenth of the rows of the largest are no tables of the same data."""
+
+
+def decoded(name: str, data: bytes) -> tuple[str, tuple[str, ...]]:
+    """Return the text of a file with newlines as line ends, and what was guessed; SF601 when it is no text."""
+    zeros = [data[i:2000:2].count(0) for i in (0, 1)]
+    sixteen = "utf-16-le" if zeros[1] > max(3 * zeros[0], 1) else "utf-16-be" if zeros[0] > 3 else ""  # noqa: PLR2004
+    guesses: tuple[str, ...] = ()
+    try:
+        if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+            text, guesses = data.decode("utf-16"), ("the text is UTF-16",)
+        elif sixteen:
+            text, guesses = data.decode(sixteen), ("the text is UTF-16",)
+        else:
+            text = data.decode("utf-8")
+    except UnicodeDecodeError:
+        try:
+            text, guesses = data.decode("cp1252"), ("the text is Latin-1 (Windows-1252), as it is not UTF-8",)
+        except UnicodeDecodeError as error:
+            raise _no_text(name, f"byte 0x{data[error.start]:02x} at byte offset {error.start}") from None
+    text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n").rstrip("\x1a\n")
+    if match := _CONTROL.search(text):
+        raise _no_text(name, f"it holds the control character 0x{ord(match[0]):02x}")
+    return text + "\n", guesses
+
+
+def decoded_text(name: str, data: bytes) -> str:
+    """Return the text of a file, with newlines as line ends; DataError SF601 when it is none."""
+    return decoded(name, data)[0]
+
+
+def _no_text(name: str, why: str) -> DataError:
+    hint = "binary formats end in .npz, .npy, .mat, .uff"
+    return DataError(Diagnostic("SF601", f"'{name}' is not text: {why}", None, hint))
+
+
+def number(cell: str, decimal: str = ".") -> float | complex | None:
+    """Return the number that a cell means; complex for ``1+2j``, ``(1,2)`` and ``(-3dB,45deg)``, or None.
+
+    Examples
+    --------
+    >>> number("2,5", ","), number("1.0D+3"), number("1-2i"), number("x")
+    (2.5, 1000.0, (1-2j), None)
+    """
+    text = cell.strip("\"' ").replace("\u2212", "-")
+    if decimal == ",":
+        if "." in text:
+            if not _GROUPED.fullmatch(text):
+                return None
+            text = text.replace(".", "")
+        text = text.replace(",", ".") if re.search(r"\d,\d", text) else text
+    if "_" in text or not text:
+        return None
+    try:
+        return float(text)
+    except ValueError:
+        pass
+    if re.fullmatch(r"[-+.\d]+[dD][-+]?\d+", text):
+        return number(text.replace("d", "e").replace("D", "e"))
+    return _complex_number(text)
+
+
+def _complex_number(text: str) -> complex | None:
+    if match := _LEVEL.fullmatch(text):
+        with np.errstate(over="ignore"):
+            size = np.float64(10) ** (np.float64(match[1]) / 20)
+        return complex(size * np.exp(1j * np.radians(float(match[2]))))
+    match = _CARTESIAN.fullmatch(text)
+    if match and re.search("[ij]", text, re.I):
+        return complex(float(match[1]), float(match[2] + match[3].lstrip("+-")))
+    match = _PAIR.fullmatch(text)
+    if match and ("(" in text or ("." in match[1] and "." in match[2])):
+        return complex(float(match[1]), float(match[2]))
+    return None
+
+
+def bare(cell: str) -> str:
+    """Return a cell without blanks and quotes around it; primes at its end, as of Z'', stay."""
+    text = cell.strip().strip('"').strip()
+    return text.strip("'") if text.startswith("'") else text
+
+
+def cut(line: str, delimiter: str, *, are_all_kept: bool = False) -> list[str]:
+    """Return the cells of a line, trailing empty ones left out or kept; quoted cells may hold the delimiter."""
+    text = line.strip()
+    if delimiter == " ":
+        cells = re.findall(r'"[^"]*"|\S+', text)
+    elif '"' in text:
+        cells = next(csv.reader([text], delimiter=delimiter, skipinitialspace=True), [])
+    else:
+        cells = text.split(delimiter)
+    cells = [bare(cell) for cell in cells]
+    while cells and not cells[-1] and not are_all_kept:
+        cells.pop()
+    return cells
+
+
+@dataclass(frozen=True, eq=False)
+class Block:
+    """Rows of numbers, and the text above them."""
+
+    table: TextTable
+    above: tuple[int, ...]  # lines, counted from 0
+    lines: tuple[int, ...]
+    rows: tuple[tuple[str, ...], ...]
+
+    @property
+    def width(self) -> int:
+        """How many cells most rows have."""
+        return Counter(map(len, self.rows)).most_common(1)[0][0]
+
+    def numbers(self, index: int) -> tuple[npt.NDArray[Any], tuple[int, ...]]:
+        """Return a column, and the rows where it has no number."""
+        cells = [row[index] if index < len(row) else "" for row in self.rows]
+        if self.table.decimal == "." and not any("_" in cell for cell in cells):
+            try:
+                return np.array([float(cell) for cell in cells]), ()
+            except ValueError:
+                pass
+        values = [number(cell, self.table.decimal) for cell in cells]
+        wrong = tuple(i for i, value in enumerate(values) if value is None)
+        return np.array([np.nan if value is None else value for value in values]), wrong
+
+    def place(self, index: int) -> Callable[[int], Span]:
+        """Return the function that says where a column's cell of a row stands."""
+        return lambda row: self.table.cell(self.lines[row], self.rows[row], index)
+
+    def first(self, row: int) -> float:
+        """Return the first number of a row."""
+        value = number(self.rows[row][0], self.table.decimal)
+        return float("nan") if value is None else value.real
+
+
+@dataclass(frozen=True, eq=False)
+class TextTable:
+    """A text cut into lines, and how they are cut into cells."""
+
+    source: Source
+    lines: tuple[str, ...]
+    starts: tuple[int, ...]
+    delimiter: str
+    decimal: str
+    guesses: tuple[str, ...] = field(default=())
+
+    @staticmethod
+    def of(name: str, data: bytes) -> TextTable:
+        """Return a file's text; SF601 when it is none, or has a line longer than any table's."""
+        text, guesses = decoded(name, data)
+        lines = tuple(text.split("\n"))
+        longest = max(range(len(lines)), key=lambda i: len(lines[i]))
+        if len(lines[longest]) > LONGEST_LINE:
+            message = f"{name}:{longest + 1}:1: a line of {len(lines[longest])} characters"
+            raise DataError(Diagnostic("SF601", message, None, f"lines have up to {LONGEST_LINE}"))
+        lengths = np.cumsum([0, *(len(line) + 1 for line in lines)])
+        delimiter, decimal = _format(lines)
+        if decimal == ",":
+            guesses += ("decimals are written with a comma",)
+        return TextTable(Source(name, text), lines, tuple(lengths.tolist()), delimiter, decimal, guesses)
+
+    def line(self, index: int) -> Span:
+        """Return where a line stands."""
+        start, text = self.starts[index], self.lines[index]
+        return Span(self.source, start + len(text) - len(text.lstrip()), start + len(text.rstrip()))
+
+    def cell(self, index: int, cells: Sequence[str], which: int) -> Span:
+        """Return where a cell of a line stands, the whole line when it is empty or not there."""
+        text, end = self.lines[index], 0
+        for i, cell in enumerate(cells[: which + 1]):
+            at = text.find(cell, end)
+            if i == which and cell and at >= 0:
+                return Span(self.source, self.starts[index] + at, self.starts[index] + at + len(cell))
+            end = max(at, end) + len(cell)
+        return self.line(index)
+
+    def cells(self, index: int) -> list[Span]:
+        """Return where the cells of a line stand, empty ones with an empty range."""
+        words, start = cut(self.lines[index], self.delimiter, are_all_kept=True), self.starts[index]
+        empty = Span(self.source, start, start)
+        return [self.cell(index, words, i) if word else empty for i, word in enumerate(words)]
+
+    def blocks(self) -> list[Block]:
+        """Return the blocks of numbers, without those that are small beside the largest."""
+        found: list[tuple[list[int], list[int], list[tuple[str, ...]]]] = []
+        gap: list[int] = []
+        for i, line in enumerate(self.lines):
+            cells = cut(line, self.delimiter) if line and not line.isspace() else []
+            if not self._is_row(cells, len(found[-1][2][-1]) if found else 0):
+                gap.append(i)
+                continue
+            if not found or (gap and self._begins(found[-1][2], cells)):
+                found.append((gap, [], []))
+            gap = []
+            found[-1][1].append(i)
+            found[-1][2].append(tuple(cells))
+        blocks = [Block(self, tuple(a), tuple(b), tuple(c)) for a, b, c in found]
+        most = max((len(block.rows) for block in blocks), default=0)
+        fewest = min(most, max(FEWEST_ROWS, most // SMALL_SHARE))
+        return [block for block in blocks if len(block.rows) >= fewest]
+
+    def _is_row(self, cells: list[str], width: int) -> bool:
+        if len(cells) < 2 or number(cells[0], self.decimal) is None:  # noqa: PLR2004
+            return False
+        if len(cells) == width:
+            return True
+        numbers = sum(number(cell, self.decimal) is not None for cell in cells)
+        return numbers >= 2 and 2 * numbers > len(cells)  # noqa: PLR2004
+
+    def _begins(self, rows: list[tuple[str, ...]], cells: list[str]) -> bool:
+        """Tell whether a row after other text begins a table: it has another width, or goes back."""
+        if len(cells) != len(rows[-1]):
+            return True
+        first, second, last, new = (
+            np.real(number(row[0], self.decimal) or 0.0)
+            for row in (rows[0], rows[min(1, len(rows) - 1)], rows[-1], cells)
+        )
+        return bool((new - last) * (second - first) <= 0)
+
+
+def _format(lines: Sequence[str]) -> tuple[str, str]:
+    written = [line for line in lines if line.strip()]
+    begin = max((len(written) - SAMPLE) // 2, 0)
+    sample = written[begin : begin + SAMPLE]
+
+    def score(candidate: tuple[str, str]) -> float:
+        found = 0.0
+        for line in sample:
+            cells = cut(line, candidate[0])
+            numbers = sum(number(cell, candidate[1]) is not None for cell in cells)
+            if numbers >= 2 and number(cells[0], candidate[1]) is not None:  # noqa: PLR2004
+                found += numbers / len(cells) if 2 * numbers > len(cells) else 0
+        return round(found, 6)
+
+    return max(_CANDIDATES, key=lru_cache(score))

@@ -1,0 +1,426 @@
+"""Files as instruments and programs save them, all of one resonance, made here and kept nowhere.
+
+The shapes (preamble, header, delimiter, decimal sign, encoding, order, units) are those of public pages and
+repositories; names and numbers are made up. ``h`` has one resonance at 62.8 rad/s with damping 0.02.
+"""
+
+from __future__ import annotations
+
+import io
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.io
+
+OMEGA, ZETA = 62.8, 0.02
+F = np.linspace(1.0, 50.0, 99)
+S = 2j * np.pi * F
+H = 25 / (S * S + 2 * ZETA * OMEGA * S + OMEGA**2)
+H2 = 0.5 * H + 0.001
+SIZE, DB, TURN = abs(H), 20 * np.log10(abs(H)), np.unwrap(np.angle(H))
+DEG = np.degrees(TURN)
+COH = 1 - 0.001 * np.arange(F.size) / F.size
+
+
+@dataclass(frozen=True)
+class Saved:
+    """A file, what is to be read from it, and the option that a person has to add, if any."""
+
+    name: str
+    content: bytes
+    values: tuple[np.ndarray, ...] = (H,)
+    columns: str = ""
+    tolerance: float = 2e-4
+    frequency: tuple[np.ndarray, ...] = (F, F)
+
+
+def rows(*columns, sep=",", decimal=".", form="{:.9E}"):
+    """Return rows of numbers; columns of text are taken as they are."""
+    lines = []
+    for i in range(F.size):
+        cells = [c[i] if isinstance(c[i], str) else form.format(c[i]).replace(".", decimal) for c in columns]
+        lines.append(sep.join(cells))
+    return "\n".join(lines) + "\n"
+
+
+RE, IM = H.real, H.imag
+POINT = [str(i) for i in range(F.size)]
+TEN = ["10.0"] * F.size
+POLAR = [f"({d:.14e}dB,{p:.14e}°)" for d, p in zip(DB, DEG, strict=True)]
+
+
+def text_files():
+    """Return files of text."""
+    c = ";", ","
+    yield Saved(
+        "oros.csv",
+        (
+            "CSVFormatType;Spectrum2DComplex\nFirst;0,000000E+00\nAxisUnit;Hz\nSignals;2\n\n"
+            "Name;Signal 2;Signal 3\nFunctionType;SpectrumFrfH1;SpectrumFrfH1\n\n"
+            "';Signal 2 (Real);Signal 2 (Imag.);Signal 3 (Real);Signal 3 (Imag.)\n"
+            "';(m/s^2)/N;(m/s^2)/N;(m/s^2)/N;(m/s^2)/N\n"
+            + rows(F, RE, IM, H2.real, H2.imag, sep=c[0], decimal=c[1])
+        ).encode(),
+        (H, H2),
+    )
+    yield Saved(
+        "bode_analyzer.csv",
+        (
+            'Frequency (Hz);"Trace 1: Gain: Magnitude (dB)";"Trace 2: Gain: Phase (°)"\n'
+            + rows(F, DB, DEG, sep=";")
+        ).encode(),
+    )
+    yield Saved(
+        "bode_analyzer_complex.csv",
+        (
+            '\ufeffFrequency (Hz);"Trace 1: Gain: Real ";"Trace 1: Gain: Imaginary ";Trace 1: Gain: Magnitude (dB);'
+            '"Trace 2: Gain: Real ";"Trace 2: Gain: Imaginary ";Trace 2: Gain: Phase (°)\n'
+            + rows(F, RE, IM, DB, RE, IM, DEG, sep=";", decimal=",")
+        ).encode(),
+    )
+    yield Saved(
+        "room_wizard.txt",
+        (
+            "* Measurement data measured by V5.20\n* Source: USB, microphone\n* Format: 48000 Hz, float, mono\n"
+            "* Dated: 01-Jan-2020\n*\n* Freq(Hz) SPL(dB) Phase(degrees)\n"
+            + rows(F, DB, DEG, sep=" ", form="{:.5f}")
+        ).encode(),
+    )
+    yield Saved("loudspeaker.frd", rows(F, DB, DEG, sep="  ", form="{:.5f}").encode())
+    yield Saved(
+        "wrapped.frd", ("* exported\n" + rows(F, DB, np.degrees(np.angle(-H)), sep="\t")).encode(), (-H,)
+    )
+    yield Saved(
+        "box.zma",
+        (
+            "*******\n* FILE: x\n* Data: Impedance (ohms), Phase (degrees)\n" + rows(F, SIZE, DEG, sep=" ")
+        ).encode(),
+    )
+    yield Saved(
+        "tester.zma", ("* Freq(Hz)\tImpedance(Ohms)\tPhase(Deg)\n" + rows(F, SIZE, DEG, sep="\t")).encode()
+    )
+    yield Saved("bare.zma", rows(F, SIZE, DEG, sep=" ").encode())
+    yield Saved("acoustics.txt", ("Freq [Hz]  dBSPL  Phase [Deg]\n" + rows(F, DB, DEG, sep="   ")).encode())
+    yield Saved(
+        "usb_scope.csv",
+        (
+            "#WaveForms Network Analyzer - Bode\n#Device Name: x\n#Start: 1 Hz\n#Stop: 50 Hz\n#Steps: 99\n\n"
+            "Frequency (Hz),Channel 1 Magnitude (dB),Channel 2 Magnitude (dB),Channel 2 Phase (*)\n"
+            + rows(F, np.ones(99), DB, DEG)
+        ).encode(),
+    )
+    yield Saved(
+        "scope_bode.csv",
+        (
+            "#,Frequency (Hz),Amplitude (Vpp),Gain (dB),Phase (°)\n" + rows(POINT, F, np.ones(99), DB, DEG)
+        ).encode("cp1252"),
+    )
+    yield Saved(
+        "scope_log.csv",
+        ("Frequency Log(Hz), Gain (dB), Phase (deg)\n" + rows(np.log10(F), DB, DEG, sep=", ")).encode(),
+    )
+    yield Saved("scope_comma.csv", ('"Frequency","Gain","Phase"\n' + rows(F, DB, DEG)).encode())
+    yield Saved(
+        "network.csv",
+        (
+            "!CSV A.01.01\r\n!Maker,Model,Serial,Firmware\r\n!Date: today\r\n!Source: Standard\r\n\r\nBEGIN CH1_DATA\r\n"
+            "Freq(Hz),S21(REAL),S21(IMAG),S11(REAL),S11(IMAG)\r\n"
+            + rows(F, RE, IM, H2.real, H2.imag).replace("\n", "\r\n")
+            + "END\r\n"
+        ).encode(),
+        (H, H2),
+    )
+    yield Saved(
+        "vector.csv",
+        (
+            "# Version 1.00\n#\nfreq[Hz];re:Trc1_S21;im:Trc1_S21;\n"
+            + rows(F, RE, IM, sep=";").replace("\n", ";\n")
+        ).encode(),
+    )
+    yield Saved(
+        "trace.csv",
+        (
+            "! MAKER, model, serial\n! Date: 01.01.2020 10:00:00\n! Stimulus(Hz), S21 [Re], S21 [Im]\n"
+            + rows(F, RE, IM)
+        ).encode(),
+    )
+    yield Saved("spice.txt", ("Freq.\tV(out)\n" + rows(F, POLAR, sep="\t")).encode("cp1252"))
+    yield Saved(
+        "spice_cartesian.txt",
+        (
+            "Freq.\tV(out)\tV(mid)\n"
+            + rows(
+                F,
+                [f"{a:.14e},{b:.14e}" for a, b in zip(RE, IM, strict=True)],
+                [f"{a:.14e},{b:.14e}" for a, b in zip(H2.real, H2.imag, strict=True)],
+                sep="\t",
+            )
+        ).encode(),
+        (H, H2),
+    )
+    yield Saved(
+        "spice_steps.txt",
+        (
+            "Freq.\tV(out)\nStep Information: R=1  (Step: 1/2)\n"
+            + rows(F, POLAR, sep="\t")
+            + "Step Information: R=2  (Step: 2/2)\n"
+            + rows(
+                F, [f"({20 * np.log10(abs(z)):.9e}dB,{np.degrees(np.angle(z)):.9e}°)" for z in H2], sep="\t"
+            )
+        ).encode("utf-8"),
+        (H, H2),
+    )
+    down = slice(None, None, -1)
+    yield Saved(
+        "cell.mpt",
+        (
+            "EC-Lab ASCII FILE\nNb header lines : 5\n\nTechnique : impedance\n"
+            "freq/Hz\tRe(Z)/Ohm\t-Im(Z)/Ohm\t|Z|/Ohm\tPhase(Z)/deg\ttime/s\n"
+            + rows(
+                F[down], RE[down], -IM[down], SIZE[down], DEG[down], np.arange(99.0), sep="\t", decimal=","
+            )
+        ).encode("cp1252"),
+    )
+    yield Saved(
+        "potentiostat.DTA",
+        (
+            "EXPLAIN\nTAG\tEISPOT\nTITLE\tLABEL\tx\nFREQINIT\tQUANT\t1.00000E+002\tHz\nZCURVE\tTABLE\n"
+            "\tPt\tTime\tFreq\tZreal\tZimag\tZsig\tZmod\tZphz\tIdc\n\t#\ts\tHz\tohm\tohm\tV\tohm\t°\tA\n"
+            + "\t"
+            + rows(
+                POINT,
+                np.arange(99.0),
+                F[down],
+                RE[down],
+                IM[down],
+                np.ones(99),
+                SIZE[down],
+                DEG[down],
+                SIZE,
+                sep="\t",
+            )
+            .replace("\n", "\n\t")
+            .rstrip("\t")
+        ).encode("cp1252"),
+    )
+    yield Saved(
+        "autolab.txt",
+        (
+            "Index;Frequency (Hz);Z' (Ω);-Z'' (Ω);Z (Ω);-Phase (°);Time (s)\n"
+            + rows(POINT, F[down], RE[down], -IM[down], SIZE[down], -DEG[down], np.arange(99.0), sep=";")
+        ).encode(),
+    )
+    yield Saved(
+        "plot.z",
+        (
+            '"ZPLOT2 ASCII"\n"Sweep Frequency: Control Voltage"\n  "Freq(Hz)"  "Ampl"  "Bias"  "Time(Sec)"  "Z\'(a)"  "Z\'\'(b)"  "Err"\n "End Comments"\n'
+            + rows(
+                F[down],
+                np.zeros(99),
+                np.zeros(99),
+                np.arange(99.0),
+                RE[down],
+                IM[down],
+                np.zeros(99),
+                sep="  ",
+            )
+        ).encode(),
+    )
+    yield Saved(
+        "impedance_traces.txt",
+        (
+            '"4294X REV1.10"\n"DATE: Jan 01 2020"\n"MEASURE: IMPEDANCE"\n"TRACE: A"\n"FORMAT: |Z| (Ohm)"\n"Frequency"\t"Value"\n'
+            + rows(F, SIZE, sep="\t")
+            + '\n\n"TRACE: B"\n"FORMAT: PHASE (deg)"\n"Frequency"\t"Value"\n'
+            + rows(F, DEG, sep="\t")
+        ).encode(),
+    )
+    yield Saved(
+        "two_tables.csv",
+        (
+            "Magnitude\nFrequency (Hz),Magnitude (dB)\n"
+            + rows(F, DB)
+            + "\nPhase\nFrequency (Hz),Phase (rad)\n"
+            + rows(F, TURN)
+        ).encode(),
+    )
+    yield Saved(
+        "printer_x.csv",
+        (
+            "freq,psd_x,psd_y,psd_z,psd_xyz\n"
+            + rows(F, SIZE**2, 1e-3 * SIZE, 1e-4 * SIZE, SIZE**2 + 1e-3 * SIZE)
+        ).encode(),
+        tolerance=0.1,
+    )
+    yield Saved("matrix.csv", ("f_Hz,H\n" + rows(F, [f"{z.real:.12g}{z.imag:+.12g}i" for z in H])).encode())
+    yield Saved("numpy.dat", ("# f [Hz] re im\n" + rows(F, RE, IM, sep=" ", form="{:.18e}")).encode())
+    yield Saved(
+        "numpy_complex.dat",
+        ("# freq_hz response\n" + rows(F, [f" ({z.real:.18e}{z.imag:+.18e}j)" for z in H], sep=" ")).encode(),
+    )
+    yield Saved("frame.csv", (",freq_hz,re,im\n" + rows(POINT, F, RE, IM)).encode())
+    yield Saved(
+        "vibration_utf16.txt",
+        (
+            "Test: wing\tRun 3\r\n\r\nFrequency\tReal\tImaginary\r\nHz\tg/N\tg/N\r\n"
+            + rows(F, RE, IM, sep="\t", decimal=",")
+        ).encode("utf-16"),
+    )
+    yield Saved(
+        "sheet.csv",
+        (
+            '"Frequenz [Hz]";"Betrag [dB]";"Phase [°]"\n'
+            + rows(*([f'"{x:.6f}"'.replace(".", ",") for x in y] for y in (F, DB, DEG)), sep=";")
+        ).encode("cp1252"),
+    )
+    yield Saved("kilohertz.csv", ("f (kHz),mag,phase (deg)\n" + rows(F / 1e3, SIZE, DEG)).encode())
+    yield Saved("megahertz.txt", ("Freq. [MHz]\tRe\tIm\n" + rows(F / 1e6, RE, IM, sep="\t")).encode())
+    yield Saved(
+        "simulator.csv",
+        ("Frequency (rad/s),Magnitude (abs),Phase (deg)\n" + rows(2 * np.pi * F, SIZE, DEG)).encode(),
+    )
+    yield Saved("radians.csv", ("Frequency,Magnitude (dB),Phase\n" + rows(F, DB, np.angle(H))).encode())
+    yield Saved("degrees.csv", ("Frequency,Magnitude,Phase\n" + rows(F, SIZE, DEG)).encode())
+    yield Saved(
+        "harmonic.txt",
+        (
+            "\tFrequency [Hz]\tAmplitude [mm]\tPhase Angle [°]\n" + rows(POINT, F, SIZE, DEG, sep="\t")
+        ).encode(),
+    )
+    yield Saved(
+        "finite_elements.txt",
+        (
+            "% Model:   x\n% Date:    today\n% freq (Hz)              abs(w) (mm)              arg(w) (rad)\n"
+            + rows(F, SIZE, TURN, sep="    ")
+        ).encode(),
+    )
+    yield Saved(
+        "fft_analyser.csv",
+        ("Model,CF-9000\nDate,2020/01/01\nAverage,32\nX(Hz),Real,Imag\n" + rows(F, RE, IM)).encode(),
+    )
+    yield Saved(
+        "virtual.lvm",
+        (
+            "LabVIEW Measurement\t\nWriter_Version\t2\nSeparator\tTab\nDecimal_Separator\t,\n***End_of_Header***\t\n\t\n"
+            "Channels\t2\t\nX_Dimension\tFrequency\tFrequency\t\n***End_of_Header***\t\t\nX_Value\tReal\tImag\tComment\n"
+            + rows(F, RE, IM, sep="\t", decimal=",")
+        ).encode(),
+    )
+    yield Saved(
+        "bench_scope.csv", ("Frequency(Hz),CH2 Amplitude(dB),CH2 Phase(Deg)\n" + rows(F, DB, DEG)).encode()
+    )
+    yield Saved(
+        "instrument_app.csv",
+        (
+            "% Frequency Response Analyzer\n% 2020-01-01\n% Frequency (Hz), Channel 1 Magnitude (dB), Channel 1 Phase (deg), Channel 2 Magnitude (dB), Channel 2 Phase (deg)\n"
+            + rows(F, DB, DEG, 20 * np.log10(abs(H2)), np.degrees(np.angle(H2)), sep=", ")
+        ).encode(),
+        (H, H2),
+    )
+    yield Saved(
+        "live_sound.txt",
+        (
+            "Frequency (Hz)\tMagnitude (dB)\tPhase (degrees)\tCoherence\n" + rows(F, DB, DEG, COH, sep="\t")
+        ).encode(),
+    )
+    yield Saved("semicolons.dat", ("; measured by hand\n; f re im\n" + rows(F, RE, IM, sep="  ")).encode())
+    yield Saved(
+        "side_by_side.csv",
+        ("f1 [Hz],Re1,Im1,f2 [Hz],Re2,Im2\n" + rows(F, RE, IM, F + 0.25, H2.real, H2.imag)).encode(),
+        (H, H2),
+        frequency=(F, F + 0.25),
+    )
+    yield Saved(
+        "modal.csv",
+        (
+            '"Frequency(Hz)","H(1,2) Real","H(1,2) Imag","H(2,2) Real","H(2,2) Imag"\n'
+            + rows(F, RE, IM, H2.real, H2.imag)
+        ).encode(),
+        (H, H2),
+    )
+    yield Saved(
+        "fortran.dat",
+        (
+            "* FREQ        REAL          IMAG\n"
+            + rows(F, RE, IM, sep="  ").replace("E", "D").replace("FRDQ", "FREQ")
+        ).encode(),
+    )
+    yield Saved(
+        "with_dc.csv",
+        ("Frequency (Hz),Magnitude (dB),Phase (deg),Coherence\n0,*,*,0\n" + rows(F, DB, DEG, COH)).encode(),
+    )
+    yield Saved("no_header.csv", rows(F, RE, IM).encode(), columns="f,re,im")
+    yield Saved("no_header_db.txt", rows(F, DB, DEG, sep="\t").encode(), columns="f,mag_db,phase")
+    yield Saved(
+        "no_header_khz.prn", rows(F / 1e3, TEN, SIZE, TURN, sep=" ").encode(), columns="f_khz,-,mag,phase_rad"
+    )
+
+
+def network_files():
+    """Return Touchstone files: the impedance of one port, and S21 of two."""
+    s11 = (H - 0.05) / (H + 0.05)
+    yield Saved(
+        "pocket.s1p",
+        ("! pocket analyser\n# Hz S RI R 0.05\n" + rows(F, s11.real, s11.imag, sep=" ")).encode(),
+    )
+    yield Saved(
+        "level.s1p",
+        (
+            "# kHz S DB R 0.05\n"
+            + rows(F / 1e3, 20 * np.log10(abs(s11)), np.degrees(np.angle(s11)), sep="\t")
+        ).encode(),
+    )
+    yield Saved(
+        "admittance.s1p",
+        ("# MHz Y RI R 50\n" + rows(F / 1e6, (50 / H).real, (50 / H).imag, sep=" ")).encode(),
+    )
+    zero = np.zeros(F.size)
+    yield Saved(
+        "through.s2p",
+        (
+            "# GHz S MA R 50\n"
+            + rows(F / 1e9, zero, zero, SIZE, DEG, zero, zero, zero, zero, sep=" ", form="{:.14g}")
+        ).encode(),
+    )
+
+
+def array_files():
+    """Return files of numpy and MATLAB."""
+
+    def mat(**arrays):
+        buffer = io.BytesIO()
+        scipy.io.savemat(buffer, arrays)
+        return buffer.getvalue()
+
+    def npz(*given, **arrays):
+        buffer = io.BytesIO()
+        np.savez(buffer, *given, **arrays)
+        return buffer.getvalue()
+
+    npy = io.BytesIO()
+    np.save(npy, np.column_stack([F, H]))
+    w, column = 2 * np.pi * F, F[:, None]
+    yield Saved("struct.mat", mat(data={"w": w, "P": {"frf": H}}))
+    yield Saved("bode.mat", mat(mag=SIZE[None, None, :], phase=DEG[None, None, :], wout=w[:, None]))
+    yield Saved("estimate.mat", mat(Txy=H[:, None], F=column, Cxy=COH[:, None]))
+    yield Saved(
+        "frd_struct.mat",
+        mat(G={"ResponseData": H[None, None, :], "Frequency": w[:, None], "FrequencyUnit": "rad/TimeUnit"}),
+    )
+    yield Saved(
+        "frd_hertz.mat", mat(G={"ResponseData": H[None, None, :], "Frequency": column, "FrequencyUnit": "Hz"})
+    )
+    yield Saved("matrix.mat", mat(FRF=np.column_stack([F, H])))
+    yield Saved("radians.mat", mat(FRF=np.column_stack([w, H])))
+    yield Saved("real_matrix.mat", mat(data=np.column_stack([F, RE, IM])), columns="f,re,im")
+    yield Saved("many.mat", mat(freq=column, H=np.column_stack([H, H2])), (H, H2))
+    yield Saved("runs.mat", mat(run=np.array([{"f": F, "H": H}, {"f": F, "H": H2}], object)), (H, H2))
+    yield Saved("unnamed.npz", npz(F, H))
+    yield Saved("named.npz", npz(axis=np.e * F, G=H), columns="f=axis,h=G", frequency=(np.e * F,))
+    yield Saved("parts.npz", npz(f_hz=F, re=RE, im=IM))
+    yield Saved("pair.npy", npy.getvalue())
+
+
+def all_files():
+    """Return all of them."""
+    return [*text_files(), *network_files(), *array_files()]

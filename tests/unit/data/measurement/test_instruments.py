@@ -1,0 +1,215 @@
+"""Files as instruments and programs save them are read by the first command, and guesses are said."""
+
+from __future__ import annotations
+
+import io
+import re
+
+import numpy as np
+import pytest
+
+from symflex.data.measurement import read_measurement
+from symflex.errors import DataError, SymflexError, UsageError
+from tests.unit.data.measurement.instruments import DB, DEG, IM, RE, F, H, all_files, rows
+
+FILES = all_files()
+
+
+def test_each_is_read_as_it_was_saved(tmp_path):
+    wrong = {}
+    for saved in FILES:
+        path = tmp_path / saved.name
+        path.write_bytes(saved.content)
+        try:
+            found = read_measurement(path, saved.columns)
+        except SymflexError as error:
+            wrong[saved.name] = str(error)
+            continue
+        if len(found) != len(saved.values):
+            wrong[saved.name] = f"{found} {found[0].guesses}"
+            continue
+        for one, values, frequency in zip(found, saved.values, saved.frequency, strict=False):
+            if one.values.shape != values.shape:
+                wrong[saved.name] = f"{one} {one.guesses}"
+                continue
+            error = np.max(abs(one.values - values) / abs(values))
+            off = np.max(abs(one.frequency_hz - frequency) / frequency)
+            if error > saved.tolerance or off > 1e-6:
+                wrong[saved.name] = f"values off by {error:.2g}, frequencies by {off:.2g}: {one.guesses}"
+    assert not wrong, "\n".join(f"{name}: {why}" for name, why in wrong.items())
+    assert len(FILES) >= 60
+
+
+GUESSES = {
+    "oros.csv": "decimals are written with a comma",
+    "bare.zma": "no line names the columns: Hz, Ohm, degrees",
+    "scope_bode.csv": "Latin-1",
+    "vibration_utf16.txt": "the text is UTF-16",
+    "cell.mpt": "'-Im(Z)/Ohm' is the imaginary part times -1",
+    "plot.z": "the lines go down in frequency",
+    "radians.csv": "'Phase' has no unit and is read in radians",
+    "degrees.csv": "'Magnitude' has no unit and is read as a ratio",
+    "scope_comma.csv": "'Gain' has no unit and is read in dB",
+    "scope_log.csv": "decimal logarithm of the frequency",
+    "printer_x.csv": "that of a minimum-phase response",
+    "pocket.s1p": "Z11 is the response, from S-parameters with the reference 0.05 Ohm",
+    "through.s2p": "S21 is the response",
+    "radians.mat": "read in rad/s, in which its ends are round numbers",
+    "with_dc.csv": "the line at 0 Hz is left out",
+    "harmonic.txt": "has no name",
+}
+
+
+def test_what_is_guessed_is_said(tmp_path):
+    by_name = {saved.name: saved for saved in FILES}
+    for name, said in GUESSES.items():
+        path = tmp_path / name
+        path.write_bytes(by_name[name].content)
+        guesses = read_measurement(path, by_name[name].columns)[0].guesses
+        assert any(said in guess for guess in guesses) != (name == "harmonic.txt"), (name, guesses)
+
+
+def npz(**arrays):
+    buffer = io.BytesIO()
+    np.savez(buffer, **arrays)
+    return buffer.getvalue()
+
+
+WORD = re.compile(r"--columns ([^ ;)]+?),?(?: |$|\))")
+ODD = F * 1.0123456789
+AMBIGUOUS = {
+    "parts.csv": (rows(F, RE, IM).encode(), "a.csv:1:1".replace("a", "parts"), H),
+    "level.txt": (rows(F, DB, DEG, sep="\t").encode(), "level.txt:1:1", H),
+    "words.csv": (("Time [s],A [V],B [V]\n" + rows(F, RE, IM)).encode(), "words.csv:2:1", H),
+    "matrix.npz": (npz(m=np.column_stack([F, RE, IM])), "real columns without names", H),
+    "odd.npz": (npz(m=np.column_stack([ODD, H])), "in Hz or in rad/s", H),
+    "axis.npz": (npz(x=ODD, y=H), "in Hz or in rad/s", H),
+    "two.npz": (npz(f=F, a=H, b=2 * H), "has no array values; it has f (99), a (99), b (99)", H),
+}
+
+
+def test_what_is_ambiguous_is_asked_for_and_the_option_that_is_named_first_reads_it(tmp_path):
+    for name, (content, said, values) in AMBIGUOUS.items():
+        path = tmp_path / name
+        path.write_bytes(content)
+        with pytest.raises(DataError) as caught:
+            read_measurement(path)
+        assert said in str(caught.value), name
+        option = WORD.search(caught.value.diagnostics[0].hint)
+        assert option, (name, caught.value.diagnostics[0].hint)
+        (found,) = read_measurement(path, option[1])
+        assert found.values == pytest.approx(values, rel=1e-3), name
+
+
+def test_columns_that_are_not_there_are_refused(tmp_path):
+    by_name = {saved.name: saved for saved in FILES}
+    for name, columns in (
+        ("frame.csv", "f,re,im,coh,re"), ("frame.csv", "f,quux,im"), ("through.s2p", "s31"), ("pocket.s1p", "s21"),
+        ("many.mat", "f=freq,h=G"), ("many.mat", "q=freq"), ("many.mat", "f,re,im"), ("pair.npy", "f,h,h"),
+    ):  # fmt: skip
+        path = tmp_path / name
+        path.write_bytes(by_name[name].content)
+        with pytest.raises(UsageError) as caught:
+            read_measurement(path, columns)
+        assert caught.value.diagnostics[0].code == "SF902", name
+
+
+HOSTILE = {
+    "a word": ("f;re;im\n1,5;2,5;3\n2,5;x;3\n3,5;2;1\n", "SF603", "a.csv:3:5"),
+    "a gap": ("f,re,im\n1,2,3\n2,,3\n3,4,5\n", "SF603", "a.csv:3:1"),
+    "magnitude alone": ("Freq(Hz),SPL(dB)\n1,2\n2,3\n3,4\n", "SF602", "a.csv:1:1"),
+    "no unit anyone knows": ("f [furlong],re,im\n1,2,3\n2,3,4\n3,4,5\n", "SF602", "a.csv:1:1"),
+    "a long line": ("f,re,im\n" + "1," * 20000 + "\n", "SF601", "a.csv:2:1"),
+    "prose": ("Dear reader,\nthis is a letter.\n", "SF605", "a.csv"),
+}
+
+
+def test_hostile_text_is_refused_with_its_place(tmp_path):
+    for case, (text, code, place) in HOSTILE.items():
+        (tmp_path / "a.csv").write_text(text)
+        with pytest.raises(DataError) as caught:
+            read_measurement(tmp_path / "a.csv")
+        assert f"[{code}]" in str(caught.value), (case, str(caught.value))
+        assert place in str(caught.value), (case, str(caught.value))
+
+
+def test_hostile_touchstone_files_are_refused_with_their_place(tmp_path):
+    for text, code, place in (
+        ("# furlong S RI R 50\n1 2 3\n", "SF601", "a.s1p:1:1"),
+        ("# Hz S RI R -50\n1 2 3\n", "SF601", "a.s1p:1:1"),
+        ("# Hz S RI R 50\n1 2\n", "SF601", "a.s1p:2:1"),
+        ("# Hz S RI R 50\n1 2 x\n", "SF603", "a.s1p:2:1"),
+        ("# Hz S RI R 50\n1 1 0\n2 1 0\n3 1 0\n", "SF603", "Z"),
+        ("# Hz S RI R 50\n", "SF605", "a.s1p"),
+    ):
+        (tmp_path / "a.s1p").write_text(text)
+        with pytest.raises(DataError) as caught:
+            read_measurement(tmp_path / "a.s1p")
+        assert f"[{code}]" in str(caught.value), text
+        assert place in str(caught.value), text
+
+
+def element(kind, content):
+    return (
+        kind.to_bytes(4, "little")
+        + len(content).to_bytes(4, "little")
+        + content
+        + b"\0" * (-len(content) % 8)
+    )
+
+
+def test_an_object_of_matlab_is_named_with_the_commands_that_unpack_it(tmp_path):
+    flags = element(6, (17).to_bytes(8, "little"))
+    body = flags + element(1, b"G") + element(1, b"MCOS") + element(1, b"idfrd")
+    header = b"MATLAB 5.0 MAT-file".ljust(124) + b"\x00\x01IM"
+    (tmp_path / "a.mat").write_bytes(header + element(14, body))
+    with pytest.raises(DataError) as caught:
+        read_measurement(tmp_path / "a.mat")
+    assert "G is an object of the class idfrd" in str(caught.value)
+    assert "[H, w] = frdata(G); save('FILE.mat', 'H', 'w', '-v7')" in str(caught.value)
+
+
+def test_what_is_no_data_file_says_what_to_do(tmp_path):
+    for name, said in (
+        ("a.xlsx", "save the sheet as .csv"),
+        ("a.tdms", "nptdms"),
+        ("a.xyz", "no table in text"),
+    ):
+        (tmp_path / name).write_text("nothing here\n")
+        with pytest.raises(DataError) as caught:
+            read_measurement(tmp_path / name)
+        assert "[SF606]" in str(caught.value), name
+        assert said in str(caught.value), name
+
+
+def test_other_parameters_of_two_ports_are_those_of_circuit_theory(tmp_path):
+    # A series impedance Z between the ports: S21 = 2 R/(2 R + Z), y21 = -1/Z (Pozar, Microwave Engineering).
+    s21, s11 = 100 / (100 + H), H / (100 + H)
+    text = "# Hz S RI R 50\n" + rows(
+        F, s11.real, s11.imag, s21.real, s21.imag, s21.real, s21.imag, s11.real, s11.imag, sep=" "
+    )
+    (tmp_path / "a.s2p").write_text(text)
+    assert read_measurement(tmp_path / "a.s2p", "y21")[0].values == pytest.approx(-1 / H, rel=1e-3)
+    assert read_measurement(tmp_path / "a.s2p", "s21")[0].values == pytest.approx(s21)
+
+
+def test_universal_files_name_node_direction_and_unit(tmp_path):
+    pyuff = pytest.importorskip("pyuff")
+    path = tmp_path / "a.uff"
+    sets = [
+        pyuff.prepare_58(
+            binary=0, func_type=4, rsp_node=node, rsp_dir=direction, ref_node=3, ref_dir=1, data=np.r_[0, H * node],
+            x=np.r_[0.0, F], id1="x", rsp_ent_name="NONE", ref_ent_name="NONE", abscissa_spacing=0,
+            abscissa_spec_data_type=18, ordinate_spec_data_type=kind, orddenom_spec_data_type=13,
+        )
+        for node, direction, kind in ((1, 3, 12), (2, -2, 8), (2, -2, 8))
+    ]  # fmt: skip
+    pyuff.UFF(str(path)).write_sets(sets)
+    found = read_measurement(path)
+    assert [one.name for one in found] == ["A_1Z/F_3X", "X_2nY/F_3X", "X_2nY/F_3X 2"]
+    assert [one.unit for one in found] == ["(m/s^2)/N", "(m)/N", "(m)/N"]
+    assert found[1].values == pytest.approx(2 * H)
+    assert "the line at 0 Hz is left out" in found[0].guesses
+    path.write_text("    -1\n    15\n         1         0         0         0  0. 0. 0.\n    -1\n")
+    with pytest.raises(DataError, match=r"it holds datasets 15 \(nodes\)"):
+        read_measurement(path)
