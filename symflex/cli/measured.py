@@ -19,7 +19,7 @@ SUFFIXES = (".pdf", ".png", ".svg")
 
 @bare_command("fit", FitOptions)
 def fit(given: FitOptions) -> int:
-    """Fit resonances to the frequency responses in DATA: text, .frd, .zma, .s1p, .s2p, .uff, .mat, .npz, .npy.
+    """Fit resonances to the frequency responses in DATA: text, .frd, .zma, .s1p, .s2p, .uff, .mat, .npz.
 
     Text in columns is read as instruments and programs save it. What a file does not say is guessed and
     printed, one line a guess, and --columns overrules it; what could mean two things is asked for.

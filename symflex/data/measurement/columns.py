@@ -14,8 +14,9 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from itertools import pairwise, product
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -23,6 +24,7 @@ import numpy.typing as npt
 from symflex.data.measurement.measured_response import MAX_ERRORS, MAX_RESPONSES, unit_of
 from symflex.errors import DataError, Diagnostic, Span, UsageError, nearest
 
+Choice = TypeVar("Choice", str, float)
 Real = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
 
@@ -32,8 +34,8 @@ _WORDS: Final = {
     "imaginary": "im imag imaginary imaginär zim zimag z'' quadrature",
     "real": "re real zre zreal z' inphase",
     "power": "psd power pxx autopower",
-    "magnitude": "magnitude mag gain amplitude ampl amp abs modulus module level spl |h| |z| z impedance zmod betrag "
-    "db dbspl dbv dbr lin",
+    "magnitude": "magnitude mag gain amplitude ampl amp abs modulus module level spl |h| |z| z zmod "
+    "impedance betrag db dbspl dbv dbr lin",
     "omega": "omega w ω angular",
     "frequency": "frequency freq frequencies freqs f hz fhz khz mhz ghz stimulus "
     "frequenz fréquence frequenza frecuencia",
@@ -54,7 +56,7 @@ _PHASE_UNITS: Final = dict.fromkeys(_DEGREES, np.pi / 180) | dict.fromkeys(
 UNITS: Final = frozenset((*_FREQUENCY_UNITS, *_PHASE_UNITS, "db", *_OHMS))
 _BRACKET = re.compile(r"[\[({<]\s*([^\[\](){}<>]*(?:\([^()]*\)[^\[\](){}<>]*)?)\s*[\])}>]")
 _SUFFIX = re.compile(
-    r"(?:[\s_/,:]|\bin )\s*(hz|khz|mhz|ghz|rad/s|rad_s|db|deg|degrees?|rad|radians?|ohms?)\s*$", re.I
+    r"(?:[\s_/,:]|\bin )\s*(hz|khz|mhz|ghz|rad/s|rad_s|db|deg|degrees?|rad|radians?|ohms?|°|º)\s*$", re.I
 )
 HINT: Final = (
     "columns: frequency_hz; re, im or magnitude_db, phase_deg or magnitude, phase_rad; coherence if known"
@@ -63,6 +65,9 @@ UNDECIDED: Final = 1.5
 """Of two readings, the natural logarithm by which one has to be less like a causal function."""
 WRAPPED: Final = 2 * np.pi * 1.001
 """The largest range of phases that may have been wrapped, and not written as they go on."""
+FITS: Final = 1.0
+"""Beyond it numbers are like no causal function: the ratio of energies is beyond a factor e."""
+FILLED: Final = 0.95
 FEWEST_TO_DECIDE: Final = 8
 BEYOND: Final = 7.0
 """How far a magnitude is continued beyond its ends: a factor e^7 in frequency."""
@@ -104,6 +109,7 @@ class Assembled:
     columns: tuple[Column, ...]  # frequency, value, coherence
 
 
+@lru_cache(1000)
 def meaning_of(name: str, unit_below: str = "") -> Meaning:
     """Return what a name, and the unit in a row below it, say a column is.
 
@@ -117,8 +123,12 @@ def meaning_of(name: str, unit_below: str = "") -> Meaning:
     written = name.strip(" \"'#*%!;:").replace("µ", "u")
     unit = unit_below.strip("[]<> ").replace("µ", "u")
     unit = unit[1:-1] if re.fullmatch(r"\([^()]*\)", unit) else unit
-    text = written.replace("\u2220", "phase ")
+    text = re.sub(
+        r"\bdb\s+re\b[^)\]]*", "dB", written.replace("\u2220", "phase ").replace("Â°", "°"), flags=re.I
+    )
     text = re.sub(r"\|([^|]{2,})\|", r"mag \1", text)
+    if text.strip().lower() in _PHASE_UNITS:
+        unit = text.strip()
     for bracket in _BRACKET.finditer(text):
         inside = bracket[1].strip()
         parts = re.findall(_PARTS, inside.lower())
@@ -133,7 +143,7 @@ def meaning_of(name: str, unit_below: str = "") -> Meaning:
     kind = next((k for k in _WORDS if any(KINDS.get(w) == k for w in words)), "")
     if not kind and unit:
         is_hz = unit.lower() in _FREQUENCY_UNITS and unit.lower() != "1/s"
-        kind = "frequency" if is_hz else "phase" if unit.lower() in _DEGREES[:-2] else ""
+        kind = "frequency" if is_hz else "phase" if unit.lower() in (*_DEGREES[:-2], low) else ""
         kind = "magnitude" if unit.lower() == "db" else kind
     if kind in ("frequency", "omega") and {"response", "function"} & set(words):
         kind = ""
@@ -154,7 +164,7 @@ def meaning_of(name: str, unit_below: str = "") -> Meaning:
 
 
 def _with_unit(found: Meaning, unit: str, sign: float, is_log: bool) -> Meaning:
-    small = unit.lower().replace("\u03bc", "u")
+    small = unit.lower().rstrip(".")
     if found.kind in ("frequency", "omega"):
         own = "rad/s" if found.kind == "omega" else found.word if found.word in _FREQUENCY_UNITS else ""
         factor = _FREQUENCY_UNITS.get(small or own)
@@ -216,7 +226,7 @@ def assembled(
         for label, group in _groups(rest, is_asked=is_asked, guesses=guesses):
             values = _values(group, lines, guesses)
             coherence = group.get("coherence")
-            unit = _unit(next(iter(group.values())).meaning.unit, file)
+            unit = ratio_unit(next(iter(group.values())).meaning.unit, file)
             shares = None if coherence is None else coherence.numbers.real
             kept = tuple(c for c in (frequency, *group.values()))
             used |= {id(c) for c in kept}
@@ -252,7 +262,8 @@ def _with_frequency(
         return columns
     first = columns[0]
     steps = np.diff(first.numbers.real)
-    if first.meaning.kind or not steps.size or not (np.all(steps > 0) or np.all(steps < 0)):
+    is_named = re.search(r"[^\W\d_]", first.name) and not re.match(r"x\b|x_", first.name, re.I)
+    if first.meaning.kind or is_named or not steps.size or not (np.all(steps > 0) or np.all(steps < 0)):
         place = "" if header else f"'{file}': "
         raise DataError(Diagnostic("SF602", f"{place}no column is the frequency", header, ask(columns)))
     unit = first.meaning.unit
@@ -288,6 +299,8 @@ def _hertz(column: Column, guesses: list[str]) -> Real:
     numbers = np.asarray(column.numbers.real, np.float64)
     if column.meaning.factor is None:
         guesses.append(f"'{column.name[:30]}' has no unit and is read in Hz")
+    if column.meaning.word in _WORDS["omega"] and column.meaning.word and not column.meaning.unit:
+        guesses.append(f"'{column.name[:30]}' has no unit and is read in rad/s")
     if column.meaning.scale == "logarithm":
         guesses.append(f"'{column.name[:30]}' is read as the decimal logarithm of the frequency")
         with np.errstate(over="ignore"):
@@ -382,23 +395,20 @@ def _decided(magnitude: Column, phase: Column, lines: Real, guesses: list[str]) 
     scales = ["linear", "decibel"] if magnitude.meaning.scale == "unknown" else [magnitude.meaning.scale]
     if len(scales) > 1 and np.any(magnitude.numbers.real <= 0):
         scales = ["decibel"]
-    factors = [np.pi / 180, 1.0] if phase.meaning.factor is None else [phase.meaning.factor]
-    costs = {
-        (s, f): _unlikeness(lines, _size(magnitude, s), f * phase.numbers.real)
-        for s, f in product(scales, factors)
-    }
-
-    def choose(index: int, options: Sequence[str | float]) -> str | float | None:
-        best = sorted((min(c for key, c in costs.items() if key[index] == o), str(o), o) for o in options)
-        return best[0][2] if len(best) == 1 or best[1][0] - best[0][0] > UNDECIDED else None
-
-    factor = choose(1, factors)
+    turn = np.asarray(phase.numbers.real, np.float64)
+    factors = _possible_units(turn) if phase.meaning.factor is None else [phase.meaning.factor]
+    is_gain = magnitude.meaning.word in ("gain", "level")
+    costs = {(s, f): _unlikeness(lines, _size(magnitude, s), f * turn) for s, f in product(scales, factors)}
+    usual = [costs[scales[0], f] for f in factors]
+    # A plain magnitude is the usual reading; both are open where it does not fit, and for a gain.
+    readings = scales[:1] if not is_gain and min(usual) < FITS and np.ptp(usual) > UNDECIDED else scales
+    factor = _best({f: min(costs[s, f] for s in readings) for f in factors}, UNDECIDED)
     if factor is None:
         message = f"no unit of column '{phase.name[:40]}', and the numbers fit degrees as well as radians"
         hint = "say phase_deg or phase_rad with --columns, such as --columns f,mag_db,phase_deg"
         raise DataError(Diagnostic("SF602", message, phase.span, hint))
-    scale = choose(0, scales)
-    if scale is None and magnitude.meaning.word in ("gain", "level"):
+    scale = _best({s: costs[s, factor] for s in scales}, UNDECIDED / 2)
+    if scale is None and is_gain:
         message = (
             f"no unit of column '{magnitude.name[:40]}', and the numbers fit dB as well as a plain ratio"
         )
@@ -414,6 +424,22 @@ def _decided(magnitude: Column, phase: Column, lines: Real, guesses: list[str]) 
         said = "in dB" if scale == "decibel" else "as a ratio, not in dB"
         guesses.append(f"'{magnitude.name[:30]}' has no unit and is read {said}")
     return _size(magnitude, scale), np.asarray(factor * phase.numbers.real)
+
+
+def _possible_units(turn: Real) -> list[float]:
+    """Return the units [rad] that phases may be in; wrapped ones that fill a turn say it themselves."""
+    span = float(np.ptp(turn[np.isfinite(turn)])) if np.any(np.isfinite(turn)) else 0.0
+    for factor in (np.pi / 180, 1.0):
+        if FILLED * WRAPPED < span * factor <= WRAPPED:
+            return [factor]
+    return [np.pi / 180, 1.0]
+
+
+def _best(costs: dict[Choice, float], margin: float) -> Choice | None:
+    """Return what is least unlike, None where another one is close by a margin, or all are unlike."""
+    (best, choice), *others = sorted((cost, choice) for choice, cost in costs.items())
+    is_clear = not others or (best < FITS and others[0][0] - best > margin)
+    return choice if is_clear else None
 
 
 def _unlikeness(lines: Real, size: Real, phase: Real) -> float:
@@ -460,7 +486,7 @@ def _minimum_phase(lines: Real, size: Real, guesses: list[str]) -> Real:
     return phase
 
 
-def _unit(text: str, file: str) -> str:
+def ratio_unit(text: str, file: str) -> str:
     """Return a unit that a header gives, where it is one of a ratio; g may be the gram and is not taken."""
     small = "Ohm" if text.lower() in _OHMS else text
     if "/" not in small.replace("Ohm", "/") or re.search(r"\bg\b", small):
@@ -498,10 +524,6 @@ def _missing(columns: Sequence[Column], file: str, header: Span | None) -> list[
         return [
             Diagnostic("SF602", f"{message}: unknown column '{unknown[0].name[:40]}'", unknown[0].span, hint)
         ]
-    if missing == "phase" and len(columns) == 2:  # noqa: PLR2004
-        scale = next(c.meaning.scale for c in columns if c.meaning.kind == "magnitude")
-        word = "mag_db" if scale == "decibel" else "mag"
-        hint = f"--columns f,{word} computes the phase of a minimum-phase response"
     return [Diagnostic("SF602", message, header, hint)]
 
 
@@ -509,7 +531,9 @@ def ask(columns: Sequence[Column]) -> str:
     """Return the hint with the option that says what columns are, the likelier reading first."""
     places = [i for i, c in enumerate(columns) if c.meaning.kind == "frequency"] or [0]
     rest = [i for i, c in enumerate(columns) if i not in places and c.meaning.kind != "coherence"]
-    if len(rest) < 2:  # noqa: PLR2004
+    if len(rest) == 1:
+        return "--columns f,mag_db, or --columns f,mag, computes the phase of a minimum-phase response"
+    if not rest:
         return HINT
     one, two = (columns[i].numbers.real for i in rest[:2])
     with np.errstate(all="ignore"):
@@ -519,7 +543,7 @@ def ask(columns: Sequence[Column]) -> str:
     readings = readings[1:] + readings[:1] if is_phase else readings
     options = []
     for reading in readings:
-        words = ["-"] * (rest[1] + 1)
+        words = ["-"] * (max(places[0], rest[1]) + 1)
         words[places[0]], words[rest[0]], words[rest[1]] = "f", *reading
         options.append("--columns " + ",".join(words))
     return f"say what the columns are: {options[0]}, or {', or '.join(options[1:])}"

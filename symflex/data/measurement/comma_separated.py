@@ -24,6 +24,7 @@ from symflex.data.measurement.columns import (
     assembled,
     columns_asked,
     meaning_of,
+    ratio_unit,
 )
 from symflex.data.measurement.measured_response import (
     MAX_LINES,
@@ -105,7 +106,7 @@ def _names(made: Sequence[Assembled], stem: str) -> list[str]:
 def _responses(
     name: str, table: TextTable, blocks: Sequence[Block], asked: str, guesses: list[str]
 ) -> tuple[list[Assembled], list[str]]:
-    """Return the responses of blocks: each alone, or all side by side where each holds a part of the values."""
+    """Return the responses of blocks: each alone, or side by side where each holds a part of the values."""
     parts = [_columns(table, block, guesses) for block in blocks]
     for i in range(1, len(parts)):  # a table below another one of the same shape has its names
         if parts[i][1] is None and len(parts[i][0]) == len(parts[0][0]) and parts[0][1] is not None:
@@ -149,20 +150,20 @@ def _columns(table: TextTable, block: Block, guesses: list[str]) -> tuple[list[C
     """Return the columns of a block, and the line that names them, None where there is none."""
     width = block.width
     numbers = [block.numbers(i) for i in range(width)]
-    line, cells, below = _header(table, block, [n.dtype.kind == "c" for n, _ in numbers])
+    line, cells, under, below = _header(table, block, [n.dtype.kind == "c" for n, _ in numbers])
     meanings = [meaning_of(c, u) for c, u in zip(cells, below, strict=True)]
     for i, (values, _) in enumerate(numbers):
         if values.dtype.kind == "c":
             meanings[i] = Meaning("complex", label=cells[i])
     header = None if line is None else table.line(line)
     above = [i for i in block.above if table.lines[i].strip()]
-    is_comment = all(table.lines[i].strip().startswith(COMMENTS) for i in above if i != line)
-    if line is not None and not is_comment and len(above) > 1:
+    is_comment = all(table.lines[i].strip().startswith(COMMENTS) for i in above if i not in (line, under))
+    if line is not None and not is_comment:
         guesses.append(
             f"line {line + 1} names the columns, and the numbers begin in line {block.lines[0] + 1}"
             ": the other lines above are skipped"
         )
-    elif line is None and above and not all(table.lines[i].strip().startswith(COMMENTS) for i in above):
+    elif not is_comment:
         guesses.append(f"the numbers begin in line {block.lines[0] + 1}")
     title = _title(table, above)
     if width == 2 and title and not meanings[1].kind:  # noqa: PLR2004
@@ -188,8 +189,8 @@ def _title(table: TextTable, above: Sequence[int]) -> Meaning | None:
 
 def _header(
     table: TextTable, block: Block, is_complex: Sequence[bool]
-) -> tuple[int | None, list[str], list[str]]:
-    """Return the line that names most columns, its cells, and the units below; the nearest of equals."""
+) -> tuple[int | None, list[str], int | None, list[str]]:
+    """Return the line that names most columns, its cells, and the line of units below with its cells."""
     width = block.width
     best: tuple[float, int, list[str]] | None = None
     for line in block.above[-NEAR:]:
@@ -202,19 +203,22 @@ def _header(
             if known >= 2 and is_better:  # noqa: PLR2004
                 best = score, line, cells[:width]
     if best is None:
-        return None, [""] * width, [""] * width
+        return None, [""] * width, None, [""] * width
     _, line, cells = best
     following = next((i for i in block.above if i > line and table.lines[i].strip()), None)
-    return line, cells, [""] * width if following is None else _units(table, following, width)
+    units = [] if following is None else _units(table, following, width)
+    return line, cells, following if units else None, units + [""] * (width - len(units))
 
 
 def _units(table: TextTable, line: int, width: int) -> list[str]:
-    """Return the units in the row below the names; empty ones where it is no such row."""
+    """Return the units in the row below the names; none where it is no such row."""
     text = table.lines[line].strip()
     units = cut(text, table.delimiter)
     units = units if len(units) == width else cut(text.lstrip("#%!/*"), table.delimiter)
-    is_row = 2 <= len(units) <= width and any(u.strip("[]()").lower() in UNITS for u in units)  # noqa: PLR2004
-    return units + [""] * (width - len(units)) if is_row else [""] * width
+    is_row = 2 <= len(units) <= width and any(  # noqa: PLR2004
+        u.strip("[]()").lower() in UNITS or ratio_unit(u.strip("[]"), "") for u in units
+    )
+    return units if is_row else []
 
 
 def _ways_to_cut(table: TextTable, line: int, width: int) -> list[list[str]]:

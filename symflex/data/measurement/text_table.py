@@ -32,10 +32,13 @@ _NUMBER: Final = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _LEVEL = re.compile(rf"\(?({_NUMBER})\s*dB\s*[,;]\s*({_NUMBER})\s*\S{{0,3}}\)?", re.I)
 _CARTESIAN = re.compile(rf"\(?({_NUMBER})\s*([-+])\s*(?:[ij]\s*\*?\s*)?({_NUMBER})\s*\*?\s*[ij]?\)?", re.I)
 _PAIR = re.compile(rf"\(?({_NUMBER}),\s*({_NUMBER})\)?")
+_THOUSANDS = re.compile(r"[-+]?\d{1,3}(?:,\d{3})+\.\d+")
+_SPACED = re.compile(r"\s*([-+])\s+(?=[\d.]+(?:e[-+]?\d+)?[ij]\b)", re.I)
 _GROUPED = re.compile(r"[-+]?\d{1,3}(?:\.\d{3})+,\d+")
 _CONTROL = re.compile("[\0-\x08\x0e-\x19\x1b-\x1f]")
 _CANDIDATES: Final = (
     (";", "."), (";", ","), ("\t", "."), ("\t", ","), (",", "."), (" ", "."), (" ", ","), (",", ","),
+    ("|", "."),
 )  # fmt: skip
 """Delimiters and decimal signs; of equals the first is taken."""
 SAMPLE: Final = 400
@@ -47,7 +50,7 @@ SMALL_SHARE: Final = 10
 
 
 def decoded(name: str, data: bytes) -> tuple[str, tuple[str, ...]]:
-    """Return the text of a file with newlines as line ends, and what was guessed; SF601 when it is no text."""
+    """Return the text of a file with newlines as line ends, and what was guessed; SF601 when it is none."""
     zeros = [data[i:2000:2].count(0) for i in (0, 1)]
     sixteen = "utf-16-le" if zeros[1] > max(3 * zeros[0], 1) else "utf-16-be" if zeros[0] > 3 else ""  # noqa: PLR2004
     guesses: tuple[str, ...] = ()
@@ -102,6 +105,8 @@ def number(cell: str, decimal: str = ".") -> float | complex | None:
         pass
     if re.fullmatch(r"[-+.\d]+[dD][-+]?\d+", text):
         return number(text.replace("d", "e").replace("D", "e"))
+    if decimal == "." and _THOUSANDS.fullmatch(text):
+        return float(text.replace(",", ""))
     return _complex_number(text)
 
 
@@ -126,9 +131,12 @@ def bare(cell: str) -> str:
 
 
 def cut(line: str, delimiter: str, *, are_all_kept: bool = False) -> list[str]:
-    """Return the cells of a line, trailing empty ones left out or kept; quoted cells may hold the delimiter."""
+    """Return the cells of a line, trailing empty ones left out or kept; quotes may hold the delimiter."""
     text = line.strip()
+    if text.count('"') == 2 and text[0] == text[-1] == '"':  # noqa: PLR2004 (a whole line in quotes)
+        text = text[1:-1]
     if delimiter == " ":
+        text = _SPACED.sub(r"\1", text) if "i" in text or "j" in text else text
         cells = re.findall(r'"[^"]*"|\S+', text)
     elif '"' in text:
         cells = next(csv.reader([text], delimiter=delimiter, skipinitialspace=True), [])
@@ -224,15 +232,21 @@ class TextTable:
         return [self.cell(index, words, i) if word else empty for i, word in enumerate(words)]
 
     def blocks(self) -> list[Block]:
+        """Return the blocks of numbers; where no line begins with a number, of those with text in front."""
+        return self._blocks() or self._blocks(has_text_in_front=True)
+
+    def _blocks(self, *, has_text_in_front: bool = False) -> list[Block]:
         """Return the blocks of numbers, without those that are small beside the largest."""
         found: list[tuple[list[int], list[int], list[tuple[str, ...]]]] = []
         gap: list[int] = []
         for i, line in enumerate(self.lines):
             cells = cut(line, self.delimiter) if line and not line.isspace() else []
-            if not self._is_row(cells, len(found[-1][2][-1]) if found else 0):
+            if not self._is_row(cells, len(found[-1][2][-1]) if found else 0, has_text_in_front):
                 gap.append(i)
                 continue
-            if not found or (gap and self._begins(found[-1][2], cells)):
+            rows = found[-1][2] if found else []
+            is_stray = len(rows) < FEWEST_ROWS and bool(rows) and len(cells) != len(rows[-1])
+            if not found or is_stray or (gap and self._begins(rows, cells)):
                 found.append((gap, [], []))
             gap = []
             found[-1][1].append(i)
@@ -242,10 +256,10 @@ class TextTable:
         fewest = min(most, max(FEWEST_ROWS, most // SMALL_SHARE))
         return [block for block in blocks if len(block.rows) >= fewest]
 
-    def _is_row(self, cells: list[str], width: int) -> bool:
-        if len(cells) < 2 or number(cells[0], self.decimal) is None:  # noqa: PLR2004
+    def _is_row(self, cells: list[str], width: int, has_text_in_front: bool) -> bool:
+        if len(cells) < 2 or (number(cells[0], self.decimal) is None and not has_text_in_front):  # noqa: PLR2004
             return False
-        if len(cells) == width:
+        if len(cells) == width and not has_text_in_front:
             return True
         numbers = sum(number(cell, self.decimal) is not None for cell in cells)
         return numbers >= 2 and 2 * numbers > len(cells)  # noqa: PLR2004
@@ -271,8 +285,8 @@ def _format(lines: Sequence[str]) -> tuple[str, str]:
         for line in sample:
             cells = cut(line, candidate[0])
             numbers = sum(number(cell, candidate[1]) is not None for cell in cells)
-            if numbers >= 2 and number(cells[0], candidate[1]) is not None:  # noqa: PLR2004
-                found += numbers / len(cells) if 2 * numbers > len(cells) else 0
+            if numbers >= 2 and 2 * numbers > len(cells):  # noqa: PLR2004
+                found += numbers / len(cells)
         return round(found, 6)
 
     return max(_CANDIDATES, key=lru_cache(score))

@@ -3,9 +3,9 @@
     # MHz S RI R 50
     1.0  0.33  0.02        ->  Z = 50 Ohm (1 + S11)/(1 - S11) at 1 MHz
 
-The layout is that of the IBIS Open Forum, Touchstone File Format Specification 2.0 (2009), whose version 1 has
-no keywords in brackets. In version 1 impedances and admittances are over the reference resistance. A response
-is the impedance at the port of a one-port and S21 of a two-port; ``--columns z11`` takes another one.
+The layout is that of the IBIS Open Forum, Touchstone File Format Specification 2.0 (2009), whose version 1
+has no keywords in brackets. In version 1 impedances and admittances are over the reference resistance. A
+response is the impedance at the port of a one-port and S21 of a two-port; ``--columns z11`` takes another.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _KEYWORD = re.compile(r"\[(reference|two-port data order|version)\]\s*([-+.\w]+)
 
 
 def read_touchstone(name: str, data: bytes, stem: str, asked: str = "") -> tuple[MeasuredResponse, ...]:
-    """Read the impedance of a one-port, or S21 of a two-port; ``asked`` names another, such as ``s11`` or ``z21``.
+    """Read the impedance of a one-port, or S21 of a two-port; ``asked`` names another one, such as ``z21``.
 
     SF601 no such file; SF603, SF604, SF605, SF607 values; SF902 for what is not there.
     """
@@ -47,7 +47,8 @@ def read_touchstone(name: str, data: bytes, stem: str, asked: str = "") -> tuple
         if written.startswith("#") and not rows:
             options = _options(written[1:].upper().split(), options, place)
         elif written.startswith("["):
-            keywords |= {m[1].lower(): m[2].lower() for m in [_KEYWORD.match(written)] if m}
+            keywords |= {m[1].lower(): m[2].upper() for m in [_KEYWORD.match(written)] if m}
+            options[4] = _resistance(keywords.get("reference", options[4]), place)
             if "noise data" in written.lower():
                 break
         elif written:
@@ -57,13 +58,13 @@ def read_touchstone(name: str, data: bytes, stem: str, asked: str = "") -> tuple
             rows.append(row)
             places.append(place)
             if len(row) != 1 + 2 * ports**2:
-                message = f"{len(row)} numbers in a line of {ports} port{'s' * (ports > 1)}, which has {1 + 2 * ports**2}"
+                message = f"{len(row)} numbers in a line of a {ports}-port, which has {1 + 2 * ports**2}"
                 raise DataError(Diagnostic("SF601", message, place, "one line per frequency"))
     if not rows or len(rows) > MAX_LINES:
         code = "SF607" if rows else "SF605"
         raise DataError(Diagnostic(code, f"'{name}' has {len(rows)} lines of data"))
     table = np.array(rows)
-    resistance = float(keywords.get("reference", options[4]))
+    resistance = float(options[4])
     chosen = asked.strip().lower() or ("z11" if ports == 1 else "s21")
     with np.errstate(all="ignore"):  # what is no finite number is reported
         parameters = _parameters(table[:, 1:], options[2]).reshape(-1, ports, ports)
@@ -73,8 +74,8 @@ def read_touchstone(name: str, data: bytes, stem: str, asked: str = "") -> tuple
         if options[1] != "S" and "version" in keywords:
             parameters = parameters / resistance if options[1] == "Z" else parameters * resistance
         values = _chosen(parameters, options[1], chosen, resistance, name)
-    said = f"{chosen.upper()} is the response, from {options[1]}-parameters with the reference {resistance:g} Ohm"
-    guesses += () if asked else (said,)
+    said = f"{chosen.upper()} is the response, from {options[1]}-parameters with the reference "
+    guesses += () if asked else (f"{said}{resistance:g} Ohm",)
     unit = {"z": "Ohm", "y": "S", "s": ""}[chosen[0]]
     response = MeasuredResponse(stem, table[:, 0] * _SCALES[options[0]], values, unit=unit, guesses=guesses)
     return (checked_response(response, name, lambda i, _: places[i]),)
@@ -93,9 +94,13 @@ def _options(words: list[str], options: list[str], place: Span) -> list[str]:
             resistance = words[i + 1]
         elif not (i and words[i - 1] == "R"):
             raise DataError(Diagnostic("SF601", f"unknown option '{word[:20]}'", place, _OPTIONS))
-    if not re.fullmatch(r"\d*\.?\d+(E[-+]?\d{1,2})?\.?", resistance) or not float(resistance) > 0:
-        raise DataError(Diagnostic("SF601", f"a reference resistance '{resistance[:20]}'", place, _OPTIONS))
-    return [unit, kind, form, "R", resistance]
+    return [unit, kind, form, "R", _resistance(resistance, place)]
+
+
+def _resistance(text: str, place: Span) -> str:
+    if not re.fullmatch(r"\d{1,20}\.?\d{0,20}(E[-+]?\d{1,2})?", text) or not float(text) > 0:
+        raise DataError(Diagnostic("SF601", f"a reference resistance '{text[:20]}'", place, _OPTIONS))
+    return text
 
 
 def _row(written: str, ports: int, place: Span) -> list[float]:
@@ -129,7 +134,7 @@ def _chosen(parameters: Complex, kind: str, chosen: str, resistance: float, name
     wanted = match[1].upper()
     matrices: npt.NDArray[np.complexfloating] = parameters
     try:
-        # S = (z - 1)(z + 1)^-1 and z = (1 + S)(1 - S)^-1; y is the inverse of z, and S of y has the other sign.
+        # S = (z - 1)(z + 1)^-1, z = (1 + S)(1 - S)^-1; y is the inverse of z, and S of y has another sign.
         if wanted != kind == "S":
             signed = parameters if wanted == "Z" else -parameters
             matrices = (one + signed) @ np.linalg.inv(one - signed)

@@ -66,8 +66,9 @@ def read_universal_file(name: str, data: bytes, stem: str, asked: str = "") -> t
 
     Responses are called by quantity, node and direction, ``A_2Z/F_1X``, unless their titles are such names.
 
-    SF902 when pyuff is not installed, or columns are ``asked``; SF601 no universal file, or a dataset that cannot be read; SF602 none
-    with a frequency response; SF603, SF604, SF605 values; SF607 too many datasets or lines.
+    SF902 when pyuff is not installed, or columns are ``asked``; SF601 no universal file, or a dataset that
+    cannot be read; SF602 none with a frequency response; SF603, SF604, SF605 values; SF607 too many datasets
+    or lines.
     """
     if asked:
         raise UsageError(Diagnostic("SF902", f"'{name}' says itself what it holds: it has no --columns"))

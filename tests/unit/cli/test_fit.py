@@ -90,7 +90,8 @@ def test_guesses_are_printed_one_line_each_and_columns_overrules_them(oscillator
     said = oscillator("fit", "three.csv", "--modes", "1", "--json")
     assert said.json["poles"] == done.json["poles"]
     assert said.err.splitlines() == [
-        "three.csv: line 2 names the columns, the numbers begin in line 3; 1 other lines above are not read",
+        "three.csv: line 2 names the columns, and the numbers begin in line 3: the other lines above are "
+        "skipped",
         "three.csv: 'Freq' has no unit and is read in Hz",
     ]
 

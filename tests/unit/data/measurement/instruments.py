@@ -1,3 +1,4 @@
+# ruff: noqa: E501 - lines of files are kept whole
 """Files as instruments and programs save them, all of one resonance, made here and kept nowhere.
 
 The shapes (preamble, header, delimiter, decimal sign, encoding, order, units) are those of public pages and
@@ -49,9 +50,8 @@ TEN = ["10.0"] * F.size
 POLAR = [f"({d:.14e}dB,{p:.14e}°)" for d, p in zip(DB, DEG, strict=True)]
 
 
-def text_files():
+def text_files():  # noqa: PLR0915 - one statement a file
     """Return files of text."""
-    c = ";", ","
     yield Saved(
         "oros.csv",
         (
@@ -59,7 +59,7 @@ def text_files():
             "Name;Signal 2;Signal 3\nFunctionType;SpectrumFrfH1;SpectrumFrfH1\n\n"
             "';Signal 2 (Real);Signal 2 (Imag.);Signal 3 (Real);Signal 3 (Imag.)\n"
             "';(m/s^2)/N;(m/s^2)/N;(m/s^2)/N;(m/s^2)/N\n"
-            + rows(F, RE, IM, H2.real, H2.imag, sep=c[0], decimal=c[1])
+            + rows(F, RE, IM, H2.real, H2.imag, sep=";", decimal=",")
         ).encode(),
         (H, H2),
     )
