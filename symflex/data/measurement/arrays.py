@@ -17,7 +17,14 @@ from symflex.data.measurement.array_files import (
     read_array,
     read_variables,
 )
-from symflex.data.measurement.columns import Column, Meaning, assembled, columns_asked
+from symflex.data.measurement.columns import (
+    Assembled,
+    ColumnMeaning,
+    DataColumn,
+    assembled,
+    columns_asked,
+    meaning_of,
+)
 from symflex.data.measurement.measured_response import (
     MAX_BYTES,
     MAX_RESPONSES,
@@ -43,20 +50,9 @@ VALUES: Final = (
     "values", "h", "frf", "frfs", "g", "response", "responsedata", "h1", "txy", "tf_values", "tf_data", "hf",
     "frf_avg", "h_avg", "tfe", "resp", "z", "p",
 )  # fmt: skip
-COHERENCE: Final = ("coherence", "coh", "gamma2", "cxy", "cohere")
-PARTS: Final = (("re", "im"), ("real", "imag"))
-MAGNITUDES: Final = (
-    "mag",
-    "magnitude",
-    "mag_db",
-    "magdb",
-    "magnitude_db",
-    "amplitude",
-    "amp",
-    "gain",
-    "gain_db",
-)
-PHASES: Final = ("phase", "phase_deg", "phase_rad", "ph", "phi", "angle")
+WORDS: Final = {"cxy": "coherence", "cohere": "coherence", "magdb": "mag_db", "ph": "phase"}
+"""Names of arrays that are none of columns."""
+UNITS: Final = ("frequencyunit", "frequency_unit", "units")
 _HINT: Final = "arrays: frequency_hz (n), values (n or m x n, complex), coherence, averages, window, tf"
 ROUND: Final = 1e-7
 """Relative deviation from a decimal of three digits, below which a number was meant to be one."""
@@ -146,15 +142,26 @@ def responses_of(arrays: Arrays, name: str, stem: str, asked: str = "") -> tuple
         raise UsageError(
             Diagnostic("SF902", f"'{name}' holds several arrays: --columns names them", None, hint)
         )
-    scopes = list(dict.fromkeys(key.rpartition(".")[0] for key in arrays))
+    scopes: dict[str, dict[str, Array]] = {}
+    for key, array in arrays.items():
+        scope, _, last = key.rpartition(".")
+        scopes.setdefault(scope, {})[last.lower()] = array
+    holding = [scope for scope, own in scopes.items() if _has_values(own)]
     found: list[MeasuredResponse] = []
-    for scope in scopes:
-        own = {k.rpartition(".")[2].lower(): a for k, a in arrays.items() if k.rpartition(".")[0] == scope}
-        if _has_values(own):
-            above = _seen_from(arrays, scope)
-            called = stem if sum(_has_values_in(arrays, s) for s in scopes) == 1 else scope or stem
-            found += _from_scope(above | own, name, called)
+    for scope in holding:
+        parts = scope.split(".") if scope else []
+        known: dict[str, Array] = {}
+        for outer in (scopes.get(".".join(parts[:depth]), {}) for depth in range(len(parts))):
+            known |= {k: a for k, a in outer.items() if k in (*FREQUENCY, *ANGULAR, *UNITS, "averages")}
+        found += _from_scope(known | scopes[scope], name, stem if len(holding) == 1 else scope or stem)
     return tuple(found) if found else _from_unknown(arrays, name, stem)
+
+
+def _meaning(key: str) -> ColumnMeaning:
+    """Return what the name of an array says; labels are left out, since a scope is one measurement."""
+    if key in VALUES:
+        return ColumnMeaning("complex")
+    return replace(meaning_of(WORDS.get(key, key)), label="")
 
 
 def _renamed(arrays: Arrays, asked: str, name: str) -> dict[str, Array]:
@@ -175,59 +182,25 @@ def _renamed(arrays: Arrays, asked: str, name: str) -> dict[str, Array]:
 
 
 def _has_values(own: Arrays) -> bool:
-    return (
-        any(v in own for v in VALUES)
-        or any(a in own and b in own for a, b in PARTS)
-        or _polar(own) is not None
-    )
-
-
-def _has_values_in(arrays: Arrays, scope: str) -> bool:
-    return _has_values(
-        {k.rpartition(".")[2].lower(): a for k, a in arrays.items() if k.rpartition(".")[0] == scope}
-    )
-
-
-def _seen_from(arrays: Arrays, scope: str) -> dict[str, Array]:
-    """Return by their last names the arrays of the structures around a scope; the nearest one counts."""
-    found: dict[str, Array] = {}
-    parts = scope.split(".") if scope else []
-    for depth in range(len(parts)):
-        outer = ".".join(parts[:depth])
-        found |= {k.rpartition(".")[2].lower(): a for k, a in arrays.items() if k.rpartition(".")[0] == outer}
-    return {
-        k: a for k, a in found.items() if k in (*FREQUENCY, *ANGULAR, "frequencyunit", "units", "averages")
-    }
-
-
-def _polar(own: Arrays) -> tuple[str, str] | None:
-    size = next((n for n in MAGNITUDES if n in own), None)
-    turn = next((n for n in PHASES if n in own), None)
-    return None if size is None or turn is None else (size, turn)
+    kinds = {_meaning(key).kind for key, array in own.items() if array.dtype.kind in "fciub"}
+    return "complex" in kinds or {"real", "imaginary"} <= kinds or {"magnitude", "phase"} <= kinds
 
 
 def _from_scope(known: Arrays, name: str, stem: str) -> list[MeasuredResponse]:
     guesses: list[str] = []
     lines = _frequency(known, name, guesses)
-    values = next((known[n] for n in VALUES if n in known), None)
-    if values is None:
-        values = next(
-            (
-                _numeric(known[a], name, a).real + 1j * _numeric(known[b], name, b).real
-                for a, b in PARTS
-                if a in known and b in known and known[a].shape == known[b].shape
-            ),
-            None,
-        )
-    if lines is None or (values is None and _polar(known) is None):
-        what = "frequency_hz" if lines is None else "values"
-        message = f"'{name}' has no array {what}; it has {listed_names(list(known)) or 'none'}"
+    if lines is None:
+        message = f"'{name}' has no array frequency_hz; it has {listed_names(list(known)) or 'none'}"
         raise DataError(Diagnostic("SF602", message, None, _HINT))
-    if values is None:
-        table = _polar_rows(known, lines, name, guesses)
-    else:
-        table = _rows(_numeric(values, name, "values"), lines.size, name, "values")
-    return _responses(known, lines, table, name, stem, guesses)
+    columns = [DataColumn("frequency", ColumnMeaning("frequency"), lines)]
+    for key, array in known.items():
+        meaning = _meaning(key)
+        is_whole = meaning.kind == "complex" or lines.size in array.shape
+        if meaning.kind not in ("", "frequency") and is_whole:
+            rows = _rows(_numeric(array, name, key), lines.size, name, key)
+            columns += [DataColumn(key, meaning, r if meaning.kind == "complex" else r.real) for r in rows]
+    made, said = assembled(columns, name, None)
+    return _responses(known, made, name, stem, guesses + said)
 
 
 def _frequency(known: Arrays, name: str, guesses: list[str]) -> Array | None:
@@ -236,9 +209,7 @@ def _frequency(known: Arrays, name: str, guesses: list[str]) -> Array | None:
     if key is None:
         return None
     lines = np.asarray(_numeric(known[key], name, key).real.ravel(), np.float64)
-    unit = next(
-        (_word(known[u]).lower() for u in ("frequencyunit", "frequency_unit", "units") if u in known), ""
-    )
+    unit = next((_word(known[u]).lower() for u in UNITS if u in known), "")
     if key in ANGULAR:
         guesses.append(f"'{key}' is read in rad/s")
         return lines / (2 * np.pi)
@@ -253,54 +224,20 @@ def _frequency(known: Arrays, name: str, guesses: list[str]) -> Array | None:
     return lines * scale
 
 
-def _polar_rows(known: Arrays, lines: Array, name: str, guesses: list[str]) -> Array:
-    """Return rows of values from magnitudes and phases, with units as names or numbers say."""
-    size, turn = _polar(known) or ("", "")
-    sizes = _rows(_numeric(known[size], name, size), lines.size, name, size)
-    turns = _rows(_numeric(known[turn], name, turn), lines.size, name, turn)
-    if len(sizes) != len(turns):
-        message = f"'{name}': {len(sizes)} rows of {size} for {len(turns)} of {turn}"
-        raise DataError(Diagnostic("SF602", message, None, _HINT))
-    rows = []
-    words = [size if "_" in size or not size.endswith("db") else "mag_db", turn]
-    of_size, of_turn = columns_asked(",".join(words).replace("ph,", "phase,"), 2)
-    if "db" not in size:
-        of_size = replace(of_size, scale="unknown", word=size)
-    for one, two in zip(sizes, turns, strict=True):
-        columns = [
-            Column("frequency", Meaning("frequency"), lines),
-            Column(size, of_size, one.real),
-            Column(turn, replace(of_turn, kind="phase"), two.real),
-        ]
-        made, said = assembled(columns, name, None)
-        guesses += [s for s in said if s not in guesses]
-        rows.append(made[0].values)
-    return np.array(rows)
-
-
 def _responses(
-    known: Arrays, lines: Array, table: Array, name: str, stem: str, guesses: Sequence[str]
+    known: Arrays, made: Sequence[Assembled], name: str, stem: str, guesses: Sequence[str]
 ) -> list[MeasuredResponse]:
-    coherence = next((known[n] for n in COHERENCE if n in known), None)
-    weights = (
-        None
-        if coherence is None
-        else _rows(_numeric(coherence, name, "coherence").real, lines.size, name, "coherence")
-    )
-    if weights is not None and len(weights) != len(table):
-        message = f"'{name}': {len(weights)} rows of coherence for {len(table)} of values"
-        raise DataError(Diagnostic("SF602", message, None, _HINT))
     averages = known.get("averages")
     names = [str(n) for n in np.atleast_1d(known["tf"]).ravel()] if "tf" in known else []
-    if len(names) != len(table):
-        names = [stem] if len(table) == 1 else [f"{stem} {i + 1}" for i in range(len(table))]
+    if len(names) != len(made):
+        names = [stem] if len(made) == 1 else [f"{stem} {i + 1}" for i in range(len(made))]
     found = []
-    for i, row in enumerate(table):
+    for called, one in zip(names, made, strict=True):
         response = MeasuredResponse(
-            names[i],
-            lines,
-            row,
-            None if weights is None else weights[i].real,
+            called,
+            one.frequency_hz,
+            one.values,
+            one.coherence,
             None if averages is None else averages_of(_word(averages), name),
             window_of(_word(known["window"])) if "window" in known else "",
             unit_of(_word(known["unit"]), name) if "unit" in known else "",
@@ -345,8 +282,8 @@ def _from_matrix(key: str, matrix: Array, name: str, stem: str, asked: str) -> t
         if unit is None:
             raise _ask_unit(f"the first column of {key}", name, "--columns f,h", "--columns omega,h")
         guesses.append(f"the first column of '{key}' is read in {unit}, in which its ends are round numbers")
-        first = Meaning("frequency", 1.0 if unit == "Hz" else 1 / (2 * np.pi))
-        meanings = [first, *(Meaning("complex") for _ in range(width - 1))]
+        first = ColumnMeaning("frequency", 1.0 if unit == "Hz" else 1 / (2 * np.pi))
+        meanings = [first, *(ColumnMeaning("complex") for _ in range(width - 1))]
     else:
         unit = unit_by_round_ends(numbers[0])
         word = "omega" if unit == "rad/s" else "f"
@@ -356,12 +293,11 @@ def _from_matrix(key: str, matrix: Array, name: str, stem: str, asked: str) -> t
         )
         raise DataError(Diagnostic("SF602", message, None, hint))
     columns = [
-        Column(n, m, v if m.kind in ("complex", "") or v.dtype.kind != "c" else v.real)
+        DataColumn(n, m, v if m.kind in ("complex", "") or v.dtype.kind != "c" else v.real)
         for n, m, v in zip(names, meanings, numbers, strict=True)
     ]
     made, said = assembled(columns, name, None, is_asked=True)
-    lines = made[0].frequency_hz
-    return tuple(_responses({}, lines, np.array([m.values for m in made]), name, stem, [*guesses, *said]))
+    return tuple(_responses({}, made, name, stem, [*guesses, *said]))
 
 
 def _from_unknown(arrays: Arrays, name: str, stem: str) -> tuple[MeasuredResponse, ...]:
@@ -389,11 +325,9 @@ def _from_unknown(arrays: Arrays, name: str, stem: str) -> tuple[MeasuredRespons
             raise _ask_unit(f, name, f"--columns f={f},h={h}", f"--columns omega={f},h={h}")
         guesses.append(f"'{f}' is read as the frequency in {unit}, in which its ends are round numbers")
         key = "frequency_hz" if unit == "Hz" else "omega"
-    lines = _frequency({key: arrays[f]}, name, [] if key in ("frequency_hz", "omega") else guesses)
-    assert lines is not None
-    table = _rows(_numeric(arrays[h], name, h), lines.size, name, h)
-    plain = {k.lower(): a for k, a in arrays.items() if "." not in k}
-    return tuple(_responses(plain, lines, table, name, stem, guesses))
+    shares = {k.lower(): a for k, a in arrays.items() if _meaning(k.lower()).kind == "coherence"}
+    found = _from_scope(shares | {key: arrays[f], "values": arrays[h]}, name, stem)
+    return tuple(replace(one, guesses=(*guesses, *one.guesses)) for one in found)
 
 
 def unit_by_round_ends(lines: Array) -> str | None:

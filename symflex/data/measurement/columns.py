@@ -74,7 +74,7 @@ BEYOND: Final = 7.0
 
 
 @dataclass(frozen=True, slots=True)
-class Meaning:
+class ColumnMeaning:
     """What a column is."""
 
     kind: str = ""  # of _WORDS without omega, or complex; empty where it is none of these
@@ -86,11 +86,11 @@ class Meaning:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Column:
+class DataColumn:
     """One column of a table."""
 
     name: str
-    meaning: Meaning
+    meaning: ColumnMeaning
     numbers: npt.NDArray[Any]  # nan where there is none
     wrong: tuple[int, ...] = ()  # rows without a number
     span: Span | None = None  # of its name
@@ -106,11 +106,11 @@ class Assembled:
     values: Complex
     coherence: Real | None
     unit: str
-    columns: tuple[Column, ...]  # frequency, value, coherence
+    columns: tuple[DataColumn, ...]  # frequency, value, coherence
 
 
 @lru_cache(1000)
-def meaning_of(name: str, unit_below: str = "") -> Meaning:
+def meaning_of(name: str, unit_below: str = "") -> ColumnMeaning:
     """Return what a name, and the unit in a row below it, say a column is.
 
     Examples
@@ -158,12 +158,12 @@ def meaning_of(name: str, unit_below: str = "") -> Meaning:
     label = label[1:-1] if re.fullmatch(r"\([^()]*\)", label) else label
     if kind == "magnitude" and not unit and {"abs", "lin", "linear"} & set(words):
         unit = "lin"
-    found = Meaning(kind, label=label, unit=unit, word=word)
+    found = ColumnMeaning(kind, label=label, unit=unit, word=word)
     sign = -1.0 if re.match(r"-\s*\D", written) else 1.0
     return _with_unit(found, unit, sign, "log" in words or low.startswith("log"))
 
 
-def _with_unit(found: Meaning, unit: str, sign: float, is_log: bool) -> Meaning:
+def _with_unit(found: ColumnMeaning, unit: str, sign: float, is_log: bool) -> ColumnMeaning:
     small = unit.lower().rstrip(".")
     if found.kind in ("frequency", "omega"):
         own = "rad/s" if found.kind == "omega" else found.word if found.word in _FREQUENCY_UNITS else ""
@@ -180,7 +180,7 @@ def _with_unit(found: Meaning, unit: str, sign: float, is_log: bool) -> Meaning:
     return replace(found, factor=sign)
 
 
-def columns_asked(asked: str, width: int, names: Sequence[str] = ()) -> list[Meaning]:
+def columns_asked(asked: str, width: int, names: Sequence[str] = ()) -> list[ColumnMeaning]:
     """Return what ``--columns`` says of columns, in order; SF902 for an unknown word or too many of them.
 
     Examples
@@ -196,7 +196,7 @@ def columns_asked(asked: str, width: int, names: Sequence[str] = ()) -> list[Mea
         raise UsageError(Diagnostic("SF902", message, None, hint))
     found = []
     for word in words:
-        meaning = Meaning("complex") if word in ("h", "H", "complex") else meaning_of(word)
+        meaning = ColumnMeaning("complex") if word in ("h", "H", "complex") else meaning_of(word)
         if not meaning.kind and word not in ("", "-"):
             raise UsageError(Diagnostic("SF902", f"--columns: unknown column '{word[:40]}'", None, hint))
         if meaning.kind == "frequency" and meaning.factor is None and not meaning.unit:
@@ -204,11 +204,11 @@ def columns_asked(asked: str, width: int, names: Sequence[str] = ()) -> list[Mea
         if meaning.kind == "magnitude" and meaning.scale == "unknown":
             meaning = replace(meaning, scale="linear")
         found.append(meaning)
-    return found + [Meaning()] * (width - len(words))
+    return found + [ColumnMeaning()] * (width - len(words))
 
 
 def assembled(
-    columns: Sequence[Column], file: str, header: Span | None, *, is_asked: bool = False
+    columns: Sequence[DataColumn], file: str, header: Span | None, *, is_asked: bool = False
 ) -> tuple[list[Assembled], list[str]]:
     """Return the responses that columns make, and what was guessed.
 
@@ -230,7 +230,7 @@ def assembled(
             shares = None if coherence is None else coherence.numbers.real
             kept = tuple(c for c in (frequency, *group.values()))
             used |= {id(c) for c in kept}
-            if not any(np.array_equal(values, m.values, equal_nan=True) for m in made):
+            if not any(m.label != label and np.array_equal(values, m.values, equal_nan=True) for m in made):
                 made.append(Assembled(label, lines, values, shares, unit, kept))
     if not made:
         raise DataError(*_missing(columns, file, header))
@@ -239,7 +239,8 @@ def assembled(
     problems = [d for m in made for c in m.columns for d in _wrong(c, m.frequency_hz)]
     if problems:
         raise DataError(*problems[:MAX_ERRORS])
-    unused = [c.name for c in columns if id(c) not in used and c.name and not is_asked]
+    names = dict.fromkeys(c.name for c in columns if id(c) not in used and not is_asked)
+    unused = [name for name in names if name]
     if unused:
         listed = ", ".join(f"'{name[:30]}'" for name in unused[:6]) + (", ..." if len(unused) > 6 else "")  # noqa: PLR2004
         guesses.append(f"{'columns' if len(unused) > 1 else 'column'} {listed} not used")
@@ -247,8 +248,8 @@ def assembled(
 
 
 def _with_frequency(
-    columns: list[Column], file: str, header: Span | None, guesses: list[str]
-) -> list[Column]:
+    columns: list[DataColumn], file: str, header: Span | None, guesses: list[str]
+) -> list[DataColumn]:
     problems = []
     for c in columns:
         is_unknown = c.meaning.kind in ("frequency", "phase") and c.meaning.factor is None
@@ -269,10 +270,10 @@ def _with_frequency(
     unit = first.meaning.unit
     factor = _FREQUENCY_UNITS.get(unit.lower())
     guesses.append(f"column 1 has no name and is taken as the frequency in {unit if factor else 'Hz'}")
-    return [replace(first, meaning=Meaning("frequency", factor or 1.0)), *columns[1:]]
+    return [replace(first, meaning=ColumnMeaning("frequency", factor or 1.0)), *columns[1:]]
 
 
-def _sections(columns: Sequence[Column]) -> list[list[Column]]:
+def _sections(columns: Sequence[DataColumn]) -> list[list[DataColumn]]:
     """Return each frequency column with the columns that belong to it."""
     lines = [c for c in columns if c.meaning.kind == "frequency"]
     lines.sort(key=lambda c: (c.meaning.scale == "logarithm", c.meaning.factor is None))
@@ -295,7 +296,7 @@ def _sections(columns: Sequence[Column]) -> list[list[Column]]:
     return [[order[a], *one] for a, one in zip(begins, found, strict=True)]
 
 
-def _hertz(column: Column, guesses: list[str]) -> Real:
+def _hertz(column: DataColumn, guesses: list[str]) -> Real:
     numbers = np.asarray(column.numbers.real, np.float64)
     if column.meaning.factor is None:
         guesses.append(f"'{column.name[:30]}' has no unit and is read in Hz")
@@ -309,8 +310,8 @@ def _hertz(column: Column, guesses: list[str]) -> Real:
 
 
 def _groups(
-    rest: Sequence[Column], *, is_asked: bool, guesses: list[str]
-) -> list[tuple[str, dict[str, Column]]]:
+    rest: Sequence[DataColumn], *, is_asked: bool, guesses: list[str]
+) -> list[tuple[str, dict[str, DataColumn]]]:
     """Return label and columns by kind of every response."""
     labels = list(dict.fromkeys(c.meaning.label for c in rest if c.meaning.kind))
     found = [
@@ -336,13 +337,13 @@ def _groups(
     return found
 
 
-def _power(column: Column) -> float:
+def _power(column: DataColumn) -> float:
     with np.errstate(all="ignore"):
         return float(np.nan_to_num(np.nansum(np.abs(column.numbers))))
 
 
-def _pairs(columns: Sequence[Column]) -> list[dict[str, Column]]:
-    by_kind: dict[str, list[Column]] = {}
+def _pairs(columns: Sequence[DataColumn]) -> list[dict[str, DataColumn]]:
+    by_kind: dict[str, list[DataColumn]] = {}
     for c in columns:
         kind = "complex" if c.numbers.dtype.kind == "c" and c.meaning.kind != "frequency" else c.meaning.kind
         by_kind.setdefault(kind, []).append(c)
@@ -363,7 +364,7 @@ def _pairs(columns: Sequence[Column]) -> list[dict[str, Column]]:
     return []
 
 
-def _values(group: dict[str, Column], lines: Real, guesses: list[str]) -> Complex:
+def _values(group: dict[str, DataColumn], lines: Real, guesses: list[str]) -> Complex:
     with np.errstate(all="ignore"):  # what overflows is reported as no finite number
         if "complex" in group:
             return np.asarray(group["complex"].numbers, np.complex128)
@@ -385,12 +386,12 @@ def _values(group: dict[str, Column], lines: Real, guesses: list[str]) -> Comple
         return np.asarray(size * np.exp(1j * phase), np.complex128)
 
 
-def _size(column: Column, scale: str) -> Real:
+def _size(column: DataColumn, scale: str) -> Real:
     numbers = column.numbers.real
     return np.asarray(10 ** (numbers / 20) if scale == "decibel" else np.where(numbers < 0, np.nan, numbers))
 
 
-def _decided(magnitude: Column, phase: Column, lines: Real, guesses: list[str]) -> tuple[Real, Real]:
+def _decided(magnitude: DataColumn, phase: DataColumn, lines: Real, guesses: list[str]) -> tuple[Real, Real]:
     """Return magnitude and phase [rad], with the scale and unit that names or numbers say."""
     scales = ["linear", "decibel"] if magnitude.meaning.scale == "unknown" else [magnitude.meaning.scale]
     if len(scales) > 1 and np.any(magnitude.numbers.real <= 0):
@@ -497,7 +498,7 @@ def ratio_unit(text: str, file: str) -> str:
         return ""
 
 
-def _wrong(column: Column, lines: Real) -> list[Diagnostic]:
+def _wrong(column: DataColumn, lines: Real) -> list[Diagnostic]:
     """Return what is to be said of cells without a number; a line at 0 Hz is not looked at."""
     problems = []
     for row in [row for row in column.wrong if lines[row] != 0][:MAX_ERRORS]:
@@ -509,7 +510,7 @@ def _wrong(column: Column, lines: Real) -> list[Diagnostic]:
     return problems
 
 
-def _missing(columns: Sequence[Column], file: str, header: Span | None) -> list[Diagnostic]:
+def _missing(columns: Sequence[DataColumn], file: str, header: Span | None) -> list[Diagnostic]:
     """Return why columns make no response, and which option says what they are."""
     kinds = {c.meaning.kind for c in columns}
     place = "" if header else f"'{file}': "
@@ -527,7 +528,7 @@ def _missing(columns: Sequence[Column], file: str, header: Span | None) -> list[
     return [Diagnostic("SF602", message, header, hint)]
 
 
-def ask(columns: Sequence[Column]) -> str:
+def ask(columns: Sequence[DataColumn]) -> str:
     """Return the hint with the option that says what columns are, the likelier reading first."""
     places = [i for i, c in enumerate(columns) if c.meaning.kind == "frequency"] or [0]
     rest = [i for i, c in enumerate(columns) if i not in places and c.meaning.kind != "coherence"]

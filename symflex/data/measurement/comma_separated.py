@@ -18,8 +18,8 @@ from symflex.data.measurement.columns import (
     HINT,
     UNITS,
     Assembled,
-    Column,
-    Meaning,
+    ColumnMeaning,
+    DataColumn,
     ask,
     assembled,
     columns_asked,
@@ -34,7 +34,7 @@ from symflex.data.measurement.measured_response import (
     unit_of,
     window_of,
 )
-from symflex.data.measurement.text_table import COMMENTS, SIGNS, Block, TextTable, bare, cut
+from symflex.data.measurement.text_table import COMMENTS, SIGNS, NumberBlock, TextTable, bare, cut
 from symflex.errors import DataError, Diagnostic, Source, Span
 
 _COMMENT_FIELD = re.compile(r"\W*\s*(?P<key>tf|averages|window|unit|synthetic)\s*[:=]\s*(?P<value>.*)", re.I)
@@ -86,7 +86,7 @@ def read_columns(name: str, data: bytes, stem: str, asked: str = "") -> tuple[Me
         by_kind = {"frequency": frequency, "coherence": one.columns[-1]}
 
         def span_of(
-            index: int, kind: str, by_kind: dict[str, Column] = by_kind, value: Column = value
+            index: int, kind: str, by_kind: dict[str, DataColumn] = by_kind, value: DataColumn = value
         ) -> Span | None:
             return by_kind.get(kind, value).place(index)
 
@@ -104,7 +104,7 @@ def _names(made: Sequence[Assembled], stem: str) -> list[str]:
 
 
 def _responses(
-    name: str, table: TextTable, blocks: Sequence[Block], asked: str, guesses: list[str]
+    name: str, table: TextTable, blocks: Sequence[NumberBlock], asked: str, guesses: list[str]
 ) -> tuple[list[Assembled], list[str]]:
     """Return the responses of blocks: each alone, or side by side where each holds a part of the values."""
     parts = [_columns(table, block, guesses) for block in blocks]
@@ -146,7 +146,9 @@ def _responses(
     return assembled(columns, name, header)
 
 
-def _columns(table: TextTable, block: Block, guesses: list[str]) -> tuple[list[Column], Span | None]:
+def _columns(
+    table: TextTable, block: NumberBlock, guesses: list[str]
+) -> tuple[list[DataColumn], Span | None]:
     """Return the columns of a block, and the line that names them, None where there is none."""
     width = block.width
     numbers = [block.numbers(i) for i in range(width)]
@@ -154,7 +156,7 @@ def _columns(table: TextTable, block: Block, guesses: list[str]) -> tuple[list[C
     meanings = [meaning_of(c, u) for c, u in zip(cells, below, strict=True)]
     for i, (values, _) in enumerate(numbers):
         if values.dtype.kind == "c":
-            meanings[i] = Meaning("complex", label=cells[i])
+            meanings[i] = ColumnMeaning("complex", label=cells[i])
     header = None if line is None else table.line(line)
     above = [i for i in block.above if table.lines[i].strip()]
     is_comment = all(table.lines[i].strip().startswith(COMMENTS) for i in above if i not in (line, under))
@@ -174,11 +176,11 @@ def _columns(table: TextTable, block: Block, guesses: list[str]) -> tuple[list[C
     columns = []
     for i, (cell, meaning) in enumerate(zip(cells, meanings, strict=True)):
         span = None if line is None else table.cell(line, cells, i) if cell else header
-        columns.append(Column(cell, meaning, *numbers[i], span, block.place(i)))
+        columns.append(DataColumn(cell, meaning, *numbers[i], span, block.place(i)))
     return columns, header
 
 
-def _title(table: TextTable, above: Sequence[int]) -> Meaning | None:
+def _title(table: TextTable, above: Sequence[int]) -> ColumnMeaning | None:
     """Return what a line above a table says it holds: ``Phase (deg)``, ``TRACE B: Magnitude [dB]``."""
     for i in reversed(above[-NEAR:]):
         meaning = meaning_of(table.lines[i].strip(SIGNS + '"'))
@@ -188,7 +190,7 @@ def _title(table: TextTable, above: Sequence[int]) -> Meaning | None:
 
 
 def _header(
-    table: TextTable, block: Block, is_complex: Sequence[bool]
+    table: TextTable, block: NumberBlock, is_complex: Sequence[bool]
 ) -> tuple[int | None, list[str], int | None, list[str]]:
     """Return the line that names most columns, its cells, and the line of units below with its cells."""
     width = block.width

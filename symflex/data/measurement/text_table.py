@@ -149,7 +149,7 @@ def cut(line: str, delimiter: str, *, are_all_kept: bool = False) -> list[str]:
 
 
 @dataclass(frozen=True, eq=False)
-class Block:
+class NumberBlock:
     """Rows of numbers, and the text above them."""
 
     table: TextTable
@@ -231,11 +231,11 @@ class TextTable:
         empty = Span(self.source, start, start)
         return [self.cell(index, words, i) if word else empty for i, word in enumerate(words)]
 
-    def blocks(self) -> list[Block]:
+    def blocks(self) -> list[NumberBlock]:
         """Return the blocks of numbers; where no line begins with a number, of those with text in front."""
         return self._blocks() or self._blocks(has_text_in_front=True)
 
-    def _blocks(self, *, has_text_in_front: bool = False) -> list[Block]:
+    def _blocks(self, *, has_text_in_front: bool = False) -> list[NumberBlock]:
         """Return the blocks of numbers, without those that are small beside the largest."""
         found: list[tuple[list[int], list[int], list[tuple[str, ...]]]] = []
         gap: list[int] = []
@@ -245,13 +245,13 @@ class TextTable:
                 gap.append(i)
                 continue
             rows = found[-1][2] if found else []
-            is_stray = len(rows) < FEWEST_ROWS and bool(rows) and len(cells) != len(rows[-1])
+            is_stray = len(rows) == 1 and len(cells) > len(rows[0])
             if not found or is_stray or (gap and self._begins(rows, cells)):
                 found.append((gap, [], []))
             gap = []
             found[-1][1].append(i)
             found[-1][2].append(tuple(cells))
-        blocks = [Block(self, tuple(a), tuple(b), tuple(c)) for a, b, c in found]
+        blocks = [NumberBlock(self, tuple(a), tuple(b), tuple(c)) for a, b, c in found]
         most = max((len(block.rows) for block in blocks), default=0)
         fewest = min(most, max(FEWEST_ROWS, most // SMALL_SHARE))
         return [block for block in blocks if len(block.rows) >= fewest]
