@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -50,6 +51,7 @@ VALUES: Final = (
     "values", "h", "frf", "frfs", "g", "response", "responsedata", "h1", "txy", "tf_values", "tf_data", "hf",
     "frf_avg", "h_avg", "tfe", "resp", "z", "p",
 )  # fmt: skip
+NUMBERED: Final = re.compile(r"(?:h|g|frf|tf)_?\d+(?:_\d+)?")
 WORDS: Final = {"cxy": "coherence", "cohere": "coherence", "magdb": "mag_db", "ph": "phase"}
 """Names of arrays that are none of columns."""
 UNITS: Final = ("frequencyunit", "frequency_unit", "units")
@@ -161,6 +163,8 @@ def _meaning(key: str) -> ColumnMeaning:
     """Return what the name of an array says; labels are left out, since a scope is one measurement."""
     if key in VALUES:
         return ColumnMeaning("complex")
+    if NUMBERED.fullmatch(key):
+        return ColumnMeaning("complex", label=key)
     return replace(meaning_of(WORDS.get(key, key)), label="")
 
 
@@ -230,7 +234,10 @@ def _responses(
     averages = known.get("averages")
     names = [str(n) for n in np.atleast_1d(known["tf"]).ravel()] if "tf" in known else []
     if len(names) != len(made):
-        names = [stem] if len(made) == 1 else [f"{stem} {i + 1}" for i in range(len(made))]
+        labels = [one.label for one in made]
+        are_named = len(made) > 1 and all(labels) and len(set(labels)) == len(labels)
+        names = labels if are_named else [f"{stem} {i + 1}" for i in range(len(made))]
+        names = names if len(made) > 1 else [stem]
     found = []
     for called, one in zip(names, made, strict=True):
         response = MeasuredResponse(
