@@ -25,6 +25,7 @@ from symflex.data.measurement.columns import (
     assembled,
     columns_asked,
     meaning_of,
+    names_of,
 )
 from symflex.data.measurement.measured_response import (
     MAX_BYTES,
@@ -234,10 +235,7 @@ def _responses(
     averages = known.get("averages")
     names = [str(n) for n in np.atleast_1d(known["tf"]).ravel()] if "tf" in known else []
     if len(names) != len(made):
-        labels = [one.label for one in made]
-        are_named = len(made) > 1 and all(labels) and len(set(labels)) == len(labels)
-        names = labels if are_named else [f"{stem} {i + 1}" for i in range(len(made))]
-        names = names if len(made) > 1 else [stem]
+        names = names_of(made, stem)
     found = []
     for called, one in zip(names, made, strict=True):
         response = MeasuredResponse(

@@ -35,7 +35,7 @@ _WORDS: Final = {
     "real": "re real zre zreal z' inphase",
     "power": "psd power pxx autopower",
     "magnitude": "magnitude mag gain amplitude ampl amp abs modulus module level spl |h| |z| z zmod "
-    "impedance betrag db dbspl dbv dbr lin",
+    "impedance betrag db dbspl dbv dbr",
     "omega": "omega w ω angular",
     "frequency": "frequency freq frequencies freqs f hz fhz khz mhz ghz stimulus "
     "frequenz fréquence frequenza frecuencia",
@@ -45,9 +45,8 @@ KINDS: Final = {word: kind for kind, words in _WORDS.items() for word in words.s
 _PARTS: Final = r"gamma\^?2|[^\W\d_]+'*|\|\w\|"
 _OHMS: Final = ("ohm", "ohms", "\u03c9", "\u2126")
 _FREQUENCY_UNITS: Final = {
-    "hz": 1.0, "khz": 1e3, "mhz": 1e6, "ghz": 1e9, "1/s": 1.0, **dict.fromkeys(
-        ("rad/s", "rad_s", "rads", "rad/sec", "rad/second", "rad s^-1", "1/s rad"), 1 / (2 * np.pi)
-    ),
+    "hz": 1.0, "khz": 1e3, "mhz": 1e6, "ghz": 1e9,
+    **dict.fromkeys(("rad/s", "rad_s", "rads", "rad/sec", "rad/second"), 1 / (2 * np.pi)),
 }  # fmt: skip
 _DEGREES: Final = ("deg", "degree", "degrees", "grad", "°", "º", "ø", "*", "\ufffd", "degs")
 _PHASE_UNITS: Final = dict.fromkeys(_DEGREES, np.pi / 180) | dict.fromkeys(
@@ -69,6 +68,7 @@ FITS: Final = 1.0
 """Beyond it numbers are like no causal function: the ratio of energies is beyond a factor e."""
 FILLED: Final = 0.95
 FEWEST_TO_DECIDE: Final = 8
+LONGEST_NAME: Final = 200
 BEYOND: Final = 7.0
 """How far a magnitude is continued beyond its ends: a factor e^7 in frequency."""
 
@@ -120,6 +120,8 @@ def meaning_of(name: str, unit_below: str = "") -> ColumnMeaning:
     >>> meaning_of("S11(REAL)").kind, meaning_of("S11(REAL)").label, meaning_of("Time").kind
     ('real', 'S11', '')
     """
+    if len(name) > LONGEST_NAME:
+        return ColumnMeaning()
     written = name.strip(" \"'#*%!;:").replace("µ", "u")
     unit = unit_below.strip("[]<> ").replace("µ", "u")
     unit = unit[1:-1] if re.fullmatch(r"\([^()]*\)", unit) else unit
@@ -142,8 +144,13 @@ def meaning_of(name: str, unit_below: str = "") -> ColumnMeaning:
     words = re.findall(_PARTS, low)
     kind = next((k for k in _WORDS if any(KINDS.get(w) == k for w in words)), "")
     if not kind and unit:
-        is_hz = unit.lower() in _FREQUENCY_UNITS and unit.lower() != "1/s"
-        kind = "frequency" if is_hz else "phase" if unit.lower() in (*_DEGREES[:-2], low) else ""
+        kind = (
+            "frequency"
+            if unit.lower() in _FREQUENCY_UNITS
+            else "phase"
+            if unit.lower() in (*_DEGREES[:-2], low)
+            else ""
+        )
         kind = "magnitude" if unit.lower() == "db" else kind
     if kind in ("frequency", "omega") and {"response", "function"} & set(words):
         kind = ""
@@ -178,6 +185,15 @@ def _with_unit(found: ColumnMeaning, unit: str, sign: float, is_log: bool) -> Co
         is_plain = bool(small) and not is_level and small != "-"
         return replace(found, scale="decibel" if is_level else "linear" if is_plain else "unknown")
     return replace(found, factor=sign)
+
+
+def names_of(made: Sequence[Assembled], stem: str) -> list[str]:
+    """Return what responses are called: the file's stem, their labels, or the stem with a number."""
+    labels = [one.label for one in made]
+    if len(made) == 1:
+        return [stem]
+    are_names = all(labels) and len(set(labels)) == len(labels)
+    return labels if are_names else [f"{stem} {i + 1}" for i in range(len(made))]
 
 
 def columns_asked(asked: str, width: int, names: Sequence[str] = ()) -> list[ColumnMeaning]:
@@ -264,7 +280,9 @@ def _with_frequency(
     first = columns[0]
     steps = np.diff(first.numbers.real)
     is_named = re.search(r"[^\W\d_]", first.name) and not re.match(r"x\b|x_", first.name, re.I)
-    if first.meaning.kind or is_named or not steps.size or not (np.all(steps > 0) or np.all(steps < 0)):
+    counts = bool(np.all(steps == 1)) and first.numbers[0].real in (0, 1) and not first.meaning.unit
+    is_monotonic = np.all(steps > 0) or np.all(steps < 0)
+    if first.meaning.kind or is_named or counts or not steps.size or not is_monotonic:
         place = "" if header else f"'{file}': "
         raise DataError(Diagnostic("SF602", f"{place}no column is the frequency", header, ask(columns)))
     unit = first.meaning.unit

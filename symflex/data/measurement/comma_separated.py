@@ -24,6 +24,7 @@ from symflex.data.measurement.columns import (
     assembled,
     columns_asked,
     meaning_of,
+    names_of,
     ratio_unit,
 )
 from symflex.data.measurement.measured_response import (
@@ -37,7 +38,7 @@ from symflex.data.measurement.measured_response import (
 from symflex.data.measurement.text_table import COMMENTS, SIGNS, NumberBlock, TextTable, bare, cut
 from symflex.errors import DataError, Diagnostic, Source, Span
 
-_COMMENT_FIELD = re.compile(r"\W*\s*(?P<key>tf|averages|window|unit|synthetic)\s*[:=]\s*(?P<value>.*)", re.I)
+_COMMENT_FIELD = re.compile(r"\W*(?P<key>tf|averages|window|unit|synthetic)\s*[:=]\s*(?P<value>.*)", re.I)
 _AXIS_UNIT = re.compile(r"(?:axis|freq|x)[\w .]*unit\w*\W+(hz|khz|mhz|rad/s)\b", re.I)
 _IMPLIED: Final = {
     ".frd": ("f,mag_db,phase_deg", "Hz, dB, degrees"),
@@ -75,9 +76,8 @@ def read_columns(name: str, data: bytes, stem: str, asked: str = "") -> tuple[Me
     is_synthetic = (
         told("synthetic").lower() in ("yes", "true", "1") or "synthetic" in " ".join(comments).lower()
     )
-    names = [told("tf") or stem] if len(made) == 1 else _names(made, stem)
     responses = []
-    for one, called in zip(made, names, strict=True):
+    for one, called in zip(made, names_of(made, (len(made) == 1 and told("tf")) or stem), strict=True):
         response = MeasuredResponse(
             called, one.frequency_hz, one.values, one.coherence, averages, window_of(told("window")),
             unit or one.unit, is_synthetic, comments, tuple(dict.fromkeys(guesses)),
@@ -92,15 +92,6 @@ def read_columns(name: str, data: bytes, stem: str, asked: str = "") -> tuple[Me
 
         responses.append(checked_response(response, name, span_of))
     return tuple(responses)
-
-
-def _names(made: Sequence[Assembled], stem: str) -> list[str]:
-    labels = [one.label for one in made]
-    return (
-        labels
-        if all(labels) and len(set(labels)) == len(labels)
-        else [f"{stem} {i + 1}" for i in range(len(made))]
-    )
 
 
 def _responses(
@@ -170,7 +161,7 @@ def _columns(
     title = _title(table, above)
     if width == 2 and title and not meanings[1].kind:  # noqa: PLR2004
         meanings[1] = title
-    unit = next((m[1] for i in above if (m := _AXIS_UNIT.search(table.lines[i]))), "")
+    unit = next((m[1] for i in above if (m := _AXIS_UNIT.search(table.lines[i][:200]))), "")
     if unit and not meanings[0].kind:
         meanings[0] = replace(meanings[0], unit=unit)
     columns = []
@@ -230,7 +221,7 @@ def _ways_to_cut(table: TextTable, line: int, width: int) -> list[list[str]]:
         text = text.strip('"').lstrip(SIGNS)
     ways = [cut(text, table.delimiter)]
     if table.delimiter in " " or table.delimiter not in text:
-        joined = re.sub(r"\s+(?=[\[(])", "\0", text)
+        joined = re.sub(r"(?<!\s)\s+(?=[\[(])", "\0", text)
         ways += [cut(text, d) for d in "\t;,"] + [re.split(r"\s{2,}", text)]
         ways.append([c.replace("\0", " ") for c in joined.split()])
     found = []

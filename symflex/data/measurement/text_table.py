@@ -33,7 +33,7 @@ _LEVEL = re.compile(rf"\(?({_NUMBER})\s*dB\s*[,;]\s*({_NUMBER})\s*\S{{0,3}}\)?",
 _CARTESIAN = re.compile(rf"\(?({_NUMBER})\s*([-+])\s*(?:[ij]\s*\*?\s*)?({_NUMBER})\s*\*?\s*[ij]?\)?", re.I)
 _PAIR = re.compile(rf"\(?({_NUMBER}),\s*({_NUMBER})\)?")
 _THOUSANDS = re.compile(r"[-+]?\d{1,3}(?:,\d{3})+\.\d+")
-_SPACED = re.compile(r"\s*([-+])\s+(?=[\d.]+(?:e[-+]?\d+)?[ij]\b)", re.I)
+_SPACED = re.compile(r"(?<!\s)\s*([-+])\s+(?=[\d.]+(?:e[-+]?\d+)?[ij]\b)", re.I)
 _GROUPED = re.compile(r"[-+]?\d{1,3}(?:\.\d{3})+,\d+")
 _CONTROL = re.compile("[\0-\x08\x0e-\x19\x1b-\x1f]")
 _CANDIDATES: Final = (
@@ -44,6 +44,7 @@ _CANDIDATES: Final = (
 SAMPLE: Final = 400
 """Lines from the middle of a file by which delimiter and decimal sign are chosen."""
 LONGEST_LINE: Final = 20_000
+LONGEST_NUMBER: Final = 100
 FEWEST_ROWS: Final = 3
 SMALL_SHARE: Final = 10
 """Blocks with less than a tenth of the rows of the largest are no tables of the same data."""
@@ -97,7 +98,7 @@ def number(cell: str, decimal: str = ".") -> float | complex | None:
                 return None
             text = text.replace(".", "")
         text = text.replace(",", ".") if re.search(r"\d,\d", text) else text
-    if "_" in text or not text:
+    if "_" in text or not 0 < len(text) <= LONGEST_NUMBER:
         return None
     try:
         return float(text)
