@@ -144,6 +144,10 @@ def _columns(
     width = block.width
     numbers = [block.numbers(i) for i in range(width)]
     line, cells, under, below = _header(table, block, [n.dtype.kind == "c" for n, _ in numbers])
+    if table.delimiter == "," and 0 < 2 * sum(map(bool, cells)) == width:
+        message = f"{width} cells where the header has {width // 2} names: decimal commas between commas?"
+        hint = "save the file with semicolons or tabs between the columns"
+        raise DataError(Diagnostic("SF602", message, table.line(block.lines[0]), hint))
     meanings = [meaning_of(c, u) for c, u in zip(cells, below, strict=True)]
     for i, (values, _) in enumerate(numbers):
         if values.dtype.kind == "c":

@@ -120,6 +120,8 @@ HOSTILE = {
     "magnitude alone": ("Freq(Hz),SPL(dB)\n1,2\n2,3\n3,4\n", "SF602", "a.csv:1:1"),
     "no unit anyone knows": ("f [furlong],re,im\n1,2,3\n2,3,4\n3,4,5\n", "SF602", "a.csv:1:1"),
     "a long line": ("f,re,im\n" + "1," * 20000 + "\n", "SF601", "a.csv:2:1"),
+    "commas twice": ("f,re,im\n1,5,2,5,3,5\n2,5,2,5,3,5\n3,5,2,5,3,5\n", "SF602", "a.csv:2:1"),
+    "a counter": (",re,im\n0,1,2\n1,2,3\n2,1,2\n", "SF602", "a.csv:1:1"),
     "prose": ("Dear reader,\nthis is a letter.\n", "SF605", "a.csv"),
 }
 
