@@ -17,7 +17,6 @@ import re
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import lru_cache
 from typing import Any, Final
 
 import numpy as np
@@ -290,4 +289,6 @@ def _format(lines: Sequence[str]) -> tuple[str, str]:
                 found += numbers / len(cells)
         return round(found, 6)
 
-    return max(_CANDIDATES, key=lru_cache(score))
+    joined = "".join(sample)
+    present = [c for c in _CANDIDATES if c[0] in joined and (c[1] == "." or "," in joined)]
+    return max(present, key=score, default=(" ", "."))
