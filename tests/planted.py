@@ -3,9 +3,18 @@
     python -m tests.planted --sample 200
 
 changes a sign, drops a factor or swaps two arguments in one place at a time of the modules that derive and
-print, and derives and prints every file of derivations/ with each change, in all forms. A change counts as
-noticed where SF991 or SF992 is raised, as broken where another error is, as none where nothing printed is
-different; the rest is shown with its place. No test takes part.
+print, and derives and prints with each change the files of derivations/ that come there, in all forms.
+A change counts as
+
+noticed     SF991 or SF992 is raised
+broken      another error is, or it takes too long
+value       a value is another, and neither check sees it
+text        values are the same, and a print is another
+refused     a form is refused that was printed, or the other way round
+equal       nothing printed is different
+unreached   no file comes there
+
+No test takes part.
 """
 
 from __future__ import annotations
@@ -15,11 +24,14 @@ import ast
 import importlib.abc
 import importlib.util
 import json
+import os
+import resource
 import subprocess
 import sys
 from collections import Counter
 from pathlib import Path
 from random import Random
+from time import process_time
 
 ROOT = Path(__file__).resolve().parents[1]
 MODULES = ("symflex/transfer", "symflex/equations", "symflex/print/forms", "symflex/algebra/propagators.py")
@@ -29,13 +41,17 @@ LONG = {"two_link_arm", "six_mass", "portal_frame", "fitted_resonances", "polyno
 """Derivations that take two thirds of the time, and go the ways of others."""
 SEED = 37
 CHECKS = {"SF991", "SF992"}
+TOLD = ("noticed", "value", "text")
+SECONDS = 60
+"""Of the processor for one change."""
 
 
 class Places(ast.NodeTransformer):
     """Counts the places of a module that can be changed, and changes the one with a number."""
 
     def __init__(self, wanted: int = -1) -> None:
-        self.wanted, self.count, self.line, self.depth = wanted, 0, 0, 0
+        self.wanted, self.count, self.depth = wanted, 0, 0
+        self.line = self.end = 0
 
     def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.AST:
         self.depth += 1
@@ -48,7 +64,7 @@ class Places(ast.NodeTransformer):
             return False
         self.count += 1
         if self.count - 1 == self.wanted:
-            self.line = getattr(node, "lineno", 0)
+            self.line, self.end = node.lineno, node.end_lineno
             return True
         return False
 
@@ -100,94 +116,187 @@ class Changed(importlib.abc.MetaPathFinder, importlib.abc.InspectLoader):
         return self.text
 
 
-def printed(path: Path) -> list[str]:
-    """Return everything that is printed of a model."""
+Prints = dict[str, str]
+POINTS = (0.7 + 0.9j, -1.3 + 2.1j, 0.2 - 31j)
+CLOSE = 1e-9
+"""Parts by which values may differ that are rounded otherwise."""
+
+
+def printed(path: Path) -> Prints:
+    """Return everything that is printed of a model, and values, by name."""
     from symflex import pipeline
-    from symflex.errors import UsageError
+    from symflex.errors import SymflexError, UsageError
     from symflex.print.forms import FORMS, print_form
     from symflex.print.text import derive_text
     from symflex.transfer import bind_any
 
-    found, model = [], pipeline.load(path)
-    for tf in pipeline.derive_all(model):
-        found.append(str(bind_any(tf)(0.7 + 0.9j)))
+    found, model = {}, pipeline.load(path)
+    for n, tf in enumerate(pipeline.derive_all(model)):
+        for s in POINTS:
+            try:
+                found[f"{n} at {s}"] = str(bind_any(tf)(s))
+            except SymflexError as error:  # has no value there, or parameters have none
+                found[f"{n} at {s}"] = error.diagnostics[0].code
         for form in (None, *FORMS):
             try:
-                found.append(derive_text(tf, print_form(tf, form), 80))
+                found[f"{n} as {form}"] = derive_text(tf, print_form(tf, form), 80)
             except UsageError:  # the function has no such form
                 continue
     return found
 
 
-def run(before: dict[str, list[str]] | None) -> tuple[str, dict[str, list[str]]]:
-    """Print all derivations; return what came of it, and all prints where there are none to compare with."""
-    found: dict[str, list[str]] = {}
-    for path in sorted((ROOT / "derivations").rglob("*.toml"), key=lambda p: p.stat().st_size):
-        if path.name == "claims.toml" or path.stem in LONG:
+def files() -> list[Path]:
+    """Return the files of derivations/ that are run, short ones first."""
+    paths = sorted((ROOT / "derivations").rglob("*.toml"), key=lambda p: p.stat().st_size)
+    return [p for p in paths if p.name != "claims.toml" and p.stem not in LONG]
+
+
+class Lines:
+    """Notes which lines of the modules run."""
+
+    def __init__(self) -> None:
+        self.wanted = tuple(str(ROOT / m) for m in MODULES)
+        self.lines: set[tuple[str, int]] = set()
+
+    def __call__(self, frame, event, arg):
+        if not frame.f_code.co_filename.startswith(self.wanted):
+            return None
+        self.lines.add((frame.f_code.co_filename, frame.f_lineno))
+        return self.inside
+
+    def inside(self, frame, event, arg):
+        self.lines.add((frame.f_code.co_filename, frame.f_lineno))
+        return self.inside
+
+
+def baseline() -> dict[str, dict]:
+    """Return what is printed of each file without a change, which lines run, and how long it takes."""
+    found = {}
+    for path in files():
+        lines = Lines()
+        sys.settrace(lines)
+        start = process_time()
+        before = printed(path)
+        sys.settrace(None)
+        by_file: dict[str, list[int]] = {}
+        for name, line in lines.lines:
+            by_file.setdefault(str(Path(name).relative_to(ROOT)), []).append(line)
+        found[path.stem] = {"prints": before, "lines": by_file, "seconds": process_time() - start}
+    return found
+
+
+def compared(found: Prints, before: Prints) -> str:
+    """Return in which way prints differ, nothing where they do not."""
+    kinds = {"": ""}
+    for name in found.keys() | before.keys():
+        one, other = found.get(name, ""), before.get(name, "")
+        if one == other:
+            continue
+        if " as " in name:
+            kinds["text" if one and other else "refused"] = name
             continue
         try:
-            found[path.stem] = printed(path)
+            a, b = complex(one), complex(other)
+            differ = abs(a - b) > CLOSE * abs(b)
+        except ValueError:  # one of them is refused
+            differ = True
+        if differ:
+            kinds["value"] = name
+    kind = next(k for k in ("value", "refused", "text", "") if k in kinds)
+    return f"{kind}: {kinds[kind]}" if kind else ""
+
+
+def run(stems: list[str], before: dict[str, dict]) -> str:
+    """Print the derivations with a name; return the worst that came of it."""
+    worst = ""
+    paths = {p.stem: p for p in files()}
+    for stem in stems:
+        try:
+            found = printed(paths[stem])
         except Exception as error:  # noqa: BLE001 (whatever a fault leads to is one of the answers)
             codes = {d.code for d in getattr(error, "diagnostics", ())}
-            return ("noticed" if codes & CHECKS else f"broken: {type(error).__name__}"), found
-        if before is not None and found[path.stem] != before[path.stem]:
-            return f"different: {path.stem}", found
-    return "none", found
+            if codes & CHECKS:
+                return f"noticed: {stem}"
+            return f"broken: {type(error).__name__} {' '.join(codes)} {stem}"
+        told = compared(found, before[stem]["prints"])
+        if told.startswith("value"):
+            return f"{told} of {stem}"
+        if told and not worst:
+            worst = f"{told} of {stem}"
+    return worst or "equal"
+
+
+def one(module: str, number: int, stems: list[str], before: dict[str, dict]) -> str:
+    """Return what comes of one change, in a process of its own."""
+    reader, writer = os.pipe()
+    child = os.fork()
+    if not child:
+        os.close(reader)
+        resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS + 1))
+        resource.setrlimit(resource.RLIMIT_AS, (4 << 30, 4 << 30))
+        name = ".".join(Path(module).with_suffix("").parts)
+        text, _ = changed(ROOT / module, number)
+        sys.meta_path.insert(0, Changed(name, text))
+        try:
+            verdict = run(stems, before)
+        except BaseException as error:  # noqa: BLE001 (imports, too)
+            verdict = f"broken: {type(error).__name__}"
+        os.write(writer, verdict.encode())
+        os._exit(0)
+    os.close(writer)
+    with os.fdopen(reader, "rb") as pipe:
+        verdict = pipe.read().decode()
+    os.waitpid(child, 0)
+    return verdict or "broken: too long"
+
+
+def reached(module: str, number: int, before: dict[str, dict]) -> list[str]:
+    """Return the files that come to a place, quick ones first."""
+    places = Places(number)
+    places.visit(ast.parse((ROOT / module).read_text(encoding="utf-8")))
+    wanted = range(places.line, places.end + 1)
+    stems = [k for k, v in before.items() if any(n in wanted for n in v["lines"].get(module, ()))]
+    return sorted(stems, key=lambda k: before[k]["seconds"])
 
 
 def main() -> None:
     """Plant faults, one a process, and print the shares."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--sample", type=int, default=200)
-    parser.add_argument("--one", nargs=3, metavar=("MODULE", "NUMBER", "BEFORE"))
+    parser.add_argument("--sample", type=int, default=200, help="changes that print something else")
+    parser.add_argument("--baseline", metavar="FILE", help="write what is printed without a change, and end")
+    parser.add_argument("--only", nargs=2, metavar=("MODULE", "NUMBER"), help="try one place")
     given = parser.parse_args()
-    if given.one:
-        module, number, before = given.one
-        name = ".".join(Path(module).with_suffix("").parts)
-        text, _ = changed(ROOT / module, int(number))
-        if int(number) >= 0:
-            sys.meta_path.insert(0, Changed(name, text))
-        known = json.loads(Path(before).read_text(encoding="utf-8")) if Path(before).exists() else None
-        verdict, found = run(known)
-        if known is None:
-            Path(before).write_text(json.dumps(found), encoding="utf-8")
-        print(verdict)
+    if given.baseline:
+        Path(given.baseline).write_text(json.dumps(baseline()), encoding="utf-8")
         return
-    before = ROOT / "build" / "planted.json"
-    before.parent.mkdir(exist_ok=True)
-    before.unlink(missing_ok=True)
-    one = (sys.executable, "-m", "tests.planted", "--one")
-    subprocess.run((*one, "symflex/transfer/derive.py", "-1", str(before)), cwd=ROOT, check=True)
-    files = [
+    kept = ROOT / "build" / "planted.json"
+    kept.parent.mkdir(exist_ok=True)
+    if not given.only or not kept.exists():
+        command = (sys.executable, "-m", "tests.planted", "--baseline", str(kept))
+        subprocess.run(command, cwd=ROOT, check=True)
+    before = json.loads(kept.read_text(encoding="utf-8"))
+    modules = [
         p for m in MODULES for p in sorted([ROOT / m] if m.endswith(".py") else (ROOT / m).rglob("*.py"))
     ]
     places = []
-    for path in files:
+    for path in modules:
         if path.name not in SPARED:
             counted = Places()
             counted.visit(ast.parse(path.read_text(encoding="utf-8")))
             places += [(str(path.relative_to(ROOT)), n) for n in range(counted.count)]
-    verdicts: Counter[str] = Counter()
     Random(SEED).shuffle(places)
+    if given.only:
+        places = [(given.only[0], int(given.only[1]))]
+    verdicts: Counter[str] = Counter()
     for module, number in places:
-        if sum(verdicts.values()) - verdicts["none"] >= given.sample:
+        if sum(verdicts[k] for k in TOLD) >= given.sample:
             break
-        try:
-            done = subprocess.run(
-                (*one, module, str(number), str(before)),
-                cwd=ROOT,
-                capture_output=True,
-                text=True,
-                timeout=120,
-                check=False,
-            )
-            verdict = (done.stdout.strip().splitlines() or ["broken: ended"])[-1]
-        except subprocess.TimeoutExpired:
-            verdict = "broken: too long"
+        stems = reached(module, number, before)
+        verdict = one(module, number, stems, before) if stems else "unreached"
         verdicts[verdict.partition(":")[0]] += 1
         print(f"{verdict:40} {module}:{changed(ROOT / module, number)[1]} ({number})", flush=True)
     print(f"{len(places)} places; tried: {dict(verdicts)}")
-    told = verdicts["noticed"] + verdicts["different"]
+    told = sum(verdicts[k] for k in TOLD)
     print(f"noticed by the checks: {verdicts['noticed']} of {told} that print something else")
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from cmath import exp as cexp
 from dataclasses import replace
 from fractions import Fraction
+from itertools import chain
 from math import exp, inf, isfinite, pi
 from typing import TYPE_CHECKING
 
@@ -19,6 +20,7 @@ from symflex.model import with_numbers
 from symflex.model.signs import is_passive
 from symflex.roots.distributed.proof import limits
 from symflex.roots.distributed.right_half_plane import (
+    COMPRESSED,
     DEGENERATE,
     PASSIVE,
     PASSIVE_LOOP,
@@ -29,7 +31,7 @@ from symflex.roots.distributed.right_half_plane import (
 from symflex.roots.distributed.side import ACCUMULATION_DIGITS, Side, polynomial_roots
 from symflex.roots.engines import LOSSLESS, POLYNOMIAL
 from symflex.roots.functions.simplified import without_lengths_of_zero
-from symflex.roots.passive import passive_loop
+from symflex.roots.passive import fastest_growth, passive_loop
 from symflex.roots.passive_fields import are_passive
 from symflex.roots.plane.search import HIGHEST
 from symflex.roots.pole_zero_map import (
@@ -397,6 +399,7 @@ class _Searched:
         coincident = [h for h in self.hidden if h.cause == "coincident"]
         degenerate = _degenerate_points(bound)
         proof, rests = _passivity(bound)
+        limit = fastest_growth(bound.source.model, bound.all_values) if bound.is_of_model else None
         found: list[tuple[Root, ...]] = []
         gaps: list[RightHalfPlane] = []
         for place, part in (*poles, (2 * len(poles), product)):
@@ -415,7 +418,7 @@ class _Searched:
                     gaps.append(RightHalfPlane((), unproved or ""))
                     continue
                 reached = 0.0 if unproved else self._reached(side)
-                whole = search_right(bound, part, side, known, reached, self.digits, self.budget)
+                whole = search_right(bound, part, side, known, reached, self.digits, self.budget, limit)
             except SymflexError as error:
                 found.append(())
                 gaps.append(RightHalfPlane((), error.diagnostics[0].message))
@@ -429,6 +432,8 @@ class _Searched:
             found.append(apart)
             gaps.append(whole)
         unsure = gaps_text(gaps)
+        if limit is not None and not unsure and all(r.re < 0 or r.on_imaginary_axis for r in chain(*found)):
+            proof = COMPRESSED
         if proof:
             unsure = "" if rests else "none of those found lies on the imaginary axis"
         seen = [root for each in found[:-1] for root in each]

@@ -15,6 +15,7 @@ where it pushes. So the link rests too: no pole is on the axis, at any frequency
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import cached_property
 from math import atan2, pi
 from typing import TYPE_CHECKING
@@ -23,14 +24,22 @@ from flint import arb
 
 from symflex.algebra import LAPLACE, Factored
 from symflex.algebra.ring import terms_of
-from symflex.expressions import Name
+from symflex.expressions import Name, Number
 from symflex.library.elements.element import CIRCUITS, LinearForm, Variable
 from symflex.library.elements.line import Beam, LineElement
 from symflex.library.elements.lumped import ThroughSource
 from symflex.model import Signal
 from symflex.model.network import variable_of
-from symflex.model.signs import Line, follows_inputs, is_passive, line_of, parameter_signs
+from symflex.model.signs import (
+    Line,
+    follows_inputs,
+    is_passive,
+    line_of,
+    parameter_signs,
+    value_along,
+)
 from symflex.roots import precision
+from symflex.roots.root import ROUNDING
 from symflex.transfer.balls import ball
 from symflex.transfer.of_model import assemble
 
@@ -100,6 +109,46 @@ def passive_loop(model: Model, gain: str, values: Iterable[tuple[str, ExactValue
     )
     ends = [_Acting.of(source, equations.model) for source in sources]
     return _Structure(equations, rest, gain, line, known).closed_at(ends)
+
+
+def fastest_growth(model: Model, values: Iterable[tuple[str, ExactValue]]) -> float | None:
+    """Return an abs(s) [rad/s] beyond which no pole lies right of the imaginary axis.
+
+    None where that is not known: it is where nothing supplies energy but uniform members that are compressed.
+    Over s their energy is ``rho A |w|^2 s + (EI |w''|^2 - P |w'|^2)/s``, and on a length l the integral of
+    ``|w'|^2`` is at most that of ``e |w''|^2 + (1/e + 12/l^2) |w|^2`` for every e (Redheffer 1963): with
+    ``e = EI/P`` the real part is positive from ``abs(s)^2 = P/(rho A) (P/(EI) + 12/l^2)`` on.
+    """
+    known = list(values)
+    line = line_of(model, known)
+    pressed = [use for use in model.elements if _is_pressed(use, line)]
+    rest = [_unloaded(use) if use in pressed else use for use in model.elements]
+    if not pressed or not is_passive(replace(model, elements=tuple(rest)), known):
+        return None
+    squares = []
+    with precision(BITS):
+        for use in pressed:
+            given = {name: value_along(value, arb("nan"), line) for name, value in use.values}
+            force, length = given["N"], given["l"]
+            bending, mass = _times(given["E"], given["I"]), _times(given["rho"], given["A"])
+            if force is None or length is None or not bending > 0 or not mass > 0:
+                return None
+            squares.append(float((-force / mass * (12 / length**2 - force / bending)).upper()))
+    return float(max(squares) ** 0.5) * (1 + ROUNDING)
+
+
+def _is_pressed(use: PlacedElement, line: Line) -> bool:
+    return isinstance(use.element, Beam) and parameter_signs(use, line).get("N") == -1
+
+
+def _unloaded(use: PlacedElement) -> PlacedElement:
+    kept = tuple((name, Number(Fraction(0)) if name == "N" else value) for name, value in use.values)
+    return replace(use, values=kept)
+
+
+def _times(a: arb | None, b: arb | None) -> arb:
+    """Return a product, not a number where a factor has no value or varies along x."""
+    return arb("nan") if a is None or b is None else a * b
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,8 @@ ends by nothing where at each end one of the two vanishes.
 
 Here 1/C and G are polynomials ``k + c s + m s^2`` without negative coefficients, of stiffness, loss and mass,
 and so is what holds an end; over s their real parts are not negative where that of s is positive (Anderson &
-Vongpanitlerd 1973, Network Analysis and Synthesis, chapter 2).
+Vongpanitlerd 1973, Network Analysis and Synthesis, chapter 2). The same is true of ``s^2 C`` and ``s^2/G``.
+Where ``v' = -(R + L s) i`` and ``i' = -(G + C s) v`` the charge ``i/s`` is a displacement and v its force.
 """
 
 from __future__ import annotations
@@ -43,6 +44,8 @@ MOST_STATES = 6
 """Of a field, whose displacements and forces are told by trial."""
 INERTIA = 2
 """The power of s of a mass."""
+LINE = 2
+"""States of a field whose waves go to and fro."""
 BEAM = 4
 """States of a field whose equation is of fourth order."""
 Matrix = list[list[Factored]]
@@ -110,7 +113,7 @@ class _Fields:
         for q, p, sign in pairs:
             give, hold = matrix[q][p] * sign, matrix[p][q] * sign
             for state, value in ((p, give if give.is_zero else 1 / give), (q, hold)):
-                powers = set[int]() if value.is_zero else self._powers(value, field)
+                powers = set[int]() if value.is_zero else self._stored(value, field)
                 if powers is None:
                     return False
                 if powers:
@@ -131,10 +134,16 @@ class _Fields:
         known = self._eliminated(forces)
         if known is None:
             return False
-        supplied: dict[tuple[Variable, Variable], Factored] = {}
-        for each, side, place, given in ends:
+        states: list[list[Terms]] = []
+        for each, _, place, given in ends:
             rows = [[_at(x, place) for x in row] for row in each.states]
-            free = [_reduced(LinearForm.of(*zip(given, row, strict=True)), known) for row in rows]
+            states.append([_reduced(LinearForm.of(*zip(given, row, strict=True)), known) for row in rows])
+        moved = [free[q] for (each, *_), free in zip(ends, states, strict=True) for q, _, _ in each.pairs]
+        # What moves with a velocity v is q = v/s: it is v/s that is free.
+        slow = {v: _laplace(c) for form in moved for v, c in form.items() if _is_over_s(c)}
+        supplied: dict[tuple[Variable, Variable], Factored] = {}
+        for (each, side, _, _), unscaled in zip(ends, states, strict=True):
+            free = [{v: c * slow[v] if v in slow else c for v, c in form.items()} for form in unscaled]
             for q, p, sign in each.pairs:
                 if any(a.depends_on(LAPLACE) for a in free[q].values()):
                     return False
@@ -168,6 +177,11 @@ class _Fields:
         side = -1 if self._number(field.length) > 0 else 1
         there = [v for v, _ in field.final]
         return [(side, field.start, field.initial), (-side, field.start + field.length, there)]
+
+    def _stored(self, value: Factored, field: Continuum) -> set[int] | None:
+        """Return the powers of s in a value or in its counterpart, ``None`` where it may supply energy."""
+        powers = self._powers(value, field)
+        return self._powers(_laplace(value) ** 2 / value, field) if powers is None else powers
 
     def _powers(self, value: Factored, field: Continuum | None) -> set[int] | None:
         """Return the powers of s in a value, ``None`` where one of them may have a negative coefficient."""
@@ -243,6 +257,20 @@ def _canonical(field: Continuum) -> Iterator[tuple[Matrix, Matrix]]:
     elif None not in field.initial and all(_is_slope(matrix, i) for i in range(0, n, 2)):
         yield from _stretched(matrix, unit)
     yield matrix, unit
+    if n == LINE:
+        s = _laplace(zero)
+        for i, j in ((0, 1), (1, 0)):  # a state over s: the charge of a current, the flux of a voltage
+            rates = [list(row) for row in matrix]
+            rates[i][j], rates[j][i] = matrix[i][j] / s, matrix[j][i] * s
+            yield rates, [[x / s for x in row] if k == i else row for k, row in enumerate(unit)]
+
+
+def _laplace(value: Factored) -> Factored:
+    return Factored.polynomial(value.ring, value.ring.context.gen(0))
+
+
+def _is_over_s(value: Factored) -> bool:
+    return value.depends_on(LAPLACE) and not (value * _laplace(value)).depends_on(LAPLACE)
 
 
 def _is_slope(matrix: Matrix, i: int) -> bool:

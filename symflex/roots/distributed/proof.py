@@ -233,7 +233,8 @@ def decider(cell: Cell) -> Callable[[Root], bool | None]:
             return False
         is_ring = cell.right <= -pi and cell.left >= pi
         is_between = True if is_ring else _is_between(cell, root)
-        return is_between and (True if size > low and size < high else None)
+        is_above = cell.low == -inf or bool(size > low)
+        return is_between and (True if is_above and size < high else None)
 
     return is_inside
 
@@ -284,6 +285,8 @@ def _log(size: float) -> float:
     return log(size) if size > 0 else -inf
 
 
+SAME = 0.5
+"""By what an order that is read off doubles may differ from a whole number."""
 DEPTHS = (1.0, 4.0, 16.0, 64.0)
 """How far below the lowest root, in ln, circles about 0 are counted where the order is not known exactly."""
 
@@ -302,12 +305,14 @@ def roots_at_zero(
     power, zero = function.power, arb(0)
     powers = part.exponent_of(part.ring.context.gen(0))
     exact = function.order()
+    if not is_hidden and exact is not None and abs(function.order_at_zero() - exact) > SAME:
+        exact = None  # of these values it vanishes further: a column at its buckling load
     if exact is not None and (is_hidden or exact % power == 0):
         total = powers if is_hidden else powers + exact // power
         root = Root(zero, zero, total, on_imaginary_axis=True, is_real=True)
         return [root for _ in range(total >= 1)], exact
     z, turns = turns_about_zero(winding, left, holes)
-    # Kernels without a formula: so many roots lie this close to 0, and nothing says that they are 0.
+    # So many roots lie this close to 0, and nothing says that they are 0.
     with precision(FLOAT_BITS):
         box = arb(0, arb(z).exp().upper())
     total = powers if is_hidden else powers + turns

@@ -19,17 +19,19 @@ from symflex.roots.counting.winding import RootOnPathError
 from symflex.roots.distributed.far_out import right_tail
 from symflex.roots.distributed.side import Side
 from symflex.roots.pole_zero_map import count_right, is_right
-from symflex.roots.region import Rectangle
+from symflex.roots.region import Band, Rectangle
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from symflex.algebra import Factored
     from symflex.budget import Budget
+    from symflex.roots.region import Region
     from symflex.roots.root import Root
     from symflex.transfer import BoundTransferFunction
 
 PASSIVE = "passive, energy is nowhere supplied"
+COMPRESSED = "compressed members feed slow motion only, and there no pole is right of the axis"
 PASSIVE_LOOP = "the loop is a spring and a damper on a passive structure"
 ACCUMULATING = "poles accumulate in the right half plane"
 DEGENERATE = "a root where wavenumbers meet may be no pole"
@@ -57,24 +59,27 @@ def search_right(
     reached: float,
     digits: int,
     budget: Budget,
+    limit: float | None = None,
 ) -> RightHalfPlane:
     """Count the roots of a function with kernels right of the imaginary axis, and find them.
 
     ``side`` is the same function, perhaps searched elsewhere; ``known`` roots are those found already,
     anywhere, proved. Up to an abs(s) of ``reached`` [rad/s] all roots are known; 0 where that is not so.
+    Beyond a ``limit`` [rad/s], where one is given, it is known that none lies right of the axis.
     """
     if side.is_finite:
         return RightHalfPlane(tuple(known))
     if any(hole.right < pi / 2 for hole in side.holes):
         return RightHalfPlane(tuple(known), ACCUMULATING)
-    radius, unproved = _end(side, reached)
+    radius, unproved = _end(side, reached) if limit is None else (limit, "")
     if radius <= reached:
         return _known_to(known, unproved, reached)
     # Roots mirror each other in the axis, and a path along it would meet them.
-    is_mirrored = bool(unproved) and side.function.is_even
+    is_even = side.function.is_even and (bool(unproved) or limit is not None)
+    is_mirrored = bool(unproved) and is_even
     count: int | None = None
     try:
-        count = None if is_mirrored else side.count_right(log(radius * MARGIN))
+        count = None if is_even else side.count_right(log(radius * MARGIN))
     except RootOnPathError:
         pass
     except BudgetError as error:
@@ -84,8 +89,10 @@ def search_right(
         return RightHalfPlane(tuple(known), error.diagnostics[0].message)
     seen = [root for root in known if root.re.contains(0) or is_right(root)]
     if count is None or count != count_right(seen):
-        limit = Fraction(radius)
-        region = Rectangle(Fraction(0), limit, -limit, limit)
+        end = Fraction(radius)
+        region: Region = Rectangle(Fraction(0), end, -end, end)
+        if is_even and not is_mirrored:
+            region = Band(Fraction(0), Fraction(radius * MARGIN / (2 * pi)))
         again = Side(bound, part, digits, budget)
         try:
             again.search(region)

@@ -8,6 +8,7 @@ from string import Template
 
 import numpy as np
 import pytest
+from numpy.polynomial import legendre
 from scipy.linalg import eigvals
 
 from symflex import pipeline
@@ -16,7 +17,7 @@ from symflex.loops.of_model import stability
 from symflex.model.signs import is_passive
 from symflex.options import StabilityOptions
 from symflex.roots import Band, Modes
-from symflex.roots.passive import PassiveLoop, passive_loop
+from symflex.roots.passive import PassiveLoop, fastest_growth, passive_loop
 from symflex.roots.passive_fields import are_passive
 
 ARM = Template("""
@@ -505,6 +506,121 @@ y = "w(l)"
 def test_a_beam_that_shears_is_one_of_two_unknowns():
     for sign, expected in [("", True), ("-", False)]:
         assert known(pipeline.loads(HEAD + SHEARS.replace("SIGN", sign))) is expected
+
+
+TRANSMISSION = """
+symflex = 1
+[parameters]
+R = { value = "0.05 ohm/m", assume = "real" }
+G = { value = "1 mS/m", assume = "real" }
+Z = { value = "50 ohm", assume = "real" }
+L = "253 nH/m"
+C = "101 pF/m"
+M = "1 uH"
+D = "1 nF"
+l = "10 m"
+[inputs]
+V = { unit = "V" }
+[outputs]
+v_l = "v(l)"
+[fields.line]
+unknowns = ["v", "i"]
+domain = ["0", "l"]
+equations = ["v' = -(R + s*L)*i", "i' = -(G + s*C)*v"]
+conditions = ["v(0) = V - Z*i(0)", "i(l) = 0"]
+"""
+LINES = {
+    "": True,
+    "0.05 ohm/m -> -0.05 ohm/m": False,
+    "1 mS/m -> -1 mS/m": False,
+    "50 ohm -> -50 ohm": False,
+    "Z*i(0) -> M*s*i(0)": True,
+    " - Z*i(0) -> ": True,
+    "V - Z*i(0) -> V + M*s*i(0)": False,
+    "i(l) = 0 -> i(l) = v(l)/Z + D*s*v(l)": True,
+    "i(l) = 0 -> v(l) = M*s*i(l)": True,
+    "i(l) = 0 -> i(l) = D*s*v(l) - v(l)/Z": False,
+    "i(l) = 0 -> i(l) = v(0)/Z": False,
+    "s*L -> -s*L": False,
+}
+"""Changes of a line, and whether it is passive: what has a resistance loses energy where that is positive."""
+
+
+def test_lossy_lines_are_passive_with_what_ends_them():
+    for change, expected in LINES.items():
+        old, _, new = change.partition(" -> ")
+        assert known(pipeline.loads(TRANSMISSION.replace(old, new) if old else TRANSMISSION)) is expected, (
+            change
+        )
+
+
+COLUMN = """
+symflex = 1
+parameters = { EI = "2 N*m^2", I = "1e-8 m^4", m = "3 kg/m", A = "1e-4 m^2", l = "0.7 m", t = TIME }
+definitions = { P = "FACTOR*pi^2*EI/l^2" }
+inputs.M = { torque = "b.theta" }
+outputs.y = "b.theta"
+[elements]
+a = { type = "FIRST", at = "a" }
+b = { type = "pin", at = "b" }
+[elements.bar]
+type = "beam"
+between = ["a", "b"]
+E = "EI/I"
+I = "I"
+rho = "m/A"
+A = "A"
+l = "l"
+N = "-P"
+eta = "t"
+"""
+
+
+def column(factor, first="pin", time="0 s"):
+    time = f'{{ value = "{time}", assume = "nonnegative" }}'
+    return COLUMN.replace("FACTOR", factor).replace("FIRST", first).replace("TIME", time)
+
+
+@pytest.mark.slow
+def test_columns_are_stable_up_to_their_buckling_load_and_not_beyond():
+    # Euler: the load is pi^2 EI/l^2 with both ends pinned, 2.0457 times that with one clamped.
+    loads = [("0.99", "pin", "marginal"), ("1.01", "pin", "unstable"), ("4.01", "pin", "unstable")]
+    loads += [("2.04", "fixed", "marginal"), ("2.05", "fixed", "unstable")]
+    for factor, first, expected in loads:
+        assert word(pipeline.loads(column(factor, first))).word == expected, (factor, first)
+    assert word(pipeline.loads(column("0.99", time="1 ms"))).word == "stable"
+    verdict = word(pipeline.loads(column("4.01", time="1 ms")))
+    assert (verdict.word, verdict.right) == ("unstable", 2)  # two half waves buckle at four times the load
+
+
+def test_what_is_near_rest_at_the_buckling_load_is_listed_and_not_certified():
+    model = pipeline.loads(column("1"))
+    (bound,) = pipeline.derive_bound(model, model.transfer_functions)
+    found = pipeline.roots(bound, Modes(2), 12)
+    near = [p for p in found.poles if p.re.contains(0) and p.im.contains(0)]
+    assert [(p.multiplicity, p.certified) for p in near] == [(2, False)]
+    assert (found.verdict.word, found.certificate.certified) == ("unknown", False)
+
+
+def test_slope_and_deflection_are_bounded_by_curvature_and_deflection():
+    # Polynomials up to degree 39 on a length of 1: e |w''|^2 + (1/e + 12) |w|^2 - |w'|^2 is positive.
+    x, weights = legendre.leggauss(80)
+    basis = [legendre.Legendre.basis(n) * np.sqrt((2 * n + 1) / 2) for n in range(40)]
+    first, second = ([2**k * b.deriv(k)(x) for b in basis] for k in (1, 2))
+    slope, curvature = ((np.array(d) * weights) @ np.array(d).T for d in (first, second))
+    for e in np.logspace(-3, 2, 40):
+        assert np.linalg.eigvalsh(e * curvature - slope)[0] > -(1 / e + 12), e
+
+
+def test_growth_of_a_compressed_column_is_bounded_from_above():
+    # Both ends pinned: s^2 = (P pi^2/l^2 - EI pi^4/l^4)/m at its largest.
+    for load in (5, 50, 500):
+        model = pipeline.loads(column(str(load)))
+        limit = fastest_growth(model, ((p.name, p.value) for p in model.parameters))
+        waves = np.arange(1, 40) * pi / 0.7
+        force = load * pi**2 * 2 / 0.7**2
+        grows = np.sqrt(max((force * waves**2 - 2 * waves**4) / 3))
+        assert grows < limit < 3 * grows + 200, load
 
 
 def test_all_poles_of_a_passive_field_are_said_to_be_on_the_axis_or_left_of_it():
