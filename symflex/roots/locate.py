@@ -251,7 +251,7 @@ def locate_distributed(
         certificate,
         digits,
         tuple(_exclusion(hole) for hole in sorted(excluded, key=lambda hole: hole.low)),
-        is_default,
+        is_default and not all(side.is_finite for side in searched.sides[:1]),
         is_infinite=True,
         verdict=verdict,
         unstable=() if is_free else beyond,

@@ -35,7 +35,7 @@ from symflex.roots.functions.kernel_function import (
     has_kernels,
     split_off_kernels,
 )
-from symflex.roots.functions.simplified import without_squares
+from symflex.roots.functions.simplified import without_reflections, without_squares
 from symflex.roots.plane.local_roots import prove_simple, prove_together
 from symflex.roots.plane.search import HIGHEST, MODES_LIMIT, RootSearch
 from symflex.roots.polynomial_roots import find_polynomial_roots, in_order
@@ -82,6 +82,7 @@ class Side:
         self._digits = digits
         self._budget = budget
         self.holes = holes_about(accumulation_points(bound))
+        part = without_reflections(bound, part)
         plain, mixed = split_off_kernels(part, bound.kernels)
         self._search: RootSearch | LosslessSearch | None = None
         self._origin: list[Root] = []

@@ -9,12 +9,19 @@ are exact.
 from __future__ import annotations
 
 from dataclasses import replace
+from math import prod
 from typing import TYPE_CHECKING
 
-from symflex.algebra import NO_KERNELS, Factored, Ring, degree_in, square_free_factors
+from flint import acb
+
+from symflex.algebra import LAPLACE, NO_KERNELS, Factored, Ring, degree_in, square_free_factors
+from symflex.algebra.exponential_sum import arguments_of, exponential_sum
 from symflex.algebra.exponentials import Exponentials
 from symflex.algebra.normal_form import NormalForm
 from symflex.errors import Diagnostic, ModelError
+from symflex.roots.precision import precision
+from symflex.roots.root import FLOAT_BITS
+from symflex.transfer.balls import at_centre
 from symflex.transfer.transfer_function import HiddenFactor
 
 if TYPE_CHECKING:
@@ -151,3 +158,62 @@ def _pieces(coordinates: Exponentials, factor: fmpz_mpoly) -> list[tuple[fmpz_mp
         _, pieces = square_free_factors(polynomial)
         found += [(piece, e * times) for piece, e in pieces]
     return found
+
+
+def without_reflections(bound: BoundTransferFunction, part: Factored) -> Factored:
+    """Return a product whose roots are the same, with powers of s for what has one exponential left.
+
+    A wave that meets a damper as large as its own impedance is not reflected: ``E A gamma cosh(gamma l) +
+    b s sinh(gamma l)`` is a multiple of ``s exp(gamma l)`` for ``b = A sqrt(E rho)``, and has no root but 0.
+    What may be otherwise stays as it is, all of it.
+    """
+    table, result = bound.kernels, Factored.number(part.ring, part.unit)
+    if not table.kernels or any(law.kind != "wave" for law in table.dispersions):
+        return part
+    for factor, exponent in part.factors:
+        value = Factored.polynomial(part.ring, factor)
+        kernels = [k for k in table.kernels if value.depends_on(k.generator)]
+        names = {name for law in table.dispersions for name in law.wavenumbers if value.depends_on(name)}
+        names |= {k.wavenumber for k in kernels}
+        image = _of_one_wave(bound, factor, *names) if len(names) == 1 else None if names else value
+        if image is None:
+            return part
+        result = result * image**exponent
+    return result
+
+
+def _of_one_wave(bound: BoundTransferFunction, factor: fmpz_mpoly, wavenumber: str) -> Factored | None:
+    """Return what a factor is a multiple of, by an exponential and a number, where one of these is left."""
+    ring, table = bound.ratio.ring, bound.kernels
+    s = Factored.polynomial(ring, ring.context.gen(0))
+    law = next(law for law in table.dispersions if law.wavenumbers == (wavenumber,))
+    square = -law.characteristic[0]
+    arguments = arguments_of(table)
+    terms = None if arguments is None else exponential_sum(ring, table, arguments, factor)
+    if terms is None or (square / s**2).depends_on(LAPLACE):
+        return None
+    left = []
+    for amplitude in terms.terms.values():
+        even = odd = s * 0
+        for monomial, (number, _) in amplitude.items():  # of cosh and sinh all numbers are real
+            powers = {ring.names[i]: e for i, e in monomial}
+            whole, rest = divmod(powers.pop(wavenumber, 0), 2)
+            term = prod((Factored.generator(ring, n) ** e for n, e in powers.items()), start=square**whole)
+            even, odd = (even, odd + term * number) if rest else (even + term * number, odd)
+        # The wavenumber is s times a number: even + odd gamma is zero, or like s to a power, or not told.
+        norm = bound.radicals.reduced(even**2 - odd**2 * square)
+        gamma = Factored.generator(ring, wavenumber)
+        if norm.is_zero and _differs(bound, even - odd * gamma):
+            continue
+        left.append(odd * s if even.is_zero else even)
+        if (norm / left[-1] ** 2).depends_on(LAPLACE):
+            return None
+    return left[0] if len(left) == 1 else None
+
+
+def _differs(bound: BoundTransferFunction, value: Factored) -> bool:
+    """Tell whether a value is not zero at s = 1, on the branch on which wavenumbers are positive there."""
+    with precision(FLOAT_BITS):
+        evaluator = bound.kernel_values()
+        values = evaluator.at(acb(1))
+        return not at_centre(evaluator.value(value, values)).contains(0)
