@@ -104,8 +104,13 @@ def locate(
         budget=budget,
     )
     verdict = replace(found.verdict, moving=_moving_unseen(bound))
-    if bound.source.hides_waves and verdict.word != "unstable" and not _passivity(bound)[0]:
-        verdict = StabilityVerdict("unknown", None, certified=False, reason=UNSEEN_WAVES)
+    if bound.source.hides_waves and verdict.word != "unstable":
+        proof, _ = _passivity(bound)
+        verdict = (
+            replace(verdict, reason=f"{proof}; {UNSEEN_ON_AXIS}")
+            if proof
+            else StabilityVerdict("unknown", None, certified=False, reason=UNSEEN_WAVES)
+        )
     return replace(found, verdict=verdict)
 
 
@@ -165,6 +170,7 @@ def _locate_nested(bound: BoundNested, region: Region | None, digits: int, budge
 
 
 UNSEEN_WAVES = "a distributed part that input and output do not see may have poles anywhere"
+UNSEEN_ON_AXIS = "a distributed part that input and output do not see may have poles on the imaginary axis"
 DEFAULT_MODES = 5
 """Where neither the model nor the user says how many."""
 MATCHING_ROUNDS = 4

@@ -149,6 +149,25 @@ def test_a_real_pole_through_zero_beside_a_delay(loop):
     assert counts(found)[:2] == [(1, 0), (0, 0)]
 
 
+def test_a_loop_gain_of_exactly_one_at_rest_is_told_from_one_beside_it(loop):
+    # It is below one at all other frequencies: 1/(s + 1) e^(-s) crosses where omega = -tan(omega).
+    found = loop("3*K*D/(0.3*s + 3)", T="0.1 s").stability("K", (0, 1.5))
+    assert found.certified
+    assert not found.proved.phase_margins
+    found = loop("K*D/(s + 1)", T="1 s").stability("K", (0, 3))
+    assert found.certified
+    assert float(found.boundaries[0].gain) == pytest.approx(math.hypot(1, 2.028757838110434), rel=1e-12)
+    # (2 s + 1)/(s^2 + s + 1) is one in size at 0 and where 1 + 4 w^2 = (1 - w^2)^2 + w^2, w^2 = 5.
+    loop_gain = "K*D*(2*a*s + 1)/(a^2*s^2 + a*s + 1)"
+    found = loop(loop_gain, T="0.1 s", a={"value": "1 s"}).stability("K", (0, 2))
+    assert found.certified
+    (margin,) = found.proved.phase_margins
+    w = math.sqrt(5)
+    angle = math.pi + math.atan(2 * w) - math.atan2(w, 1 - w * w) - 0.1 * w
+    assert float(margin.frequency) == pytest.approx(w, rel=1e-12)
+    assert float(margin.angle) == pytest.approx(angle, rel=1e-12)
+
+
 def test_values_in_place_of_declared_ones(loop):
     found = loop("K*D/s").stability("K", (0, 20), T="0.25 s")
     assert abs(float(found.boundaries[0].gain) - 2 * math.pi) < 1e-12
