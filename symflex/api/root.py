@@ -106,7 +106,7 @@ class Root:
         return self.certified_root.damping_ratio()
 
     def __repr__(self) -> str:
-        printed = self.certified_root.decimal(SHOWN_DIGITS)
+        printed = self.certified_root.decimal(SHOWN_DIGITS).told
         times = f", {self.multiplicity} times" if self.multiplicity > 1 else ""
         return f"<Root {printed.re}, {printed.im} j{times}, radius {printed.radius}>"
 
@@ -126,8 +126,13 @@ def complex_latex(printed: RootDecimals) -> str:
     >>> from symflex.roots.root import RootDecimals
     >>> print(complex_latex(RootDecimals("-1.5", "-2.0e-7", "1e-12")))
     -1.5 - 2.0\cdot 10^{-7}\,\mathrm{j}
+    >>> print(complex_latex(RootDecimals("0e-28", "2.0", "1e-12")))
+    {\sim}0 + 2.0\,\mathrm{j}
     """
-    real, imaginary = (_POWER.sub(r"\\cdot 10^{\1}", part) for part in (printed.re, printed.im))
+    told = printed.told
+    real, imaginary = (
+        _POWER.sub(r"\\cdot 10^{\1}", part).replace("~", r"{\sim}") for part in (told.re, told.im)
+    )
     if printed.im == "0":
         return real
     sign = "-" if imaginary.startswith("-") else "+"
@@ -140,7 +145,7 @@ class RootTable(tuple[Root, ...]):
     __slots__ = ()
 
     def _repr_html_(self) -> str:
-        printed = [root.certified_root.decimal(SHOWN_DIGITS) for root in self]
+        printed = [root.certified_root.decimal(SHOWN_DIGITS).told for root in self]
         rows = [
             (
                 str(i),
@@ -246,7 +251,7 @@ class ResidueTable(tuple[Residue, ...]):
     def _repr_html_(self) -> str:
         rows = []
         for residue in self:
-            pole = residue.pole.certified_root.decimal(SHOWN_DIGITS)
+            pole = residue.pole.certified_root.decimal(SHOWN_DIGITS).told
             parts = (mpmath.nstr(part, SHOWN_DIGITS) for part in (residue.value.real, residue.value.imag))
             rows.append((pole.re, pole.im, *parts))
         return _table(("Re pole [rad/s]", "Im pole [rad/s]", "Re residue", "Im residue"), rows)
@@ -316,7 +321,7 @@ class Sensitivity:
         if self.moved.derivative is None:
             return f"<Sensitivity of a {self.kind} to {self.parameter}: {self.status}>"
         derivative = self.moved.derivative
-        printed = decimals(derivative.real, derivative.imag, SHOWN_DIGITS)
+        printed = decimals(derivative.real, derivative.imag, SHOWN_DIGITS).told
         return f"<Sensitivity of a {self.kind} to {self.parameter}: {printed.re}, {printed.im} j>"
 
 
@@ -334,7 +339,7 @@ class SensitivityTable(tuple[Sensitivity, ...]):
 
         rows = []
         for moved in self:
-            root = moved.root.certified_root.decimal(SHOWN_DIGITS)
+            root = moved.root.certified_root.decimal(SHOWN_DIGITS).told
             relative = None if moved.normalised is None else complex(moved.normalised)
             share = (
                 (moved.status, "") if relative is None else (f"{relative.real:.6g}", f"{relative.imag:.6g}")

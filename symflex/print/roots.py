@@ -27,8 +27,6 @@ if TYPE_CHECKING:
 
 KINDS: Final = {"poles": "Poles", "zeros": "Zeros", "hidden": "Hidden roots"}
 """What a :class:`~symflex.roots.PoleZeroMap` holds, and the titles of tables of it."""
-NEARLY_ZERO: Final = "~0"
-"""A part of a root that may be 0."""
 _FREQUENCY_BITS: Final = 256
 
 
@@ -125,12 +123,7 @@ def _damping(root: Root, printed: RootDecimals, digits: int) -> str:
 def _plain_damping(root: Root, printed: RootDecimals, digits: int) -> str:
     """Return the damping ratio as a double; nearly zero where only the real part's enclosure holds 0."""
     zeta = root.damping_ratio()
-    return "" if zeta is None else f"{zeta:.6g}" if _told(printed.re) != NEARLY_ZERO else NEARLY_ZERO
-
-
-def _told(part: str) -> str:
-    """Return a part of s, or that it is not told from 0: ``0e-28`` says no more, and reads like a number."""
-    return NEARLY_ZERO if part.startswith("0e") else part
+    return "" if zeta is None else f"{zeta:.6g}" if not printed.re.startswith("0e") else printed.told.re
 
 
 _REAL: Final = RootColumn(
@@ -160,8 +153,8 @@ _TIMES: Final = RootColumn(
     "multiplicity", ("Multi-", "plicity"), "", lambda root, printed, digits: str(root.multiplicity)
 )
 
-_TOLD_REAL: Final = replace(_REAL, text=lambda root, printed, digits: _told(printed.re))
-_TOLD_IMAGINARY: Final = replace(_IMAGINARY, text=lambda root, printed, digits: _told(printed.im))
+_TOLD_REAL: Final = replace(_REAL, text=lambda root, printed, digits: printed.told.re)
+_TOLD_IMAGINARY: Final = replace(_IMAGINARY, text=lambda root, printed, digits: printed.told.im)
 PAGE_COLUMNS: Final = (_TOLD_REAL, _TOLD_IMAGINARY, _RADIUS, _HERTZ, _RATIO, _TIMES)
 """Of tables on web pages."""
 PAPER_COLUMNS: Final = (_REAL, _IMAGINARY, _HERTZ, _RATIO)

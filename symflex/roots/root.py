@@ -18,6 +18,8 @@ FLOAT_BITS = 128
 """Of frequencies and comparisons: more than twice the bits of a double."""
 PLAIN_FROM = -5
 """Decimal exponent from which numbers are written without one."""
+NEARLY_ZERO = "~0"
+"""What people read where a number is not told from zero."""
 ROUNDING = 1e-15
 """What doubles of enclosures' ends may be off by, relative to them: a few times 2^-53."""
 NEIGHBOURS = 8
@@ -35,6 +37,16 @@ class RootDecimals:
     re: str
     im: str
     radius: str  # distance bound, rounded up, such as ``"3.1e-52"``; ``"0"`` when the print is exact
+
+    @property
+    def told(self) -> RootDecimals:
+        """The same for people, for whom ``0e-15`` says no more than that a part may be zero.
+
+        >>> RootDecimals("0e-15", "2.0", "1e-15").told.re
+        '~0'
+        """
+        re, im = (NEARLY_ZERO if part.startswith("0e") else part for part in (self.re, self.im))
+        return RootDecimals(re, im, self.radius)
 
 
 @dataclass(frozen=True, slots=True)

@@ -46,12 +46,12 @@ def response_text(found: EnclosedResponse, notes: Sequence[str] = ()) -> str:
 
 
 def _told(ball: arb, digits: int) -> tuple[str, str]:
-    told = decimals(ball, arb(0), min(digits, SHOWN_DIGITS))
+    told = decimals(ball, arb(0), min(digits, SHOWN_DIGITS)).told
     return told.re, told.radius
 
 
 def _short(ball: arb) -> str:
-    return decimals(ball, arb(0), SHORT_DIGITS).re
+    return decimals(ball, arb(0), SHORT_DIGITS).told.re
 
 
 def _impulse(found: EnclosedResponse, impulse: ImpulseAt) -> str:

@@ -149,6 +149,7 @@ def test_a_real_pole_through_zero_beside_a_delay(loop):
     assert counts(found)[:2] == [(1, 0), (0, 0)]
 
 
+@pytest.mark.slow
 def test_a_loop_gain_of_exactly_one_at_rest_is_told_from_one_beside_it(loop):
     # It is below one at all other frequencies: 1/(s + 1) e^(-s) crosses where omega = -tan(omega).
     found = loop("3*K*D/(0.3*s + 3)", T="0.1 s").stability("K", (0, 1.5))
