@@ -221,9 +221,7 @@ def run(stems: list[str], before: dict[str, dict]) -> str:
                 return f"noticed: {stem}"
             return f"broken: {type(error).__name__} {' '.join(codes)} {stem}"
         told = compared(found, before[stem]["prints"])
-        if told.startswith("value"):
-            return f"{told} of {stem}"
-        if told and not worst:
+        if told and (not worst or (told.startswith("value") and not worst.startswith("value"))):
             worst = f"{told} of {stem}"
     return worst or "equal"
 

@@ -215,6 +215,8 @@ def _values(tf: TransferFunction | BoundTransferFunction, here: Point, known: Ma
         found += [whole, num / den]
     elif not isinstance(tf, TransferFunction) or tf.reduced is not None:
         found.append(GeneratorValues(dict(known), here.whole)(tf.ratio))
+    if not isinstance(tf, TransferFunction) and not tf.is_distributed:
+        found.append(tf.enclosed(ctx.prec)(here.s()))
     return found
 
 
