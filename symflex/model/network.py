@@ -465,7 +465,7 @@ def infer_nodes(attachments: Sequence[Attachment]) -> tuple[tuple[NetworkNode, .
         if definite:
             nodes[name] = NetworkNode(name, definite[0], span)
     _spread(attachments, nodes, first)
-    problems += _undirected(attachments, nodes)
+    problems += [*_undirected(attachments, nodes), *_unlike(attachments, nodes)]
     problems += _mixed(attachments, nodes)
     return tuple(nodes[name] for name in first), problems
 
@@ -502,9 +502,38 @@ def _undirected(attachments: Sequence[Attachment], nodes: Mapping[str, NetworkNo
         if attachment.reference.component or domain not in ("translation", "any") or name not in nodes:
             continue
         if nodes[name].domain == "plane":
-            message = f"node '{name}' moves along x and y; {attachment.who} acts on one of them"
-            hint = f"write '{name}.x' or '{name}.y'; a mass that moves both ways is a rigid_body"
-            yield Diagnostic("SF219", message, attachment.reference.span, hint)
+            yield _without_direction(attachment)
+
+
+def _without_direction(attachment: Attachment) -> Diagnostic:
+    name = attachment.reference.node
+    message = f"node '{name}' moves along x and y; {attachment.who} acts on one of them"
+    hint = f"write '{name}.x' or '{name}.y'; a mass that moves both ways is a rigid_body"
+    return Diagnostic("SF219", message, attachment.reference.span, hint)
+
+
+def _unlike(attachments: Sequence[Attachment], nodes: Mapping[str, NetworkNode]) -> Iterator[Diagnostic]:
+    """Yield what is held to a single coordinate that is of another kind, or of a node that has two."""
+    held: dict[str, list[Attachment]] = {}
+    for attachment in attachments:
+        if attachment.domain == "whole" and not attachment.reference.is_ground:
+            held.setdefault(attachment.who, []).append(attachment)
+    for pair in held.values():
+        domains = [nodes[each.reference.node].domain for each in pair]
+        is_whole = [d in COMPONENTS and not a.reference.component for d, a in zip(domains, pair, strict=True)]
+        if all(is_whole):
+            continue
+        one = pair[is_whole.index(False)]
+        held_as = domain_of(one.reference, nodes[one.reference.node])
+        for other, domain, whole in zip(pair, domains, is_whole, strict=True):
+            own = domain_of(other.reference, nodes[other.reference.node])
+            if whole and domain == "plane" and held_as == "translation":
+                yield _without_direction(other)
+            elif own != held_as and not (whole and held_as == "rotation"):
+                what = WORDS[domain if whole else own]
+                message = f"{one.who} holds {what} to '{one.reference.node}', which is {WORDS[held_as]}"
+                hint = "couple them, with a transformer for instance"
+                yield Diagnostic("SF220", message, other.reference.span, hint)
 
 
 def _mixed(attachments: Sequence[Attachment], nodes: Mapping[str, NetworkNode]) -> Iterator[Diagnostic]:

@@ -394,17 +394,20 @@ def _turned(equation: Equation, turned: Mapping[str, Expression]) -> Equation:
 def _place(draft: DraftElement, nodes: Mapping[str, NetworkNode]) -> PlacedElement:
     domains: list[tuple[str, Placing]] = []
     for port, references in draft.nodes:
-        live = next((r for r in references if not r.is_ground), None)
+        live = [r for r in references if not r.is_ground]
+        whole = [r for r in live if nodes[r.node].domain in COMPONENTS and not r.component]
         domain: Placing
         match port.domain:
             case "translation" | "rotation" | "electrical" | "acoustic":
                 domain = port.domain
-            case _ if live is None:
+            case _ if not live:
                 domain = "translation"
-            case "whole" | "planar" | "plane" if nodes[live.node].domain in COMPONENTS and not live.component:
-                domain = nodes[live.node].domain
-            case _:
-                domain = domain_of(live, nodes[live.node])
+            case "whole" | "planar" | "plane" if len(whole) == len(live):
+                both = {nodes[r.node].domain for r in whole}
+                domain = "plane" if both == {"plane"} else "planar"
+            case _:  # where one end is a single coordinate, it is that of the other which is held
+                single = next((r for r in live if r not in whole), live[0])
+                domain = domain_of(single, nodes[single.node])
         domains.append((port.name, domain))
     attached = tuple((port.name, references) for port, references in draft.nodes)
     return PlacedElement(

@@ -245,3 +245,53 @@ def test_a_figure_that_cannot_be_drawn_is_refused():
         assert codes(figure(keys)) == [code], keys
     # Data stand in a Bode plot.
     assert codes(figure('of = ["X/F"]\ndata = true').replace('"bode"', '"poles_zeros"')) == ["SF207"]
+
+
+HELD = """
+[parameters]
+m = "2 kg"
+J = "3 kg*m^2"
+E = "70 GPa"
+I = "1e-9 m^4"
+[elements]
+M = { type = "mass", at = "x", m = "m" }
+R = { type = "inertia", at = "r", J = "J" }
+C = { type = "capacitor", between = ["v", "ground"], C = "1 F" }
+B = { type = "massless_beam", between = ["ground", "p"], EI = "E*I", l = "0.8 m" }
+joint = { type = "fixed", between = ["ONE", "OTHER"] }
+[elements.Q]
+type = "frame"
+between = ["ground", "q"]
+E = "E"
+I = "I"
+rho = "1 kg/m^3"
+A = "1 m^2"
+l = "1 m"
+angle = 0
+[inputs]
+F = { force = "p" }
+T = { torque = "p.theta" }
+[outputs]
+Y = "p.y"
+phi = "p.theta"
+"""
+
+
+def test_what_is_held_to_a_single_coordinate_follows_it_in_either_order():
+    # The stiffness of a cantilever is 3 EI/l^3; turned at its free end it is EI/l with the deflection free.
+    stiffness = 70e9 * 1e-9
+    expected = {("x", "p"): 1 / (2 * 9 + 3 * stiffness / 0.8**3), ("r", "p"): 1 / (3 * 9 + stiffness / 0.8)}
+    for (one, other), value in expected.items():
+        name, of = ("Y", "F") if one == "x" else ("phi", "T")
+        for pair in ((one, other), (other, one)):
+            text = HELD.replace("ONE", pair[0]).replace("OTHER", pair[1])
+            (bound,) = pipeline.derive_bound(pipeline.loads(HEADER + text), [(name, of)])
+            assert complex(bound(3)) == pytest.approx(value, rel=1e-12), pair
+
+
+def test_what_is_held_to_a_coordinate_of_another_kind_is_refused():
+    pairs = {("x", "r"): "SF220", ("p.theta", "x"): "SF220", ("v", "x"): "SF220", ("p", "v"): "SF220"}
+    pairs |= {("q", "x"): "SF219"}
+    for pair, code in pairs.items():
+        for one, other in (pair, pair[::-1]):
+            assert codes(HEADER + HELD.replace("ONE", one).replace("OTHER", other)) == [code], pair
