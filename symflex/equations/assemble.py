@@ -25,6 +25,7 @@ from symflex.algebra import (
     residue,
 )
 from symflex.budget import spend
+from symflex.equations.against_text import error_of
 from symflex.equations.equations import ConstantFunction, Continuum, Equations, OutputRow
 from symflex.equations.evaluate import ExactEvaluator, Opener, without_squares, written_denominator
 from symflex.equations.radicals import radicals_of
@@ -311,8 +312,7 @@ class _Assembly:
         outputs = [self._output(o.name, o.expression, evaluator) for o in self.model.outputs]
         if self.problems:
             spend()
-            too_large = all(d.code.startswith("SF5") for d in self.problems)
-            raise (BudgetError if too_large else ModelError)(*self.problems)
+            raise error_of(self.problems)
         count = len(self.balance) + len(self.unknowns)
         most = SPARSE_LIMIT if self.ring.is_sparse else UNKNOWN_LIMIT
         if count > most:

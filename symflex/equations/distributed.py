@@ -21,6 +21,7 @@ from symflex.algebra import Dispersion, Factored
 from symflex.algebra.propagators import propagate
 from symflex.algebra.ring import terms_of
 from symflex.budget import spend
+from symflex.equations.against_text import at_random, compare, error_of, number_of
 from symflex.equations.along import AlongX
 from symflex.equations.singular_ends import CUT, UnsolvedEndError, singular_start
 from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError
@@ -438,7 +439,7 @@ def survey(
         problems.extend(error.diagnostics)
     if problems:
         spend()
-        raise (BudgetError if all(d.code.startswith("SF5") for d in problems) else ModelError)(*problems)
+        raise error_of(problems)
     if not (lines or delays or solutions):
         return None
     propagation = propagate(evaluator.ring, _nameless(demands.demands) if is_nameless else demands.demands)
@@ -727,10 +728,22 @@ class ReadEquation:
 def read_equation(equation: Equation, unknowns: Collection[str], evaluator: ExactEvaluator) -> ReadEquation:
     """Return the coefficients of an equation, linear in unknowns, their derivatives and loads."""
     terms: Terms = {}
+
+    def leaf(node: Expression) -> int:
+        match node:
+            case Name(name) if name in unknowns:
+                return at_random((name, 0), evaluator.prime)
+            case Derivative(name, order):
+                return at_random((name, order), evaluator.prime)
+        return evaluator.number_of_leaf(node)
+
     for side, sign in ((equation.left, 1), (equation.right, -1)):
         for key, value in _read(side, unknowns, evaluator).items():
             terms[key] = terms[key] + value * sign if key in terms else value * sign
     kept = {k: c for k, c in terms.items() if not c.is_zero}
+    if evaluator.is_decided:
+        difference = Sum((equation.left, Negative(equation.right)), span=equation.span)
+        compare(difference, number_of(kept.items(), evaluator.place), leaf, evaluator.prime)
     return ReadEquation(
         {k: c for k, c in kept.items() if not isinstance(k, Variable)},
         {k: c for k, c in kept.items() if isinstance(k, Variable)},

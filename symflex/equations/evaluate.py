@@ -23,6 +23,7 @@ from symflex.algebra import (
     least_common_multiple,
     residue,
 )
+from symflex.equations.against_text import compare, number_of_form
 from symflex.errors import BudgetError, Diagnostic, ModelError
 from symflex.expressions import (
     Attribute,
@@ -67,6 +68,8 @@ class ExactEvaluator:
     radicals: Radicals | None = None  # relations of the roots among the generators
     # Returns a field's unknown, or a derivative of it, at the point a call names.
     field_value: Callable[[Call], LinearForm] | None = None
+    # What calls of fields were found to be.
+    states: dict[Expression, LinearForm] = field(default_factory=dict, repr=False)
     is_constant: bool = False  # where only constants may stand, a parameter may share its name with a node
 
     @property
@@ -110,6 +113,23 @@ class ExactEvaluator:
             return LinearForm()
         raise ModelError(Diagnostic("SF221", "the expression has a term without an unknown", expression.span))
 
+    @property
+    def place(self) -> tuple[Mapping[str, int], int]:
+        """The point, and its prime."""
+        return self.point, self.prime
+
+    @cached_property
+    def is_decided(self) -> bool:
+        """Whether values at the point decide what is equal: there roots of numbers are roots."""
+        return bool(self.point) and (not self.radicals or self.radicals.point() is not None)
+
+    def number_of_leaf(self, expression: Expression) -> int:
+        """Return the number a name or a call is at the point; KeyError where it has none."""
+        found = number_of_form(self._evaluate(expression), self.place)
+        if found is None:
+            raise KeyError
+        return found
+
     def is_block(self, expression: Name) -> bool:
         """Tell whether a name is read as a block."""
         return self.scope.lookup(expression, constant=False).kind == "block"
@@ -119,8 +139,12 @@ class ExactEvaluator:
         try:
             value = self._evaluate(expression)
             if isinstance(value, LinearForm):
-                return without_squares(value, self.radicals)
-            return self.radicals.tidy(value) if self.radicals else value
+                value = without_squares(value, self.radicals)
+            elif self.radicals:
+                value = self.radicals.tidy(value)
+            if expression.children and self.is_decided:
+                compare(expression, number_of_form(value, self.place), self.number_of_leaf, self.prime)
+            return value
         except BudgetError as error:
             located = [
                 d if d.span else Diagnostic(d.code, d.message, expression.span, d.hint)
@@ -153,7 +177,9 @@ class ExactEvaluator:
             case Power(base, exponent):
                 return self._power(expression, base, exponent)
             case Call(name) if name in self.fields and self.field_value is not None:
-                return self.field_value(expression)
+                if expression not in self.states:
+                    self.states[expression] = self.field_value(expression)
+                return self.states[expression]
             case Call(name, argument):
                 return self._call(expression, name, argument)
         message = f"unexpected expression {type(expression).__name__}"

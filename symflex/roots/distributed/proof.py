@@ -303,10 +303,12 @@ def roots_at_zero(
     """
     function = winding.function
     power, zero = function.power, arb(0)
-    powers = part.exponent_of(part.ring.context.gen(0))
-    exact = function.order()
-    if not is_hidden and exact is not None and abs(function.order_at_zero() - exact) > SAME:
-        exact = None  # of these values it vanishes further: a column at its buckling load
+    s = part.ring.context.gen(0)
+    powers, exact = part.exponent_of(s), function.order()
+    coefficients = [c for law in function.bound.kernels.dispersions for c in law.characteristic]
+    has_length = any(not c.is_zero and not c.exponent_of(s) for c in coefficients)
+    if has_length and not is_hidden and exact is not None and abs(function.order_at_zero() - exact) > SAME:
+        exact = None  # waves with a length at s = 0 may fit: a column at its buckling load
     if exact is not None and (is_hidden or exact % power == 0):
         total = powers if is_hidden else powers + exact // power
         root = Root(zero, zero, total, on_imaginary_axis=True, is_real=True)

@@ -67,6 +67,8 @@ FEW = 8
 """Modes from which on a search goes on in smaller rings."""
 UNCHECKED = 12
 """Octaves searched along the axes between two counts."""
+FADED = 100.0
+"""Width in ln of a ring where kernels do not vary faster further out, and roots are few."""
 HIGHEST = 300.0
 """ln of the radius [rad/s] beyond which nothing is sought."""
 MODES_LIMIT = 2000
@@ -128,7 +130,9 @@ class RootSearch:
                 break
             if self.reached >= radius:
                 self._winding.budget.progress.report(known / modes, f"{known} of {modes} modes located")
-            high, found = self._ring(self.reached, self.passing(self.reached + RING))
+            reach = self._winding.reach
+            width = RING if reach(self.reached + RING) > reach(self.reached) else FADED
+            high, found = self._ring(self.reached, self.passing(self.reached + width))
             self.roots.extend(found.roots)
             self.missing += found.missing
             self.reached = high

@@ -1,0 +1,91 @@
+"""What is read of an expression is compared with it, and what was read wrongly is not used."""
+
+from __future__ import annotations
+
+import pytest
+
+from symflex import pipeline
+from symflex.equations import evaluate
+from symflex.equations.against_text import at_random, compare
+from symflex.errors import InternalError, Text
+from symflex.expressions import Name, Product, format_expression, parse
+
+PRIME = 2**61 - 1
+NUMBERS = {"x": 5, "y": 1, "k": 3}
+
+
+def expression(text):
+    return parse(Text.alone("", text))
+
+
+def check(text, read):
+    def leaf(node):
+        assert isinstance(node, Name)
+        return NUMBERS[node.name]
+
+    compare(expression(text), read, leaf, PRIME)
+
+
+def test_the_number_of_what_was_read_has_to_be_that_of_the_tree():
+    for text, value in {
+        "2*k*(x - y)": 24,
+        "-x^2/y + k": -22,
+        "k^-1*k*x": 5,
+        "1.5*k": 9 * pow(2, -1, PRIME),
+    }.items():
+        check(text, value % PRIME)
+        with pytest.raises(InternalError, match="SF991"):
+            check(text, (value + 1) % PRIME)
+
+
+def test_what_has_no_value_at_the_point_is_not_compared():
+    check("x/(y - 1)", 7)
+    check("x/z", 7)
+    check("x", None)
+
+
+def test_unknowns_have_numbers_of_their_own():
+    assert at_random(("w", 0), PRIME) != at_random(("w", 1), PRIME)
+
+
+LOOP = """
+symflex = 1
+parameters = { K = "2 N/m", m = "3 kg", T = "1 s" }
+signals.u = "K*(r - T*s*x)"
+inputs.r = { unit = "m" }
+outputs.y = "x"
+elements.body = { type = "mass", at = "x", m = "m" }
+elements.force = { type = "force_source", at = "x", f = "u" }
+"""
+FIELD = """
+symflex = 1
+parameters = { N = "2 N", mu = "3 kg/m", l = "1 m" }
+inputs.F = { unit = "N" }
+outputs.y = "w(l)"
+[fields.w]
+domain = ["0", "l"]
+equation = "N*w'' = mu*s^2*w"
+conditions = ["w(0) = 0", "N*w'(l) = F"]
+"""
+
+
+def test_a_product_that_loses_a_factor_is_noticed(monkeypatch):
+    pipeline.assemble(pipeline.loads(LOOP))
+    monkeypatch.setattr(evaluate, "_product", lambda left, right, expression: right)
+    with pytest.raises(InternalError, match="was not read as it is written"):
+        pipeline.assemble(pipeline.loads(LOOP))
+
+
+def test_a_field_whose_equation_changes_a_sign_is_noticed(monkeypatch):
+    from symflex.equations import distributed
+
+    pipeline.assemble(pipeline.loads(FIELD))
+    read = distributed._read
+
+    def changed(side, *given):
+        sign = -1 if "w''" in format_expression(side) and isinstance(side, Product) else 1
+        return {key: value * sign for key, value in read(side, *given).items()}
+
+    monkeypatch.setattr(distributed, "_read", changed)
+    with pytest.raises(InternalError, match="SF991"):
+        pipeline.assemble(pipeline.loads(FIELD))
