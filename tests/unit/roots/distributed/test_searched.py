@@ -104,7 +104,7 @@ def world(monkeypatch):
             self.made.append((name, part, digits, budget))
             return self.sides[name]
 
-        def search_right(self, source, part, side, known, reached, digits, budget):
+        def search_right(self, source, part, side, known, reached, digits, budget, limit=None):
             name = "hidden" if side is self.sides["hidden"] else "poles"
             self.judged.append((name, places(known), reached, digits))
             self.budgets.append(budget)
