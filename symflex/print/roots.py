@@ -201,7 +201,8 @@ def roots_text(found: PoleZeroMap, digits: int, width: int = WIDTH) -> str:
         where = f"{part.radius:.3g} rad/s about {part.re:g}{im}"
         lines.append(f"{INDENT}left out: {where}, where roots accumulate")
     for title, roots in (("poles", found.poles), ("zeros", found.zeros)):
-        lines += ["", _counted(title, roots), *_root_table(roots, digits, width)]
+        none = "none" if found.certificate.certified else "none found"
+        lines += ["", _counted(title, roots, none), *_root_table(roots, digits, width)]
     if found.unstable:
         title = f"{_counted('poles', found.unstable)}, in the right half plane, outside of what was asked for"
         lines += ["", title, *_root_table(found.unstable, digits, width)]
@@ -239,9 +240,9 @@ def region_text(region: Region) -> str:
             return ""
 
 
-def _counted(title: str, roots: Sequence[Root]) -> str:
+def _counted(title: str, roots: Sequence[Root], none: str = "none") -> str:
     """Return a heading with the number of roots, multiplicity counted."""
-    return f"{INDENT}{title}: {sum(root.multiplicity for root in roots) or 'none'}"
+    return f"{INDENT}{title}: {sum(root.multiplicity for root in roots) or none}"
 
 
 def _root_table(roots: Sequence[Root], digits: int, width: int) -> list[str]:

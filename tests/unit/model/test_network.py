@@ -247,6 +247,16 @@ def test_a_figure_that_cannot_be_drawn_is_refused():
     assert codes(figure('of = ["X/F"]\ndata = true').replace('"bode"', '"poles_zeros"')) == ["SF207"]
 
 
+def test_the_unit_of_a_ratio_tells_the_other_side_however_it_is_written():
+    head = '[parameters]\np = 1\nn = 4\nr = "5 mm/rad"\nJ = "2 kg*m^2"\n[elements]\n'
+    rotor = 'R = { type = "inertia", at = "phi", J = "J" }\n'
+    for ratio in ("r", "n*r", "2*r", "r/n"):
+        lever = f'T = {{ type = "transformer", from = "phi", to = "z", ratio = "{ratio}" }}\n'
+        rest = '[inputs]\nM = { torque = "phi" }\n[outputs]\nZ = "z"\n'
+        model = pipeline.loads(HEADER + head + rotor + lever + rest)
+        assert {n.name: n.domain for n in model.nodes} == {"phi": "rotation", "z": "translation"}, ratio
+
+
 HELD = """
 [parameters]
 m = "2 kg"
