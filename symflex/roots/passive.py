@@ -17,7 +17,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from math import atan2, pi
+from math import atan2, pi, prod
 from typing import TYPE_CHECKING
 
 from flint import arb
@@ -130,7 +130,7 @@ def fastest_growth(model: Model, values: Iterable[tuple[str, ExactValue]]) -> fl
         for use in pressed:
             given = {name: value_along(value, arb("nan"), line) for name, value in use.values}
             force, length = given["N"], given["l"]
-            bending, mass = _times(given["E"], given["I"]), _times(given["rho"], given["A"])
+            bending, mass = _product(given, "EI", "E", "I"), _product(given, "rhoA", "rho", "A")
             if force is None or length is None or not bending > 0 or not mass > 0:
                 return None
             squares.append(float((-force / mass * (12 / length**2 - force / bending)).upper()))
@@ -146,9 +146,10 @@ def _unloaded(use: PlacedElement) -> PlacedElement:
     return replace(use, values=kept)
 
 
-def _times(a: arb | None, b: arb | None) -> arb:
-    """Return a product, not a number where a factor has no value or varies along x."""
-    return arb("nan") if a is None or b is None else a * b
+def _product(given: Mapping[str, arb | None], whole: str, *parts: str) -> arb:
+    """Return a product, given whole or in parts; not a number where one has no value or varies along x."""
+    values = [given.get(name) for name in ((whole,) if whole in given else parts)]
+    return prod((arb("nan") if value is None else value for value in values), start=arb(1))
 
 
 @dataclass(frozen=True, slots=True)

@@ -612,6 +612,17 @@ def test_slope_and_deflection_are_bounded_by_curvature_and_deflection():
         assert np.linalg.eigvalsh(e * curvature - slope)[0] > -(1 / e + 12), e
 
 
+def test_a_column_of_a_bending_stiffness_is_one_of_modulus_and_section():
+    text = column("0.5")
+    whole = text.replace('E = "EI/I"\nI = "I"\nrho = "m/A"\nA = "A"', 'EI = "EI"\nrhoA = "m"')
+    assert whole != text
+    limits = [
+        fastest_growth(model, ((p.name, p.value) for p in model.parameters))
+        for model in map(pipeline.loads, (text, whole))
+    ]
+    assert limits[0] == pytest.approx(limits[1], rel=1e-12)
+
+
 def test_growth_of_a_compressed_column_is_bounded_from_above():
     # Both ends pinned: s^2 = (P pi^2/l^2 - EI pi^4/l^4)/m at its largest.
     for load in (5, 50, 500):
