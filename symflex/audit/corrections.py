@@ -12,10 +12,12 @@ a number, the part with another exponent, another symbol, or a sum of the same t
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import chain
+from itertools import chain, combinations
 from typing import TYPE_CHECKING
+
+from flint import ctx
 
 from symflex.algebra import Factored
 from symflex.algebra.ring import by_powers
@@ -35,15 +37,19 @@ from symflex.expressions import (
     Quotient,
     Sum,
     is_number,
+    negative,
     nodes,
     number,
     product_of,
     quotient,
+    substitute,
     sum_of,
 )
+from symflex.print.forms.shapes import of_powers, powers_of
+from symflex.transfer.balls import principal_values
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping, Sequence
 
     from symflex.transfer import TransferFunction
 
@@ -81,7 +87,8 @@ def find_correction(reading: FormulaReading, tf: TransferFunction) -> Correction
     """Return the smallest change found that makes the formula right; it is proved to do so."""
     if sum(len(f) for f, _ in (*reading.derived.factors, *reading.printed.factors)) > MOST_TERMS:
         return None
-    for found in chain(_in_expression(reading), _both_sums(reading), _in_lines(reading)):
+    lines = _mended_lines(reading, tf), _other_lines(reading, tf)
+    for found in chain(lines[0], _in_expression(reading), _both_sums(reading), lines[1]):
         corrected = Formula(found.expression, found.scale, found.lines, reading.formula.parameters)
         try:
             again = read(corrected, tf)
@@ -369,20 +376,93 @@ def _more_terms(wanted: _Wanted) -> Iterator[Correction]:
         yield wanted.replaced_by(sum_of([*part.terms, term]), Change(wanted.place, number(0), term))
 
 
-def _in_lines(reading: FormulaReading) -> Iterator[Correction]:
-    """Yield a line of the formula times a number, its square or root, or a quotient in it turned over."""
-    formula = reading.formula
-    for i, (name, expression) in enumerate(formula.lines):
-        new_lines: list[Expression] = [_times(f, expression) for f in FACTORS]
-        new_lines += [Call("sqrt", expression), Power(expression, number(2))]
-        turned = (
-            (p, quotient(p.denominator, p.numerator)) for p in nodes(expression) if isinstance(p, Quotient)
-        )
-        new_lines += [_replaced(expression, part, new) for part, new in turned]
+def _own_lines(reading: FormulaReading, tf: TransferFunction) -> list[tuple[int, str, Expression]]:
+    """Return the lines that are printed with the formula, by their places; no definitions of the model."""
+    given = {(d.name, d.expression) for d in tf.model.definitions}
+    lines = enumerate(reading.formula.lines)
+    return [(i, name, line) for i, (name, line) in lines if (name, line) not in given]
+
+
+def _mended_lines(reading: FormulaReading, tf: TransferFunction) -> Iterator[Correction]:
+    """Yield slips in a line: what is turned over or exchanged, another name, a sign, a factor."""
+    for i, name, line in _own_lines(reading, tf):
+        earlier = (other for other, _ in reading.formula.lines[:i])
+        others = [Name(n) for n in (*sorted(reading.formula.parameters), *earlier)]
+        for new in _slips(line, others):
+            yield from _with_lines(reading, tf, {i: (name, line, new)})
+
+
+def _slips(line: Expression, others: Sequence[Name]) -> Iterator[Expression]:
+    """Yield what a line may have been meant to be."""
+    for part in (*(n.argument for n in nodes(line) if isinstance(n, Call)), line):
+        yield from (_replaced(line, part, new) for new in _other_powers(part))
+    named = [n for n in nodes(line) if isinstance(n, Name)]
+    for one, other in combinations(dict.fromkeys(named), 2):
+        yield substitute(line, {one.name: other, other.name: one})
+    yield from (_replaced(line, n, other) for n in named for other in others if other != n)
+    for part in nodes(line):
+        for term in part.terms if isinstance(part, Sum) else ():
+            yield _replaced(line, part, sum_of([negative(t) if t is term else t for t in part.children]))
+    yield from (new for other in others for new in (product_of([other, line]), quotient(line, other)))
+
+
+def _other_powers(part: Expression) -> Iterator[Expression]:
+    """Yield a product turned over, with a factor on the other side or none, and with a root of a side."""
+    front, powers = powers_of(part)
+    if not front:
+        return
+    yield of_powers(1 / front, {base: -n for base, n in powers.items()})
+    for base, n in powers.items():
+        yield of_powers(front, {**powers, base: -n})
+        yield of_powers(front, {b: n for b, n in powers.items() if b != base})
+    for side in (1, -1):
+        inside = product_of([base for base, n in powers.items() if n == side])
+        rest = {base: n for base, n in powers.items() if n != side}
+        yield of_powers(front, {**rest, Call("sqrt", inside): side})
+
+
+def _other_lines(reading: FormulaReading, tf: TransferFunction) -> Iterator[Correction]:
+    """Yield two lines exchanged, a line times a number, its square or root."""
+    own = _own_lines(reading, tf)
+    for (i, one, first), (j, other, second) in combinations(own, 2):
+        yield from _with_lines(reading, tf, {i: (one, first, second), j: (other, second, first)})
+    for i, name, line in own:
+        new_lines: list[Expression] = [_times(f, line) for f in FACTORS]
+        new_lines += [Call("sqrt", line), Power(line, number(2))]
         for new in new_lines:
-            lines = (*formula.lines[:i], (name, new), *formula.lines[i + 1 :])
-            change = Change(f"line {name}", expression, new)
-            yield Correction((change,), formula.expression, formula.scale, lines)
+            yield from _with_lines(reading, tf, {i: (name, line, new)})
+
+
+def _with_lines(
+    reading: FormulaReading, tf: TransferFunction, new: Mapping[int, tuple[str, Expression, Expression]]
+) -> Iterator[Correction]:
+    """Yield the formula with other lines where it then has a value of the derived function."""
+    formula = reading.formula
+    lines = list(formula.lines)
+    for i, (name, _, line) in new.items():
+        lines[i] = name, line
+    if _agrees(replace(formula, lines=tuple(lines)), tf):
+        changes = tuple(Change(f"line {name}", old, line) for name, old, line in new.values())
+        yield Correction(changes, formula.expression, formula.scale, tuple(lines))
+
+
+def _agrees(formula: Formula, tf: TransferFunction) -> bool:
+    """Tell whether a formula has the value of the derived function at a point, which is soon found out."""
+    spend()
+    bits = 64
+    # On the positive real axis no root has two readings.
+    points = [s for _, s in tf.probes.points]
+    chosen = [max(range(len(points)), key=lambda i: (points[i][0] > 0, not points[i][1]))]
+    with ctx.workprec(bits):
+        known = tf.probes.numbers(chosen, bits)
+        try:
+            for name, line in formula.lines:
+                known[name] = principal_values(line, 1, known.__getitem__)
+            (printed,) = principal_values(formula.whole, 1, known.__getitem__)
+        except (KeyError, ZeroDivisionError):
+            return False
+        (derived,) = tf.probes.values(bits, chosen)
+        return bool(printed.overlaps(derived))
 
 
 def _replaced(expression: Expression, part: Expression, new: Expression) -> Expression:

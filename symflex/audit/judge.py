@@ -9,14 +9,25 @@ from symflex.audit.corrections import Change, Correction, find_correction
 from symflex.audit.field import UnreadError
 from symflex.audit.laws import LawCheck, check_laws
 from symflex.audit.notation import derived_in_symbols, monomial_expression
-from symflex.audit.numeric import Comparison, Deviation, Numbers, compare, largest_deviation, numbers_of
+from symflex.audit.numeric import (
+    Comparison,
+    Deviation,
+    Numbers,
+    compare,
+    compare_elsewhere,
+    largest_deviation,
+    numbers_of,
+)
 from symflex.audit.reading import Formula, FormulaReading, formula_of, read
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic, SpecError, UsageError, nearest
+from symflex.expressions import Sum, format_expression, nodes
+from symflex.model import Definition
+from symflex.model.units import constant_measure
 from symflex.transfer.of_model import derive_all
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from symflex.expressions import Expression
     from symflex.model import Model, Published
@@ -45,6 +56,7 @@ class Audit:
     # On the frequency axis; ``None`` when equal, or where parameters have no value.
     deviation: Deviation | None = None
     laws: tuple[LawCheck, ...] = ()  # structural laws
+    units: tuple[str, ...] = ()  # printed sums whose terms are measured differently, in words
 
     def __repr__(self) -> str:
         return f"<Audit {self.tf.name}: {self.verdict}>"
@@ -105,6 +117,11 @@ def judge(tf: TransferFunction, published: Published) -> Audit:
         unread, reading = "it expands beyond the limits of size", None
     numbers = numbers_of(formula, tf, tf.model)
     found = compare(numbers)
+    if not found.differs and (elsewhere := compare_elsewhere(formula, tf)) is not None:
+        # A value such as 1 kg hides a factor.
+        return _difference(
+            Audit(tf, published, formula, "differs", unread, comparison=elsewhere), reading, numbers
+        )
     if not found.differs:
         verdict: Verdict = "agrees" if found.agreed else "undecided"
         unread = unread or "its roots or functions may satisfy a relation that was not found"
@@ -139,7 +156,26 @@ def _difference(audit: Audit, reading: FormulaReading | None, numbers: Numbers) 
         audit.comparison,
         None if measured is None or vanishes else largest_deviation(measured),
         () if vanishes else check_laws(reading, measured),
+        tuple(_disagreeing_sums(audit.published, audit.tf.model)),
     )
+
+
+def _disagreeing_sums(published: Published, model: Model) -> Iterator[str]:
+    """Yield every printed sum whose terms are in different units, as far as the declared ones tell."""
+    own = [Definition(name, expression) for name, expression in published.where]
+    hidden = {d.name for d in own}
+    inherited = [p for p in model.parameters if p.name not in hidden]
+    measure = constant_measure([], inherited, [*(d for d in model.definitions if d.name not in hidden), *own])
+    roots = [published.expression, published.scale, *(e for _, e in published.where)]
+    sums = dict.fromkeys(n for e in roots if e is not None for n in nodes(e) if isinstance(n, Sum))
+    told: list[Sum] = []
+    for part in reversed(sums):
+        known = {format_expression(t): d for t in part.terms if (d := measure(t)) is not None}
+        # What holds a sum that disagrees may disagree for that reason alone.
+        if len(set(known.values())) > 1 and not any(inner in nodes(part) for inner in told):
+            told.append(part)
+            terms = ", ".join(f"{term} in '{dimension}'" for term, dimension in known.items())
+            yield f"the terms of {format_expression(part)} disagree: {terms}"
 
 
 def audit(model: Model, names: Sequence[str] = ()) -> tuple[Audit, ...]:

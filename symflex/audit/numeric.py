@@ -5,7 +5,7 @@ A ball that excludes equality proves a difference; balls that agree prove nothin
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -138,6 +138,8 @@ class Comparison:
     printed: complex | None = None
     derived: complex | None = None
     gap: float = 0.0  # their distance there over the size of the derived one
+    # Of all parameters, where they differ with these and agree with the declared ones.
+    values: tuple[tuple[str, ExactValue], ...] = ()
 
 
 def compare(numbers: Numbers) -> Comparison:
@@ -158,6 +160,18 @@ def compare(numbers: Numbers) -> Comparison:
             )
         agreed += bool(small)
     return Comparison(False, agreed)
+
+
+def compare_elsewhere(formula: Formula, tf: TransferFunction) -> Comparison | None:
+    """Return a proved difference with other values than the declared ones, None without one."""
+    for setting in dict.fromkeys(setting for setting, _ in tf.probes.points):
+        bound = bind(
+            tf, {name: value.rational for name, value in setting.values.items() if not value.pi_power}
+        )
+        found = compare(Numbers(bound, formula, setting.values, (), tf.model.analysis.band or DEFAULT_BAND))
+        if found.differs:
+            return replace(found, values=tuple(setting.values.items()))
+    return None
 
 
 def _value(expression: Expression, known: Mapping[str, acb]) -> acb:

@@ -70,6 +70,8 @@ def _difference(audit: Audit, width: int) -> list[str]:
         lines += [*_derived(audit, width), ""]
         lines.append(INDENT + "No small change was found that makes the printed formula right.")
     lines += ["", *_numbers(audit, width)]
+    for sentence in audit.units:
+        lines += ["", *_filled(f"units: {sentence}", width, INDENT)]
     if audit.laws:
         lines += ["", INDENT + "laws"]
         for law in audit.laws:
@@ -157,7 +159,8 @@ def _numbers(audit: Audit, width: int) -> list[str]:
         s = complex(*map(float, comparison.point))
         printed, derived = _complex(comparison.printed), _complex(comparison.derived)
         apart = f", apart by {comparison.gap:.2g} of it" if printed == derived else ""
-        text = f"at s = {_complex(s)} rad/s: printed {printed}, derived {derived}{apart} (proved)"
+        given = "".join(f", {name} = {float(value.nearly):g}" for name, value in comparison.values)
+        text = f"at s = {_complex(s)} rad/s{given}: printed {printed}, derived {derived}{apart} (proved)"
         lines += _filled(text, width, INDENT)
     if deviation is not None:
         low, high = (f"{float(f):g}" for f in deviation.band)
@@ -249,6 +252,7 @@ def audit_json(audit: Audit) -> dict[str, object]:
         "agreed_points": None if audit.comparison is None else audit.comparison.agreed,
         "deviation": _deviation(audit.deviation),
         "laws": [asdict(law) for law in audit.laws],
+        "units": list(audit.units),
     }
 
 
@@ -265,6 +269,7 @@ def _counterexample(found: Comparison | None) -> dict[str, object] | None:
         return None
     return {
         "s": {"re": str(found.point[0]), "im": str(found.point[1])},
+        "values": {name: float(value.nearly) for name, value in found.values} or None,
         "printed": _complex_json(found.printed),
         "derived": _complex_json(found.derived),
     }

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from symflex import pipeline
+from symflex.audit.judge import audit
 from symflex.expressions import format_expression
 from tests.unit.audit.beam import COLOCATED, KRYLOV, SCALE, TIP, VAUGHAN, audited
 
@@ -118,3 +120,60 @@ def test_a_formula_of_another_kind_is_proved_to_differ_without_a_correction():
 def test_the_derived_function_is_written_in_the_symbols_of_a_hopeless_print():
     found = audited("V_tip", "(S^3 - C)/(S - 7*C^2)", VAUGHAN)
     assert "(C^3 + S^2*C + C)/(C^4 + 2*S^2*C^2 + S^4 - 4*S*C - 1)" in format_expression(found.derived)
+
+
+ABSORBER = """
+symflex = 1
+parameters = { m_1 = "2 kg", m_2 = "1 kg", k_1 = "8 N/m", k_2 = "3 N/m", b = "1 N*s/m" }
+[elements]
+A = { type = "mass", at = "x", m = "m_1" }
+B = { type = "mass", at = "y", m = "m_2" }
+K1 = { type = "spring", between = ["x", "ground"], k = "k_1" }
+K2 = { type = "spring", between = ["x", "y"], k = "k_2" }
+D = { type = "damper", between = ["x", "y"], b = "b" }
+[inputs]
+F = { force = "x" }
+[outputs]
+Y = "y"
+"""
+EXPR = "d/m_1/((s^2 + d)*(s^2 + w_1^2) + mu*s^2*d)"
+LINES = {
+    "d": "2*zeta*w_2*s + w_2^2",
+    "w_1": "sqrt(k_1/m_1)",
+    "w_2": "sqrt(k_2/m_2)",
+    "zeta": "b/(2*sqrt(k_2*m_2))",
+    "mu": "m_2/m_1",
+}
+
+
+def judged(lines, expr=EXPR):
+    where = ", ".join(f'{name} = "{line}"' for name, line in lines.items())
+    model = pipeline.loads(f'{ABSORBER}[published."Y/F"]\nexpr = "{expr}"\nwhere = {{ {where} }}\n')
+    return audit(model)[0]
+
+
+SLIPS = {
+    "turned over": {"w_1": "sqrt(m_1/k_1)"},
+    "turned over where the formula could be mended": {"mu": "m_1/m_2"},
+    "another name": {"w_2": "sqrt(k_1/m_2)"},
+    "a root forgotten": {"zeta": "b/(2*k_2*m_2)"},
+    "above for below": {"zeta": "b*sqrt(k_2*m_2)/2"},
+    "a factor forgotten": {"mu": "m_2"},
+    "hidden by a mass of 1 kg": {"w_2": "sqrt(k_2*m_2)"},
+    "two lines exchanged": {"w_1": LINES["w_2"], "w_2": LINES["w_1"]},
+}
+
+
+@pytest.mark.parametrize("slip", SLIPS)
+@pytest.mark.slow
+def test_a_slip_in_a_line_is_mended_there(slip):
+    found = judged(LINES | SLIPS[slip])
+    assert found.verdict == "differs"
+    assert {c.place.removeprefix("line ") for c in found.changes} == SLIPS[slip].keys()
+
+
+@pytest.mark.slow
+def test_a_printed_sum_of_unlike_units_is_named():
+    assert judged(LINES).verdict == "equal"
+    (sentence,) = judged(LINES, EXPR.replace("w_1^2", "w_1")).units
+    assert sentence == "the terms of s^2 + w_1 disagree: s^2 in '1/s^2', w_1 in '1/s'"
