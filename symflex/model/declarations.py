@@ -72,8 +72,9 @@ class DeclaredParameter:
             unit = _unit_text(measured, reading)
         cycles = measured.cycles if measured is not None and reading is not CycleReading.CONVERTED else 0
         written = self.quantity.unit if self.quantity is not None else self.unit_text
-        if measured is not None and measured.cycles != cycles:
-            written = ""
+        scale = _scale(written, is_converted=measured is not None and measured.cycles != cycles)
+        # What is one in SI units keeps the name it was given: A*s/rad is no C/rad.
+        unit = written if written and scale == ONE and not cycles else unit
         return ModelParameter(
             self.name,
             value,
@@ -84,7 +85,7 @@ class DeclaredParameter:
             self.span,
             cycles,
             written_unit=written,
-            scale=_scale(written),
+            scale=scale,
         )
 
 
@@ -94,12 +95,14 @@ def one_of(unit_text: str) -> Quantity:
     return Quantity(Fraction(1), 0, unit.cycles, unit.dimension, unit.radians, unit_text)
 
 
-def _scale(written: str) -> ExactValue:
-    """Return what one of a unit is in SI."""
+def _scale(written: str, *, is_converted: bool) -> ExactValue:
+    """Return what one of a unit is in SI, a turn of it 2 pi radians if the value is in radians."""
     if not written:
         return ONE
+    one = one_of(written)
     unit = unit_of(written)
-    return ExactValue(unit.scale, unit.pi_power)
+    quantity = replace(one, magnitude=unit.scale, pi_power=unit.pi_power)
+    return ExactValue(*(quantity.angular() if is_converted else quantity.cyclic()))
 
 
 def _unit_text(quantity: Quantity, reading: CycleReading) -> str:

@@ -59,7 +59,7 @@ class ModelParameter:
     doc: str = ""
     span: Span | None = field(default=None, compare=False, repr=False)
     cycles: int = 0  # exponent of the cycle in what ``value`` counts: 1 for Hz, 0 for rad/s
-    # The unit as it was declared; empty when it was not, or when its cycles are meant as radians.
+    # The unit as it was declared; empty when it was not.
     written_unit: str = ""
     scale: ExactValue = ONE  # what one of that unit is in the unit of ``value``
 

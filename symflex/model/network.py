@@ -337,8 +337,8 @@ def _read_input(reader: Reader, entry: KeyValue) -> DraftInput | None:
         reader.note("SF217", f"{what} is given as {keys}; it can be only one", kinds[1].key_span)
         return None
     if not kinds:
-        free = Input(entry.key, "signal", (), None, "", label, entry.key_span)
-        return DraftInput(free, _unit(reader, table, what, None))
+        unit = _unit(reader, table, what, None)
+        return DraftInput(Input(entry.key, "signal", (), None, unit, label, entry.key_span), unit)
     (place,) = kinds
     kind, law = place.key, INPUT_KINDS[place.key]
     _unit(reader, table, what, kind)

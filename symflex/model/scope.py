@@ -19,6 +19,7 @@ if TYPE_CHECKING:
         Definition,
         FieldProblem,
         Input,
+        InputKind,
         Model,
         NetworkNode,
         PlacedBlock,
@@ -184,6 +185,12 @@ class ModelScope:
         return meaning
 
 
+def _is_its_node(source: Input, kind: InputKind | None) -> bool:
+    """Tell whether an input is what the node of its own name is: both readings are one value."""
+    names = [str(Variable("node", r.node, r.component)) for r in source.nodes]
+    return kind is not None and kind.order == 0 and names == [source.name]
+
+
 def _is_load(meaning: Meaning) -> bool:
     """Tell whether a name may load a field all along."""
     return meaning.variable is not None and meaning.variable.kind in ("signal", "input")
@@ -291,8 +298,9 @@ def build_scope(
             offer(use.name, quantity, Meaning("through", use.name, described, variable))
     for source in inputs:
         variable = Variable("input", source.name)
-        add(source.name, Meaning("variable", source.name, f"the input '{source.name}'", variable))
         kind = INPUT_KINDS.get(source.kind)
+        if not _is_its_node(source, kind):
+            add(source.name, Meaning("variable", source.name, f"the input '{source.name}'", variable))
         # A voltage input has always been allowed to bear the name of an element, whose current is then read.
         if kind is None or not kind.is_imposed or (source.name, "i") in attributes:
             continue

@@ -341,7 +341,16 @@ def unit_of_quotient(output: Output, source: Input, known: Dimension | None) -> 
     """
     if output.dimension is None or source.dimension is None:
         return "" if known is None else str(known)
-    return quotient_of_units(str(output.dimension), str(source.dimension))
+    above, below = str(output.dimension), str(source.dimension)
+    is_written = source.kind == "signal" and quotient_of_units(source.unit, "1") == source.unit
+    # What turns above is not known: 1/s over rad/s is 1, and not 1/rad.
+    if is_written and output.dimension != source.dimension and not above.startswith("1"):
+        return (
+            str(output.dimension / source.dimension)
+            if "kg" in above
+            else quotient_of_units(above, source.unit)
+        )
+    return quotient_of_units(above, below)
 
 
 def quotient_of_units(above: str, below: str) -> str:

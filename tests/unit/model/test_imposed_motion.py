@@ -237,3 +237,12 @@ def test_zeros_of_the_force_a_motion_takes_are_the_poles_of_the_free_system():
 def test_the_nested_form_knows_imposed_motions():
     tf = suspended('velocity = "base"').nested("R", "u")
     assert complex(tf.bind()(S)) == pytest.approx((moved() - 1) / S, rel=1e-12)
+
+
+def test_a_motion_may_bear_the_name_of_the_node_it_moves():
+    # Both readings of the name are one value; a velocity of that name is not, and stays ambiguous.
+    text = SUSPENDED.replace("u = { INPUT }", 'base = { displacement = "base" }').replace("u.f", "x - base")
+    (*_, tf) = pipeline.derive_all(pipeline.loads(text))
+    assert pipeline.bind(tf)(0j) == 0
+    with pytest.raises(SymflexError, match="two ways"):
+        pipeline.loads(text.replace("displacement", "velocity"))

@@ -71,3 +71,38 @@ def test_generated_code_says_values_as_they_were_written():
         text = EXPORTERS[target].export(model, tfs, "spring").text
         assert said in " ".join(text.replace("%", " ").split()), target
         assert "3 kg in the model" not in text, target  # that is SI
+
+
+def test_a_pitch_stands_as_it_was_declared_also_where_it_is_read_in_radians():
+    model = pipeline.loads("""
+symflex = 1
+parameters = { J = "2 kg*m^2", h = "10 mm/rev", m = "3 kg" }
+[elements]
+rotor = { type = "inertia", at = "phi", J = "J" }
+screw = { type = "transformer", from = "phi", to = "x", ratio = "h" }
+table = { type = "mass", at = "x", m = "m" }
+[inputs]
+T = { torque = "phi" }
+[outputs]
+X = "x"
+""")
+    assert r"\num{10}~mm/rev" in parameter_table(model)
+    assert repr(model.parameters[1]) == "<ModelParameter h: 10 mm/rev>"
+    # 10 mm per 2 pi rad: the value that is computed with.
+    assert float(model.parameters[1].value.nearly) == pytest.approx(0.01 / (2 * 3.141592653589793), rel=1e-14)
+
+
+def test_transfer_functions_and_parameters_have_the_units_that_were_written():
+    model = pipeline.loads("""
+symflex = 1
+parameters = { K_i = "2 V/A", K_w = "0.2 A*s/rad", w_c = "30 rad/s", k = "2 W/(m*K)", l = "1 m" }
+inputs = { w = { unit = "rad/s" }, q = { unit = "W/m^2" } }
+[outputs]
+i = "K_w*w"
+v = "K_i*K_w*w"
+z = "w_c/(s + w_c)*w"
+T = "q*l/k"
+""")
+    assert [p.unit for p in model.parameters[:3]] == ["V/A", "A*s/rad", "rad/s"]
+    units = {tf.name: tf.unit for tf in pipeline.derive_all(model)}
+    assert [units[name] for name in ("i/w", "v/w", "z/w", "T/q")] == ["A*s/rad", "V*s/rad", "1", "K*m^2/W"]
