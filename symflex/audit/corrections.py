@@ -17,12 +17,11 @@ from fractions import Fraction
 from itertools import chain, combinations
 from typing import TYPE_CHECKING
 
-from flint import ctx
-
 from symflex.algebra import Factored
 from symflex.algebra.ring import by_powers
 from symflex.audit.field import GrowError, UnreadError
 from symflex.audit.notation import in_symbols, monomial_expression, solve_linear, symbols_of
+from symflex.audit.numeric import Numbers, numbers_of
 from symflex.audit.reading import Formula, FormulaReading, read
 from symflex.budget import spend
 from symflex.errors import BudgetError, SpecError
@@ -46,7 +45,6 @@ from symflex.expressions import (
     sum_of,
 )
 from symflex.print.forms.shapes import of_powers, powers_of
-from symflex.transfer.balls import principal_values
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -60,6 +58,8 @@ MOST_WORK = 20_000
 """Number of terms in all values that parts would need."""
 EXPONENTS = tuple(Fraction(n, 2) for n in (2, 4, -2, 1, 6, -1, 8, -4, 3, 0, -3, -6))
 FACTORS = (Fraction(2), Fraction(1, 2), Fraction(-1), Fraction(4), Fraction(1, 4))
+REAL_POINT, FEW_DIGITS = (Fraction(1), Fraction(0)), 15
+"""Where a formula with another line is tried before it is read: no root has two readings there."""
 FUNCTION_SWAPS = ("sin", "cos", "tan", "sinh", "cosh", "tanh", "exp")
 
 
@@ -87,7 +87,8 @@ def find_correction(reading: FormulaReading, tf: TransferFunction) -> Correction
     """Return the smallest change found that makes the formula right; it is proved to do so."""
     if sum(len(f) for f, _ in (*reading.derived.factors, *reading.printed.factors)) > MOST_TERMS:
         return None
-    lines = _mended_lines(reading, tf), _other_lines(reading, tf)
+    numbers = numbers_of(reading.formula, tf, tf.model)
+    lines = _mended_lines(reading, numbers), _other_lines(reading, numbers)
     for found in chain(lines[0], _in_expression(reading), _both_sums(reading), lines[1]):
         corrected = Formula(found.expression, found.scale, found.lines, reading.formula.parameters)
         try:
@@ -376,25 +377,19 @@ def _more_terms(wanted: _Wanted) -> Iterator[Correction]:
         yield wanted.replaced_by(sum_of([*part.terms, term]), Change(wanted.place, number(0), term))
 
 
-def _own_lines(reading: FormulaReading, tf: TransferFunction) -> list[tuple[int, str, Expression]]:
-    """Return the lines that are printed with the formula, by their places; no definitions of the model."""
-    given = {(d.name, d.expression) for d in tf.model.definitions}
-    lines = enumerate(reading.formula.lines)
-    return [(i, name, line) for i, (name, line) in lines if (name, line) not in given]
-
-
-def _mended_lines(reading: FormulaReading, tf: TransferFunction) -> Iterator[Correction]:
+def _mended_lines(reading: FormulaReading, numbers: Numbers) -> Iterator[Correction]:
     """Yield slips in a line: what is turned over or exchanged, another name, a sign, a factor."""
-    for i, name, line in _own_lines(reading, tf):
+    for i, (name, line) in enumerate(reading.formula.lines):
         earlier = (other for other, _ in reading.formula.lines[:i])
         others = [Name(n) for n in (*sorted(reading.formula.parameters), *earlier)]
         for new in _slips(line, others):
-            yield from _with_lines(reading, tf, {i: (name, line, new)})
+            yield from _with_lines(reading, numbers, {i: (name, line, new)})
 
 
 def _slips(line: Expression, others: Sequence[Name]) -> Iterator[Expression]:
     """Yield what a line may have been meant to be."""
-    for part in (*(n.argument for n in nodes(line) if isinstance(n, Call)), line):
+    inside = [n.argument for n in nodes(line) if isinstance(n, Call)]
+    for part in (*inside, line) if isinstance(line, Call) else (line, *inside):
         yield from (_replaced(line, part, new) for new in _other_powers(part))
     named = [n for n in nodes(line) if isinstance(n, Name)]
     for one, other in combinations(dict.fromkeys(named), 2):
@@ -421,48 +416,33 @@ def _other_powers(part: Expression) -> Iterator[Expression]:
         yield of_powers(front, {**rest, Call("sqrt", inside): side})
 
 
-def _other_lines(reading: FormulaReading, tf: TransferFunction) -> Iterator[Correction]:
+def _other_lines(reading: FormulaReading, numbers: Numbers) -> Iterator[Correction]:
     """Yield two lines exchanged, a line times a number, its square or root."""
-    own = _own_lines(reading, tf)
+    own = [(i, *line) for i, line in enumerate(reading.formula.lines)]
     for (i, one, first), (j, other, second) in combinations(own, 2):
-        yield from _with_lines(reading, tf, {i: (one, first, second), j: (other, second, first)})
+        yield from _with_lines(reading, numbers, {i: (one, first, second), j: (other, second, first)})
     for i, name, line in own:
-        new_lines: list[Expression] = [_times(f, line) for f in FACTORS]
-        new_lines += [Call("sqrt", line), Power(line, number(2))]
-        for new in new_lines:
-            yield from _with_lines(reading, tf, {i: (name, line, new)})
+        for new in (*(_times(f, line) for f in FACTORS), Call("sqrt", line), Power(line, number(2))):
+            yield from _with_lines(reading, numbers, {i: (name, line, new)})
 
 
 def _with_lines(
-    reading: FormulaReading, tf: TransferFunction, new: Mapping[int, tuple[str, Expression, Expression]]
+    reading: FormulaReading, numbers: Numbers, new: Mapping[int, tuple[str, Expression, Expression]]
 ) -> Iterator[Correction]:
-    """Yield the formula with other lines where it then has a value of the derived function."""
-    formula = reading.formula
+    """Yield the formula with other printed lines where it then has a value of the derived function."""
+    formula, given = reading.formula, numbers.bound.source.model.definitions
     lines = list(formula.lines)
-    for i, (name, _, line) in new.items():
+    for i, (name, old, line) in new.items():
         lines[i] = name, line
-    if _agrees(replace(formula, lines=tuple(lines)), tf):
+        if any((name, old) == (d.name, d.expression) for d in given):
+            return
+    try:
+        both = replace(numbers, formula=replace(formula, lines=tuple(lines))).both_at(REAL_POINT, FEW_DIGITS)
+    except KeyError:  # a line would use one that comes later
+        return
+    if both is not None and both[0].overlaps(both[1]):
         changes = tuple(Change(f"line {name}", old, line) for name, old, line in new.values())
         yield Correction(changes, formula.expression, formula.scale, tuple(lines))
-
-
-def _agrees(formula: Formula, tf: TransferFunction) -> bool:
-    """Tell whether a formula has the value of the derived function at a point, which is soon found out."""
-    spend()
-    bits = 64
-    # On the positive real axis no root has two readings.
-    points = [s for _, s in tf.probes.points]
-    chosen = [max(range(len(points)), key=lambda i: (points[i][0] > 0, not points[i][1]))]
-    with ctx.workprec(bits):
-        known = tf.probes.numbers(chosen, bits)
-        try:
-            for name, line in formula.lines:
-                known[name] = principal_values(line, 1, known.__getitem__)
-            (printed,) = principal_values(formula.whole, 1, known.__getitem__)
-        except (KeyError, ZeroDivisionError):
-            return False
-        (derived,) = tf.probes.values(bits, chosen)
-        return bool(printed.overlaps(derived))
 
 
 def _replaced(expression: Expression, part: Expression, new: Expression) -> Expression:

@@ -13,8 +13,7 @@ from symflex.audit.numeric import (
     Comparison,
     Deviation,
     Numbers,
-    compare,
-    compare_elsewhere,
+    compare_anywhere,
     largest_deviation,
     numbers_of,
 )
@@ -116,12 +115,7 @@ def judge(tf: TransferFunction, published: Published) -> Audit:
         spend()
         unread, reading = "it expands beyond the limits of size", None
     numbers = numbers_of(formula, tf, tf.model)
-    found = compare(numbers)
-    if not found.differs and (elsewhere := compare_elsewhere(formula, tf)) is not None:
-        # A value such as 1 kg hides a factor.
-        return _difference(
-            Audit(tf, published, formula, "differs", unread, comparison=elsewhere), reading, numbers
-        )
+    found = compare_anywhere(numbers, tf)
     if not found.differs:
         verdict: Verdict = "agrees" if found.agreed else "undecided"
         unread = unread or "its roots or functions may satisfy a relation that was not found"

@@ -9,13 +9,14 @@ A ``model`` block stands for a transfer function of its own model, over the ring
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE, NO_KERNELS, Factored, KernelTable, Radicals, degree_in
+from symflex.budget import spend
 from symflex.equations import assemble, radicals_of
 from symflex.equations.elimination import Determinants, explain_singular
-from symflex.errors import Diagnostic, ModelError
+from symflex.errors import BudgetError, Diagnostic, ModelError
 from symflex.model.along import is_tapered
 from symflex.transfer.against_equations import ModelSolve, agreement, compare
 from symflex.transfer.expansion import Expansion, Opening
@@ -79,6 +80,34 @@ def derive_all(
     return found
 
 
+class ClosedDefinitions:
+    """Distributed functions over rings in which definitions are as good as parameters, for print."""
+
+    def __init__(self, most: Terms) -> None:
+        self._quotients = cache(lambda equations, kept: _CramerQuotients(equations, most, None, kept))
+
+    def of(self, tf: TransferFunction) -> TransferFunction | None:
+        """Return the same function in the names of definitions, None where there are none to be kept."""
+        equations = None if tf.solve is None else tf.solve.plain
+        if equations is None or equations.propagation is None or not tf.has_formula:
+            return None
+        free = {"pi", *(p.name for p in tf.model.parameters), *(c.generator for c in tf.constants)}
+        kept: list[str] = []
+        for name, value in equations.definitions:
+            if not value.is_constant and value.ring.used_in(f for f, _ in value.factors) <= free:
+                kept.append(name)
+                free.add(name)
+        try:
+            return (
+                self._quotients(equations, tuple(kept)).finish(tf.output.name, tf.input.name)
+                if kept
+                else None
+            )
+        except BudgetError:
+            spend()
+            return None
+
+
 def _terms(tf: TransferFunction) -> int:
     """Return how many terms the factors of an expanded function have, and what they are divided by."""
     return sum(len(f) * abs(e) for f, e in tf.ratio.factors)
@@ -87,7 +116,8 @@ def _terms(tf: TransferFunction) -> int:
 class _CramerQuotients:
     """Reduces one Cramer quotient after the other over the same denominator.
 
-    With ``kept`` these definitions, which the model of ``origin`` does not have, are opened last of all.
+    With ``kept`` these definitions stay closed; those that the model of ``origin`` does not have are opened
+    last of all.
     """
 
     def __init__(
@@ -102,7 +132,7 @@ class _CramerQuotients:
         self._origin = origin or equations
         opened = None if most is None else most.opened
         self._expansion = Expansion.of(equations, kept, opened)
-        self._opened = Expansion.of(equations, (), opened) if kept else self._expansion
+        self._opened = Expansion.of(equations, (), opened) if kept and origin else self._expansion
         self._radicals = self._expansion.radicals
         self.solve = ModelSolve(self._origin.model, nested_transfer, self._origin)
         propagation = equations.propagation

@@ -143,7 +143,7 @@ class KernelReduction:
             quotient, shared = self._lowest(above, below, before, self.coordinates.split)
             table, back = self._restorer([quotient, shared])
             quotient, shared = back(quotient), back(shared)
-        ratio = self._shortest(quotient)
+        ratio = _split_contents(self._shortest(quotient), self._kernel_content)
         modes = self._modes(self._shortest(shared))
         if table is self.table:
             ratio, modes, table = self._lifted(ratio, modes)

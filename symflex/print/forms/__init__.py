@@ -6,7 +6,7 @@ from dataclasses import replace
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from symflex.errors import Diagnostic, UsageError
+from symflex.errors import Diagnostic, InternalError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.expressions import format_expression
 from symflex.print.forms.arrange import Arranged, Arranger
@@ -23,6 +23,7 @@ from symflex.print.forms.polynomial import (
     polynomial_form,
 )
 from symflex.print.forms.printed import Arrange, Begin, BegunForm, PrintedForm, counts_of, forms_of, require
+from symflex.print.forms.shapes import shaped
 from symflex.print.read_back import read_back
 from symflex.transfer import NestedTransferFunction
 
@@ -69,6 +70,8 @@ FORMS: dict[str, Arrange] = {
 
 DECIMAL_FORMS = ("zpk",)
 """Those that print decimals, of so many digits as they are told."""
+AS_ARRANGED = ("zpk", "frequency")
+"""Those that are not functions of s, or print decimals anyway."""
 LARGE = 300
 """Number of expanded terms from which only the closed form is tried: no expanded print is shorter."""
 CANDIDATES = ("definitions", "factored", "polynomial")
@@ -80,6 +83,10 @@ DISTRIBUTED_CANDIDATES: dict[str, Begin] = {
     "krylov": _draft_later("krylov"),
 }
 """The same for functions with kernels."""
+LONG = 200
+"""Characters of a form from which sums of blocks are left as they are written, where that is much shorter."""
+SHORTER = 1.5
+"""How many times as long a form of one fraction has to be."""
 FEW = 60
 """Terms up to which every form is arranged: that takes some hundredths of a second."""
 MORE = 1.25
@@ -115,21 +122,47 @@ def _arranged(
     if form == "nested":
         message = f"{tf.name} is derived in expanded form"
         raise UsageError(Diagnostic("SF902", message, None, "ask for the nested representation"))
-    if tf.is_distributed:
-        from symflex.print.forms.economical import economical  # only with beams
-
-        tf = economical(tf)
-    if form is None:
-        made = (
-            _drafted(tf, arranged or Arranged())
-            if tf.is_distributed
-            else (_made(tf, name, digits) for name in _candidates(tf))
-        )
-        return min(made, key=_length)
-    if form not in FORMS:
+    if form is not None and form not in FORMS:
         hint = nearest(form, FORMS) or "forms: " + ", ".join(FORMS)
         raise UsageError(Diagnostic("SF902", f"there is no form '{form[:64]}'", None, hint))
-    return _made(tf, form, digits)
+    if tf.is_distributed:
+        made = _distributed(tf, form, digits, arranged or Arranged())
+    else:
+        made = min((_made(tf, name, digits) for name in ([form] if form else _candidates(tf))), key=_length)
+    if form is None and _length(made) > LONG and (written := _written(tf)) is not None:
+        return min((made, written), key=lambda f: _length(f) * (1 if f is made else SHORTER))
+    return made
+
+
+def _distributed(tf: TransferFunction, form: str | None, digits: int, arranged: Arranged) -> PrintedForm:
+    """Return a form with definitions closed, or with them opened where that is much shorter."""
+    from symflex.print.forms.economical import economical  # only with beams
+
+    def shortest(own: TransferFunction) -> PrintedForm:
+        each = economical(own)
+        made = _drafted(each, arranged) if form is None else (_made(each, form, digits),)
+        return replace(min(made, key=_length), source=own)
+
+    closed, opened = arranged.definitions.of(tf), shortest(tf)
+    if closed is None or not closed.is_distributed:
+        return opened
+    kept = shortest(closed)
+    return opened if MORE * _length(opened) < _length(kept) else kept
+
+
+def _written(tf: TransferFunction) -> PrintedForm | None:
+    """Return a function as a sum of blocks, None where it is not written so."""
+    from symflex.print.forms.written import written_form  # few prints are so long
+
+    made = written_form(tf)
+    if made is None:
+        return None
+    made = _explained(tf, made)
+    try:
+        read_back(tf, made)
+    except InternalError:  # it is proposed from a text alone, and nobody asked for it
+        return None
+    return made
 
 
 def _made(tf: TransferFunction, form: str, digits: int) -> PrintedForm:
@@ -147,11 +180,14 @@ def _drafted(tf: TransferFunction, arranged: Arranged) -> Iterator[PrintedForm]:
 
 
 def _explained(tf: TransferFunction, made: PrintedForm) -> PrintedForm:
-    """Return a form with the definitions that occur in it."""
+    """Return a form as a person would write it, with the definitions that occur in it."""
+    if made.name not in AS_ARRANGED:
+        made = shaped(tf.model, made)
     explained = {name for name, _ in made.where}
     parts = (made.num, made.den, *(e for _, e in made.where), *(law for _, law in (*made.laws, *made.closed)))
     known = ((d.name, d.expression) for d in tf.model.definitions if d.name not in explained)
-    return replace(made, where=(*made.where, *reachable(parts, known)))
+    found = reachable(parts, known)
+    return replace(made, where=(*made.where, *found), definitions=frozenset(name for name, _ in found))
 
 
 def print_forms(
@@ -206,7 +242,8 @@ def _candidates(tf: TransferFunction) -> tuple[str, ...]:
 
 
 def _length(form: PrintedForm) -> int:
-    parts = [form.num, form.den, *(e for _, e in form.where)]
+    """Return the length of all but the model's definitions, which may stay closed."""
+    parts = [form.num, form.den, *(e for name, e in form.where if name not in form.definitions)]
     return sum(len(format_expression(part)) for part in parts)
 
 

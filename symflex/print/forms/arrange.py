@@ -29,6 +29,8 @@ from symflex.expressions import (
     quotient,
     sum_of,
 )
+from symflex.transfer.derive import ClosedDefinitions
+from symflex.transfer.of_model import UNASKED
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -72,7 +74,7 @@ class Arranger:
 
     def closed(self, polynomial: fmpz_mpoly) -> fmpz_mpoly:
         """Return a polynomial in the definitions that are kept."""
-        if self.kept is None or polynomial.context() is self.ring.context:
+        if self.kept is None or (self.kept.adds and polynomial.context() is self.ring.context):
             return polynomial
         return self.kept.rewrite(polynomial)
 
@@ -98,14 +100,15 @@ class Arranger:
     def _sums(self) -> tuple[int, ...]:
         return tuple(i for i, is_sum in enumerate(self._is_sum) if is_sum)
 
-    def collected(self, polynomial: fmpz_mpoly, *, factored: bool = True) -> Expression:
-        """Return a polynomial by descending powers of s, each coefficient factored."""
+    def collected(self, polynomial: fmpz_mpoly, *, factored: bool = True, nested: bool = False) -> Expression:
+        """Return a polynomial by descending powers of s, each coefficient factored, or nested."""
         is_opened = self.kept is not None and polynomial.context() is self.kept.source.context
         parts = by_powers(self.kept.source if self.kept and is_opened else self.ring, polynomial)
         s = self._symbols[0]
         terms = []
         for exponent in sorted(parts, reverse=True):
-            coefficient = self.coefficient(parts[exponent], factored=factored)
+            part = parts[exponent]
+            coefficient = self.grouped(part) if nested else self.coefficient(part, factored=factored)
             terms.append(product_of([coefficient, power(s, exponent)]))
         return sum_of(terms) if terms else number(0)
 
@@ -146,13 +149,16 @@ class Arranger:
         return self._group(_terms(polynomial))
 
     def grouped_by_s(self, polynomial: fmpz_mpoly) -> Expression:
-        """Return the shorter of the nested print and the one by descending powers of s."""
+        """Return the shortest of the nested print and those by descending powers of s."""
         nested = self.grouped(polynomial)
         if len(polynomial) > GROUP_LIMIT or not degree_in(polynomial, 0):
             return nested
-        collected = self.collected(polynomial)
-        longer = len(format_expression(collected)) > len(format_expression(nested))
-        return nested if longer else collected
+        tried = [self.collected(polynomial), nested]
+        if len(polynomial) <= SMALL:
+            content = polynomial.term_content()
+            rest = self.collected(polynomial / content, nested=True)
+            tried.insert(1, product_of([self._flat(content), rest]))
+        return min(tried, key=lambda e: len(format_expression(e)))
 
     def separated(self, polynomial: fmpz_mpoly, *, by_functions: bool) -> Expression:
         """Return a sum of coefficients times sums of functions.
@@ -187,7 +193,7 @@ class Arranger:
 
     def monomial(self, exponents: Sequence[int]) -> Expression:
         """Return a product of powers of the generators, those of ``ring`` or of what is kept closed."""
-        if self.kept is None or len(exponents) == len(self.ring.names):
+        if self.kept is None or (self.kept.adds and len(exponents) == len(self.ring.names)):
             return self._monomial(tuple(exponents), 1)
         ((monomial, _),) = _terms(
             self.kept.rewrite(self.kept.source.context.from_dict({tuple(exponents): 1}))
@@ -208,7 +214,7 @@ class Arranger:
 
     def _pieces(self, terms: dict[tuple[int, ...], int]) -> list[Expression]:
         """Return the factors of a sum, each nested."""
-        if 3 < len(terms) <= FACTOR_LIMIT:  # noqa: PLR2004
+        if _is_trinomial_square(terms) or 3 < len(terms) <= FACTOR_LIMIT:  # noqa: PLR2004
             _, factors = irreducible_factors(self.ring.context.from_dict(terms))
             if len(factors) > 1 or factors[0][1] > 1:
                 ordered = sorted(factors, key=lambda fe: _order_key(fe[0]))
@@ -337,6 +343,14 @@ def _terms(polynomial: fmpz_mpoly) -> dict[tuple[int, ...], int]:
     return {tuple(map(int, m)): int(c) for m, c in polynomial.terms()}
 
 
+def _is_trinomial_square(terms: Mapping[tuple[int, ...], int]) -> bool:
+    """Tell whether three terms are those of ``(a + b)^2``, which takes no time to find out."""
+    if len(terms) != 3:  # noqa: PLR2004
+        return False
+    (first, a), (middle, b), (last, c) = sorted(terms.items())
+    return b * b == 4 * a * c and all(2 * m == f + n for f, m, n in zip(first, middle, last, strict=True))
+
+
 def _pull_content(terms: dict[tuple[int, ...], int]) -> tuple[tuple[int, ...], dict[tuple[int, ...], int]]:
     """Return the common monomial and the terms without it."""
     content = tuple(min(column) for column in zip(*terms, strict=True))
@@ -460,6 +474,7 @@ class Arranged:
     """Printers of functions that are printed together; those of equal symbols are one, and arrange once."""
 
     _printers: dict[object, ProductPrinter] = field(default_factory=dict)
+    definitions: ClosedDefinitions = field(default_factory=lambda: ClosedDefinitions(UNASKED))
 
     def printer(self, arranger: Arranger) -> ProductPrinter:
         """Return a printer that prints as a new one of the arranger does."""

@@ -9,15 +9,15 @@ Output: the cancelled factors:
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Final
 
 from symflex.algebra import KernelTable
+from symflex.errors import InternalError
 from symflex.expressions import (
     Name,
-    Product,
-    Quotient,
     format_expression,
     number,
     product_of,
@@ -28,6 +28,7 @@ from symflex.print.forms.arrange import Arranger
 from symflex.print.forms.notation import Naming, Notation, angles_of, constant_symbols, notation_of, reachable
 from symflex.print.forms.polynomial import kernel_printer
 from symflex.print.forms.printed import PrintedForm
+from symflex.print.forms.shapes import powers_of
 from symflex.print.read_back import read_hidden
 from symflex.transfer import NestedTransferFunction
 
@@ -82,11 +83,25 @@ def with_hidden(tf: AnyTransferFunction, form: PrintedForm) -> tuple[PrintedForm
     """
     if isinstance(tf, NestedTransferFunction):
         return form, ()
-    used = tf.ring.used_in(h.polynomial for h in tf.hidden)
-    if not used & set(tf.kernels.generators):
+    if not tf.ring.used_in(h.polynomial for h in tf.hidden) & set(tf.kernels.generators):
         return form, hidden_expressions(tf)
+    source = form.source or tf
+    if source is not tf and [h.multiplicity for h in source.hidden] == [h.multiplicity for h in tf.hidden]:
+        with suppress(InternalError):  # then they are no factors of the function whose definitions are opened
+            found = _named(source, form)
+            read_hidden(tf, *found)
+            return found
+    found = _named(tf, form)
+    read_hidden(tf, *found)
+    return found
+
+
+def _named(tf: TransferFunction, form: PrintedForm) -> tuple[PrintedForm, Hidden]:
+    """Return a form with lines for the names in cancelled factors, and these."""
+    used = tf.ring.used_in(h.polynomial for h in tf.hidden)
     notation = notation_of(tf, used, _naming(tf, form))
-    known = {_key(e): Name(name) for name, e in _opened(form.where).items()}
+    own = ((name, e) for name, e in form.where if name not in form.definitions)
+    known = {_key(e): Name(name) for name, e in _opened(own).items()}
     names: dict[str, Expression] = {
         name: known[_key(e)] for name, e in _opened(notation.lines).items() if _key(e) in known
     }
@@ -101,9 +116,7 @@ def with_hidden(tf: AnyTransferFunction, form: PrintedForm) -> tuple[PrintedForm
     factors = tuple((substitute(e, names), m) for e, m in _factors(tf, notation))
     lines = tuple((name, substitute(e, names)) for name, e in notation.lines if name not in names)
     more = reachable([e for e, _ in factors], lines)
-    found = replace(form, where=(*form.where, *more))
-    read_hidden(tf, found, factors)
-    return found, factors
+    return replace(form, where=(*form.where, *more)), factors
 
 
 def _factors(tf: TransferFunction, notation: Notation) -> Hidden:
@@ -138,10 +151,5 @@ def _opened(lines: Iterable[Line]) -> dict[str, Expression]:
 
 def _key(expression: Expression) -> tuple[str, ...]:
     """Return what is equal for products that differ in the order of factors: ``mu*l/2`` and ``l*mu/2``."""
-    above, below = (
-        (expression.numerator, expression.denominator)
-        if isinstance(expression, Quotient)
-        else (expression, number(1))
-    )
-    factors = above.factors if isinstance(above, Product) else (above,)
-    return (*sorted(map(format_expression, factors)), "/", format_expression(below))
+    front, powers = powers_of(expression)
+    return (str(front), *sorted(f"{format_expression(base)}^{n}" for base, n in powers.items()))

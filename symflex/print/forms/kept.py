@@ -52,11 +52,17 @@ class KeptDefinitions:
         place = 1 + max((i for i, n in enumerate(source.names) if n in parameters), default=0)
         return KeptDefinitions(source, place, tuple(kept)) if kept else None
 
+    @property
+    def adds(self) -> bool:
+        """Tell whether a definition is no generator of the form's own ring yet."""
+        return len(self.ring.names) > len(self.source.names)
+
     @cached_property
     def ring(self) -> Ring:
         """The form's ring and a generator per definition, after the parameters."""
         names_, place = self.source.names, self.place
-        return Ring((*names_[:place], *(name for name, _ in self.values), *names_[place:]))
+        more = (name for name, _ in self.values if name not in names_)
+        return Ring((*names_[:place], *more, *names_[place:]))
 
     @cached_property
     def _divisors(self) -> tuple[tuple[str, fmpz_mpoly, bool], ...]:

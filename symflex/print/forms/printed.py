@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 from symflex.algebra import LAPLACE
@@ -38,6 +38,9 @@ class PrintedForm:
     # What the functions of laws are where a closed form is known, and the names in it: defined, and what by.
     closed: tuple[tuple[Expression, Expression], ...] = ()
     argument: Expression = S  # of the transfer function: s, or the imaginary unit times the angular frequency
+    definitions: frozenset[str] = frozenset()  # the names of lines that the model itself has
+    # The function in the names of the form, where definitions are closed that its own ring has opened.
+    source: TransferFunction | None = field(default=None, compare=False, repr=False)
     # Of a form that lists poles: whether the model is stable, which hidden modes decide too.
     stability: StabilityVerdict | None = None
 

@@ -120,6 +120,10 @@ class Point:
             return self._exp(argument)
         if name == "sqrt":
             return root(argument)
+        if name in ("tanh", "tan"):
+            return self._function(f"sin{name[3:]}", argument) * inverse(
+                self._function(f"cos{name[3:]}", argument)
+            )
         x = argument * (UNIT if name in ("cos", "sin") else 1)
         up, down = self._exp(x), self._exp(-x)
         if name in ("cosh", "cos"):

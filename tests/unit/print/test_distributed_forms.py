@@ -169,7 +169,7 @@ SHOWN = {
         ("free_free", "A_near/F", "factored"), None, "rho*A*(sinh(q_1) - sin(q_1))*(sinh(q_1) + sin(q_1))",
     ),
     "a twofold delay is one exponential": (
-        ("delay and rod", "X_late/u", None), "K*sinh(q)*exp(-2*T*s)", None
+        ("delay and rod", "X_late/u", None), "K*exp(-2*T*s)*tanh(q)", None
     ),
 }  # fmt: skip
 WAVENUMBER = ["mu = sqrt(s/(2*a))", "a = sqrt(E*I/(rho*A))"]
@@ -444,3 +444,85 @@ def test_lengths_between_points_print_as_differences_that_are_positive_and_share
         "q_2 = gamma*(x_2 - x_1)",
         "gamma = s*sqrt(rho/E)",
     ]
+
+
+HEAVY_SPRING = """symflex = 1
+parameters = { k = "100 N/m", M = "4 kg", l = "1 m", A = "1 m^2" }
+elements.coil = { type = "rod", between = ["ground", "x"], E = "k*l/A", A = "A", rho = "M/(A*l)", l = "l" }
+inputs.F = { force = "x" }
+outputs.X = "x"
+"""
+PIPE = """symflex = 1
+parameters = { rho = "1.2 kg/m^3", c = "340 m/s", L = "1 m" }
+fields.p = { domain = ["0", "L"], equation = "p'' = s^2/c^2*p", conditions = ["p(0) = 0", "p'(L) = rho*s*u"] }
+inputs.u = { unit = "m/s" }
+outputs.P = "p(L)"
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "expected", "lines"),
+    [(HEAVY_SPRING, ("tanh(q)", "k*q"), ["q = s*sqrt(M/k)"]), (PIPE, ("rho*c*tanh(q)", "1"), ["q = s*L/c"])],
+    ids=["a heavy spring", "an open pipe"],
+)
+def test_a_length_or_wavenumber_that_cancels_is_gone(text, expected, lines):
+    (tf,) = pipeline.derive_all(pipeline.loads(text))
+    assert shown(tf) == expected
+    assert [f"{name} = {format_expression(e)}" for name, e in print_form(tf).where] == lines
+
+
+TIMOSHENKO = """symflex = 1
+parameters = { E = "210 GPa", nu = 0.3, rho = "7850 kg/m^3", d_o = "30 mm", d_i = "7 mm", L = "0.3 m" }
+[definitions]
+G = "E/(2*(1 + nu))"
+kappa = "6*(1 + nu)/(7 + 6*nu)"
+A = "pi/4*(d_o^2 - d_i^2)"
+I = "pi/64*(d_o^4 - d_i^4)"
+[elements.shaft]
+type = "beam"
+theory = "timoshenko"
+between = ["left", "right"]
+E = "E"
+I = "I"
+rho = "rho"
+A = "A"
+l = "L"
+G = "G"
+kappa = "kappa"
+[inputs]
+F = { force = "left" }
+[outputs]
+Y = "right"
+"""
+DECLARED = 'G = "80 GPa", kappa = 0.9, A = "6e-4 m^2", I = "3e-8 m^4", nu'
+
+
+@pytest.mark.slow
+def test_definitions_of_a_timoshenko_shaft_are_as_good_as_parameters():
+    before, _, after = TIMOSHENKO.partition("[definitions]")
+    plain = (
+        before.replace("nu", DECLARED).replace(", d_o", ", d_o") + after[after.index("[elements.shaft]") :]
+    )
+    forms = [print_form(pipeline.derive_all(pipeline.loads(text))[0]) for text in (TIMOSHENKO, plain)]
+    closed, parameters = (sum(len(format_expression(e)) for e in (f.num, f.den)) for f in forms)
+    assert closed <= parameters
+    assert {"G", "kappa", "A", "I"} == forms[0].definitions
+
+
+def test_a_hidden_mode_is_printed_in_the_arguments_of_a_form_with_definitions():
+    half = 'type = "beam", E = "E", rho = "rho", A = "A", I = "I", l = "l/2"'
+    text = f"""symflex = 1
+parameters = {{ E = "210 GPa", rho = "7850 kg/m^3", b = "20 mm", h = "5 mm", l = "0.6 m" }}
+definitions = {{ A = "b*h", I = "b*h^3/12" }}
+[elements]
+left = {{ between = ["a", "m"], {half} }}
+right = {{ between = ["m", "c"], {half} }}
+[inputs]
+F = {{ force = "m" }}
+[outputs]
+Y = "m"
+"""
+    (tf,) = pipeline.derive_all(pipeline.loads(text))
+    form, hidden = with_hidden(tf, print_form(tf))
+    assert format_expression(hidden[0][0]) == "cosh(q/2)*sinh(q/2) - cos(q/2)*sin(q/2)"
+    assert [name for name, _ in form.where] == ["q", "mu", "a_1", "A", "I"]

@@ -12,7 +12,7 @@ import pytest
 
 from symflex import pipeline
 from symflex.errors import ModelError, UncertifiedError
-from symflex.expressions import format_expression
+from symflex.expressions import format_expression, quotient
 from symflex.print.forms import hidden_expressions, print_form
 from symflex.print.forms.printed import RATIONAL
 from symflex.print.json_format import derive_json
@@ -259,7 +259,7 @@ PROGRAM = """
 from symflex import pipeline
 from symflex.print.forms import print_form
 from symflex.print.forms.printed import forms_of
-from symflex.expressions import format_expression
+from symflex.expressions import format_expression, quotient
 for stem in ("lumped_bending_beam", "sliding_free_beam"):
     for tf in pipeline.derive_all(pipeline.load(f"derivations/eppinger1988/{stem}.toml")):
         for name in (*forms_of(tf), None):
@@ -316,3 +316,75 @@ inputs.r = {}
 outputs.U = "u"
 """
     assert printed(tf_of(text, "U", "r"), "definitions") == ("1", "(s + a)^900")
+
+
+def shaped(parameters, output, more=""):
+    """Return the print of one output of a free input u."""
+    text = f"""symflex = 1
+parameters = {{ {parameters} }}
+inputs.u = {{}}
+outputs.y = "{output}"
+{more}"""
+    made = print_form(tf_of(text, "y", "u"))
+    return format_expression(quotient(made.num, made.den))
+
+
+SHAPES = {
+    "a difference is positive at the declared values": ("k = 0.7, R = 2", "u/(R*s*(1 - k^2) + 1)",
+                                                        "1/(R*(1 - k^2)*s + 1)"),
+    "a difference stays as it is written": ("k = {}, R = {}", "u/(R*s*(1 - k^2) + 1)",
+                                            "1/(R*(1 - k^2)*s + 1)"),
+    "also where the declared values make it negative": ("k = 0.7, R = 2", "u/(s + (k^2 - 1)*R)",
+                                                        "1/(s + R*(k^2 - 1))"),
+    "what was factored is as it was written": ("nu = 0.3, a = 1", "(1 - nu^2)*a*u/(s + a)",
+                                               "a*(1 - nu^2)/(s + a)"),
+    "a zero on the right": ("T = 2", "(1 - T*s)*u/(1 + T*s)", "(1 - T*s)/(T*s + 1)"),
+    "decimals as typed": ("", "u/(s^2 + 0.9*s + 1)", "1/(s^2 + 0.9*s + 1)"),
+    "a time constant beside a decimal gain": ("", "0.1*5*u/(5*s + 1)", "0.5/(5*s + 1)"),
+    "no decimals where none are typed": ("K = {}", "K*u/(10*s^2 + 9*s + 10)", "K/(10*s^2 + 9*s + 10)"),
+    "a square": ("a = {}, b = {}, J = {}, m = {}", "u/((J + m*(a + b)^2)*s^2 + 1)",
+                 "1/((J + m*(a + b)^2)*s^2 + 1)"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("fact", SHAPES)
+def test_sums_are_printed_as_a_person_writes_them(fact):
+    parameters, output, expected = SHAPES[fact]
+    assert shaped(parameters, output) == expected
+
+
+DELAYS = """[blocks]
+A = { type = "delay", T = "T_1" }
+B = { type = "delay", T = "T_2" }
+"""
+
+
+def test_dead_times_are_one_and_decay_below_one():
+    names = 'T_1 = "1 s", T_2 = "2 s"'
+    assert shaped(names, "A*B*u", DELAYS) == "exp(-(T_1 + T_2)*s)"
+    assert shaped(names, "(1 - A)/(s*T_1)*B*u", DELAYS).startswith("exp(-T_2*s)*(1 - exp(-T_1*s))")
+
+
+MODES = """[blocks]
+A = { type = "tf", num = "a_1", den = "s^2 + 2*zeta*w_1*s + w_1^2" }
+B = { type = "tf", num = "a_2", den = "s^2 + 2*zeta*w_2*s + w_2^2" }
+C = { type = "tf", num = "a_3", den = "s^2 + 2*zeta*w_3*s + w_3^2" }
+"""
+
+
+def test_a_modal_sum_is_left_a_sum():
+    names = ", ".join(f"{n} = {{}}" for n in ("k", "zeta", *(f"{x}_{i}" for x in "aw" for i in (1, 2, 3))))
+    modes = " + ".join(f"a_{i}/(s^2 + 2*zeta*w_{i}*s + w_{i}^2)" for i in (1, 2, 3))
+    assert shaped(names, "k*(1/s^2 + A + B + C)*u", MODES) == f"k*(1/s^2 + {modes})"
+
+
+def test_a_sum_of_two_blocks_in_a_loop_is_one_fraction():
+    text = """symflex = 1
+parameters = { k = {}, T = {}, J = {} }
+elements.rotor = { type = "inertia", at = "phi", J = "J" }
+blocks.C = { type = "tf", num = "k", den = "T*s + 1" }
+elements.drive = { type = "torque_source", at = "phi", tau = "C*(r - phi)" }
+inputs.r = {}
+outputs.y = "phi + C*(r - phi)"
+"""
+    assert "/" not in "".join(printed(tf_of(text, "y", "r")))

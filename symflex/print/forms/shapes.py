@@ -1,0 +1,396 @@
+"""The shape a person gives a formula: signs, decimals, one function for two, lines that say something.
+
+Input: a form as it is arranged, over whole numbers and with every sum led by its highest power.
+Output: the same function as an author would write it:
+
+    -1/(C*R*s*(k^2 - 1) - 1)        1/(C*R*s*(1 - k^2) + 1)     at the declared k = 0.7, or written so
+    10/(10*s^2 + 9*s + 10)          1/(s^2 + 0.9*s + 1)         where the model has decimals
+    exp(-T_1*s)*exp(-T_2*s)         exp(-(T_1 + T_2)*s)
+    sinh(q)/(k*l*gamma*cosh(q))     tanh(q)/(k*q)               where q = gamma*l
+
+Every sum has a sign: that of its highest power of s, at the declared values of the parameters. A negative sum
+is turned, and its minus sign travels outwards. A wrong choice here is only ugly, as all prints are read back.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import combinations
+from typing import TYPE_CHECKING, Final
+
+from flint import acb
+
+from symflex.algebra import LAPLACE
+from symflex.expressions import (
+    FUNCTIONS,
+    Call,
+    Expression,
+    Name,
+    Negative,
+    Number,
+    Power,
+    Product,
+    Quotient,
+    Sum,
+    format_expression,
+    names,
+    negative,
+    nodes,
+    number,
+    power,
+    product_of,
+    quotient,
+    substitute,
+    sum_of,
+)
+from symflex.expressions.format import number_text
+from symflex.transfer.balls import principal_values
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping, Sequence
+
+    from symflex.model import Model
+    from symflex.print.forms.printed import PrintedForm
+
+LARGEST: Final = 4000
+"""Parts of a form up to which it is shaped: nobody reads longer ones."""
+FAR: Final = 1e60
+"""A frequency at which every sum has the sign of its highest power of s."""
+DIGITS: Final = 6
+"""Significant digits of a decimal that reads better than a whole number elsewhere."""
+MORE: Final = 1.3
+"""How many times as long a form with decimals may be."""
+LINE: Final = 4
+"""Characters by which one line in place of two has to be shorter than these."""
+RATIOS: Final = (("sinh", "cosh", "tanh"), ("sin", "cos", "tan"))
+S: Final = Name(LAPLACE)
+
+
+def shaped(model: Model, form: PrintedForm) -> PrintedForm:
+    """Return a form in the shape a person would give it; one too long to be read as it is."""
+    parts = (form.num, form.den, *(e for _, e in form.where))
+    if sum(len(nodes(e)) for e in parts) > LARGEST:
+        return form
+    form = _with_plain_lines(form)
+    signs = _Signs.of(model)
+    # Differences turned by the declared values: as often as not that gives more minus signs.
+    tried = [_signed(form, each, model) for each in (signs, replace(signs, turns=True))]
+    return min(tried, key=lambda made: str((made.num, made.den, made.where)).count("Negative"))
+
+
+def _signed(form: PrintedForm, signs: _Signs, model: Model) -> PrintedForm:
+    where = tuple((name, signs.oriented(e)) for name, e in form.where)
+    num, den = _decimals(model, *_in_ratios(signs.oriented(form.num), signs.oriented(form.den)))
+    is_negative = isinstance(num, Negative) is not isinstance(den, Negative)
+    num, den = (e.operand if isinstance(e, Negative) else e for e in (num, den))
+    return replace(form, num=signs.absorbed(num) if is_negative else num, den=den, where=where)
+
+
+@dataclass(frozen=True, eq=False)
+class _Signs:
+    """Turns sums, so that they are positive or as the model writes them."""
+
+    known: Mapping[str, acb]
+    written: Mapping[frozenset[str], Sum]  # the sums free of s in a model, by the texts of their terms
+    turns: bool = False  # differences of parameters are turned by their values, too
+
+    @staticmethod
+    def of(model: Model) -> _Signs:
+        known = {p.name: acb(float(p.value.nearly)) for p in model.parameters if p.value is not None}
+        known |= {LAPLACE: acb(FAR), "pi": acb.pi()}
+        for d in model.definitions:
+            if {n.name for n in names(d.expression)} <= {*known, *FUNCTIONS}:
+                (known[d.name],) = principal_values(d.expression, 1, lambda name: [known[name]])
+        sums = (
+            n for _, e in model.expressions() for n in nodes(e) if isinstance(n, Sum) and S not in names(n)
+        )
+        return _Signs(known, {_texts(n.terms): n for n in sums})
+
+    def oriented(self, expression: Expression) -> Expression:
+        """Return an expression with every sum in it as a person would write it."""
+        return rebuilt(expression, self._oriented)
+
+    def _oriented(self, part: Expression) -> Expression:
+        match part:
+            case Sum(terms):
+                return self._sum(terms)
+            case Negative(Product() as product):
+                return negative(self._oriented(product))
+            case Product(factors):
+                return self._rejoined(product_of(_joined(factors)))
+            case Call("sqrt", Negative(Sum(terms))):
+                return replace(part, argument=sum_of(_led([negative(t) for t in terms])))
+        return part
+
+    def _rejoined(self, product: Expression) -> Expression:
+        """Return a product with ``1 - nu^2`` for ``(1 - nu)*(nu + 1)`` where the model has it."""
+        factors = product.factors if isinstance(product, Product) else ()
+        for one, other in combinations([f for f in factors if isinstance(f, Sum)], 2):
+            same = [t for t in one.terms if t in other.terms]
+            turned = [t for t in one.terms if negative(t) in other.terms]
+            if (len(one.terms), len(other.terms), len(same), len(turned)) != (2, 2, 1, 1):
+                continue
+            first, second = (of_powers(*powers_of(product_of([t, t]))) for t in (*same, *turned))
+            joined = self._sum((first, negative(second)))
+            found = self._rejoined(product_of([joined if f is one else f for f in factors if f is not other]))
+            if any(self.written.get(_texts(f.terms)) is f for f in nodes(found) if isinstance(f, Sum)):
+                return found
+        return product
+
+    def _sum(self, terms: Sequence[Expression]) -> Expression:
+        """Return a sum as it is written in the model, or turned if it is negative."""
+        turned = [negative(t) for t in terms]
+        if (as_written := self.written.get(_texts(terms))) is not None:
+            return as_written
+        if (as_written := self.written.get(_texts(turned))) is not None:
+            return Negative(as_written)
+        below, whole = 2 * sum(isinstance(t, Negative) for t in terms), Sum(tuple(terms))
+        has_number = any(isinstance(t, Number) for t in (*terms, *turned))
+        has_s = S in names(rebuilt(whole, lambda part: number(1) if isinstance(part, Call) else part))
+        may_turn = below > len(terms) if has_s else below == len(terms) and (self.turns or has_number)
+        sign = self._sign(whole) if may_turn else 0
+        is_negative = sign < 0 if sign else below == 2 * len(terms)
+        return negative(sum_of(_led(turned))) if is_negative else sum_of(_led(terms))
+
+    def absorbed(self, num: Expression) -> Expression:
+        """Return minus a numerator, the sign within a sum that ends with a negative term if there is one."""
+        factors = list(num.factors) if isinstance(num, Product) else [num]
+        for i, factor in enumerate(factors):
+            if isinstance(factor, Sum) and isinstance(factor.terms[-1], Negative):
+                if len(factor.terms) == 2 or self._sign(factor):  # noqa: PLR2004
+                    factors[i] = sum_of(_led([negative(t) for t in factor.terms]))
+                    return product_of(factors)
+        return negative(num)
+
+    def _sign(self, expression: Expression) -> int:
+        """Return the sign for large s, where what decays is zero; 0 if it is not known."""
+        try:
+            (value,) = principal_values(expression, 1, lambda name: [self.known[name]])
+        except KeyError:
+            return 0
+        return int(value.real > 0) - int(value.real < 0)
+
+
+def _texts(terms: Iterable[Expression]) -> frozenset[str]:
+    return frozenset(map(format_expression, terms))
+
+
+def _led(terms: Sequence[Expression]) -> list[Expression]:
+    """Return terms with a positive one in front, if there is one."""
+    first = next((i for i, t in enumerate(terms) if not isinstance(t, Negative)), 0)
+    return [terms[first], *terms[:first], *terms[first + 1 :]]
+
+
+def powers_of(expression: Expression) -> tuple[Fraction, dict[Expression, int]]:
+    """Return a product as a number times powers; a root that is squared is gone."""
+    front, powers = Fraction(1), dict[Expression, int]()
+    pending: list[tuple[Expression, int]] = [(expression, 1)]
+    while pending:
+        match pending.pop():
+            case Number(value), n if value or n > 0:
+                front *= value**n
+            case Negative(operand), n:
+                front *= (-1) ** abs(n)
+                pending.append((operand, n))
+            case Product(factors), n:
+                pending += [(f, n) for f in reversed(factors)]
+            case Quotient(above, below), n:
+                pending += [(below, -n), (above, n)]
+            case Power(base, Number(exponent)), n if exponent.denominator == 1:
+                pending.append((base, n * int(exponent)))
+            case base, n:
+                powers[base] = powers.get(base, 0) + n
+                if isinstance(base, Call) and base.name == "sqrt" and abs(powers[base]) > 1:
+                    half = int(powers[base] / 2)
+                    powers[base] -= 2 * half
+                    pending.append((base.argument, half))
+    return front, {base: n for base, n in powers.items() if n}
+
+
+def of_powers(front: Fraction, powers: Mapping[Expression, int]) -> Expression:
+    """Return a number times powers as one fraction."""
+    above = [power(base, n) for base, n in powers.items() if n > 0]
+    below = [power(base, -n) for base, n in powers.items() if n < 0]
+    top = product_of([number(front.numerator), *above])
+    return quotient(top, product_of([number(front.denominator), *below]))
+
+
+def _joined(factors: Sequence[Expression]) -> Sequence[Expression]:
+    """Return factors with ``exp(-(T_1 + T_2)*s)`` for several exponentials, and no squares of roots."""
+    if any(isinstance(f, Power) and isinstance(f.base, Call) and f.base.name == "sqrt" for f in factors):
+        factors = (of_powers(*powers_of(product_of(factors))),)
+    decays = [f for f in factors if isinstance(f, Call) and f.name == "exp"]
+    times = [powers_of(f.argument) for f in decays]
+    if len(decays) < 2 or not all(front < 0 and powers.pop(S, 0) == 1 for front, powers in times):  # noqa: PLR2004
+        return factors
+    numbers = number(-sum((front for front, powers in times if not powers), start=Fraction(0)))
+    total = sum_of([*(of_powers(-front, powers) for front, powers in times if powers), numbers])
+    merged = Call("exp", negative(product_of([total, S])))
+    return [merged if f is decays[0] else f for f in factors if f is decays[0] or f not in decays]
+
+
+def _in_ratios(num: Expression, den: Expression) -> tuple[Expression, Expression]:
+    """Return a fraction with ``tanh`` and ``tan`` for what they are quotients of."""
+    (front, powers), (below, divisors) = powers_of(num), powers_of(den)
+    found = [dict(powers), dict(divisors)]
+    for one, other, ratio in RATIOS:
+        for call in [c for c in (*powers, *divisors) if isinstance(c, Call) and c.name == one]:
+            for above, under in (found, found[::-1]):
+                n, cofactor = above.get(call, 0), replace(call, name=other)
+                if n and n == under.get(cofactor, 0):
+                    above[replace(call, name=ratio)] = n
+                    del above[call], under[cofactor]
+    if not front or found == [powers, divisors]:
+        return num, den
+    return of_powers(front, found[0]), of_powers(below, found[1])
+
+
+def rebuilt(expression: Expression, change: Callable[[Expression], Expression]) -> Expression:
+    """Return an expression made anew from its parts, so that numbers are multiplied, each changed."""
+
+    def again(part: Expression) -> Expression:
+        return rebuilt(part, change)
+
+    match expression:
+        case Sum(terms):
+            return change(sum_of(map(again, terms)))
+        case Product(factors):
+            return change(product_of(map(again, factors)))
+        case Negative(operand):
+            return negative(again(operand))
+        case Quotient(above, below):
+            return quotient(again(above), again(below))
+        case Power(base, exponent):
+            return power(again(base), exponent)
+        case Call(_, argument):
+            return change(replace(expression, argument=again(argument)))
+    return expression
+
+
+def plain(expression: Expression, put: Mapping[str, Expression]) -> Expression:
+    """Return an expression with others for some names, made anew so that no factor 1 is left."""
+    return rebuilt(substitute(expression, put), lambda part: part)
+
+
+def _with_plain_lines(form: PrintedForm) -> PrintedForm:
+    """Return a form whose lines all say something, in lowest terms, and whose lengths are used."""
+    laws = {n.name for _, law in (*form.laws, *form.closed) for n in names(law)}
+    for name, _ in form.where:
+        lines = dict(form.where)
+        line = lines.get(name)
+        if line is None:
+            continue
+        waves = [n.name for n in names(line) if isinstance(n, Name) and n.name in lines]
+        if laws & {name, *waves}:
+            continue
+        if isinstance(line, Number) or (waves and line == Name(waves[0])):
+            old, new = (name, line) if isinstance(line, Number) else (waves[0], Name(name))
+            lines[name] = lines.pop(old) if old != name else line
+            put = {old: new}
+            where = tuple((n, plain(e, put)) for n, e in lines.items() if n != old)
+            form = replace(form, num=plain(form.num, put), den=plain(form.den, put), where=where)
+        elif len(waves) == 1 and powers_of(line)[1].get(Name(waves[0])) == 1:
+            form = _through_argument(form, name, Name(waves[0]))
+    return form
+
+
+def _through_argument(form: PrintedForm, argument: str, wave: Name) -> PrintedForm:
+    """Return a form with ``q`` for ``gamma*l`` in products, without a line for ``gamma`` if it can go."""
+    lines = dict(form.where)
+    own = lines[wave.name]
+    front, powers = powers_of(lines[argument])
+
+    def through(part: Expression) -> Expression:
+        scale, found = powers_of(part)
+        times = min(found.get(base, 0) // n if n > 0 else 0 for base, n in powers.items())
+        if isinstance(part, Sum | Call) or times < 1:
+            return part
+        placed: dict[Expression, int] = {}
+        for base, n in found.items():
+            placed |= {Name(argument): times} if base == wave else {}
+            placed[base] = n - times * powers.get(base, 0)
+        return of_powers(scale / front**times, {base: n for base, n in placed.items() if n})
+
+    num, den = (rebuilt(e, through) if len(powers) > 1 else e for e in (form.num, form.den))
+    scale, found = powers_of(quotient(num, den))
+    is_apart = wave in found and not any(wave in names(base) for base in found if base != wave)
+    if is_apart and not any(isinstance(n, Call) for n in nodes(own)):
+        # A wavenumber without a root is no shorter than what it is.
+        whole = of_powers(*powers_of(plain(of_powers(scale, found), {wave.name: own})))
+        num, den = (whole.numerator, whole.denominator) if isinstance(whole, Quotient) else (whole, number(1))
+    scale, found = powers_of(substitute(lines[argument], {wave.name: own}))
+    ordered = sorted(found, key=lambda base: (base != S, isinstance(base, Call)))
+    line = of_powers(scale, {base: found[base] for base in ordered})
+    others = [num, den, *(e for name, e in lines.items() if name != argument)]
+    is_shorter = _length(line) + LINE <= _length(lines[argument]) + _length(own)
+    if is_shorter and not any(wave in names(e) for e in others):
+        lines[argument] = line
+        del lines[wave.name]
+    return replace(form, num=num, den=den, where=tuple(lines.items()))
+
+
+def _decimals(model: Model, num: Expression, den: Expression) -> tuple[Expression, Expression]:
+    """Return a fraction of polynomials with decimals as the model has them, or as it is."""
+    written = [n.value for _, e in model.expressions() for n in nodes(e) if isinstance(n, Number)]
+    calls = (n for e in (num, den) for n in nodes(e) if isinstance(n, Call))
+    if all(x.denominator == 1 for x in written) or any(n.name not in ("exp", "sqrt") for n in calls):
+        return num, den
+    wanted = {*written, Fraction(1)}
+    (above, powers), (below, divisors) = powers_of(num), powers_of(den)
+    scale = above / below
+    for parts, side in ((divisors, -1), (powers, 1)):
+        for part in [p for p in parts if isinstance(p, Sum)]:
+            divisor = _typed_scale(part, wanted)
+            if divisor != 1 and (scaled := _scaled(part, divisor)) is not None:
+                scale *= divisor ** (parts[part] * side)
+                parts[scaled] = parts.pop(part)
+    if (own := _number_in(scale)) is None:
+        return num, den
+    tried = [product_of([own, *(power(b, n) for b, n in powers.items())])]
+    inside = next((b for b, n in powers.items() if isinstance(b, Sum) and n == 1), None)
+    if inside is not None and scale != 1 and (spread := _scaled(inside, 1 / scale)) is not None:
+        tried.append(product_of([spread if b == inside else power(b, n) for b, n in powers.items()]))
+    new = min(tried, key=_length), product_of([power(b, n) for b, n in divisors.items()])
+    return new if sum(map(_length, new)) <= MORE * (_length(num) + _length(den)) else (num, den)
+
+
+def _typed_scale(total: Sum, wanted: set[Fraction]) -> Fraction:
+    """Return the number by which a sum is divided to have most of the numbers that are wanted."""
+    fronts = [abs(powers_of(t)[0]) for t in total.terms]
+    tried = [Fraction(1), fronts[0], *(f / w for f in fronts for w in wanted if w)]
+
+    def rank(divisor: Fraction) -> tuple[int, bool, int]:
+        divided = [f / divisor for f in fronts]
+        is_whole = [x.denominator == 1 for x in divided]
+        return sum(x in wanted for x in divided), is_whole[0], sum(is_whole)
+
+    return max(tried, key=rank)
+
+
+def _length(expression: Expression) -> int:
+    return len(format_expression(expression))
+
+
+def _scaled(total: Sum, divisor: Fraction) -> Expression | None:
+    """Return a sum divided by a number, None where that has no short decimals."""
+    terms = []
+    for term in total.terms:
+        front, powers = powers_of(term)
+        inner = next((b for b, n in powers.items() if isinstance(b, Sum) and n == 1), None)
+        within = None if inner is None or abs(front) != 1 else _scaled(inner, divisor)
+        own = number(front) if within is not None else _number_in(front / divisor)
+        if own is None:
+            return None
+        raised = (power(within if within is not None and b is inner else b, n) for b, n in powers.items())
+        terms.append(product_of([own, *raised]))
+    return sum_of(terms)
+
+
+def _number_in(value: Fraction) -> Expression | None:
+    """Return a number that is a whole one or a short decimal, None otherwise."""
+    text = number_text(abs(value))
+    is_short = value.denominator == 1 or (
+        "/" not in text and len(text.strip("0.").replace(".", "")) <= DIGITS
+    )
+    return number(value) if is_short else None
