@@ -7,23 +7,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from symflex.data.fitting.lines import isolated, single_lines, wild_lines
 from symflex.data.fitting.order import (
     CRITERIA,
+    NEGLIGIBLE,
     STARTS,
     UNLIKELY,
     Candidate,
     Score,
-    best_of_starts,
     chosen_order,
-    is_rivalled,
     lack_of_fit,
-    too_few,
-    undetermined,
+    refitted,
     with_own_noise,
 )
 from symflex.data.fitting.phase_test import PhaseTest, judge_phase
-from symflex.data.fitting.problem import FitProblem, fit_problem, with_noise, with_rough_noise
-from symflex.data.fitting.resonances import MILLISECOND, Complex, Free, Real, Resonances
+from symflex.data.fitting.problem import FitProblem, FittedLines, fit_problem, with_noise, with_rough_noise
+from symflex.data.fitting.resonances import MILLISECOND, Complex, Free, Mask, Real, Resonances, Whole
 from symflex.data.fitting.starts import with_delays
 from symflex.errors import DataError, Diagnostic, FitError, UsageError, nearest
 from symflex.options import FitOptions
@@ -42,6 +41,16 @@ WEAK = 0.5
 """Standard error over the value from which a damping ratio, or a zero, is hardly determined."""
 LARGE = 2.0
 """Sum of squares per degree of freedom from which coherence does not explain the residual."""
+WILD = 6.5
+"""Standard deviations of each part beyond which a line is wild; noise reaches that once in 10^9 lines."""
+NAMED_LINES = 6
+"""Wild lines whose frequencies are listed."""
+ROUNDS = 3
+"""In which lines are left out or taken back, until these are the same."""
+MOST_LINES, FEWEST_OF_EACH = 1000, 300
+"""On which numbers of poles are compared: of all responses together, and of each at least."""
+DROWNED_DB = 6.0
+"""Misfit of a fit without poles from which noise is as large as the response."""
 OVERDAMPED = 2.0
 """Damping ratio of a pair of zeros that had better be called two real ones."""
 LEAST_DAMPING = 0.05
@@ -77,7 +86,7 @@ class ResonanceFit:
     problem: FitProblem  # what was fitted
     bases: tuple[Base, ...]  # one per response
     candidate: Candidate  # start and minimum
-    # What the criteria say of the numbers of resonances tried; empty when the number was given.
+    # What the criteria say of the numbers of poles tried.
     scores: tuple[Score, ...]
     criterion: str  # the one that chose
     phase_tests: tuple[PhaseTest, ...]  # one per response
@@ -87,7 +96,7 @@ class ResonanceFit:
     poor: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
-        return f"<ResonanceFit: {self.resonances.count} resonances of {len(self.bases)} responses>"
+        return f"<ResonanceFit: {self.modes.sum()} resonances of {len(self.bases)} responses>"
 
     @property
     def resonances(self) -> Resonances:
@@ -100,33 +109,67 @@ class ResonanceFit:
         return self.candidate.refined
 
     @property
+    def modes(self) -> Mask:
+        """Which pole pairs are resonances in the band, shape (n,); the others are residual terms."""
+        return self.resonances.in_band(*self.problem.band)
+
+    @property
     def measured(self) -> tuple[MeasuredResponse, ...]:
-        """The data."""
-        return tuple(line.measured for line in self.problem.lines)
+        """The data, with the lines that were left out."""
+        return tuple(line.every.measured for line in self.problem.lines)
+
+    def left_out(self, response: int) -> Whole:
+        """Return which lines of a response were left out of the fit, because they are wild."""
+        line = self.problem.lines[response]
+        return np.flatnonzero(~np.isin(line.every.omega, line.omega))
 
     def values(self, response: int, resonances: Resonances | None = None) -> Complex:
         """Return the fitted (or another) model on the lines of one response, without the window's effect."""
-        line = self.problem.lines[response]
+        line = self.problem.lines[response].every
         return line.base_at_lines * (resonances or self.resonances).factor(response, line.omega)
+
+    def real_poles(self) -> list[tuple[float, float]]:
+        """Return the corner frequency of each real pole and its standard error [rad/s], ascending."""
+        found, covariance = self.resonances, self.refined.covariance
+        n = found.count
+        poles = [(float(p), (2 * n + i, 1.0, 0, 0.0)) for i, p in enumerate(found.real_p)]
+        for i in np.flatnonzero(found.zeta_p >= 1).tolist():
+            zeta = float(found.zeta_p[i])
+            root = np.sqrt(max(zeta**2 - 1, np.finfo(float).tiny))
+            # d ln(zeta +- root) by ln zeta is +- zeta/root.
+            poles += [
+                (float(found.omega_p[i] * (zeta + sign * root)), (i, 1.0, n + i, sign * zeta / root))
+                for sign in (-1, 1)
+            ]
+        result = []
+        for corner, (a, by_a, b, by_b) in poles:
+            variance = np.inf
+            if covariance is not None:
+                variance = by_a**2 * covariance[a, a] + by_b**2 * covariance[b, b]
+                variance += 2 * by_a * by_b * covariance[a, b]
+            result.append((corner, float(corner * np.sqrt(max(variance, 0.0)))))
+        return sorted(result)
 
     def standard_errors(self) -> Resonances:
         """Return the standard error of every parameter, in a record of the same shape; 0 if it was fixed.
 
-        SF613 where the data do not determine all parameters; :func:`fit_resonances` returns no such fit.
+        Those that the data do not determine are infinite.
         """
-        covariance = self.refined.covariance
-        if covariance is None:
-            raise FitError(undetermined())
-        deviation = np.sqrt(np.diag(covariance))
         found = self.resonances
         n, free = found.count, self.problem.free
+        covariance = self.refined.covariance
+        deviation = np.full(found.size(free), np.inf)
+        if covariance is not None:
+            deviation = np.sqrt(np.maximum(np.diag(covariance), 0.0))
         omega_z, zeta_z = np.zeros_like(found.omega_z), np.zeros_like(found.zeta_z)
-        gain, lag, delay = (np.zeros(found.responses) for _ in range(3))
+        gain, lag, delay, real_z = (np.zeros(found.responses) for _ in range(4))
         for r, shown in enumerate(found.has_zeros):
             at = found.places(r, free)
             omega_z[r, shown] = np.abs(found.omega_z[r, shown]) * deviation[at["omega_z"]]
             zeta_z[r, shown] = deviation[at["zeta_z"]]
             # Parameters that were not fitted have an empty place.
+            if np.isfinite(found.real_z[r]):
+                real_z[r : r + 1] = np.abs(found.real_z[r]) * deviation[at["real_z"]]
             gain[r : r + 1][: free.gain] = np.abs(found.gain[r]) * deviation[at["gain"]]
             lag[r : r + 1][: free.lag] = MILLISECOND * deviation[at["lag"]]
             delay[r : r + 1][: free.delay] = MILLISECOND * deviation[at["delay"]]
@@ -139,15 +182,17 @@ class ResonanceFit:
             lag,
             delay,
             found.slope,
+            found.real_p * deviation[2 * n : found.shared()],
+            real_z,
         )
 
     def misfit_db(self, response: int) -> float:
         """Return the root mean square of model over data on the lines [dB], magnitude alone."""
-        return self.measured[response].misfit_db(self.problem.values(self.resonances, response))
+        return self.problem.lines[response].measured.misfit_db(self.problem.values(self.resonances, response))
 
     def misfit_degrees(self, response: int) -> float:
         """Return the root mean square of the phase difference on the lines [deg]."""
-        return self.measured[response].misfit_degrees(self.problem.values(self.resonances, response))
+        return self.problem.lines[response].measured.misfit_degrees(self.problem.values(self.resonances, response))
 
 
 def fit_resonances(
@@ -159,9 +204,11 @@ def fit_resonances(
     options, ``slope`` is that power, ``start`` a key of :data:`symflex.data.fitting.order.STARTS` or ``auto``
     for the best of all; ``is_gain_free`` holds anyway without bases.
 
+    The best fit is returned in any case; ``poor`` says why it is no good one. Pole pairs outside the band and
+    real poles are residual terms, and no resonances. Lines that are wild are left out.
+
     SF902 for an unknown start or criterion, or options that contradict each other; SF605 too few lines for
-    what is asked; SF611 no (or not enough) resonances to begin with; SF612 no convergence; SF613 parameters
-    that the data do not determine; SF614 a pole that left the band; SF615 a base that vanishes in it.
+    what is asked; SF615 a base that vanishes in the band.
 
     Examples
     --------
@@ -200,7 +247,6 @@ def _fit(
     measured: Sequence[MeasuredResponse], bases: tuple[Base, ...], given: FitOptions, slopes: tuple[int, ...]
 ) -> ResonanceFit:
     has_base = any(base.tf for base in bases)
-    modes, start = given.modes, given.start
     is_lag_free = given.is_lag_free or given.is_lag_signed
     free = Free(given.is_gain_free, is_lag_free, given.is_delay_free, given.is_lag_signed)
     problem = fit_problem(measured, [base.function for base in bases], free, has_base=has_base, slopes=slopes)
@@ -212,45 +258,87 @@ def _fit(
             raise FitError(
                 Diagnostic("SF615", message, None, "a base needs damping, or --band a smaller band")
             )
-    problem = with_noise(with_delays(with_rough_noise(problem), modes), modes)
-    scores: tuple[Score, ...] = ()
-    if modes is None:
-        candidate, scores = chosen_order(problem, start, given.criterion)
-    else:
-        found = best_of_starts(problem, modes, start)
-        if found is None:
-            raise FitError(too_few(problem, modes, start))
-        candidate = found
-    if candidate.failure is not None:
-        raise FitError(candidate.failure)
-    is_ambiguous = is_rivalled(problem, candidate)
+    problem = problem.at([_kept(line, wild_lines(line.omega, line.ratio)) for line in problem.lines])
+    most = max(MOST_LINES // len(problem.lines), FEWEST_OF_EACH)
+    candidate, problem, chosen = _chosen(problem, given, most)
+    single = [single_lines(line.omega, candidate.refined.resonances) for line in problem.lines]
+    if any(places.size for places in single):
+        # A resonance that only one line shows is none, if it is not there without that line.
+        fewer = problem.at([_kept(line, places) for line, places in zip(problem.lines, single, strict=True)])
+        other, fewer, other_chosen = _chosen(fewer, given, most)
+        gone = candidate.refined.resonances.in_band(*problem.band).sum()
+        if other.refined.resonances.in_band(*problem.band).sum() < gone and not other.failure:
+            candidate, problem, chosen = other, fewer, other_chosen
+    scores, reasons = chosen
     candidate, problem = with_own_noise(candidate, problem)
+    for _ in range(ROUNDS):
+        again = problem.readmitted(_fitting_lines(problem, candidate))
+        if again is problem:
+            break
+        candidate, problem = with_own_noise(refitted(candidate, again), again)
     if not has_base:
         bases = tuple(Base.power(int(power)) for power in candidate.refined.resonances.slope)
-    tests = tuple(judge_phase(problem, r, candidate.refined.resonances) for r in range(len(measured)))
+    thin = problem.thinned(most)
+    tests = tuple(judge_phase(thin, r, candidate.refined.resonances) for r in range(len(measured)))
     fit = ResonanceFit(problem, bases, candidate, scores, given.criterion, tests, ())
-    return replace(fit, warnings=_warnings(fit), poor=_poor(fit, is_ambiguous=is_ambiguous))
+    return replace(fit, warnings=_warnings(fit), poor=(*reasons, *_poor(fit)))
 
 
-def _poor(fit: ResonanceFit, *, is_ambiguous: bool) -> tuple[str, ...]:
+def _chosen(
+    problem: FitProblem, given: FitOptions, most: int
+) -> tuple[Candidate, FitProblem, tuple[tuple[Score, ...], tuple[str, ...]]]:
+    """Return the best fit, the problem with its noise, and how its number of poles was chosen."""
+    modes = given.modes
+    problem = with_noise(with_delays(with_rough_noise(problem), modes), modes, most)
+    thin = problem.thinned(most)
+    candidate, *chosen = chosen_order(problem, thin, modes, given.start, given.criterion)
+    return candidate, problem, (chosen[0], chosen[1])
+
+
+def _kept(line: FittedLines, wild: Whole) -> Whole:
+    """Return the lines that are not wild."""
+    return np.delete(np.arange(line.omega.size), isolated(wild, line.omega.size))
+
+
+def _fitting_lines(problem: FitProblem, candidate: Candidate) -> list[Whole]:
+    """Return the lines of each response that the fit describes, or that are too many to be called wild."""
+    found = []
+    for r, line in enumerate(problem.lines):
+        every = line.every
+        model = every.observation(
+            every.base * candidate.refined.resonances.factor(r, every.observation.omega)
+        )
+        off = np.abs(model - every.measured.values) / line.deviation_of_every()
+        found.append(_kept(every, np.flatnonzero(off > WILD)))
+    return found
+
+
+def _poor(fit: ResonanceFit) -> tuple[str, ...]:
     """Return why a fit is poor."""
     found, errors = fit.resonances, fit.standard_errors()
     reasons = []
+    if fit.problem.is_noise_estimated and fit.refined.reduced < NEGLIGIBLE:
+        return ()  # what is left is rounding, and tells nothing
     if lack_of_fit(fit.problem, fit.refined) < UNLIKELY:
         reasons.append("a function with more poles describes the data far better than noise explains")
     if fit.problem.is_noise_known and fit.refined.reduced > LARGE:
         reasons.append(f"the residual is {np.sqrt(fit.refined.reduced):.2g} times what coherence explains")
-    if is_ambiguous:
+    if fit.candidate.is_rivalled:
         reasons.append("another power of s describes the data as well: gain and zeros may be others")
     if fit.refined.correlation > SMOOTH:
         reasons.append("neighbouring lines deviate together, as they do where the model lacks something")
-    for i in range(found.count):
-        where = f"pole pair {i + 1} at {found.omega_p[i] / (2 * np.pi):.4g} Hz"
-        if errors.zeta_p[i] > WEAK * found.zeta_p[i]:
+    for i in np.flatnonzero(fit.modes).tolist():
+        if not errors.zeta_p[i] <= WEAK * found.zeta_p[i]:
+            where = f"{named_pair(fit, i)} at {found.omega_p[i] / (2 * np.pi):.4g} Hz"
             reasons.append(f"the damping of {where} is lost in its error")
-        if found.zeta_p[i] >= 1:
-            reasons.append(f"{where} has the damping ratio {found.zeta_p[i]:.2g}: it is not a resonance")
+    if not found.order and float(np.median([fit.misfit_db(r) for r in range(found.responses)])) > DROWNED_DB:
+        reasons.append("the data show no resonance, and noise as large as the response")
     return tuple(reasons)
+
+
+def named_pair(fit: ResonanceFit, i: int) -> str:
+    """Return what a pole pair is called: resonances are counted from 1."""
+    return f"pole pair {int(fit.modes[: i + 1].sum())}" if fit.modes[i] else "a residual pole pair"
 
 
 def _warnings(fit: ResonanceFit) -> tuple[str, ...]:
@@ -258,9 +346,17 @@ def _warnings(fit: ResonanceFit) -> tuple[str, ...]:
     errors = fit.standard_errors()
     low, high = fit.problem.band
     warnings = []
+    for r in range(found.responses):
+        left = fit.left_out(r)
+        if left.size:
+            where = f" of {fit.measured[r].name}" if found.responses > 1 else ""
+            places = ", ".join(f"{f:.6g}" for f in fit.measured[r].frequency_hz[left][:NAMED_LINES])
+            more = ", ..." if left.size > NAMED_LINES else ""
+            word = "line" if left.size == 1 else "lines"
+            warnings.append(f"{left.size} wild {word}{where} left out, at {places}{more} Hz")
     for i in range(found.count):
-        if errors.zeta_p[i] > WEAK * found.zeta_p[i]:
-            warnings.append(f"the damping of pole pair {i + 1} is hardly determined by the data")
+        if fit.modes[i] and not errors.zeta_p[i] <= WEAK * found.zeta_p[i]:
+            warnings.append(f"the damping of {named_pair(fit, i)} is hardly determined by the data")
         for r in range(found.responses):
             if not found.has_zeros[r, i]:
                 continue
@@ -289,7 +385,9 @@ def _warnings(fit: ResonanceFit) -> tuple[str, ...]:
         if spacing is None or line.observation.matrix is not None:
             continue
         narrow = [
-            i + 1 for i in range(found.count) if found.zeta_p[i] * found.omega_p[i] / np.pi < 4 * spacing
+            int(fit.modes[: i + 1].sum())
+            for i in np.flatnonzero(fit.modes).tolist()
+            if found.zeta_p[i] * found.omega_p[i] / np.pi < 4 * spacing
         ]
         if narrow:
             pairs = ", ".join(map(str, narrow))
@@ -308,7 +406,8 @@ def _warnings(fit: ResonanceFit) -> tuple[str, ...]:
             f"the residual is {np.sqrt(fit.refined.reduced):.2g} times what coherence explains: "
             "the model lacks something that the data show" + advice
         )
-    if fit.refined.correlation > SMOOTH:
+    is_exact = fit.problem.is_noise_estimated and fit.refined.reduced < NEGLIGIBLE
+    if fit.refined.correlation > SMOOTH and not is_exact:
         lacking = "" if fit.problem.free.lag else ", as the lag of a sensor would: try --lag"
         warnings.append(f"neighbouring lines deviate together: the model lacks something smooth{lacking}")
     return tuple(warnings)

@@ -15,28 +15,35 @@ poor start is short.
 is the maximum-likelihood residual of an H1 estimate, whose error is complex, Gaussian and independent of
 sigma's own error; troughs drowned in noise pull nothing their way, where a logarithm would be biased. As
 sigma is a share of the magnitude, resonances and antiresonances still count alike.
+
+The search is that of Levenberg (1944) and Marquardt (1963), with the scales of Moré (1978). A response depends
+on the poles and on parameters of its own, so that its equations are first reduced to a triangle by an
+orthogonal factorisation of these few columns; only the triangles of all responses are solved together. A step
+for 50,000 lines costs what forming their derivatives costs.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.optimize import least_squares
 
 from symflex.budget import spend
 from symflex.data.fitting.observation import score_covariance
-from symflex.data.fitting.resonances import Complex, Real, Resonances
+from symflex.data.fitting.resonances import Complex, Real, Resonances, Whole
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
     from symflex.data.fitting.problem import FitProblem, FittedLines
 
 STEPS = 100
 """Evaluations of each residual; a search that takes more has lost its way."""
 TOLERANCE = 1e-9
 """Relative, of parameters and cost: far below any standard error, far above rounding."""
+ROUGH = 1e-5
+"""The same of a search that another one follows: a thousandth of what tells two fits apart."""
 CAP = 0.05
 """Added to the deviation in the logarithmic residual, so that no single line pulls a poor start astray."""
 LARGEST_LAG = 3
@@ -48,6 +55,12 @@ They are the squares of 2/3, 1/6 and 0, the correlations of its spectrum -1/4, 1
 """
 SINGULAR = 1e-12
 """Reciprocal condition number below which the inverse in doubles has four digits at most."""
+NULL_PART = 1e-3
+"""Share of a parameter in a direction that the lines do not determine from which its error is infinite."""
+FIRST_DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e-12, 1e9
+"""Marquardt's factor: at first, at least, and where a search gives up."""
+EASIER, HARDER = 0.2, 6.0
+"""What it is multiplied by after a step that lowers the cost, and after one that does not."""
 EDGE = 12.0
 """Logarithms of parameters are kept within this of their start, so that nothing overflows on the way."""
 
@@ -77,7 +90,9 @@ class Refined:
         return self.cost / freedom if freedom > 0 else float("nan")
 
 
-def refine(problem: FitProblem, start: Resonances, *, steps: int = STEPS) -> Refined:
+def refine(
+    problem: FitProblem, start: Resonances, *, steps: int = STEPS, tolerance: float = TOLERANCE
+) -> Refined:
     """Return the minimum that a start leads to: logarithmic first, then complex where deviations are known.
 
     The start has positive frequencies and pole damping; each of the two residuals is evaluated ``steps``
@@ -85,57 +100,123 @@ def refine(problem: FitProblem, start: Resonances, *, steps: int = STEPS) -> Ref
     """
     # On the way the effect of the window does not matter, and without it a step takes a sixth of the time.
     plain = problem.without_window() if problem.has_deviations else problem
-    found, converged = _descend(plain, start, "logarithmic", steps)
+    first = ROUGH if problem.has_deviations else tolerance
+    found, converged = _descend(plain, start, "logarithmic", steps, first)
     if problem.has_deviations:
-        found, converged = _descend(problem, found, "complex", steps)
+        found, converged = _descend(problem, found, "complex", steps, tolerance)
     return _judged(problem, found.ordered(), has_converged=converged)
 
 
-def refine_directly(problem: FitProblem, start: Resonances, *, steps: int = STEPS) -> Refined:
+def refine_directly(
+    problem: FitProblem, start: Resonances, *, steps: int = STEPS, tolerance: float = TOLERANCE
+) -> Refined:
     """Return the minimum near a start that is close to one, by the last residual alone."""
     kind = "complex" if problem.has_deviations else "logarithmic"
-    found, converged = _descend(problem, start, kind, steps)
+    found, converged = _descend(problem, start, kind, steps, tolerance)
     return _judged(problem, found.ordered(), has_converged=converged)
 
 
-def _descend(problem: FitProblem, start: Resonances, kind: str, steps: int) -> tuple[Resonances, bool]:
+def _descend(
+    problem: FitProblem, start: Resonances, kind: str, steps: int, tolerance: float
+) -> tuple[Resonances, bool]:
     packed = start.pack(problem.free)
     if not packed.size:
         return start, True
-
-    def resonances(vector: Real) -> Resonances:
-        return start.unpack(np.clip(vector, packed - EDGE, packed + EDGE), problem.free)
-
-    def residual(vector: Real) -> Real:
-        spend()
-        return _parts(np.concatenate(_residuals(problem, resonances(vector), kind)))
-
-    def slopes(vector: Real) -> Real:
-        spend()
-        return _parts(np.concatenate(_slopes(problem, resonances(vector), kind)))
-
-    limits = np.full(packed.size, -np.inf)
+    low, high = packed - EDGE, packed + EDGE
     for r in range(start.responses):
         at = start.places(r, problem.free)
-        limits[at["delay"]] = 0.0
-        if not problem.free.lag_sign:
-            limits[at["lag"]] = 0.0
-    search = partial(
-        least_squares,
-        residual,
-        jac=slopes,
-        x_scale="jac",
-        ftol=TOLERANCE,
-        xtol=TOLERANCE,
-        gtol=TOLERANCE,
-        max_nfev=steps,
-    )
+        low[at["delay"]], high[at["delay"]] = 0.0, np.inf
+        low[at["lag"]], high[at["lag"]] = -np.inf if problem.free.lag_sign else 0.0, np.inf
+        low[at["zeta_z"]], high[at["zeta_z"]] = -np.inf, np.inf
+
+    def residual(vector: Real) -> list[Complex]:
+        return _residuals(problem, start.unpack(vector, problem.free), kind)
+
+    def reduced(vector: Real, rest: list[Complex]) -> tuple[Real, Real]:
+        return _reduced(problem, start.unpack(vector, problem.free), rest, kind)
+
+    found, has_converged = search(residual, reduced, np.clip(packed, low, high), (low, high), steps, tolerance)
+    return start.unpack(found, problem.free), has_converged
+
+
+def search(
+    residual: Callable[[Real], list[Complex]],
+    reduced: Callable[[Real, list[Complex]], tuple[Real, Real]],
+    x: Real,
+    limits: tuple[Real, Real],
+    steps: int,
+    tolerance: float = TOLERANCE,
+) -> tuple[Real, bool]:
+    """Return a minimum of a sum of squares within limits, and whether the search ended before its steps did.
+
+    ``reduced`` returns matrix and right side of the linear equations of a step, of any height.
+    """
+    low, high = limits
+    scale = np.zeros(x.size)
+    damping = FIRST_DAMPING
     with np.errstate(all="ignore"):  # a trial step may be wild; what it leads to is looked at
-        done = search(packed, method="lm")
-        if np.any(done.x < limits):
-            # The slower search, for a time that would have to be negative.
-            done = search(np.maximum(packed, limits), method="trf", bounds=(limits, np.inf))
-    return resonances(done.x), done.status > 0
+        rest = residual(x)
+        cost = _cost(rest)
+        for _ in range(steps):
+            matrix, right = reduced(x, rest)
+            if not (np.isfinite(matrix).all() and np.isfinite(right).all()):
+                break
+            scale = np.maximum(scale, np.linalg.norm(matrix, axis=0))
+            scale[scale == 0] = 1.0
+            # What would leave through a limit that it has reached stays there.
+            gradient = matrix.T @ right
+            is_free = ~(((x <= low) & (gradient > 0)) | ((x >= high) & (gradient < 0)))
+            while damping < MOST_DAMPING:
+                spend()
+                step = np.zeros(x.size)
+                step[is_free] = _step(matrix[:, is_free], right, np.sqrt(damping) * scale[is_free])
+                moved = np.clip(x + step, low, high)
+                step = moved - x
+                expected = float(right @ right - np.sum((matrix @ step + right) ** 2))
+                is_short = np.linalg.norm(scale * step) <= tolerance * np.linalg.norm(scale * x)
+                is_settled = bool(is_short or expected <= tolerance * cost)
+                trial = residual(moved)
+                gained = cost - _cost(trial)
+                if gained > 0:
+                    break
+                if is_settled:
+                    return x, True
+                damping *= HARDER
+            else:
+                return x, True  # no step, however short, lowers the cost
+            x, rest, cost = moved, trial, cost - gained
+            damping = max(damping * EASIER, LEAST_DAMPING)
+            if (is_settled and gained <= tolerance * (cost + gained)) or not cost > 0:
+                return x, True
+    return x, False
+
+
+def _cost(rest: list[Complex]) -> float:
+    return float(sum(np.vdot(one, one).real for one in rest))
+
+
+def _step(matrix: Real, right: Real, damped: Real) -> Real:
+    """Return the step that least squares give to the reduced equations with Marquardt's rows below them."""
+    # Columns are scaled, as they would be in an inverse.
+    stacked = np.concatenate((matrix / damped, np.eye(damped.size)))
+    target = np.concatenate((-right, np.zeros(damped.size)))
+    upper = np.linalg.qr(np.column_stack((stacked, target)), mode="r")
+    size = damped.size
+    return np.asarray(np.linalg.solve(upper[:size, :size], upper[:size, size]) / damped, np.float64)
+
+
+def _reduced(problem: FitProblem, found: Resonances, rest: list[Complex], kind: str) -> tuple[Real, Real]:
+    """Return the linear equations of a step: a triangle for each response, shape (k, p), and their right."""
+    size = found.size(problem.free)
+    rows, right = [], []
+    for r, slopes in enumerate(_slopes(problem, found, kind)):
+        columns = found.columns(r, problem.free)
+        upper = np.linalg.qr(np.column_stack((_parts(slopes), _parts(rest[r]))), mode="r")
+        wide = np.zeros((upper.shape[0], size))
+        wide[:, columns] = upper[:, :-1]
+        rows.append(wide)
+        right.append(upper[:, -1])
+    return np.concatenate(rows), np.concatenate(right)
 
 
 def _parts(values: Complex) -> Real:
@@ -153,13 +234,12 @@ def _residuals(problem: FitProblem, resonances: Resonances, kind: str) -> list[C
     return found
 
 
-def _slopes(problem: FitProblem, resonances: Resonances, kind: str) -> list[Complex]:
-    found: list[Complex] = []
+def _slopes(problem: FitProblem, resonances: Resonances, kind: str) -> Iterator[Complex]:
+    """Yield the derivatives of each response by the parameters it depends on."""
     for r, line in enumerate(problem.lines):
         model, slopes = problem.linearised(resonances, r)
         scale = model * _capped(line.deviation) if kind == "logarithmic" else _absolute(line)
-        found.append(np.asarray(slopes / scale[:, None], np.complex128))
-    return found
+        yield np.asarray(slopes / scale[:, None], np.complex128)
 
 
 def _capped(deviation: Real | None) -> Real:
@@ -174,19 +254,62 @@ def _absolute(line: FittedLines) -> Real:
 def _judged(problem: FitProblem, found: Resonances, *, has_converged: bool) -> Refined:
     kind = "complex" if problem.has_deviations else "logarithmic"
     residuals = _residuals(problem, found, kind)
-    slopes = _slopes(problem, found, kind)
-    scores = [
-        score_covariance(line, line.base * found.factor(r, line.observation.omega), slopes[r])
-        for r, line in enumerate(problem.lines)
-    ]
-    covariance, correlation = _covariance(residuals, slopes, [s for s in scores if s is not None])
-    return Refined(found, has_converged, tuple(residuals), covariance, correlation, slopes[0].shape[1])
+    total = found.size(problem.free)
+    with np.errstate(all="ignore"):
+        sums = _Sums(total, sum(r.size for r in residuals), sum(float(np.vdot(r, r).real) for r in residuals))
+        shares = _correlation(residuals, sums.power)
+        for r, (line, slopes) in enumerate(zip(problem.lines, _slopes(problem, found, kind), strict=True)):
+            score = score_covariance(line, line.base * found.factor(r, line.observation.omega), slopes)
+            sums.add(found.columns(r, problem.free), slopes, score, len(shares))
+        covariance, correlation = _covariance(sums, shares)
+    return Refined(found, has_converged, tuple(residuals), covariance, correlation, total)
 
 
-def _covariance(
-    residuals: list[Complex], slopes: list[Complex], scores: list[Real]
-) -> tuple[Real | None, float]:
-    """Return the covariance of the parameters, None when it is singular, and the factor of correlation.
+class _Sums:
+    """Sums over lines that a covariance is made of; a response adds to those of its own parameters."""
+
+    def __init__(self, size: int, lines: int, power: float) -> None:
+        self.lines, self.power = lines, power
+        self.normal: Real = np.zeros((size, size))
+        self.score: Real | None = np.zeros((size, size))
+        self.crossed: list[Real] = []
+
+    def add(self, columns: Whole, slopes: Complex, score: Real | None, lags: int) -> None:
+        """Add the sums over the lines of one response."""
+        at = np.ix_(columns, columns)
+        self.normal[at] += (np.conj(slopes).T @ slopes).real
+        if score is None:
+            self.score = None
+        elif self.score is not None:
+            self.score[at] += score
+        for lag in range(1, lags + 1):
+            if len(self.crossed) < lag:
+                self.crossed.append(np.zeros_like(self.normal))
+            cross = (np.conj(slopes[:-lag]).T @ slopes[lag:]).real
+            self.crossed[lag - 1][at] += cross + cross.T
+
+
+def _correlation(residuals: list[Complex], power: float) -> list[tuple[float, int]]:
+    """Return the correlation of residuals 1, 2, ... lines apart, and of how many pairs it is a mean.
+
+    It ends at the first that could be chance.
+    """
+    shares: list[tuple[float, int]] = []
+    total = sum(r.size for r in residuals)
+    for lag in range(1, LARGEST_LAG + 1 if power > 0 else 1):
+        pairs = sum(max(r.size - lag, 0) for r in residuals)
+        shared = sum(float(np.sum((np.conj(r[:-lag]) * r[lag:]).real)) for r in residuals)
+        share = shared / power * total / max(pairs, 1)
+        if not share >= 2 / np.sqrt(max(pairs, 1)):
+            break
+        shares.append((share, pairs))
+    return shares
+
+
+def _covariance(sums: _Sums, shares: list[tuple[float, int]]) -> tuple[Real | None, float]:
+    """Return the covariance of the parameters, and the factor of correlation.
+
+    None where it is no number. Parameters that the lines do not determine have infinite variance.
 
     Windows and overlapping records correlate neighbouring lines, so that the inverse of J'J alone would
     promise too much. The correlation up to :data:`LARGEST_LAG` lines is estimated from the residuals, and
@@ -194,39 +317,28 @@ def _covariance(
     responses, the covariance of J'e that follows from it stands there, with as much of that correlation as a
     window does not bring: what a model lacks is not noise. The scale is that of the residuals.
     """
-    stacked = np.concatenate([_parts(s) for s in slopes])
-    if not stacked.shape[1]:
+    count = sums.normal.shape[0]
+    if not count:
         return np.zeros((0, 0)), 1.0
-    size = np.linalg.norm(stacked, axis=0)
-    if not np.all(size > 0) or not np.isfinite(size).all():
+    size = np.sqrt(np.diag(sums.normal))
+    freedom = 2 * sums.lines - count
+    if not np.isfinite(sums.normal).all() or freedom <= 0:
         return None, 1.0
-    scaled = [s / size for s in slopes]
-    normal = sum((np.conj(s).T @ s).real for s in scaled)
-    if np.linalg.cond(normal) > 1 / SINGULAR:
-        return None, 1.0
-    freedom = sum(2 * r.size for r in residuals) - stacked.shape[1]
-    if freedom <= 0:
-        return None, 1.0
-    power = sum(float(np.sum(np.abs(r) ** 2)) for r in residuals)
-    is_explained = len(scores) == len(residuals)
-    middle = np.sum(scores, axis=0) / np.outer(size, size) if is_explained else np.array(normal)
+    size = np.where(size > 0, size, 1.0)
+    scaled = np.outer(size, size)
+    values, vectors = np.linalg.eigh(sums.normal / scaled)
+    is_null = values < SINGULAR * values[-1]
+    inverse = (vectors[:, ~is_null] / values[~is_null]) @ vectors[:, ~is_null].T
+    middle = (sums.normal if sums.score is None else sums.score) / scaled
     factor = 1.0
-    if power == 0:
-        return np.zeros_like(normal), factor
-    for lag in range(1, LARGEST_LAG + 1):
-        pairs = sum(max(r.size - lag, 0) for r in residuals)
-        shared = sum(float(np.sum((np.conj(r[:-lag]) * r[lag:]).real)) for r in residuals)
-        total = sum(r.size for r in residuals)
-        share = shared / power * total / max(pairs, 1)
-        if share < 2 / np.sqrt(max(pairs, 1)):
-            break
-        cross = sum((np.conj(s[:-lag]).T @ s[lag:]).real for s in scaled)
+    for lag, (share, pairs) in enumerate(shares, 1):
         factor += 2 * share
         kept = share
-        if is_explained:
+        if sums.score is not None:
             kept -= HANN_SHARES[lag - 1]
             kept = kept if kept > 2 / np.sqrt(pairs) else 0.0
-        middle = middle + kept * (cross + cross.T)
-    inverse = np.linalg.inv(normal)
-    covariance = inverse @ middle @ inverse * (power / freedom)
-    return covariance / np.outer(size, size), factor
+        middle = middle + kept * sums.crossed[lag - 1] / scaled
+    covariance = inverse @ middle @ inverse * (sums.power / freedom) / scaled
+    lost = np.any(np.abs(vectors[:, is_null]) > NULL_PART, axis=1)
+    covariance[lost, lost] = np.inf
+    return covariance, factor

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.optimize import least_squares
 
+from symflex.data.fitting.lines import isolated, wild_lines
 from symflex.data.fitting.observation import Observation, observe
 from symflex.data.fitting.resonances import Complex, Real
 from symflex.errors import DataError, Diagnostic, FitError, Text, UsageError
@@ -34,6 +35,10 @@ STEP = 1e-6
 KINDS = {(Fraction(-1), Fraction(0)): "kg^(-1/2)", (Fraction(-1), Fraction(-2)): "kg^(-1/2)*m^(-1)"}
 """Units of mode shapes by the exponents of kg and m in a motion over a force, and over a torque."""
 
+MOST_MOVED, MOST_DAMPED = 0.1, 2.0
+"""Of the logarithms of frequencies and damping ratios: how far all responses may move a pole."""
+WEAK = 0.5
+"""Standard error of a damping ratio over its value from which a resonance has no mode shape."""
 RIGHT_ANGLE = 90.0
 MOST_STEPS = 200
 SINGULAR = 1e13
@@ -80,11 +85,12 @@ def mode_shapes(fit: ResonanceFit, measured: Sequence[MeasuredResponse]) -> Fitt
         raise DataError(Diagnostic("SF602", message, None, "all are over one force, or all over one torque"))
     systems = [_system(response, motion) for response, motion in zip(measured, motions, strict=True)]
     logarithms, covariance = _refined(systems, fit)
+    count = logarithms.size // 2
     solved = [_solved(system, logarithms, fit.refined.correlation) for system in systems]
     found = np.array([one.constants for one in solved])
     turned = np.degrees(np.angle(found))
     for i in np.flatnonzero(np.abs(turned[at]) > MOST_TURNED):
-        hertz = float(fit.resonances.omega_p[i]) / (2 * np.pi)
+        hertz = float(np.exp(logarithms[i])) / (2 * np.pi)
         where = f"the modal constant of {names[at]} at {hertz:.4g} Hz"
         message = f"{where} is {turned[at, i]:.0f} degrees off the positive real axis"
         raise FitError(Diagnostic("SF616", message, None, "a response at the driven point has positive ones"))
@@ -97,8 +103,8 @@ def mode_shapes(fit: ResonanceFit, measured: Sequence[MeasuredResponse]) -> Fitt
         np.array([_errors(one, solved[at], covariance, is_driven=k == at) for k, one in enumerate(solved)]),
         turned,
         units[0],
-        np.exp(logarithms[: fit.resonances.count]) / (2 * np.pi),
-        np.exp(logarithms[fit.resonances.count :]),
+        np.exp(logarithms[:count]) / (2 * np.pi),
+        np.exp(logarithms[count:]),
     )
 
 
@@ -139,10 +145,12 @@ class _SolvedShapes:
 
 
 def _system(response: MeasuredResponse, motion: _Motion) -> _ResponseSystem:
-    observation = observe(response.frequency_hz, response.spacing_hz, response.window)
+    wild = wild_lines(response.omega, response.values)
+    kept = np.delete(np.arange(response.omega.size), isolated(wild, response.omega.size))
+    observation = observe(response.frequency_hz, response.spacing_hz, response.window).at(kept)
     relative = response.relative_deviation()
-    deviation = np.abs(response.values) * (1.0 if relative is None else relative)
-    values = response.values / deviation
+    deviation = (np.abs(response.values) * (1.0 if relative is None else relative))[kept]
+    values = response.values[kept] / deviation
     return _ResponseSystem(motion, observation, deviation, np.concatenate([values.real, values.imag]))
 
 
@@ -151,13 +159,17 @@ def _refined(systems: Sequence[_ResponseSystem], fit: ResonanceFit) -> tuple[Rea
 
     SF612 when the search does not end, SF613 when the data do not determine them.
     """
-    found = fit.resonances
-    start = np.log(np.concatenate([found.omega_p, found.zeta_p]))
+    omega, zeta = _shown_poles(fit)
+    start = np.log(np.concatenate([omega, zeta]))
 
     def rest(logarithms: Real) -> Real:
         return np.concatenate([system.rest(logarithms) for system in systems])
 
-    result = least_squares(rest, start, x_scale="jac", max_nfev=MOST_STEPS)
+    # Poles stay near those of the driven point: far from them residues have no meaning.
+    reach = np.repeat([MOST_MOVED, MOST_DAMPED], start.size // 2)
+    result = least_squares(
+        rest, start, bounds=(start - reach, start + reach), x_scale="jac", max_nfev=MOST_STEPS
+    )
     if not result.success:
         raise FitError(Diagnostic("SF612", "the search for poles of all responses did not converge"))
     free = result.fun.size - 2 * start.size * len(systems)
@@ -166,6 +178,19 @@ def _refined(systems: Sequence[_ResponseSystem], fit: ResonanceFit) -> tuple[Rea
     if np.linalg.cond(normal) > SINGULAR:
         raise FitError(Diagnostic("SF613", "the responses do not determine all poles"))
     return result.x, np.linalg.inv(normal) * spread
+
+
+def _shown_poles(fit: ResonanceFit) -> tuple[Real, Real]:
+    """Return the poles of the resonances that have mode shapes: in the band, and determined by the data.
+
+    SF616 when there are none.
+    """
+    found, errors = fit.resonances, fit.standard_errors()
+    shown = fit.modes & (errors.zeta_p <= WEAK * found.zeta_p)
+    if not shown.any():
+        message = "the response at the driven point shows no resonance"
+        raise FitError(Diagnostic("SF616", message, None, "check --driving and --band"))
+    return found.omega_p[shown], found.zeta_p[shown]
 
 
 def _solved(system: _ResponseSystem, logarithms: Real, correlation: float) -> _SolvedShapes:

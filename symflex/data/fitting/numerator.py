@@ -1,7 +1,8 @@
 """What stands over given poles: the power of s, the zeros, the gain and its sign, by linear least squares.
 
-With poles known, ``H(s) prod(poles) = s^k (c_0 + c_1 s + ... + c_2m s^2m)`` is linear in the coefficients
-for each power of s and each number of zero pairs. All of them are solved, which costs no more than one
+With poles known, ``H(s) prod(poles) = s^k (c_0 + c_1 s + ... + c_m s^m)`` is linear in the coefficients
+for each power of s and each number of zeros, which may be one more than there are poles: an inductor, and the
+voice coil of a loudspeaker, have that. All of them are solved, which costs no more than one
 factorisation of the widest, and told apart by the BIC. The sign of the gain is that of ``c_0``.
 """
 
@@ -38,23 +39,27 @@ class Numerator:
     slope: int
     omega_z: Real
     zeta_z: Real
+    real_z: float
     gain: float
     delay: float
 
 
-def strange(omega_z: Real, zeta_z: Real, low: float, high: float) -> npt.NDArray[np.bool_]:
-    """Return which pairs of zeros are hardly those of a structure seen in this band.
+def strange(omega_z: Real, zeta_z: Real, real_z: Real, low: float, high: float) -> int:
+    """Return how many zeros, or pairs of them, are hardly those of a structure seen in this band.
 
     They lie outside it, or are two real ones of the same sign: such zeros make up for noise and for a wrong
     power of s.
     """
     place = np.abs(omega_z)
     outside = np.isfinite(place) & ((place < low) | (place > high))
-    return np.asarray(outside | (np.isfinite(place) & (np.abs(zeta_z) > MOST_DAMPED)))
+    pairs = outside | (np.isfinite(place) & (np.abs(zeta_z) > MOST_DAMPED))
+    corner = np.abs(real_z)
+    single = np.isfinite(corner) & ((corner < low) | (corner > high))
+    return int(pairs.sum() + single.sum())
 
 
-def over_poles(problem: FitProblem, poles: Complex, most: int) -> list[Resonances]:
-    """Return at most so many functions with these poles that describe the lines best, the best first.
+def over_poles(problem: FitProblem, poles: Complex, most: int) -> list[tuple[float, Resonances]]:
+    """Return at most so many functions with these poles that describe the lines best, with their BIC.
 
     Poles lie in the upper half plane; the problem says which powers of s are tried, and dead times to begin
     with.
@@ -63,33 +68,43 @@ def over_poles(problem: FitProblem, poles: Complex, most: int) -> list[Resonance
     if not all(choices):
         return []
     best = [one[0] for one in choices]
-    found = [_together(problem, poles, best)]
+    found = [_together(poles, best)]
     # One response at a time gets its next best.
     for r, one in enumerate(choices):
-        found += [_together(problem, poles, [*best[:r], other, *best[r + 1 :]]) for other in one[1:]]
+        found += [_together(poles, [*best[:r], other, *best[r + 1 :]]) for other in one[1:]]
     return found
 
 
-def _together(problem: FitProblem, poles: Complex, chosen: list[Numerator]) -> Resonances:
-    size = np.abs(poles)
-    return Resonances(
-        size,
-        -poles.real / size,
+def _together(poles: Complex, chosen: list[Numerator]) -> tuple[float, Resonances]:
+    pairs = poles[poles.imag != 0]
+    omega, zeta = np.abs(pairs), -pairs.real / np.abs(pairs)
+    corners = np.sort(-poles[poles.imag == 0].real)
+    # Two real poles are a pair; one that is left stays alone.
+    first, second = corners[: corners.size // 2 * 2 : 2], corners[1::2]
+    centre = np.sqrt(first * second)
+    found = Resonances(
+        np.append(omega, centre),
+        np.append(zeta, (first + second) / (2 * centre)),
         np.array([one.omega_z for one in chosen]),
         np.array([one.zeta_z for one in chosen]),
         np.array([one.gain for one in chosen]),
         delay=np.array([one.delay for one in chosen]),
         slope=np.array([one.slope for one in chosen]),
-    ).ordered()
+        real_p=corners[corners.size // 2 * 2 :],
+        real_z=np.array([one.real_z for one in chosen]),
+    )
+    return sum(one.bic for one in chosen), found.ordered()
 
 
 def _numerators(problem: FitProblem, response: int, poles: Complex, most: int) -> list[Numerator]:
     full = _System(problem, response, poles)
-    shapes = [(slope, pairs) for slope in problem.slopes for pairs in range(poles.size + 1)]
+    order = int(np.sum(np.where(poles.imag == 0, 1, 2)))
+    shapes = [(slope, zeros) for slope in problem.slopes for zeros in range(full.most_zeros + 1)]
     begun = problem.delays[response]
     if not problem.free.delay:
         solved = full.solved(shapes, begun)
-        found = [(rest, begun, shape, c) for shape, (rest, c) in zip(shapes, solved, strict=True)]
+        likely = np.argsort(full.bic(np.array([rest for rest, _ in solved]), shapes))[:MOST_POLISHED]
+        found = [(solved[i][0], begun, shapes[i], solved[i][1]) for i in likely]
     else:
         # Poles hardly depend on the dead time they were found with; what stands over them does.
         thin = _System(problem, response, poles, max(1, full.size // MOST_LINES))
@@ -102,11 +117,11 @@ def _numerators(problem: FitProblem, response: int, poles: Complex, most: int) -
         found = [full.polished(shapes[i], float(tried[np.argmin(table[:, i])])) for i in likely]
     every = []
     for rest, delay, shape, coefficients in found:
-        zeros = _pairs(coefficients, full.middle, poles.size)
+        zeros = _pairs(coefficients, full.middle, order // 2)
         if zeros is not None:
             gain = float(coefficients[0]) / full.middle ** shape[0]
             bic = float(full.bic(np.array([rest]), [shape])[0])
-            bic += STRANGE * int(strange(*zeros, *problem.band).sum())
+            bic += STRANGE * strange(zeros[0], zeros[1], np.array(zeros[2]), *problem.band)
             every.append(Numerator(bic, shape[0], *zeros, gain, delay))
     return sorted(every, key=lambda one: one.bic)[:most]
 
@@ -125,18 +140,23 @@ class _System:
         self.has_gain = problem.free.gain
         below = np.ones(omega.size, np.complex128)
         for pole in poles:
-            below = below * (1 - 2 * pole.real * self.s / abs(pole) ** 2 + (self.s / abs(pole)) ** 2)
+            below = below * (1 - self.s / pole)
+            if pole.imag:
+                below = below * (1 - self.s / np.conj(pole))
         self.first = min(problem.slopes)
-        powers = np.arange(self.first, max(problem.slopes) + 2 * poles.size + 1)
+        order = int(np.sum(np.where(poles.imag == 0, 1, 2)))
+        # As many pairs of zeros as of poles at most, and one more zero.
+        self.most_zeros = order // 2 * 2 + 1
+        powers = np.arange(self.first, max(problem.slopes) + self.most_zeros + 1)
         self.columns = (weight / below)[:, None] * (self.s / self.middle)[:, None] ** powers.astype(float)
 
     def _at(self, shape: tuple[int, int]) -> npt.NDArray[np.intp]:
-        return np.arange(shape[0] - self.first, shape[0] - self.first + 2 * shape[1] + 1)
+        return np.arange(shape[0] - self.first, shape[0] - self.first + shape[1] + 1)
 
     def bic(self, rest: Real, shapes: list[tuple[int, int]]) -> Real:
-        """Return the BIC of sums of squares, one for each power of s and number of pairs."""
+        """Return the BIC of sums of squares, one for each power of s and number of zeros."""
         size = 2 * self.size
-        parameters = np.array([2 * pairs + 1 for _, pairs in shapes])
+        parameters = np.array([zeros + 1 for _, zeros in shapes])
         return np.asarray(size * np.log(rest / size + 1e-9) + parameters * np.log(size), np.float64)
 
     def solved(self, shapes: list[tuple[int, int]], delay: float) -> list[tuple[float, Real]]:
@@ -175,8 +195,12 @@ class _System:
         return rest, delay, shape, coefficients
 
 
-def _pairs(coefficients: Real, middle: float, count: int) -> tuple[Real, Real] | None:
-    """Return frequencies and damping ratios of the zeros of a polynomial, ascending powers of s/middle."""
+def _pairs(coefficients: Real, middle: float, count: int) -> tuple[Real, Real, float] | None:
+    """Return frequencies and damping ratios of the pairs of zeros, and the corner of one more real zero.
+
+    They are those of a polynomial with these coefficients of ascending powers of s/middle. None where it has
+    not the degree it seems to have, or more than ``count`` pairs.
+    """
     if coefficients[0] == 0 or coefficients[-1] == 0 or not np.isfinite(coefficients).all():
         return None
     roots = np.roots(coefficients[::-1]) * middle
@@ -187,10 +211,14 @@ def _pairs(coefficients: Real, middle: float, count: int) -> tuple[Real, Real] |
         while len(side) > 1:
             a, b = side.pop(0), side.pop(0)
             pairs.append((np.sqrt(a * b), sign * (a + b) / (2 * np.sqrt(a * b))))
-    for a, b in zip(left, right, strict=False):
+    single = np.inf
+    if left and right:
+        a, b = left[0], right[0]
         pairs.append((-np.sqrt(a * b), np.sqrt(a * b) / 2 * (1 / a - 1 / b)))
-    if len(pairs) != (coefficients.size - 1) // 2:
-        return None
+    elif left or right:
+        single = left[0] if left else -right[0]
     missing = count - len(pairs)
+    if len(pairs) != (coefficients.size - 1) // 2 or missing < 0:
+        return None
     omega = np.array([*(p[0] for p in pairs), *[np.inf] * missing], np.float64)
-    return omega, np.array([*(p[1] for p in pairs), *[0.0] * missing], np.float64)
+    return omega, np.array([*(p[1] for p in pairs), *[0.0] * missing], np.float64), single

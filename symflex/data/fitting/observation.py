@@ -59,6 +59,13 @@ class Observation:
         seen: Complex = np.asarray(self.matrix @ values)
         return seen if self.mirror is None else np.asarray(seen + self.mirror @ np.conj(values))
 
+    def at(self, places: npt.NDArray[np.int64]) -> Observation:
+        """Return how some of the lines follow from the response."""
+        if self.matrix is None or self.places is None:
+            return Observation(self.omega[places])
+        mirror = None if self.mirror is None else self.mirror[places]
+        return Observation(self.omega, self.matrix[places], mirror, self.places[places])
+
     def around(self, values: Complex) -> Complex | None:
         """Return the response at the frequencies that each line sees, shape (n, u); None without a window."""
         if self.places is None:

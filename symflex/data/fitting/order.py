@@ -1,56 +1,74 @@
-"""From data to the best fit with a number of resonances, given or chosen by an information criterion.
+"""From data to the best fit with a number of poles, given or chosen by an information criterion.
 
 One resonance at 10 Hz, measured on 300 lines with 1 % of noise:
 
-    resonances                        0      1      2      3
-    sum of squares per freedom     3267   0.995  0.972  0.955
-    BIC                            4860     24     31     42
+    poles                             0      1      2      3      4
+    sum of squares per freedom     3267   2893  0.995  0.992  0.972
+    BIC                            4860   4820     24     29     31
 
-One is chosen: its BIC is the least, and two or three explain less than their parameters cost. A number is
-tried with few steps of the search first; the one preferred is then fitted to the end, and given up where a
-damping ratio is lost in its own error, or where the evidence for it is not strong.
+Two are chosen, which are one resonance: their BIC is the least, and more explain less than their parameters
+cost. Poles are counted one by one, because some are real; pairs outside the band and real poles are residual
+terms, which stand for what a resonance in the band is not. A number is tried with few steps of the search
+first, on lines that tell the most; the one preferred is then fitted to the end on all lines, and given up
+where a damping ratio is lost in its own error, or where the evidence for it is not strong. There always is a
+result: where all are given up, it is the best of them, and says why it is poor.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TypedDict
 
 import numpy as np
 from scipy.stats import f
 
-from symflex.data.fitting.least_squares import STEPS, Refined, refine, refine_directly
+from symflex.budget import TIME_OVER, entered_budget
+from symflex.data.fitting.least_squares import ROUGH, STEPS, TOLERANCE, Refined, refine, refine_directly
 from symflex.data.fitting.numerator import STRANGE, over_poles, strange
 from symflex.data.fitting.problem import FitProblem, estimated
 from symflex.data.fitting.resonances import Complex, Resonances
 from symflex.data.fitting.starts import (
-    find_modes,
     poles_from_aaa,
     poles_from_vector_fitting,
     relocated,
     start_from_peaks,
 )
-from symflex.errors import Diagnostic, FitError
+from symflex.errors import BudgetError, Diagnostic
+
+class _Effort(TypedDict):
+    """What a search may take."""
+
+    steps: int
+    tolerance: float
+
 
 CRITERIA = ("bic", "aicc")
 MOST_MODES = 12
 """Beyond, ask for a number: each one tried costs a fit from up to three kinds of starts."""
+EXTRA = 5
+"""Poles beyond those of the resonances that are asked for: modes outside the band, and real ones."""
 PATIENCE, MORE_PATIENCE = 1, 3
-"""Numbers of resonances tried after the best: where the noise is nearly reached, and where it is far."""
-QUICK_STEPS = 25
-"""A quarter of the steps of a whole search, enough to compare numbers of resonances."""
+"""Numbers of pairs tried after the best: where the noise is nearly reached, and where it is far."""
+SHARE, LAST_SHARE = 0.5, 0.8
+"""Parts of the time given when numbers have been compared, and when the fit to all lines has ended."""
+THOROUGH = _Effort(steps=STEPS, tolerance=TOLERANCE)
+QUICK = _Effort(steps=25, tolerance=ROUGH)
+"""A quarter of the steps of a whole search, enough to compare numbers of poles."""
 EXPLAINED = 1.15
 """Sum of squares per degree of freedom up to which noise explains what is left; 1 is expected."""
 WEAK = 0.5
 """Standard error of ln zeta beyond which fewer resonances are preferred, unless that is far worse."""
 FAR_BETTER = 4.0
 """Ratio of sums of squares at which a failed fit is said rather than replaced, and a weak one kept."""
+FAR_OFF = 100.0
+"""Sum of squares per degree of freedom from which poles are missing, whatever the start."""
 LOWER = 0.5
 """How far the BIC has to fall for another start to count as better."""
 NEGLIGIBLE = 1e-6
 """Mean square, in units of the noise, below which residuals are rounding and tell nothing apart."""
-MOST_NUMERATORS = 3
-"""The likeliest numerators over each choice of poles that are fitted."""
+MOST_NUMERATORS, MOST_STARTS = 3, 4
+"""The likeliest numerators over each choice of poles, and of these the likeliest that are fitted."""
 SAME = 1e-3
 """Relative distance below which two starts have the same poles."""
 MOST_RISE = 1.5
@@ -63,22 +81,23 @@ UNLIKELY = 1e-5
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """The best fit with one number of resonances."""
+    """The best fit with one number of poles."""
 
-    count: int  # how many resonances
+    order: int  # how many poles
     start_kind: str  # the key of :data:`STARTS` that led to it
     start: Resonances  # where it began
     refined: Refined  # where it ended
-    failure: Diagnostic | None  # why it cannot be a result
+    failure: Diagnostic | None  # why it had better not be a result
     rival: Refined | None = None  # the best fit met with another power of s
+    is_rivalled: bool = False  # whether that describes the lines as well
 
 
 @dataclass(frozen=True, slots=True)
 class Score:
-    """What the criteria say of one number of resonances; lower is better."""
+    """What the criteria say of one number of poles; lower is better."""
 
-    # count and parameters: resonances and parameters.
-    count: int
+    order: int  # poles
+    count: int  # resonances in the band among them
     parameters: int
     # bic and aicc: schwarz 1978; Hurvich & Tsai 1989.
     bic: float
@@ -94,12 +113,14 @@ class Score:
         return self.status == "usable"
 
 
-def _from_peaks(problem: FitProblem, count: int) -> Iterator[Resonances]:
+def _from_peaks(problem: FitProblem, order: int) -> Iterator[Resonances]:
     """Return the start of the paper, and what linear least squares put over its poles."""
+    if order % 2:
+        return
     slopes = problem.slopes
     if len(slopes) > 1:
         slopes = tuple(slope for slope in (problem.guessed_slope(),) if slope in problem.slopes) or slopes[:1]
-    start = start_from_peaks(problem.with_slope(slopes[0]), count)
+    start = start_from_peaks(problem.with_slope(slopes[0]), order // 2)
     if start is None:
         return
     start = replace(start, slope=np.full(start.responses, slopes[0]), delay=np.array(problem.delays))
@@ -109,52 +130,64 @@ def _from_peaks(problem: FitProblem, count: int) -> Iterator[Resonances]:
 
 
 def _over(problem: FitProblem, choices: list[Complex]) -> Iterator[Resonances]:
-    """Return the likely functions over each choice of poles."""
+    """Return the likeliest functions over all choices of poles, the best first."""
     known: list[Complex] = []
+    found: list[tuple[float, Resonances]] = []
     for poles in choices:
         if any(
             other.size == poles.size and np.all(abs(other - poles) < SAME * abs(poles)) for other in known
         ):
             continue
         known.append(poles)
-        yield from over_poles(problem, poles, MOST_NUMERATORS)
+        found += over_poles(problem, poles, MOST_NUMERATORS)
+    for _, resonances in sorted(found, key=lambda one: one[0])[:MOST_STARTS]:
+        yield resonances
 
 
 STARTS: Mapping[str, Callable[[FitProblem, int], Iterator[Resonances]]] = {
     "peaks": _from_peaks,
-    "vector": lambda problem, count: _over(problem, poles_from_vector_fitting(problem, count)),
-    "aaa": lambda problem, count: _over(problem, poles_from_aaa(problem, count)),
+    "vector": lambda problem, order: _over(problem, poles_from_vector_fitting(problem, order)),
+    "aaa": lambda problem, order: _over(problem, [] if order % 2 else poles_from_aaa(problem, order // 2)),
 }
 """Ways to begin, the most promising start first; ``auto`` tries all and keeps the best."""
 
 
 def best_of_starts(
-    problem: FitProblem, count: int, kind: str = "auto", *, is_quick: bool = False
+    problem: FitProblem, order: int, kind: str = "auto", *, is_quick: bool = False
 ) -> Candidate | None:
-    """Return the best fit with so many resonances, at least one; None when no start has as many.
+    """Return the best fit with so many poles; None when no start has as many.
 
     ``kind`` is a key of :data:`STARTS`, or ``auto``. A quick one takes few steps, for comparing numbers of
-    resonances.
+    poles.
     """
     kinds = [kind]
     if kind == "auto":
         # On a known base the procedure of the paper is tried first; without, the powers of s are open.
         kinds = list(STARTS) if len(problem.slopes) == 1 else ["vector", "peaks", "aaa"]
+        if is_quick and len(problem.slopes) > 1:
+            kinds = kinds[:1]
+    if not order:
+        kinds = ["vector"]
     best: Candidate | None = None
     met: list[Refined] = []
     for name in kinds:
         if name == "aaa" and best is not None and best.failure is None and kind == "auto":
             break  # the slowest of the three, for where the others fail
-        for start in STARTS[name](problem, count):
-            refined = refine(problem, start, steps=QUICK_STEPS if is_quick else STEPS)
+        for start in STARTS[name](problem, order):
+            effort = QUICK if is_quick else THOROUGH
+            refined = refine(problem, start, **effort)
             if not (refined.has_converged or is_quick) and (
                 best is None or _merit(problem, refined) < _merit(problem, best.refined)
             ):
                 refined = refine_directly(problem, refined.resonances, steps=2 * STEPS)
-            found = Candidate(count, name, start, refined, _failure(problem, refined, is_quick=is_quick))
+            found = Candidate(
+                order, name if order else "none", start, refined, _failure(problem, refined, is_quick=is_quick)
+            )
             met.append(refined)
             if best is None or _is_better(problem, found, best):
                 best = found
+            if is_quick and best.refined.reduced > FAR_OFF:
+                break
             # Where the power of s is open, another may explain the lines as well.
             if len(problem.slopes) == 1 and _is_enough(problem, best):
                 break
@@ -170,117 +203,153 @@ def best_of_starts(
 
 
 def chosen_order(
-    problem: FitProblem, kind: str = "auto", criterion: str = "bic"
-) -> tuple[Candidate, tuple[Score, ...]]:
-    """Return the fit whose number of resonances the criterion prefers, and what it says of all tried.
+    problem: FitProblem, thin: FitProblem, modes: int | None, kind: str, criterion: str
+) -> tuple[Candidate, tuple[Score, ...], tuple[str, ...]]:
+    """Return the fit whose number of poles the criterion prefers, what it says of all, and what is wrong.
 
-    SF611 when no resonance improves on the base alone; SF612 to SF614 when the number preferred by far gives
-    no fit.
+    ``thin`` is the problem on the lines on which numbers are compared. With ``modes``, so many resonances in
+    the band are wanted; the criterion chooses the number of residual terms.
     """
-    # Numbers are compared without the window, a sixth of the work; the best one is then fitted with it.
-    plain = problem.without_window()
-    nothing = _nothing(problem)
-    tried = [Candidate(0, "none", nothing, refine(plain, nothing), None)]
-    scores = [_score(plain, tried[0], 1.0)]
-    worse = 0
-    for count in range(1, MOST_MODES + 1):
-        found = best_of_starts(plain, count, kind, is_quick=True)
-        if found is None:
+    tried, reasons = _tried(thin, modes, kind, criterion)
+    # What is correlated because a resonance lacks tells nothing of the noise.
+    closest = min(tried, key=lambda one: one.refined.reduced)
+    scores = [_score(thin, one, closest.refined.correlation) for one in tried]
+    by_order = {one.order: one for one in tried}
+    wanted = [s for s in scores if modes is None or s.count == modes]
+    if not wanted:
+        reasons.append(too_few(thin, modes or 0, max(s.count for s in scores)))
+        wanted = scores
+    given_up: list[tuple[Score, Candidate]] = []
+    result: Candidate | None = None
+    for score in sorted(wanted, key=lambda s: _value(s, criterion)):
+        far_better = [
+            one for s, one in given_up if FAR_BETTER * (s.reduced + NEGLIGIBLE) < score.reduced + NEGLIGIBLE
+        ]
+        if far_better:
+            result = far_better[0]
             break
-        tried.append(found)
-        scores = [_score(plain, candidate, found.refined.correlation) for candidate in tried]
-        usable = [_value(s, criterion) for s in scores[:-1] if s.is_usable]
-        is_lower = scores[-1].is_usable and _value(scores[-1], criterion) < min(usable)
-        worse = 0 if is_lower else worse + 1
-        # Fewer resonances than there are may be no better than none, each with something large left over.
-        is_near = min(s.reduced for s in scores) < FAR_BETTER or not problem.is_noise_estimated
-        if worse > (PATIENCE if is_near else MORE_PATIENCE):
-            break
-    weak: tuple[Score, Candidate] | None = None
-    failed: list[tuple[Score, Diagnostic]] = []
-    least = min(s.reduced for s in scores if s.is_usable)
-    # A quick fit may have failed for want of steps: where it is far better than the others, it gets them.
-    worth = [s for s in scores if s.is_usable or FAR_BETTER * (s.reduced + NEGLIGIBLE) < least]
-    for score in sorted(worth, key=lambda s: _value(s, criterion)):
-        if weak is not None and FAR_BETTER * (weak[0].reduced + NEGLIGIBLE) < score.reduced:
-            return weak[1], tuple(scores)
-        for better, failure in failed:
-            if FAR_BETTER * (better.reduced + NEGLIGIBLE) < score.reduced:
-                raise FitError(_preferred(better, failure, problem_has_base=problem.has_base))
-        if score.count == 0:
-            break
-        best = _continued(problem, tried[score.count])
-        if best.failure is not None or not _is_explained(problem, best.refined):
-            again = best_of_starts(problem, score.count, kind)
-            if again is not None and _is_better(problem, again, best):
-                best = again
+        best = _continued(problem, thin, by_order[score.order], kind)
+        status = "usable"
         if best.failure is not None:
-            failed.append((score, best.failure))
-            scores = _marked(scores, score.count, "failed")
-        elif _is_weak(best.refined) or not _is_founded(scores, score, criterion):
-            weak = weak or (score, best)
-            scores = _marked(scores, score.count, "weak")
-        else:
-            return best, tuple(_marked(scores, score.count, "usable"))
-    raise FitError(no_resonance(problem))
+            status = "failed"
+        elif score.order and modes is None:
+            is_weak = _is_weak(best.refined, thin.band) or not _is_founded(scores, score, criterion)
+            status = "weak" if is_weak else status
+        scores = [replace(s, status=status) if s.order == score.order else s for s in scores]
+        if status == "usable":
+            result = best
+            break
+        given_up.append((score, best))
+    result = result or given_up[0][1]
+    if result.failure is not None:
+        reasons.append(result.failure.message)
+    return result, tuple(scores), tuple(reasons)
 
 
-def _marked(scores: Sequence[Score], count: int, status: str) -> list[Score]:
-    return [replace(score, status=status) if score.count == count else score for score in scores]
+def _tried(
+    thin: FitProblem, modes: int | None, kind: str, criterion: str
+) -> tuple[list[Candidate], list[str]]:
+    """Return quick fits with numbers of poles until more explain nothing, or the time for them is over.
 
+    Even numbers first, then those beside the best of them.
+    """
+    first, last = (0, 2 * MOST_MODES) if modes is None else (2 * modes, 2 * modes + EXTRA)
+    tried: list[Candidate] = []
+    budget = entered_budget()
 
-def _preferred(score: Score, failure: Diagnostic, *, problem_has_base: bool) -> Diagnostic:
-    """Return the failure of the number that the criterion prefers by far."""
-    message = f"{score.count} resonances describe the data far better than fewer do, but {failure.message}"
-    known = "check --base" if problem_has_base else "give what is known of the system with --base"
-    hint = f"{known}, or a number with --modes"
-    return Diagnostic(failure.code, message, None, hint)
+    def values() -> list[float]:
+        """Return what the criterion says of each one tried; infinite where that failed."""
+        scores = [_score(thin, one, tried[-1].refined.correlation) for one in tried]
+        return [_value(s, criterion) if s.is_usable else np.inf for s in scores]
+
+    def attempt(order: int) -> bool:
+        """Try a number; return whether that settles it."""
+        done = SHARE * (order - first) / (last - first + 1)
+        budget.progress.report(done, f"fit with {order} poles to {thin.count} lines")
+        found = best_of_starts(thin, order, kind, is_quick=modes is None)
+        if found is None:
+            return False
+        tried.append(found)
+        if modes is not None:
+            resonances = found.refined.resonances
+            return int(resonances.in_band(*thin.band).sum()) == modes and _is_enough(thin, found)
+        return found.refined.reduced < NEGLIGIBLE and thin.is_noise_estimated  # the data are exact
+
+    worse = 0
+    try:
+        with budget.share(SHARE).entered():
+            for order in range(first, last + 1, 2):
+                if attempt(order):
+                    return tried, []
+                now = values()
+                worse = worse + 1 if now and now[-1] > min(now) else 0
+                least = min((one.refined.reduced for one in tried), default=np.inf)
+                has_scale = thin.is_noise_estimated or thin.is_noise_known
+                # Fewer poles than there are may be no better than none, each with something large left over.
+                patience = MORE_PATIENCE if not has_scale or least > FAR_BETTER else PATIENCE
+                if worse > (0 if has_scale and least < EXPLAINED else patience):
+                    break
+            if tried:
+                best = tried[int(np.argmin(values()))].order
+                for order in (best - 1, best + 1):
+                    if first <= order <= last:
+                        attempt(order)
+    except BudgetError as error:
+        if error.diagnostics[0].code != TIME_OVER.code:
+            raise
+        return tried or [_nothing(thin)], ["the time given was over before all numbers of poles were tried"]
+    return sorted(tried, key=lambda one: one.order) or [_nothing(thin)], []
 
 
 def _is_founded(scores: Sequence[Score], score: Score, criterion: str) -> bool:
     """Return whether there is strong evidence for so many: one more may have found its place in the noise."""
-    fewer = [_value(s, criterion) for s in scores if s.count < score.count and s.status != "failed"]
+    fewer = [_value(s, criterion) for s in scores if s.order < score.order and s.status != "failed"]
     return not fewer or _value(score, criterion) < min(fewer) - CLEAR
 
 
-def _is_weak(refined: Refined) -> bool:
-    """Return whether the damping of a pole is lost in its own error: such a resonance fits noise."""
-    covariance = refined.covariance
+def _is_weak(refined: Refined, band: tuple[float, float]) -> bool:
+    """Return whether the damping of a resonance is lost in its own error: such a resonance fits noise."""
+    covariance, found = refined.covariance, refined.resonances
     if covariance is None:
         return True
-    n = refined.resonances.count
-    return bool(np.any(np.sqrt(np.diag(covariance)[n : 2 * n]) > WEAK))
+    n = found.count
+    return bool(np.any(np.sqrt(np.diag(covariance)[n : 2 * n])[found.in_band(*band)] > WEAK))
 
 
-def _continued(problem: FitProblem, quick: Candidate) -> Candidate:
-    """Return where a quick fit leads with all steps, and with the window."""
-    refined = refine_directly(problem, quick.refined.resonances, steps=3 * STEPS)
-    return _signs_tried(problem, replace(quick, refined=refined, failure=_failure(problem, refined)))
+def _continued(problem: FitProblem, thin: FitProblem, quick: Candidate, kind: str) -> Candidate:
+    """Return where a quick fit leads with all steps, on all lines and with the window."""
+    refined = refine_directly(thin, quick.refined.resonances, steps=3 * STEPS)
+    best = _simplified(thin, replace(quick, refined=refined, failure=_failure(problem, refined)), is_quick=False)
+    best = _signs_tried(thin, best)
+    if best.failure is not None or not _is_explained(thin, best.refined):
+        again = best_of_starts(thin, quick.order, kind)
+        if again is not None and _is_better(thin, again, best):
+            best = again
+    rivalled = best.rival is not None and _merit(thin, best.rival) < _merit(thin, best.refined) + CLEAR
+    best = replace(best, is_rivalled=rivalled)
+    if thin.count == problem.count and all(line.observation.matrix is None for line in problem.lines):
+        return best
+    budget = entered_budget()
+    budget.progress.report(SHARE, f"fit with {best.order} poles to {problem.count} lines")
+    try:
+        with budget.share(LAST_SHARE).entered():
+            refined = refine_directly(problem, best.refined.resonances, steps=3 * STEPS)
+    except BudgetError as error:
+        if error.diagnostics[0].code != TIME_OVER.code:
+            raise
+        refined = refine_directly(problem, best.refined.resonances, steps=0)
+    return replace(best, refined=refined, failure=_failure(problem, refined))
 
 
 def _value(score: Score, criterion: str) -> float:
     return score.bic if criterion == "bic" else score.aicc
 
 
-def no_resonance(problem: FitProblem) -> Diagnostic:
-    """Return the message that there is nothing to fit."""
+def too_few(problem: FitProblem, count: int, found: int) -> str:
+    """Return what is said where no fit has as many resonances in the band as asked for."""
     low, high = (value / (2 * np.pi) for value in problem.band)
-    message = f"the data show no resonance between {low:.4g} and {high:.4g} Hz"
-    if problem.has_base:
-        message += " that the base does not have"
-    what = "the base and the band" if problem.has_base else "the data and the band"
-    return Diagnostic("SF611", message, None, f"check {what}; --modes N asks for N all the same")
-
-
-def too_few(problem: FitProblem, count: int, kind: str) -> Diagnostic:
-    """Return the message that no start has as many resonances as asked for."""
-    if kind in ("auto", "peaks"):
-        seen = len(find_modes(problem))
-        message = f"{count} resonances are asked for, and the magnitude shows {seen} peaks"
-        message += " over the base" if problem.has_base else ""
-    else:
-        message = f"{count} resonances are asked for, and '{kind}' finds fewer"
-    return Diagnostic("SF611", message, None, "ask for fewer with --modes, or try --start vector")
+    over = " over the base" if problem.has_base else ""
+    return f"{count} resonances are asked for, and the best fit has {found}{over} between {low:.4g} and {high:.4g} Hz"
 
 
 def undetermined() -> Diagnostic:
@@ -293,12 +362,13 @@ def undetermined() -> Diagnostic:
     )
 
 
-def _nothing(problem: FitProblem) -> Resonances:
-    """Return the function without resonances: the base, or a gain and a power of s."""
+def _nothing(problem: FitProblem) -> Candidate:
+    """Return the function without poles that no start led to: the base, or a gain."""
     none = np.zeros(0, np.complex128)
     empty = np.zeros((len(problem.lines), 0))
     plain = Resonances(none.real, none.real, empty, empty, np.ones(len(problem.lines)))
-    return next(iter(over_poles(problem, none, 1)), plain)
+    refined = refine(problem, plain, **QUICK)
+    return Candidate(0, "none", plain, refined, _failure(problem, refined))
 
 
 def _merit(problem: FitProblem, refined: Refined) -> float:
@@ -306,7 +376,7 @@ def _merit(problem: FitProblem, refined: Refined) -> float:
     size = 2 * problem.count
     merit = float(size * np.log(refined.cost / size + NEGLIGIBLE) + refined.parameters * np.log(size))
     found = refined.resonances
-    return merit + STRANGE * int(strange(found.omega_z, found.zeta_z, *problem.band).sum())
+    return merit + STRANGE * strange(found.omega_z, found.zeta_z, found.real_z, *problem.band)
 
 
 def _is_better(problem: FitProblem, found: Candidate, best: Candidate) -> bool:
@@ -323,9 +393,9 @@ def _simplified(problem: FitProblem, best: Candidate, *, is_quick: bool) -> Cand
     A pair far above the band is left out; one far below is a power of s, where that may be chosen.
     """
     low, high = problem.band
-    steps = QUICK_STEPS if is_quick else STEPS
+    effort = QUICK if is_quick else THOROUGH
     for r in range(len(problem.lines)):
-        for i in reversed(range(best.count)):
+        for i in reversed(range(best.refined.resonances.count)):
             now = best.refined.resonances
             place = abs(now.omega_z[r, i])
             if not np.isfinite(place) or low <= place <= high:
@@ -338,17 +408,37 @@ def _simplified(problem: FitProblem, best: Candidate, *, is_quick: bool) -> Cand
                     continue
             omega_z[r, i] = np.inf
             start = replace(now, omega_z=omega_z, gain=gain, slope=slope).ordered()
-            refined = refine_directly(problem, start, steps=steps)
+            if not _is_promising(problem, r, now, start):
+                continue
+            refined = refine_directly(problem, start, **effort)
             found = replace(best, refined=refined, failure=_failure(problem, refined, is_quick=is_quick))
             if _is_better(problem, found, best):
                 best = found
+        now = best.refined.resonances
+        corner = abs(now.real_z[r])
+        if not np.isfinite(corner) or low <= corner <= high:
+            continue
+        real_z, gain, slope = now.real_z.copy(), now.gain.copy(), now.slope.copy()
+        if corner < low:
+            slope[r] += 1
+            gain[r] /= real_z[r]
+            if slope[r] not in problem.slopes:
+                continue
+        real_z[r] = np.inf
+        start = replace(now, real_z=real_z, gain=gain, slope=slope)
+        if not _is_promising(problem, r, now, start):
+            continue
+        refined = refine_directly(problem, start, **effort)
+        found = replace(best, refined=refined, failure=_failure(problem, refined, is_quick=is_quick))
+        if _is_better(problem, found, best):
+            best = found
     return best
 
 
 def _signs_tried(problem: FitProblem, best: Candidate) -> Candidate:
     """Return the fit after trying each pair of zeros in the other half plane: magnitude hardly tells."""
     for r in range(len(problem.lines)):
-        for i in range(best.count):
+        for i in range(best.refined.resonances.count):
             now = best.refined.resonances
             if not 0 < now.omega_z[r, i] < np.inf:
                 continue
@@ -357,11 +447,22 @@ def _signs_tried(problem: FitProblem, best: Candidate) -> Candidate:
             start = replace(now, zeta_z=flipped)
             if _logarithmic_cost(problem, start) > MOST_RISE * _logarithmic_cost(problem, now):
                 continue
+            if not _is_promising(problem, r, now, start):
+                continue
             refined = refine_directly(problem, start)
             found = replace(best, refined=refined, failure=_failure(problem, refined))
             if _is_better(problem, found, best):
                 best = found
     return best
+
+
+def _is_promising(problem: FitProblem, r: int, now: Resonances, start: Resonances) -> bool:
+    """Return whether one response of several is described better from another start, with poles of its own."""
+    if len(problem.lines) == 1:
+        return True
+    single = replace(problem, lines=problem.lines[r : r + 1], delays=problem.delays[r : r + 1])
+    best, other = (refine_directly(single, one.one(r), **QUICK) for one in (now, start))
+    return _merit(single, other) < _merit(single, best) - LOWER
 
 
 def _logarithmic_cost(problem: FitProblem, resonances: Resonances) -> float:
@@ -382,25 +483,16 @@ def _is_explained(problem: FitProblem, refined: Refined) -> bool:
 
 
 def _failure(problem: FitProblem, refined: Refined, *, is_quick: bool = False) -> Diagnostic | None:
-    """Return why a minimum cannot be a result, None when it can."""
+    """Return why a minimum had better not be a result, None when it may."""
     if not (refined.has_converged or is_quick) or not np.isfinite(refined.cost):
         hint = "ask for fewer resonances, or for another --start"
         return Diagnostic("SF612", "the fit did not converge", None, hint)
     if refined.covariance is None:
         return undetermined()
-    low, high = problem.band
-    if not problem.has_base and np.any(refined.resonances.zeta_p >= 1):
-        i = int(np.argmax(refined.resonances.zeta_p))
-        message = f"pole pair {i + 1} has the damping ratio {refined.resonances.zeta_p[i]:.3g}"
-        hint = "ask for fewer resonances, or give what is known of the system with --base"
-        return Diagnostic("SF614", f"{message}: two real poles, no resonance", None, hint)
-    for i, omega in enumerate(refined.resonances.omega_p.tolist()):
-        if not low <= omega <= high:
-            message = (
-                f"pole pair {i + 1} went to {omega / (2 * np.pi):.4g} Hz, outside the band measured, "
-                f"{low / (2 * np.pi):.4g} to {high / (2 * np.pi):.4g} Hz"
-            )
-            return Diagnostic("SF614", message, None, "ask for fewer resonances, or check the base")
+    # Residual terms may be undetermined: what a mode far outside damps is not seen in the band.
+    modes = np.tile(refined.resonances.in_band(*problem.band), 2)
+    if not np.isfinite(np.diag(refined.covariance)[: modes.size][modes]).all():
+        return undetermined()
     return None
 
 
@@ -417,11 +509,10 @@ def with_own_noise(candidate: Candidate, problem: FitProblem) -> tuple[Candidate
     return replace(candidate, refined=again), own
 
 
-def is_rivalled(problem: FitProblem, candidate: Candidate) -> bool:
-    """Return whether another power of s describes the lines as well."""
-    if candidate.rival is None:
-        return False
-    return _merit(problem, candidate.rival) < _merit(problem, candidate.refined) + CLEAR
+def refitted(candidate: Candidate, problem: FitProblem) -> Candidate:
+    """Return the fit to a problem with other lines than those it was found with."""
+    refined = refine_directly(problem, candidate.refined.resonances, steps=2 * STEPS)
+    return replace(candidate, refined=refined, failure=_failure(problem, refined))
 
 
 def lack_of_fit(problem: FitProblem, refined: Refined) -> float:
@@ -444,7 +535,8 @@ def _score(problem: FitProblem, candidate: Candidate, correlation: float) -> Sco
     spare = size - parameters - 1
     aicc = fit + 2 * parameters + (2 * parameters * (parameters + 1) / spare if spare > 0 else np.inf)
     return Score(
-        candidate.count,
+        candidate.order,
+        int(refined.resonances.in_band(*problem.band).sum()),
         parameters,
         fit + parameters * float(np.log(size)),
         float(aicc),

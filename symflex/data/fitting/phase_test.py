@@ -24,10 +24,9 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final, Literal
 
 import numpy as np
-from scipy.optimize import least_squares
 from scipy.signal import medfilt
 
-from symflex.data.fitting.least_squares import CAP, EDGE, STEPS
+from symflex.data.fitting.least_squares import CAP, EDGE, ROUGH, STEPS, search
 from symflex.data.fitting.resonances import Complex, Real, Resonances
 
 if TYPE_CHECKING:
@@ -169,35 +168,34 @@ class _PhaseSearch:
             packed = np.append(packed, 0.0)
 
         def resonances(vector: Real) -> Resonances:
-            plain = np.clip(vector, packed - EDGE, packed + EDGE)
+            plain = vector.copy()
             plain[damping] = np.exp(plain[damping])
             return start.unpack(plain[:-1] if kind == "lag" else plain, free)
 
-        def residual(vector: Real) -> Real:
+        def residual(vector: Real) -> list[Complex]:
             model = self.single.values(resonances(vector), 0)
-            level = self.level(model) * self.weight
+            level = self.level(model) * self.weight + 0j
             if kind == "magnitude":
-                return level
+                return [level]
             if kind == "lag":
                 model = model * np.exp(-1j * turn * vector[-1])
-            return np.concatenate((level, np.angle(model / self.line.measured.values) * self.weight))
+            return [level + 1j * np.angle(model / self.line.measured.values) * self.weight]
 
-        def slopes(vector: Real) -> Real:
+        def reduced(vector: Real, rest: list[Complex]) -> tuple[Real, Real]:
             now = resonances(vector)
             model, by = self.single.linearised(now, 0)
             by = by / model[:, None]
             by[:, damping] *= now.zeta_z[0, now.has_zeros[0]]
-            if kind == "magnitude":
-                return np.asarray(by.real * self.weight[:, None], np.float64)
             if kind == "lag":
                 by = np.column_stack((by, -1j * turn))
-            return np.concatenate((by.real, by.imag)) * np.tile(self.weight, 2)[:, None]
+            whole = np.column_stack((by * self.weight[:, None], rest[0]))
+            parts = whole.real if kind == "magnitude" else np.concatenate((whole.real, whole.imag))
+            upper = np.linalg.qr(parts, mode="r")
+            return upper[:, :-1], upper[:, -1]
 
         best = packed
         if packed.size:
-            with np.errstate(all="ignore"):  # a trial step may be wild
-                done = least_squares(residual, packed, slopes, method="lm", x_scale="jac", max_nfev=STEPS)
-            best = done.x
+            best, _ = search(residual, reduced, packed, (packed - EDGE, packed + EDGE), STEPS, ROUGH)
         lag = float(np.clip(best[-1], -MOST_LAG, MOST_LAG) / omega[-1]) if kind == "lag" else 0.0
         return resonances(best).ordered(), lag
 
@@ -207,7 +205,9 @@ def _mirrored(fitted: Resonances) -> Resonances:
     zeta = np.abs(fitted.zeta_z)
     # Real zeros of opposite sign, mirrored, are an overdamped pair.
     zeta = np.where(fitted.omega_z < 0, np.hypot(1, zeta), np.maximum(zeta, LOWEST_DAMPING))
-    return replace(fitted, omega_z=np.abs(fitted.omega_z), zeta_z=zeta)
+    return replace(
+        fitted, omega_z=np.abs(fitted.omega_z), zeta_z=zeta, real_z=np.abs(fitted.real_z)
+    )
 
 
 def _parted(frequency_hz: Real, difference: Real, noise: Real) -> tuple[PartedBand, ...]:

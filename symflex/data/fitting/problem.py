@@ -16,8 +16,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from symflex.data.fitting.lines import telling_lines
 from symflex.data.fitting.observation import Observation, observe
-from symflex.data.fitting.resonances import Complex, Free, Real, Resonances
+from symflex.data.fitting.resonances import Complex, Free, Real, Resonances, Whole
 from symflex.data.fitting.starts import generous_fit
 
 if TYPE_CHECKING:
@@ -41,6 +42,8 @@ PATIENCE = 2
 """Numbers of pairs tried after the best one."""
 FEWEST = 5
 """Lines from which the noise is guessed at all."""
+LARGEST = 20.0
+"""Power of an error, over what is expected of it, beyond which it counts as no more than this."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +57,8 @@ class FittedLines:
     base_at_lines: Complex
     # shape (n,): Standard deviation of each part over the magnitude; None when there is no coherence.
     deviation: Real | None
+    # All lines of the measurement, where this is a part of them.
+    whole: FittedLines | None = None
 
     @property
     def omega(self) -> Real:
@@ -64,6 +69,36 @@ class FittedLines:
     def ratio(self) -> Complex:
         """Measured values over the base: what the resonances have to be."""
         return self.measured.values / self.base_at_lines
+
+    @property
+    def every(self) -> FittedLines:
+        """All lines of the measurement."""
+        return self.whole or self
+
+    def deviation_of_every(self) -> Real:
+        """Return the standard deviation of each part on all lines: what is left out has its neighbours'."""
+        size = np.abs(self.measured.values)
+        deviation = size if self.deviation is None else self.deviation * size
+        return np.interp(self.every.omega, self.omega, deviation)
+
+    def at(self, places: Whole) -> FittedLines:
+        """Return some of the lines."""
+        one = self.measured
+        observation = self.observation.at(places)
+        return replace(
+            self,
+            measured=replace(
+                one,
+                frequency_hz=one.frequency_hz[places],
+                values=one.values[places],
+                coherence=None if one.coherence is None else one.coherence[places],
+            ),
+            observation=observation,
+            base=self.base if observation.matrix is not None else self.base[places],
+            base_at_lines=self.base_at_lines[places],
+            deviation=None if self.deviation is None else self.deviation[places],
+            whole=self.every,
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,6 +136,35 @@ class FitProblem:
     def band(self) -> tuple[float, float]:
         """The lowest and the highest frequency measured [rad/s]."""
         return min(float(x.omega[0]) for x in self.lines), max(float(x.omega[-1]) for x in self.lines)
+
+    def at(self, places: Sequence[Whole]) -> FitProblem:
+        """Return the problem with some of the lines of each response."""
+        lines = tuple(line.at(chosen) for line, chosen in zip(self.lines, places, strict=True))
+        return replace(self, lines=lines)
+
+    def readmitted(self, places: Sequence[Whole]) -> FitProblem:
+        """Return the problem with these lines of all that were measured; itself if they are the same."""
+        lines = []
+        for line, chosen in zip(self.lines, places, strict=True):
+            every = line.every
+            if every.deviation is None and line.deviation is not None:
+                every = replace(
+                    every, deviation=line.deviation_of_every() / np.abs(every.measured.values), whole=every
+                )
+            lines.append(line if np.array_equal(every.omega[chosen], line.omega) else every.at(chosen))
+        if all(a is b for a, b in zip(lines, self.lines, strict=True)):
+            return self
+        return replace(self, lines=tuple(lines))
+
+    def thinned(self, most: int) -> FitProblem:
+        """Return the problem without window, with at most so many telling lines of each response."""
+        if all(line.omega.size <= most for line in self.lines):
+            return self.without_window()
+        places = []
+        for line in self.lines:
+            deviation = np.zeros(line.omega.size) if line.deviation is None else line.deviation
+            places.append(telling_lines(line.omega, line.ratio, deviation, most))
+        return self.without_window().at(places)
 
     def without_window(self) -> FitProblem:
         """Return the same problem with lines taken as the values themselves."""
@@ -143,7 +207,7 @@ class FitProblem:
         return line.observation(line.base * resonances.factor(response, line.observation.omega))
 
     def linearised(self, resonances: Resonances, response: int) -> tuple[Complex, Complex]:
-        """Return the model on the lines and its derivatives by the packed parameters."""
+        """Return the model on the lines and its derivatives by the parameters that the response depends on."""
         line = self.lines[response]
         omega = line.observation.omega
         inside = line.base * resonances.factor(response, omega)
@@ -202,32 +266,37 @@ def with_rough_noise(problem: FitProblem) -> FitProblem:
     return replace(problem, lines=tuple(lines))
 
 
-def with_noise(problem: FitProblem, count: int | None) -> FitProblem:
+def with_noise(problem: FitProblem, count: int | None, most_lines: int) -> FitProblem:
     """Return the problem with deviations estimated for the lines that have no coherence.
 
-    So far they are rough. ``count`` resonances are looked for, None when that is open.
+    So far they are rough. ``count`` resonances are looked for, None when that is open. The poles of the
+    function without structure are found on ``most_lines`` lines of each response, and its values on all.
     """
     if all(line.measured.coherence is not None for line in problem.lines):
         return problem
-    size = 2 * problem.count
-    best: tuple[float, list[Complex], int] | None = None
+    thin = problem.thinned(most_lines)
+    size = 2 * thin.count
+    best: tuple[float, int, Complex] | None = None
     worse = 0
-    for pairs in range(1 if count is None else count, MOST_PAIRS if count is None else count + 3):
-        values, parameters = generous_fit(problem, pairs)
+    for pairs in range(1 if count is None else count, MOST_PAIRS if count is None else count + 4):
+        values, parameters, poles = generous_fit(thin, pairs)
         if parameters * LINES_PER_PARAMETER > size and best is not None:
             break
         rest = 0.0
-        for v, line in zip(values, problem.lines, strict=True):
+        for v, line in zip(values, thin.lines, strict=True):
             scale = 1.0 if line.deviation is None else line.deviation
             rest += float(np.sum(np.abs((v / line.measured.values - 1) / scale) ** 2))
         score = size * np.log(max(rest, LEAST * size)) + parameters * np.log(size)
         if best is None or score < best[0]:
-            best, worse = (float(score), values, parameters), 0
+            best, worse = (float(score), pairs, poles), 0
         else:
             worse += 1
         if worse > PATIENCE:
             break
-    return problem if best is None else estimated(problem, best[1], best[2])
+    if best is None:
+        return problem
+    values, parameters, _ = generous_fit(problem, best[1], best[2])
+    return estimated(problem, values, parameters)
 
 
 def estimated(problem: FitProblem, values: list[Complex], parameters: int) -> FitProblem:
@@ -259,5 +328,7 @@ def _variance(power: Real, omega: Real, size: Real) -> Real:
     shares = np.full(shapes.shape[0], float(np.mean(power)) / shapes.shape[0])
     for _ in range(STEPS):
         expected = shares @ shapes
-        shares = shares * np.sqrt((shapes @ (power / expected**2)) / (shapes @ (1 / expected)))
+        # Gaussian errors reach this once in a billion lines; what is larger is no noise.
+        bounded = np.minimum(power, LARGEST * expected)
+        shares = shares * np.sqrt((shapes @ (bounded / expected**2)) / (shapes @ (1 / expected)))
     return np.asarray(shares @ shapes, np.float64)

@@ -6,6 +6,9 @@
 (Eppinger & Seering 1988, section "Polynomial Resonance Model"). Several responses share the poles. A response
 may have fewer pairs of zeros than of poles, as transfer functions between two points have: a pair that is not
 there has its natural frequency at infinity, where its factor is 1.
+
+Two real poles are a pair with a damping ratio above 1. A single real pole, 1/(1 + s/p), and a single real zero
+of each response, 1 + s/z, stand beside the pairs where the degrees are odd: the lag of a motor, an inductor.
 """
 
 from __future__ import annotations
@@ -21,6 +24,8 @@ Whole = npt.NDArray[np.int64]
 Mask = npt.NDArray[np.bool_]
 
 MILLISECOND = 1e-3
+NO_PEAK = 0.5**0.5
+"""Damping ratio from which a pair of poles raises no magnitude."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,12 +67,19 @@ class Resonances:
     delay: Real = field(default_factory=lambda: np.zeros(0))
     # shape (m,): The power of s of each response; by default 0.
     slope: Whole = field(default_factory=lambda: np.zeros(0, np.int64))
+    # shape (0,) or (1,): Corner frequency of the real pole that all responses share [rad/s], if there is one.
+    real_p: Real = field(default_factory=lambda: np.zeros(0))
+    # shape (m,): Corner frequency of the real zero of each response [rad/s], negative in the right half plane,
+    # infinite where it has none; by default infinite.
+    real_z: Real = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
         for name in ("lag", "delay", "slope"):
             if not getattr(self, name).size:
                 kind = np.int64 if name == "slope" else np.float64
                 object.__setattr__(self, name, np.zeros(self.gain.size, kind))
+        if not self.real_z.size:
+            object.__setattr__(self, "real_z", np.full(self.gain.size, np.inf))
 
     @staticmethod
     def of(modes: list[tuple[float, float, float, float]], gain: float = 1.0) -> Resonances:
@@ -91,6 +103,18 @@ class Resonances:
     def has_zeros(self) -> Mask:
         """Which pairs of zeros are there, shape (m, n)."""
         return np.isfinite(self.omega_z)
+
+    @property
+    def order(self) -> int:
+        """How many poles there are."""
+        return 2 * self.count + self.real_p.size
+
+    def in_band(self, low: float, high: float) -> Mask:
+        """Return which pole pairs are resonances in a band [rad/s], shape (n,).
+
+        The others are residual terms: they stand for modes outside the band, or have no peak.
+        """
+        return (self.zeta_p < NO_PEAK) & (self.omega_p >= low) & (self.omega_p <= high)
 
     def ordered(self) -> Resonances:
         """Return the same product with poles, and zeros of each response, in ascending order.
@@ -118,6 +142,7 @@ class Resonances:
             lag=self.lag[r],
             delay=self.delay[r],
             slope=self.slope[r],
+            real_z=self.real_z[r],
         )
 
     def factor(self, response: int, omega: Real) -> Complex:
@@ -132,35 +157,54 @@ class Resonances:
         for i in range(self.count):
             above = _quadratic(omega, self.omega_z[response, i], self.zeta_z[response, i])
             value = value * above / _quadratic(omega, self.omega_p[i], self.zeta_p[i])
-        return value
+        for corner in self.real_p:
+            value = value / (1 + s / corner)
+        return value * (1 + s / self.real_z[response])
+
+    def shared(self) -> int:
+        """Return how many parameters all responses share; they stand first in the packed vector."""
+        return 2 * self.count + self.real_p.size
 
     def places(self, response: int, free: Free) -> dict[str, slice]:
         """Return where the parameters of a response stand in the packed vector, by their names."""
-        shown = self.has_zeros.sum(axis=1)
-        at = 2 * self.count + sum(2 * int(shown[r]) + free.count for r in range(response))
-        n = int(shown[response])
-        found = {"omega_z": slice(at, at + n), "zeta_z": slice(at + n, at + 2 * n)}
-        at += 2 * n
-        for name in ("gain", "lag", "delay"):
-            size = int(getattr(free, name))
+        at = self.shared() + sum(self._own(r, free) for r in range(response))
+        n = int(self.has_zeros[response].sum())
+        sizes = {"omega_z": n, "zeta_z": n, "real_z": int(np.isfinite(self.real_z[response]))}
+        sizes |= {"gain": int(free.gain), "lag": int(free.lag), "delay": int(free.delay)}
+        found = {}
+        for name, size in sizes.items():
             found[name] = slice(at, at + size)
             at += size
         return found
 
+    def _own(self, response: int, free: Free) -> int:
+        """Return how many parameters a response has beside the poles."""
+        shown = int(self.has_zeros[response].sum())
+        return 2 * shown + int(np.isfinite(self.real_z[response])) + free.count
+
+    def columns(self, response: int, free: Free) -> Whole:
+        """Return which packed parameters a response depends on: those of the poles, and its own."""
+        first = self.places(response, free)["omega_z"].start
+        own = np.arange(first, first + self._own(response, free))
+        return np.concatenate((np.arange(self.shared()), own))
+
     def size(self, free: Free) -> int:
         """Return how many parameters there are."""
-        return 2 * self.count + 2 * int(self.has_zeros.sum()) + self.responses * free.count
+        return self.shared() + sum(self._own(r, free) for r in range(self.responses))
 
     def pack(self, free: Free) -> Real:
         """Return the parameters as one vector.
 
-        ln omega_p, ln zeta_p; then per response ln abs(omega_z), zeta_z of the zeros that are there and, when
-        they are free, ln abs(gain), the lag and the delay in milliseconds.
+        ln omega_p, ln zeta_p, ln real_p; then per response ln abs(omega_z), zeta_z of the zeros that are
+        there, ln abs(real_z) likewise and, when they are free, ln abs(gain), the lag and the delay in
+        milliseconds.
         """
-        parts = [np.log(self.omega_p), np.log(self.zeta_p)]
+        parts = [np.log(self.omega_p), np.log(self.zeta_p), np.log(self.real_p)]
         for r in range(self.responses):
             shown = self.has_zeros[r]
             parts += [np.log(np.abs(self.omega_z[r, shown])), self.zeta_z[r, shown]]
+            if np.isfinite(self.real_z[r]):
+                parts.append(np.log(np.abs(self.real_z[r : r + 1])))
             if free.gain:
                 parts.append(np.log(np.abs(self.gain[r : r + 1])))
             if free.lag:
@@ -172,33 +216,49 @@ class Resonances:
     def unpack(self, vector: Real, free: Free) -> Resonances:
         """Return the resonances of a vector as :meth:`pack` makes it; gains keep their sign."""
         n = self.count
-        omega_z, zeta_z = self.omega_z.copy(), self.zeta_z.copy()
+        omega_z, zeta_z, real_z = self.omega_z.copy(), self.zeta_z.copy(), self.real_z.copy()
         gain, lag, delay = self.gain.copy(), self.lag.copy(), self.delay.copy()
         for r in range(self.responses):
             shown, at = self.has_zeros[r], self.places(r, free)
             omega_z[r, shown] = np.sign(omega_z[r, shown]) * np.exp(vector[at["omega_z"]])
             zeta_z[r, shown] = vector[at["zeta_z"]]
+            if np.isfinite(real_z[r]):
+                real_z[r : r + 1] = np.sign(real_z[r]) * np.exp(vector[at["real_z"]])
             if free.gain:
                 gain[r : r + 1] = np.sign(gain[r]) * np.exp(vector[at["gain"]])
             if free.lag:
                 lag[r : r + 1] = MILLISECOND * vector[at["lag"]]
             if free.delay:
                 delay[r : r + 1] = MILLISECOND * vector[at["delay"]]
-        omega_p, zeta_p = np.exp(vector[:n]), np.exp(vector[n : 2 * n])
-        return Resonances(omega_p, zeta_p, omega_z, zeta_z, gain, lag, delay, self.slope)
+        return replace(
+            self,
+            omega_p=np.exp(vector[:n]),
+            zeta_p=np.exp(vector[n : 2 * n]),
+            real_p=np.exp(vector[2 * n : self.shared()]),
+            omega_z=omega_z,
+            zeta_z=zeta_z,
+            real_z=real_z,
+            gain=gain,
+            lag=lag,
+            delay=delay,
+        )
 
     def log_derivatives(self, response: int, omega: Real, free: Free) -> Complex:
-        """Return d ln(factor) by the packed parameters, shape (k, size of the vector)."""
-        n = self.count
-        found = np.zeros((omega.size, self.size(free)), dtype=np.complex128)
-        at = self.places(response, free)
+        """Return d ln(factor) by the packed parameters that :meth:`columns` names, shape (k, p)."""
+        n, shared = self.count, self.shared()
+        found = np.zeros((omega.size, shared + self._own(response, free)), dtype=np.complex128)
+        places = self.places(response, free)
+        first = places["omega_z"].start - shared
+        at = {name: slice(one.start - first, one.stop - first) for name, one in places.items()}
+        s = 1j * omega[:, None]
         for i in range(n):
             by_omega, by_zeta = _log_slopes(omega, self.omega_p[i], self.zeta_p[i])
             found[:, i], found[:, n + i] = -by_omega, -by_zeta * self.zeta_p[i]
+        found[:, 2 * n : shared] = s / (self.real_p + s)
         for k, i in enumerate(np.flatnonzero(self.has_zeros[response]).tolist()):
             by_omega, by_zeta = _log_slopes(omega, self.omega_z[response, i], self.zeta_z[response, i])
             found[:, at["omega_z"].start + k], found[:, at["zeta_z"].start + k] = by_omega, by_zeta
-        s = 1j * omega[:, None]
+        found[:, at["real_z"]] = -s / (self.real_z[response] + s)
         found[:, at["gain"]] = 1
         found[:, at["lag"]] = -MILLISECOND * s / (1 + s * abs(self.lag[response]))
         found[:, at["delay"]] = -MILLISECOND * s

@@ -24,7 +24,7 @@ from scipy.linalg import eig
 from scipy.signal import find_peaks, savgol_filter
 
 from symflex.budget import spend
-from symflex.data.fitting.resonances import Complex, Real, Resonances
+from symflex.data.fitting.resonances import Complex, Real, Resonances, Whole
 
 if TYPE_CHECKING:
     from symflex.data.fitting.problem import FitProblem
@@ -49,8 +49,10 @@ ITERATIONS = 25
 """Of vector fitting, which mostly settles in fewer."""
 FIRST_DAMPING = 0.01
 """Of the poles that vector fitting begins with, as its authors recommend."""
+UNMOVED = 1e-4
+"""Relative change of the poles at which vector fitting has settled: least squares go on from there."""
 SETTLED = 1e-6
-"""Relative change of the poles at which vector fitting has settled, and the least of its free constant."""
+"""The least of its free constant."""
 SPARE = 2
 """Poles, or pairs of them, more than are looked for, which noise or a delay may take up."""
 GENEROUS = 10
@@ -59,6 +61,12 @@ LARGEST_START = 0.3
 """Damping ratio beyond which a pole counts less and less as a resonance."""
 FREE_POWERS = (-2, -1, 0, 1, 2)
 """Beside the fractions where the power of s is not known: receptances to accelerances, free or held."""
+
+REAL = 1e-9
+"""Of a pole's magnitude: its imaginary part, from which it is one of a pair."""
+
+FEW_POWERS = (0, 1)
+"""The same where poles outside the band are to be found: what they add looks like powers of s."""
 
 # Of dead times.
 PER_TURN = 5
@@ -201,16 +209,21 @@ def _smoothed(level: Real) -> Real:
 # ------------------------------------------------------------------ from rational approximation
 
 
-def poles_from_vector_fitting(problem: FitProblem, count: int) -> list[Complex]:
-    """Return poles by relaxed vector fitting, begun in two ways.
+def poles_from_vector_fitting(problem: FitProblem, order: int) -> list[Complex]:
+    """Return so many poles by relaxed vector fitting, begun in three ways.
 
-    From poles spread over the band; and from the most conspicuous poles of a function with two pairs more,
-    which noise, a close pair or a delay may take up on the way.
+    From poles spread over the band; from the most conspicuous poles of a function with two pairs more, which
+    noise, a close pair or a delay may take up on the way; and without the powers of s that hide modes outside
+    the band.
     """
     low, high = problem.band
-    found = [relocated(problem, _spread(low, high, count))]
-    generous = relocated(problem, _spread(low, high, count + SPARE), GENEROUS)
-    found.append(relocated(problem, _conspicuous(problem, generous, count)))
+    if not order:
+        return [np.zeros(0, np.complex128)]
+    found = [relocated(problem, _spread(low, high, order))]
+    generous = relocated(problem, _spread(low, high, order + 2 * SPARE), GENEROUS)
+    found.append(relocated(problem, _conspicuous(problem, generous, order)))
+    if len(problem.slopes) > 1:
+        found.append(relocated(problem, _spread(low, high, order), powers=FEW_POWERS))
     return found
 
 
@@ -237,37 +250,50 @@ def poles_from_aaa(problem: FitProblem, count: int) -> list[Complex]:
     return []
 
 
-def generous_fit(problem: FitProblem, count: int) -> tuple[list[Complex], int]:
-    """Return what a rational function without structure makes of the lines, and its number of parameters.
+def generous_fit(
+    problem: FitProblem, pairs: int, poles: Complex | None = None
+) -> tuple[list[Complex], int, Complex]:
+    """Return what a rational function without structure makes of the lines, its number of parameters, its poles.
 
-    Its poles are shared; each response has residues and powers of s of its own.
+    Its poles are shared, and found unless they are given; each response has residues and powers of s of its
+    own.
     """
-    low, high = problem.band
-    poles = relocated(problem, _spread(low, high, count), GENEROUS)
+    if poles is None:
+        poles = relocated(problem, _spread(*problem.band, 2 * pairs), GENEROUS)
     values = []
     for r, line in enumerate(problem.lines):
         basis, weight = _local(problem, line.omega, poles), _weights(problem, r)
         solved = solved_real(weight[:, None] * basis, weight * problem.quotient(r))
         values.append(basis @ solved * (line.measured.values / problem.quotient(r)))
-    return values, 2 * count + len(values) * (2 * count + len(_powers(problem)))
+    return values, 2 * pairs + len(values) * (2 * pairs + len(_powers(problem))), poles
 
 
-def _conspicuous(problem: FitProblem, poles: Complex, count: int) -> Complex:
-    """Return the poles in the band whose peaks stand out most against the response there."""
-    low, high = problem.band
+def _conspicuous(problem: FitProblem, poles: Complex, order: int) -> Complex:
+    """Return the poles whose peaks stand out most against the response, so many in all."""
     size = np.zeros(poles.size)
+    ends = np.cumsum(_widths(poles))
     for r, line in enumerate(problem.lines):
-        quotient, weight = problem.quotient(r), _weights(problem, r)
+        weight = _weights(problem, r)
         basis = _local(problem, line.omega, poles)
-        solved = solved_real(weight[:, None] * basis, weight * quotient)
-        for i in range(poles.size):
-            share = np.abs(basis[:, 2 * i : 2 * i + 2] @ solved[2 * i : 2 * i + 2]) * weight
+        solved = solved_real(weight[:, None] * basis, weight * problem.quotient(r))
+        for i, (end, width) in enumerate(zip(ends, _widths(poles), strict=True)):
+            share = np.abs(basis[:, end - width : end] @ solved[end - width : end]) * weight
             size[i] += float(np.sum(share**2))
-    size = np.where((np.abs(poles) >= low) & (np.abs(poles) <= high), size, 0.0)
     # A smooth rise is not a resonance, however large it is.
     size = size * np.minimum(1.0, LARGEST_START / (-poles.real / np.abs(poles)))
-    chosen = np.sort(np.argsort(-size, kind="stable")[:count])
-    return poles[chosen]
+    chosen: list[int] = []
+    left = order
+    for i in np.argsort(-size, kind="stable").tolist():
+        if _widths(poles)[i] <= left:
+            chosen.append(i)
+            left -= int(_widths(poles)[i])
+    missing = [-np.exp(np.mean(np.log(problem.band)))] * left
+    return np.append(poles[np.sort(chosen)], np.array(missing, np.complex128))
+
+
+def _widths(poles: Complex) -> Whole:
+    """Return how many columns each pole has: two for a pair, one for a real pole, whose imaginary part is 0."""
+    return np.where(poles.imag == 0, 1, 2)
 
 
 def _powers(problem: FitProblem) -> tuple[int, ...]:
@@ -275,10 +301,12 @@ def _powers(problem: FitProblem) -> tuple[int, ...]:
     return (0,) if len(problem.slopes) == 1 else FREE_POWERS
 
 
-def _local(problem: FitProblem, omega: Real, poles: Complex) -> Complex:
+def _local(
+    problem: FitProblem, omega: Real, poles: Complex, powers: tuple[int, ...] | None = None
+) -> Complex:
     middle = np.exp(np.mean(np.log(problem.band)))
     x = 1j * omega[:, None] / middle
-    return np.concatenate((_basis(omega, poles), *(x ** float(p) for p in _powers(problem))), axis=1)
+    return np.concatenate((_basis(omega, poles), *(x ** float(p) for p in powers or _powers(problem))), axis=1)
 
 
 def solved_real(matrix: Complex, target: Complex) -> Real:
@@ -288,11 +316,13 @@ def solved_real(matrix: Complex, target: Complex) -> Real:
     return np.asarray(np.linalg.lstsq(stacked / norms, right, rcond=None)[0] / norms, np.float64)
 
 
-def _spread(low: float, high: float, count: int) -> Complex:
-    """Return poles spread over a band, as vector fitting wants to begin."""
-    middle = (np.arange(count) + 0.5) / count
+def _spread(low: float, high: float, order: int) -> Complex:
+    """Return so many poles spread over a band, as vector fitting wants to begin; one of them real if odd."""
+    count = order // 2
+    middle = (np.arange(count) + 0.5) / max(count, 1)
     omega = low * (high / low) ** middle if high > 30 * low else low + (high - low) * middle
-    return -FIRST_DAMPING * omega + 1j * omega
+    pairs = -FIRST_DAMPING * omega + 1j * omega
+    return np.append(pairs, np.full(order % 2, -np.sqrt(low * high), np.complex128))
 
 
 def _weights(problem: FitProblem, response: int) -> Real:
@@ -303,27 +333,39 @@ def _weights(problem: FitProblem, response: int) -> Real:
 
 
 def _basis(omega: Real, poles: Complex) -> Complex:
-    """Return 1/(s - p) of the pairs in real combinations, shape (k, 2 n)."""
+    """Return 1/(s - p) of real poles and of the pairs in real combinations, shape (k, order)."""
     s = 1j * omega[:, None]
+    ends = np.cumsum(_widths(poles))
+    basis = np.empty((omega.size, int(np.sum(_widths(poles)))), dtype=np.complex128)
     first, second = 1 / (s - poles), 1 / (s - np.conj(poles))
-    basis = np.empty((omega.size, 2 * poles.size), dtype=np.complex128)
-    basis[:, 0::2], basis[:, 1::2] = first + second, 1j * (first - second)
+    is_pair = poles.imag != 0
+    basis[:, ends[~is_pair] - 1] = first[:, ~is_pair]
+    basis[:, ends[is_pair] - 2] = (first + second)[:, is_pair]
+    basis[:, ends[is_pair] - 1] = (1j * (first - second))[:, is_pair]
     return basis
 
 
 def _state_matrix(poles: Complex) -> tuple[Real, Real]:
     """Return A and b of the basis in real form."""
-    size = 2 * poles.size
+    ends = np.cumsum(_widths(poles))
+    size = int(np.sum(_widths(poles)))
     a, b = np.zeros((size, size)), np.zeros(size)
-    for i, pole in enumerate(poles):
-        k = 2 * i
-        a[k : k + 2, k : k + 2] = [[pole.real, pole.imag], [-pole.imag, pole.real]]
-        b[k] = 2
+    for pole, end in zip(poles, ends, strict=True):
+        if pole.imag == 0:
+            a[end - 1, end - 1], b[end - 1] = pole.real, 1
+        else:
+            k = end - 2
+            a[k : k + 2, k : k + 2] = [[pole.real, pole.imag], [-pole.imag, pole.real]]
+            b[k] = 2
     return a, b
 
 
-def relocated(problem: FitProblem, poles: Complex, iterations: int = ITERATIONS) -> Complex:
-    """Return the poles after relaxed vector fitting; pairs stay pairs, and stay stable."""
+def relocated(
+    problem: FitProblem, poles: Complex, iterations: int = ITERATIONS, powers: tuple[int, ...] | None = None
+) -> Complex:
+    """Return the poles after relaxed vector fitting: as many, and stable; real ones have no imaginary part."""
+    if not poles.size:
+        return poles
     quotients = [problem.quotient(r) for r in range(len(problem.lines))]
     for _ in range(iterations):
         spend()
@@ -331,7 +373,7 @@ def relocated(problem: FitProblem, poles: Complex, iterations: int = ITERATIONS)
         total = 0.0
         for r, line in enumerate(problem.lines):
             weight = _weights(problem, r)
-            local = _local(problem, line.omega, poles)
+            local = _local(problem, line.omega, poles, powers)
             shared = np.concatenate((_basis(line.omega, poles), np.ones((line.omega.size, 1))), axis=1)
             block = weight[:, None] * np.concatenate((local, -quotients[r][:, None] * shared), axis=1)
             block = np.concatenate((block.real, block.imag))
@@ -357,27 +399,25 @@ def relocated(problem: FitProblem, poles: Complex, iterations: int = ITERATIONS)
         a, b = _state_matrix(poles)
         direct = solution[-1] if abs(solution[-1]) > SETTLED else SETTLED
         eigenvalues = np.linalg.eigvals(a - np.outer(b, solution[:-1]) / direct)
-        moved = _upper(np.asarray(eigenvalues, np.complex128), poles.size)
-        if moved.size < poles.size:
+        moved = _upper(np.asarray(eigenvalues, np.complex128))
+        if not np.isfinite(moved).all():
             break
-        change = np.max(np.abs(moved - poles) / np.abs(poles))
+        is_settled = moved.size == poles.size and np.max(np.abs(moved - poles) / np.abs(poles)) < UNMOVED
         poles = moved
-        if change < SETTLED:
+        if is_settled:
             break
     return poles
 
 
-def _upper(roots: Complex, count: int) -> Complex:
-    """Return so many stable poles in the upper half plane; two real ones become a damped pair."""
-    scale = np.abs(roots).max()
-    upper = [complex(-abs(p.real), p.imag) for p in roots if p.imag > 1e-9 * scale]
-    real = sorted(abs(p) for p in roots if abs(p.imag) <= 1e-9 * scale)
-    for first, second in zip(real[0::2], real[1::2], strict=False):
-        centre = np.sqrt(max(first * second, 1e-12 * scale**2))
-        upper.append(centre * complex(-0.5, np.sqrt(0.75)))
-    found = np.array(sorted(upper, key=lambda p: p.imag)[:count], dtype=np.complex128)
-    least = LOWEST_DAMPING * np.abs(found)
-    return np.where(-found.real < least, -least + 1j * found.imag, found)
+def _upper(roots: Complex) -> Complex:
+    """Return the stable poles on the real axis and above it that eigenvalues of a real matrix stand for."""
+    scale = max(float(np.abs(roots).max()), np.finfo(float).tiny)
+    is_real = np.abs(roots.imag) <= REAL * np.abs(roots)
+    pairs = roots[~is_real & (roots.imag > 0)]
+    damped = np.maximum(np.abs(pairs.real), LOWEST_DAMPING * np.abs(pairs))
+    real = np.maximum(np.abs(roots[is_real].real), REAL * scale)
+    found = np.concatenate((-damped + 1j * pairs.imag, -real.astype(np.complex128)))
+    return found[np.argsort(np.abs(found), kind="stable")]
 
 
 def _aaa_poles(omega: Real, values: Complex, degree: int) -> list[tuple[float, complex]]:
@@ -442,7 +482,7 @@ def _delay(single: FitProblem, count: int) -> float:
     steps = -np.angle(values[1:] / values[:-1]) / np.diff(omega)
     likely = max(float(np.median(steps)), 0.0)
     most = min(max(3 * likely / turn, LEAST_TURNS), MOST_TURNS) * turn
-    thin = _thinned(single)
+    thin = single.thinned(MOST_LINES)
     tried = np.arange(0.0, most, turn / PER_TURN)
     costs = [_misfit(thin, float(delay), count) for delay in tried]
     best = float(tried[int(np.argmin(costs))])
@@ -451,32 +491,9 @@ def _delay(single: FitProblem, count: int) -> float:
     return float(near[int(np.argmin([_misfit(thin, float(delay), count) for delay in near]))])
 
 
-def _thinned(single: FitProblem) -> FitProblem:
-    """Return the problem with so few lines that many dead times can be tried."""
-    line = single.lines[0]
-    every = slice(None, None, max(1, line.omega.size // MOST_LINES))
-    measured = replace(
-        line.measured,
-        frequency_hz=line.measured.frequency_hz[every],
-        values=line.measured.values[every],
-        coherence=None,
-    )
-    observation = replace(line.observation, omega=line.omega[every])
-    base = line.base_at_lines[every]
-    thin = replace(
-        line,
-        measured=measured,
-        observation=observation,
-        base=base,
-        base_at_lines=base,
-        deviation=None if line.deviation is None else line.deviation[every],
-    )
-    return replace(single, lines=(thin,))
-
-
 def _misfit(single: FitProblem, delay: float, count: int) -> float:
     problem = replace(single, delays=(delay,))
-    ((values,), _) = generous_fit(problem, count)
+    (values,), *_ = generous_fit(problem, count)
     line = problem.lines[0]
     scale = 1.0 if line.deviation is None else line.deviation
     return float(np.mean(np.abs((values / line.measured.values - 1) / scale) ** 2))

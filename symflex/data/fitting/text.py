@@ -21,6 +21,7 @@ STARTS: Final = {
     "peaks": "peaks and troughs of the magnitude, the paper's procedure",
     "vector": "vector fitting",
     "aaa": "AAA approximation",
+    "none": "nothing but a gain",
 }
 
 
@@ -45,11 +46,17 @@ def _passages(fit: ResonanceFit, shapes: FittedModeShapes | None) -> Iterator[Pa
             lines.append(f"{INDENT}the data are SYNTHETIC: computed from a model, not measured")
         lines.append(INDENT + _data_line(fit, r))
     yield Passage([*lines, f"{INDENT}start: {STARTS[fit.candidate.start_kind]}"])
+    modes = np.flatnonzero(fit.modes).tolist()
     rows = [
-        _row(i, found.omega_p[i], errors.omega_p[i], found.zeta_p[i], errors.zeta_p[i])
-        for i in range(found.count)
+        _row(str(k), found.omega_p[i], errors.omega_p[i], found.zeta_p[i], errors.zeta_p[i])
+        for k, i in enumerate(modes, 1)
     ]
-    yield Passage([f"{INDENT}poles"], [HEAD, *rows])
+    yield Passage(
+        [f"{INDENT}poles" + ("" if rows else ": no resonance in the band")], [HEAD, *rows] if rows else ()
+    )
+    rows = _residual_terms(fit)
+    if rows:
+        yield Passage([f"{INDENT}residual terms: poles that are no resonances in the band"], [HEAD, *rows])
     for r in range(found.responses):
         yield _zeros(fit, r)
     if shapes is not None:
@@ -80,21 +87,40 @@ def _zeros(fit: ResonanceFit, r: int) -> Passage:
     if free.delay:
         lines.append(f"{INDENT}dead time {found.delay[r]:.4g} s, standard error {errors.delay[r]:.2g} s")
     rows = [
-        _row(i, found.omega_z[r, i], errors.omega_z[r, i], found.zeta_z[r, i], errors.zeta_z[r, i])
+        _row(str(i + 1), found.omega_z[r, i], errors.omega_z[r, i], found.zeta_z[r, i], errors.zeta_z[r, i])
         for i in np.flatnonzero(found.has_zeros[r]).tolist()
     ]
+    if np.isfinite(found.real_z[r]):
+        corner, error = found.real_z[r] / (2 * pi), errors.real_z[r] / (2 * pi)
+        side = "" if corner > 0 else "right half plane"
+        rows.append(("real", _shown(abs(corner), error), _error(error), "", "", side))
     if not rows:
         lines[0] += ": none"
     return Passage([*lines[1:], lines[0]], [HEAD, *rows] if rows else ())
 
 
+def _residual_terms(fit: ResonanceFit) -> list[tuple[str, ...]]:
+    """Return rows of the pole pairs outside the band, and of the real poles."""
+    found, errors = fit.resonances, fit.standard_errors()
+    low, _ = fit.problem.band
+    rows = []
+    for i in np.flatnonzero(~fit.modes & (found.zeta_p < 1)).tolist():
+        row = _row("", found.omega_p[i], errors.omega_p[i], found.zeta_p[i], errors.zeta_p[i])
+        rows.append((*row[:-1], "below the band" if found.omega_p[i] < low else "above the band"))
+    for corner, error in fit.real_poles():
+        rows.append(
+            ("real", _shown(corner / (2 * pi), error / (2 * pi)), _error(error / (2 * pi)), "", "", "real pole")
+        )
+    return rows
+
+
 def _orders(fit: ResonanceFit) -> Passage:
-    """Return the numbers of resonances that were tried."""
-    rows = [("resonances", "parameters", "BIC", "AICc", "residual", "")]
+    """Return the numbers of poles that were tried."""
+    rows = [("poles", "resonances", "parameters", "BIC", "AICc", "residual", "")]
     for s in fit.scores:
-        mark = "<" if s.count == fit.resonances.count else "" if s.is_usable else s.status
+        mark = "<" if s.order == fit.resonances.order else "" if s.is_usable else s.status
         numbers = (f"{s.bic:.1f}", f"{s.aicc:.1f}", f"{sqrt(s.reduced):.4g}")
-        rows.append((str(s.count), str(s.parameters), *numbers, mark))
+        rows.append((str(s.order), str(s.count), str(s.parameters), *numbers, mark))
     told = "did not fail"
     if any(s.status == "weak" for s in fit.scores):
         told += " and are not weak (a resonance lost in noise)"
@@ -127,17 +153,19 @@ def _shapes_json(shapes: FittedModeShapes) -> dict[str, object]:
 
 def fit_json(fit: ResonanceFit, shapes: FittedModeShapes | None = None) -> dict[str, object]:
     """Return the document ``symflex fit --json`` prints."""
-    found, errors = fit.resonances, fit.standard_errors()
+    found = fit.resonances
     return {
         "schema": SCHEMA,
-        "modes": found.count,
+        "modes": int(fit.modes.sum()),
         "start": fit.candidate.start_kind,
         "gain_fitted": fit.problem.free.gain,
         "lag_fitted": fit.problem.free.lag,
         "delay_fitted": fit.problem.free.delay,
         "poor": bool(fit.poor),
         "poor_because": list(fit.poor),
-        "poles": _pairs(found.omega_p, found.zeta_p, errors.omega_p, errors.zeta_p),
+        "poles": _poles(fit, fit.modes),
+        "residual_poles": _poles(fit, ~fit.modes & (found.zeta_p < 1)),
+        "real_poles": [_real(corner, error) for corner, error in fit.real_poles()],
         "responses": [_response_json(fit, r) for r in range(found.responses)],
         "residual": {
             "reduced": fit.refined.reduced,
@@ -147,6 +175,7 @@ def fit_json(fit: ResonanceFit, shapes: FittedModeShapes | None = None) -> dict[
         "criterion": fit.criterion if fit.scores else None,
         "orders": [
             {
+                "poles": s.order,
                 "modes": s.count,
                 "parameters": s.parameters,
                 "bic": _finite(s.bic),
@@ -170,15 +199,16 @@ def _response_json(fit: ResonanceFit, r: int) -> dict[str, object]:
         "name": measured.name,
         "synthetic": measured.is_synthetic,
         "lines": measured.values.size,
+        "left_out_hz": measured.frequency_hz[fit.left_out(r)].tolist(),
         "band_hz": [float(measured.frequency_hz[0]), float(measured.frequency_hz[-1])],
         "averages": measured.averages,
         "window": measured.window or None,
         "unit": measured.unit,
         "base": {"spec": base.path, "tf": base.tf} if base.path else None,
         "slope": None if base.path else base.slope,
-        "gain": {"value": float(found.gain[r]), "standard_error": float(errors.gain[r])},
-        "lag": {"value": float(found.lag[r]), "standard_error": float(errors.lag[r])},
-        "delay": {"value": float(found.delay[r]), "standard_error": float(errors.delay[r])},
+        "gain": {"value": float(found.gain[r]), "standard_error": _finite(float(errors.gain[r]))},
+        "lag": {"value": float(found.lag[r]), "standard_error": _finite(float(errors.lag[r]))},
+        "delay": {"value": float(found.delay[r]), "standard_error": _finite(float(errors.delay[r]))},
         "zeros": [
             pair | {"real_of_opposite_sign": bool(omega < 0)}
             for pair, omega in zip(
@@ -187,6 +217,7 @@ def _response_json(fit: ResonanceFit, r: int) -> dict[str, object]:
                 strict=True,
             )
         ],
+        "real_zeros": [_real(found.real_z[r], errors.real_z[r])] if np.isfinite(found.real_z[r]) else [],
         "start": [
             {
                 "omega_p": float(start.omega_p[i]),
@@ -208,17 +239,32 @@ def _response_json(fit: ResonanceFit, r: int) -> dict[str, object]:
     }
 
 
+def _poles(fit: ResonanceFit, which: np.ndarray) -> list[dict[str, object]]:
+    found, errors = fit.resonances, fit.standard_errors()
+    return _pairs(*(one[which] for one in (found.omega_p, found.zeta_p, errors.omega_p, errors.zeta_p)))
+
+
+def _real(corner: float, error: float) -> dict[str, object]:
+    """Return a real pole, or zero, by its corner frequency; in the right half plane it is negative."""
+    return {
+        "omega": float(corner),
+        "omega_standard_error": _finite(float(error)),
+        "frequency_hz": float(corner) / (2 * pi),
+        "time_constant_s": 1 / float(corner),
+    }
+
+
 def _pairs(
     omega: np.ndarray, zeta: np.ndarray, omega_error: np.ndarray, zeta_error: np.ndarray
 ) -> list[dict[str, object]]:
     return [
         {
             "omega": float(omega[i]),
-            "omega_standard_error": float(omega_error[i]),
+            "omega_standard_error": _finite(float(omega_error[i])),
             "frequency_hz": float(omega[i]) / (2 * pi),
-            "frequency_standard_error_hz": float(omega_error[i]) / (2 * pi),
+            "frequency_standard_error_hz": _finite(float(omega_error[i]) / (2 * pi)),
             "damping_ratio": float(zeta[i]),
-            "damping_standard_error": float(zeta_error[i]),
+            "damping_standard_error": _finite(float(zeta_error[i])),
         }
         for i in range(omega.size)
     ]
@@ -233,7 +279,7 @@ def _is_scaled(fit: ResonanceFit) -> bool:
 
 
 def _what(fit: ResonanceFit, r: int) -> str:
-    count, base = fit.resonances.count, fit.bases[r]
+    count, base = int(fit.modes.sum()), fit.bases[r]
     word = "resonance" if count == 1 else "resonances"
     if base.path:
         return f"{count} {word} on {base.tf} of {base.path}"
@@ -257,13 +303,15 @@ def _data_line(fit: ResonanceFit, r: int) -> str:
     return ", ".join(parts)
 
 
+LARGE: Final = 1e7
+"""What is larger is printed with a power of ten."""
 HEAD: Final = ("", "frequency [Hz]", "std. error", "damping ratio", "std. error", "")
 
 
-def _row(i: int, omega: float, omega_error: float, zeta: float, zeta_error: float) -> tuple[str, ...]:
+def _row(name: str, omega: float, omega_error: float, zeta: float, zeta_error: float) -> tuple[str, ...]:
     hertz, hertz_error = abs(omega) / (2 * pi), omega_error / (2 * pi)
     numbers = (_shown(hertz, hertz_error), _error(hertz_error), _shown(zeta, zeta_error), _error(zeta_error))
-    return (str(i + 1), *numbers, "" if omega > 0 else "real, of opposite sign")
+    return (name, *numbers, "" if omega > 0 else "real, of opposite sign")
 
 
 def _places(error: float) -> int:
@@ -273,10 +321,14 @@ def _places(error: float) -> int:
 
 
 def _shown(value: float, error: float) -> str:
+    if not isfinite(value) or abs(value) >= LARGE or 0 < abs(value) < 1 / LARGE:
+        return f"{value:.4g}"
     return f"{value:.{_places(error)}f}"
 
 
 def _error(error: float) -> str:
+    if not isfinite(error) or error >= LARGE:
+        return "undetermined" if not isfinite(error) else f"{error:.2g}"
     return f"{error:.{_places(error)}f}" if error >= 1e-10 else "0"  # noqa: PLR2004
 
 
@@ -297,34 +349,29 @@ def _times(fit: ResonanceFit) -> str:
 
 def _phase_words(test: PhaseTest, fit: ResonanceFit, r: int) -> str:
     low, high = fit.measured[r].frequency_hz[[0, -1]]
-    fitted = "a minimum-phase fit to the magnitude alone"
-    if fit.bases[r].path:
-        fitted += " (the base with its own phase)"
+    own = " (the base with its own phase)" if fit.bases[r].path else ""
     if not test.bands:
         return (
-            f"the measured phase is that of {fitted}, within 10 degrees or the noise, "
-            f"from {low:.4g} to {high:.4g} Hz: minimum phase"
+            f"minimum phase: the measured phase is that of a minimum-phase fit to the magnitude alone{own}, "
+            f"within 10 degrees or the noise, from {low:.4g} to {high:.4g} Hz"
         )
-    bands = "; ".join(
-        f"from {b.low_hz:.4g} to {b.high_hz:.4g} Hz, by {b.worst_degrees:+.0f} degrees at {b.worst_hz:.4g} Hz"
-        for b in test.bands
+    worst = max(test.bands, key=lambda band: abs(band.worst_degrees))
+    others = len(test.bands) - 1
+    more = f" (and in {others} more {'interval' if others == 1 else 'intervals'})" if others else ""
+    parts = (
+        f"the measured phase is off by {worst.worst_degrees:+.0f} degrees at {worst.worst_hz:.4g} Hz, between "
+        f"{worst.low_hz:.4g} and {worst.high_hz:.4g} Hz{more}"
     )
-    parts = f"the measured phase parts from that of {fitted} {bands}"
     if test.verdict == "nonminimum":
-        return f"{parts}: not minimum phase there"
+        return f"not minimum phase: {parts}, from a minimum-phase fit to the magnitude alone{own}"
     if test.is_minimum_phase:
-        return (
-            f"minimum phase: a function with all zeros in the left half plane has the measured magnitude and "
-            f"phase, within 10 degrees or the noise, from {low:.4g} to {high:.4g} Hz. The magnitude alone "
-            f"leaves the phase open ({bands})"
-        )
+        return f"minimum phase: such a function has magnitude and phase as measured; with the magnitude alone {parts}"
     if test.with_phase is not None:
         return (
-            f"undetermined: {parts}; with a lag of {1e3 * test.lag_s:.3g} ms a minimum-phase function has "
-            "both. A sensor, poles or zeros above the band, or a delay may be the cause, and the data do not "
-            "tell which"
+            f"undetermined: {parts}, unless a sensor, a delay, or poles or zeros above the band add a lag of "
+            f"{1e3 * test.lag_s:.3g} ms"
         )
     return (
-        f"undetermined: {parts}, and that fit leaves {test.magnitude_db:.2g} dB rms of the magnitude: its "
-        "phase says nothing"
+        f"undetermined: {parts}, and the minimum-phase fit leaves {test.magnitude_db:.2g} dB rms of the "
+        "magnitude"
     )

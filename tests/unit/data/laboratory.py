@@ -3,7 +3,8 @@
 Nothing here comes from symflex: responses are sums over modes or products of second-order factors, zeros are
 roots of their numerators, and the statistics compare plain numbers. There is no coherence and no base.
 
-``python -m tests.unit.data.laboratory 500`` runs the study whose figures stand in ``docs/fit.md``.
+``python -m tests.unit.data.laboratory 500`` runs the study whose figures stand in ``docs/fit.md``, and ``python
+-m tests.unit.data.laboratory 500 1 wild`` the one with modes outside the band, wild lines and real poles.
 """
 
 from __future__ import annotations
@@ -46,6 +47,9 @@ class Case:
     noise_percent: int
     is_logarithmic: bool
     is_additive: bool
+    real_pole: float | None = None  # rad/s
+    wild: int | None = None  # the line that is
+    has_mode_outside: bool = False
 
 
 def pair(s, omega, zeta):
@@ -172,6 +176,63 @@ def _drawn(random, shape, number):
     )
 
 
+def wild(seed, number):
+    """Return a data set of one to four modes with what surrounds them in a laboratory.
+
+    A half has a mode outside the band, a third a wild line, a quarter a real pole.
+    """
+    random = np.random.default_rng([seed, number, 7])
+    while True:
+        count = int(random.integers(1, 5))
+        f_p = modes_apart(random, count, 1.15)
+        zeta_p = random.uniform(0.004, 0.03, count)
+        low, high = f_p[0] * random.uniform(0.3, 0.6), f_p[-1] * random.uniform(1.3, 1.8)
+        is_outside = number % 2 == 0
+        every, every_zeta = f_p, zeta_p
+        if is_outside:
+            beyond = high * random.uniform(1.1, 2.5) if random.random() < 0.7 else low * random.uniform(0.4, 0.9)
+            every, every_zeta = np.append(f_p, beyond), np.append(zeta_p, random.uniform(0.004, 0.03))
+        signs = np.ones(every.size) if random.random() < 0.5 else random.choice([-1.0, 1.0], every.size)
+        function, roots, slope, gain = modal_sum(random, every, every_zeta, 0.0, signs, int(random.integers(0, 3)))
+        in_hz = np.abs(roots) / (2 * np.pi)
+        if not np.any((in_hz > 0) & (in_hz < 1.2 * low)):
+            break
+    corner = 2 * np.pi * float(random.uniform(1.3 * low, high / 1.3)) if number % 4 == 1 else None
+    narrowest = float(np.min(2 * zeta_p * f_p))
+    lines = int(np.clip((high - low) / narrowest * random.uniform(3.0, 8.0), 60, 1500))
+    is_logarithmic = number // 3 % 2 == 1
+    frequency = (np.geomspace if is_logarithmic else np.linspace)(low, high, lines)
+    s = 2j * np.pi * frequency
+    exact = function(s) / (1 if corner is None else 1 + s / corner)
+    percent = NOISE_PERCENT[number % len(NOISE_PERCENT)]
+    is_additive = number // 5 % 3 == 0
+    size = np.exp(np.mean(np.log(np.abs(exact)))) if is_additive else np.abs(exact)
+    error = random.standard_normal(lines) + 1j * random.standard_normal(lines)
+    values = exact + percent / 100 * size * error / sqrt(2)
+    line = None
+    if number % 3 == 0:
+        line = int(random.choice([0, lines - 1, random.integers(0, lines)]))
+        values[line] *= 10 ** random.uniform(0.7, 2) * np.exp(2j * np.pi * random.random())
+    upper = roots[(roots.imag > 0.2 * np.abs(roots)) & (in_hz > low) & (in_hz < high)]
+    upper = upper[np.argsort(np.abs(upper))]
+    return Case(
+        "wild",
+        frequency,
+        values,
+        np.column_stack((2 * np.pi * f_p, zeta_p)),
+        np.column_stack((np.abs(upper), -upper.real / np.abs(upper))),
+        slope,
+        gain,
+        None,
+        percent,
+        is_logarithmic,
+        is_additive,
+        corner,
+        line,
+        is_outside,
+    )
+
+
 def deviations(case, poles, zeros, slope, gain, delay):
     """Return by how many standard errors each parameter is off; infinity for what is missing or wrong.
 
@@ -189,7 +250,8 @@ def deviations(case, poles, zeros, slope, gain, delay):
             found += [np.inf]
             continue
         found += [(near[0] - omega) / near[1], (near[2] - zeta) / near[3]]
-    found.append((gain[0] - case.gain) / gain[1] if slope == case.slope else np.inf)
+    if not case.has_mode_outside:
+        found.append((gain[0] - case.gain) / gain[1] if slope == case.slope else np.inf)
     if case.delay is not None:
         found.append((delay[0] - case.delay) / delay[1])
     return np.abs(np.array(found))
@@ -207,15 +269,19 @@ def limit_for(count):
 def judged(case, fit):
     """Return the deviations of a fit, and whether it says that it is poor."""
     found, errors = fit.resonances, fit.standard_errors()
-    poles = np.column_stack((found.omega_p, errors.omega_p, found.zeta_p, errors.zeta_p))
+    poles = np.column_stack((found.omega_p, errors.omega_p, found.zeta_p, errors.zeta_p))[fit.modes]
     kept = np.isfinite(found.omega_z[0]) & (found.omega_z[0] > 0)
     zeros = np.column_stack((found.omega_z[0], errors.omega_z[0], found.zeta_z[0], errors.zeta_z[0]))[kept]
     gain = (found.gain[0], errors.gain[0])
     delay = (found.delay[0], errors.delay[0])
-    return deviations(case, poles, zeros, fit.bases[0].slope, gain, delay), bool(fit.poor)
+    off = deviations(case, poles, zeros, fit.bases[0].slope, gain, delay)
+    if case.real_pole is not None:
+        near = min(fit.real_poles(), key=lambda p: abs(np.log(p[0] / case.real_pole)), default=(0.0, 1e-99))
+        off = np.append(off, abs(near[0] - case.real_pole) / near[1])
+    return off, bool(fit.poor)
 
 
-def study(count, seed=1, *, modes_given=True, show=None, first=0):
+def study(count, seed=1, *, modes_given=True, show=None, first=0, draw=simulated):
     """Fit ``count`` data sets; return per data set its shape, deviations and verdict."""
     from symflex.data.fitting import fit_resonances
     from symflex.data.measurement import MeasuredResponse
@@ -224,7 +290,7 @@ def study(count, seed=1, *, modes_given=True, show=None, first=0):
 
     results = []
     for number in range(first, first + count):
-        case = simulated(seed, number)
+        case = draw(seed, number)
         data = MeasuredResponse("y/u", case.frequency_hz, case.values)
         more = {"is_delay_free": True} if case.delay is not None else {}
         try:
@@ -274,12 +340,17 @@ def main(arguments):
             kind = "logarithmic" if case.is_logarithmic else "linear"
             worst = " ".join(f"{x:.1f}" for x in off)
             noise = f"{case.noise_percent} % {'of the mean' if case.is_additive else 'of each line'}"
-            print(f"{number:4d} {case.shape}, {case.values.size} {kind} lines, {noise}: {worst}", end=" ")
+            shape = case.shape + (", mode outside" if case.has_mode_outside else "")
+            shape += ", real pole" if case.real_pole else ""
+            shape += f", wild line {case.wild}" if case.wild is not None else ""
+            print(f"{number:4d} {shape}, {case.values.size} {kind} lines, {noise}: {worst}", end=" ")
             print(f"poor: {words}" if poor else "", flush=True)
 
-    for given in (True, False):
+    is_wild = arguments[2:] == ["wild"]
+    for given in (False,) if is_wild else (True, False):
         print("number of resonances", "given" if given else "chosen")
-        for name, value in summary(study(count, seed, modes_given=given, show=show)).items():
+        draw = wild if is_wild else simulated
+        for name, value in summary(study(count, seed, modes_given=given, show=show, draw=draw)).items():
             print(f"  {name}: {value}")
 
 

@@ -1,0 +1,135 @@
+"""Which lines of a measurement a fit uses: not those that are wild, and few where few tell as much.
+
+One line of a response 1/s^2 at 4, 8, 12, ... Hz has another value than its neighbours have it:
+
+    line [Hz]                       4      8     12     16     20
+    magnitude                     172   1.46   0.66   0.39   0.26
+    off the power law of others   3.4    ...    0.01   0.01   0.01   (natural logarithm)
+
+A resonance narrower than the distance of lines is no such line: its neighbours deviate too.
+"""
+
+from __future__ import annotations
+
+from heapq import heapify, heappop, heappush
+
+import numpy as np
+
+from symflex.data.fitting.resonances import Complex, Real, Resonances, Whole
+
+FEWEST = 12
+"""Lines from which wild ones are looked for."""
+REACH = 4
+"""Lines on either side that one is compared with."""
+WILD = 8.0
+"""How many times as far as the worst of those a wild line deviates."""
+MOST_WILD = 0.02
+"""Share of the lines that may be wild: if more are, the model lacks something."""
+LEAST_OFF = 0.1
+"""Of the logarithm: what deviates by less cannot hide a resonance, and is left to the fit."""
+NARROW = 0.1
+"""Bandwidth of a resonance, over twice the distance of lines, below which one line alone shows its peak."""
+FIRST_SHARE = 4
+"""Part of the lines of a thinner grid, its inverse, that is spread evenly."""
+CAP = 0.05
+"""Added to the deviation, so that a grid does not follow what a start does not need."""
+
+
+def wild_lines(omega: Real, values: Complex) -> Whole:
+    """Return the lines that deviate from a power law of their neighbours as these do not.
+
+    Examples
+    --------
+    >>> omega = np.arange(4.0, 200.0, 4.0)
+    >>> values = 1 / omega**2 + 0j
+    >>> values[7] *= 30
+    >>> wild_lines(omega, values).tolist()
+    [7]
+    """
+    n = omega.size
+    if n < FEWEST:
+        return np.zeros(0, np.int64)
+    x = np.log(omega)
+    at = np.arange(n)
+
+    def off(i: Whole, below: Whole, above: Whole) -> Real:
+        """Return how far lines are off the power law of two others, over what noise makes of that."""
+        share = (x[i] - x[below]) / (x[above] - x[below])
+        away = np.log(values[i] / values[below]) - share * np.log(values[above] / values[below])
+        turned = np.angle(np.exp(1j * away.imag))
+        return np.asarray(np.hypot(away.real, turned) / np.sqrt(1 + share**2 + (1 - share) ** 2))
+
+    below, above = at - 1, at + 1
+    # At an end it is the two lines beside it, and both on the same side.
+    below[0], above[0], below[-1], above[-1] = 1, 2, n - 3, n - 2
+    alone = off(at, below, above)
+    others = np.zeros(n)
+    for step in range(2, REACH + 1):
+        others[step:] = np.maximum(others[step:], alone[:-step])
+        others[:-step] = np.maximum(others[:-step], alone[step:])
+    # The neighbours are judged without the line itself.
+    inner = at[2:-2]
+    for beside, over in ((-1, (-2, 1)), (1, (-1, 2))):
+        without = off(inner + beside, inner + over[0], inner + over[1])
+        others[2:-2] = np.maximum(others[2:-2], without)
+    for places in ((0, 1, 2, 3), (1, 0, 2, 3), (n - 1, n - 2, n - 3, n - 4), (n - 2, n - 1, n - 3, n - 4)):
+        line, beside, first, second = (np.array([place]) for place in places)
+        others[line] = np.maximum(others[line], off(beside, first, second))
+    return np.flatnonzero((alone > WILD * others) & (alone > LEAST_OFF))
+
+
+def telling_lines(omega: Real, values: Complex, deviation: Real, most: int) -> Whole:
+    """Return at most so many lines between which a response is nearly straight: many at peaks, few elsewhere.
+
+    An interval is halved where the sum of squares of what lies off its chord, over the deviation, is largest.
+
+    Examples
+    --------
+    >>> omega = np.linspace(1, 50, 5000)
+    >>> sharp = 1 / (100 - omega**2 + 0.02j * omega)
+    >>> chosen = telling_lines(omega, sharp, np.full(5000, 0.01), 200)
+    >>> chosen.size, bool(np.abs(omega[chosen] - 10).min() < 0.005)
+    (200, True)
+    """
+    if omega.size <= most:
+        return np.arange(omega.size)
+    weight = 1 / (np.abs(values) * np.hypot(deviation, CAP))
+
+    def interval(low: int, high: int) -> tuple[float, int, int]:
+        inside = slice(low + 1, high)
+        share = (omega[inside] - omega[low]) / (omega[high] - omega[low])
+        chord = values[low] + share * (values[high] - values[low])
+        return -float(np.sum((np.abs(values[inside] - chord) * weight[inside]) ** 2)), low, high
+
+    ends = np.unique(np.linspace(0, omega.size - 1, max(most // FIRST_SHARE, 2)).astype(int)).tolist()
+    intervals = [interval(low, high) for low, high in zip(ends[:-1], ends[1:], strict=True)]
+    heapify(intervals)
+    chosen = set(ends)
+    while len(chosen) < most:
+        _, low, high = heappop(intervals)
+        middle = (low + high) // 2
+        if middle == low:
+            break
+        chosen.add(middle)
+        heappush(intervals, interval(low, middle))
+        heappush(intervals, interval(middle, high))
+    return np.array(sorted(chosen), np.int64)
+
+
+def single_lines(omega: Real, resonances: Resonances) -> Whole:
+    """Return the lines beside resonances whose half-power bandwidth is far less than the distance of lines."""
+    found = []
+    for centre, zeta in zip(resonances.omega_p, resonances.zeta_p, strict=True):
+        i = int(np.argmin(np.abs(omega - centre)))
+        distance = omega[min(i + 1, omega.size - 1)] - omega[max(i - 1, 0)]
+        if omega[0] <= centre <= omega[-1] and 2 * zeta * centre < NARROW * distance:
+            found.append(i)
+    return np.unique(np.array(found, np.int64))
+
+
+def isolated(places: Whole, size: int) -> Whole:
+    """Return places that lie two at most beside each other; none if they are more than a share of all."""
+    if places.size > max(MOST_WILD * size, 1.0):
+        return places[:0]
+    runs = np.split(places, np.flatnonzero(np.diff(places) > 1) + 1)
+    return np.concatenate([run for run in runs if run.size <= 2] or [places[:0]])  # noqa: PLR2004
