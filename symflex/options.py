@@ -460,7 +460,15 @@ class FitOptions:
         help="The response at the driven point: it is fitted, and all give mass-normalised mode shapes.",
     )
     output: str | None = option(None, "-o", "--output", is_path=True, help="Specification to write.")
-    figure: str | None = option(None, "--plot", is_path=True, help="Figure to write: .pdf, .svg or .png.")
+    figure: str | None = option(
+        None,
+        "--plot",
+        is_path=True,
+        help="Figure to write: data, fit and what is left of all responses; .pdf, .svg or .png.",
+    )
+    order_figure: str | None = option(
+        None, "--plot-order", is_path=True, help="Stabilisation diagram to write: poles by their number."
+    )
     strict: bool = option(
         False, "--strict", help="A fit that is poor is exit code 4, and nothing is written."
     )

@@ -6,7 +6,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from symflex.budget import entered_budget
 from symflex.cli.command import Specification, bare_command, command_of, first_pair
+from symflex.cli.progress import ProgressBar
 from symflex.cli.reporting import check_place, emit_json, note, say, terminal_width
 from symflex.errors import Diagnostic, FitError, SymflexError, UsageError
 from symflex.options import FitOptions, MeasureOptions
@@ -43,7 +45,11 @@ def fit(given: FitOptions) -> int:
         raise UsageError(Diagnostic("SF902", "--tf names a transfer function of --base"))
     if given.base is not None and given.slope is not None:
         raise UsageError(Diagnostic("SF902", "--slope is for fits without --base"))
-    for name, endings in ((given.output, (".toml",)), (given.figure, SUFFIXES)):
+    for name, endings in (
+        (given.output, (".toml",)),
+        (given.figure, SUFFIXES),
+        (given.order_figure, SUFFIXES),
+    ):
         if name:
             check_place(name, endings)
     if given.base is not None:
@@ -60,7 +66,9 @@ def fit(given: FitOptions) -> int:
             )
         if given.base is not None:
             raise UsageError(Diagnostic("SF902", "--driving is for fits without --base"))
-    found = pipeline.fit(measured, given)
+    budget = entered_budget()
+    with ProgressBar() as bar, budget.told(bar).entered():
+        found = pipeline.fit(measured, given)
     shapes = mode_shapes(found, every) if given.driving else None
     if given.strict and found.poor:
         hint = "without --strict it is printed all the same"
@@ -81,11 +89,14 @@ def fit(given: FitOptions) -> int:
     if given.figure:
         from symflex.figures import draw_fit, save
 
-        for r in range(len(measured)):
-            place = Path(given.figure)
-            one = place if r == 0 else place.with_stem(f"{place.stem}_{r + 1}")
-            save(draw_fit(found, r), one)
-            note(f"wrote {one}")
+        save(draw_fit(found), Path(given.figure))
+        note(f"wrote {given.figure}")
+    if given.order_figure:
+        from symflex.data.fitting import stabilisation
+        from symflex.figures import draw_orders, save
+
+        save(draw_orders(stabilisation(found), found), Path(given.order_figure))
+        note(f"wrote {given.order_figure}")
     return 0
 
 

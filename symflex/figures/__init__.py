@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
     from symflex.figures.axes import AxesGiven, AxisLimits, Drawing
-    from symflex.figures.bode import draw_fit, draw_measured, draw_response
+    from symflex.figures.bode import draw_response
     from symflex.figures.files import FORMATS, render, save
+    from symflex.figures.fitted import draw_fit, draw_measured, draw_orders
     from symflex.figures.in_time import draw_in_time
     from symflex.figures.input_shaping import draw_residual
     from symflex.figures.kinds import (
@@ -30,8 +31,9 @@ _HOME: Final = {
     "AxesGiven": "axes",
     "AxisLimits": "axes",
     "Drawing": "axes",
-    "draw_fit": "bode",
-    "draw_measured": "bode",
+    "draw_fit": "fitted",
+    "draw_measured": "fitted",
+    "draw_orders": "fitted",
     "draw_response": "bode",
     "FORMATS": "files",
     "render": "files",
@@ -65,6 +67,7 @@ __all__ = [
     "draw_in_time",
     "draw_loop",
     "draw_measured",
+    "draw_orders",
     "draw_residual",
     "draw_response",
     "draw_shape",

@@ -28,7 +28,6 @@ from symflex.figures.style import (
     COLUMN_INCHES,
     DASHES,
     LINE_INCHES,
-    QUIET,
     label_of_tf,
     label_of_unit,
     paper_style,
@@ -45,8 +44,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from symflex.analysis.response import SampledResponse
-    from symflex.data.fitting import ResonanceFit
-    from symflex.data.measurement import MeasuredResponse
     from symflex.figures.axes import AxesGiven, Limits
     from symflex.roots import PoleZeroMap
     from symflex.transfer import AnyBoundFunction, AnyTransferFunction
@@ -115,7 +112,7 @@ def draw_bode(
     label_magnitudes(top, units.pop() if len(units) == 1 else "")
     for axes in below:
         _set_phase_axis(axes, responses, canvas.frame.phase)
-    _set_frequency_axes((top, *below), low, high)
+    set_frequency_axes((top, *below), low, high)
     figure = root_figure(top)
     add_legend_above(top, legend_columns, "\n".join((*lines, *said) if canvas.axes else said) or None)
     if not canvas.axes:
@@ -123,7 +120,7 @@ def draw_bode(
     return figure
 
 
-def _panels(own: tuple[Axes, ...], height: float, ratio: float) -> tuple[Axes, Axes]:
+def panels(own: tuple[Axes, ...], height: float, ratio: float) -> tuple[Axes, Axes]:
     """Return axes for magnitudes and phases, the user's if there are any."""
     if not own:
         return magnitude_over_phase(COLUMN_INCHES, height, ratio)
@@ -131,7 +128,7 @@ def _panels(own: tuple[Axes, ...], height: float, ratio: float) -> tuple[Axes, A
     return top, bottom
 
 
-def _set_frequency_axes(panels: Sequence[Axes], low: float, high: float) -> None:
+def set_frequency_axes(panels: Sequence[Axes], low: float, high: float) -> None:
     """Label the lowest of panels that stand below each other."""
     for axes in panels:
         set_frequency_axis(axes, low, high)
@@ -164,14 +161,14 @@ def draw_response(response: SampledResponse, ax: AxesGiven | None = None) -> Fig
     level = np.where(np.isfinite(level), level, np.nan)
     own = axes_of(ax)
     with nullcontext() if own else paper_style():
-        top, bottom = _panels(own, HEIGHT_INCHES + LINE_INCHES, RATIO)
+        top, bottom = panels(own, HEIGHT_INCHES + LINE_INCHES, RATIO)
         figure = root_figure(top)
         colour = COLOURS[len(top.get_lines()) % len(COLOURS)]
         top.plot(frequency, level, color=colour, label=response.tf)
         bottom.plot(frequency, np.degrees(response.phase[kept][order]), color=colour)
         label_magnitudes(top, response.unit)
         _set_phase_axis(bottom, [response])
-        _set_frequency_axes((top, bottom), float(frequency[0]), float(frequency[-1]))
+        set_frequency_axes((top, bottom), float(frequency[0]), float(frequency[-1]))
         if not own:
             write_title(figure, title_lines(response.tf, COLUMN_INCHES))
     return figure
@@ -234,108 +231,3 @@ def _set_phase_axis(axes: Axes, responses: Sequence[SampledResponse], limits: Li
     is_plain = limits is not None and not 2 * PHASE_STEPS[0] <= highest - lowest < PHASE_TICKS * step
     axes.yaxis.set_major_locator(MaxNLocator(nbins=7) if is_plain else MultipleLocator(step))
     axes.set_ylabel("Phase [deg]")
-
-
-MEASURED_INCHES: Final = 3.9
-MEASURED_RATIO: Final = 1.35
-"""Height of the panel of magnitudes over that of phases."""
-DATA_COLOUR: Final = "#555555"
-PARTED_COLOUR: Final = "#F6E3D4"
-"""Ground where the phase is not that of a minimum-phase function."""
-
-
-def draw_measured(measured: MeasuredResponse, model: npt.NDArray[np.complex128], unit: str = "") -> Figure:
-    """Draw a model over a measured response.
-
-    ``model`` is the model on the measured lines; ``unit`` is that of the values, where the data do not say.
-    Synthetic data are called so in the title.
-    """
-    with paper_style():
-        top, bottom = magnitude_over_phase(COLUMN_INCHES, MEASURED_INCHES, MEASURED_RATIO)
-        phase = _unwrapped(model)
-        _draw_data(top, bottom, measured, model, phase)
-        top.plot(measured.frequency_hz, _decibels(model), color=COLOURS[0], label="model")
-        bottom.plot(measured.frequency_hz, phase, color=COLOURS[0])
-        return _finish(top, bottom, measured, unit, 2, is_new=True)
-
-
-def draw_fit(fit: ResonanceFit, response: int = 0, ax: AxesGiven | None = None) -> Figure:
-    """Draw one response of a fit: data, start, fit; and the phase of the magnitude-only fit where it parts.
-
-    Synthetic data are called so in the title. On two axes of the user's own if they are given.
-    """
-    line, test = fit.problem.lines[response], fit.phase_tests[response]
-    measured = line.measured
-    frequency = measured.frequency_hz
-    model = fit.values(response)
-    start = fit.values(response, fit.candidate.start)
-    own = axes_of(ax)
-    with nullcontext() if own else paper_style():
-        top, bottom = _panels(own, MEASURED_INCHES, MEASURED_RATIO)
-        for axes in (top, bottom):
-            for band in () if test.is_minimum_phase else test.bands:
-                axes.axvspan(band.low_hz, band.high_hz, color=PARTED_COLOUR, linewidth=0, zorder=0)
-        fitted = _unwrapped(model)
-        _draw_data(top, bottom, measured, model, fitted)
-        top.plot(frequency, _decibels(start), color=COLOURS[4], linestyle=DASHES[3], label="start")
-        top.plot(
-            frequency, _decibels(model), color=COLOURS[0], label=f"fit, {fit.resonances.count} resonances"
-        )
-        bottom.plot(
-            frequency, fitted + np.degrees(np.angle(start / model)), color=COLOURS[4], linestyle=DASHES[3]
-        )
-        bottom.plot(frequency, fitted, color=COLOURS[0])
-        if test.bands and not test.is_minimum_phase:
-            alone = fit.values(response, None) * test.resonances.factor(0, line.omega)
-            alone = alone / fit.resonances.factor(response, line.omega)
-            phase = np.degrees(np.unwrap(np.angle(alone)))
-            phase = phase + 360 * np.round((fitted[0] - phase[0]) / 360)
-            bottom.plot(frequency, phase, color=COLOURS[1], linestyle=DASHES[1])
-            top.plot([], [], color=COLOURS[1], linestyle=DASHES[1], label="phase from magnitude")
-        for omega in fit.resonances.omega_p.tolist():
-            bottom.axvline(omega / (2 * np.pi), color=QUIET, linewidth=0.4, zorder=0)
-        columns = 3 if test.is_minimum_phase else 2
-        return _finish(top, bottom, measured, fit.bases[response].unit, columns, is_new=not own)
-
-
-def _draw_data(
-    top: Axes,
-    bottom: Axes,
-    measured: MeasuredResponse,
-    model: npt.NDArray[np.complex128],
-    phase: npt.NDArray[np.float64],
-) -> None:
-    """Draw the data, their phases within half a turn of the model's ``phase`` [deg]."""
-    name = "synthetic data" if measured.is_synthetic else "measured"
-    aside = np.degrees(np.angle(measured.values / model))
-    for axes, values, label in ((top, _decibels(measured.values), name), (bottom, phase + aside, None)):
-        axes.plot(measured.frequency_hz, values, ".", color=DATA_COLOUR, markersize=2.4, label=label)
-
-
-def _finish(
-    top: Axes, bottom: Axes, measured: MeasuredResponse, unit: str, columns: int, *, is_new: bool
-) -> Figure:
-    """Label the panels, give them a legend and a new figure a title, and return the figure."""
-    label_magnitudes(top, measured.unit or unit)
-    set_magnitude_ticks(top)
-    bottom.set_ylabel("Phase [deg]")
-    bottom.yaxis.set_major_locator(MaxNLocator(nbins=6, steps=[1, 1.5, 3, 4.5, 9, 10]))
-    _set_frequency_axes((top, bottom), float(measured.frequency_hz[0]), float(measured.frequency_hz[-1]))
-    figure = root_figure(top)
-    add_legend_above(top, columns, is_tight=True)
-    if not is_new:
-        return figure
-    title = measured.name + (" (synthetic data)" if measured.is_synthetic else "")
-    write_title(figure, title_lines(title, COLUMN_INCHES))
-    return figure
-
-
-def _unwrapped(values: npt.NDArray[np.complex128]) -> npt.NDArray[np.float64]:
-    """Return continuous phases [deg], the first within half a turn of 0."""
-    phase = np.degrees(np.unwrap(np.angle(values)))
-    return np.asarray(phase - 360 * np.round(phase[0] / 360))
-
-
-def _decibels(values: npt.NDArray[np.complex128]) -> npt.NDArray[np.float64]:
-    """Return ``20 log10(abs(values))``."""
-    return np.asarray(20 * np.log10(np.abs(values)))

@@ -5,6 +5,7 @@ from symflex.data.fitting.mode_shapes import FittedModeShapes, mode_shapes
 from symflex.data.fitting.order import CRITERIA, STARTS, Score
 from symflex.data.fitting.phase_test import PartedBand, PhaseTest
 from symflex.data.fitting.resonances import Resonances
+from symflex.data.fitting.stabilisation import StablePoles, stabilisation
 
 __all__ = [
     "CRITERIA",
@@ -16,6 +17,8 @@ __all__ = [
     "ResonanceFit",
     "Resonances",
     "Score",
+    "StablePoles",
     "fit_resonances",
     "mode_shapes",
+    "stabilisation",
 ]

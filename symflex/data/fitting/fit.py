@@ -41,6 +41,8 @@ WEAK = 0.5
 """Standard error over the value from which a damping ratio, or a zero, is hardly determined."""
 LARGE = 2.0
 """Sum of squares per degree of freedom from which coherence does not explain the residual."""
+MEDIAN = 1.177
+"""Median of the size of a complex Gaussian error whose parts have the deviation 1."""
 WILD = 6.5
 """Standard deviations of each part beyond which a line is wild; noise reaches that once in 10^9 lines."""
 NAMED_LINES = 6
@@ -49,6 +51,8 @@ ROUNDS = 3
 """In which lines are left out or taken back, until these are the same."""
 MOST_LINES, FEWEST_OF_EACH = 1000, 300
 """On which numbers of poles are compared: of all responses together, and of each at least."""
+DROWNED = 0.5
+"""Deviation of each part over the magnitude from which a line shows noise."""
 DROWNED_DB = 6.0
 """Misfit of a fit without poles from which noise is as large as the response."""
 OVERDAMPED = 2.0
@@ -187,12 +191,20 @@ class ResonanceFit:
         )
 
     def misfit_db(self, response: int) -> float:
-        """Return the root mean square of model over data on the lines [dB], magnitude alone."""
-        return self.problem.lines[response].measured.misfit_db(self.problem.values(self.resonances, response))
+        """Return the root mean square of model over data on the lines above the noise [dB], magnitude alone."""
+        measured, model = self._seen(response)
+        return measured.misfit_db(model)
 
     def misfit_degrees(self, response: int) -> float:
-        """Return the root mean square of the phase difference on the lines [deg]."""
-        return self.problem.lines[response].measured.misfit_degrees(self.problem.values(self.resonances, response))
+        """Return the root mean square of the phase difference on the lines above the noise [deg]."""
+        measured, model = self._seen(response)
+        return measured.misfit_degrees(model)
+
+    def _seen(self, response: int) -> tuple[MeasuredResponse, Complex]:
+        seen = _seen(self.problem, response, self.resonances)
+        return self.problem.lines[response].at(seen).measured, self.problem.values(self.resonances, response)[
+            seen
+        ]
 
 
 def fit_resonances(
@@ -279,6 +291,7 @@ def _fit(
     if not has_base:
         bases = tuple(Base.power(int(power)) for power in candidate.refined.resonances.slope)
     thin = problem.thinned(most)
+    thin = thin.at([_seen(thin, r, candidate.refined.resonances) for r in range(len(measured))])
     tests = tuple(judge_phase(thin, r, candidate.refined.resonances) for r in range(len(measured)))
     fit = ResonanceFit(problem, bases, candidate, scores, given.criterion, tests, ())
     return replace(fit, warnings=_warnings(fit), poor=(*reasons, *_poor(fit)))
@@ -295,6 +308,17 @@ def _chosen(
     return candidate, problem, (chosen[0], chosen[1])
 
 
+def _seen(problem: FitProblem, response: int, resonances: Resonances) -> Whole:
+    """Return the lines on which the fit is above the noise; all, where these are too few."""
+    line = problem.lines[response]
+    every = np.arange(line.omega.size)
+    if line.deviation is None:
+        return every
+    noise = line.deviation * np.abs(line.measured.values)
+    seen = np.flatnonzero(noise < DROWNED * np.abs(problem.values(resonances, response)))
+    return seen if seen.size >= FEWEST_LINES else every
+
+
 def _kept(line: FittedLines, wild: Whole) -> Whole:
     """Return the lines that are not wild."""
     return np.delete(np.arange(line.omega.size), isolated(wild, line.omega.size))
@@ -309,6 +333,8 @@ def _fitting_lines(problem: FitProblem, candidate: Candidate) -> list[Whole]:
             every.base * candidate.refined.resonances.factor(r, every.observation.omega)
         )
         off = np.abs(model - every.measured.values) / line.deviation_of_every()
+        # What is larger than the noise everywhere is no matter of single lines.
+        off = off / max(float(np.median(off)) / MEDIAN, 1.0 if problem.has_scale else 0.0)
         found.append(_kept(every, np.flatnonzero(off > WILD)))
     return found
 

@@ -135,7 +135,9 @@ def _descend(
     def reduced(vector: Real, rest: list[Complex]) -> tuple[Real, Real]:
         return _reduced(problem, start.unpack(vector, problem.free), rest, kind)
 
-    found, has_converged = search(residual, reduced, np.clip(packed, low, high), (low, high), steps, tolerance)
+    found, has_converged = search(
+        residual, reduced, np.clip(packed, low, high), (low, high), steps, tolerance
+    )
     return start.unpack(found, problem.free), has_converged
 
 

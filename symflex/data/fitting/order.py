@@ -36,6 +36,7 @@ from symflex.data.fitting.starts import (
 )
 from symflex.errors import BudgetError, Diagnostic
 
+
 class _Effort(TypedDict):
     """What a search may take."""
 
@@ -63,6 +64,8 @@ FAR_BETTER = 4.0
 """Ratio of sums of squares at which a failed fit is said rather than replaced, and a weak one kept."""
 FAR_OFF = 100.0
 """Sum of squares per degree of freedom from which poles are missing, whatever the start."""
+FAR_OUTSIDE = 30.0
+"""Frequency over the end of the band beyond which a pole bends nothing inside that a gain cannot."""
 LOWER = 0.5
 """How far the BIC has to fall for another start to count as better."""
 NEGLIGIBLE = 1e-6
@@ -181,7 +184,11 @@ def best_of_starts(
             ):
                 refined = refine_directly(problem, refined.resonances, steps=2 * STEPS)
             found = Candidate(
-                order, name if order else "none", start, refined, _failure(problem, refined, is_quick=is_quick)
+                order,
+                name if order else "none",
+                start,
+                refined,
+                _failure(problem, refined, is_quick=is_quick),
             )
             met.append(refined)
             if best is None or _is_better(problem, found, best):
@@ -284,10 +291,9 @@ def _tried(
                 now = values()
                 worse = worse + 1 if now and now[-1] > min(now) else 0
                 least = min((one.refined.reduced for one in tried), default=np.inf)
-                has_scale = thin.is_noise_estimated or thin.is_noise_known
                 # Fewer poles than there are may be no better than none, each with something large left over.
-                patience = MORE_PATIENCE if not has_scale or least > FAR_BETTER else PATIENCE
-                if worse > (0 if has_scale and least < EXPLAINED else patience):
+                patience = MORE_PATIENCE if not thin.has_scale or least > FAR_BETTER else PATIENCE
+                if worse > (0 if thin.has_scale and least < EXPLAINED else patience):
                     break
             if tried:
                 best = tried[int(np.argmin(values()))].order
@@ -319,8 +325,10 @@ def _is_weak(refined: Refined, band: tuple[float, float]) -> bool:
 def _continued(problem: FitProblem, thin: FitProblem, quick: Candidate, kind: str) -> Candidate:
     """Return where a quick fit leads with all steps, on all lines and with the window."""
     refined = refine_directly(thin, quick.refined.resonances, steps=3 * STEPS)
-    best = _simplified(thin, replace(quick, refined=refined, failure=_failure(problem, refined)), is_quick=False)
-    best = _signs_tried(thin, best)
+    best = _simplified(
+        thin, replace(quick, refined=refined, failure=_failure(problem, refined)), is_quick=False
+    )
+    best = _signs_tried(thin, _without_far_poles(thin, best))
     if best.failure is not None or not _is_explained(thin, best.refined):
         again = best_of_starts(thin, quick.order, kind)
         if again is not None and _is_better(thin, again, best):
@@ -435,6 +443,39 @@ def _simplified(problem: FitProblem, best: Candidate, *, is_quick: bool) -> Cand
     return best
 
 
+def _without_far_poles(problem: FitProblem, best: Candidate) -> Candidate:
+    """Return the fit without real poles so far outside the band that they are a gain, or a power of s."""
+    now = best.refined.resonances
+    low, high = problem.band[0] / FAR_OUTSIDE, problem.band[1] * FAR_OUTSIDE
+    corners = [[float(p)] for p in now.real_p]
+    for omega, zeta in zip(now.omega_p.tolist(), now.zeta_p.tolist(), strict=True):
+        root = np.sqrt(max(zeta * zeta - 1, 0.0))
+        corners.append([omega * (zeta - root), omega * (zeta + root)])
+    for k, poles in enumerate(corners):
+        below = [p for p in poles if p < low]
+        pair = k - now.real_p.size
+        if len(below) + sum(p > high for p in poles) < len(poles) or (pair >= 0 and now.has_zeros[:, -1].any()):
+            continue
+        kept = np.arange(now.count) != pair
+        start = replace(
+            now,
+            omega_p=now.omega_p[kept],
+            zeta_p=now.zeta_p[kept],
+            real_p=now.real_p[:0] if pair < 0 else now.real_p,
+            omega_z=now.omega_z[:, : int(kept.sum())],
+            zeta_z=now.zeta_z[:, : int(kept.sum())],
+            slope=now.slope - len(below),
+            gain=now.gain * np.prod(below),
+        )
+        if not set(start.slope.tolist()) <= set(problem.slopes):
+            continue
+        refined = refine_directly(problem, start)
+        fewer = replace(best, order=start.order, refined=refined, failure=_failure(problem, refined))
+        if _is_better(problem, fewer, best):
+            return _without_far_poles(problem, fewer)
+    return best
+
+
 def _signs_tried(problem: FitProblem, best: Candidate) -> Candidate:
     """Return the fit after trying each pair of zeros in the other half plane: magnitude hardly tells."""
     for r in range(len(problem.lines)):
@@ -479,7 +520,7 @@ def _is_enough(problem: FitProblem, best: Candidate) -> bool:
 
 def _is_explained(problem: FitProblem, refined: Refined) -> bool:
     """Return whether the residual is no larger than coherence says: no other start can do better."""
-    return (problem.is_noise_known or problem.is_noise_estimated) and refined.reduced < EXPLAINED
+    return problem.has_scale and refined.reduced < EXPLAINED
 
 
 def _failure(problem: FitProblem, refined: Refined, *, is_quick: bool = False) -> Diagnostic | None:

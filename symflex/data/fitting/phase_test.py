@@ -205,9 +205,7 @@ def _mirrored(fitted: Resonances) -> Resonances:
     zeta = np.abs(fitted.zeta_z)
     # Real zeros of opposite sign, mirrored, are an overdamped pair.
     zeta = np.where(fitted.omega_z < 0, np.hypot(1, zeta), np.maximum(zeta, LOWEST_DAMPING))
-    return replace(
-        fitted, omega_z=np.abs(fitted.omega_z), zeta_z=zeta, real_z=np.abs(fitted.real_z)
-    )
+    return replace(fitted, omega_z=np.abs(fitted.omega_z), zeta_z=zeta, real_z=np.abs(fitted.real_z))
 
 
 def _parted(frequency_hz: Real, difference: Real, noise: Real) -> tuple[PartedBand, ...]:

@@ -133,6 +133,11 @@ class FitProblem:
         return all(line.measured.coherence is not None and line.measured.averages for line in self.lines)
 
     @property
+    def has_scale(self) -> bool:
+        """Whether the noise is known or estimated, and not only how it differs from line to line."""
+        return self.is_noise_known or self.is_noise_estimated
+
+    @property
     def band(self) -> tuple[float, float]:
         """The lowest and the highest frequency measured [rad/s]."""
         return min(float(x.omega[0]) for x in self.lines), max(float(x.omega[-1]) for x in self.lines)

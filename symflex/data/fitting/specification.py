@@ -91,8 +91,12 @@ def _written(
     used = {source_name, *outputs, *taken}
     for i in range(found.count):
         name = f"{prefix}omega_p{i + 1}"
-        parameters[name] = _frequency(found.omega_p[i], errors.omega_p[i], f"pole pair {i + 1}")
+        parameters[name] = _frequency(
+            found.omega_p[i], errors.omega_p[i], "pole pair" + ("" if fit.modes[i] else ", a residual term")
+        )
         parameters[f"{prefix}zeta_p{i + 1}"] = _ratio(found.zeta_p[i], errors.zeta_p[i])
+    for corner, error in zip(found.real_p, errors.real_p, strict=True):
+        parameters[f"{prefix}omega_r"] = _frequency(corner, error, "real pole")
     for r, output in enumerate(outputs):
         base = fit.bases[r]
         names = _Names(prefix, f"_{output}" if several else "", used)
@@ -103,7 +107,7 @@ def _written(
             parts.append(block)
         if fit.problem.free.gain:
             parts.append(names.parameter("c_fit"))
-            doc = f"gain, standard error {errors.gain[r]:.2g}"
+            doc = f"gain, {_said_error(errors.gain[r])}"
             parameters[parts[-1]] = {"value": _exact(found.gain[r]), "assume": "real", "doc": doc}
         for i in range(found.count):
             omega_z, block = found.omega_z[r, i], names.block(f"R_{i + 1}")
@@ -115,6 +119,12 @@ def _written(
                 parameters[pair["zeta_z"]] = _ratio(found.zeta_z[r, i], errors.zeta_z[r, i])
             blocks[block] = _resonance(pair, omega_z)
             parts.append(block)
+        if np.isfinite(found.real_z[r]):
+            name = names.parameter("omega_s")
+            where = "real zero" + (f" of {output}" if several else "")
+            parameters[name] = _frequency(abs(found.real_z[r]), errors.real_z[r], where)
+            parts.append(f"(1 {'+' if found.real_z[r] > 0 else '-'} s/{name})")
+        parts += [f"(1/(1 + s/{prefix}omega_r))"] * found.real_p.size
         times, factors = _times(fit, r, errors, names)
         parameters |= times
         blocks |= factors
@@ -133,7 +143,7 @@ def _written(
     return write(
         {
             "symflex": 1,
-            "title": f"{found.count} simple resonances fitted to {kind}",
+            "title": f"{int(fit.modes.sum())} simple resonances fitted to {kind}",
             "source": f"symflex fit of {files}, {low:.4g} to {high:.4g} Hz; form of the resonances: "
             "Eppinger & Seering 1988, section 'Polynomial Resonance Model'",
             **({"doc": f"on a copy of {Path(fit.bases[0].path).name}, {fit.bases[0].tf}"} if copied else {}),
@@ -232,13 +242,13 @@ def _relative(path: str | Path, folder: str | Path) -> str:
 
 
 def _time(value: float, error: float, what: str) -> dict[str, object]:
-    doc = f"{what}, standard error {error:.2g} s"
+    doc = f"{what}, {_said_error(error, 's')}"
     return {"value": f"{_plain(abs(value))} s", "assume": "nonnegative", "doc": doc}
 
 
 def _frequency(omega: float, error: float, where: str) -> dict[str, object]:
     hertz = omega / (2 * np.pi)
-    doc = f"{where}, standard error {error / (2 * np.pi):.2g} Hz"
+    doc = f"{where}, {_said_error(error / (2 * np.pi), 'Hz')}"
     return {"value": f"{_plain(hertz)} Hz", "doc": doc}
 
 
@@ -246,7 +256,13 @@ def _ratio(value: float, error: float) -> dict[str, object]:
     entry: dict[str, object] = {"value": _exact(value)}
     if value <= 0:
         entry["assume"] = "real"
-    return entry | {"doc": f"standard error {error:.2g}"}
+    return entry | {"doc": _said_error(error)}
+
+
+def _said_error(error: float, unit: str = "") -> str:
+    return (
+        f"standard error {error:.2g} {unit}".rstrip() if np.isfinite(error) else "not determined by the data"
+    )
 
 
 def _plain(value: float) -> str:

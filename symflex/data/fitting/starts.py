@@ -219,11 +219,11 @@ def poles_from_vector_fitting(problem: FitProblem, order: int) -> list[Complex]:
     low, high = problem.band
     if not order:
         return [np.zeros(0, np.complex128)]
-    found = [relocated(problem, _spread(low, high, order))]
-    generous = relocated(problem, _spread(low, high, order + 2 * SPARE), GENEROUS)
+    found = [relocated(problem, spread(low, high, order))]
+    generous = relocated(problem, spread(low, high, order + 2 * SPARE), GENEROUS)
     found.append(relocated(problem, _conspicuous(problem, generous, order)))
     if len(problem.slopes) > 1:
-        found.append(relocated(problem, _spread(low, high, order), powers=FEW_POWERS))
+        found.append(relocated(problem, spread(low, high, order), powers=FEW_POWERS))
     return found
 
 
@@ -259,7 +259,7 @@ def generous_fit(
     own.
     """
     if poles is None:
-        poles = relocated(problem, _spread(*problem.band, 2 * pairs), GENEROUS)
+        poles = relocated(problem, spread(*problem.band, 2 * pairs), GENEROUS)
     values = []
     for r, line in enumerate(problem.lines):
         basis, weight = _local(problem, line.omega, poles), _weights(problem, r)
@@ -306,7 +306,9 @@ def _local(
 ) -> Complex:
     middle = np.exp(np.mean(np.log(problem.band)))
     x = 1j * omega[:, None] / middle
-    return np.concatenate((_basis(omega, poles), *(x ** float(p) for p in powers or _powers(problem))), axis=1)
+    return np.concatenate(
+        (_basis(omega, poles), *(x ** float(p) for p in powers or _powers(problem))), axis=1
+    )
 
 
 def solved_real(matrix: Complex, target: Complex) -> Real:
@@ -316,7 +318,7 @@ def solved_real(matrix: Complex, target: Complex) -> Real:
     return np.asarray(np.linalg.lstsq(stacked / norms, right, rcond=None)[0] / norms, np.float64)
 
 
-def _spread(low: float, high: float, order: int) -> Complex:
+def spread(low: float, high: float, order: int) -> Complex:
     """Return so many poles spread over a band, as vector fitting wants to begin; one of them real if odd."""
     count = order // 2
     middle = (np.arange(count) + 0.5) / max(count, 1)

@@ -109,7 +109,14 @@ def _residual_terms(fit: ResonanceFit) -> list[tuple[str, ...]]:
         rows.append((*row[:-1], "below the band" if found.omega_p[i] < low else "above the band"))
     for corner, error in fit.real_poles():
         rows.append(
-            ("real", _shown(corner / (2 * pi), error / (2 * pi)), _error(error / (2 * pi)), "", "", "real pole")
+            (
+                "real",
+                _shown(corner / (2 * pi), error / (2 * pi)),
+                _error(error / (2 * pi)),
+                "",
+                "",
+                "real pole",
+            )
         )
     return rows
 

@@ -190,10 +190,14 @@ def wild(seed, number):
         is_outside = number % 2 == 0
         every, every_zeta = f_p, zeta_p
         if is_outside:
-            beyond = high * random.uniform(1.1, 2.5) if random.random() < 0.7 else low * random.uniform(0.4, 0.9)
+            beyond = (
+                high * random.uniform(1.1, 2.5) if random.random() < 0.7 else low * random.uniform(0.4, 0.9)
+            )
             every, every_zeta = np.append(f_p, beyond), np.append(zeta_p, random.uniform(0.004, 0.03))
         signs = np.ones(every.size) if random.random() < 0.5 else random.choice([-1.0, 1.0], every.size)
-        function, roots, slope, gain = modal_sum(random, every, every_zeta, 0.0, signs, int(random.integers(0, 3)))
+        function, roots, slope, gain = modal_sum(
+            random, every, every_zeta, 0.0, signs, int(random.integers(0, 3))
+        )
         in_hz = np.abs(roots) / (2 * np.pi)
         if not np.any((in_hz > 0) & (in_hz < 1.2 * low)):
             break

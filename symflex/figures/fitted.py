@@ -1,0 +1,301 @@
+"""Measured responses with a model or a fit: magnitude, phase, what the fit leaves, coherence."""
+
+from __future__ import annotations
+
+from math import ceil
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from matplotlib.ticker import MaxNLocator
+
+from symflex.figures.axes import (
+    Canvas,
+    add_legend_above,
+    axes_of,
+    label_magnitudes,
+    magnitude_over_phase,
+    root_figure,
+    set_frequency_axis,
+    set_magnitude_ticks,
+    write_title,
+)
+from symflex.figures.bode import set_frequency_axes
+from symflex.figures.style import (
+    COLOURS,
+    COLUMN_INCHES,
+    DASHES,
+    PAGE_INCHES,
+    QUIET,
+    new_figure,
+    paper_style,
+    title_lines,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import numpy.typing as npt
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from symflex.data.fitting import ResonanceFit, StablePoles
+    from symflex.data.measurement import MeasuredResponse
+    from symflex.figures.axes import AxesGiven
+
+    Real = npt.NDArray[np.float64]
+    Complex = npt.NDArray[np.complex128]
+
+
+MEASURED_INCHES: Final = 3.9
+MEASURED_RATIO: Final = 1.35
+"""Height of the panel of magnitudes over that of phases."""
+FIT_RATIOS, COHERENCE_RATIO = (1.9, 1.3, 0.9), 0.5
+"""Heights of the panels of magnitude, phase, residual, and of coherence."""
+FIT_INCHES, SMALL_INCHES, ORDER_INCHES = 4.9, 2.9, 2.9
+FIT_COLUMNS: Final = 2
+FEW_RESPONSES: Final = 4
+"""Of which two stand side by side; of more, three."""
+SMALL_POINTS, NAME_POINTS = 6.5, 5.5
+LOWEST_DB: Final = 40.0
+"""Below the median residual: what is smaller is chance."""
+DATA_COLOUR: Final = "#555555"
+PARTED_COLOUR: Final = "#F6E3D4"
+"""Ground where the phase is not that of a minimum-phase function."""
+
+
+def draw_measured(measured: MeasuredResponse, model: npt.NDArray[np.complex128], unit: str = "") -> Figure:
+    """Draw a model over a measured response.
+
+    ``model`` is the model on the measured lines; ``unit`` is that of the values, where the data do not say.
+    Synthetic data are called so in the title.
+    """
+    with paper_style():
+        top, bottom = magnitude_over_phase(COLUMN_INCHES, MEASURED_INCHES, MEASURED_RATIO)
+        phase = _unwrapped(model)
+        _draw_data(top, bottom, measured, model, phase)
+        top.plot(measured.frequency_hz, _decibels(model), color=COLOURS[0], label="model")
+        bottom.plot(measured.frequency_hz, phase, color=COLOURS[0])
+        return _finish(top, bottom, measured, unit, 2, is_new=True)
+
+
+def draw_fit(fit: ResonanceFit, response: int | None = None, ax: AxesGiven | None = None) -> Figure:
+    """Draw a fit on one page: data, start and fit, what the fit leaves, coherence, and the modes by number.
+
+    Of one response, or of all. Lines that were left out are crossed. Where the phase is not that of a
+    minimum-phase function the ground is coloured. Synthetic data are called so in the title. On two axes of
+    the user's own, if they are given, magnitude and phase of one response are drawn.
+    """
+    own = axes_of(ax)
+    if own:
+        top, bottom = Canvas(axes=own).own_axes(2)
+        _draw_response(fit, response or 0, top, bottom, is_small=False)
+        measured = fit.measured[response or 0]
+        return _finish(top, bottom, measured, fit.bases[response or 0].unit, FIT_COLUMNS, is_new=False)
+    shown = range(len(fit.measured)) if response is None else (response,)
+    with paper_style():
+        return _page(fit, shown)
+
+
+def _page(fit: ResonanceFit, shown: Sequence[int]) -> Figure:
+    """Return a new figure with a column of panels for each response, some of them side by side."""
+    across = 1 if len(shown) == 1 else 2 if len(shown) <= FEW_RESPONSES else 3
+    down = ceil(len(shown) / across)
+    is_small = across > 1
+    with_coherence = any(fit.measured[r].coherence is not None for r in shown)
+    ratios = [*FIT_RATIOS, *([COHERENCE_RATIO] if with_coherence else [])]
+    height = (SMALL_INCHES if is_small else FIT_INCHES) * sum(ratios) / sum(FIT_RATIOS)
+    figure = new_figure(PAGE_INCHES if is_small else COLUMN_INCHES, down * height)
+    figure.set_layout_engine("constrained", h_pad=0.02, w_pad=0.03, hspace=0.03)
+    cells = figure.subfigures(down, across, squeeze=False).ravel()
+    for cell, r in zip(cells, shown, strict=False):
+        measured = fit.measured[r]
+        panels = cell.subplots(len(ratios), 1, sharex=True, height_ratios=ratios)
+        for axes in panels:
+            axes.grid(visible=True)
+        top, bottom, left, *rest = panels
+        _draw_response(fit, r, top, bottom, is_small=is_small)
+        _draw_residual(fit, r, left)
+        for axes in rest:
+            if measured.coherence is not None:
+                axes.plot(measured.frequency_hz, measured.coherence, color=DATA_COLOUR, linewidth=0.7)
+            axes.set_ylim(0, 1.1)
+            axes.set_ylabel("Coherence" if not is_small else "Coh.")
+        label_magnitudes(top, measured.unit or fit.bases[r].unit)
+        set_magnitude_ticks(top)
+        _set_phase_ticks(bottom)
+        if is_small:
+            for axes, label in zip(
+                panels, ("Magnitude [dB]", "Phase [deg]", "Res. [dB]", "Coh."), strict=False
+            ):
+                axes.set_ylabel(label, fontsize=SMALL_POINTS)
+                axes.tick_params(labelsize=SMALL_POINTS)
+        for axes in panels:
+            set_frequency_axis(axes, float(measured.frequency_hz[0]), float(measured.frequency_hz[-1]))
+        for axes in panels[:-1]:
+            axes.set_xlabel("")
+            axes.tick_params(labelbottom=False)
+        title = measured.name + (" (synthetic data)" if measured.is_synthetic else "")
+        if is_small:
+            top.set_title(title, fontsize=SMALL_POINTS, parse_math=False)
+        else:
+            add_legend_above(top, FIT_COLUMNS, is_tight=True)
+            write_title(figure, title_lines(title, COLUMN_INCHES))
+    if is_small:
+        first = cells[0].get_axes()[0]
+        handles, labels = first.get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), frameon=False)
+    return figure
+
+
+def _draw_response(fit: ResonanceFit, response: int, top: Axes, bottom: Axes, *, is_small: bool) -> None:
+    """Draw data, start and fit of one response; the phase of the magnitude-only fit where it parts."""
+    line, test = fit.problem.lines[response].every, fit.phase_tests[response]
+    measured = line.measured
+    frequency = measured.frequency_hz
+    model = fit.values(response)
+    start = fit.values(response, fit.candidate.start)
+    for axes in (top, bottom):
+        for band in () if test.is_minimum_phase else test.bands:
+            axes.axvspan(band.low_hz, band.high_hz, color=PARTED_COLOUR, linewidth=0, zorder=0)
+    fitted = _unwrapped(model)
+    _draw_data(top, bottom, measured, model, fitted)
+    if not is_small:
+        top.plot(frequency, _decibels(start), color=COLOURS[4], linestyle=DASHES[3], label="start")
+        aside = np.degrees(np.angle(start / model))
+        bottom.plot(frequency, fitted + aside, color=COLOURS[4], linestyle=DASHES[3])
+    count = int(fit.modes.sum())
+    words = "fit" if is_small else f"fit, {count} resonance{'' if count == 1 else 's'}"
+    top.plot(frequency, _decibels(model), color=COLOURS[0], label=words)
+    bottom.plot(frequency, fitted, color=COLOURS[0])
+    if test.bands and not test.is_minimum_phase:
+        alone = model * test.resonances.factor(0, line.omega)
+        alone = alone / fit.resonances.factor(response, line.omega)
+        phase = np.degrees(np.unwrap(np.angle(alone)))
+        phase = phase + 360 * np.round((fitted[0] - phase[0]) / 360)
+        bottom.plot(frequency, phase, color=COLOURS[1], linestyle=DASHES[1])
+        top.plot([], [], color=COLOURS[1], linestyle=DASHES[1], label="phase from magnitude")
+    left = fit.left_out(response)
+    if left.size:
+        crosses = {"color": COLOURS[1], "markersize": 4.5, "linestyle": "none", "marker": "x"}
+        top.plot(frequency[left], _decibels(measured.values[left]), label="left out", **crosses)
+    levels = _decibels(measured.values)
+    rise = max(0.05 * float(np.ptp(levels)), 1.0)
+    limits = float(levels.min()) - rise, float(levels.max()) + rise
+    for k, omega in enumerate(fit.resonances.omega_p[fit.modes].tolist(), 1):
+        hertz = omega / (2 * np.pi)
+        for axes in (top, bottom):
+            axes.axvline(hertz, color=QUIET, linewidth=0.4, zorder=0)
+        name = f"{k}" if is_small else f"{k}: {hertz:.4g} Hz"
+        turn = 0 if is_small else 90
+        top.annotate(
+            name,
+            (hertz, 0.02),
+            xycoords=("data", "axes fraction"),
+            fontsize=NAME_POINTS,
+            rotation=turn,
+            ha="right",
+        )
+    top.set_ylim(limits)
+
+
+def _draw_residual(fit: ResonanceFit, response: int, axes: Axes) -> None:
+    """Draw how far the data are off the fit, and the noise that is expected."""
+    line = fit.problem.lines[response]
+    every = line.every.measured
+    with np.errstate(divide="ignore"):
+        left = _decibels(fit.values(response) - every.values)
+    wild = fit.left_out(response)
+    kept = np.delete(np.arange(left.size), wild)
+    axes.plot(every.frequency_hz[kept], left[kept], ".", color=DATA_COLOUR, markersize=1.6)
+    axes.plot(every.frequency_hz[wild], left[wild], "x", color=COLOURS[1], markersize=4.5)
+    if line.deviation is not None:
+        noise = _decibels(np.sqrt(2) * line.deviation * line.measured.values)
+        axes.plot(line.measured.frequency_hz, noise, color=COLOURS[2], linewidth=0.8)
+    finite = left[np.isfinite(left)]
+    if finite.size:
+        axes.set_ylim(
+            max(float(np.min(finite)), float(np.median(finite)) - LOWEST_DB), float(np.max(finite)) + 6
+        )
+    axes.yaxis.set_major_locator(MaxNLocator(nbins=4))
+    axes.set_ylabel("Residual [dB]")
+
+
+def draw_orders(stable: Sequence[StablePoles], fit: ResonanceFit, response: int = 0) -> Figure:
+    """Draw a stabilisation diagram: poles found with more and more of them, over the measured magnitude.
+
+    Filled circles have frequency and damping of one found with two poles less; crosses do not.
+    """
+    measured = fit.measured[response]
+    with paper_style():
+        figure = new_figure(COLUMN_INCHES, ORDER_INCHES)
+        figure.set_layout_engine("constrained", h_pad=0.02, w_pad=0.03)
+        axes = figure.subplots()
+        level = axes.twinx()
+        level.plot(measured.frequency_hz, _decibels(measured.values), color=QUIET, linewidth=0.6)
+        label_magnitudes(level, measured.unit)
+        for mark, is_stable, label in (("x", False, "new"), ("o", True, "stable")):
+            at = [
+                (f, one.order)
+                for one in stable
+                for f, s in zip(one.frequency_hz, one.is_stable, strict=True)
+                if bool(s) == is_stable
+            ]
+            x, y = zip(*at, strict=True) if at else ((), ())
+            axes.plot(x, y, mark, color=COLOURS[1] if is_stable else QUIET, markersize=3.2, label=label)
+        axes.set_zorder(level.get_zorder() + 1)
+        axes.patch.set_visible(False)
+        axes.set_ylabel("Number of poles")
+        axes.yaxis.set_major_locator(MaxNLocator(integer=True))
+        set_frequency_axis(axes, float(measured.frequency_hz[0]), float(measured.frequency_hz[-1]))
+        for hertz in (fit.resonances.omega_p[fit.modes] / (2 * np.pi)).tolist():
+            axes.axvline(hertz, color=COLOURS[0], linewidth=0.5, zorder=0)
+        add_legend_above(axes, 2, is_tight=True)
+        write_title(figure, title_lines(f"{measured.name}: poles by their number", COLUMN_INCHES))
+        return figure
+
+
+def _draw_data(
+    top: Axes,
+    bottom: Axes,
+    measured: MeasuredResponse,
+    model: npt.NDArray[np.complex128],
+    phase: npt.NDArray[np.float64],
+) -> None:
+    """Draw the data, their phases within half a turn of the model's ``phase`` [deg]."""
+    name = "synthetic data" if measured.is_synthetic else "measured"
+    aside = np.degrees(np.angle(measured.values / model))
+    for axes, values, label in ((top, _decibels(measured.values), name), (bottom, phase + aside, None)):
+        axes.plot(measured.frequency_hz, values, ".", color=DATA_COLOUR, markersize=2.4, label=label)
+
+
+def _finish(
+    top: Axes, bottom: Axes, measured: MeasuredResponse, unit: str, columns: int, *, is_new: bool
+) -> Figure:
+    """Label the panels, give them a legend and a new figure a title, and return the figure."""
+    label_magnitudes(top, measured.unit or unit)
+    set_magnitude_ticks(top)
+    _set_phase_ticks(bottom)
+    set_frequency_axes((top, bottom), float(measured.frequency_hz[0]), float(measured.frequency_hz[-1]))
+    figure = root_figure(top)
+    add_legend_above(top, columns, is_tight=True)
+    if not is_new:
+        return figure
+    title = measured.name + (" (synthetic data)" if measured.is_synthetic else "")
+    write_title(figure, title_lines(title, COLUMN_INCHES))
+    return figure
+
+
+def _set_phase_ticks(axes: Axes) -> None:
+    axes.set_ylabel("Phase [deg]")
+    axes.yaxis.set_major_locator(MaxNLocator(nbins=6, steps=[1, 1.5, 3, 4.5, 9, 10]))
+
+
+def _unwrapped(values: npt.NDArray[np.complex128]) -> npt.NDArray[np.float64]:
+    """Return continuous phases [deg], the first within half a turn of 0."""
+    phase = np.degrees(np.unwrap(np.angle(values)))
+    return np.asarray(phase - 360 * np.round(phase[0] / 360))
+
+
+def _decibels(values: npt.NDArray[np.complex128]) -> npt.NDArray[np.float64]:
+    """Return ``20 log10(abs(values))``."""
+    return np.asarray(20 * np.log10(np.abs(values)))
