@@ -188,7 +188,8 @@ def fit(
     DataError
         SF601 to SF607: data that cannot be used.
     FitError
-        SF611 to SF615: no fit came of them, and why.
+        SF615: the base vanishes in the band. Otherwise the best fit is returned, and ``poor`` says why it is
+        no good one.
     UsageError
         SF902 names and options that contradict each other.
 

@@ -14,6 +14,7 @@ from symflex.errors import Diagnostic, FitError, SymflexError, UsageError
 from symflex.options import FitOptions, MeasureOptions
 
 if TYPE_CHECKING:
+    from symflex.data.fitting import ResonanceFit
     from symflex.data.measurement import MeasuredResponse
 
 SUFFIXES = (".pdf", ".png", ".svg")
@@ -86,18 +87,23 @@ def fit(given: FitOptions) -> int:
         emit_json(fit_json(found, shapes))
     else:
         say(fit_text(found, terminal_width(), shapes))
-    if given.figure:
-        from symflex.figures import draw_fit, save
+    _draw(found, given)
+    return 0
 
+
+def _draw(found: ResonanceFit, given: FitOptions) -> None:
+    """Draw what figures are asked for."""
+    if not (given.figure or given.order_figure):
+        return
+    from symflex.data.fitting import stabilisation
+    from symflex.figures import draw_fit, draw_orders, save  # imports matplotlib
+
+    if given.figure:
         save(draw_fit(found), Path(given.figure))
         note(f"wrote {given.figure}")
     if given.order_figure:
-        from symflex.data.fitting import stabilisation
-        from symflex.figures import draw_orders, save
-
         save(draw_orders(stabilisation(found), found), Path(given.order_figure))
         note(f"wrote {given.order_figure}")
-    return 0
 
 
 def _read(given: FitOptions) -> list[MeasuredResponse]:

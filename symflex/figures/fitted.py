@@ -176,8 +176,8 @@ def _draw_response(fit: ResonanceFit, response: int, top: Axes, bottom: Axes, *,
         top.plot([], [], color=COLOURS[1], linestyle=DASHES[1], label="phase from magnitude")
     left = fit.left_out(response)
     if left.size:
-        crosses = {"color": COLOURS[1], "markersize": 4.5, "linestyle": "none", "marker": "x"}
-        top.plot(frequency[left], _decibels(measured.values[left]), label="left out", **crosses)
+        level = _decibels(measured.values[left])
+        top.plot(frequency[left], level, "x", color=COLOURS[1], markersize=4.5, label="left out")
     levels = _decibels(measured.values)
     rise = max(0.05 * float(np.ptp(levels)), 1.0)
     limits = float(levels.min()) - rise, float(levels.max()) + rise

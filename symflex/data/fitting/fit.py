@@ -191,7 +191,7 @@ class ResonanceFit:
         )
 
     def misfit_db(self, response: int) -> float:
-        """Return the root mean square of model over data on the lines above the noise [dB], magnitude alone."""
+        """Return the root mean square of model over data on the lines above the noise [dB]."""
         measured, model = self._seen(response)
         return measured.misfit_db(model)
 
@@ -304,8 +304,8 @@ def _chosen(
     modes = given.modes
     problem = with_noise(with_delays(with_rough_noise(problem), modes), modes, most)
     thin = problem.thinned(most)
-    candidate, *chosen = chosen_order(problem, thin, modes, given.start, given.criterion)
-    return candidate, problem, (chosen[0], chosen[1])
+    candidate, scores, reasons = chosen_order(problem, thin, modes, given.start, given.criterion)
+    return candidate, problem, (scores, reasons)
 
 
 def _seen(problem: FitProblem, response: int, resonances: Resonances) -> Whole:
@@ -367,11 +367,10 @@ def named_pair(fit: ResonanceFit, i: int) -> str:
     return f"pole pair {int(fit.modes[: i + 1].sum())}" if fit.modes[i] else "a residual pole pair"
 
 
-def _warnings(fit: ResonanceFit) -> tuple[str, ...]:
-    found = fit.resonances
-    errors = fit.standard_errors()
+def _said_of_lines(fit: ResonanceFit) -> list[str]:
+    """Return which lines were left out, and which real zeros no line shows."""
+    found, warnings = fit.resonances, []
     low, high = fit.problem.band
-    warnings = []
     for r in range(found.responses):
         left = fit.left_out(r)
         if left.size:
@@ -380,6 +379,20 @@ def _warnings(fit: ResonanceFit) -> tuple[str, ...]:
             more = ", ..." if left.size > NAMED_LINES else ""
             word = "line" if left.size == 1 else "lines"
             warnings.append(f"{left.size} wild {word}{where} left out, at {places}{more} Hz")
+    for r, corner in enumerate(np.abs(found.real_z).tolist()):
+        if np.isfinite(corner) and not low <= corner <= high:
+            where = f" of {fit.measured[r].name}" if found.responses > 1 else ""
+            warnings.append(
+                f"the real zero{where} lies outside the band measured, at {corner / (2 * np.pi):.4g} Hz"
+            )
+    return warnings
+
+
+def _warnings(fit: ResonanceFit) -> tuple[str, ...]:
+    found = fit.resonances
+    errors = fit.standard_errors()
+    low, high = fit.problem.band
+    warnings = _said_of_lines(fit)
     for i in range(found.count):
         if fit.modes[i] and not errors.zeta_p[i] <= WEAK * found.zeta_p[i]:
             warnings.append(f"the damping of {named_pair(fit, i)} is hardly determined by the data")

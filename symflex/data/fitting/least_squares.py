@@ -16,10 +16,10 @@ is the maximum-likelihood residual of an H1 estimate, whose error is complex, Ga
 sigma's own error; troughs drowned in noise pull nothing their way, where a logarithm would be biased. As
 sigma is a share of the magnitude, resonances and antiresonances still count alike.
 
-The search is that of Levenberg (1944) and Marquardt (1963), with the scales of Moré (1978). A response depends
-on the poles and on parameters of its own, so that its equations are first reduced to a triangle by an
-orthogonal factorisation of these few columns; only the triangles of all responses are solved together. A step
-for 50,000 lines costs what forming their derivatives costs.
+The search is that of Levenberg (1944) and Marquardt (1963), with the scales of Moré (1978). A response
+depends on the poles and on parameters of its own, so that its equations are first reduced to a triangle by an
+orthogonal factorisation of these few columns; only the triangles of all responses are solved together. A
+step for 50,000 lines costs what forming their derivatives costs.
 """
 
 from __future__ import annotations
@@ -197,12 +197,17 @@ def _cost(rest: list[Complex]) -> float:
     return float(sum(np.vdot(one, one).real for one in rest))
 
 
+def triangle(matrix: Real) -> Real:
+    """Return the triangular factor of a matrix: what least squares need of it."""
+    return np.asarray(np.linalg.qr(matrix, mode="r"), np.float64)
+
+
 def _step(matrix: Real, right: Real, damped: Real) -> Real:
     """Return the step that least squares give to the reduced equations with Marquardt's rows below them."""
     # Columns are scaled, as they would be in an inverse.
     stacked = np.concatenate((matrix / damped, np.eye(damped.size)))
     target = np.concatenate((-right, np.zeros(damped.size)))
-    upper = np.linalg.qr(np.column_stack((stacked, target)), mode="r")
+    upper = triangle(np.column_stack((stacked, target)))
     size = damped.size
     return np.asarray(np.linalg.solve(upper[:size, :size], upper[:size, size]) / damped, np.float64)
 
@@ -213,7 +218,7 @@ def _reduced(problem: FitProblem, found: Resonances, rest: list[Complex], kind: 
     rows, right = [], []
     for r, slopes in enumerate(_slopes(problem, found, kind)):
         columns = found.columns(r, problem.free)
-        upper = np.linalg.qr(np.column_stack((_parts(slopes), _parts(rest[r]))), mode="r")
+        upper = triangle(np.column_stack((_parts(slopes), _parts(rest[r]))))
         wide = np.zeros((upper.shape[0], size))
         wide[:, columns] = upper[:, :-1]
         rows.append(wide)

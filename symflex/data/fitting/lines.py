@@ -12,6 +12,7 @@ A resonance narrower than the distance of lines is no such line: its neighbours 
 from __future__ import annotations
 
 from heapq import heapify, heappop, heappush
+from itertools import pairwise
 
 import numpy as np
 
@@ -50,7 +51,7 @@ def wild_lines(omega: Real, values: Complex) -> Whole:
     if n < FEWEST:
         return np.zeros(0, np.int64)
     x = np.log(omega)
-    at = np.arange(n)
+    at: Whole = np.arange(n)
 
     def off(i: Whole, below: Whole, above: Whole) -> Real:
         """Return how far lines are off the power law of two others, over what noise makes of that."""
@@ -69,12 +70,12 @@ def wild_lines(omega: Real, values: Complex) -> Whole:
         others[:-step] = np.maximum(others[:-step], alone[step:])
     # The neighbours are judged without the line itself.
     inner = at[2:-2]
-    for beside, over in ((-1, (-2, 1)), (1, (-1, 2))):
-        without = off(inner + beside, inner + over[0], inner + over[1])
+    for beside, low, high in ((-1, -2, 1), (1, -1, 2)):
+        without = off(inner + beside, inner + low, inner + high)
         others[2:-2] = np.maximum(others[2:-2], without)
     for places in ((0, 1, 2, 3), (1, 0, 2, 3), (n - 1, n - 2, n - 3, n - 4), (n - 2, n - 1, n - 3, n - 4)):
-        line, beside, first, second = (np.array([place]) for place in places)
-        others[line] = np.maximum(others[line], off(beside, first, second))
+        line, *near = (np.array([place]) for place in places)
+        others[line] = np.maximum(others[line], off(near[0], near[1], near[2]))
     return np.flatnonzero((alone > WILD * others) & (alone > LEAST_OFF))
 
 
@@ -102,7 +103,7 @@ def telling_lines(omega: Real, values: Complex, deviation: Real, most: int) -> W
         return -float(np.sum((np.abs(values[inside] - chord) * weight[inside]) ** 2)), low, high
 
     ends = np.unique(np.linspace(0, omega.size - 1, max(most // FIRST_SHARE, 2)).astype(int)).tolist()
-    intervals = [interval(low, high) for low, high in zip(ends[:-1], ends[1:], strict=True)]
+    intervals = [interval(low, high) for low, high in pairwise(ends)]
     heapify(intervals)
     chosen = set(ends)
     while len(chosen) < most:
@@ -117,7 +118,7 @@ def telling_lines(omega: Real, values: Complex, deviation: Real, most: int) -> W
 
 
 def single_lines(omega: Real, resonances: Resonances) -> Whole:
-    """Return the lines beside resonances whose half-power bandwidth is far less than the distance of lines."""
+    """Return the lines beside resonances whose bandwidth is far less than the distance of lines."""
     found = []
     for centre, zeta in zip(resonances.omega_p, resonances.zeta_p, strict=True):
         i = int(np.argmin(np.abs(omega - centre)))

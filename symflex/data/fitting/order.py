@@ -357,7 +357,8 @@ def too_few(problem: FitProblem, count: int, found: int) -> str:
     """Return what is said where no fit has as many resonances in the band as asked for."""
     low, high = (value / (2 * np.pi) for value in problem.band)
     over = " over the base" if problem.has_base else ""
-    return f"{count} resonances are asked for, and the best fit has {found}{over} between {low:.4g} and {high:.4g} Hz"
+    band = f"between {low:.4g} and {high:.4g} Hz"
+    return f"{count} resonances are asked for, and the best fit has {found}{over} {band}"
 
 
 def undetermined() -> Diagnostic:
@@ -454,7 +455,9 @@ def _without_far_poles(problem: FitProblem, best: Candidate) -> Candidate:
     for k, poles in enumerate(corners):
         below = [p for p in poles if p < low]
         pair = k - now.real_p.size
-        if len(below) + sum(p > high for p in poles) < len(poles) or (pair >= 0 and now.has_zeros[:, -1].any()):
+        if len(below) + sum(p > high for p in poles) < len(poles) or (
+            pair >= 0 and now.has_zeros[:, -1].any()
+        ):
             continue
         kept = np.arange(now.count) != pair
         start = replace(
@@ -498,7 +501,7 @@ def _signs_tried(problem: FitProblem, best: Candidate) -> Candidate:
 
 
 def _is_promising(problem: FitProblem, r: int, now: Resonances, start: Resonances) -> bool:
-    """Return whether one response of several is described better from another start, with poles of its own."""
+    """Return whether one response of several is described better from another start, by poles of its own."""
     if len(problem.lines) == 1:
         return True
     single = replace(problem, lines=problem.lines[r : r + 1], delays=problem.delays[r : r + 1])

@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING, Final, Literal
 import numpy as np
 from scipy.signal import medfilt
 
-from symflex.data.fitting.least_squares import CAP, EDGE, ROUGH, STEPS, search
+from symflex.data.fitting.least_squares import CAP, EDGE, ROUGH, STEPS, search, triangle
 from symflex.data.fitting.resonances import Complex, Real, Resonances
 
 if TYPE_CHECKING:
@@ -174,12 +174,13 @@ class _PhaseSearch:
 
         def residual(vector: Real) -> list[Complex]:
             model = self.single.values(resonances(vector), 0)
-            level = self.level(model) * self.weight + 0j
+            level = (self.level(model) * self.weight).astype(np.complex128)
             if kind == "magnitude":
                 return [level]
             if kind == "lag":
                 model = model * np.exp(-1j * turn * vector[-1])
-            return [level + 1j * np.angle(model / self.line.measured.values) * self.weight]
+            aside = np.angle(model / self.line.measured.values) * self.weight
+            return [np.asarray(level + 1j * aside, np.complex128)]
 
         def reduced(vector: Real, rest: list[Complex]) -> tuple[Real, Real]:
             now = resonances(vector)
@@ -190,7 +191,7 @@ class _PhaseSearch:
                 by = np.column_stack((by, -1j * turn))
             whole = np.column_stack((by * self.weight[:, None], rest[0]))
             parts = whole.real if kind == "magnitude" else np.concatenate((whole.real, whole.imag))
-            upper = np.linalg.qr(parts, mode="r")
+            upper = triangle(parts)
             return upper[:, :-1], upper[:, -1]
 
         best = packed

@@ -212,7 +212,7 @@ class FitProblem:
         return line.observation(line.base * resonances.factor(response, line.observation.omega))
 
     def linearised(self, resonances: Resonances, response: int) -> tuple[Complex, Complex]:
-        """Return the model on the lines and its derivatives by the parameters that the response depends on."""
+        """Return the model on the lines and its derivatives by the parameters it depends on."""
         line = self.lines[response]
         omega = line.observation.omega
         inside = line.base * resonances.factor(response, omega)

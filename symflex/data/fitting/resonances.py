@@ -7,8 +7,8 @@
 may have fewer pairs of zeros than of poles, as transfer functions between two points have: a pair that is not
 there has its natural frequency at infinity, where its factor is 1.
 
-Two real poles are a pair with a damping ratio above 1. A single real pole, 1/(1 + s/p), and a single real zero
-of each response, 1 + s/z, stand beside the pairs where the degrees are odd: the lag of a motor, an inductor.
+Two real poles are a pair with a damping ratio above 1. Where degrees are odd, a real pole, 1/(1 + s/p), and a
+real zero of each response, 1 + s/z, stand beside the pairs: the lag of a motor, an inductor.
 """
 
 from __future__ import annotations
@@ -69,8 +69,8 @@ class Resonances:
     slope: Whole = field(default_factory=lambda: np.zeros(0, np.int64))
     # shape (0,) or (1,): Corner frequency of the real pole that all responses share [rad/s], if there is one.
     real_p: Real = field(default_factory=lambda: np.zeros(0))
-    # shape (m,): Corner frequency of the real zero of each response [rad/s], negative in the right half plane,
-    # infinite where it has none; by default infinite.
+    # shape (m,): Corner frequency of the real zero of each response [rad/s], negative in the right half
+    # plane, infinite where it has none; by default infinite.
     real_z: Real = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
@@ -159,7 +159,7 @@ class Resonances:
             value = value * above / _quadratic(omega, self.omega_p[i], self.zeta_p[i])
         for corner in self.real_p:
             value = value / (1 + s / corner)
-        return value * (1 + s / self.real_z[response])
+        return np.asarray(value * (1 + s / self.real_z[response]), np.complex128)
 
     def shared(self) -> int:
         """Return how many parameters all responses share; they stand first in the packed vector."""

@@ -92,11 +92,11 @@ def _written(
     for i in range(found.count):
         name = f"{prefix}omega_p{i + 1}"
         parameters[name] = _frequency(
-            found.omega_p[i], errors.omega_p[i], "pole pair" + ("" if fit.modes[i] else ", a residual term")
+            found.omega_p[i],
+            errors.omega_p[i],
+            f"pole pair {i + 1}" + ("" if fit.modes[i] else ", a residual term"),
         )
         parameters[f"{prefix}zeta_p{i + 1}"] = _ratio(found.zeta_p[i], errors.zeta_p[i])
-    for corner, error in zip(found.real_p, errors.real_p, strict=True):
-        parameters[f"{prefix}omega_r"] = _frequency(corner, error, "real pole")
     for r, output in enumerate(outputs):
         base = fit.bases[r]
         names = _Names(prefix, f"_{output}" if several else "", used)
@@ -119,15 +119,9 @@ def _written(
                 parameters[pair["zeta_z"]] = _ratio(found.zeta_z[r, i], errors.zeta_z[r, i])
             blocks[block] = _resonance(pair, omega_z)
             parts.append(block)
-        if np.isfinite(found.real_z[r]):
-            name = names.parameter("omega_s")
-            where = "real zero" + (f" of {output}" if several else "")
-            parameters[name] = _frequency(abs(found.real_z[r]), errors.real_z[r], where)
-            parts.append(f"(1 {'+' if found.real_z[r] > 0 else '-'} s/{name})")
-        parts += [f"(1/(1 + s/{prefix}omega_r))"] * found.real_p.size
-        times, factors = _times(fit, r, errors, names)
-        parameters |= times
-        blocks |= factors
+        own, more, factors = _beside(fit, r, errors, names)
+        parameters |= own
+        blocks |= more
         parts += factors
         if not base.path and base.slope:
             power = "s" if abs(base.slope) == 1 else f"s^{abs(base.slope)}"
@@ -173,11 +167,30 @@ class _Names:
         return poles | {name: self.parameter(f"{name}{number}") for name in ("omega_z", "zeta_z")}
 
 
-def _times(
+def _single(
     fit: ResonanceFit, response: int, errors: Resonances, names: _Names
-) -> tuple[dict[str, object], dict[str, object]]:
-    """Return parameters and blocks of the lag and the dead time that were fitted."""
+) -> tuple[dict[str, object], list[str]]:
+    """Return parameters and factors of the single real pole and the single real zero."""
+    found = fit.resonances
     parameters: dict[str, object] = {}
+    factors: list[str] = []
+    corner = found.real_z[response]
+    if np.isfinite(corner):
+        name = names.parameter("omega_s")
+        parameters[name] = _frequency(abs(corner), errors.real_z[response], "real zero")
+        factors.append(f"(1 {'+' if corner > 0 else '-'} s/{name})")
+    for pole, error in zip(found.real_p, errors.real_p, strict=True):
+        name = f"{names.prefix}omega_r"
+        parameters[name] = _frequency(pole, error, "real pole")
+        factors.append(f"(1/(1 + s/{name}))")
+    return parameters, factors
+
+
+def _beside(
+    fit: ResonanceFit, response: int, errors: Resonances, names: _Names
+) -> tuple[dict[str, object], dict[str, object], list[str]]:
+    """Return parameters, blocks and factors of what stands beside the pairs, lag and dead time among it."""
+    parameters, factors = _single(fit, response, errors, names)
     blocks: dict[str, object] = {}
     found = fit.resonances
     if fit.problem.free.lag:
@@ -189,7 +202,7 @@ def _times(
         name = names.parameter("T_dead")
         parameters[name] = _time(found.delay[response], errors.delay[response], "dead time")
         blocks[names.block("D_dead")] = {"type": "delay", "T": name}
-    return parameters, blocks
+    return parameters, blocks, [*factors, *blocks]
 
 
 def _prefix(taken: Collection[str]) -> str:

@@ -253,7 +253,7 @@ def poles_from_aaa(problem: FitProblem, count: int) -> list[Complex]:
 def generous_fit(
     problem: FitProblem, pairs: int, poles: Complex | None = None
 ) -> tuple[list[Complex], int, Complex]:
-    """Return what a rational function without structure makes of the lines, its number of parameters, its poles.
+    """Return what a function without structure makes of the lines, its number of parameters, its poles.
 
     Its poles are shared, and found unless they are given; each response has residues and powers of s of its
     own.
@@ -292,7 +292,7 @@ def _conspicuous(problem: FitProblem, poles: Complex, order: int) -> Complex:
 
 
 def _widths(poles: Complex) -> Whole:
-    """Return how many columns each pole has: two for a pair, one for a real pole, whose imaginary part is 0."""
+    """Return how many columns each pole has: two for a pair, one for a real pole."""
     return np.where(poles.imag == 0, 1, 2)
 
 
@@ -365,7 +365,7 @@ def _state_matrix(poles: Complex) -> tuple[Real, Real]:
 def relocated(
     problem: FitProblem, poles: Complex, iterations: int = ITERATIONS, powers: tuple[int, ...] | None = None
 ) -> Complex:
-    """Return the poles after relaxed vector fitting: as many, and stable; real ones have no imaginary part."""
+    """Return the poles after relaxed vector fitting: as many, and stable."""
     if not poles.size:
         return poles
     quotients = [problem.quotient(r) for r in range(len(problem.lines))]

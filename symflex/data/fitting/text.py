@@ -179,7 +179,7 @@ def fit_json(fit: ResonanceFit, shapes: FittedModeShapes | None = None) -> dict[
             "in_units_of_coherence_noise": _is_scaled(fit),
             "line_correlation": fit.refined.correlation,
         },
-        "criterion": fit.criterion if fit.scores else None,
+        "criterion": fit.criterion,
         "orders": [
             {
                 "poles": s.order,
@@ -346,8 +346,8 @@ def _accuracy(fit: ResonanceFit) -> str:
         words.append(f"that is {size:.3g} times what coherence explains")
     words.append("standard errors are scaled to the residual")
     if fit.refined.correlation > 1:
-        words.append(f"and count neighbouring lines as correlated (a mean has {_times(fit)} the variance)")
-    return ", ".join(words[:-1]) + (", " if len(words) == 2 else " ") + words[-1]  # noqa: PLR2004
+        words.append(f"they count neighbouring lines as correlated (a mean has {_times(fit)} the variance)")
+    return ", and ".join(words)
 
 
 def _times(fit: ResonanceFit) -> str:
@@ -365,14 +365,13 @@ def _phase_words(test: PhaseTest, fit: ResonanceFit, r: int) -> str:
     worst = max(test.bands, key=lambda band: abs(band.worst_degrees))
     others = len(test.bands) - 1
     more = f" (and in {others} more {'interval' if others == 1 else 'intervals'})" if others else ""
-    parts = (
-        f"the measured phase is off by {worst.worst_degrees:+.0f} degrees at {worst.worst_hz:.4g} Hz, between "
-        f"{worst.low_hz:.4g} and {worst.high_hz:.4g} Hz{more}"
-    )
+    where = f"between {worst.low_hz:.4g} and {worst.high_hz:.4g} Hz{more}"
+    off = f"{worst.worst_degrees:+.0f} degrees at {worst.worst_hz:.4g} Hz"
+    parts = f"the measured phase is off by {off}, {where}"
     if test.verdict == "nonminimum":
         return f"not minimum phase: {parts}, from a minimum-phase fit to the magnitude alone{own}"
     if test.is_minimum_phase:
-        return f"minimum phase: such a function has magnitude and phase as measured; with the magnitude alone {parts}"
+        return f"minimum phase: such a function has both; with the magnitude alone {parts}"
     if test.with_phase is not None:
         return (
             f"undetermined: {parts}, unless a sensor, a delay, or poles or zeros above the band add a lag of "

@@ -3,8 +3,8 @@
 Nothing here comes from symflex: responses are sums over modes or products of second-order factors, zeros are
 roots of their numerators, and the statistics compare plain numbers. There is no coherence and no base.
 
-``python -m tests.unit.data.laboratory 500`` runs the study whose figures stand in ``docs/fit.md``, and ``python
--m tests.unit.data.laboratory 500 1 wild`` the one with modes outside the band, wild lines and real poles.
+``python -m tests.unit.data.laboratory 500`` runs the study whose figures stand in ``docs/fit.md``; with ``500
+1 wild`` that with modes outside the band, wild lines and real poles.
 """
 
 from __future__ import annotations

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from symflex.budget import Budget
 from symflex.data.fitting import STARTS, Base, fit_resonances
 from symflex.data.measurement import MeasuredResponse
 from symflex.errors import DataError, FitError, UsageError
@@ -141,13 +142,12 @@ def test_the_tip_of_a_bending_beam_is_not_minimum_phase():
 
 
 def test_zeros_that_stand_for_a_power_of_s_are_said_and_turn_no_verdict():
-    # Two poles, one pair of zeros and s^2, fitted as s and two pairs of zeros: the second has to be a real
-    # zero near 0 and one far above, whose product is s in the band, with either sign of the gain.
+    # Two poles, one pair of zeros and s^2, fitted as s and a real zero near 0, with either sign of the gain.
     two = System(np.array([20.0, 60.0]), np.full(2, 0.02), np.array([25.0, 1e5]), np.array([0.03, 0.0]))
     data = noisy(lambda f: -(f**2) * two(f), noise=0.003)
     fit = fit_resonances([data], None, FitOptions(modes=2, slope=1, start="vector"))
-    assert np.abs(fit.resonances.zeta_z).max() > 2
-    assert any("two real zeros" in warning or "not determined" in warning for warning in fit.warnings)
+    assert abs(fit.resonances.real_z[0]) < 2 * np.pi * 0.1
+    assert any("real zero lies outside the band" in warning for warning in fit.warnings)
     assert fit.phase_tests[0].verdict != "nonminimum"
 
 
@@ -164,29 +164,83 @@ def code_of(caught):
     return [d.code for d in caught.value.diagnostics]
 
 
-def test_data_without_a_resonance_are_refused():
-    with pytest.raises(FitError) as caught:
-        fit_resonances([noisy(lambda f: rigid(2 * np.pi * f))], [Base(rigid)])
-    assert code_of(caught) == ["SF611"]
+def test_data_without_a_resonance_are_fitted_without_one():
+    fit = fit_resonances([noisy(lambda f: rigid(2 * np.pi * f))], [Base(rigid)])
+    assert not fit.modes.any()
+    assert not fit.poor
 
 
-def test_more_peaks_than_there_are_is_an_error():
-    with pytest.raises(FitError) as caught:
-        fit_resonances([exact(ONE)], UNIT, FitOptions(modes=4, start="peaks"))
-    assert code_of(caught) == ["SF611"]
+def test_more_resonances_than_there_are_give_a_poor_fit():
+    rough = noisy(ONE, noise=0.01)
+    fit = fit_resonances([rough], UNIT, FitOptions(modes=3))
+    assert fit.poor
 
 
-def test_a_pole_that_leaves_the_band_is_an_error():
-    above = System(np.array([130.0]), np.array([0.02]), np.array([160.0]), np.array([0.02]))
-    with pytest.raises(FitError) as caught:
-        fit_resonances([noisy(above, noise=0.001)], UNIT, FitOptions(modes=1, start="vector"))
-    assert code_of(caught) == ["SF614"]
+def test_a_mode_above_the_band_is_a_residual_term():
+    above = System(np.array([30.0, 130.0]), np.full(2, 0.02), np.array([70.0, 1e6]), np.full(2, 0.02))
+    fit = fit_resonances([replace(noisy(above, noise=0.001), coherence=None)])
+    assert fit.resonances.omega_p[fit.modes] / (2 * np.pi) == pytest.approx([30], rel=1e-3)
+    assert fit.resonances.omega_p[~fit.modes] / (2 * np.pi) == pytest.approx([130], rel=1e-2)
+    assert not fit.poor
 
 
-def test_parameters_the_data_do_not_determine_are_an_error():
-    with pytest.raises(FitError) as caught:
-        fit_resonances([exact(ONE)], UNIT, FitOptions(modes=3, start="vector"))
-    assert code_of(caught)[0] in ("SF612", "SF613", "SF614")
+@pytest.mark.parametrize("first", [0, 60, -1])
+def test_one_wild_line_is_left_out_and_named(first):
+    # A double integrator with a resonance, whose first line is 30 times too large and has the wrong sign.
+    f = np.arange(4.0, 400.0, 4.0)
+    values = -90 / (f**2 * (1 + 0.024j * f / 55 - (f / 55) ** 2))
+    rough = 1e-4 * np.random.default_rng(1).standard_normal((2, f.size))
+    values = values * (1 + rough[0] + 1j * rough[1])
+    values[first] *= -30
+    fit = fit_resonances([MeasuredResponse("y/u", f, values)])
+    assert fit.left_out(0).tolist() == [first % f.size]
+    assert f"at {f[first]:g} Hz" in fit.warnings[0]
+    assert fit.resonances.omega_p / (2 * np.pi) == pytest.approx([55], rel=1e-4)
+    assert not fit.poor
+
+
+def test_a_resonance_narrower_than_the_distance_of_lines_is_no_wild_line():
+    f = np.arange(5.0, 60.0, 0.5)
+    values = 1 / (1 + 2e-4j * f / 20 - (f / 20.01) ** 2) + 0.5 / (1 + 0.02j * f / 40 - (f / 40) ** 2)
+    fit = fit_resonances([MeasuredResponse("y/u", f, values)])
+    assert fit.resonances.omega_p[0] / (2 * np.pi) == pytest.approx(20.01, rel=1e-6)
+    assert not fit.left_out(0).size
+
+
+def test_exact_data_are_not_poor():
+    fit = fit_resonances([exact(PAPER)])
+    assert fit.resonances.omega_p / (2 * np.pi) == pytest.approx(PAPER.f_p, rel=1e-9)
+    assert not fit.poor
+
+
+@pytest.mark.parametrize(
+    ("values", "poles", "zero"),
+    [
+        (lambda s: 20 / (1 + 0.05 * s), [20.0], np.inf),  # a motor's first-order lag
+        (lambda s: 20 / ((1 + 0.05 * s) * (1 + 0.001 * s)), [20.0, 1000.0], np.inf),
+        (lambda s: 4 / (s * (1 + 0.02 * s)), [50.0], np.inf),
+        (lambda s: 3.3 + 0.02 * s, [], 165.0),  # an inductor
+    ],
+)
+def test_plants_without_resonances_are_fitted_with_real_poles(values, poles, zero):
+    f = np.geomspace(0.1, 1000, 120)
+    rough = 0.01 * np.random.default_rng(2).standard_normal((2, f.size))
+    data = MeasuredResponse("y/u", f, values(2j * np.pi * f) * (1 + rough[0] + 1j * rough[1]))
+    fit = fit_resonances([data])
+    assert not fit.poor
+    assert not fit.modes.any()
+    found = fit.real_poles()
+    assert len(found) == len(poles)
+    for (pole, error), true in zip(found, poles, strict=True):
+        assert abs(pole - true) < 4 * error
+    assert fit.resonances.real_z[0] == pytest.approx(zero, rel=0.02)
+
+
+def test_a_fit_whose_time_is_over_returns_the_best_so_far():
+    ticks = iter(range(10**9))
+    with Budget(seconds=600, clock=lambda: float(next(ticks))).entered():
+        fit = fit_resonances([replace(noisy(PAPER), coherence=None)])
+    assert "time" in fit.poor[0]
 
 
 def test_a_base_with_a_zero_in_the_band_is_an_error():
