@@ -346,8 +346,8 @@ def _accuracy(fit: ResonanceFit) -> str:
         words.append(f"that is {size:.3g} times what coherence explains")
     words.append("standard errors are scaled to the residual")
     if fit.refined.correlation > 1:
-        words.append(f"they count neighbouring lines as correlated (a mean has {_times(fit)} the variance)")
-    return ", and ".join(words)
+        words.append(f"count neighbouring lines as correlated (a mean has {_times(fit)} the variance)")
+    return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
 
 
 def _times(fit: ResonanceFit) -> str:
@@ -371,7 +371,7 @@ def _phase_words(test: PhaseTest, fit: ResonanceFit, r: int) -> str:
     if test.verdict == "nonminimum":
         return f"not minimum phase: {parts}, from a minimum-phase fit to the magnitude alone{own}"
     if test.is_minimum_phase:
-        return f"minimum phase: such a function has both; with the magnitude alone {parts}"
+        return f"minimum phase: such a function has both, but fitted to the magnitude alone {parts}"
     if test.with_phase is not None:
         return (
             f"undetermined: {parts}, unless a sensor, a delay, or poles or zeros above the band add a lag of "
