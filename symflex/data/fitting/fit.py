@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,17 +11,21 @@ import numpy as np
 from symflex.data.fitting.lines import isolated, single_lines, wild_lines
 from symflex.data.fitting.order import (
     CRITERIA,
+    LAST_SHARE,
     NEGLIGIBLE,
+    NOISE_SHARE,
+    PHASE_SHARE,
     STARTS,
     UNLIKELY,
     Candidate,
     Score,
+    Stages,
     chosen_order,
     lack_of_fit,
     refitted,
     with_own_noise,
 )
-from symflex.data.fitting.phase_test import PhaseTest, judge_phase
+from symflex.data.fitting.phase_test import PhaseTest, judge_phase, not_judged
 from symflex.data.fitting.problem import FitProblem, FittedLines, fit_problem, with_noise, with_rough_noise
 from symflex.data.fitting.resonances import MILLISECOND, Complex, Free, Mask, Real, Resonances, Whole
 from symflex.data.fitting.starts import with_delays
@@ -272,40 +277,57 @@ def _fit(
             )
     problem = problem.at([_kept(line, wild_lines(line.omega, line.ratio)) for line in problem.lines])
     most = max(MOST_LINES // len(problem.lines), FEWEST_OF_EACH)
-    candidate, problem, chosen = _chosen(problem, given, most)
+    stages = Stages()
+    candidate, problem, scores, reasons = _chosen(problem, given, most, stages)
     single = [single_lines(line.omega, candidate.refined.resonances) for line in problem.lines]
     if any(places.size for places in single):
         # A resonance that only one line shows is none, if it is not there without that line.
         fewer = problem.at([_kept(line, places) for line, places in zip(problem.lines, single, strict=True)])
-        other, fewer, other_chosen = _chosen(fewer, given, most)
-        gone = candidate.refined.resonances.in_band(*problem.band).sum()
-        if other.refined.resonances.in_band(*problem.band).sum() < gone and not other.failure:
-            candidate, problem, chosen = other, fewer, other_chosen
-    scores, reasons = chosen
+        other, fewer, other_scores, other_reasons = _chosen(fewer, given, most, stages)
+        before = candidate.refined.resonances.in_band(*problem.band).sum()
+        if other.refined.resonances.in_band(*problem.band).sum() < before and not other.failure:
+            candidate, problem, scores, reasons = other, fewer, other_scores, other_reasons
+    candidate, problem = stages.within(
+        LAST_SHARE, partial(_settled, candidate, problem), lambda: (candidate, problem)
+    )
+    if not has_base:
+        bases = tuple(Base.power(int(power)) for power in candidate.refined.resonances.slope)
+    fitted = candidate.refined.resonances
+    thin = problem.thinned(most)
+    thin = thin.at([_seen(thin, r, fitted) for r in range(len(measured))])
+    tests = tuple(
+        stages.within(
+            PHASE_SHARE, partial(judge_phase, thin, r, fitted), partial(not_judged, thin, r, fitted)
+        )
+        for r in range(len(measured))
+    )
+    if stages.is_cut:
+        reasons = ("the time given was over before the fit was complete", *reasons)
+    fit = ResonanceFit(problem, bases, candidate, scores, given.criterion, tests, ())
+    return replace(fit, warnings=_warnings(fit), poor=(*reasons, *_poor(fit)))
+
+
+def _settled(candidate: Candidate, problem: FitProblem) -> tuple[Candidate, FitProblem]:
+    """Return the fit with its own noise, and without the lines that it finds to be wild."""
     candidate, problem = with_own_noise(candidate, problem)
     for _ in range(ROUNDS):
         again = problem.readmitted(_fitting_lines(problem, candidate))
         if again is problem:
             break
         candidate, problem = with_own_noise(refitted(candidate, again), again)
-    if not has_base:
-        bases = tuple(Base.power(int(power)) for power in candidate.refined.resonances.slope)
-    thin = problem.thinned(most)
-    thin = thin.at([_seen(thin, r, candidate.refined.resonances) for r in range(len(measured))])
-    tests = tuple(judge_phase(thin, r, candidate.refined.resonances) for r in range(len(measured)))
-    fit = ResonanceFit(problem, bases, candidate, scores, given.criterion, tests, ())
-    return replace(fit, warnings=_warnings(fit), poor=(*reasons, *_poor(fit)))
+    return candidate, problem
 
 
 def _chosen(
-    problem: FitProblem, given: FitOptions, most: int
-) -> tuple[Candidate, FitProblem, tuple[tuple[Score, ...], tuple[str, ...]]]:
-    """Return the best fit, the problem with its noise, and how its number of poles was chosen."""
-    modes = given.modes
-    problem = with_noise(with_delays(with_rough_noise(problem), modes), modes, most)
-    thin = problem.thinned(most)
-    candidate, scores, reasons = chosen_order(problem, thin, modes, given.start, given.criterion)
-    return candidate, problem, (scores, reasons)
+    problem: FitProblem, given: FitOptions, most: int, stages: Stages
+) -> tuple[Candidate, FitProblem, tuple[Score, ...], tuple[str, ...]]:
+    """Return the best fit, the problem with its noise, how its number of poles was chosen, what is wrong."""
+    rough = with_rough_noise(problem)
+    problem = stages.within(
+        NOISE_SHARE, lambda: with_noise(with_delays(rough, given.modes), given.modes, most), lambda: rough
+    )
+    candidate, scores, reasons = chosen_order(problem, problem.thinned(most), given, stages)
+    return candidate, problem, scores, reasons
 
 
 def _seen(problem: FitProblem, response: int, resonances: Resonances) -> Whole:

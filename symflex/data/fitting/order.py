@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TypedDict
+from typing import TypedDict, TypeVar
 
 import numpy as np
 from scipy.stats import f
@@ -35,6 +35,9 @@ from symflex.data.fitting.starts import (
     start_from_peaks,
 )
 from symflex.errors import BudgetError, Diagnostic
+from symflex.options import FitOptions
+
+Result = TypeVar("Result")
 
 
 class _Effort(TypedDict):
@@ -51,8 +54,9 @@ EXTRA = 5
 """Poles beyond those of the resonances that are asked for: modes outside the band, and real ones."""
 PATIENCE, MORE_PATIENCE = 1, 3
 """Numbers of pairs tried after the best: where the noise is nearly reached, and where it is far."""
-SHARE, LAST_SHARE = 0.5, 0.8
-"""Parts of the time given when numbers have been compared, and when the fit to all lines has ended."""
+NOISE_SHARE, TRIED_SHARE, THOROUGH_SHARE, LAST_SHARE, PHASE_SHARE = 0.2, 0.45, 0.55, 0.7, 0.85
+"""Parts of the time given when the noise has to be known, numbers of poles compared, the fit found, fitted to
+all lines, and its phase tested."""
 THOROUGH = _Effort(steps=STEPS, tolerance=TOLERANCE)
 QUICK = _Effort(steps=25, tolerance=ROUGH)
 """A quarter of the steps of a whole search, enough to compare numbers of poles."""
@@ -80,6 +84,25 @@ CLEAR = 6.0
 """Difference of BIC that is strong evidence (Kass & Raftery, J. Am. Stat. Assoc. 90, 1995)."""
 UNLIKELY = 1e-5
 """Share of right fits that may be called poor for what a function without structure describes better."""
+
+
+class Stages:
+    """The parts of a fit, each of which ends with a share of the time given, so that there is a result."""
+
+    def __init__(self) -> None:
+        self.budget = entered_budget()
+        self.is_cut = False  # whether one of them did not end in time
+
+    def within(self, share: float, compute: Callable[[], Result], otherwise: Callable[[], Result]) -> Result:
+        """Return what is computed, or something else when a share of the time is over."""
+        try:
+            with self.budget.share(share).entered():
+                return compute()
+        except BudgetError as error:
+            if error.diagnostics[0].code != TIME_OVER.code:
+                raise
+        self.is_cut = True
+        return otherwise()
 
 
 @dataclass(frozen=True, eq=False)
@@ -210,14 +233,18 @@ def best_of_starts(
 
 
 def chosen_order(
-    problem: FitProblem, thin: FitProblem, modes: int | None, kind: str, criterion: str
+    problem: FitProblem, thin: FitProblem, given: FitOptions, stages: Stages
 ) -> tuple[Candidate, tuple[Score, ...], tuple[str, ...]]:
     """Return the fit whose number of poles the criterion prefers, what it says of all, and what is wrong.
 
-    ``thin`` is the problem on the lines on which numbers are compared. With ``modes``, so many resonances in
-    the band are wanted; the criterion chooses the number of residual terms.
+    ``thin`` is the problem on the lines on which numbers are compared. With ``modes`` given, so many
+    resonances in the band are wanted; the criterion chooses the number of residual terms.
     """
-    tried, reasons = _tried(thin, modes, kind, criterion)
+    modes, criterion = given.modes, given.criterion
+    tried: list[Candidate] = []
+    stages.within(TRIED_SHARE, lambda: _try(thin, given, tried), lambda: None)
+    tried = sorted(tried, key=lambda one: one.order) or [_nothing(thin)]
+    reasons: list[str] = []
     # What is correlated because a resonance lacks tells nothing of the noise.
     closest = min(tried, key=lambda one: one.refined.reduced)
     scores = [_score(thin, one, closest.refined.correlation) for one in tried]
@@ -235,7 +262,7 @@ def chosen_order(
         if far_better:
             result = far_better[0]
             break
-        best = _continued(problem, thin, by_order[score.order], kind)
+        best = _continued(problem, thin, by_order[score.order], given.start, stages)
         status = "usable"
         if best.failure is not None:
             status = "failed"
@@ -253,27 +280,24 @@ def chosen_order(
     return result, tuple(scores), tuple(reasons)
 
 
-def _tried(
-    thin: FitProblem, modes: int | None, kind: str, criterion: str
-) -> tuple[list[Candidate], list[str]]:
-    """Return quick fits with numbers of poles until more explain nothing, or the time for them is over.
+def _try(thin: FitProblem, given: FitOptions, tried: list[Candidate]) -> None:
+    """Add quick fits with numbers of poles until more explain nothing.
 
     Even numbers first, then those beside the best of them.
     """
+    modes = given.modes
     first, last = (0, 2 * MOST_MODES) if modes is None else (2 * modes, 2 * modes + EXTRA)
-    tried: list[Candidate] = []
-    budget = entered_budget()
 
     def values() -> list[float]:
         """Return what the criterion says of each one tried; infinite where that failed."""
         scores = [_score(thin, one, tried[-1].refined.correlation) for one in tried]
-        return [_value(s, criterion) if s.is_usable else np.inf for s in scores]
+        return [_value(s, given.criterion) if s.is_usable else np.inf for s in scores]
 
     def attempt(order: int) -> bool:
         """Try a number; return whether that settles it."""
-        done = SHARE * (order - first) / (last - first + 1)
-        budget.progress.report(done, f"fit with {order} poles to {thin.count} lines")
-        found = best_of_starts(thin, order, kind, is_quick=modes is None)
+        done = TRIED_SHARE * (order - first) / (last - first + 1)
+        entered_budget().progress.report(done, f"fit with {order} poles to {thin.count} lines")
+        found = best_of_starts(thin, order, given.start, is_quick=modes is None)
         if found is None:
             return False
         tried.append(found)
@@ -283,28 +307,21 @@ def _tried(
         return found.refined.reduced < NEGLIGIBLE and thin.is_noise_estimated  # the data are exact
 
     worse = 0
-    try:
-        with budget.share(SHARE).entered():
-            for order in range(first, last + 1, 2):
-                if attempt(order):
-                    return tried, []
-                now = values()
-                worse = worse + 1 if now and now[-1] > min(now) else 0
-                least = min((one.refined.reduced for one in tried), default=np.inf)
-                # Fewer poles than there are may be no better than none, each with something large left over.
-                patience = MORE_PATIENCE if not thin.has_scale or least > FAR_BETTER else PATIENCE
-                if worse > (0 if thin.has_scale and least < EXPLAINED else patience):
-                    break
-            if tried:
-                best = tried[int(np.argmin(values()))].order
-                for order in (best - 1, best + 1):
-                    if first <= order <= last:
-                        attempt(order)
-    except BudgetError as error:
-        if error.diagnostics[0].code != TIME_OVER.code:
-            raise
-        return tried or [_nothing(thin)], ["the time given was over before all numbers of poles were tried"]
-    return sorted(tried, key=lambda one: one.order) or [_nothing(thin)], []
+    for order in range(first, last + 1, 2):
+        if attempt(order):
+            return
+        now = values()
+        worse = worse + 1 if now and now[-1] > min(now) else 0
+        least = min((one.refined.reduced for one in tried), default=np.inf)
+        # Fewer poles than there are may be no better than none, each with something large left over.
+        patience = MORE_PATIENCE if not thin.has_scale or least > FAR_BETTER else PATIENCE
+        if worse > (0 if thin.has_scale and least < EXPLAINED else patience):
+            break
+    if tried:
+        best = tried[int(np.argmin(values()))].order
+        for order in (best - 1, best + 1):
+            if first <= order <= last:
+                attempt(order)
 
 
 def _is_founded(scores: Sequence[Score], score: Score, criterion: str) -> bool:
@@ -322,31 +339,34 @@ def _is_weak(refined: Refined, band: tuple[float, float]) -> bool:
     return bool(np.any(np.sqrt(np.diag(covariance)[n : 2 * n])[found.in_band(*band)] > WEAK))
 
 
-def _continued(problem: FitProblem, thin: FitProblem, quick: Candidate, kind: str) -> Candidate:
+def _continued(
+    problem: FitProblem, thin: FitProblem, quick: Candidate, kind: str, stages: Stages
+) -> Candidate:
     """Return where a quick fit leads with all steps, on all lines and with the window."""
-    refined = refine_directly(thin, quick.refined.resonances, steps=3 * STEPS)
-    best = _simplified(
-        thin, replace(quick, refined=refined, failure=_failure(problem, refined)), is_quick=False
-    )
-    best = _signs_tried(thin, _without_far_poles(thin, best))
-    if best.failure is not None or not _is_explained(thin, best.refined):
-        again = best_of_starts(thin, quick.order, kind)
-        if again is not None and _is_better(thin, again, best):
-            best = again
+    best = stages.within(THOROUGH_SHARE, lambda: _thorough(thin, quick, kind), lambda: quick)
     rivalled = best.rival is not None and _merit(thin, best.rival) < _merit(thin, best.refined) + CLEAR
     best = replace(best, is_rivalled=rivalled)
     if thin.count == problem.count and all(line.observation.matrix is None for line in problem.lines):
         return best
-    budget = entered_budget()
-    budget.progress.report(SHARE, f"fit with {best.order} poles to {problem.count} lines")
-    try:
-        with budget.share(LAST_SHARE).entered():
-            refined = refine_directly(problem, best.refined.resonances, steps=3 * STEPS)
-    except BudgetError as error:
-        if error.diagnostics[0].code != TIME_OVER.code:
-            raise
-        refined = refine_directly(problem, best.refined.resonances, steps=0)
+    stages.budget.progress.report(THOROUGH_SHARE, f"fit with {best.order} poles to {problem.count} lines")
+    refined = stages.within(
+        LAST_SHARE,
+        lambda: refine_directly(problem, best.refined.resonances, steps=3 * STEPS),
+        lambda: refine_directly(problem, best.refined.resonances, steps=0),
+    )
     return replace(best, refined=refined, failure=_failure(problem, refined))
+
+
+def _thorough(thin: FitProblem, quick: Candidate, kind: str) -> Candidate:
+    """Return where a quick fit leads with all steps, and from other starts where it leaves something."""
+    refined = refine_directly(thin, quick.refined.resonances, steps=3 * STEPS)
+    best = replace(quick, refined=refined, failure=_failure(thin, refined))
+    best = _signs_tried(thin, _without_far_poles(thin, _simplified(thin, best, is_quick=False)))
+    if best.failure is not None or not _is_explained(thin, best.refined):
+        again = best_of_starts(thin, quick.order, kind)
+        if again is not None and _is_better(thin, again, best):
+            best = again
+    return best
 
 
 def _value(score: Score, criterion: str) -> float:

@@ -122,6 +122,13 @@ def judge_phase(problem: FitProblem, response: int, fitted: Resonances) -> Phase
     )
 
 
+def not_judged(problem: FitProblem, response: int, fitted: Resonances) -> PhaseTest:
+    """Return the outcome where there is no time for the test."""
+    line = problem.lines[response]
+    difference = np.angle(line.measured.values / problem.values(fitted, response))
+    return PhaseTest(fitted.one(response), difference, (), 0.0, "undetermined")
+
+
 KINDS: Final = ("magnitude", "both", "lag")
 """What a search fits: the magnitude; magnitude and phase; these with a lag linear in frequency."""
 

@@ -328,7 +328,8 @@ def _variance(power: Real, omega: Real, size: Real) -> Real:
     x = omega / np.exp(np.mean(np.log(omega)))
     shapes = np.stack([size**2, *(x ** float(p) for p in POWERS)])
     shapes = shapes / np.mean(shapes, axis=1, keepdims=True)
-    floor = max(float(np.mean(power)) * 1e-12, np.finfo(float).tiny)
+    # The square of a variance has to be a number, of exact data too.
+    floor = max(float(np.mean(power)) * 1e-12, np.finfo(float).tiny ** 0.4)
     power = np.maximum(power, floor)
     shares = np.full(shapes.shape[0], float(np.mean(power)) / shapes.shape[0])
     for _ in range(STEPS):

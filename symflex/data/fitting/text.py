@@ -123,7 +123,7 @@ def _residual_terms(fit: ResonanceFit) -> list[tuple[str, ...]]:
 
 def _orders(fit: ResonanceFit) -> Passage:
     """Return the numbers of poles that were tried."""
-    rows = [("poles", "resonances", "parameters", "BIC", "AICc", "residual", "")]
+    rows = [("poles", "modes", "parameters", "BIC", "AICc", "residual", "")]
     for s in fit.scores:
         mark = "<" if s.order == fit.resonances.order else "" if s.is_usable else s.status
         numbers = (f"{s.bic:.1f}", f"{s.aicc:.1f}", f"{sqrt(s.reduced):.4g}")
@@ -357,6 +357,8 @@ def _times(fit: ResonanceFit) -> str:
 def _phase_words(test: PhaseTest, fit: ResonanceFit, r: int) -> str:
     low, high = fit.measured[r].frequency_hz[[0, -1]]
     own = " (the base with its own phase)" if fit.bases[r].path else ""
+    if not test.bands and not test.is_minimum_phase:
+        return "there was no time for it"
     if not test.bands:
         return (
             f"minimum phase: the measured phase is that of a minimum-phase fit to the magnitude alone{own}, "
