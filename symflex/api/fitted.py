@@ -53,8 +53,8 @@ class Fit:
 
     @property
     def frequencies_hz(self) -> Real:
-        """Natural frequencies of the pole pairs [Hz], ascending, shape (n,)."""
-        return self.resonances.omega_p / (2 * np.pi)
+        """Natural frequencies of the resonances in the band [Hz], ascending."""
+        return self.resonances.omega_p[self.found.modes] / (2 * np.pi)
 
     @property
     def is_minimum_phase(self) -> tuple[bool, ...]:
@@ -94,9 +94,9 @@ class Fit:
         return first.bind().input_shaper(modes, kind, joint=joint)
 
     def plot(self, response: int = 0, *, ax: AxesGiven | None = None) -> Figure:
-        """Return data and fit of one response, magnitude over phase, as ``symflex fit --plot`` draws them.
+        """Return data and fit of one response, with what is left, as ``symflex fit --plot`` draws them.
 
-        Two axes of your own, ``ax``, are drawn on in your own style.
+        Two axes of your own, ``ax``, get magnitude and phase in your own style.
 
         Raises
         ------

@@ -97,6 +97,48 @@ def test_guesses_are_printed_one_line_each_and_columns_overrules_them(oscillator
 
 
 @pytest.mark.slow
+def test_several_responses_become_several_outputs_and_one_figure(shell):
+    f = np.linspace(5.0, 60.0, 300)
+    s = 2j * np.pi * f
+    pole = 1 + 0.02 * s / (2 * np.pi * 20) + (s / (2 * np.pi * 20)) ** 2
+    for name, value in (("a", 1 / pole), ("b", (1 + s / 500) / pole)):
+        rows = "".join(
+            f"{x},{v.real!r},{v.imag!r}\n" for x, v in zip(f.tolist(), value.tolist(), strict=True)
+        )
+        (shell.folder / f"{name}.csv").write_text(f"# tf: {name}/u\nf,re,im\n{rows}")
+    done = shell("fit", "a.csv", "b.csv", "-o", "ab.toml", "--plot", "ab.png", "--plot-order", "order.png")
+    assert done.code == 0
+    assert sorted(path.name for path in shell.folder.glob("*.png")) == ["ab.png", "order.png"]
+    model = symflex.load(shell.folder / "ab.toml")
+    G = model.transfer_function("b", "u").bind()
+    assert G(2j * np.pi * 20) == pytest.approx((1 + 2j * np.pi * 20 / 500) / 0.02j, rel=1e-6)
+    assert shell("roots", "ab.toml", "--tf", "a/u").code == 0
+    assert shell("export", "ab.toml", "--to", "numpy").code == 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("modes", [1, 3, 4])
+def test_driving_with_another_number_of_modes_than_there_are_ends_in_shapes(shell, modes):
+    f = np.geomspace(5, 50, 60)
+    s = 2j * np.pi * f
+    rough = 0.02 * np.random.default_rng(4).standard_normal((2, 2, f.size))
+    for k, shape in enumerate(((1.0, 1.0), (0.7, -0.5))):
+        value = sum(c / (s**2 + 0.06 * w * s + w * w) for c, w in zip(shape, (94.2, 188.5), strict=True))
+        value = value * (1 + rough[k, 0] + 1j * rough[k, 1])
+        rows = "".join(
+            f"{x},{v.real!r},{v.imag!r}\n" for x, v in zip(f.tolist(), value.tolist(), strict=True)
+        )
+        (shell.folder / f"{k}.csv").write_text(f"# tf: X_{k}/F\n# unit: m/N\nf,re,im\n{rows}")
+    done = shell("fit", "0.csv", "1.csv", "--driving", "X_0/F", "--modes", modes, "--json")
+    assert done.code == 0
+    if modes > 1:
+        assert done.json["mode_shapes"]["shapes"][1] == [
+            pytest.approx(1, abs=0.05),
+            pytest.approx(-0.5, abs=0.05),
+        ]
+
+
+@pytest.mark.slow
 def test_a_poor_fit_says_so_first_and_strict_makes_it_exit_code_4(oscillator):
     f = np.arange(2.0, 60.0, 0.25)
     noise = np.random.default_rng(1).standard_normal((2, f.size)) * 0.02
