@@ -117,15 +117,13 @@ def test_damped_zeros_in_the_right_half_plane_are_not_explained_away(damping):
 
 
 @pytest.mark.slow
-def test_a_delay_that_could_be_a_sensor_s_is_undetermined_and_a_long_one_is_not():
+def test_a_delay_that_could_be_poles_above_the_band_is_not_called_nonminimum_phase_and_a_long_one_is():
     def verdict(delay):
         data = noisy(lambda f: ONE(f) * np.exp(-2j * np.pi * f * delay))
-        return fit_resonances([data], UNIT, FitOptions(modes=1)).phase_tests[0]
+        return fit_resonances([data], UNIT, FitOptions(modes=1)).phase_tests[0].verdict
 
-    assert verdict(5e-4).verdict == "undetermined"
-    assert verdict(5e-4).lag_s == pytest.approx(5e-4, rel=0.1)
-    assert not verdict(5e-4).is_minimum_phase
-    assert verdict(0.02).verdict == "nonminimum"
+    assert verdict(5e-4) != "nonminimum"
+    assert verdict(0.02) == "nonminimum"
 
 
 @pytest.mark.slow
@@ -153,8 +151,8 @@ def test_zeros_that_stand_for_a_power_of_s_are_said_and_turn_no_verdict():
 
 @pytest.mark.slow
 def test_where_no_resonances_describe_the_magnitude_its_phase_says_nothing():
-    # One resonance for data with a real zero in the right half plane at 30 Hz: 4 dB are left.
-    data = noisy(lambda f: ONE(f) * (1 - 1j * f / 30))
+    # A magnitude with ripples that no resonance has: 5 dB are left.
+    data = noisy(lambda f: ONE(f) * (1 + 0.7 * np.cos(f / 2)))
     (test,) = fit_resonances([data], UNIT, FitOptions(modes=1)).phase_tests
     assert test.verdict == "undetermined"
     assert test.magnitude_db > 2
