@@ -92,8 +92,8 @@ def _zeros(fit: ResonanceFit, r: int) -> Passage:
     ]
     if np.isfinite(found.real_z[r]):
         corner, error = found.real_z[r] / (2 * pi), errors.real_z[r] / (2 * pi)
-        side = "" if corner > 0 else "right half plane"
-        rows.append(("real", _shown(abs(corner), error), _error(error), "", "", side))
+        side = "real" if corner > 0 else "real, right half plane"
+        rows.append(("", _shown(abs(corner), error), _error(error), "", "", side))
     if not rows:
         lines[0] += ": none"
     return Passage([*lines[1:], lines[0]], [HEAD, *rows] if rows else ())
@@ -108,16 +108,8 @@ def _residual_terms(fit: ResonanceFit) -> list[tuple[str, ...]]:
         row = _row("", found.omega_p[i], errors.omega_p[i], found.zeta_p[i], errors.zeta_p[i])
         rows.append((*row[:-1], "below the band" if found.omega_p[i] < low else "above the band"))
     for corner, error in fit.real_poles():
-        rows.append(
-            (
-                "real",
-                _shown(corner / (2 * pi), error / (2 * pi)),
-                _error(error / (2 * pi)),
-                "",
-                "",
-                "real pole",
-            )
-        )
+        hertz, hertz_error = corner / (2 * pi), error / (2 * pi)
+        rows.append(("", _shown(hertz, hertz_error), _error(hertz_error), "", "", "real"))
     return rows
 
 
