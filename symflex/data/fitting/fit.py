@@ -141,22 +141,23 @@ class ResonanceFit:
         """Return the corner frequency of each real pole and its standard error [rad/s], ascending."""
         found, covariance = self.resonances, self.refined.covariance
         n = found.count
-        poles = [(float(p), (2 * n + i, 1.0, 0, 0.0)) for i, p in enumerate(found.real_p)]
+        poles = [(float(p), (2 * n + i, 1.0, 2 * n + i, 0.0)) for i, p in enumerate(found.real_p)]
         for i in np.flatnonzero(found.zeta_p >= 1).tolist():
             zeta = float(found.zeta_p[i])
             root = np.sqrt(max(zeta**2 - 1, np.finfo(float).tiny))
             # d ln(zeta +- root) by ln zeta is +- zeta/root.
             poles += [
-                (float(found.omega_p[i] * (zeta + sign * root)), (i, 1.0, n + i, sign * zeta / root))
+                (float(found.omega_p[i] * (zeta + root) ** sign), (i, 1.0, n + i, sign * zeta / root))
                 for sign in (-1, 1)
             ]
         result = []
         for corner, (a, by_a, b, by_b) in poles:
             variance = np.inf
-            if covariance is not None:
+            if covariance is not None and np.isfinite([covariance[a, a], covariance[b, b]]).all():
                 variance = by_a**2 * covariance[a, a] + by_b**2 * covariance[b, b]
                 variance += 2 * by_a * by_b * covariance[a, b]
-            result.append((corner, float(corner * np.sqrt(max(variance, 0.0)))))
+            error = corner * np.sqrt(max(variance, 0.0)) if np.isfinite(variance) else np.inf
+            result.append((corner, float(error)))
         return sorted(result)
 
     def standard_errors(self) -> Resonances:

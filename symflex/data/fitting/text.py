@@ -102,11 +102,12 @@ def _zeros(fit: ResonanceFit, r: int) -> Passage:
 def _residual_terms(fit: ResonanceFit) -> list[tuple[str, ...]]:
     """Return rows of the pole pairs outside the band, and of the real poles."""
     found, errors = fit.resonances, fit.standard_errors()
-    low, _ = fit.problem.band
+    low, high = fit.problem.band
     rows = []
     for i in np.flatnonzero(~fit.modes & (found.zeta_p < 1)).tolist():
         row = _row("", found.omega_p[i], errors.omega_p[i], found.zeta_p[i], errors.zeta_p[i])
-        rows.append((*row[:-1], "below the band" if found.omega_p[i] < low else "above the band"))
+        place = "below the band" if found.omega_p[i] < low else "above the band"
+        rows.append((*row[:-1], "no peak" if low <= found.omega_p[i] <= high else place))
     for corner, error in fit.real_poles():
         hertz, hertz_error = corner / (2 * pi), error / (2 * pi)
         rows.append(("", _shown(hertz, hertz_error), _error(hertz_error), "", "", "real"))
