@@ -92,7 +92,7 @@ def _zeros(fit: ResonanceFit, r: int) -> Passage:
     ]
     if np.isfinite(found.real_z[r]):
         corner, error = found.real_z[r] / (2 * pi), errors.real_z[r] / (2 * pi)
-        side = "real" if corner > 0 else "real, right half plane"
+        side = "real" if corner > 0 else "real, right half"
         rows.append(("", _shown(abs(corner), error), _error(error), "", "", side))
     if not rows:
         lines[0] += ": none"
@@ -311,7 +311,7 @@ HEAD: Final = ("", "frequency [Hz]", "std. error", "damping ratio", "std. error"
 def _row(name: str, omega: float, omega_error: float, zeta: float, zeta_error: float) -> tuple[str, ...]:
     hertz, hertz_error = abs(omega) / (2 * pi), omega_error / (2 * pi)
     numbers = (_shown(hertz, hertz_error), _error(hertz_error), _shown(zeta, zeta_error), _error(zeta_error))
-    return (name, *numbers, "" if omega > 0 else "real, of opposite sign")
+    return (name, *numbers, "" if omega > 0 else "real, both signs")
 
 
 def _places(error: float) -> int:
