@@ -45,7 +45,7 @@ from symflex.expressions import (
     sum_of,
 )
 from symflex.expressions.format import number_text
-from symflex.transfer.balls import principal_values
+from symflex.transfer.balls import enclosure, principal_values
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -97,7 +97,7 @@ class _Signs:
 
     @staticmethod
     def of(model: Model) -> _Signs:
-        known = {p.name: acb(float(p.value.nearly)) for p in model.parameters if p.value is not None}
+        known = {p.name: acb(enclosure(p.value)()) for p in model.parameters if p.value is not None}
         known |= {LAPLACE: acb(FAR), "pi": acb.pi()}
         for d in model.definitions:
             if {n.name for n in names(d.expression)} <= {*known, *FUNCTIONS}:
