@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 
 from symflex.drawing.geometry import BOLD, LINE, THIN, Lettering, Placed, union
 from symflex.drawing.lettering import SMALL, column_of, name_latex, text
-from symflex.drawing.symbols import HATCH, arrow, box, earth, half_depth, head, line, wall
+from symflex.drawing.symbols import HATCH, arrow, box, earth, half_depth, head, line, rectangle, wall
 from symflex.library.elements import CIRCUITS
 
 if TYPE_CHECKING:
@@ -144,8 +144,17 @@ def build(cell: SymbolCell, spacing: Spacing, width: float = 0.0) -> Built:
     if is_member:
         length = end - begin
     start = begin + (end - begin - length) / 2
-    drawn = replace(part, symbol=replace(part.symbol, draw=box)) if cell.is_crowded else part
-    strokes = strokes_of(drawn, length, is_reversed=cell.is_reversed)
+    strokes = strokes_of(part, length, is_reversed=cell.is_reversed)
+    if cell.is_crowded or (part.symbol.draw is box and len(part.ends) > 2):  # noqa: PLR2004
+        leads = [
+            line(*ends)
+            for side, ends in (
+                (cell.left, ((0, 0), (0.2 * length, 0))),
+                (cell.right, ((0.8 * length, 0), (length, 0))),
+            )
+            if len(side) == 1
+        ]
+        strokes = (*leads, rectangle(0.2 * length, -6.5, 0.8 * length, 6.5))
     symbol = Placed(part.kind, part.name, strokes).moved(start, 0)
     items = [*_wires(cell, (0.0, begin, start), (width, end, start + length)), symbol]
     if part.type_name == "dc_motor" and not cell.is_crowded and (letter := text(r"\mathrm{M}")):

@@ -14,6 +14,7 @@ import html
 import re
 from dataclasses import dataclass, field
 from itertools import starmap
+from string import ascii_lowercase
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from symflex.model.labels import ACCENTS, GREEK, SYMBOLS
@@ -86,8 +87,8 @@ def label_of(name: str) -> str:
 
     Examples
     --------
-    >>> print(*map(label_of, ("omega_p1", "k_amp", "EI", "m_1", "k_tau", "V_tip_x", "Z_ij")))
-    \omega_{p1} k_{\mathrm{amp}} \mathit{EI} m_{1} k_{\tau} V_{\mathrm{tip},x} Z_{ij}
+    >>> print(*map(label_of, ("omega_p1", "k_amp", "EI", "m_1", "k_tau", "V_tip_x", "Z_ij", "rhoA")))
+    \omega_{p1} k_{\mathrm{amp}} \mathit{EI} m_{1} k_{\tau} V_{\mathrm{tip},x} Z_{ij} \mathit{\rho A}
     """
     return _made(name).latex
 
@@ -161,6 +162,9 @@ def _made(name: str) -> Label:
 def _stem(letters: str) -> str:
     if letters in _GREEK:
         return f"\\{letters}"
+    capitals = letters.lstrip(ascii_lowercase)
+    if 0 < len(capitals) <= 2 and letters.removesuffix(capitals) in _GREEK:  # noqa: PLR2004
+        return rf"\mathit{{\{letters.removesuffix(capitals)} {capitals}}}"  # a mass per length, rhoA
     return letters if len(letters) == 1 else rf"\mathit{{{letters}}}"
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.linalg import expm
 
 import symflex
 from symflex.errors import SpecError
@@ -96,6 +97,30 @@ V = {{ voltage = "u" }}
 O = "o"
 I = "amp.i"
 """
+
+
+def test_a_mass_beside_the_axis_couples_bending_and_torsion():
+    text = """
+root = { type = "fixed", at = "root" }
+blade = { type = "beam", between = ["root", "tip"], EI = 12, rhoA = 0.4, l = 0.6 }
+twist = { type = "shaft", between = ["ground", "phi"], GJ = 5, rhoJ = 2e-4, l = 0.6 }
+arm = { type = "transformer", from = "phi", to = ["y_m", "tip"], ratio = 0.03 }
+mass = { type = "mass", at = "y_m", m = 0.2 }
+[inputs]
+F = { force = "tip" }
+[outputs]
+Y = "tip"
+Phi = "phi"
+"""
+    # States y, theta, moment and force of the beam; the force f on the mass acts back on tip and twist.
+    along = np.array([[0, 1, 0, 0], [0, 0, 1 / 12, 0], [0, 0, 0, -1], [0.4 * S**2, 0, 0, 0]])
+    through = expm(along * 0.6)
+    bending = through[0, 2:] @ np.linalg.solve(through[2:, 2:], [0, 1])
+    wave = np.sqrt(2e-4 / 5) * S
+    torsion = np.tanh(wave * 0.6) / (5 * wave)
+    rows = [[0.2 * S**2, 0.2 * S**2 * 0.03, -1], [1, 0, bending], [0, 1, 0.03 * torsion]]
+    known = solved(rows, [0, bending, 0])
+    assert values(text, "Y/F", "Phi/F") == pytest.approx(known[:2])
 
 
 def test_an_amplifier_is_ideal_or_has_a_gain_and_a_bandwidth():
