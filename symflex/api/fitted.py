@@ -208,7 +208,7 @@ def fit(
     >>> bool(max(found.standard_errors.zeta_p) < 0.0005), found.is_minimum_phase
     (True, (True,))
     >>> found.model().outputs, len(found.plot().axes)
-    (('A_tip',), 2)
+    (('A_tip',), 4)
     """
     given = [data] if isinstance(data, str | Path | MeasuredResponse) else list(data)
     responses: list[MeasuredResponse] = []
