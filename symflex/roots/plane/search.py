@@ -131,7 +131,7 @@ class RootSearch:
             if self.reached >= radius:
                 self._winding.budget.progress.report(known / modes, f"{known} of {modes} modes located")
             reach = self._winding.reach
-            width = RING if reach(self.reached + RING) > reach(self.reached) else FADED
+            width = RING if reach(self.reached + FADED) > reach(self.reached) else FADED
             high, found = self._ring(self.reached, self.passing(self.reached + width))
             self.roots.extend(found.roots)
             self.missing += found.missing

@@ -86,7 +86,7 @@ def test_random_models_give_the_same_bytes_twice():
 
 @pytest.mark.slow
 def test_random_models_are_of_all_kinds():
-    found = [model for _, model in models(1000, 120)]
+    found = [model for _, model in models(1000, 180)]
     blocks = {b.block.type_name for m in found for b in m.blocks}
     assert {e.element.type_name for m in found for e in m.elements} == set(ELEMENTS)
     assert blocks == set(BLOCKS)
