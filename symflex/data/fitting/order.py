@@ -21,7 +21,7 @@ from dataclasses import dataclass, replace
 from typing import TypedDict, TypeVar
 
 import numpy as np
-from scipy.stats import f
+from scipy.special import fdtrc
 
 from symflex.budget import TIME_OVER, entered_budget
 from symflex.data.fitting.least_squares import ROUGH, STEPS, TOLERANCE, Refined, refine, refine_directly
@@ -54,7 +54,7 @@ EXTRA = 5
 """Poles beyond those of the resonances that are asked for: modes outside the band, and real ones."""
 PATIENCE, MORE_PATIENCE = 1, 3
 """Numbers of pairs tried after the best: where the noise is nearly reached, and where it is far."""
-NOISE_SHARE, TRIED_SHARE, THOROUGH_SHARE, LAST_SHARE, PHASE_SHARE = 0.2, 0.45, 0.55, 0.7, 0.85
+NOISE_SHARE, TRIED_SHARE, THOROUGH_SHARE, LAST_SHARE, PHASE_SHARE = 0.15, 0.6, 0.7, 0.85, 0.92
 """Parts of the time given when the noise has to be known, numbers of poles compared, the fit found, fitted to
 all lines, and its phase tested."""
 THOROUGH = _Effort(steps=STEPS, tolerance=TOLERANCE)
@@ -87,10 +87,13 @@ UNLIKELY = 1e-5
 
 
 class Stages:
-    """The parts of a fit, each of which ends with a share of the time given, so that there is a result."""
+    """The parts of a fit, each of which ends with a share of the time left, so that there is a result."""
 
     def __init__(self) -> None:
-        self.budget = entered_budget()
+        whole = entered_budget()
+        # From now on: programs that start, and files that are read, have had their part of the time.
+        self.budget = replace(whole, seconds=whole.left)
+        self.untimed = replace(whole, seconds=None)
         self.is_cut = False  # whether one of them did not end in time
 
     def within(self, share: float, compute: Callable[[], Result], otherwise: Callable[[], Result]) -> Result:
@@ -102,7 +105,9 @@ class Stages:
             if error.diagnostics[0].code != TIME_OVER.code:
                 raise
         self.is_cut = True
-        return otherwise()
+        # A part that is over has to end in something, if only in its first guess.
+        with self.untimed.entered():
+            return otherwise()
 
 
 @dataclass(frozen=True, eq=False)
@@ -243,7 +248,9 @@ def chosen_order(
     modes, criterion = given.modes, given.criterion
     tried: list[Candidate] = []
     stages.within(TRIED_SHARE, lambda: _try(thin, given, tried), lambda: None)
-    tried = sorted(tried, key=lambda one: one.order) or [_nothing(thin)]
+    if not tried:
+        tried = [stages.within(TRIED_SHARE, lambda: _nothing(thin), lambda: _nothing(thin))]
+    tried = sorted(tried, key=lambda one: one.order)
     reasons: list[str] = []
     # What is correlated because a resonance lacks tells nothing of the noise.
     closest = min(tried, key=lambda one: one.refined.reduced)
@@ -262,7 +269,7 @@ def chosen_order(
         if far_better:
             result = far_better[0]
             break
-        best = _continued(problem, thin, by_order[score.order], given.start, stages)
+        best = _continued(problem, thin, by_order[score.order], tried, given.start, stages)
         status = "usable"
         if best.failure is not None:
             status = "failed"
@@ -339,13 +346,30 @@ def _is_weak(refined: Refined, band: tuple[float, float]) -> bool:
     return bool(np.any(np.sqrt(np.diag(covariance)[n : 2 * n])[found.in_band(*band)] > WEAK))
 
 
+def _is_rivalled(problem: FitProblem, best: Candidate, tried: Sequence[Candidate]) -> bool:
+    """Return whether another power of s, with as many poles or fewer, describes the lines as well.
+
+    More poles with another power are the same function where one of them is at the end of the band.
+    """
+    near = [one for one in tried if one.order <= best.order] + [best]
+    rivals = [rival for one in near for rival in (one.refined, one.rival) if rival is not None]
+    slope, limit = best.refined.resonances.slope, _merit(problem, best.refined) + CLEAR
+    return any(
+        np.any(rival.resonances.slope != slope) and _merit(problem, rival) < limit for rival in rivals
+    )
+
+
 def _continued(
-    problem: FitProblem, thin: FitProblem, quick: Candidate, kind: str, stages: Stages
+    problem: FitProblem,
+    thin: FitProblem,
+    quick: Candidate,
+    tried: Sequence[Candidate],
+    kind: str,
+    stages: Stages,
 ) -> Candidate:
     """Return where a quick fit leads with all steps, on all lines and with the window."""
     best = stages.within(THOROUGH_SHARE, lambda: _thorough(thin, quick, kind), lambda: quick)
-    rivalled = best.rival is not None and _merit(thin, best.rival) < _merit(thin, best.refined) + CLEAR
-    best = replace(best, is_rivalled=rivalled)
+    best = replace(best, is_rivalled=_is_rivalled(thin, best, tried))
     if thin.count == problem.count and all(line.observation.matrix is None for line in problem.lines):
         return best
     stages.budget.progress.report(THOROUGH_SHARE, f"fit with {best.order} poles to {problem.count} lines")
@@ -468,29 +492,14 @@ def _without_far_poles(problem: FitProblem, best: Candidate) -> Candidate:
     """Return the fit without real poles so far outside the band that they are a gain, or a power of s."""
     now = best.refined.resonances
     low, high = problem.band[0] / FAR_OUTSIDE, problem.band[1] * FAR_OUTSIDE
-    corners = [[float(p)] for p in now.real_p]
-    for omega, zeta in zip(now.omega_p.tolist(), now.zeta_p.tolist(), strict=True):
-        root = np.sqrt(max(zeta * zeta - 1, 0.0))
-        corners.append([omega * (zeta - root), omega * (zeta + root)])
-    for k, poles in enumerate(corners):
-        below = [p for p in poles if p < low]
-        pair = k - now.real_p.size
-        if len(below) + sum(p > high for p in poles) < len(poles) or (
-            pair >= 0 and now.has_zeros[:, -1].any()
-        ):
+    corners = now.real_corners()
+    for k, corner in enumerate(corners):
+        if low <= corner <= high:
             continue
-        kept = np.arange(now.count) != pair
-        start = replace(
-            now,
-            omega_p=now.omega_p[kept],
-            zeta_p=now.zeta_p[kept],
-            real_p=now.real_p[:0] if pair < 0 else now.real_p,
-            omega_z=now.omega_z[:, : int(kept.sum())],
-            zeta_z=now.zeta_z[:, : int(kept.sum())],
-            slope=now.slope - len(below),
-            gain=now.gain * np.prod(below),
-        )
-        if not set(start.slope.tolist()) <= set(problem.slopes):
+        start = now.with_real_corners(corners[:k] + corners[k + 1 :])
+        if start is not None and corner < low:
+            start = replace(start, slope=start.slope - 1, gain=start.gain * corner)
+        if start is None or not set(start.slope.tolist()) <= set(problem.slopes):
             continue
         refined = refine_directly(problem, start)
         fewer = replace(best, order=start.order, refined=refined, failure=_failure(problem, refined))
@@ -587,7 +596,7 @@ def lack_of_fit(problem: FitProblem, refined: Refined) -> float:
     spare = max(reference.parameters - refined.parameters, 1)
     freedom = max(2 * problem.count - reference.parameters, 1)
     ratio = (refined.cost - reference.cost) / spare / (reference.cost / freedom)
-    return float(f.sf(ratio, spare, freedom)) if ratio > 0 else 1.0
+    return float(fdtrc(spare, freedom, ratio)) if ratio > 0 else 1.0
 
 
 def _score(problem: FitProblem, candidate: Candidate, correlation: float) -> Score:

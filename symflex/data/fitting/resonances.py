@@ -131,6 +131,38 @@ class Resonances:
             zeta_z=np.take_along_axis(self.zeta_z, zeros, 1),
         )
 
+    def real_corners(self) -> list[float]:
+        """Return the corner frequencies of all real poles, the single one and those in pairs.
+
+        Examples
+        --------
+        >>> round(Resonances.of([(6.0, 1.25, 9.0, 0.1)]).real_corners()[1], 12)
+        12.0
+        """
+        pairs = self.zeta_p >= 1
+        omega, zeta = self.omega_p[pairs], self.zeta_p[pairs]
+        # The smaller root by the product of both: a difference would lose its digits.
+        upper = omega * (zeta + np.sqrt(zeta**2 - 1))
+        return [*self.real_p.tolist(), *np.column_stack((omega**2 / upper, upper)).ravel().tolist()]
+
+    def with_real_corners(self, corners: list[float]) -> Resonances | None:
+        """Return the product with other real poles; None if it has more zeros than pairs of poles then."""
+        n = len(corners) // 2
+        low, high = np.array(sorted(corners)[: 2 * n]).reshape(n, 2).T
+        is_pair = self.zeta_p < 1
+        omega_p = np.append(self.omega_p[is_pair], np.sqrt(low * high))
+        if self.has_zeros[:, omega_p.size :].any():
+            return None
+        zeta_p = np.append(self.zeta_p[is_pair], (low + high) / (2 * np.sqrt(low * high)))
+        return replace(
+            self,
+            omega_p=omega_p,
+            zeta_p=zeta_p,
+            omega_z=self.omega_z[:, : omega_p.size],
+            zeta_z=self.zeta_z[:, : omega_p.size],
+            real_p=np.array(sorted(corners)[2 * n :]),
+        ).ordered()
+
     def one(self, response: int) -> Resonances:
         """Return those of one response."""
         r = slice(response, response + 1)
