@@ -460,6 +460,12 @@ class FitOptions:
         help="The response at the driven point: it is fitted, and all give mass-normalised mode shapes.",
     )
     output: str | None = option(None, "-o", "--output", is_path=True, help="Specification to write.")
+    loop: str | None = option(
+        None,
+        "--loop",
+        metavar="K",
+        help="Close a loop in it: the first response is fed back with this gain, as stability --gain K asks.",
+    )
     figure: str | None = option(
         None,
         "--plot",

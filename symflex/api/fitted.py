@@ -78,9 +78,12 @@ class Fit:
         """Return the fitted function on the lines of one response, shape (k,)."""
         return self.found.values(response)
 
-    def specification(self, folder: str | Path = ".") -> str:
-        """Return the text of a specification that will stand in a folder; it names the base, or copies it."""
-        return pipeline.fit_specification(self.found, folder)
+    def specification(self, folder: str | Path = ".", loop: str | None = None) -> str:
+        """Return the text of a specification that will stand in a folder; it names the base, or copies it.
+
+        ``loop`` is the name of a gain: a loop is closed with it, from the first response to the input.
+        """
+        return pipeline.fit_specification(self.found, folder, loop)
 
     def model(self) -> Model:
         """Return the fitted model, which derives, prints and exports like any other."""

@@ -29,7 +29,8 @@ def fit(given: FitOptions) -> int:
 
     On top of the transfer function --base SPEC --tf OUT/IN, or of a gain and a power of s, each resonance
     adds a pair of poles and a pair of zeros. Several responses are fitted together and share their poles.
-    -o writes a specification with resonance blocks, which derive, roots, plot and export take like any other.
+    -o writes a specification with resonance blocks, which derive, roots, plot and export take like any other;
+    with --loop K it has a loop, of which stability --gain K tells the gains that are stable.
 
     The report has standard errors, and says where the measured phase parts from that of a minimum-phase
     fit to the magnitude alone. A fit that does not describe the data within their noise, or does not
@@ -46,6 +47,8 @@ def fit(given: FitOptions) -> int:
         raise UsageError(Diagnostic("SF902", "--tf names a transfer function of --base"))
     if given.base is not None and given.slope is not None:
         raise UsageError(Diagnostic("SF902", "--slope is for fits without --base"))
+    if given.loop and not given.output:
+        raise UsageError(Diagnostic("SF902", "--loop is for the specification that -o writes"))
     for name, endings in (
         (given.output, (".toml",)),
         (given.figure, SUFFIXES),
@@ -75,7 +78,7 @@ def fit(given: FitOptions) -> int:
         hint = "without --strict it is printed all the same"
         raise FitError(Diagnostic("SF618", f"the fit is poor: {found.poor[0]}", None, hint))
     if given.output:
-        text = pipeline.fit_specification(found, Path(given.output).parent)
+        text = pipeline.fit_specification(found, Path(given.output).parent, given.loop)
         write_atomically(Path(given.output), text.encode())
         note(f"wrote {given.output}")
         try:

@@ -354,9 +354,7 @@ def _is_rivalled(problem: FitProblem, best: Candidate, tried: Sequence[Candidate
     near = [one for one in tried if one.order <= best.order] + [best]
     rivals = [rival for one in near for rival in (one.refined, one.rival) if rival is not None]
     slope, limit = best.refined.resonances.slope, _merit(problem, best.refined) + CLEAR
-    return any(
-        np.any(rival.resonances.slope != slope) and _merit(problem, rival) < limit for rival in rivals
-    )
+    return any(np.any(rival.resonances.slope != slope) and _merit(problem, rival) < limit for rival in rivals)
 
 
 def _continued(

@@ -2,6 +2,8 @@
 
 A ``model`` block takes over rational functions only. A base with delays, beams or fields is therefore copied:
 its sections stand in the new file, and the resonances multiply its outputs there.
+
+With a loop, the input is a signal: a gain times what the first output lacks of a reference.
 """
 
 from __future__ import annotations
@@ -9,6 +11,7 @@ from __future__ import annotations
 import os
 import re
 import tomllib
+import unicodedata
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
@@ -17,8 +20,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from symflex.errors import Diagnostic, FitError, Source, SymflexError
+from symflex.errors import Diagnostic, FitError, Source, SymflexError, UsageError
 from symflex.model import load_with
+from symflex.model.scope import RESERVED
 from symflex.model.spec import read, write
 from symflex.transfer.of_model import assemble, check_solvable
 
@@ -30,12 +34,14 @@ if TYPE_CHECKING:
 
 DIGITS = 9
 FREE_NAMES = ("U", "Y")
+LONGEST = 32
+"""Characters of a name that is made of a text."""
 COPIED = ("parameters", "definitions", "elements", "signals", "blocks", "fields")
 """Sections of a base that are copied; its outputs are multiplied, and its figures show another model."""
 
 
-def fit_specification(found: ResonanceFit, folder: str | Path) -> str:
-    """Return the specification of a fit that will stand in a folder.
+def fit_specification(found: ResonanceFit, folder: str | Path, loop: str | None = None) -> str:
+    """Return the specification of a fit that will stand in a folder, with a loop whose gain has this name.
 
     It has been read, resolved and assembled as ``symflex check`` does. A base that a ``model`` block can
     stand for is referred to; any other, and one that does not stand at or below the folder, is copied. SF617
@@ -45,7 +51,11 @@ def fit_specification(found: ResonanceFit, folder: str | Path) -> str:
     allowed = tuple(place for base in found.bases for place in base.folders)
     taken = {name for base in found.bases for name in base.taken}
     ways: list[Mapping[str, object] | None] = [None]
-    if len(bases) == 1:
+    if loop is not None and (not _is_name(loop) or loop in {*RESERVED, *taken}):
+        raise UsageError(
+            Diagnostic("SF902", f"'{loop[:64]}' is no name for the gain of a loop", None, "say K")
+        )
+    if len(bases) == 1 and loop is None:  # a copied base has inputs of its own, which no signal drives
         source = read(bases[0])
         whole = tomllib.loads(source.text, parse_float=Decimal)
         own = found.bases[0].tf.split("/")[1]
@@ -55,7 +65,7 @@ def fit_specification(found: ResonanceFit, folder: str | Path) -> str:
     # A file that needs --allow-outside is the last resort: where the base itself needs it.
     for outside in ((), allowed):
         for copied in ways:
-            text = _written(found, folder, taken if copied is None else words, copied)
+            text = _written(found, folder, taken if copied is None else words, copied, loop)
             try:
                 model = load_with(Source(str(Path(folder) / "fitted.toml"), text), {}, allow_outside=outside)
                 check_solvable(assemble(model))
@@ -72,6 +82,7 @@ def _written(
     folder: str | Path,
     taken: Collection[str] = (),
     copied: Mapping[str, object] | None = None,
+    loop: str | None = None,
 ) -> str:
     """Return the text of a specification with the fitted functions.
 
@@ -109,40 +120,36 @@ def _written(
             parts.append(names.parameter("c_fit"))
             doc = f"gain, {_said_error(errors.gain[r])}"
             parameters[parts[-1]] = {"value": _exact(found.gain[r]), "assume": "real", "doc": doc}
-        for i in range(found.count):
-            omega_z, block = found.omega_z[r, i], names.block(f"R_{i + 1}")
-            pair = names.pair(i + 1)
-            if np.isfinite(omega_z):
-                where = f"zero pair {i + 1}" + (f" of {output}" if several else "")
-                where = where if omega_z > 0 else f"real zeros of opposite sign, {where}"
-                parameters[pair["omega_z"]] = _frequency(abs(omega_z), errors.omega_z[r, i], where)
-                parameters[pair["zeta_z"]] = _ratio(found.zeta_z[r, i], errors.zeta_z[r, i])
-            blocks[block] = _resonance(pair, omega_z)
-            parts.append(block)
-        own, more, factors = _beside(fit, r, errors, names)
-        parameters |= own
-        blocks |= more
-        parts += factors
+        for own, more, factors in (_pairs(fit, r, errors, names), _beside(fit, r, errors, names)):
+            parameters |= own
+            blocks |= more
+            parts += factors
         if not base.path and base.slope:
             power = "s" if abs(base.slope) == 1 else f"s^{abs(base.slope)}"
             parts.append(power if base.slope > 0 else f"(1/{power})")
         driven = source_name if copied is None else f"({_output_of(copied, base.tf)})"
         expressions[output] = "*".join([*parts, driven])
     sections: dict[str, object] = {"parameters": parameters, "blocks": blocks, "inputs": {source_name: {}}}
+    sections |= {"signals": {}, "outputs": expressions}
+    if loop is not None:
+        sections |= _loop(loop, source_name, expressions, {*used, *parameters, *blocks})
+        unit = fit.bases[0].unit
+        doc = f"gain of the loop from {outputs[0]}: symflex stability --gain {loop} tells which are stable"
+        parameters[loop] = {"value": f"1 1/({unit})" if unit not in ("", "1") else 1, "doc": doc}
     if copied is not None:
         sections = _with_copy(sections, copied, Path(fit.bases[0].path).parent, folder)
     files = ", ".join(dict.fromkeys(m.name for m in fit.measured))
     kind = "SYNTHETIC data" if any(m.is_synthetic for m in fit.measured) else "measured data"
     low, high = (value / (2 * np.pi) for value in fit.problem.band)
+    count = int(fit.modes.sum())
     return write(
         {
             "symflex": 1,
-            "title": f"{int(fit.modes.sum())} simple resonances fitted to {kind}",
+            "title": f"{count or 'no'} simple {'resonance' if count == 1 else 'resonances'} fitted to {kind}",
             "source": f"symflex fit of {files}, {low:.4g} to {high:.4g} Hz; form of the resonances: "
             "Eppinger & Seering 1988, section 'Polynomial Resonance Model'",
             **({"doc": f"on a copy of {Path(fit.bases[0].path).name}, {fit.bases[0].tf}"} if copied else {}),
             **sections,
-            "outputs": expressions,
             "analysis": {"band": [f"{low:.6g} Hz", f"{high:.6g} Hz"]},
         }
     )
@@ -167,6 +174,27 @@ class _Names:
         return poles | {name: self.parameter(f"{name}{number}") for name in ("omega_z", "zeta_z")}
 
 
+def _pairs(
+    fit: ResonanceFit, response: int, errors: Resonances, names: _Names
+) -> tuple[dict[str, object], dict[str, object], list[str]]:
+    """Return parameters of the pairs of zeros, blocks of the resonances, and both as factors."""
+    found = fit.resonances
+    parameters: dict[str, object] = {}
+    blocks: dict[str, object] = {}
+    factors: list[str] = []
+    for i in range(found.count):
+        omega_z, block, pair = found.omega_z[response, i], names.block(f"R_{i + 1}"), names.pair(i + 1)
+        if np.isfinite(omega_z):
+            where = f"zero pair {i + 1}" + (f" of {names.tail[1:]}" if names.tail else "")
+            where = where if omega_z > 0 else f"real zeros of opposite sign, {where}"
+            parameters[pair["omega_z"]] = _frequency(abs(omega_z), errors.omega_z[response, i], where)
+            parameters[pair["zeta_z"]] = _ratio(found.zeta_z[response, i], errors.zeta_z[response, i])
+            factors += _real_zeros(pair) if omega_z < 0 else []
+        blocks[block] = _resonance(pair, omega_z)
+        factors.append(block)
+    return parameters, blocks, factors
+
+
 def _single(
     fit: ResonanceFit, response: int, errors: Resonances, names: _Names
 ) -> tuple[dict[str, object], list[str]]:
@@ -178,11 +206,11 @@ def _single(
     if np.isfinite(corner):
         name = names.parameter("omega_s")
         parameters[name] = _frequency(abs(corner), errors.real_z[response], "real zero")
-        factors.append(f"(1 {'+' if corner > 0 else '-'} s/{name})")
+        factors.append(f"(1 {'+' if corner > 0 else '-'} s/(2*pi*{name}))")
     for pole, error in zip(found.real_p, errors.real_p, strict=True):
         name = f"{names.prefix}omega_r"
         parameters[name] = _frequency(pole, error, "real pole")
-        factors.append(f"(1/(1 + s/{name}))")
+        factors.append(f"(1/(1 + s/(2*pi*{name})))")
     return parameters, factors
 
 
@@ -214,14 +242,26 @@ def _prefix(taken: Collection[str]) -> str:
 
 
 def _resonance(names: Mapping[str, str], omega_z: float) -> dict[str, object]:
-    """Return the block of one resonance, whose zeros may be absent or two real ones of opposite sign."""
+    """Return the block of one resonance, whose pair of zeros may be absent."""
     if 0 < omega_z < np.inf:
         return {"type": "resonance", **names}
-    omega, zeta = names["omega_p"], names["zeta_p"]
-    above = "1"
-    if omega_z < 0:
-        above = f"1 + 2*{names['zeta_z']}*s/{names['omega_z']} - s^2/{names['omega_z']}^2"
-    return {"type": "tf", "num": above, "den": f"1 + 2*{zeta}*s/{omega} + s^2/{omega}^2"}
+    return {"type": "low_pass", "omega": names["omega_p"], "zeta": names["zeta_p"]}
+
+
+def _real_zeros(names: Mapping[str, str]) -> list[str]:
+    """Return the factor of two real zeros of opposite sign, whose frequency is in Hz."""
+    omega, zeta = f"(2*pi*{names['omega_z']})", names["zeta_z"]
+    return [f"(1 + 2*{zeta}*s/{omega} - s^2/{omega}^2)"]
+
+
+def _loop(
+    gain: str, driven: str, expressions: Mapping[str, object], used: Collection[str]
+) -> dict[str, object]:
+    """Return the sections of a loop from the first output to what has been the input."""
+    first = next(iter(expressions))
+    reference, error, fed_back = (_free(name, used) for name in ("r", "e", "y"))
+    signals = {error: f"{reference} - {fed_back}", driven: f"{gain}*{error}", fed_back: expressions[first]}
+    return {"inputs": {reference: {}}, "signals": signals, "outputs": {**expressions, first: fed_back}}
 
 
 def _output_of(copied: Mapping[str, object], tf: str) -> str:
@@ -290,17 +330,34 @@ def _is_name(text: str) -> bool:
     return text.isascii() and text.isidentifier() and not text.startswith("_") and len(text) < 40  # noqa: PLR2004
 
 
+def _named(text: str) -> str:
+    """Return a name made of the letters and digits of a text; empty if it has none.
+
+    Examples
+    --------
+    >>> _named("Signal 2"), _named("2024-05 Höhe.csv"), _named("s")
+    ('Signal_2', 'Y_2024_05_Hohe_csv', 's_')
+    """
+    plain = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode()
+    name = re.sub(r"[^A-Za-z0-9]+", "_", plain).strip("_")[:LONGEST].rstrip("_")
+    name = f"{FREE_NAMES[1]}_{name}" if name[:1].isdigit() else name
+    return f"{name}_" if name in RESERVED else name
+
+
+def _ends(name: str) -> tuple[str, str]:
+    """Return names of the output and the input that a response is called by: a quotient of two, or one."""
+    above, _, below = name.rpartition("/") if name.count("/") == 1 else (name, "", "")
+    return _named(above) or FREE_NAMES[1], _named(below) or FREE_NAMES[0]
+
+
 def _input_name(fit: ResonanceFit) -> str:
-    ends = fit.measured[0].name.split("/")
-    return ends[1] if len(ends) == 2 and all(map(_is_name, ends)) else FREE_NAMES[0]  # noqa: PLR2004
+    return _ends(fit.measured[0].name)[1]
 
 
 def _output_names(fit: ResonanceFit) -> list[str]:
     names: list[str] = []
     for base, measured in zip(fit.bases, fit.measured, strict=True):
-        ends = (base.tf or measured.name).split("/")
-        name = ends[0] if len(ends) == 2 and all(map(_is_name, ends)) else FREE_NAMES[1]  # noqa: PLR2004
-        names.append(_free(name, names))
+        names.append(_free(_ends(base.tf or measured.name)[0], names))
     return names
 
 

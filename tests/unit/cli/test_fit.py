@@ -71,10 +71,29 @@ def test_without_a_base_its_real_poles_are_residual_terms(shell):
 def test_a_fit_without_base_is_a_specification_of_its_own(oscillator):
     done = oscillator("fit", "one.csv", "--modes", "1", "-o", "one.toml")
     assert (done.code, done.err) == (0, "wrote one.toml\n")
-    G = symflex.load(oscillator.folder / "one.toml").transfer_function("Y", "U").bind()
+    G = symflex.load(oscillator.folder / "one.toml").transfer_function("one", "U").bind()
     assert G(2j * np.pi * 20) == pytest.approx(3 * (1 + 0.016j - 0.64) / 0.04j, rel=1e-6)
-    assert oscillator("roots", "one.toml").code == 0
+    assert oscillator("roots", "one.toml").err == ""
     assert oscillator("export", "one.toml", "--to", "numpy").code == 0
+
+
+@pytest.mark.slow
+def test_a_loop_that_is_closed_in_the_file_has_the_gains_that_routh_says(shell):
+    f = np.linspace(2.0, 60.0, 300)
+    s = 2j * np.pi * f
+    zeta, omega = 0.05, 2 * np.pi * 20
+    h = 3 / (s * (1 + 2 * zeta * s / omega + (s / omega) ** 2))
+    rows = [f"{a},{b.real!r},{b.imag!r}" for a, b in zip(f.tolist(), h.tolist(), strict=True)]
+    (shell.folder / "axis 1.csv").write_text("\n".join(["frequency_hz,re,im", *rows]) + "\n")
+    assert shell("fit", "axis 1.csv", "-o", "axis.toml", "--loop", "K").code == 0
+    done = shell("stability", "axis.toml", "--gain", "K", "--json")
+    assert (done.code, done.err) == (0, "")
+    # s^3/omega^2 + 2 zeta s^2/omega + s + 3 K: stable up to 3 K = 2 zeta omega (Routh 1877).
+    (boundary,) = done.json["boundaries"]
+    assert float(boundary["gain"]) == pytest.approx(2 * zeta * omega / 3, rel=1e-5)
+    assert "axis_1/r" in shell("roots", "axis.toml").out
+    assert shell("fit", "axis 1.csv", "-o", "axis.toml", "--loop", "s").code == 2
+    assert shell("fit", "axis 1.csv", "--loop", "K").code == 2
 
 
 def test_guesses_are_printed_one_line_each_and_columns_overrules_them(oscillator):

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from symflex.budget import Budget
 from symflex.data.fitting import fit_resonances
 from symflex.data.measurement import MeasuredResponse
 from symflex.options import FitOptions
-from tests.unit.data.laboratory import SHAPES, deviations, pair, study, summary
+from tests.unit.data.laboratory import SHAPES, deviations, judged, pair, study, summary, wild
 
 OMEGA = 2 * np.pi
 
@@ -77,3 +78,21 @@ def test_of_many_data_sets_nearly_all_are_right_or_poor(count, modes_given):
     assert figures["parameters within three standard errors"] >= 0.985
     assert figures["wrong and not called poor"] <= count // 20
     assert count < 20 or 0.63 < figures["parameters within one"] < 0.75
+
+
+@pytest.mark.slow
+def test_a_real_pole_far_below_the_band_is_a_power_of_s():
+    # Set 101 of the study: with s^3 and a pole at 1e-7 rad/s the function is the same, its gain is not.
+    case = wild(1, 101)
+    fit = fit_resonances([MeasuredResponse("y/u", case.frequency_hz, case.values)])
+    off, _ = judged(case, fit)
+    assert fit.bases[0].slope == case.slope == 2
+    assert off.max() < 3
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seconds", [0.0, 0.3, 1.0])
+def test_whatever_the_time_the_best_fit_so_far_is_returned(seconds):
+    with Budget(seconds=seconds).entered():
+        fit = fit_resonances([two_modes(6)])
+    assert fit.resonances.order == 4 or "the time given was over before the fit was complete" in fit.poor

@@ -132,7 +132,9 @@ def test_resonances_without_zeros_and_real_zeros_are_written(folder):
         fit = symflex.fit(noisy(without * above / (1 + 0.04 * S / 220 + (S / 220) ** 2)), modes=2)
         assert np.sum(fit.resonances.omega_z < 0) == count
         assert np.sum(fit.resonances.has_zeros) == count
-        function = written(fit, folder).transfer_function("X", "r").bind()
+        model = written(fit, folder)
+        assert model.warnings == ()
+        function = model.transfer_function("X", "r").bind()
         assert function(S[40]) == pytest.approx(fit.values()[40], rel=1e-6)
 
 
