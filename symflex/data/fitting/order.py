@@ -249,7 +249,8 @@ def chosen_order(
     tried: list[Candidate] = []
     stages.within(TRIED_SHARE, lambda: _try(thin, given, tried), lambda: None)
     if not tried:
-        tried = [stages.within(TRIED_SHARE, lambda: _nothing(thin), lambda: _nothing(thin))]
+        with stages.untimed.entered():
+            tried.append(_nothing(thin))
     tried = sorted(tried, key=lambda one: one.order)
     reasons: list[str] = []
     # What is correlated because a resonance lacks tells nothing of the noise.
@@ -438,13 +439,22 @@ def _is_better(problem: FitProblem, found: Candidate, best: Candidate) -> bool:
     return _merit(problem, found.refined) < _merit(problem, best.refined) - LOWER
 
 
+def _better_of(
+    problem: FitProblem, best: Candidate, start: Resonances, *, is_quick: bool = False
+) -> Candidate:
+    """Return where another start leads, if that is better than the fit so far."""
+    refined = refine_directly(problem, start, **(QUICK if is_quick else THOROUGH))
+    failure = _failure(problem, refined, is_quick=is_quick)
+    found = replace(best, order=start.order, refined=refined, failure=failure)
+    return found if _is_better(problem, found, best) else best
+
+
 def _simplified(problem: FitProblem, best: Candidate, *, is_quick: bool) -> Candidate:
     """Return the fit without the pairs of zeros that lie outside the band and explain nothing.
 
     A pair far above the band is left out; one far below is a power of s, where that may be chosen.
     """
     low, high = problem.band
-    effort = QUICK if is_quick else THOROUGH
     for r in range(len(problem.lines)):
         for i in reversed(range(best.refined.resonances.count)):
             now = best.refined.resonances
@@ -459,12 +469,8 @@ def _simplified(problem: FitProblem, best: Candidate, *, is_quick: bool) -> Cand
                     continue
             omega_z[r, i] = np.inf
             start = replace(now, omega_z=omega_z, gain=gain, slope=slope).ordered()
-            if not _is_promising(problem, r, now, start):
-                continue
-            refined = refine_directly(problem, start, **effort)
-            found = replace(best, refined=refined, failure=_failure(problem, refined, is_quick=is_quick))
-            if _is_better(problem, found, best):
-                best = found
+            if _is_promising(problem, r, now, start):
+                best = _better_of(problem, best, start, is_quick=is_quick)
         now = best.refined.resonances
         corner = abs(now.real_z[r])
         if not np.isfinite(corner) or low <= corner <= high:
@@ -477,12 +483,8 @@ def _simplified(problem: FitProblem, best: Candidate, *, is_quick: bool) -> Cand
                 continue
         real_z[r] = np.inf
         start = replace(now, real_z=real_z, gain=gain, slope=slope)
-        if not _is_promising(problem, r, now, start):
-            continue
-        refined = refine_directly(problem, start, **effort)
-        found = replace(best, refined=refined, failure=_failure(problem, refined, is_quick=is_quick))
-        if _is_better(problem, found, best):
-            best = found
+        if _is_promising(problem, r, now, start):
+            best = _better_of(problem, best, start, is_quick=is_quick)
     return best
 
 
@@ -499,9 +501,8 @@ def _without_far_poles(problem: FitProblem, best: Candidate) -> Candidate:
             start = replace(start, slope=start.slope - 1, gain=start.gain * corner)
         if start is None or not set(start.slope.tolist()) <= set(problem.slopes):
             continue
-        refined = refine_directly(problem, start)
-        fewer = replace(best, order=start.order, refined=refined, failure=_failure(problem, refined))
-        if _is_better(problem, fewer, best):
+        fewer = _better_of(problem, best, start)
+        if fewer is not best:
             return _without_far_poles(problem, fewer)
     return best
 
@@ -518,12 +519,8 @@ def _signs_tried(problem: FitProblem, best: Candidate) -> Candidate:
             start = replace(now, zeta_z=flipped)
             if _logarithmic_cost(problem, start) > MOST_RISE * _logarithmic_cost(problem, now):
                 continue
-            if not _is_promising(problem, r, now, start):
-                continue
-            refined = refine_directly(problem, start)
-            found = replace(best, refined=refined, failure=_failure(problem, refined))
-            if _is_better(problem, found, best):
-                best = found
+            if _is_promising(problem, r, now, start):
+                best = _better_of(problem, best, start)
     return best
 
 
