@@ -90,7 +90,7 @@ def test_a_loop_that_is_closed_in_the_file_has_the_gains_that_routh_says(shell):
     assert (done.code, done.err) == (0, "")
     # s^3/omega^2 + 2 zeta s^2/omega + s + 3 K: stable up to 3 K = 2 zeta omega (Routh 1877).
     (boundary,) = done.json["boundaries"]
-    assert float(boundary["gain"]) == pytest.approx(2 * zeta * omega / 3, rel=1e-5)
+    assert float(boundary["gain"]["value"]) == pytest.approx(2 * zeta * omega / 3, rel=1e-5)
     assert "axis_1/r" in shell("roots", "axis.toml").out
     assert shell("fit", "axis 1.csv", "-o", "axis.toml", "--loop", "s").code == 2
     assert shell("fit", "axis 1.csv", "--loop", "K").code == 2
