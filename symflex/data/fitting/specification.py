@@ -129,9 +129,10 @@ def _written(
             parts.append(power if base.slope > 0 else f"(1/{power})")
         driven = source_name if copied is None else f"({_output_of(copied, base.tf)})"
         expressions[output] = "*".join([*parts, driven])
-    sections: dict[str, object] = {"parameters": parameters, "blocks": blocks, "inputs": {source_name: {}}}
-    sections |= {"signals": {}, "outputs": expressions}
-    if loop is not None:
+    sections: dict[str, object] = {"parameters": parameters, "blocks": blocks}
+    if loop is None:
+        sections |= {"inputs": {source_name: {}}, "outputs": expressions}
+    else:
         sections |= _loop(loop, source_name, expressions, {*used, *parameters, *blocks})
         unit = fit.bases[0].unit
         doc = f"gain of the loop from {outputs[0]}: symflex stability --gain {loop} tells which are stable"
