@@ -224,6 +224,8 @@ def _determinant(tf: TransferFunction | BoundTransferFunction, here: Point, know
     """Return the denominator times what cancelled from it."""
     number, closed = GeneratorValues(dict(known), here.whole), _closed(tf)
     left = number(tf.den) if closed is None else _sides(closed, here, known)[1]
+    if not tf.hidden:
+        return left  # nothing is opened for the names of its ring
     ring = tf.ring if isinstance(tf, TransferFunction) else tf.ratio.ring
     for hidden in tf.hidden:
         left = left * number.polynomial(hidden.polynomial, ring.names) ** hidden.multiplicity
@@ -235,7 +237,12 @@ def _closed(tf: TransferFunction | BoundTransferFunction) -> ClosedForm | None:
 
 
 def _sides(closed: ClosedForm, here: Point, known: Mapping[str, acb]) -> tuple[acb, acb]:
-    number = GeneratorValues(dict(known), here.whole)
+    whole = dict(here.whole)
+    for name, opened in closed.closure.sums if whole else ():
+        names = closed.closure.base.names
+        if all(names[i] in whole for i, d in enumerate(opened.degrees()) if int(d)):
+            whole[name] = int(opened(*(whole.get(each, 0) for each in names)))
+    number = GeneratorValues(dict(known), whole)
     return closed.sides(number.values, number.polynomial)
 
 
