@@ -71,13 +71,15 @@ class SymbolCell:
     def offsets(self, side: Sequence[End]) -> list[float]:
         """Return where the ends of a side are, upwards from the axis."""
         usual = GROUNDED_PITCH if any(not e.node for e in side) else USUAL_PITCH
-        pitch = usual if self.is_crowded else PITCH.get(self.part.type_name, usual)
+        pitch = usual if self.is_boxed else PITCH.get(self.part.type_name, usual)
         return [pitch * ((len(side) - 1) / 2 - i) for i in range(len(side))]
 
     @property
-    def is_crowded(self) -> bool:
-        """Whether more ends meet on a side than its own symbol has places for: it is a box then."""
-        return self.part.symbol.role == "coupling" and max(len(self.left), len(self.right)) > 2  # noqa: PLR2004
+    def is_boxed(self) -> bool:
+        """Whether it is a box to which all ends lead: its own symbol has places for two on a side."""
+        if self.part.symbol.role != "coupling" or len(self.part.ends) <= 2:  # noqa: PLR2004
+            return False
+        return self.part.symbol.draw is box or max(len(self.left), len(self.right)) > 2  # noqa: PLR2004
 
     @property
     def is_member(self) -> bool:
@@ -144,23 +146,15 @@ def build(cell: SymbolCell, spacing: Spacing, width: float = 0.0) -> Built:
     if is_member:
         length = end - begin
     start = begin + (end - begin - length) / 2
-    strokes = strokes_of(part, length, is_reversed=cell.is_reversed)
-    if cell.is_crowded or (part.symbol.draw is box and len(part.ends) > 2):  # noqa: PLR2004
-        leads = [
-            line(*ends)
-            for side, ends in (
-                (cell.left, ((0, 0), (0.2 * length, 0))),
-                (cell.right, ((0.8 * length, 0), (length, 0))),
-            )
-            if len(side) == 1
-        ]
-        strokes = (*leads, rectangle(0.2 * length, -6.5, 0.8 * length, 6.5))
+    strokes = (
+        _casing(cell, length) if cell.is_boxed else strokes_of(part, length, is_reversed=cell.is_reversed)
+    )
     symbol = Placed(part.kind, part.name, strokes).moved(start, 0)
     items = [*_wires(cell, (0.0, begin, start), (width, end, start + length)), symbol]
-    if part.type_name == "dc_motor" and not cell.is_crowded and (letter := text(r"\mathrm{M}")):
+    if part.type_name == "dc_motor" and not cell.is_boxed and (letter := text(r"\mathrm{M}")):
         half = (letter.width / 2, letter.height / 2)
         items.append(Placed("label", part.name, (), (letter.moved(start + length / 2 - half[0], -half[1]),)))
-    if part.type_name == "op_amp" and not cell.is_crowded:
+    if part.type_name == "op_amp" and not cell.is_boxed:
         items += _signs(cell, start, length)
     items += _points(cell, start, length)
     boxes = [i.box for i in items]
@@ -182,6 +176,13 @@ def build(cell: SymbolCell, spacing: Spacing, width: float = 0.0) -> Built:
     return Built(width, tuple(items), below, above)
 
 
+def _casing(cell: SymbolCell, length: float) -> tuple[Stroke, ...]:
+    """Return a box, with a lead on each side where only one end is."""
+    a, b = 0.2 * length, 0.8 * length
+    leads = ((cell.left, line((0, 0), (a, 0))), (cell.right, line((b, 0), (length, 0))))
+    return (*(lead for side, lead in leads if len(side) == 1), rectangle(a, -6.5, b, 6.5))
+
+
 def _signs(cell: SymbolCell, start: float, length: float) -> list[Placed]:
     """Return the signs of an amplifier's inputs, the first of which is not inverted."""
     found = []
@@ -201,7 +202,7 @@ def _wires(
 ) -> list[Placed]:
     """Draw what leads to a symbol: from the edge of its place, or from the ground."""
     part, found = cell.part, []
-    insets = (0.0, 0.2) if cell.is_crowded else INSET.get(part.type_name, (0.0, 0.2))
+    insets = (0.0, 0.2) if cell.is_boxed else INSET.get(part.type_name, (0.0, 0.2))
     for side, (edge, ground, inner), sign in ((cell.left, left, 1), (cell.right, right, -1)):
         inset = insets[len(side) > 1] * abs(right[2] - left[2])
         for one, y in zip(side, cell.offsets(side), strict=True):
@@ -212,7 +213,7 @@ def _wires(
                 if (
                     len(side) > 1
                     and abs(y) > USUAL_PITCH / 2
-                    and (cell.is_crowded or part.type_name not in PITCH)
+                    and (cell.is_boxed or part.type_name not in PITCH)
                 ):
                     level = USUAL_PITCH / 2 if y > 0 else -USUAL_PITCH / 2
                     route = [(at, y), (inner, y), (inner, level), (reach, level)]

@@ -234,9 +234,7 @@ class _Layout:
         """
         end = part.ends[index]
         # The other of its pair first: terminals, windings and sides are listed in pairs.
-        others = [
-            part.ends[i] for i in sorted(range(len(part.ends)), key=lambda i: i != index ^ 1) if i != index
-        ]
+        others = [*part.ends[index ^ 1 :][:1], *part.ends]
         alike = [e for e in others if e.domain == end.domain and e.node]
         if not alike:
             others = [e for e in part.ends if e.node]
