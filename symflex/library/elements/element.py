@@ -321,12 +321,11 @@ def two_terminal(use: ElementUse, port: str, quantity: str, admittance: Factored
         form = LinearForm.of((a, admittance), (b, -admittance))
         return Stamp(branches=(Admittance(a, b, admittance),), through=((quantity, form),))
     through = use.unknown(quantity)
-    numerator = admittance * denominator
-    law = LinearForm.of((through, denominator), (a, -numerator), (b, numerator))
+    law = LinearForm.of((through, denominator)) + difference(use, port, -admittance * denominator)
     flow = LinearForm.of((through, use.one))
     return Stamp(
         unknowns=(through,),
         rows=(EquationRow(through, law),),
-        injections=(Injection(a, flow * (-use.one)), Injection(b, flow)),
+        injections=delivered(use, port, flow * (-use.one)),
         through=((quantity, flow),),
     )

@@ -9,7 +9,6 @@ from symflex.library.elements.element import (
     Element,
     ElementUse,
     EquationRow,
-    Injection,
     LinearForm,
     Passivity,
     Port,
@@ -112,17 +111,16 @@ class Impedance(Element):
 
     def stamp(self, use: ElementUse) -> Stamp:
         """Contribute the current, an unknown so that nothing is divided by an impedance, and its row."""
-        a, b = use.across("between")
         (quantity,) = self.through
         current = use.unknown(quantity)
         impedance = use.values[self.parameters[0].name] * use.s**self.order
         denominator = impedance.denominator()
-        law = LinearForm.of((current, impedance * denominator), (a, -denominator), (b, denominator))
+        law = LinearForm.of((current, impedance * denominator)) + difference(use, "between", -denominator)
         flow = LinearForm.of((current, use.one))
         return Stamp(
             unknowns=(current,),
             rows=(EquationRow(current, law),),
-            injections=(Injection(a, flow * (-use.one)), Injection(b, flow)),
+            injections=delivered(use, "between", flow * (-use.one)),
             through=((quantity, flow),),
         )
 
