@@ -16,7 +16,7 @@ from random import Random
 from typing import TYPE_CHECKING
 
 from symflex.algebra import Factored, residue
-from symflex.errors import BudgetError, Diagnostic, InternalError, ModelError, SymflexError
+from symflex.errors import REPORT, BudgetError, Diagnostic, InternalError, ModelError, SymflexError
 from symflex.expressions import (
     Expression,
     Negative,
@@ -50,8 +50,7 @@ def compare(expression: Expression, read: int | None, leaf: Callable[[Expression
         return
     if written is not None and (written - (read or 0)) % prime:
         message = f"'{format_expression(expression)[:200]}' was not read as it is written"
-        hint = "this is a fault of symflex, not of the model: please report it with the specification"
-        raise InternalError(Diagnostic(FAULT, message, expression.span, hint))
+        raise InternalError(Diagnostic(FAULT, message, expression.span, REPORT))
 
 
 def number_of(terms: Iterable[tuple[object, Factored]], point: Point) -> int | None:

@@ -2,6 +2,7 @@
 
 from symflex.errors.diagnostic import Diagnostic, Source, Span, Text, nearest
 from symflex.errors.exceptions import (
+    REPORT,
     BudgetError,
     DataError,
     FitError,
@@ -14,6 +15,7 @@ from symflex.errors.exceptions import (
 )
 
 __all__ = [
+    "REPORT",
     "BudgetError",
     "DataError",
     "Diagnostic",

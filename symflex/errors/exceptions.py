@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import ClassVar, Final
 
 from symflex.errors.diagnostic import Diagnostic
 
@@ -84,6 +84,10 @@ class BudgetError(SymflexError):
     def __init__(self, *diagnostics: Diagnostic, found: object = None) -> None:
         super().__init__(*diagnostics)
         self.found = found
+
+
+REPORT: Final = "this is a fault of symflex, not of the model: please report it with the specification"
+"""The hint of every internal error."""
 
 
 class InternalError(SymflexError):

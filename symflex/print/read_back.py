@@ -23,7 +23,7 @@ from flint import acb, arb, ctx, fmpq
 
 from symflex.algebra import LAPLACE, Factored
 from symflex.budget import spend
-from symflex.errors import Diagnostic, InternalError, SpecError, Text
+from symflex.errors import REPORT, Diagnostic, InternalError, SpecError, Text
 from symflex.expressions import (
     PROGRAM_LIMITS,
     Bessel,
@@ -60,7 +60,6 @@ LONGEST_TEXT: Final = 5000
 """Characters of one form that are parsed, at some 10 microseconds each."""
 ENOUGH: Final = 24
 """Bits of a value that leave a wrong form no place to hide, as points have no meaning."""
-REPORT: Final = "this is a fault of symflex, not of the model; please report it with the specification"
 INSIDE: Final = Fraction(3, 8)
 """Part of a member at whose end coefficients that vary along it are compared."""
 E = TypeVar("E", bound=Expression)

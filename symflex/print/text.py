@@ -7,7 +7,7 @@ from re import compile as compile_pattern
 from textwrap import wrap
 from typing import TYPE_CHECKING, NamedTuple
 
-from symflex.errors import Diagnostic, InternalError
+from symflex.errors import REPORT, Diagnostic, InternalError
 from symflex.expressions import (
     Call,
     Derivative,
@@ -19,7 +19,6 @@ from symflex.expressions import (
     names,
 )
 from symflex.print.forms import PrintedForm, with_hidden
-from symflex.print.read_back import REPORT
 from symflex.transfer import NestedTransferFunction
 
 if TYPE_CHECKING:

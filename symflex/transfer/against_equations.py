@@ -26,7 +26,7 @@ from flint import acb, ctx
 
 from symflex.algebra import LAPLACE, NO_KERNELS, PolynomialMemo, uncollected
 from symflex.equations import assemble
-from symflex.errors import Diagnostic, InternalError, ModelError
+from symflex.errors import REPORT, Diagnostic, InternalError, ModelError
 from symflex.model import ExactValue
 from symflex.model.along import is_tapered, varies_along_x
 from symflex.transfer.balls import at_centre, ball, enclosure, plan
@@ -237,12 +237,10 @@ def _closed(tf: TransferFunction | BoundTransferFunction) -> ClosedForm | None:
 
 
 def _sides(closed: ClosedForm, here: Point, known: Mapping[str, acb]) -> tuple[acb, acb]:
-    whole = dict(here.whole)
+    number = GeneratorValues(dict(known), whole := dict(here.whole))
     for name, opened in closed.closure.sums if whole else ():
-        names = closed.closure.base.names
-        if all(names[i] in whole for i, d in enumerate(opened.degrees()) if int(d)):
-            whole[name] = int(opened(*(whole.get(each, 0) for each in names)))
-    number = GeneratorValues(dict(known), whole)
+        if (integer := number.integer(opened, closed.closure.base.names)) is not None:
+            whole[name] = int(integer)
     return closed.sides(number.values, number.polynomial)
 
 
@@ -275,11 +273,5 @@ def _with_kernels(
 
 def _differs(agreement: Agreement, here: Point, fault: str) -> InternalError:
     name, s = "/".join(agreement.pair), complex(float(here.s().real.mid()), float(here.s().imag.mid()))
-    return InternalError(
-        Diagnostic(
-            "SF991",
-            f"the transfer function {name} {fault} at s = {s:.4g}; nothing of it is shown",
-            None,
-            "this is a fault of symflex, not of the model: please report it with the specification",
-        )
-    )
+    message = f"the transfer function {name} {fault} at s = {s:.4g}; nothing of it is shown"
+    return InternalError(Diagnostic("SF991", message, None, REPORT))

@@ -43,7 +43,7 @@ from symflex.transfer.balls import (
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from flint import fmpz_mpoly
+    from flint import fmpz, fmpz_mpoly
 
     from symflex.algebra import Factored
     from symflex.equations import Continuum, Equations
@@ -205,9 +205,15 @@ class GeneratorValues:
     def polynomial(self, polynomial: fmpz_mpoly, names: Sequence[str], *, is_sparse: bool = False) -> acb:
         """Return the value of a polynomial in the generators named; where all are integers the engine's."""
         is_long = len(polynomial) > FEW_TERMS and not is_sparse
-        if is_long and all(names[i] in self.whole for i, d in enumerate(polynomial.degrees()) if int(d)):
-            return acb(polynomial(*(self.whole.get(name, 0) for name in names)))
+        if is_long and (integer := self.integer(polynomial, names)) is not None:
+            return acb(integer)
         return acb(summed(terms_of(polynomial), names, self._named, acb(1)))
+
+    def integer(self, polynomial: fmpz_mpoly, names: Sequence[str]) -> fmpz | None:
+        """Return the value of a polynomial where all of its generators are integers; else None."""
+        if not all(names[i] in self.whole for i, d in enumerate(polynomial.degrees()) if int(d)):
+            return None
+        return polynomial(*(self.whole.get(name, 0) for name in names))
 
     def _named(self, name: str) -> acb:
         if name not in self.values:
