@@ -59,7 +59,7 @@ MOST_WORK = 20_000
 EXPONENTS = tuple(Fraction(n, 2) for n in (2, 4, -2, 1, 6, -1, 8, -4, 3, 0, -3, -6))
 FACTORS = (Fraction(2), Fraction(1, 2), Fraction(-1), Fraction(4), Fraction(1, 4))
 REAL_POINT, FEW_DIGITS = (Fraction(1), Fraction(0)), 15
-"""Where a formula with another line is tried before it is read: no root has two readings there."""
+"""Where a formula with another line is tried first, and its digits: there roots have one reading."""
 FUNCTION_SWAPS = ("sin", "cos", "tan", "sinh", "cosh", "tanh", "exp")
 
 

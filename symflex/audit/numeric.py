@@ -138,7 +138,7 @@ class Comparison:
     printed: complex | None = None
     derived: complex | None = None
     gap: float = 0.0  # their distance there over the size of the derived one
-    # Of all parameters, where they differ with these and agree with the declared ones.
+    # All parameters, where formulas agree with the declared values and differ with these.
     values: tuple[tuple[str, ExactValue], ...] = ()
 
 

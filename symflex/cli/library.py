@@ -89,12 +89,10 @@ def elements(name: str | None, *, as_json: bool) -> int:
     """List the element and block library, or describe one entry NAME."""
     from symflex.library.blocks import BLOCKS
     from symflex.library.elements import ELEMENTS
-    from symflex.library.words import thing
+    from symflex.library.words import hint_of_type
 
     if name is not None and name not in (*ELEMENTS, *BLOCKS, MODEL_BLOCK):
-        meant = thing(name)
-        nearby = nearest(name, (*ELEMENTS, *BLOCKS, MODEL_BLOCK)) or "symflex elements lists them"
-        hint = meant.hint(name) if meant else nearby
+        hint = hint_of_type(name, (*ELEMENTS, *BLOCKS, MODEL_BLOCK)) or "symflex elements lists them"
         raise UsageError(Diagnostic("SF902", f"there is no element or block '{name[:64]}'", None, hint))
     elements = [e for e in ELEMENTS.values() if name in (None, e.type_name)]
     blocks = [b for b in BLOCKS.values() if name in (None, b.type_name)]

@@ -54,7 +54,7 @@ FIT_RATIOS, COHERENCE_RATIO = (1.9, 1.3, 0.9), 0.5
 FIT_INCHES, SMALL_INCHES, ORDER_INCHES = 4.9, 2.9, 2.9
 FIT_COLUMNS: Final = 2
 FEW_RESPONSES: Final = 4
-"""Of which two stand side by side; of more, three."""
+"""Responses up to which two stand side by side; more stand three to a row."""
 SMALL_POINTS, NAME_POINTS = 6.5, 5.5
 LOWEST_DB: Final = 40.0
 """Below the median residual: what is smaller is chance."""
@@ -81,7 +81,7 @@ def draw_measured(measured: MeasuredResponse, model: npt.NDArray[np.complex128],
 def draw_fit(fit: ResonanceFit, response: int | None = None, ax: AxesGiven | None = None) -> Figure:
     """Draw a fit on one page: data, start and fit, what the fit leaves, coherence, and the modes by number.
 
-    Of one response, or of all. Lines that were left out are crossed. Where the phase is not that of a
+    It shows one response, or all. Lines that were left out are crossed. Where the phase is not that of a
     minimum-phase function the ground is coloured. Synthetic data are called so in the title. On two axes of
     the user's own, if they are given, magnitude and phase of one response are drawn.
     """

@@ -152,7 +152,9 @@ def thing(word: str) -> Thing | None:
     return next((t for t in THINGS if any({w, w.replace("_", "")} & wanted for w in t.words)), None)
 
 
-def hint_of_type(word: str, known: Iterable[str], others: Container[str], elsewhere: str) -> str | None:
+def hint_of_type(
+    word: str, known: Iterable[str], others: Container[str] = (), elsewhere: str = ""
+) -> str | None:
     """Return what somebody may have meant by an unknown type; ``others`` are the types of ``elsewhere``."""
     if word in others:
         return f"'{word}' is {elsewhere}"

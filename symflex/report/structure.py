@@ -104,7 +104,7 @@ def is_colocated(model: Model, output: Output, source: Input) -> bool | None:
     groups = [
         _places(use)
         for use in model.elements
-        # Of two nodes at a side only the difference follows.
+        # Where a side has two nodes, only their difference follows.
         if use.element.moves_as_one
         and not any(p.reacts and len(dict(use.nodes)[p.name]) > 1 for p in use.element.ports)
     ]

@@ -53,7 +53,7 @@ WILD = 6.5
 NAMED_LINES = 6
 """Wild lines whose frequencies are listed."""
 ROUNDS = 3
-"""In which lines are left out or taken back, until these are the same."""
+"""Rounds in which lines are left out or taken back; they end earlier when nothing changes."""
 MOST_LINES, FEWEST_OF_EACH = 1000, 300
 """On which numbers of poles are compared: of all responses together, and of each at least."""
 DROWNED = 0.5

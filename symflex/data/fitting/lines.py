@@ -27,7 +27,7 @@ WILD = 8.0
 MOST_WILD = 0.02
 """Share of the lines that may be wild: if more are, the model lacks something."""
 LEAST_OFF = 0.1
-"""Of the logarithm: what deviates by less cannot hide a resonance, and is left to the fit."""
+"""Deviation of the logarithm below which a line cannot hide a resonance and is left to the fit."""
 NARROW = 0.1
 """Bandwidth of a resonance, over twice the distance of lines, below which one line alone shows its peak."""
 FIRST_SHARE = 4

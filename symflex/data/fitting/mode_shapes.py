@@ -36,7 +36,7 @@ KINDS = {(Fraction(-1), Fraction(0)): "kg^(-1/2)", (Fraction(-1), Fraction(-2)):
 """Units of mode shapes by the exponents of kg and m in a motion over a force, and over a torque."""
 
 MOST_MOVED, MOST_DAMPED = 0.1, 2.0
-"""Of the logarithms of frequencies and damping ratios: how far all responses may move a pole."""
+"""How far all responses may move the logarithm of a frequency, and of a damping ratio."""
 WEAK = 0.5
 """Standard error of a damping ratio over its value from which a resonance has no mode shape."""
 RIGHT_ANGLE = 90.0

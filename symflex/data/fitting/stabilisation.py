@@ -1,6 +1,6 @@
 """Which poles stay where they are when more are allowed: the stabilisation diagram.
 
-Of a response with resonances at 10 and 12 Hz, measured with noise:
+A response with resonances at 10 and 12 Hz, measured with noise, gives:
 
     poles      found at [Hz]
     2          10.4

@@ -63,7 +63,7 @@ FREE_POWERS = (-2, -1, 0, 1, 2)
 """Beside the fractions where the power of s is not known: receptances to accelerances, free or held."""
 
 REAL = 1e-9
-"""Of a pole's magnitude: its imaginary part, from which it is one of a pair."""
+"""Share of a pole's magnitude from which its imaginary part makes it one of a pair."""
 
 FEW_POWERS = (0, 1)
 """The same where poles outside the band are to be found: what they add looks like powers of s."""

@@ -61,11 +61,15 @@ HINT: Final = (
     "columns: frequency_hz; re, im or magnitude_db, phase_deg or magnitude, phase_rad; coherence if known"
 )
 UNDECIDED: Final = 1.5
-"""Of two readings, the natural logarithm by which one has to be less like a causal function."""
+"""How much less like a causal function the other reading has to be, as a natural logarithm."""
 WRAPPED: Final = 2 * np.pi * 1.001
 """The largest range of phases that may have been wrapped, and not written as they go on."""
 FITS: Final = 1.0
 """Beyond it numbers are like no causal function: the ratio of energies is beyond a factor e."""
+MOST_RADIANS, MOST_DEGREES = 7.0, 1e4
+"""A column whose largest number lies between is rather a phase, in degrees."""
+MOST_LISTED: Final = 6
+"""Columns that are not used and are listed by name."""
 FILLED: Final = 0.95
 FEWEST_TO_DECIDE: Final = 8
 LONGEST_NAME: Final = 200
@@ -258,7 +262,8 @@ def assembled(
     names = dict.fromkeys(c.name for c in columns if id(c) not in used and not is_asked)
     unused = [name for name in names if name]
     if unused:
-        listed = ", ".join(f"'{name[:30]}'" for name in unused[:6]) + (", ..." if len(unused) > 6 else "")  # noqa: PLR2004
+        listed = ", ".join(f"'{name[:30]}'" for name in unused[:MOST_LISTED])
+        listed += ", ..." if len(unused) > MOST_LISTED else ""
         guesses.append(f"{'columns' if len(unused) > 1 else 'column'} {listed} not used")
     return made, list(dict.fromkeys(guesses))
 
@@ -556,7 +561,7 @@ def ask(columns: Sequence[DataColumn]) -> str:
         return HINT
     one, two = (columns[i].numbers.real for i in rest[:2])
     with np.errstate(all="ignore"):
-        is_phase = bool(np.nanmax(np.abs(two), initial=0) > 7 and np.nanmax(np.abs(two), initial=0) < 1e4)  # noqa: PLR2004
+        is_phase = bool(MOST_RADIANS < np.nanmax(np.abs(two), initial=0) < MOST_DEGREES)
         sizes = ("mag_db", "mag") if np.any(one < 0) else ("mag", "mag_db")
     readings = [("re", "im"), *((s, "phase_deg") for s in sizes)]
     readings = readings[1:] + readings[:1] if is_phase else readings

@@ -5,7 +5,7 @@ Output: its form with every sum left as it is written:
 
     k*(1/s^2 + a_1/(s^2 + 2*zeta*w_1*s + w_1^2) + a_2/(s^2 + 2*zeta*w_2*s + w_2^2))
 
-Of such a modal sum the numerator over one denominator grows with the square of the number of modes.
+Over one denominator the numerator of such a modal sum grows with the square of the number of modes.
 """
 
 from __future__ import annotations
