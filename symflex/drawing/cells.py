@@ -27,6 +27,8 @@ WIDEST: Final = 80.0
 PITCH: Final = {"dc_motor": 19.0}
 """Distance of two ends on one side of a symbol [points]."""
 USUAL_PITCH, GROUNDED_PITCH = 9.0, 20.0
+PLACES: Final = {"dc_motor": 3, "voice_coil": 3}
+"""Ends for which a symbol has places of their own, where that is fewer than two on each side."""
 INSET: Final = {"dc_motor": (0.233, 0.5)}
 """How far one end, and how far two, reach into a symbol, as a share of its length."""
 COORDINATES: Final = ("beam", "rod", "shaft", "string")
@@ -76,9 +78,11 @@ class SymbolCell:
 
     @property
     def is_boxed(self) -> bool:
-        """Whether it is a box to which all ends lead: its own symbol has places for two on a side."""
+        """Whether it is a box to which all ends lead, as its own symbol has no places for them."""
         if self.part.symbol.role != "coupling" or len(self.part.ends) <= 2:  # noqa: PLR2004
             return False
+        if len(self.part.ends) > PLACES.get(self.part.type_name, len(self.part.ends)):
+            return True
         return self.part.symbol.draw is box or max(len(self.left), len(self.right)) > 2  # noqa: PLR2004
 
     @property
@@ -151,7 +155,7 @@ def build(cell: SymbolCell, spacing: Spacing, width: float = 0.0) -> Built:
     )
     symbol = Placed(part.kind, part.name, strokes).moved(start, 0)
     items = [*_wires(cell, (0.0, begin, start), (width, end, start + length)), symbol]
-    if part.type_name == "dc_motor" and not cell.is_boxed and (letter := text(r"\mathrm{M}")):
+    if part.type_name == "dc_motor" and (letter := text(r"\mathrm{M}")):
         half = (letter.width / 2, letter.height / 2)
         items.append(Placed("label", part.name, (), (letter.moved(start + length / 2 - half[0], -half[1]),)))
     if part.type_name == "op_amp" and not cell.is_boxed:
