@@ -488,12 +488,17 @@ class Radicals:
     def _found_point(self, random: Random) -> Point | None:
         for _ in range(TRIES):
             spend()
-            prime = 4 * random.randrange(2**58, 2**59) + 3
+            # Where -1 is a radicand it has to be a square.
+            prime = 4 * random.randrange(2**58, 2**59) + (1 if self._has_imaginary_unit else 3)
             if fmpz(prime).is_prime():
                 values = dict(zip(self.ring.names, self._numbers(random, prime), strict=True))
                 if self._satisfies(values, prime):
                     return prime, values
         return None
+
+    @cached_property
+    def _has_imaginary_unit(self) -> bool:
+        return any(square.is_constant and square.unit < 0 for square in self.squares.values())
 
     def _satisfies(self, values: dict[str, int], prime: int) -> bool:
         """Give roots their values; tell whether they have any."""
@@ -503,7 +508,7 @@ class Radicals:
                 value = residue(square, values, prime)
                 if fmpz(value).jacobi(prime) < 1:
                     return False
-                values[names[i]] = pow(value, (prime + 1) // 4, prime)
+                values[names[i]] = int(fmpz(value).sqrtmod(prime))
             for i, image in self.images.items():
                 values[names[i]] = residue(image, values, prime)
         except ZeroDivisionError:

@@ -31,7 +31,8 @@ def radicals_of(
     if not any(p.name == COORDINATE for p in parameters):
         roots = [c for c in roots if not varies_along_x(c)]
     roots = [c for c in roots if format_expression(c) in ring.index]
-    if not roots or ring.is_sparse:
+    units = [ring.index[p.name] for p in parameters if p.is_imaginary and p.name in ring.index]
+    if not (roots or units) or ring.is_sparse:
         return Radicals(ring)
 
     def named(name: str) -> Factored:
@@ -43,7 +44,7 @@ def radicals_of(
     def called(call: Call, _: Factored) -> Factored:
         return Factored.generator(ring, format_expression(call))
 
-    radicands = {}
+    radicands = dict.fromkeys(units, Factored.number(ring, -1))
     for c in roots:
         # What divides by zero, or holds s or a block, has no value, which is reported where one is asked for.
         with suppress(ZeroDivisionError, KeyError):

@@ -29,10 +29,11 @@ Assumption = Literal["positive", "nonnegative", "real"]
 
 @dataclass(frozen=True, slots=True)
 class ExactValue:
-    """The real number ``rational * pi**pi_power``."""
+    """The real number ``rational * pi**pi_power``; or that times the imaginary unit."""
 
     rational: Fraction
     pi_power: int = 0
+    is_imaginary: bool = False
 
     @property
     def nearly(self) -> Fraction:
@@ -41,6 +42,9 @@ class ExactValue:
 
 
 ONE: Final = ExactValue(Fraction(1))
+J: Final = ExactValue(Fraction(1), is_imaginary=True)
+IMAGINARY: Final = "j"
+"""The name of the imaginary unit: it means that where the model gives it no other meaning."""
 PAIRS_SHOWN: Final = 6
 """Of a model's transfer functions, where it is named."""
 
@@ -67,6 +71,11 @@ class ModelParameter:
         value, unit = self.as_written()
         number = "no value" if value is None else f"{float(value.nearly):.10g}"
         return f"<ModelParameter {self.name}: {number}{f' {unit}' if unit else ''}>"
+
+    @property
+    def is_imaginary(self) -> bool:
+        """True of the imaginary unit, which nobody declares or sets."""
+        return self.value is not None and self.value.is_imaginary
 
     def as_written(self, value: ExactValue | None = None) -> tuple[ExactValue | None, str]:
         """Return a value, by default the parameter's own, in the unit that was written, with that unit.
@@ -322,6 +331,11 @@ class Model:
                 for b in self.blocks
             )
         )
+
+    @property
+    def imaginary(self) -> ModelParameter | None:
+        """The imaginary unit, where a loss factor or an expression has brought it in."""
+        return next((p for p in self.parameters if p.is_imaginary), None)
 
     @property
     def is_closed_loop(self) -> bool:

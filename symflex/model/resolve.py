@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Literal
 
 from symflex.errors import Diagnostic, SpecError, UsageError
 from symflex.expressions import Equation, Expression, substitute
-from symflex.library.elements import COMPONENTS, Placing
+from symflex.library.elements import COMPONENTS, LineElement, Placing
 from symflex.model.analysis import (
     check_printed,
     read_analysis,
@@ -42,6 +42,7 @@ from symflex.model.dimensions import turned_name
 from symflex.model.fields import read_fields, with_brackets_opened
 from symflex.model.headings import CONSEQUENCES, SECTIONS, check_header, read_section, settled_problems
 from symflex.model.linearity import check_expression, without_signal
+from symflex.model.loss_factors import with_imaginary_unit, with_loss
 from symflex.model.model import (
     Definition,
     Model,
@@ -88,8 +89,8 @@ if TYPE_CHECKING:
     from symflex.model.settings import Setting
     from symflex.model.spec import Spec
 
-Kind = Literal["constant", "varying", "signal"]
-"""What an expression may be: constant, varying along x, or varying in time."""
+Kind = Literal["constant", "real", "varying", "signal"]
+"""What an expression may be: constant, that and real, varying along x, or varying in time."""
 MAX_PAIRS = 10_000
 """Transfer functions of one model, as of 100 outputs and 100 inputs: every list of them is printed in full. A
 round number, not a measured one."""
@@ -187,6 +188,7 @@ def resolve(spec: Spec, origin: Origin) -> Model:
         outputs,
         fields,
     )
+    draft = with_imaginary_unit(reader, draft)
     broken = broken_names(sections, draft) | twins
     model, turned = _finish(reader, draft, broken)
     later, hints = Reader(), Reader()
@@ -316,9 +318,11 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> tuple[Model
         draft.fields,
     )
     unsound: set[Span | None] = set()
-    along = scope.varying()
+    scopes: dict[Kind, ModelScope] = {"varying": scope.varying(), "constant": scope}
+    units = {p.name for p in draft.inherited if p.is_imaginary}
+    plain = replace(scope, meanings={n: m for n, m in scope.meanings.items() if n not in units})
     for expression, kind in _all_expressions(draft):
-        problems = _check(expression, along if kind == "varying" else scope, constant=kind != "signal")
+        problems = _check(expression, scopes.get(kind, plain), constant=kind != "signal")
         reader.take(problems)
         if problems:
             unsound.add(expression.span)
@@ -351,7 +355,10 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> tuple[Model
         definitions=tuple(replace(d, expression=whole(d.expression)) for d in draft.definitions),
         nodes=draft.nodes,
         elements=tuple(
-            replace(e, values=tuple((n, whole(v, port_unit(e, n))) for n, v in e.values)) for e in placed
+            replace(
+                e, values=with_loss(e.element, tuple((n, whole(v, port_unit(e, n))) for n, v in e.values))
+            )
+            for e in placed
         ),
         signals=tuple(replace(x, expression=whole(x.expression)) for x in draft.signals),
         blocks=tuple(
@@ -487,7 +494,8 @@ def _all_expressions(draft: Draft) -> list[tuple[Expression, Kind]]:
     for use in draft.elements:
         kinds: dict[str, Kind] = {p.name: "signal" for p in use.element.parameters if p.signal}
         kinds |= {p.name: "varying" for p in use.element.parameters if p.varies}
+        kinds |= {"l": "real"} if isinstance(use.element, LineElement) else {}
         found += [(e, kinds.get(name, "constant")) for name, e in use.values]
-    found += [(e, "constant") for b in draft.blocks for _, e in b.values]
+    found += [(e, "real") for b in draft.blocks for _, e in b.values]
     found += [(x.expression, "signal") for x in draft.signals]
     return found + [(x.expression, "signal") for x in draft.outputs]

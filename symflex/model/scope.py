@@ -9,7 +9,7 @@ from symflex.algebra import LAPLACE
 from symflex.errors import Diagnostic, SpecError, nearest
 from symflex.expressions import Attribute, Name
 from symflex.library.elements import LineElement, Variable
-from symflex.model.model import INPUT_KINDS
+from symflex.model.model import IMAGINARY, INPUT_KINDS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -41,6 +41,10 @@ RESERVED: dict[str, str] = {
     "ground": "it is the reference node",
 }
 """Names that have a meaning of their own, and which."""
+WHERE_J = (
+    "j, with j^2 = -1, makes loss factors, 'k*(1 + j*eta)': it may stand in values of elements (no length), in "
+    "definitions and in [fields]"
+)
 LISTED_NAMES = 8
 """Names that a hint lists."""
 COMPARED_NAMES = 500
@@ -143,6 +147,8 @@ class ModelScope:
         """Say what may have been meant by an unknown name."""
         if name == COORDINATE:
             return "x is the coordinate in the equations of [fields] and in what may vary along an element"
+        if name == IMAGINARY:
+            return WHERE_J
         if name == "ground":
             return "the reference node is at zero; leave it out"
         if name in self.owners:

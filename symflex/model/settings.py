@@ -140,7 +140,7 @@ def with_numbers(
     numbers = {
         name: exact_expression(value)
         for name, value in given.items()
-        if value is not None and name not in symbolic
+        if value is not None and name not in symbolic and not value.is_imaginary
     }
 
     def put_in(given: Values) -> Values:

@@ -14,6 +14,7 @@ from symflex.model.dimensions import DimensionSystem, Measure
 from symflex.model.model import (
     INPUT_KINDS,
     Definition,
+    IMAGINARY,
     ExactValue,
     Input,
     ModelParameter,
@@ -271,7 +272,9 @@ def lower(expression: Expression, unit: str = "") -> Expression:
 
 
 def exact_expression(value: ExactValue) -> Expression:
-    """Return ``rational * pi**n`` as an expression."""
+    """Return ``rational * pi**n`` as an expression; of the imaginary unit, its name."""
+    if value.is_imaginary:
+        return Name(IMAGINARY)
     number = signed_number(value.rational)
     if not value.pi_power:
         return number

@@ -131,7 +131,8 @@ def compare(
         reason = "the function has been given other names than its equations have"
     tried: list[Mapping[str, ExactValue]] = []
     for beside in () if reason else solve.parameters():
-        parameters = beside if values is None else {**beside, **values}
+        units = {p.name: p.value for p in solve.model.parameters if p.is_imaginary and p.value}
+        parameters = {**beside, **(values or {}), **units}
         if parameters in tried:
             continue
         tried.append(parameters)
@@ -158,7 +159,7 @@ def _points(parameters: Mapping[str, ExactValue], *, is_lumped: bool) -> Iterato
     whole = {
         name: int(v.rational)
         for name, v in parameters.items()
-        if not v.pi_power and v.rational.denominator == 1
+        if not (v.pi_power or v.is_imaginary) and v.rational.denominator == 1
     }
     for s in WHOLE if is_lumped else ():
         yield Point(partial(acb, s), enclosed, {**whole, LAPLACE: s})
@@ -252,7 +253,7 @@ def _with_kernels(
     from symflex.transfer.enclose_kernels import KernelValues
 
     ring, table = tf.ratio.ring, tf.kernels
-    numbers = {n: known[n].real for n in ring.names if n in known and n != LAPLACE}
+    numbers = {n: x.real if (x := known[n]).imag == 0 else x for n in ring.names if n in known and n != LAPLACE}
     kernels = KernelValues(ring.names, table, numbers, ModalSums(ring, NO_KERNELS), PolynomialMemo(plan))
     values = kernels.at(here.s())
     constants = (tf if isinstance(tf, TransferFunction) else tf.source).constants

@@ -220,6 +220,9 @@ class _Draw:
                 is_below = bool((i + half) % 2) != is_turned if turn < STRICT else self.random.randrange(2)
                 size = size if is_below else 1 / size
                 given = parameter.value
+                if parameter.is_imaginary and given is not None:
+                    values[parameter.name] = given
+                    continue
                 is_negative = bool(half) if given is None else given.rational < 0
                 values[parameter.name] = ExactValue(
                     -size if is_negative and parameter.assume == "real" else size
@@ -242,6 +245,7 @@ class _Draw:
         for parameter in model.parameters:
             value = given.get(parameter.name, ExactValue(Fraction(1)))
             step = Fraction(self.random.randrange(-PARTS, PARTS), PARTS * NEAR) if is_moved else 0
+            step = 0 if value.is_imaginary else step
             values[parameter.name] = replace(value, rational=value.rational * (1 + step))
         low, high = model.analysis.band or DECLARED_BAND
         return self._setting(values, directions, Fraction(f"{tau * sqrt(low * high):.3g}"))

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Final, Literal
+
+from symflex.library import ParameterPort
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from symflex.algebra import Factored
-    from symflex.library import ParameterPort
 
 Domain = Literal["translation", "rotation", "electrical", "acoustic"]
 PortDomain = Literal["translation", "rotation", "electrical", "acoustic", "planar", "plane", "any", "whole"]
@@ -295,6 +296,10 @@ class Element(ABC):
     @abstractmethod
     def stamp(self, use: ElementUse) -> Stamp:
         """Contribute this element's unknowns, rows, branches and injections."""
+
+
+LOSS_FACTOR: Final = ParameterPort("eta_s", "1", "a loss factor, on s = j*omega", "0")
+"""Of structural damping: what gives way has its stiffness times ``1 + j*eta_s``."""
 
 
 def difference(use: ElementUse, port: str, scale: Factored) -> LinearForm:

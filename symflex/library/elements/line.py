@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, ClassVar, Final
 
 from symflex.library import ParameterPort
 from symflex.library.elements.element import (
+    LOSS_FACTOR,
     Choice,
     Element,
     ElementUse,
@@ -132,6 +133,7 @@ class Rod(LineElement):
         ParameterPort("k_f", "N/m^2", "an elastic foundation", "0", varies=True),
         AXIAL_STIFFNESS,
         MASS_PER_LENGTH,
+        LOSS_FACTOR,
     )
     through = ("f",)
     ends = ("across",)
@@ -163,6 +165,7 @@ class Shaft(LineElement):
         ParameterPort(
             "rhoJ", "kg*m", "an inertia per length", sign="nonnegative", varies=True, of=("rho", "J")
         ),
+        LOSS_FACTOR,
     )
     through = ("tau",)
     ends = ("across",)
@@ -245,6 +248,7 @@ class Beam(LineElement):
             varies=True,
             of=("kappa", "G", "A"),
         ),
+        LOSS_FACTOR,
     )
     choices = (Choice("theory", THEORIES, THEORIES[0], "a beam theory"),)
     through = ("f", "tau")

@@ -6,6 +6,7 @@ from typing import ClassVar
 
 from symflex.library import ParameterPort
 from symflex.library.elements.element import (
+    LOSS_FACTOR,
     Element,
     ElementUse,
     EquationRow,
@@ -49,7 +50,7 @@ class Spring(Branch):
     type_name = "spring"
     summary = "Translational spring"
     ports = (Port("between", 2, "translation", "the two ends"),)
-    parameters = (ParameterPort("k", "N/m", "a stiffness"),)
+    parameters = (ParameterPort("k", "N/m", "a stiffness"), LOSS_FACTOR)
     through = ("f",)
     compliance = "stretching"
     stiffness = "k"
@@ -85,7 +86,7 @@ class TorsionSpring(Branch):
     type_name = "torsion_spring"
     summary = "Torsion spring"
     ports = (Port("between", 2, "rotation", "the two ends"),)
-    parameters = (ParameterPort("k", "N*m/rad", "a torsional stiffness"),)
+    parameters = (ParameterPort("k", "N*m/rad", "a torsional stiffness"), LOSS_FACTOR)
     through = ("tau",)
     compliance = "stretching"
     stiffness = "k"

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from symflex.library import ParameterPort
 from symflex.library.elements.element import (
     COMPONENTS,
+    LOSS_FACTOR,
     THROUGH_NAME,
     Element,
     ElementUse,
@@ -150,6 +151,7 @@ class MasslessBeam(Element):
     parameters = (
         ParameterPort("EI", "N*m^2", "a bending stiffness"),
         ParameterPort("l", "m", "a length"),
+        LOSS_FACTOR,
     )
     through = ("f", "tau")
     passive = Passivity()

@@ -280,7 +280,7 @@ class Arranger:
                 return 4
             if self._is_apart[i]:
                 return 3
-            return 0 if self.ring.names[i] == "pi" else 1
+            return 0 if self.ring.names[i] in ("pi", IMAGINARY) else 1
 
         return tuple(sorted(range(len(self.ring.names)), key=place))
 

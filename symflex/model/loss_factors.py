@@ -1,0 +1,88 @@
+"""Structural damping: loss factors of elements, and the imaginary unit in values and coefficients.
+
+A stiffness with a loss factor is ``k*(1 + j*eta_s)`` (Myklestad 1952; Bishop & Johnson 1960, The Mechanics of
+Vibration, chapter 9). It describes steady motion, s = j omega with omega > 0, and is not causal: as a function
+of s it belongs to no differential equation with real coefficients, so nothing is said of other s.
+
+Example: ``{ type = "spring", k = "k", eta_s = "eta" }`` has the value ``k*(1 + j*eta)`` from here on.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from symflex.errors import Diagnostic, ModelError
+from symflex.expressions import Name, Number, names, number, product_of, sum_of
+from symflex.model.model import IMAGINARY, J, ModelParameter
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from symflex.errors import Span
+    from symflex.expressions import Expression
+    from symflex.library.elements import Element
+    from symflex.model.model import Model
+    from symflex.model.network import Draft
+    from symflex.model.reading import Reader
+
+LOSS_FACTOR = "eta_s"
+LOSSY = ("k", "E", "G", "EI", "EA", "GJ", "kappaGA")
+"""Values of elements that their loss factor multiplies."""
+
+
+def with_imaginary_unit(reader: Reader, draft: Draft) -> Draft:
+    """Return a draft with j among its parameters where it is used and means nothing else."""
+    here = next(_uses(draft), None)
+    taken = {p.name: p.span for p in draft.declared}
+    taken |= {x.name: x.span for x in (*draft.definitions, *draft.blocks, *draft.signals)}
+    taken |= {x.input.name: x.input.span for x in draft.inputs}
+    taken |= {n.name: None for n in draft.nodes} | {u: f.span for f in draft.fields for u in f.unknowns}
+    if IMAGINARY in taken:
+        if here is not None and here[1]:
+            message = f"'{IMAGINARY}' is the imaginary unit where an element has a loss factor, and a name here"
+            reader.note("SF211", message, taken[IMAGINARY] or here[0], "rename what the model calls j")
+        return draft
+    if here is None or any(p.name == IMAGINARY for p in draft.inherited):
+        return draft
+    unit = ModelParameter(IMAGINARY, J, "1", "real", doc="imaginary unit", span=here[0])
+    return replace(draft, inherited=(*draft.inherited, unit))
+
+
+def _uses(draft: Draft) -> Iterator[tuple[Span | None, bool]]:
+    """Yield where loss factors stand, and where j does, each with whether it is a loss factor."""
+    expressions = [d.expression for d in draft.definitions]
+    for use in draft.elements:
+        expressions += [e for _, e in use.values]
+        factor = dict(use.values).get(LOSS_FACTOR)
+        if factor is not None and factor != number(0):
+            yield factor.span or use.span, True
+    for field in draft.fields:
+        expressions += [*field.equations, *field.conditions]
+    for expression in expressions:
+        yield from ((n.span, False) for n in names(expression) if n == Name(IMAGINARY))
+
+
+def with_loss(
+    element: Element, values: tuple[tuple[str, Expression], ...]
+) -> tuple[tuple[str, Expression], ...]:
+    """Return an element's values with its stiffnesses times ``1 + j*eta_s``."""
+    factor = dict(values).get(LOSS_FACTOR)
+    if factor is None or (isinstance(factor, Number) and not factor.value):
+        return values
+    lossy = {p.name for p in element.parameters if p.name in LOSSY}
+    loss = sum_of([number(1), product_of([Name(IMAGINARY), factor])])
+    return tuple((n, replace(product_of([e, loss]), span=e.span) if n in lossy else e) for n, e in values)
+
+
+def check_causal(model: Model, what: str) -> None:
+    """Refuse what needs more than s = j omega of a model with loss factors.
+
+    Raises ModelError: SF251 the model holds j.
+    """
+    unit = model.imaginary
+    if unit is None:
+        return
+    message = f"{what} needs the model at other s than j*omega, where a loss factor (j) has no meaning"
+    hint = "frequency responses and modes are there; a viscous damper or eta in seconds is causal"
+    raise ModelError(Diagnostic("SF251", message, unit.span, hint))
