@@ -17,6 +17,7 @@ from symflex.equations import assemble
 from symflex.equations.elimination import free_at_rest
 from symflex.errors import BudgetError, Diagnostic, SymflexError
 from symflex.model import with_numbers
+from symflex.model.model import IMAGINARY
 from symflex.model.signs import is_passive
 from symflex.roots.distributed.proof import limits
 from symflex.roots.distributed.right_half_plane import (
@@ -31,6 +32,7 @@ from symflex.roots.distributed.right_half_plane import (
 from symflex.roots.distributed.side import ACCUMULATION_DIGITS, Side, polynomial_roots
 from symflex.roots.engines import LOSSLESS, POLYNOMIAL
 from symflex.roots.functions.simplified import without_lengths_of_zero
+from symflex.roots.loss_modes import locate_lossy
 from symflex.roots.passive import fastest_growth, passive_loop
 from symflex.roots.passive_fields import are_passive
 from symflex.roots.plane.search import HIGHEST
@@ -87,6 +89,10 @@ def locate(
                 bound.located[region, digits] = known
         return known
     bound = without_lengths_of_zero(bound)
+    if IMAGINARY in bound.ratio.ring.index:
+        is_open = region is None or (bound.is_distributed and isinstance(region, Everything))
+        where = default_region(bound) if is_open and bound.is_distributed else region or Everything()
+        return locate_lossy(bound, where, digits)
     if bound.is_distributed:
         return locate_distributed(bound, region, digits, budget or entered_budget(), with_zeros=with_zeros)
     above = [(f, e) for f, e in bound.ratio.factors if e > 0]

@@ -132,7 +132,7 @@ def compare(
     tried: list[Mapping[str, ExactValue]] = []
     for beside in () if reason else solve.parameters():
         units = {p.name: p.value for p in solve.model.parameters if p.is_imaginary and p.value}
-        parameters = {**beside, **(values or {}), **units}
+        parameters = {**beside, **units, **(values or {})}
         if parameters in tried:
             continue
         tried.append(parameters)

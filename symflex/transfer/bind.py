@@ -339,7 +339,7 @@ def read_values(
     A float counts as the shortest decimal that prints it, so ``0.1`` is 1/10. Raises UsageError: SF902 for an
     unknown name or a value that is not a finite number; ModelError: SF229 when a parameter has no value.
     """
-    names = [p.name for p in parameters if not p.is_imaginary]
+    names = [p.name for p in parameters if not p.is_imaginary or isinstance(given.get(p.name), ExactValue)]
     for name in given:
         if name not in names:
             hint = nearest(name, names) or "parameters: " + ", ".join(names)
@@ -357,7 +357,7 @@ def values_for(
     model: Model, used: tuple[ModelParameter, ...], given: Mapping[str, Given]
 ) -> tuple[tuple[str, ExactValue], ...]:
     """Return the values of parameters that are used, and of others that are given: :func:`read_values`."""
-    known = {p.name: p for p in model.parameters if not p.is_imaginary}
+    known = {p.name: p for p in model.parameters}
     if unknown := [n for n in given if n not in known]:
         read_values(model.parameters, {unknown[0]: given[unknown[0]]})
     return read_values((*used, *(known[n] for n in given if known[n] not in used)), given)
@@ -481,9 +481,9 @@ def is_degenerate(tf: TransferFunction) -> bool:
 
 def _substitution(tf: TransferFunction, values: Sequence[tuple[str, ExactValue]]) -> _Substitution:
     coordinate = [COORDINATE] if any(law.matrix for law in tf.kernels.dispersions) else []
-    unit = [p.name for p in tf.parameters if p.is_imaginary]
-    ring = Ring((LAPLACE, "pi", *unit, *coordinate, *_used_constants(tf), *tf.kernels.generators))
     table = dict(values)
+    unit = [name for name, value in values if value.is_imaginary]
+    ring = Ring((LAPLACE, "pi", *unit, *coordinate, *_used_constants(tf), *tf.kernels.generators))
     return _Substitution(ring, tf.ratio.ring, table, _radicals(tf, ring, table))
 
 

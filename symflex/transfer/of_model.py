@@ -334,7 +334,7 @@ def derive_for_roots(
     roots are found faster without it. With ``is_explained`` the expanded form is wanted for more than roots.
     Raises what :func:`derive_bound` raises otherwise.
     """
-    if not model.is_distributed or not _may_be_large(model, 1):
+    if not model.is_distributed or model.imaginary or not _may_be_large(model, 1):
         return derive_bound(model, pairs)
     numbered = with_numbers(model, in_kernels=True)
     equations = assemble_sparse(numbered)

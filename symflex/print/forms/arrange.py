@@ -29,6 +29,7 @@ from symflex.expressions import (
     quotient,
     sum_of,
 )
+from symflex.model.model import IMAGINARY
 from symflex.transfer.derive import ClosedDefinitions
 from symflex.transfer.of_model import UNASKED
 
