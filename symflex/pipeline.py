@@ -15,6 +15,7 @@ when they are first used, as most commands need few of them, and many of their r
 
 from __future__ import annotations
 
+from functools import wraps
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -22,6 +23,7 @@ from typing import TYPE_CHECKING, Final
 from symflex.errors import Source
 from symflex.model import load_with
 from symflex.model import spec as spec_room
+from symflex.model.loss_factors import check_causal
 from symflex.print.warnings import warnings
 from symflex.transfer import bind, derive, nested_transfer
 from symflex.transfer.of_model import (
@@ -39,7 +41,7 @@ from symflex.transfer.of_model import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from symflex.analysis.explanation import ZeroExplanation
     from symflex.analysis.measured import fit, measure
@@ -116,12 +118,39 @@ LATER: Final = {
 """Where the function behind an arrow is, and its name there."""
 
 
+OTHER_S: Final = {
+    "rational": "a rational approximation",
+    "residues": "a residue",
+    "sensitivities": "a sensitivity",
+    "forced_response": "a response in time",
+    "time_response": "a response in time",
+    "stability": "stability of a loop",
+    "characteristic_loop": "a root locus or a loop gain",
+    "colocation": "a bound on colocation",
+    "measure": "a synthetic measurement",
+    "plan_sweep": "a sweep",
+}
+"""Arrows that need more of a model than its values at s = j omega, and what they make."""
+
+
+def _causal(function: Callable[..., object], what: str) -> Callable[..., object]:
+    """Return a function of a model, or of a function of one, that refuses those with loss factors."""
+
+    @wraps(function)
+    def checked(subject: Model | AnyBoundFunction, *given: object, **options: object) -> object:
+        check_causal(getattr(getattr(subject, "source", None), "model", subject), what)
+        return function(subject, *given, **options)
+
+    return checked
+
+
 def __getattr__(name: str) -> object:
     if name not in LATER:
         message = f"module 'symflex.pipeline' has no attribute '{name}'"
         raise AttributeError(message)
     room, function = LATER[name]
-    return getattr(import_module(f"symflex.{room}"), function)
+    found = getattr(import_module(f"symflex.{room}"), function)
+    return _causal(found, OTHER_S[name]) if name in OTHER_S else found
 
 
 def parse(text: str, name: str = "<string>") -> Spec:
@@ -174,6 +203,7 @@ def state_space(
     """
     from symflex import state_space as state_space_room
 
+    check_causal(model, "a state-space model")
     found = state_space_room.realise(model, model.transfer_functions if pairs is None else pairs)
     return state_space_room.minimal(found) if is_minimal else found
 
@@ -182,4 +212,5 @@ def explain_zeros(model: Model, bound: BoundTransferFunction, found: PoleZeroMap
     """Return what the zeros are the poles of; see :func:`symflex.analysis.explanation.explain_zeros`."""
     from symflex.analysis import explanation as explanation_room  # imports numpy
 
+    check_causal(model, "an explanation of zeros")
     return explanation_room.explain_zeros(model, bound, found, nested_transfer)

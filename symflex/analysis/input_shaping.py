@@ -25,6 +25,7 @@ from flint import acb, arb
 from symflex.analysis.joint_shaping import joint_impulses
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.errors.diagnostic import nearest
+from symflex.model.loss_factors import check_causal
 from symflex.print.text import Passage, passages_text
 from symflex.roots import Everything, Modes
 from symflex.roots.locate import locate
@@ -208,6 +209,7 @@ def input_shaper(
     if kind not in SHAPERS:
         hint = nearest(kind, SHAPERS) or "kinds: " + ", ".join(SHAPERS)
         raise UsageError(Diagnostic("SF902", f"there is no shaper '{kind[:64]}'", None, hint))
+    check_causal(bound.source.model, "an input shaper")
     region = Modes(modes + MORE_MODES) if bound.is_distributed else Everything()
     located = locate(bound, region, digits + MORE_DIGITS).complete()
     ringing = [root for root in located.poles if root.im > 0]

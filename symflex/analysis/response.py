@@ -32,6 +32,7 @@ from flint import acb, ctx
 
 from symflex.budget import entered_budget, spend
 from symflex.errors import Diagnostic, SymflexError, UncertifiedError, UsageError
+from symflex.model.loss_factors import check_causal
 from symflex.roots import Band, Certificate, Everything, PoleZeroMap
 from symflex.roots.counting.winding import Winding, continuous_step
 from symflex.roots.functions.kernel_function import KernelFunction, Sample
@@ -362,6 +363,10 @@ def respond(
     quantity, unit = bound.source.quantity, bound.source.unit
     if bound.is_zero:
         return SampledResponse(bound.name, grid, np.zeros(grid.shape, np.complex128), quantity, unit)
+    if bound.source.model.imaginary:
+        if not (grid > 0).all():
+            check_causal(bound.source.model, "a response at omega <= 0")
+        return SampledResponse(bound.name, grid, evaluate(bound, grid), quantity, unit)
     values = evaluate(bound, grid)
     of_network = _network_turns(bound, grid, values) if isinstance(bound, BoundNested) else None
     if of_network is not None:

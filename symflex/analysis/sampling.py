@@ -33,6 +33,7 @@ from symflex.analysis.time_response.sample_times import SampleTimes
 from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
 from symflex.errors.optional import installed
+from symflex.model.loss_factors import check_causal
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.polynomial_roots import find_polynomial_roots
 from symflex.roots.precision import bits_for_digits, precision
@@ -160,6 +161,7 @@ def sampled_transfer_function(bound: BoundTransferFunction, sampling: Sampling) 
     >>> [c.round(9).tolist() for c in found.coefficients()]  # (z + 1)/22 over z - 9/11
     [[0.045454545, 0.045454545], [1.0, -0.818181818]]
     """
+    check_causal(bound.source.model, "a sampled function")
     bound = without_lengths_of_zero(bound)
     digits = FIRST_DIGITS
     while digits <= LAST_DIGITS:

@@ -9,6 +9,7 @@ from symflex import pipeline
 from symflex.api.analyses import Analyses
 from symflex.api.response import TimeResponse
 from symflex.api.root import Sensitivity, SensitivityTable
+from symflex.model.loss_factors import check_causal
 from symflex.options import RootsOptions
 
 if TYPE_CHECKING:
@@ -58,6 +59,8 @@ class BoundTransferFunction(Analyses):
         import numpy as np
 
         points = np.asarray(s, dtype=complex)
+        if not ((points.real == 0) & (points.imag > 0)).all():
+            check_causal(self.bound.source.model, "a value at another s")
         if points.ndim == 0:
             return self.bound(complex(points))
         values = np.array([self.bound(complex(p)) for p in points.ravel()], dtype=complex)
@@ -301,4 +304,5 @@ class BoundTransferFunction(Analyses):
 
     def dcgain(self) -> float:
         """Return the limit for s -> 0 from the right, possibly infinite."""
+        check_causal(self.bound.source.model, "a value at s = 0")
         return self.bound.limit_at_zero()

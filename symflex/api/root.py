@@ -97,13 +97,19 @@ class Root:
 
     @property
     def frequency_hz(self) -> float:
-        """Natural frequency abs(s)/(2 pi) [Hz]."""
+        """Natural frequency abs(s)/(2 pi) [Hz]; with loss factors omega/(2 pi), see :attr:`loss_factor`."""
         return self.certified_root.frequency_hz()
 
     @property
     def damping_ratio(self) -> float | None:
         """``-re/abs(s)``, None at the origin."""
         return self.certified_root.damping_ratio()
+
+    @property
+    def loss_factor(self) -> float | None:
+        """The loss factor eta of ``s^2 = -omega^2 (1 + j eta)``, in models that have loss factors; else None."""
+        factor = self.certified_root.loss_factor()
+        return None if factor is None else float(factor.mid())
 
     def __repr__(self) -> str:
         printed = self.certified_root.decimal(SHOWN_DIGITS).told

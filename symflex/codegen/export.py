@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Protocol
 from symflex.codegen.module_text import formula_of, identifiers
 from symflex.codegen.program.verify import SAMPLES, choose_programs
 from symflex.errors import Diagnostic, ModelError
+from symflex.model.loss_factors import check_causal
 from symflex.transfer import NestedTransferFunction
 
 if TYPE_CHECKING:
@@ -138,6 +139,7 @@ class Language:
     summary: str  # what is made, in a line
     print: Callable[[Contents], Export]  # makes the file of its contents
     solves: bool = False  # true where there is what solves networks of line elements
+    is_complex: bool = False  # true where parameters may be complex, as the imaginary unit is
     follows: bool = False  # true where there is what follows waves through members that vary along x
 
     def export(
@@ -179,6 +181,8 @@ class Language:
         >>> next(line for line in text.splitlines() if line.startswith("function V_over_F("))
         'function V_over_F(s::Number; m::Number = 2.0, b::Number = 3.0)'
         """
+        if not self.is_complex:
+            check_causal(model, "code in this language")
         if not self.solves:
             _refuse_networks(tfs)
         for tf in tfs:

@@ -154,6 +154,8 @@ def default_value(parameter: ModelParameter) -> str:
     Raises ModelError: SF233 when it does not fit in double precision.
     """
     value = parameter.value
+    if parameter.is_imaginary:
+        return "1j"
     return "" if value is None else repr(nearest_double(value.rational, value.pi_power))
 
 

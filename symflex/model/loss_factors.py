@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from symflex.errors import Span
     from symflex.expressions import Expression
     from symflex.library.elements import Element
-    from symflex.model.model import Model
     from symflex.model.network import Draft
     from symflex.model.reading import Reader
 
@@ -75,14 +74,14 @@ def with_loss(
     return tuple((n, replace(product_of([e, loss]), span=e.span) if n in lossy else e) for n, e in values)
 
 
-def check_causal(model: Model, what: str) -> None:
-    """Refuse what needs more than s = j omega of a model with loss factors.
+def check_causal(model: object, what: str) -> None:
+    """Refuse what needs more than s = j omega of a model with loss factors; other subjects pass.
 
     Raises ModelError: SF251 the model holds j.
     """
-    unit = model.imaginary
+    unit = getattr(model, "imaginary", None)
     if unit is None:
         return
-    message = f"{what} needs the model at other s than j*omega, where a loss factor (j) has no meaning"
-    hint = "frequency responses and modes are there; a viscous damper or eta in seconds is causal"
+    message = f"{what} is not there with loss factors (j), which hold on s = j*omega, omega > 0, alone"
+    hint = "there are frequency responses, and 'roots' for the modes; dampers, and eta in seconds, hold at every s"
     raise ModelError(Diagnostic("SF251", message, unit.span, hint))

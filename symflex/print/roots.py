@@ -171,6 +171,21 @@ TERMINAL_COLUMNS: Final = (
 """Of tables in a terminal; the first two, the parts of s, stand below each other where lines are short."""
 
 
+LOSS_FACTOR: Final = RootColumn("eta", (), "", lambda root, printed, digits: _loss_factor(root, digits))
+"""Takes the place of the damping ratio where the model has loss factors."""
+
+
+def _loss_factor(root: Root, digits: int) -> str:
+    factor = root.loss_factor()
+    return "" if factor is None else f"{float(factor.mid()):.{min(digits, 6)}g}"
+
+
+def terminal_columns(roots: Sequence[Root]) -> tuple[RootColumn, ...]:
+    """Return the columns of a table in a terminal."""
+    is_lossy = any(root.loss_factor() is not None for root in roots)
+    return (*TERMINAL_COLUMNS[:-1], LOSS_FACTOR) if is_lossy else TERMINAL_COLUMNS
+
+
 CAUSES: Final = {
     "cancelled": "cancelled between numerator and denominator",
     "coincident": "poles and zeros that agree in all digits",
@@ -249,8 +264,9 @@ def _root_table(roots: Sequence[Root], digits: int, width: int) -> list[str]:
     """Return a line per real root or conjugate pair, or two where one is too long."""
     if not roots:
         return []
-    rows = _root_rows(roots, digits)
-    heads = [column.head for column in TERMINAL_COLUMNS]
+    columns = terminal_columns(roots)
+    rows = _root_rows(roots, columns, digits)
+    heads = [column.head for column in columns]
     lines = aligned([("", *heads), *rows])
     if max(map(len, lines)) <= width:
         return lines
@@ -265,14 +281,14 @@ def _root_table(roots: Sequence[Root], digits: int, width: int) -> list[str]:
     return [line for row in rows for line in _root_paragraph(row)][:-1]
 
 
-def _root_rows(roots: Sequence[Root], digits: int) -> list[tuple[str, ...]]:
+def _root_rows(roots: Sequence[Root], columns: Sequence[RootColumn], digits: int) -> list[tuple[str, ...]]:
     """Return flags, real and imaginary part and what stands beside them; a conjugate pair is one row."""
     rows = []
     for entry in one_of_each_pair(roots):
         root = entry.root
         times = f"x{root.multiplicity}" if root.multiplicity > 1 else ""
         flags = times + ("" if root.certified else "?") + ("|" if root.on_boundary else "")
-        rows.append((flags, *entry.cells(TERMINAL_COLUMNS, digits, "+-")))
+        rows.append((flags, *entry.cells(columns, digits, "+-")))
     return rows
 
 

@@ -8,6 +8,7 @@ import sympy
 
 from symflex.algebra import LAPLACE
 from symflex.expressions import FUNCTIONS, Bessel, Call, Expression, Name, fold, substitute
+from symflex.model.loss_factors import check_causal
 from symflex.model.units import exact_expression
 from symflex.state_space import not_rational
 from symflex.transfer import BoundTransferFunction
@@ -26,7 +27,8 @@ if TYPE_CHECKING:
 
 def symbols_of(model: Model) -> dict[str, sympy.Symbol]:
     """Return one SymPy symbol per parameter, with its assumption; others are made without any."""
-    return {p.name: sympy.Symbol(p.name, **{p.assume: True}) for p in model.parameters}
+    found = {p.name: sympy.Symbol(p.name, **{p.assume: True}) for p in model.parameters}
+    return found | {p.name: sympy.I for p in model.parameters if p.is_imaginary}
 
 
 def to_sympy(expression: Expression, symbols: Mapping[str, sympy.Symbol]) -> sympy.Expr:

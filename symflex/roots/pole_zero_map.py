@@ -514,7 +514,9 @@ def _locate(
 
 def _root_to_json(root: Root, digits: int) -> dict[str, object]:
     decimals = root.decimal(digits)
+    factor = root.loss_factor()
     return {
+        **({} if factor is None else {"loss_factor": float(factor.mid())}),
         "re": decimals.re,
         "im": decimals.im,
         "radius": decimals.radius,

@@ -123,6 +123,10 @@ class Root:
         with precision(FLOAT_BITS):
             return float((-self.re / frequency).mid())
 
+    def loss_factor(self) -> arb | None:
+        """Return eta_r of ``s^2 = -omega_r^2 (1 + j eta_r)``, of models that have loss factors; else None."""
+        return None
+
     def decimal(self, digits: int) -> RootDecimals:
         """Print the root with at most ``digits`` significant digits in each component.
 

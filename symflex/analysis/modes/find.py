@@ -19,6 +19,7 @@ from symflex.budget import spend
 from symflex.equations import assemble
 from symflex.errors import BudgetError, Diagnostic, UncertifiedError, UsageError
 from symflex.library.elements.element import ACROSS_UNIT, COMPONENT_DOMAIN, COMPONENT_UNIT
+from symflex.model.loss_factors import check_causal
 from symflex.roots import Band, Modes, PoleZeroMap, Region, Root, precision
 from symflex.roots.locate import locate
 from symflex.transfer import BoundNested, nested_transfer
@@ -152,6 +153,7 @@ class _ModeSearch:
         self.bound = bound
         self._maps: dict[tuple[Region | None, int], PoleZeroMap] = {}
         model = bound.source.model
+        check_causal(model, "a mode shape")
         known = bound.source.equations if isinstance(bound, BoundNested) else None
         equations = known or assemble(model, nested_transfer, is_nameless=True)
         given = dict(bound.values)

@@ -24,6 +24,7 @@ from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.errors.optional import installed
 from symflex.model import with_numbers
+from symflex.model.loss_factors import check_causal
 from symflex.roots.locate import locate
 from symflex.roots.precision import to_complex_mpmath
 from symflex.state_space import minimal, not_rational, realise, realise_quotient
@@ -182,6 +183,7 @@ class ExactFunction(RationalFunction):
     """
 
     def __init__(self, bound: BoundTransferFunction, *, is_minimal: bool = False) -> None:
+        check_causal(bound.source.model, "a system of a toolbox")
         if bound.is_distributed:
             raise not_rational(bound.name)
         self._bound = bound

@@ -38,6 +38,7 @@ from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.expressions.format import decimal_exponent
+from symflex.model.loss_factors import check_causal
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import equations_of, lumped
 from symflex.roots.polynomial_roots import find_polynomial_roots
@@ -139,6 +140,8 @@ def responses_by_default(
         times = SampleTimes.evenly(Fraction(until), points)
         return [time_response(bound, kind, times, digits, shaper) for bound in bounds]
 
+    for bound in bounds:
+        check_causal(bound.source.model, "a response in time")
     until = max(map(default_until, bounds))
     try:
         return over(until)

@@ -29,6 +29,7 @@ from symflex.analysis.time_response.modal import proved_modes
 from symflex.analysis.time_response.partial_fractions import EnclosedQuotient, partial_fractions
 from symflex.analysis.time_response.sample_times import SampleTimes
 from symflex.budget import spend
+from symflex.model.loss_factors import check_causal
 from symflex.print.text import Passage
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.polynomial_roots import find_polynomial_roots
@@ -149,6 +150,7 @@ def find_step_info(
     a delay, and with those whose modes are not bounded, as of large networks. With waves, numbers are as
     sharp as the modes left out allow.
     """
+    check_causal(bound.source.model, "a step response")
     if isinstance(bound, BoundNested):
         return None
     bound = without_lengths_of_zero(bound)

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from symflex.codegen.program.nodes import Piecewise
+    from symflex.model import ExactValue
     from symflex.transfer import AnyTransferFunction, BoundTransferFunction, TransferFunction
     from symflex.transfer.bind import Enclosed
 
@@ -238,7 +239,7 @@ def _gauge(tf: AnyTransferFunction, band_hz: tuple[Fraction, Fraction] | None, s
     pieces = None
     if not isinstance(tf, NestedTransferFunction) and tf.is_distributed and not tf.is_zero:
         values = {
-            p.name: nearest_double(p.value.rational, p.value.pi_power) for p in tf.parameters if p.value
+            p.name: double_of(p.value) for p in tf.parameters if p.value
         }
         pieces = Pieces(tf, None if missing else values)
     if missing:
@@ -619,10 +620,15 @@ def keeps_its_value(program: Piecewise, bound: BoundTransferFunction | BoundNest
     return bool((~np.isfinite(expected) | (np.abs(expected) < TINY)).all())
 
 
-def doubles(bound: BoundTransferFunction | BoundNested) -> dict[str, float]:
+def doubles(bound: BoundTransferFunction | BoundNested) -> dict[str, complex]:
     """Return the double nearest to every parameter's value."""
     # A function does not depend on a parameter without value, though the network it is solved from may.
-    others = {p.name: 1.0 for p in bound.source.model.parameters}
+    others: dict[str, complex] = {p.name: 1.0 for p in bound.source.model.parameters}
     declared = {p.name: p.value for p in bound.source.model.parameters if p.value is not None}
     given = declared | dict(bound.values)
-    return others | {name: nearest_double(x.rational, x.pi_power) for name, x in given.items()}
+    return others | {name: double_of(x) for name, x in given.items()}
+
+
+def double_of(value: ExactValue) -> complex:
+    """Return the double nearest to an exact value, or the imaginary unit."""
+    return 1j if value.is_imaginary else nearest_double(value.rational, value.pi_power)

@@ -32,7 +32,7 @@ from symflex.codegen.module_text import (
     wrapped,
 )
 from symflex.codegen.program import evaluate
-from symflex.codegen.program.evaluate import nearest_double
+from symflex.codegen.program.verify import double_of
 from symflex.codegen.python.pieces import WIDTH, BlockText, TracedText, statement
 
 if TYPE_CHECKING:
@@ -229,7 +229,7 @@ def python_module(contents: Contents, dialect: Dialect) -> Export:
     names = identifiers({p.name: p.name for p in model.parameters}, dialect.reserved)
     functions, responses = public_names(members, dialect.reserved)
     values = {
-        p.name: nearest_double(p.value.rational, p.value.pi_power)
+        p.name: double_of(p.value)
         for p in model.parameters
         if p.value is not None
     }
@@ -400,6 +400,7 @@ NUMPY = Language(
     "numpy module, one function per transfer function, verified against ball arithmetic",
     partial(python_module, dialect=NUMPY_DIALECT),
     solves=True,
+    is_complex=True,
     follows=True,
 )
 ARRAY_API = Language(
