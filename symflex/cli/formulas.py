@@ -63,7 +63,7 @@ def check(spec: Specification, given: CheckOptions) -> int:
     counts = ", ".join(
         f"{len(group)} {word}{'' if len(group) == 1 else 's'}"
         for group, word in (
-            (model.parameters, "parameter"),
+            (model.settable, "parameter"),
             (model.nodes, "node"),
             (model.elements, "element"),
             (model.signals, "signal"),

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from symflex.budget import spend
 from symflex.codegen.export import Export
 from symflex.errors import ModelError, SymflexError
+from symflex.model.loss_factors import check_causal
 from symflex.model.model import Figure as Asked
 from symflex.print.forms import print_forms
 from symflex.print.latex import TEXT_WIDTH_MM, Picture, latex_document, latex_files
@@ -128,6 +129,7 @@ class LatexExporter:
         kind, band = asked.kind, asked.band
         if asked.gain and kind in LOOP_FIGURES:
             source = of[0].source
+            check_causal(source.model, "a loop gain")
             if isinstance(source, NestedTransferFunction):
                 loop: AnyLoop = loop_of_model(source.model, asked.gain)
             else:

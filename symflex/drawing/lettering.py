@@ -182,7 +182,7 @@ class Labels:
         if not self.has_values:
             return []
         named = {n.name for e in expressions for n in parts_of(e) if isinstance(n, Name)}
-        shown = [p for p in self.model.parameters if p.name in named and p.value is not None]
+        shown = [p for p in self.model.settable if p.name in named and p.value is not None]
         if len(expressions) == 1 and isinstance(expressions[0], Name):
             return [value_latex(p) for p in shown]  # below its name, which needs no second one
         return [f"{self.name(p.name)} = {value_latex(p)}" for p in shown]

@@ -82,6 +82,6 @@ def check_causal(model: object, what: str) -> None:
     unit = getattr(model, "imaginary", None)
     if unit is None:
         return
-    message = f"{what} is not there with loss factors (j), which hold on s = j*omega, omega > 0, alone"
-    hint = "there are frequency responses, and 'roots' for the modes; dampers, and eta in seconds, hold at every s"
+    message = f"{what} is not available with loss factors (j): these hold on s = j*omega, omega > 0, alone"
+    hint = "frequency responses and modes (roots) are available; a damper or eta in seconds holds at every s"
     raise ModelError(Diagnostic("SF251", message, unit.span, hint))

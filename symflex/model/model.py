@@ -333,6 +333,11 @@ class Model:
         )
 
     @property
+    def settable(self) -> tuple[ModelParameter, ...]:
+        """The parameters but for the imaginary unit."""
+        return tuple(p for p in self.parameters if not p.is_imaginary)
+
+    @property
     def imaginary(self) -> ModelParameter | None:
         """The imaginary unit, where a loss factor or an expression has brought it in."""
         return next((p for p in self.parameters if p.is_imaginary), None)

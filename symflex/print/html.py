@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Final
 from symflex.print.forms import print_form
 from symflex.print.latex import model_labels, notebook_latex
 from symflex.print.latex.table import decimal_text
-from symflex.print.roots import PAGE_COLUMNS, one_of_each_pair, region_text, roots_of
+from symflex.print.roots import PAGE_COLUMNS, columns_for, one_of_each_pair, region_text, roots_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from symflex.model import Model, ModelParameter
-    from symflex.print.roots import PrintedRoot
+    from symflex.print.roots import PrintedRoot, RootColumn
     from symflex.print.text import Passage
     from symflex.roots import PoleZeroMap
     from symflex.transfer import BoundTransferFunction
@@ -127,7 +127,7 @@ def model_html(model: Model) -> str:
     lines = [f"<div><strong>{title}</strong>"]
     if model.source:
         lines.append(f"<div>{_cut(model.source)}</div>")
-    if model.parameters:
+    if model.settable:
         labels = model_labels(model)
         rows = [
             (
@@ -136,7 +136,7 @@ def model_html(model: Model) -> str:
                 *_written(p),
                 _cut(p.doc),
             )
-            for p in model.parameters
+            for p in model.settable
         ]
         head = ("Symbol", "Name", "Value", "Unit", "Meaning")
         lines.append(html_table(head, (TEXT, TEXT, NUMBER, TEXT, TEXT), rows))
@@ -202,16 +202,17 @@ def roots_html(found: PoleZeroMap) -> str:
         caption += f"<br>shown: {escape_html(shown)}"
     if found.excluded:
         caption += f"<br>{len(found.excluded)} neighbourhoods where roots accumulate are left out"
+    columns = columns_for(PAGE_COLUMNS, found.all_poles + found.zeros)
     rows = [
-        _root_cells(word, entry)
+        _root_cells(word, entry, columns)
         for kind, word in (("poles", "pole"), ("zeros", "zero"), ("hidden", "hidden"))
         for entry in one_of_each_pair(roots_of(found, kind))
     ]
-    head = ("", *(column.head for column in PAGE_COLUMNS))
-    return html_table(head, (TEXT, *[NUMBER] * len(PAGE_COLUMNS)), rows, caption)
+    head = ("", *(column.head for column in columns))
+    return html_table(head, (TEXT, *[NUMBER] * len(columns)), rows, caption)
 
 
-def _root_cells(word: str, entry: PrintedRoot) -> tuple[str, ...]:
+def _root_cells(word: str, entry: PrintedRoot, columns: Sequence[RootColumn]) -> tuple[str, ...]:
     mark = ("" if entry.root.certified else " ?") + (" |" if entry.root.on_boundary else "")
-    shown = entry.cells(PAGE_COLUMNS, DIGITS, "&pm;")
+    shown = entry.cells(columns, DIGITS, "&pm;")
     return (f"{word}{mark}", *(cell.replace("-", "\u2212") for cell in shown))

@@ -171,19 +171,22 @@ TERMINAL_COLUMNS: Final = (
 """Of tables in a terminal; the first two, the parts of s, stand below each other where lines are short."""
 
 
-LOSS_FACTOR: Final = RootColumn("eta", (), "", lambda root, printed, digits: _loss_factor(root, digits))
-"""Takes the place of the damping ratio where the model has loss factors."""
-
-
-def _loss_factor(root: Root, digits: int) -> str:
+def _loss_factor(root: Root, printed: RootDecimals, digits: int) -> str:
     factor = root.loss_factor()
     return "" if factor is None else f"{float(factor.mid()):.{min(digits, 6)}g}"
 
 
-def terminal_columns(roots: Sequence[Root]) -> tuple[RootColumn, ...]:
-    """Return the columns of a table in a terminal."""
+LOSS_FACTORS: Final = {
+    "damping ratio": RootColumn("loss factor", ("Loss", "factor"), "", _loss_factor),
+    "zeta": RootColumn("eta", (), "", _loss_factor),
+}
+"""What takes the place of a damping ratio where the model has loss factors."""
+
+
+def columns_for(columns: Sequence[RootColumn], roots: Sequence[Root]) -> list[RootColumn]:
+    """Return the columns of a table of some roots: of those with loss factors, these and no damping ratios."""
     is_lossy = any(root.loss_factor() is not None for root in roots)
-    return (*TERMINAL_COLUMNS[:-1], LOSS_FACTOR) if is_lossy else TERMINAL_COLUMNS
+    return [LOSS_FACTORS.get(c.name, c) if is_lossy else c for c in columns]
 
 
 CAUSES: Final = {
@@ -264,7 +267,7 @@ def _root_table(roots: Sequence[Root], digits: int, width: int) -> list[str]:
     """Return a line per real root or conjugate pair, or two where one is too long."""
     if not roots:
         return []
-    columns = terminal_columns(roots)
+    columns = columns_for(TERMINAL_COLUMNS, roots)
     rows = _root_rows(roots, columns, digits)
     heads = [column.head for column in columns]
     lines = aligned([("", *heads), *rows])

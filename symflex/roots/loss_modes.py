@@ -6,16 +6,16 @@ Output: a :class:`~symflex.roots.PoleZeroMap` of the roots with im s >= 0, as j 
     m s^2 + k (1 + j eta):  s^2 = -omega_r^2 (1 + j eta_r),  omega_r = sqrt(k/m),  eta_r = eta
 
 A polynomial f = g + j h with real g and h has the roots of ``g^2 + h^2 = f(s) conj(f)(s)`` at which f vanishes;
-g and h being coprime, conj(f) does not. Of a function with kernels the roots without losses are followed while
-j grows from 0 to the imaginary unit, and each is proved by an interval Newton step; that there are no others is
-counted where the argument can be followed around them.
+g and h being coprime, conj(f) does not. Of a function with kernels Newton steps begin at
+the roots without losses, and each root is proved by an interval Newton step; that there are no others is not.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
+from itertools import combinations
 from typing import TYPE_CHECKING, Final
 
 from flint import acb, acb_series, arb
@@ -24,6 +24,7 @@ from symflex.algebra import Factored, by_powers, degree_in
 from symflex.algebra.interval_newton import stays_inside
 from symflex.budget import spend
 from symflex.errors import Diagnostic, UncertifiedError
+from symflex.model import with_numbers
 from symflex.model.model import IMAGINARY, ExactValue
 from symflex.roots.engines import POLYNOMIAL
 from symflex.roots.pole_zero_map import Certificate, HiddenRoot, PoleZeroMap, StabilityVerdict
@@ -34,6 +35,7 @@ from symflex.roots.region import Everything, Position
 from symflex.roots.root import Root
 from symflex.transfer import bind
 from symflex.transfer.balls import expansion
+from symflex.transfer.of_model import derive_all
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -46,10 +48,8 @@ if TYPE_CHECKING:
 NO_STABILITY: Final = StabilityVerdict(
     "unknown", None, certified=False, reason="loss factors hold on s = j*omega only, and say nothing of stability"
 )
-FOLLOWED = "roots without losses, followed"
-NOT_COUNTED = "each root is proved; that no other lies between them is not"
-STEPS: Final = 8
-"""From no losses to all."""
+FOLLOWED: Final = "Newton steps from roots without losses"
+NOT_COUNTED: Final = "each root is proved; that no other lies between them is not"
 NEWTON: Final = 60
 DOUBLINGS: Final = 5
 """Of digits, until a root is told from its mirror image."""
@@ -178,48 +178,53 @@ def _lossy(root: Root) -> Root:
 
 
 def _followed(bound: BoundTransferFunction, region: Region, digits: int) -> list[list[Root]]:
-    """Return poles and zeros of a function with kernels, followed from no losses, and nothing hidden."""
+    """Return poles and zeros of a function with kernels, begun at those without losses, and nothing hidden.
+
+    Raises UncertifiedError: SF402 two of them become one.
+    """
     from symflex.roots.locate import locate  # the two know each other
 
-    plain = bind(bound.source, {**dict(bound.values), IMAGINARY: ExactValue(Fraction(0))})
-    known = locate(plain, region, digits)
+    model, source = bound.source.model, bound.source
+    others = [p.name for p in model.settable]
+    without = with_numbers(model, others, {IMAGINARY: ExactValue(Fraction(0))}, in_kernels=True)
+    (plain,) = derive_all(without, [(source.output.name, source.input.name)])
+    known = locate(bind(plain, {n: v for n, v in bound.values if n != IMAGINARY}), region, digits)
     bits = int(digits * 3.33) + GUARD_BITS
     found: list[list[Root]] = []
     for roots, part in ((known.poles, bound.den), (known.zeros, bound.num)):
-        moved: list[Root] = []
-        for root in (r for r in roots if not r.im < 0):
-            moved.append(_lossy(root) if root.is_zero else _moved(bound, part, root, bits))
+        function = _series(bound, part, bits)
+        moved = [_lossy(r) if r.is_zero else _moved(bound.name, function, r, bits) for r in roots if not r.im < 0]
+        if any(a.enclosure().overlaps(b.enclosure()) for a, b in combinations(moved, 2)):
+            raise _not_followed(bound.name, moved[-1])
         found.append(moved)
     return [*found, []]
 
 
-def _moved(bound: BoundTransferFunction, part: Factored, root: Root, bits: int) -> Root:
+def _moved(name: str, function: Callable[[acb], tuple[acb, acb]], root: Root, bits: int) -> Root:
     """Return the root that one without losses becomes, proved.
 
-    Raises UncertifiedError: SF402 it cannot be followed, or is not simple.
+    Raises UncertifiedError: SF402 it is not found near, or is not simple.
     """
     at = root.enclosure().mid()
-    for step in range(1, STEPS + 1):
-        share = ExactValue(Fraction(step, STEPS), is_imaginary=True)
-        values = tuple((n, share if n == IMAGINARY else v) for n, v in bound.values)
-        function = _series(replace(bound, values=values), part, bits)
-        with precision(bits):
-            for _ in range(NEWTON):
-                spend()
-                value, slope = function(at)
-                change = (value / slope).mid()
-                at = (at - change).mid()
-                if not abs(change) > abs(at) * arb(2) ** (GUARD_BITS // 2 - bits):
-                    break
     with precision(bits):
+        for _ in range(NEWTON):
+            spend()
+            value, slope = function(at)
+            change = (value / slope).mid()
+            at = (at - change).mid()
+            if not abs(change) > abs(at) * arb(2) ** (GUARD_BITS // 2 - bits):
+                break
         reach = (abs(at) * arb(2) ** (GUARD_BITS - 8 - bits)).mid()
         box = acb(arb(at.real, reach), arb(at.imag, reach))
-        if not stays_inside(function(at)[0] / function(box)[1], reach):
-            message = f"a mode of {bound.name} near {float(abs(at).mid()):.6g} rad/s cannot be followed to its losses"
-            raise UncertifiedError(
-                Diagnostic("SF402", message, None, "modes of one frequency; frequency responses show both")
-            )
+        is_near = abs(at - root.enclosure()) < abs(at) / 2 and at.imag > 0
+        if not (is_near and stays_inside(function(at)[0] / function(box)[1], reach)):
+            raise _not_followed(name, root)
     return LossyRoot(box.real, box.imag, 1, on_imaginary_axis=False, is_real=False)
+
+
+def _not_followed(name: str, root: Root) -> UncertifiedError:
+    message = f"a mode of {name} near {root.frequency_hz():.6g} Hz cannot be followed from no losses"
+    return UncertifiedError(Diagnostic("SF402", message, None, "look at its frequency response"))
 
 
 def _series(bound: BoundTransferFunction, part: Factored, bits: int) -> Callable[[acb], tuple[acb, acb]]:

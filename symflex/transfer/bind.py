@@ -339,9 +339,9 @@ def read_values(
     A float counts as the shortest decimal that prints it, so ``0.1`` is 1/10. Raises UsageError: SF902 for an
     unknown name or a value that is not a finite number; ModelError: SF229 when a parameter has no value.
     """
-    names = [p.name for p in parameters if not p.is_imaginary or isinstance(given.get(p.name), ExactValue)]
+    names = [p.name for p in parameters if not p.is_imaginary]
     for name in given:
-        if name not in names:
+        if name not in names and not getattr(given[name], "is_imaginary", False):
             hint = nearest(name, names) or "parameters: " + ", ".join(names)
             raise UsageError(Diagnostic("SF902", f"there is no parameter '{name[:64]}'", None, hint))
     values = [(p.name, _read_value(p, given[p.name]) if p.name in given else p.value) for p in parameters]
@@ -416,6 +416,8 @@ def bind(tf: TransferFunction, values: Mapping[str, Given] | None = None) -> Bou
     Values are in SI units or have a unit ("0.8 m"). Raises ModelError: SF229 a parameter without value,
     SF231 the denominator vanishes for these values; UsageError: SF902 an unknown parameter.
     """
+    if tf.model.imaginary:
+        tf.kernels.without_tapers("a loss factor is", "divide it into uniform members")
     used = (*tf.parameters, *(p for p in tf.hidden_parameters if p not in tf.parameters))
     exact = values_for(tf.model, used, dict(values or {}))
     if tf.is_large:

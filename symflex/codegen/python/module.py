@@ -359,7 +359,7 @@ def public_names(
 def parameter_table(model: Model, names: Mapping[str, str]) -> str:
     """Return the dictionary of all parameters: value, unit and description."""
     lines = ["PARAMETERS: dict[str, dict[str, float | str | None]] = {"]
-    for parameter in model.parameters:
+    for parameter in model.settable:
         entries = [
             f'"value": {default_value(parameter) or None}',
             f'"unit": {literal(parameter.unit)}',

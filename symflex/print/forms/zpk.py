@@ -10,6 +10,7 @@ from flint import arb, fmpz
 from symflex.algebra import LAPLACE
 from symflex.errors import BudgetError, Diagnostic, UncertifiedError
 from symflex.expressions import Expression, Name, number, power, product_of, sum_of
+from symflex.model.loss_factors import check_causal
 from symflex.print.forms.printed import PrintedForm
 from symflex.roots import precision
 from symflex.roots.locate import locate
@@ -31,6 +32,7 @@ def zpk_form(tf: TransferFunction, digits: int) -> PrintedForm:
     Raises ModelError: SF229 when a parameter has no value; BudgetError: SF506 when the time is over;
     UncertifiedError: SF404 when roots could not be told apart, for then no factor is known to be theirs.
     """
+    check_causal(tf.model, "the zpk form")
     bound = bind(tf)
     if bound.ratio.is_zero:
         return PrintedForm("zpk", number(0), number(1))

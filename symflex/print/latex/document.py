@@ -163,9 +163,9 @@ def _blocks(
         if found.tf not in known:
             message = f"poles and zeros of '{found.tf[:64]}', which is not among the transfer functions"
             raise UsageError(Diagnostic("SF902", message))
-    if model.parameters:
+    if model.settable:
         values = f"Values have {VALUE_DIGITS} significant digits where they are not shorter."
-        if all(p.value is None for p in model.parameters):
+        if all(p.value is None for p in model.settable):
             values = "All parameters are symbolic."
         yield _Block(f"\\section{{Parameters}}\n\n{values}{_BEFORE_TABLE}")
         yield _table(parameter_table(model, width_mm=width_mm), "parameters", "Parameters")

@@ -17,7 +17,7 @@ from symflex.print.latex.equation import model_labels
 from symflex.print.latex.page import COLUMNS_MM
 from symflex.print.latex.text import escape_text, text_width
 from symflex.print.latex.units import quantity_latex, siunitx_unit, unit_latex
-from symflex.print.roots import MODE_COLUMNS, PAPER_COLUMNS, one_of_each_pair, roots_of
+from symflex.print.roots import MODE_COLUMNS, PAPER_COLUMNS, columns_for, one_of_each_pair, roots_of
 from symflex.print.width import CDOT, DIGIT, EM_MM, MINUS, OPERATOR, SCRIPT, THIN
 
 if TYPE_CHECKING:
@@ -49,16 +49,16 @@ def parameter_table(model: Model, *, width_mm: float = COLUMNS_MM["a4"]) -> str:
     without a value is called symbolic. Needs booktabs, siunitx and array.
     """
     labels = model_labels(model)
-    widths = [symbol(p.name, labels).width for p in model.parameters]
-    symbols = tuple(f"${labels[p.name]}$" for p in model.parameters)
+    widths = [symbol(p.name, labels).width for p in model.settable]
+    symbols = tuple(f"${labels[p.name]}$" for p in model.settable)
     first = TabularColumn("l", ("Symbol",), (text_width("Symbol"),), symbols, max(widths, default=0.0))
-    values = tuple(map(_value, model.parameters))
-    widest = max(map(_value_width, model.parameters), default=0.0)
+    values = tuple(map(_value, model.settable))
+    widest = max(map(_value_width, model.settable), default=0.0)
     last = TabularColumn("l", ("Value",), (text_width("Value"),), values, widest)
     room = width_mm / EM_MM
-    if not any(p.doc for p in model.parameters):
+    if not any(p.doc for p in model.settable):
         return tabular((first, last), fitting((first, last), room) or SETTINGS[-1])
-    texts = tuple(_cut(p.doc) for p in model.parameters)
+    texts = tuple(_cut(p.doc) for p in model.settable)
     meanings = tuple(map(escape_text, texts))
     natural = TabularColumn(
         "l", ("Meaning",), (text_width("Meaning"),), meanings, max(map(text_width, texts))
@@ -103,7 +103,8 @@ def root_table(
     ``kind`` is a key of :data:`~symflex.print.roots.KINDS`.
     """
     entries = one_of_each_pair(roots_of(found, kind))
-    return _table_of(entries, PAPER_COLUMNS, digits, width_mm / EM_MM)
+    columns = columns_for(PAPER_COLUMNS, [e.root for e in entries])
+    return _table_of(entries, columns, digits, width_mm / EM_MM)
 
 
 def mode_table(
@@ -129,7 +130,8 @@ def mode_table(
         # Rigid-body motions are number 0, as mode_shape() counts.
         numbers.append("0" if mode.root.is_zero else str(before + 1))
         before += 0 if mode.root.is_zero else mode.root.multiplicity
-    return _table_of(modes, MODE_COLUMNS, digits, width_mm / EM_MM, ("Mode", numbers))
+    columns = columns_for(MODE_COLUMNS, [m.root for m in modes])
+    return _table_of(modes, columns, digits, width_mm / EM_MM, ("Mode", numbers))
 
 
 def _table_of(

@@ -75,11 +75,11 @@ def specification_section(study: Study) -> ChapterPart:
 def parameter_section(study: Study) -> ChapterPart | None:
     """Return the table of parameters: symbol, value in the unit it was given in, meaning."""
     model = study.model
-    if not model.parameters:
+    if not model.settable:
         return None
     labels = model_labels(model)
     rows: list[tuple[Cell, ...]] = []
-    for p in model.parameters:
+    for p in model.settable:
         symbol = Mathematics(label_mathml(p.name, labels), labels[p.name])
         exact, unit = p.as_written()
         value = "symbolic" if exact is None else exponents(decimal_text(exact))

@@ -11,7 +11,7 @@ from symflex.errors import SymflexError, UncertifiedError
 from symflex.loops import degrees
 from symflex.loops.stability_map import bandwidth_text
 from symflex.print.latex import root_table
-from symflex.print.roots import KINDS, PAGE_COLUMNS, one_of_each_pair, region_text, roots_of
+from symflex.print.roots import KINDS, PAGE_COLUMNS, columns_for, one_of_each_pair, region_text, roots_of
 from symflex.report.document import (
     Badge,
     ChapterPart,
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from symflex.analysis.explanation import ZeroExplanation
     from symflex.loops import DynamicColocation, StabilityMap
-    from symflex.print.roots import PrintedRoot
+    from symflex.print.roots import PrintedRoot, RootColumn
     from symflex.report.document import Block, Cell, Tone
     from symflex.report.study import Study
     from symflex.roots import PoleZeroMap
@@ -41,7 +41,6 @@ if TYPE_CHECKING:
 
 DIGITS: Final = 10
 LONGEST: Final = 80
-HEADS: Final = columns(*((column.head, "number") for column in PAGE_COLUMNS))
 
 
 def root_section(study: Study) -> ChapterPart:
@@ -94,10 +93,12 @@ def _of(found: PoleZeroMap, told: ZeroExplanation | None) -> tuple[Block, ...]:
         roots = roots_of(found, kind)
         entries = one_of_each_pair(roots)
         if entries:
-            rows = tuple(map(_row, entries[:LONGEST]))
+            shown_columns = columns_for(PAGE_COLUMNS, roots)
+            rows = tuple(_row(entry, shown_columns) for entry in entries[:LONGEST])
+            heads = columns(*((column.head, "number") for column in shown_columns))
             count = sum(r.multiplicity for r in roots)
             cut = f" ({LONGEST} of {len(entries)} lines)" if len(entries) > LONGEST else ""
-            blocks.append(Table(HEADS, rows, f"{title}: {count}{cut}", root_table(found, kind)))
+            blocks.append(Table(heads, rows, f"{title}: {count}{cut}", root_table(found, kind)))
         elif kind != "hidden":
             blocks.append(text(f"{title}: none."))
     if told is not None:
@@ -134,8 +135,8 @@ def _told(told: ZeroExplanation) -> list[tuple[str, ...]]:
     return found
 
 
-def _row(entry: PrintedRoot) -> tuple[Cell, ...]:
-    return tuple((exponents(cell),) for cell in entry.cells(PAGE_COLUMNS, DIGITS, "±"))
+def _row(entry: PrintedRoot, shown: Sequence[RootColumn]) -> tuple[Cell, ...]:
+    return tuple((exponents(cell),) for cell in entry.cells(shown, DIGITS, "±"))
 
 
 LOOP_HEADS: Final = columns(
