@@ -107,7 +107,7 @@ class Root:
 
     @property
     def loss_factor(self) -> float | None:
-        """The loss factor eta of ``s^2 = -omega^2 (1 + j eta)``, in models that have loss factors; else None."""
+        """The loss factor eta of ``s^2 = -omega^2 (1 + j eta)``; None in models without any."""
         factor = self.certified_root.loss_factor()
         return None if factor is None else float(factor.mid())
 

@@ -1,7 +1,7 @@
 """Structural damping: loss factors of elements, and the imaginary unit in values and coefficients.
 
-A stiffness with a loss factor is ``k*(1 + j*eta_s)`` (Myklestad 1952; Bishop & Johnson 1960, The Mechanics of
-Vibration, chapter 9). It describes steady motion, s = j omega with omega > 0, and is not causal: as a function
+A stiffness with a loss factor is ``k*(1 + j*eta_s)`` (Myklestad 1952; Bishop & Johnson 1960, The Mechanics
+of Vibration, chapter 9). It describes steady motion, s = j omega with omega > 0, and is not causal: as a function
 of s it belongs to no differential equation with real coefficients, so nothing is said of other s.
 
 Example: ``{ type = "spring", k = "k", eta_s = "eta" }`` has the value ``k*(1 + j*eta)`` from here on.
@@ -39,7 +39,9 @@ def with_imaginary_unit(reader: Reader, draft: Draft) -> Draft:
     taken |= {n.name: None for n in draft.nodes} | {u: f.span for f in draft.fields for u in f.unknowns}
     if IMAGINARY in taken:
         if here is not None and here[1]:
-            message = f"'{IMAGINARY}' is the imaginary unit where an element has a loss factor, and a name here"
+            message = (
+                f"'{IMAGINARY}' is the imaginary unit where an element has a loss factor, and a name here"
+            )
             reader.note("SF211", message, taken[IMAGINARY] or here[0], "rename what the model calls j")
         return draft
     if here is None or any(p.name == IMAGINARY for p in draft.inherited):

@@ -42,8 +42,8 @@ RESERVED: dict[str, str] = {
 }
 """Names that have a meaning of their own, and which."""
 WHERE_J = (
-    "j, with j^2 = -1, makes loss factors, 'k*(1 + j*eta)': it may stand in values of elements (no length), in "
-    "definitions and in [fields]"
+    "j, with j^2 = -1, makes loss factors, 'k*(1 + j*eta)': it may stand in values of elements (no length), "
+    "in definitions and in [fields]"
 )
 LISTED_NAMES = 8
 """Names that a hint lists."""

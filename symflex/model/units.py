@@ -12,9 +12,9 @@ from symflex.library.elements import ACROSS_UNIT, COMPONENT_DOMAIN, THROUGH_UNIT
 from symflex.model.declarations import CycleReading, DeclaredParameter
 from symflex.model.dimensions import DimensionSystem, Measure
 from symflex.model.model import (
+    IMAGINARY,
     INPUT_KINDS,
     Definition,
-    IMAGINARY,
     ExactValue,
     Input,
     ModelParameter,

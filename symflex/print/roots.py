@@ -184,7 +184,7 @@ LOSS_FACTORS: Final = {
 
 
 def columns_for(columns: Sequence[RootColumn], roots: Sequence[Root]) -> list[RootColumn]:
-    """Return the columns of a table of some roots: of those with loss factors, these and no damping ratios."""
+    """Return the columns of a table of roots, with loss factors in place of damping ratios."""
     is_lossy = any(root.loss_factor() is not None for root in roots)
     return [LOSS_FACTORS.get(c.name, c) if is_lossy else c for c in columns]
 

@@ -8,7 +8,6 @@ import sympy
 
 from symflex.algebra import LAPLACE
 from symflex.expressions import FUNCTIONS, Bessel, Call, Expression, Name, fold, substitute
-from symflex.model.loss_factors import check_causal
 from symflex.model.units import exact_expression
 from symflex.state_space import not_rational
 from symflex.transfer import BoundTransferFunction

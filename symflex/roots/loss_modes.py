@@ -5,8 +5,8 @@ Output: a :class:`~symflex.roots.PoleZeroMap` of the roots with im s >= 0, as j 
 
     m s^2 + k (1 + j eta):  s^2 = -omega_r^2 (1 + j eta_r),  omega_r = sqrt(k/m),  eta_r = eta
 
-A polynomial f = g + j h with real g and h has the roots of ``g^2 + h^2 = f(s) conj(f)(s)`` at which f vanishes;
-g and h being coprime, conj(f) does not. Of a function with kernels Newton steps begin at
+A polynomial f = g + j h with real g and h has the roots of ``g^2 + h^2 = f(s) conj(f)(s)`` at which f
+vanishes; g and h being coprime, conj(f) does not. Of a function with kernels Newton steps begin at
 the roots without losses, and each root is proved by an interval Newton step; that there are no others is not.
 """
 
@@ -31,7 +31,7 @@ from symflex.roots.pole_zero_map import Certificate, HiddenRoot, PoleZeroMap, St
 from symflex.roots.polynomial_roots import find_polynomial_roots
 from symflex.roots.precision import precision
 from symflex.roots.problem import problem_of
-from symflex.roots.region import Everything, Position
+from symflex.roots.region import Position
 from symflex.roots.root import Root
 from symflex.transfer import bind
 from symflex.transfer.balls import expansion
@@ -46,7 +46,10 @@ if TYPE_CHECKING:
     from symflex.transfer import BoundTransferFunction
 
 NO_STABILITY: Final = StabilityVerdict(
-    "unknown", None, certified=False, reason="loss factors hold on s = j*omega only, and say nothing of stability"
+    "unknown",
+    None,
+    certified=False,
+    reason="loss factors hold on s = j*omega only, and say nothing of stability",
 )
 FOLLOWED: Final = "Newton steps from roots without losses"
 NOT_COUNTED: Final = "each root is proved; that no other lies between them is not"
@@ -142,11 +145,13 @@ def _upper(
         if None not in sides:
             return [_lossy(r) for r, side in zip(roots, sides, strict=True) if side]
     message = f"a root of {bound.name} is not told from the mirror image of another"
-    raise UncertifiedError(Diagnostic("SF402", message, None, "loss factors as small as this may be left out"))
+    raise UncertifiedError(
+        Diagnostic("SF402", message, None, "loss factors as small as this may be left out")
+    )
 
 
 def _vanishes(bound: BoundTransferFunction, g: fmpz_mpoly, h: fmpz_mpoly, root: Root) -> bool | None:
-    """Tell whether g + j h vanishes at a root of it or its mirror image, ``None`` where that is not decided."""
+    """Tell whether g + j h vanishes at a root of it or of its mirror image, ``None`` if not decided."""
     ring = bound.ratio.ring
     with precision(root.working_bits()):
         values = {name: acb(evaluate()) for name, evaluate in bound.constants} | {"s": root.enclosure()}
@@ -193,7 +198,9 @@ def _followed(bound: BoundTransferFunction, region: Region, digits: int) -> list
     found: list[list[Root]] = []
     for roots, part in ((known.poles, bound.den), (known.zeros, bound.num)):
         function = _series(bound, part, bits)
-        moved = [_lossy(r) if r.is_zero else _moved(bound.name, function, r, bits) for r in roots if not r.im < 0]
+        moved = [
+            _lossy(r) if r.is_zero else _moved(bound.name, function, r, bits) for r in roots if not r.im < 0
+        ]
         if any(a.enclosure().overlaps(b.enclosure()) for a, b in combinations(moved, 2)):
             raise _not_followed(bound.name, moved[-1])
         found.append(moved)

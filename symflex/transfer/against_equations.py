@@ -253,7 +253,9 @@ def _with_kernels(
     from symflex.transfer.enclose_kernels import KernelValues
 
     ring, table = tf.ratio.ring, tf.kernels
-    numbers = {n: x.real if (x := known[n]).imag == 0 else x for n in ring.names if n in known and n != LAPLACE}
+    numbers = {
+        n: x.real if (x := known[n]).imag == 0 else x for n in ring.names if n in known and n != LAPLACE
+    }
     kernels = KernelValues(ring.names, table, numbers, ModalSums(ring, NO_KERNELS), PolynomialMemo(plan))
     values = kernels.at(here.s())
     constants = (tf if isinstance(tf, TransferFunction) else tf.source).constants

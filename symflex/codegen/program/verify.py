@@ -238,9 +238,7 @@ def _gauge(tf: AnyTransferFunction, band_hz: tuple[Fraction, Fraction] | None, s
     missing = [p.name for p in tf.parameters if p.value is None]
     pieces = None
     if not isinstance(tf, NestedTransferFunction) and tf.is_distributed and not tf.is_zero:
-        values = {
-            p.name: double_of(p.value) for p in tf.parameters if p.value
-        }
+        values = {p.name: double_of(p.value) for p in tf.parameters if p.value}
         pieces = Pieces(tf, None if missing else values)
     if missing:
         if isinstance(tf, NestedTransferFunction) and len(missing) > NAMED:

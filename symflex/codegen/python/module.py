@@ -228,11 +228,7 @@ def python_module(contents: Contents, dialect: Dialect) -> Export:
     model, members = contents.model, contents.members
     names = identifiers({p.name: p.name for p in model.parameters}, dialect.reserved)
     functions, responses = public_names(members, dialect.reserved)
-    values = {
-        p.name: double_of(p.value)
-        for p in model.parameters
-        if p.value is not None
-    }
+    values = {p.name: double_of(p.value) for p in model.parameters if p.value is not None}
     blocks, code = [parameter_table(model, names)], ""
     for member in members:
         public = (responses if member.program.is_real else functions)[member.tf.name]

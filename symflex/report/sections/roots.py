@@ -28,6 +28,8 @@ from symflex.report.sections.formulas import ratio
 from symflex.report.study import attempt, said
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from flint import arb
 
     from symflex.analysis.explanation import ZeroExplanation
