@@ -92,7 +92,7 @@ def locate(
     if IMAGINARY in bound.ratio.ring.index:
         is_open = region is None or (bound.is_distributed and isinstance(region, Everything))
         where = default_region(bound) if is_open and bound.is_distributed else region or Everything()
-        return locate_lossy(bound, where, digits)
+        return locate_lossy(bound, where, digits, locate)
     if bound.is_distributed:
         return locate_distributed(bound, region, digits, budget or entered_budget(), with_zeros=with_zeros)
     above = [(f, e) for f, e in bound.ratio.factors if e > 0]

@@ -76,8 +76,15 @@ class LossyRoot(Root):
             return -2 * self.re * self.im / square if square > 0 else None
 
 
-def locate_lossy(bound: BoundTransferFunction, region: Region, digits: int) -> PoleZeroMap:
+def locate_lossy(
+    bound: BoundTransferFunction,
+    region: Region,
+    digits: int,
+    locate: Callable[[BoundTransferFunction, Region, int], PoleZeroMap],
+) -> PoleZeroMap:
     """Find poles and zeros of a function that holds j; see the module.
+
+    ``locate`` finds those of functions that do not.
 
     Raises UncertifiedError: SF402 a root cannot be told from the mirror image of another.
     """
@@ -90,7 +97,7 @@ def locate_lossy(bound: BoundTransferFunction, region: Region, digits: int) -> P
     reason: str | None = None
     engine = POLYNOMIAL
     if bound.is_distributed:
-        found, reason, engine = _followed(bound, region, digits), NOT_COUNTED, FOLLOWED
+        found, reason, engine = _followed(bound, region, digits, locate), NOT_COUNTED, FOLLOWED
     else:
         found = [_of_polynomials(bound, side.factors, digits) for side in (*sides, hidden)]
     poles, zeros, concealed = (_inside(region, roots) for roots in found)
@@ -182,13 +189,16 @@ def _lossy(root: Root) -> Root:
     )
 
 
-def _followed(bound: BoundTransferFunction, region: Region, digits: int) -> list[list[Root]]:
+def _followed(
+    bound: BoundTransferFunction,
+    region: Region,
+    digits: int,
+    locate: Callable[[BoundTransferFunction, Region, int], PoleZeroMap],
+) -> list[list[Root]]:
     """Return poles and zeros of a function with kernels, begun at those without losses, and nothing hidden.
 
     Raises UncertifiedError: SF402 two of them become one.
     """
-    from symflex.roots.locate import locate  # the two know each other
-
     model, source = bound.source.model, bound.source
     others = [p.name for p in model.settable]
     without = with_numbers(model, others, {IMAGINARY: ExactValue(Fraction(0))}, in_kernels=True)
