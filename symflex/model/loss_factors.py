@@ -1,8 +1,8 @@
 """Structural damping: loss factors of elements, and the imaginary unit in values and coefficients.
 
 A stiffness with a loss factor is ``k*(1 + j*eta_s)`` (Myklestad 1952; Bishop & Johnson 1960, The Mechanics
-of Vibration, chapter 9). It describes steady motion, s = j omega with omega > 0, and is not causal: it belongs
-to no differential equation with real coefficients, so nothing is said of other s.
+of Vibration, chapter 9). It describes steady motion, s = j omega with omega > 0, and is not causal: it
+belongs to no differential equation with real coefficients, so nothing is said of other s.
 
 Example: ``{ type = "spring", k = "k", eta_s = "eta" }`` has the value ``k*(1 + j*eta)`` from here on.
 """

@@ -1,4 +1,4 @@
-"""Structural damping: what loss factors and j mean, in numpy with complex stiffnesses, and what they exclude."""
+"""Structural damping: what loss factors mean, by complex stiffnesses in numpy, and what they exclude."""
 
 from __future__ import annotations
 
