@@ -33,10 +33,13 @@ LOSSY = ("k", "E", "G", "EI", "EA", "GJ", "kappaGA")
 def with_imaginary_unit(reader: Reader, draft: Draft) -> Draft:
     """Return a draft with j among its parameters where it is used and means nothing else."""
     here = next(_uses(draft), None)
-    taken = {p.name: p.span for p in draft.declared}
-    taken |= {x.name: x.span for x in (*draft.definitions, *draft.blocks, *draft.signals)}
+    taken: dict[str, Span | None] = {n.name: None for n in draft.nodes}
+    taken |= {p.name: p.span for p in draft.declared}
+    taken |= {x.name: x.span for x in draft.definitions}
+    taken |= {x.name: x.span for x in draft.blocks}
+    taken |= {x.name: x.span for x in draft.signals}
     taken |= {x.input.name: x.input.span for x in draft.inputs}
-    taken |= {n.name: None for n in draft.nodes} | {u: f.span for f in draft.fields for u in f.unknowns}
+    taken |= {u: f.span for f in draft.fields for u in f.unknowns}
     if IMAGINARY in taken:
         if here is not None and here[1]:
             message = (

@@ -319,8 +319,8 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> tuple[Model
     )
     unsound: set[Span | None] = set()
     scopes: dict[Kind, ModelScope] = {"varying": scope.varying(), "constant": scope}
-    units = {p.name for p in draft.inherited if p.is_imaginary}
-    plain = replace(scope, meanings={n: m for n, m in scope.meanings.items() if n not in units})
+    unreal = {p.name for p in draft.inherited if p.is_imaginary}
+    plain = replace(scope, meanings={n: m for n, m in scope.meanings.items() if n not in unreal})
     for expression, kind in _all_expressions(draft):
         problems = _check(expression, scopes.get(kind, plain), constant=kind != "signal")
         reader.take(problems)

@@ -29,7 +29,7 @@ from symflex.equations import assemble
 from symflex.errors import REPORT, Diagnostic, InternalError, ModelError
 from symflex.model import ExactValue
 from symflex.model.along import is_tapered, varies_along_x
-from symflex.transfer.balls import at_centre, ball, enclosure, plan
+from symflex.transfer.balls import Arithmetic, at_centre, ball, enclosure, plan
 from symflex.transfer.direct_solve import (
     DirectSolve,
     GeneratorValues,
@@ -253,7 +253,7 @@ def _with_kernels(
     from symflex.transfer.enclose_kernels import KernelValues
 
     ring, table = tf.ratio.ring, tf.kernels
-    numbers = {
+    numbers: dict[str, Arithmetic] = {
         n: x.real if (x := known[n]).imag == 0 else x for n in ring.names if n in known and n != LAPLACE
     }
     kernels = KernelValues(ring.names, table, numbers, ModalSums(ring, NO_KERNELS), PolynomialMemo(plan))

@@ -100,7 +100,8 @@ def rational_value(expression: Expression, values: Mapping[str, ExactValue]) -> 
 def enclosure(value: ExactValue) -> Callable[[], arb]:
     """Return what encloses an exact value at the precision of the time it is called."""
     if value.is_imaginary:
-        return lambda: acb(0, 1)
+        unit: Arithmetic = acb(0, 1)
+        return lambda: unit
     return lambda: ball(value.rational) * arb.pi() ** value.pi_power
 
 

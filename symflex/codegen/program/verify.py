@@ -618,15 +618,15 @@ def keeps_its_value(program: Piecewise, bound: BoundTransferFunction | BoundNest
     return bool((~np.isfinite(expected) | (np.abs(expected) < TINY)).all())
 
 
-def doubles(bound: BoundTransferFunction | BoundNested) -> dict[str, complex]:
+def doubles(bound: BoundTransferFunction | BoundNested) -> dict[str, Any]:
     """Return the double nearest to every parameter's value."""
     # A function does not depend on a parameter without value, though the network it is solved from may.
-    others: dict[str, complex] = {p.name: 1.0 for p in bound.source.model.parameters}
+    others = {p.name: 1.0 for p in bound.source.model.parameters}
     declared = {p.name: p.value for p in bound.source.model.parameters if p.value is not None}
     given = declared | dict(bound.values)
     return others | {name: double_of(x) for name, x in given.items()}
 
 
-def double_of(value: ExactValue) -> complex:
+def double_of(value: ExactValue) -> Any:  # noqa: ANN401 (complex for one name alone)
     """Return the double nearest to an exact value, or the imaginary unit."""
     return 1j if value.is_imaginary else nearest_double(value.rational, value.pi_power)
