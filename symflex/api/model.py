@@ -42,7 +42,7 @@ class Model:
 
     Parameters
     ----------
-    parameters, definitions, elements, signals, blocks, fields, inputs, outputs : mapping
+    parameters, definitions, elements, signals, equations, blocks, fields, inputs, outputs : mapping
     analysis, figures, drawing, published : mapping
         The tables of the specification language, as Python mappings of the same shape.
     title, source : str
@@ -74,6 +74,7 @@ class Model:
         definitions: Table | None = None,
         elements: Table | None = None,
         signals: Table | None = None,
+        equations: Table | None = None,
         blocks: Table | None = None,
         fields: Table | None = None,
         inputs: Table | None = None,
@@ -90,6 +91,7 @@ class Model:
             "definitions": definitions,
             "elements": elements,
             "signals": signals,
+            "equations": equations,
             "blocks": blocks,
             "fields": fields,
             "inputs": inputs,

@@ -30,7 +30,18 @@ from symflex.equations.equations import ConstantFunction, Continuum, Equations, 
 from symflex.equations.evaluate import ExactEvaluator, Opener, without_squares, written_denominator
 from symflex.equations.radicals import radicals_of
 from symflex.errors import BudgetError, Diagnostic, ModelError, SymflexError
-from symflex.expressions import Call, Expression, Name, Number, format_expression, names, substitute
+from symflex.expressions import (
+    Call,
+    Equation,
+    Expression,
+    Name,
+    Negative,
+    Number,
+    Sum,
+    format_expression,
+    names,
+    substitute,
+)
 from symflex.library.elements import (
     COMPONENTS,
     ElementUse,
@@ -51,6 +62,7 @@ if TYPE_CHECKING:
 
     from symflex.equations.distributed import AlongPoint, Distributed, FieldSolution, State
     from symflex.library.elements import Admittance, Injection, Placing
+    from symflex.library.elements.element import Role
     from symflex.model import Model, NetworkNode, NodeReference, PlacedBlock, PlacedElement
 
 PI = "pi"
@@ -653,15 +665,20 @@ class _Assembly:
         return replace(row, form=form if below.is_one else form * below)
 
     def _equal(self, variable: Variable, expression: Expression, evaluator: ExactEvaluator) -> None:
-        """Add the row ``variable = expression``."""
+        """Add the row ``variable = expression``, or an equation that stands in its place."""
+        role: Role = "signal"
+        given: tuple[tuple[Variable, Factored], ...] = ((variable, Factored.number(self.ring, -1)),)
+        if isinstance(expression, Equation):
+            role, given = "equation", ()
+            expression = Sum((expression.left, Negative(expression.right)), span=expression.span)
         try:
             form = evaluator.linear(expression)
         except SymflexError as error:
             self.problems.extend(error.diagnostics)
             return
-        row = LinearForm.of((variable, Factored.number(self.ring, -1))) + form
+        row = LinearForm.of(*given) + form
         self.unknowns.append(variable)
-        self.rows.append(EquationRow(variable, row * self._cancelled(expression, form, evaluator), "signal"))
+        self.rows.append(EquationRow(variable, row * self._cancelled(expression, form, evaluator), role))
 
     def _output(self, name: str, expression: Expression, evaluator: ExactEvaluator) -> OutputRow | None:
         try:

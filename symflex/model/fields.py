@@ -96,7 +96,7 @@ def _read_field(
     if unknowns is None or domain is None or equations is None or conditions is None:
         return None
     if len(equations) != len(unknowns):
-        one, other = _counted(len(equations), "equation"), _counted(len(unknowns), "unknown")
+        one, other = counted(len(equations), "equation"), counted(len(unknowns), "unknown")
         reader.note(
             "SF242",
             f"{what} has {one} for {other}",
@@ -128,7 +128,7 @@ def _unknowns(
         return None
     good = True
     for text in texts:
-        problem = _name_problem(text.value, taken, owners)
+        problem = name_problem(text.value, taken, owners)
         if problem is not None:
             code, message, hint = problem
             reader.note(code, message, text.span, hint)
@@ -137,7 +137,7 @@ def _unknowns(
     return tuple(t.value for t in texts) if good else None
 
 
-def _name_problem(
+def name_problem(
     name: str, taken: Collection[str], owners: dict[str, str]
 ) -> tuple[str, str, str | None] | None:
     """Return what is wrong with the name of an unknown: code, message and hint."""
@@ -188,7 +188,7 @@ def _equations(reader: Reader, entry: KeyValue, table: TableValue) -> tuple[Equa
         texts = None if text is None else (text,)
     else:
         texts = reader.strings(given, f"equations of {what}", "an array of equations")
-    return _parsed(reader, _few(reader, texts, f"{what} has", "equations", UNKNOWN_LIMIT, given.value.span))
+    return parsed(reader, _few(reader, texts, f"{what} has", "equations", UNKNOWN_LIMIT, given.value.span))
 
 
 def _conditions(reader: Reader, entry: KeyValue, table: TableValue) -> tuple[Equation, ...] | None:
@@ -200,7 +200,7 @@ def _conditions(reader: Reader, entry: KeyValue, table: TableValue) -> tuple[Equ
         return None
     texts = reader.strings(given, f"conditions of field '{entry.key}'", "an array of equations")
     who = f"field '{entry.key}' has"
-    return _parsed(reader, _few(reader, texts, who, "conditions", CONDITION_LIMIT, given.value.span))
+    return parsed(reader, _few(reader, texts, who, "conditions", CONDITION_LIMIT, given.value.span))
 
 
 def _few(
@@ -213,8 +213,8 @@ def _few(
     return None
 
 
-def _parsed(reader: Reader, texts: tuple[Text, ...] | None) -> tuple[Equation, ...] | None:
-    """Return the equations that texts hold, ``None`` when one cannot be read."""
+def parsed(reader: Reader, texts: tuple[Text, ...] | None) -> tuple[Equation, ...] | None:
+    """Return the equations that texts hold; None without texts, or when one cannot be read."""
     found: list[Equation] = []
     for text in texts or ():
         try:
@@ -224,5 +224,6 @@ def _parsed(reader: Reader, texts: tuple[Text, ...] | None) -> tuple[Equation, .
     return tuple(found) if texts is not None and len(found) == len(texts) else None
 
 
-def _counted(count: int, word: str) -> str:
+def counted(count: int, word: str) -> str:
+    """Return a number with a noun."""
     return f"{count} {word}{'' if count == 1 else 's'}"

@@ -33,6 +33,7 @@ SECTIONS = (
     "inputs",
     "outputs",
     "signals",
+    "equations",
     "blocks",
     "fields",
     "published",

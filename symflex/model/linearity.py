@@ -65,15 +65,18 @@ def check_expression(expression: Expression, scope: ModelScope, *, constant: boo
     return degrees.problems
 
 
-def check_equation(equation: Equation, scope: ModelScope) -> list[Diagnostic]:
+def check_equation(equation: Equation, scope: ModelScope, *, acts: bool = False) -> list[Diagnostic]:
     """Return everything wrong with an equation or condition of a field apart from its units.
 
-    The scope of an equation is :meth:`ModelScope.within` its field.
+    The scope of an equation is :meth:`ModelScope.within` its field. With ``acts`` something in it has to vary
+    in time.
     """
     degrees = _Degrees(scope, constant=False)
     sides = (equation.left, equation.right)
     terms = [t for side in sides for t in (side.terms if isinstance(side, Sum) else (side,))]
-    degrees.of(Sum(tuple(terms), span=equation.span))
+    degree = degrees.of(Sum(tuple(terms), span=equation.span))
+    if acts and degree == "constant" and not degrees.problems:
+        degrees.problems.append(without_signal(equation.span))
     return degrees.problems
 
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING, Final, Literal
 
-from symflex.expressions import Attribute, names
+from symflex.expressions import Attribute, Equation, names
 from symflex.library.elements import COMPONENTS, THROUGH_NAME, LineElement, Variable
 from symflex.model.direction import direction_of
 from symflex.quantities import Dimension
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from symflex.errors import Diagnostic, Span
-    from symflex.expressions import Equation, Expression
+    from symflex.expressions import Expression
     from symflex.library.blocks import Block as BlockType
     from symflex.library.elements import Domain, Element, Placing
 
@@ -181,7 +181,10 @@ class FieldProblem:
 
 @dataclass(frozen=True, slots=True)
 class Signal:
-    """A name in the signal-flow part, equal to its expression."""
+    """A name in the signal-flow part, equal to its expression.
+
+    An expression that is an :class:`Equation` is one of ``[equations]``, which determine their unknowns together.
+    """
 
     name: str
     expression: Expression
@@ -320,6 +323,11 @@ class Model:
         return f"<Model {self.title or 'without title'}: {pairs}{more}>"
 
     @property
+    def has_equations(self) -> bool:
+        """True when ``[equations]`` determine some of its signals."""
+        return any(isinstance(x.expression, Equation) for x in self.signals)
+
+    @property
     def is_distributed(self) -> bool:
         """True when something in it extends along x or delays: its transfer functions are not rational."""
         return (
@@ -356,7 +364,7 @@ class Model:
         network = {n.name for n in self.nodes} | {use.name for use in self.elements}
         uses: dict[str, set[str]] = {"": set()}
         told = [(d.name, d.expression) for d in self.definitions]
-        told += [(x.name, x.expression) for x in self.signals]
+        told += [(x.name, x.expression) for x in self.signals if not isinstance(x.expression, Equation)]
         for use in self.elements:
             driven = {port.name for port in use.element.parameters if port.signal}
             told += [("", value) for name, value in use.values if name in driven]

@@ -636,7 +636,9 @@ def broken_names(sections: Mapping[str, TableValue | None], draft: Draft) -> fro
         "blocks": {b.name for b in draft.blocks},
         "fields": {f.name for f in draft.fields},
     }
-    broken: set[str] = set()
+    equations = sections["equations"]
+    entries = equations.entries if equations else ()
+    broken = set(_listed_names(e for e in entries if e.key == "unknowns")) - read["signals"]
     for section, names_read in read.items():
         table = sections[section]
         for entry in table.entries if table else ():

@@ -39,9 +39,10 @@ from symflex.model.declarations import (
     read_signals,
 )
 from symflex.model.dimensions import turned_name
+from symflex.model.equations import check_unknowns, read_equations
 from symflex.model.fields import read_fields, with_brackets_opened
 from symflex.model.headings import CONSEQUENCES, SECTIONS, check_header, read_section, settled_problems
-from symflex.model.linearity import check_expression, without_signal
+from symflex.model.linearity import check_equation, check_expression, without_signal
 from symflex.model.loss_factors import with_imaginary_unit, with_loss
 from symflex.model.model import (
     Definition,
@@ -165,6 +166,7 @@ def resolve(spec: Spec, origin: Origin) -> Model:
     )
     taken = {p.name for p in declared} | {p.name for p in inherited}
     taken |= {d.name for d in definitions} | {b.name for b in blocks}
+    signals += read_equations(reader, sections["equations"], taken, {x.name for x in signals})
     loads = {x.name for x in signals} | {d.input.name for d in inputs}
     fields = with_brackets_opened(
         reader,
@@ -326,6 +328,9 @@ def _finish(reader: Reader, draft: Draft, broken: frozenset[str]) -> tuple[Model
         reader.take(problems)
         if problems:
             unsound.add(expression.span)
+    acting = [e for e, kind in _all_expressions(replace(draft, signals=(), outputs=())) if kind == "signal"]
+    acting += [e for f in draft.fields for e in (*f.equations, *f.conditions)]
+    check_unknowns(reader, draft.signals, acting)
     around = _surroundings(draft, scope)
     _check_lengths(reader, draft, around, unsound)
     check_ranges(reader, draft, around.line, unsound, is_along=False)
@@ -483,6 +488,8 @@ def _covers(outer: Span, inner: Span) -> bool:
 
 
 def _check(expression: Expression, scope: ModelScope, *, constant: bool) -> list[Diagnostic]:
+    if isinstance(expression, Equation):
+        return check_equation(expression, scope, acts=True)
     if not isinstance(expression, QuantityLiteral):
         return check_expression(expression, scope, constant=constant)
     return [] if constant or not expression.quantity.magnitude else [without_signal(expression.span)]

@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symflex.errors import Span
-from symflex.expressions import Expression, Name, names, power, product_of, substitute
+from symflex.expressions import Equation, Expression, Name, names, power, product_of, substitute
 from symflex.library.elements import ACROSS_UNIT, COMPONENT_DOMAIN, THROUGH_UNIT, LineElement, Variable
 from symflex.model.declarations import CycleReading, DeclaredParameter
 from symflex.model.dimensions import DimensionSystem, Measure
@@ -78,7 +78,10 @@ def check_units(
             require(expression, block_unit(block, name), f"{name} of block '{block.name}'", doc)
     _check_fields(draft, system, unsound, fields_placed)
     for signal in draft.signals:
-        if signal.expression.span in unsound:
+        if isinstance(signal.expression, Equation):
+            if signal.expression.span not in unsound:
+                system.balance(signal.expression)
+        elif signal.expression.span in unsound:
             system.measure(signal.expression)
         else:
             system.equate(Variable("signal", signal.name), signal.expression)

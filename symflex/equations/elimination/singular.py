@@ -64,6 +64,17 @@ def explain_singular(equations: Equations) -> ModelError:
         problems.append(Diagnostic("SF302", message, _place(equations, last), "remove one of them"))
     elif conditions := [r for r in rows if r.role == "condition"]:
         problems += _dependent_conditions(equations, conditions)
+    elif written := [r for r in rows if r.role == "equation"]:
+        signals = {x.name: x.expression for x in equations.model.signals}
+        texts = [f"'{format_expression(signals[r.about.owner])}'" for r in written]
+        message = (
+            f"the equations {listed(texts)} repeat or contradict each other"
+            if len(texts) > 1
+            else f"the equation {texts[0]} determines none of the unknowns"
+        )
+        free = listed([f"'{v}'" for v in open_unknowns])
+        place = signals[written[-1].about.owner].span
+        problems.append(Diagnostic("SF302", message, place, f"nothing determines {free}; replace one of them"))
     elif nodes:
         names = listed([f"'{v}'" for v in nodes])
         alone = len(nodes) == 1

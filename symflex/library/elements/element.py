@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 Domain = Literal["translation", "rotation", "electrical", "acoustic"]
 PortDomain = Literal["translation", "rotation", "electrical", "acoustic", "planar", "plane", "any", "whole"]
 
-Role = Literal["balance", "law", "constraint", "signal", "condition"]
+Role = Literal["balance", "law", "constraint", "signal", "equation", "condition"]
 
 Placing = Literal["translation", "rotation", "electrical", "acoustic", "planar", "plane"]
 

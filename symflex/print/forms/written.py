@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 def written_form(tf: TransferFunction) -> PrintedForm | None:
     """Return a transfer function as sums of its output and signals, None where these say something else."""
     model, name = tf.model, tf.input.name
-    if tf.hidden or tf.input.kind != "signal" or any(b.block is None for b in model.blocks):
+    if tf.hidden or tf.input.kind != "signal" or any(b.block is None for b in model.blocks) or model.has_equations:
         return None
     signals = {x.name: x.expression for x in model.signals}
     whole = tf.output.expression

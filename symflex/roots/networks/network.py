@@ -162,6 +162,8 @@ class _NetworkReading:
         for each in equations.rows:
             if each.about not in self.delivered:
                 rows[each.about] = dict(LinearForm.total([each.form]).terms)
+        if equations.model.has_equations:
+            _refuse("[equations] stand beside it")
         signals = {v: row for v, row in rows.items() if v.kind in ("signal", "value")}
         replaced = self._signals(signals)
         for variable in replaced:
