@@ -8,6 +8,7 @@ from symflex.api.report import WrittenReport, write_report
 from symflex.api.root import Mode, Residue, Root, Sensitivity
 from symflex.api.stability import Stability, StabilityBoundary
 from symflex.api.state_space import StateSpace
+from symflex.api.systems import from_control, from_matrices
 from symflex.api.transfer_function import (
     BoundNestedTransferFunction,
     Form,
@@ -36,6 +37,8 @@ __all__ = [
     "TransferFunction",
     "WrittenReport",
     "fit",
+    "from_control",
+    "from_matrices",
     "load",
     "loads",
     "write_report",

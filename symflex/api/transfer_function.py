@@ -12,13 +12,17 @@ from symflex import pipeline
 from symflex.api.analyses import Analyses
 from symflex.api.bound import BoundTransferFunction
 from symflex.api.state_space import StateSpace
+from symflex.api.toolboxes import Toolboxes
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.expressions import Expression, Name
+from symflex.library.elements import LineElement
+from symflex.model import with_numbers
 from symflex.print.forms import PrintedForm, counts_of, hidden_expressions, print_form
 from symflex.print.json_format import derive_json
 from symflex.print.sympy import symbols_of, to_sympy
 from symflex.print.text import form_text
+from symflex.state_space import not_rational
 from symflex.transfer import BoundNested, bind_nested
 
 if TYPE_CHECKING:
@@ -325,7 +329,7 @@ class NestedTransferFunction(_Derived):
 
 
 @dataclass(frozen=True, repr=False)
-class BoundNestedTransferFunction(BoundNested, Analyses):
+class BoundNestedTransferFunction(BoundNested, Toolboxes, Analyses):
     r"""A nested transfer function with numbers: values, poles and zeros, responses, and figures.
 
     Examples
@@ -343,3 +347,15 @@ class BoundNestedTransferFunction(BoundNested, Analyses):
     def bound(self) -> BoundNestedTransferFunction:
         """Itself."""
         return self
+
+    @cached_property
+    def _expanded(self) -> transfer_room.BoundTransferFunction:
+        """Derived again with the numbers in place, so that its polynomials hold no name but s.
+
+        SF235 for beams, rods and fields, whose expanded form would hold kernels.
+        """
+        model = self.source.model
+        if model.fields or any(isinstance(use.element, LineElement) for use in model.elements):
+            raise not_rational(self.name)
+        numbered = with_numbers(model, (), dict(self.values), in_kernels=True)
+        return pipeline.derive_bound(numbered, [(self.source.output.name, self.source.input.name)])[0]

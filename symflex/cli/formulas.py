@@ -13,6 +13,7 @@ from symflex.cli.command import Specification, command_of
 from symflex.cli.reporting import diagnostic_json, emit_json, listed, note, say, show, terminal_width
 from symflex.errors import Diagnostic, SymflexError, UsageError
 from symflex.errors.diagnostic import nearest, printable
+from symflex.expressions import Equation
 from symflex.options import AuditOptions, CheckOptions, DeriveOptions, ExportOptions
 
 if TYPE_CHECKING:
@@ -66,7 +67,8 @@ def check(spec: Specification, given: CheckOptions) -> int:
             (model.settable, "parameter"),
             (model.nodes, "node"),
             (model.elements, "element"),
-            (model.signals, "signal"),
+            ([x for x in model.signals if not isinstance(x.expression, Equation)], "signal"),
+            ([x for x in model.signals if isinstance(x.expression, Equation)], "equation"),
             (model.blocks, "block"),
             (model.fields, "field"),
         )

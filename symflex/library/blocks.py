@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from fractions import Fraction
+from math import isqrt
 from typing import TYPE_CHECKING, ClassVar
 
 from symflex.library import ParameterPort
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from symflex.algebra import Factored
 
@@ -108,6 +110,49 @@ class TransferFunctionBlock(Block):
         return values["num"] / values["den"]
 
 
+class StateSpaceBlock(Block):
+    """State equations ``s x = A x + B u``, ``y = C x + D u`` with one input and one output.
+
+    Its values are the matrices' entries, ``A[1][2]``, ``B[1]``, ``C[1]``, ``D``. As
+    ``det(s - A + B C) = det(s - A) (1 + C (s - A)^-1 B)``, two characteristic polynomials are enough.
+    """
+
+    type_name = "ss"
+    summary = "C (s - A)^-1 B + D, with matrices as arrays of rows"
+    parameters = (
+        ParameterPort("A", "", "a square matrix"),
+        ParameterPort("B", "", "a column"),
+        ParameterPort("C", "", "a row"),
+        ParameterPort("D", "", "a number", "0"),
+    )
+
+    def transfer(self, s: Factored, values: Mapping[str, Factored]) -> Factored:
+        """Return the transfer function from the only input to the only output."""
+        places = range(1, isqrt(sum(name.startswith("A[") for name in values)) + 1)
+        a = [[values[f"A[{i}][{j}]"] for j in places] for i in places]
+        b, c = ([values[f"{name}[{i}]"] for i in places] for name in "BC")
+        below = _characteristic(s, a)
+        closed = [[x - y * z for x, z in zip(row, c, strict=True)] for row, y in zip(a, b, strict=True)]
+        return (_characteristic(s, closed) - below) / below + values["D"]
+
+
+def _characteristic(s: Factored, matrix: Sequence[Sequence[Factored]]) -> Factored:
+    """Return ``det(s - matrix)`` by the recursion of Le Verrier (1840) and Faddeev (1949)."""
+    one = s**0
+    places = range(len(matrix))
+    entries = [[(j, x) for j, x in enumerate(row) if not x.is_zero] for row in matrix]
+    coefficient, total = one, one
+    power: list[list[Factored]] = [[one if i == j else one * 0 for j in places] for i in places]
+    for k in range(1, len(matrix) + 1):
+        product = [[sum((x * power[m][j] for m, x in row), one * 0) for j in places] for row in entries]
+        coefficient = sum((product[i][i] for i in places), one * 0) * Fraction(-1, k)
+        power = [
+            [x + coefficient if i == j else x for j, x in enumerate(row)] for i, row in enumerate(product)
+        ]
+        total = total * s + coefficient
+    return total
+
+
 class Integrator(Block):
     """Gain over s."""
 
@@ -190,6 +235,7 @@ BLOCKS: dict[str, Block] = {
         Notch(),
         LowPass(),
         TransferFunctionBlock(),
+        StateSpaceBlock(),
         Integrator(),
         LeadLag(),
         Lag(),

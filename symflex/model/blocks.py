@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from math import isqrt
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -131,9 +132,16 @@ def _read_values(
     )
     values: list[tuple[str, Expression]] = []
     complete = True
+    is_matrix = block.type_name == "ss"
     for parameter in block.parameters:
         where = f"{parameter.name} of {block.type_name} '{entry.key}'"
         found = table.get(parameter.name)
+        if found is not None and is_matrix:
+            size = sum(name.startswith("A[") for name, _ in values)
+            entries = _matrix(reader, found.value, parameter.name, where, isqrt(size))
+            values += entries or ()
+            complete = complete and entries is not None
+            continue
         if found is not None:
             expression = _value(reader, found.value, where, coefficients=block.type_name == "tf")
         elif parameter.default is not None:
@@ -158,6 +166,10 @@ def _value(reader: Reader, value: Value, where: str, *, coefficients: bool) -> E
     """Return an expression; a list of coefficients, highest power first, becomes a polynomial in s."""
     if not (coefficients and isinstance(value, ArrayValue)):
         return reader.expression(value, where)
+    rows = [item.items for item in value.items if isinstance(item, ArrayValue)]
+    if len(rows) == len(value.items) and (len(rows) == 1 or all(len(row) == 1 for row in rows)):
+        # A matrix of one row or column, as ``scipy.signal.ss2tf`` returns.
+        value = replace(value, items=tuple(x for row in rows for x in row))
     if not value.items:
         reader.note("SF206", f"{where} is an empty list of coefficients", value.span)
         return None
@@ -173,6 +185,44 @@ def _value(reader: Reader, value: Value, where: str, *, coefficients: bool) -> E
         if part is not None
     ]
     return sum_of(terms) if len(terms) == len(parts) else None
+
+
+def _matrix(
+    reader: Reader, value: Value, name: str, where: str, size: int
+) -> tuple[tuple[str, Expression], ...] | None:
+    """Return the entries of a matrix of ``ss``, ``A[1][2]``; ``size`` is that of A, 0 if it is not known.
+
+    A column or row may be written as one array, and what has one entry as that.
+    """
+    rows = [r.items if isinstance(r, ArrayValue) else (r,) for r in _items(value)]
+    if name == "A" and rows and len(rows) > EXPONENT_LIMIT:
+        message = f"{where} has {len(rows)} rows; at most {EXPONENT_LIMIT} are allowed"
+        reader.note("SF103", message, value.span, "write its equations in [equations]")
+        return None
+    wanted = {"A": (len(rows),) * 2, "B": (size, 1), "C": (1, size), "D": (1, 1)}[name]
+    entries = [x for row in rows for x in row]
+    is_flat = all(len(row) == 1 for row in rows) and name != "A"
+    shape = (len(rows), len(rows[0]) if rows else 0)
+    is_whole = bool(entries) and all(len(row) == shape[1] for row in rows)
+    if name != "A" and not size:
+        return None  # A is wrong, and told so
+    if not is_whole or (shape != wanted and not (is_flat and len(entries) == max(wanted))):
+        found = f"{shape[0]} x {shape[1]}" if is_whole else "rows of several lengths"
+        sizes = "square" if name == "A" else f"{wanted[0]} x {wanted[1]}"
+        hint = "a block has one input and one output; symflex.from_control takes systems with more"
+        reader.note("SF206", f"{where} must be {sizes}, found {found}", value.span, hint)
+        return None
+    read = [reader.expression(x, where) for x in entries]
+    names = {
+        "A": [f"A[{i + 1}][{j + 1}]" for i in range(len(rows)) for j in range(len(rows))],
+        "D": ["D"],
+    }.get(name, [f"{name}[{i + 1}]" for i in range(len(entries))])
+    found_all = [(n, e) for n, e in zip(names, read, strict=True) if e is not None]
+    return tuple(found_all) if len(found_all) == len(names) else None
+
+
+def _items(value: Value) -> tuple[Value, ...]:
+    return value.items if isinstance(value, ArrayValue) else (value,)
 
 
 def _term(coefficient: Expression, degree: int) -> Expression:

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from symflex.model.reading import Reader
     from symflex.model.spec import TableValue
 
+KEYS = ("unknowns", "equations", "doc")
 EXAMPLE = 'for instance: unknowns = ["x"], equations = ["m*s^2*x + k*x = F"]'
 
 
@@ -33,10 +34,10 @@ def read_equations(
     if section is None:
         return ()
     what = "[equations]"
-    reader.keys(section, ("unknowns", "equations", "doc"), what)
-    entries = {key: section.get(key) for key in ("unknowns", "equations")}
+    reader.keys(section, KEYS, what)
+    entries = {key: section.get(key) for key in KEYS[:2]}
     for key, entry in entries.items():
-        if entry is None:
+        if entry is None and all(e.key in KEYS for e in section.entries):
             place = section.entries[0].key_span if section.entries else section.span
             reader.note("SF214", f"{what} has no {key}", place, EXAMPLE)
     named, written = entries["unknowns"], entries["equations"]

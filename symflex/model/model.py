@@ -183,7 +183,7 @@ class FieldProblem:
 class Signal:
     """A name in the signal-flow part, equal to its expression.
 
-    An expression that is an :class:`Equation` is one of ``[equations]``, which determine their unknowns together.
+    An expression that is an :class:`Equation` is one of ``[equations]``, which determine unknowns together.
     """
 
     name: str

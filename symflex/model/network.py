@@ -638,7 +638,7 @@ def broken_names(sections: Mapping[str, TableValue | None], draft: Draft) -> fro
     }
     equations = sections["equations"]
     entries = equations.entries if equations else ()
-    broken = set(_listed_names(e for e in entries if e.key == "unknowns")) - read["signals"]
+    broken = set(_listed_names(e for e in entries if e.key != "equations")) - read["signals"]
     for section, names_read in read.items():
         table = sections[section]
         for entry in table.entries if table else ():

@@ -74,7 +74,8 @@ def check_units(
             require(expression, port_unit(use, name), where, port.doc, varies=port.varies)
     for block in draft.blocks:
         for name, expression in block.values:
-            doc = next(p.doc for p in block.block.parameters if p.name == name) if block.block else ""
+            ports = block.block.parameters if block.block else ()
+            doc = next((p.doc for p in ports if p.name == name), "")
             require(expression, block_unit(block, name), f"{name} of block '{block.name}'", doc)
     _check_fields(draft, system, unsound, fields_placed)
     for signal in draft.signals:

@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 from decimal import Decimal
 from fractions import Fraction
 from functools import cached_property
-from math import inf, isfinite, lcm, nan
+from math import inf, isfinite, lcm
 from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, acb_series, arb, ctx
@@ -42,7 +42,7 @@ from symflex.transfer.balls import (
     enclosure,
     expansion,
     later,
-    order_near,
+    limit_at_zero,
     plan,
     value_at,
 )
@@ -301,7 +301,7 @@ class BoundTransferFunction:
         if self.ratio.is_zero:
             return 0.0
         if self.kernels:
-            return self._limit_at_zero_of_kernels()
+            return limit_at_zero(self.enclosed)
         s = self.ratio.ring.context.gen(0)
         order = self.ratio.exponent_of(s)
         if order > 0:
@@ -312,15 +312,6 @@ class BoundTransferFunction:
         )
         value = finite(0j).real
         return value if order == 0 else inf if value > 0 else -inf
-
-    def _limit_at_zero_of_kernels(self) -> float:
-        """Return the limit from two values close to zero, where it goes like an integer power of s."""
-        order, value = order_near(self.enclosed, 0j)
-        if value is None:
-            return nan
-        if order < 0:
-            return inf if value.real > 0 else -inf
-        return float(value.real.mid()) if order == 0 else 0.0
 
 
 def coefficients_in_s(polynomial: fmpz_mpoly, constants: Ring) -> tuple[fmpz_mpoly, ...]:

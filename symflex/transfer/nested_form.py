@@ -29,7 +29,7 @@ from symflex.algebra.straight_line import Operation, Step, StraightLine
 from symflex.budget import spend
 from symflex.expressions import Name, names
 from symflex.transfer.against_equations import Agreement, ModelSolve, compare
-from symflex.transfer.balls import FIRST_BITS, ball, double_value, enclosure, later
+from symflex.transfer.balls import FIRST_BITS, ball, double_value, enclosure, later, limit_at_zero
 from symflex.transfer.bind import BoundTransferFunction, Given, bind, values_for
 from symflex.transfer.derive import nested_transfer
 from symflex.transfer.transfer_function import TransferFunction, name_quantity, unit_of_quotient
@@ -328,6 +328,10 @@ class BoundNested:
             return lambda at: acb("nan") if solved is None else solved.value_and_slope(at)[0]
 
         return double_value(network, network(FIRST_BITS), s, 1)
+
+    def limit_at_zero(self) -> float:
+        """Return the limit for s -> 0 from the right, possibly infinite."""
+        return 0.0 if self.is_zero else limit_at_zero(self.enclosed)
 
     def at(self, s: npt.ArrayLike) -> npt.NDArray[np.complex128]:
         """Return the values in double precision at many complex frequencies at once.

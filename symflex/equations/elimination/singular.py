@@ -74,7 +74,9 @@ def explain_singular(equations: Equations) -> ModelError:
         )
         free = listed([f"'{v}'" for v in open_unknowns])
         place = signals[written[-1].about.owner].span
-        problems.append(Diagnostic("SF302", message, place, f"nothing determines {free}; replace one of them"))
+        problems.append(
+            Diagnostic("SF302", message, place, f"nothing determines {free}; replace one of them")
+        )
     elif nodes:
         names = listed([f"'{v}'" for v in nodes])
         alone = len(nodes) == 1

@@ -28,8 +28,8 @@ def write(mapping: Mapping[str, object]) -> str:
 
     The two outer levels become ``[a]`` and ``[a.b]`` headers; what is deeper, and what stands in
     `parameters`, `elements`, `inputs`, `outputs` and `blocks`, becomes inline tables. Values are str, int,
-    Fraction, Decimal, float, bool, list, tuple and mappings of these; a fraction that is not a finite decimal
-    becomes the string ``"p/q"``. :func:`symflex.model.spec.parse` gives the mapping back. Raises SpecError:
+    Fraction, Decimal, float, bool, list, tuple, arrays of numpy, expressions and matrices of SymPy, and
+    mappings of these; a fraction that is not a finite decimal becomes the string ``"p/q"``. :func:`symflex.model.spec.parse` gives the mapping back. Raises SpecError:
     SF104 for a value that cannot be written, with its path; SF103 for one that passes a limit.
 
     Examples
@@ -91,6 +91,10 @@ def _value(value: object, path: tuple[str, ...], depth: int = 0) -> str:
             return float.__repr__(value)
         case Decimal():
             return _decimal(value, path)
+    if hasattr(value, "free_symbols") and not hasattr(value, "tolist"):
+        return _string(str(value))  # SymPy prints what the grammar of expressions reads
+    if hasattr(value, "tolist"):  # an array or number of numpy, a matrix of SymPy
+        return _value(value.tolist(), path, depth)
     if not isinstance(value, Mapping | list | tuple):
         message = f"a value of type '{type(value).__name__}' has no place in a specification"
         hint = "text, numbers, booleans, lists and mappings have"

@@ -38,7 +38,14 @@ if TYPE_CHECKING:
 def written_form(tf: TransferFunction) -> PrintedForm | None:
     """Return a transfer function as sums of its output and signals, None where these say something else."""
     model, name = tf.model, tf.input.name
-    if tf.hidden or tf.input.kind != "signal" or any(b.block is None for b in model.blocks) or model.has_equations:
+    if (
+        tf.hidden
+        or tf.input.kind != "signal"
+        or any(b.block is None for b in model.blocks)
+        or model.has_equations
+    ):
+        return None
+    if any(b.block is not None and b.block.type_name == "ss" for b in model.blocks):
         return None
     signals = {x.name: x.expression for x in model.signals}
     whole = tf.output.expression
