@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
 from math import isfinite
-from numbers import Real
+from numbers import Integral, Real
 from typing import TYPE_CHECKING, Any
 
 from symflex.api.model import Model, Table
@@ -228,8 +228,8 @@ def _along(what: str, given: object, names: Sequence[str]) -> list[object]:
                 nearest(given, names) or "unknowns: " + ", ".join(names[:8]),
             )
         return [int(n == given) for n in names]
-    if hasattr(given, "__index__"):
-        place = given.__index__()
+    if isinstance(given, Integral):
+        place = int(given)
         if not -len(names) <= place < len(names):
             raise _refused(f"{what} is at {place}", f"unknowns are counted from 0 to {len(names) - 1}")
         return [int(i == place % len(names)) for i in range(len(names))]

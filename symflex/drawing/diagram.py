@@ -495,9 +495,15 @@ def _boxed(one: SignalNode, shown: Lettering | None, name: Lettering | None) -> 
 
 
 def statements(graph: SignalGraph) -> list[Placed]:
-    """Return the formulas of blocks that stand in no diagram, one below the other."""
+    """Return equations, and the formulas of blocks that stand in no diagram, one below the other."""
     shown = {n.name for n in graph.nodes if n.kind == "block"}
     y, found = 0.0, []
+    for equation in graph.equations:
+        sides = " = ".join(graph.labels.expression(side) for side in equation.children)
+        if line := text(sides, SMALL):
+            y -= line.height
+            found.append(Placed("condition", "", (), (line.moved(0.0, y),)))
+            y -= line.depth + BETWEEN_FORMULAS
     for block in graph.blocks.values():
         if block.name in shown:
             continue

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Final, Literal
 from symflex.expressions import (
     Attribute,
     Call,
+    Equation,
     Expression,
     Name,
     Negative,
@@ -86,7 +87,9 @@ class SignalGraph:
     nodes: list[SignalNode] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        self.signals = {x.name: x.expression for x in self.model.signals}
+        given = [(x.name, x.expression) for x in self.model.signals]
+        self.signals = {name: e for name, e in given if not isinstance(e, Equation)}
+        self.equations = [e for _, e in given if isinstance(e, Equation)]
         self.blocks = {b.name: b for b in self.model.blocks}
         self.inputs = {i.name: i.latex for i in self.model.inputs}
         constants = {p.name for p in self.model.parameters} | {d.name for d in self.model.definitions}
