@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from decimal import Decimal
-from fractions import Fraction
 from math import isfinite
 from numbers import Integral, Real
 from typing import TYPE_CHECKING, Any
@@ -18,6 +17,7 @@ if TYPE_CHECKING:
     import sympy
     from numpy.typing import ArrayLike
 
+Quotient = tuple[object, object]
 SHOWN = 40
 """Characters of a value that a message repeats."""
 
@@ -50,13 +50,15 @@ def from_control(sys: object) -> Model:
     """
     given: Any = sys
     if getattr(given, "dt", None):
-        hint = "symflex models continuous time; its own functions are sampled by discretise()"
-        raise _refused(f"the system is in discrete time, dt = {given.dt}", hint)
+        note = "symflex models continuous time; its own functions are sampled by discretise()"
+        raise _refused(f"the system is in discrete time, dt = {given.dt}", note)
     title = str(getattr(given, "name", None) or "")
     if all(hasattr(given, key) for key in "ABCD"):
         return _of_states(given, title)
     if hasattr(given, "zeros") and hasattr(given, "gain") and not callable(given.zeros):
-        blocks = [[(_with_roots(given.gain, given.zeros), _with_roots(1.0, given.poles))]]
+        blocks: list[list[Quotient]] = [
+            [(_with_roots(given.gain, given.zeros), _with_roots(1.0, given.poles))]
+        ]
     elif hasattr(given, "num") and hasattr(given, "den"):
         blocks = _quotients(given)
     else:
@@ -178,7 +180,7 @@ def _of_states(given: Any, title: str) -> Model:  # noqa: ANN401 (a system of ei
     return Model(title=title, equations=section, inputs={u: {} for u in inputs}, outputs=sums)
 
 
-def _quotients(given: Any) -> list[list[tuple[object, object]]]:  # noqa: ANN401 (a system of either program)
+def _quotients(given: Any) -> list[list[Quotient]]:  # noqa: ANN401 (a system of either program)
     """Return numerators and denominators, by output and input."""
     if not hasattr(given, "ninputs"):
         if len(_rows("num", given.num)) > 1:
@@ -251,12 +253,11 @@ def _coefficient(entry: Any) -> str:  # noqa: ANN401 (a number or an expression 
     if hasattr(entry, "free_symbols"):
         return f"({entry})"
     if not isinstance(entry, Real | Decimal) or not isfinite(entry):
-        raise _refused(
-            f"'{str(entry)[:SHOWN]}' is no real number", "entries are numbers or expressions of SymPy"
-        )
-    exact = Fraction(repr(float(entry))) if isinstance(entry, float) else Fraction(entry)
-    text = repr(float(entry)) if isinstance(entry, float) else str(exact)
-    return f"({text})" if exact < 0 or "/" in text else text
+        hint = "entries are numbers or expressions of SymPy"
+        raise _refused(f"'{str(entry)[:SHOWN]}' is no real number", hint)
+    # A double is the shortest decimal that prints it; those of numpy are doubles, too.
+    text = repr(float(entry)) if hasattr(entry, "hex") else str(entry)
+    return f"({text})" if text.startswith("-") or "/" in text else text
 
 
 def _symbols(entries: Sequence[Any]) -> dict[str, object]:

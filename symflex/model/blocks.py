@@ -208,9 +208,11 @@ def _matrix(
         return None  # A is wrong, and told so
     if not is_whole or (shape != wanted and not (is_flat and len(entries) == max(wanted))):
         found = f"{shape[0]} x {shape[1]}" if is_whole else "rows of several lengths"
+        found = f"{len(entries)} entries" if is_flat else found
         sizes = "square" if name == "A" else f"{wanted[0]} x {wanted[1]}"
         hint = "a block has one input and one output; symflex.from_control takes systems with more"
-        reader.note("SF206", f"{where} must be {sizes}, found {found}", value.span, hint)
+        hint_here = None if name == "A" or is_flat else hint
+        reader.note("SF206", f"{where} must be {sizes}, found {found}", value.span, hint_here)
         return None
     read = [reader.expression(x, where) for x in entries]
     names = {

@@ -63,8 +63,8 @@ def read_equations(
         message = f"{what} has {counted(len(equations), 'equation')} for {counted(len(texts), 'unknown')}"
         more = len(equations) > len(texts)
         hint = "name in unknowns what the equations determine" if more else "each unknown needs an equation"
-        place = equations[len(texts)].span if more else texts[len(equations)].span
-        reader.note("SF242", message, place, hint)
+        spare = equations[len(texts)].span if more else texts[len(equations)].span
+        reader.note("SF242", message, spare, hint)
         return ()
     if not good:
         return ()

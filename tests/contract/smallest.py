@@ -86,6 +86,7 @@ BLOCK_VALUES = {
     "notch": 'omega = "p", zeta_p = "q"',
     "low_pass": 'omega = "p", zeta = "q"',
     "tf": 'num = "p", den = "1 + q*s"',
+    "ss": 'A = [[0, 1], ["-p", "-q"]], B = [0, 1], C = ["p", 0]',
     "integrator": "",
     "lead_lag": 'T_1 = "p", T_2 = "q"',
     "lag": 'T = "p"',

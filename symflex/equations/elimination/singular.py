@@ -72,10 +72,10 @@ def explain_singular(equations: Equations) -> ModelError:
             if len(texts) > 1
             else f"the equation {texts[0]} determines none of the unknowns"
         )
-        free = listed([f"'{v}'" for v in open_unknowns])
+        missing = listed([f"'{v}'" for v in open_unknowns])
         place = signals[written[-1].about.owner].span
         problems.append(
-            Diagnostic("SF302", message, place, f"nothing determines {free}; replace one of them")
+            Diagnostic("SF302", message, place, f"nothing determines {missing}; replace one of them")
         )
     elif nodes:
         names = listed([f"'{v}'" for v in nodes])

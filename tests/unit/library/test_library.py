@@ -22,6 +22,11 @@ BLOCKS = {
     'type = "tf", num = ["p", 0, 1], den = ["q", "u"]': (p * s**2 + 1) / (q * s + u),
     'type = "tf", num = [1, 1], den = [1, -1, 1, 0]': (s + 1) / (s**3 - s**2 + s),
     'type = "tf", num = "p"': p,
+    'type = "tf", num = [["p", 1]], den = [[1], ["q"]]': (p * s + 1) / (s + q),
+    'type = "ss", A = [[0, 1], ["-p", "-q"]], B = [[0], [1]], C = [["u", 1]], D = [["v"]]': (u + s)
+    / (s**2 + q * s + p)
+    + v,
+    'type = "ss", A = ["p"], B = "q", C = "u"': q * u / (s - p),
     'type = "integrator"': 1 / s,
     'type = "integrator", k = "p"': p / s,
     'type = "lead_lag", T_1 = "p", T_2 = "q"': (1 + p * s) / (1 + q * s),
