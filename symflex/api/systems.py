@@ -147,7 +147,8 @@ def from_matrices(
         terms = [(rows[i][j], powers[m] + q) for m, rows in matrices.items() for j, q in enumerate(names)]
         written.append(f"{_combined(terms)} = {_combined([(c[i], u) for u, c in columns.items()])}")
     sums = {
-        n: g if isinstance(g, str) else _combined(zip(g, names, strict=True)) for n, g in rows_read.items()
+        n: g if isinstance(g, str) else _combined(zip(g, names, strict=True), is_output=True)
+        for n, g in rows_read.items()
     }
     entries = [e for rows in matrices.values() for row in rows for e in row]
     entries += [
@@ -173,7 +174,10 @@ def _of_states(given: Any, title: str) -> Model:  # noqa: ANN401 (a system of ei
         for i, x in enumerate(states)
     ]
     sums = {
-        y: _combined([*zip(c[i] if states else (), states, strict=True), *zip(d[i], inputs, strict=True)])
+        y: _combined(
+            [*zip(c[i] if states else (), states, strict=True), *zip(d[i], inputs, strict=True)],
+            is_output=True,
+        )
         for i, y in enumerate(outputs)
     }
     section = {"unknowns": states, "equations": equations} if states else None
@@ -242,10 +246,15 @@ def _along(what: str, given: object, names: Sequence[str]) -> list[object]:
     return entries
 
 
-def _combined(terms: Any) -> str:  # noqa: ANN401 (pairs of an entry and what it stands before)
-    """Return a sum of products as an expression, without what is zero."""
+def _combined(terms: Any, *, is_output: bool = False) -> str:  # noqa: ANN401 (pairs of an entry and what it stands before)
+    """Return a sum of products as an expression, without what is zero.
+
+    In equations 1 is written: numbers may have any unit, bare names would have to agree in theirs.
+    """
     kept = [(entry, name) for entry, name in terms if entry != 0]
-    return " + ".join(name if entry == 1 else f"{_coefficient(entry)}*{name}" for entry, name in kept) or "0"
+    if is_output and len(kept) == 1 and kept[0][0] == 1:
+        return str(kept[0][1])
+    return " + ".join(f"{_coefficient(entry)}*{name}" for entry, name in kept) or "0"
 
 
 def _coefficient(entry: Any) -> str:  # noqa: ANN401 (a number or an expression of SymPy)
@@ -279,7 +288,8 @@ class _Names:
     def of(self, labels: Sequence[str] | None, letter: str, count: int) -> list[str]:
         """Return a name for each label, or ``u``, and ``u_1`` to ``u_n``, where there are none."""
         numbered = [f"{letter}_{i + 1}" for i in range(count)]
-        return [self.new(x) for x in labels or (numbered if count > 1 else [letter] * count)]
+        given = labels if labels and len(labels) == count else numbered if count > 1 else [letter] * count
+        return [self.new(x) for x in given]
 
     def new(self, label: str) -> str:
         """Return the nearest name to a label that nothing has yet."""

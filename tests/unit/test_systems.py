@@ -11,7 +11,7 @@ import sympy
 
 import symflex
 from symflex import from_control, from_matrices
-from symflex.errors import ModelError, UsageError
+from symflex.errors import UsageError
 from tests.unit.refusals import refusal
 
 S = 0.3 + 2.1j
@@ -26,7 +26,7 @@ def values(model, s=S):
 def test_state_equations_of_control_with_several_ends():
     rng = np.random.default_rng(5)
     a, b, c, d = (rng.normal(size=shape) for shape in ((4, 4), (4, 3), (2, 4), (2, 3)))
-    model = from_control(control.ss(a, b, c, d, inputs=["F 1", "F 1", "s"], outputs=["y[0]", "pi"]))
+    model = from_control(control.ss(a, b, c, d, inputs=["F 1", "F_1", "s"], outputs=["y[0]", "pi"]))
     assert (model.inputs, model.outputs) == (("F_1", "F_1_2", "s_2"), ("y_0", "pi_2"))
     np.testing.assert_allclose(values(model), c @ np.linalg.solve(S * np.eye(4) - a, b) + d, rtol=1e-12)
 
@@ -52,12 +52,8 @@ def test_a_filter_of_scipy(output):
 
 
 def test_what_is_no_continuous_system_is_refused():
-    for system, words in (
-        (control.tf([1], [1, 2], 0.1), "discrete time"),
-        (control.frd([1, 2], [1, 2]), "no transfer function"),
-        (3, "'int' is no transfer function"),
-    ):
-        assert words in refusal(UsageError, from_control, system).message
+    for system in (control.tf([1], [1, 2], 0.1), control.frd([1, 2], [1, 2]), 3):
+        assert refusal(from_control, system) == "UsageError SF902"
 
 
 def test_three_masses_with_matrices_of_sympy():
@@ -161,14 +157,18 @@ def test_nested_functions_of_beams_hand_over_what_they_can():
     model = symflex.Model(
         elements={
             "arm": {
-                "type": "beam", "between": ["ground", "tip"], "EI": "2 N*m^2", "rhoA": "0.3 kg/m", "l": "0.5 m"
+                "type": "beam",
+                "between": ["ground", "tip"],
+                "EI": "2 N*m^2",
+                "rhoA": "0.3 kg/m",
+                "l": "0.5 m",
             }
         },
         inputs={"F": {"force": "tip"}},
         outputs={"Y": "tip.y"},
-    )  # fmt: skip
+    )
     bound = model.nested("Y", "F").bind()
     assert bound.dcgain() == pytest.approx(0.5**3 / (3 * 2))
     np.testing.assert_allclose(bound.to_frd([10.0]).frdata[0, 0, 0], bound(10j))
     for method in (bound.to_control, bound.to_scipy, bound.to_sympy, lambda: bound.discretise("1 ms")):
-        assert "not rational" in refusal(ModelError, method).message
+        assert refusal(method) == "ModelError SF235"
