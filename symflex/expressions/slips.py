@@ -6,8 +6,9 @@ Everything here reads the text around the place where the parser stopped; nothin
 from __future__ import annotations
 
 import re
-import unicodedata
 from typing import TYPE_CHECKING, NamedTuple
+
+from symflex.quantities import character_hint, code_point, unit_named
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -16,14 +17,6 @@ if TYPE_CHECKING:
 
 FUNCTIONS = ("sqrt", "exp", "log", "sin", "cos", "tan", "sinh", "cosh", "tanh")
 """The functions of the language, each of one argument."""
-
-ASCII_FOR = {
-    "·": "*", "⋅": "*", "∙": "*", "•": "*", "×": "*", "∗": "*",
-    "−": "-", "–": "-", "—": "-", "‐": "-", "‑": "-", "÷": "/", "∕": "/", "⁄": "/",
-    "′": "'", "’": "'", "‘": "'", "″": "''", "”": "''", "“": "''", "‴": "'''", "⁗": "''''",
-    "[": "(", "{": "(", "]": ")", "}": ")", "（": "(", "）": ")", "＝": "=", "＋": "+",
-    '"': "''", "`": "'", "√": "sqrt(...)", "\u00a0": " ", "\u202f": " ", "\u2009": " ",
-}  # fmt: skip
 
 LONGEST_QUOTE = 24
 
@@ -44,10 +37,8 @@ def character_slip(value: str, position: int) -> Slip:
     before = value[position - 1] if position else ""
     if character == "_":
         return _underscore_slip(value, position, before)
-    hint = _character_hint(character, value, position)
-    message = f"unexpected {_quoted(character)}"
-    if not character.isascii():
-        message += f" (U+{ord(character):04X} {unicodedata.name(character, 'without a name')})"
+    hint = character_hint(value, position)
+    message = f"unexpected {_quoted(character)}{code_point(character)}"
     return Slip(position, position + 1, "SF111", message, hint)
 
 
@@ -58,32 +49,6 @@ def _underscore_slip(value: str, position: int, before: str) -> Slip:
     end = word.end() if word else position + 1
     message = f"the name {_quoted(value[position:end])} begins with an underscore"
     return Slip(position, end, "SF112", message, "a name begins with a letter")
-
-
-def _character_hint(character: str, value: str, position: int) -> str | None:
-    if character == ",":
-        return "a decimal point is written '.', and a function takes one argument"
-    if character == "\\":
-        word = re.compile(r"[A-Za-z]{1,64}").match(value, position + 1)
-        return f"write '{word[0]}' without the backslash" if word else None
-    replacement = ASCII_FOR.get(character)
-    if replacement == " ":
-        return "write an ordinary space"
-    if replacement is not None:
-        return f"write {_quoted(replacement)}"
-    name = unicodedata.name(character, "")
-    digit = unicodedata.digit(character, None)
-    if digit is not None and name.startswith("SUPERSCRIPT"):
-        return f"write '^{digit}'"
-    if digit is not None and name.startswith("SUBSCRIPT"):
-        return f"write '_{digit}'"
-    if digit is not None:
-        return f"write '{digit}'"
-    greek = re.fullmatch(r"GREEK (SMALL|CAPITAL) LETTER (?:FINAL )?([A-Z]+)", name)
-    if greek:
-        letter = greek[2].lower().replace("lamda", "lambda")
-        return f"write '{letter if greek[1] == 'SMALL' else letter.capitalize()}'"
-    return "a name has letters A-Z and a-z, digits and '_'" if character.isalpha() else None
 
 
 def end_slip(value: str, last: Token, expected: Collection[str], *, is_equation: bool) -> Slip:
@@ -160,8 +125,21 @@ def _neighbour_hint(value: str, recent: Sequence[Token]) -> str | None:
     cure = f"write {_quoted(f'{left}*{right}')}" if left and right else "write '*' to multiply"
     spaced = before.end < token.start
     if before.type == "NUMBER" and token.type == "NAME" and spaced:
+        if unit_named(str(token)):
+            quantity = f"{before} {_units(value[token.start :])}"
+            return f'a number with a unit belongs in [parameters]: c = "{quantity}"'
         return f"{cure} to multiply; a number with a unit belongs in [parameters]"
     return cure
+
+
+def _units(text: str) -> str:
+    """Return the product of units that a text begins with."""
+    end = 0
+    for word in re.finditer(r"(?:^|[*/])([A-Za-z]+)(?:\^-?[0-9]+)?", text):
+        if word.start() != end or not unit_named(word[1]):
+            break
+        end = word.end()
+    return _short(text[:end]) or "..."
 
 
 def _operand(words: Sequence[Token], types: Sequence[str]) -> str:

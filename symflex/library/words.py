@@ -158,5 +158,13 @@ def hint_of_type(
     """Return what somebody may have meant by an unknown type; ``others`` are the types of ``elsewhere``."""
     if word in others:
         return f"'{word}' is {elsewhere}"
+    known = list(known)
     meant = thing(word)
-    return meant.hint(word) if meant else nearest(word, known)
+    if meant:
+        return meant.hint(word)
+    # What comes last says what it is: a coil_spring is a spring, a brushless motor a motor.
+    last = word.strip().lower().replace("-", "_").replace(" ", "_").rpartition("_")[2]
+    if last in known and last != word:
+        return f"did you mean '{last}'?"
+    meant = thing(last)
+    return meant.hint(last) if meant else nearest(word, known)

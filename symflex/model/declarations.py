@@ -204,7 +204,7 @@ def _with_unit(
         unit = parse_unit(text)
     except SpecError as error:
         reader.take(error.diagnostics)
-        return quantity, ""
+        return None, ""
     if quantity is None:
         return None, text.value
     if quantity.unit:

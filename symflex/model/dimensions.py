@@ -51,7 +51,7 @@ from symflex.library.elements import Variable
 from symflex.model.declarations import CycleReading
 from symflex.model.linearity import integer_exponent
 from symflex.model.reading import QuantityLiteral
-from symflex.quantities import DIMENSIONLESS, Dimension, pound_hint, unit_of
+from symflex.quantities import DIMENSIONLESS, Dimension, unit_of, unit_slip
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -206,7 +206,7 @@ class DimensionSystem:
         if not self._learn(self._reduce(measure.times(left.power(-1)))) and not measure.literal:
             found, wanted = self._reduce(measure).dimension, self._reduce(left).dimension
             message = f"'{variable}' is used in '{wanted}' but its expression is in '{found}'"
-            self._note("SF203", message, expression.span)
+            self._note("SF203", message, expression.span, _gain_hint(found, wanted))
 
     def place_field(self, unknowns: Sequence[str], ends: Sequence[Expression]) -> None:
         """Take x of a field to be measured as its ends are; a bare number may stand for any unit."""
@@ -445,7 +445,7 @@ class DimensionSystem:
             if not self._learn(self._reduce(measure.times(first.power(-1))), only_check=loose) and not loose:
                 here, there = self._reduce(measure).dimension, self._reduce(first).dimension
                 message = f"terms of a sum disagree: '{there}' and '{here}'"
-                self._note("SF205", message, term.span or expression.span)
+                self._note("SF205", message, term.span or expression.span, _gain_hint(here, there))
         result = self._reduce(first)
         if mixed:
             return replace(result, cycles=Fraction(0), pis=Fraction(0), cyclic=frozenset())
@@ -517,8 +517,14 @@ class DimensionSystem:
         if isinstance(expression, Name):
             quantity = self._quantities.get(expression.name)
             if quantity is not None:
-                pounds = pound_hint(quantity.unit, found, wanted)
-                return f"'{expression.name}' is declared in '{quantity.unit}'" + (
-                    f"; {pounds}" if pounds else ""
-                )
+                slip = unit_slip(quantity.unit, found, wanted)
+                unit = f"in '{quantity.unit}'" if quantity.unit else "as a number"
+                return f"'{expression.name}' is declared {unit}" + (f"; {slip}" if slip else "")
         return None
+
+
+def _gain_hint(found: Dimension, wanted: Dimension) -> str | None:
+    """Say that an integral or a derivative has another unit; a gain makes it fit, also a plain number."""
+    if any(found == wanted * SECOND**power for power in (-2, -1, 1, 2)):
+        return "'s' and '1/s' have units: multiply by a gain; a plain number, as in '1*(u/s)', fits any unit"
+    return None

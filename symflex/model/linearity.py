@@ -43,6 +43,9 @@ ORDER_LIMIT = 24
 """Of a derivative at a point; what is beyond the field's own order follows from its equations."""
 DELAY_HINT = 'exp(-s*T) is the block { type = "delay", T = "T" }'
 FUNCTION_HINT = "functions of s enter through [fields], through distributed elements, and as delays"
+NONLINEAR = frozenset(
+    "sign sgn abs fabs sat saturate saturation min max floor ceil round mod deadzone backlash relay".split()
+)
 LINEARISE = "linearise about an operating point, so that only one factor varies in time"
 
 
@@ -166,6 +169,8 @@ class _Degrees:
         if value is None:
             half = isinstance(exponent, Quotient) or is_number(exponent, Fraction(1, 2))
             hint = "write sqrt(x) for a square root" if half else "write one number, such as 2 or -1"
+            if any(isinstance(n, Name) and n.name == LAPLACE for n in names(power.base)):
+                hint = "powers of s are whole; a half power is what diffusion along x does: see [fields]"
             self.note("SF225", "an exponent must be an integer number", exponent.span or power.span, hint)
             return base
         if abs(value) > EXPONENT_LIMIT:
@@ -276,5 +281,7 @@ def _unknown_function(call: Call, scope: ModelScope) -> Diagnostic:
     if meanings:
         message = f"'{call.name}' is {meanings[0].described}, not a function"
         return Diagnostic("SF210", message, call.span, f"write '{call.name}*(...)' to multiply")
+    if call.name.lower() in NONLINEAR:
+        return Diagnostic("SF222", f"{call.name} is not linear", call.span, LINEARISE)
     hint = nearest(call.name, FUNCTIONS) or "functions: " + ", ".join(FUNCTIONS)
     return Diagnostic("SF210", f"unknown function '{call.name}'", call.span, hint)

@@ -35,7 +35,7 @@ from symflex.model.model import (
 from symflex.model.reading import NAME, Reader, read_entries, signed_number
 from symflex.model.scope import RESERVED
 from symflex.model.spec import ArrayValue, BooleanValue, StringValue, TableValue
-from symflex.quantities import parse_unit, unit_of
+from symflex.quantities import name_hint, parse_unit, unit_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -301,7 +301,8 @@ def _reference(reader: Reader, text: Text, domain: PortDomain, what: str) -> Nod
             "SF213",
             f"{what}: '{text.value[:80]}' is not a node",
             text.span,
-            "a node is a name, or name.x, name.y or name.theta of a planar node",
+            (name_hint(node) or "").partition(", which")[0]
+            or "a node is a name, or name.x, name.y or name.theta of a planar node",
         )
         return None
     if dot and domain in COMPONENTS:
@@ -334,7 +335,10 @@ def _read_input(reader: Reader, entry: KeyValue) -> DraftInput | None:
     kinds = [e for e in table.entries if e.key in INPUT_KINDS]
     if len(kinds) > 1:
         keys = " and ".join(e.key for e in kinds)
-        reader.note("SF217", f"{what} is given as {keys}; it can be only one", kinds[1].key_span)
+        hint = "write an input of its own for each: " + ", ".join(
+            f"{e.key[0]}_{i} = {{ {e.key} = ... }}" for i, e in enumerate(kinds, 1)
+        )
+        reader.note("SF217", f"{what} is given as {keys}; it can be only one", kinds[1].key_span, hint)
         return None
     if not kinds:
         unit = _unit(reader, table, what, None)

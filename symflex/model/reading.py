@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, TypeVar
 from symflex.errors import Diagnostic, SpecError, nearest
 from symflex.expressions import Expression, Negative, Number, parse
 from symflex.model.spec import ArrayValue, BooleanValue, NumberValue, OtherValue, StringValue, TableValue
-from symflex.quantities import Quantity, looks_like_quantity, parse_quantity
+from symflex.quantities import Quantity, looks_like_quantity, name_hint, parse_quantity
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -111,7 +111,8 @@ class Reader:
                 "SF213",
                 f"'{entry.key[:80]}' is not a name for {what}",
                 entry.key_span,
-                "names are a letter followed by up to 63 letters, digits and underscores",
+                name_hint(entry.key)
+                or "names are a letter followed by up to 63 letters, digits and underscores",
             )
             return False
         if reserved and entry.key in reserved:

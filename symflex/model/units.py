@@ -25,7 +25,7 @@ from symflex.model.model import (
 )
 from symflex.model.reading import QuantityLiteral, Reader, signed_number
 from symflex.model.scope import ModelScope, build_scope
-from symflex.quantities import DIMENSIONLESS, Dimension, Quantity, pound_hint, unit_of
+from symflex.quantities import DIMENSIONLESS, Dimension, Quantity, unit_of, unit_slip
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
@@ -60,7 +60,7 @@ def check_units(
         elif unit and expression.quantity.dimension != unit_of(unit).dimension:
             given = expression.quantity
             message = f"{what} is in '{given.unit}'; {doc} is in '{unit}'"
-            hint = pound_hint(given.unit, given.dimension, unit_of(unit).dimension)
+            hint = unit_slip(given.unit, given.dimension, unit_of(unit).dimension)
             reader.note("SF203", message, expression.span, hint)
 
     system.place_lines()

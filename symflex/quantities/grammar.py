@@ -16,6 +16,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Final, TypeVar
 
+from symflex.quantities.characters import character_hint, code_point
 from symflex.quantities.lalr import END, Grammar, Reading, Token, UnexpectedError
 from symflex.quantities.units import Unit, unit_hint, unit_named
 
@@ -197,7 +198,9 @@ def _syntax_rejection(unexpected: UnexpectedError, value: str, kind: str) -> Rej
         return RejectedError("SF202", f"the {kind} '{value}' ends too early", len(value), len(value))
     found = value[start] if token is None else str(token)
     hint = _syntax_hint(value[:start].strip(SPACES), value[start:].strip(SPACES), found)
-    message = f"unexpected '{found}' in the {kind} '{value}'"
+    message = f"unexpected '{found}'{code_point(found[0])} in the {kind} '{value}'"
+    if hint is None and (found == "," or not found.isascii()):
+        hint = character_hint(value, start)
     return RejectedError("SF202", message, start, start + len(found), hint)
 
 

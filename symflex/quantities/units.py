@@ -249,8 +249,8 @@ _INSTEAD: Final[dict[str, str]] = {
     "\u00b0F": "only absolute temperatures are read: use 'K'",
 }
 
-_FORCES: Final = {"lb": "lbf", "lbm": "lbf", "oz": "ozf"}
-_MASSES: Final = {"lbf": "lb", "ozf": "oz"}
+_FORCES: Final = {"lb": "lbf", "lbm": "lbf", "oz": "ozf", "kg": "kgf", "g": "gf"}
+_MASSES: Final = {"lbf": "lb", "ozf": "oz", "kgf": "kg"}
 # Units long enough to be given a plural; a shorter one with an s is a product, as in Pas.
 _WORDS: Final = tuple(name for name in UNITS if len(name) > 2)  # noqa: PLR2004
 _LONGEST_PRODUCT: Final = 8
@@ -300,17 +300,34 @@ def unit_hint(symbol: str) -> str | None:
     return product_of_units or nearest(symbol, known)
 
 
-def pound_hint(unit: str, found: Dimension, wanted: Dimension) -> str | None:
-    """Return how a unit is written whose pounds or ounces are masses in place of forces, or the reverse.
+def unit_slip(unit: str, found: Dimension, wanted: Dimension) -> str | None:
+    """Return how a unit is written that has a mass for a force, or the reverse, or one slash too many.
 
     Examples
     --------
     >>> from symflex.quantities import unit_of
-    >>> pound_hint("lb/ft", unit_of("lb/ft").dimension, unit_of("N/m").dimension)
+    >>> unit_slip("lb/ft", unit_of("lb/ft").dimension, unit_of("N/m").dimension)
     "'lb' is a mass, 'lbf' a force: write 'lbf/ft'"
-    >>> pound_hint("lbf", unit_of("lbf").dimension, unit_of("kg").dimension)
-    "'lbf' is a force, 'lb' a mass: write 'lb'"
+    >>> unit_slip("N/m/s", unit_of("N/m/s").dimension, unit_of("N*s/m").dimension)
+    "'/' divides each time: write 'N/(m/s)'"
     """
+    return _mass_slip(unit, found, wanted) or _slash_slip(unit, found, wanted)
+
+
+def _slash_slip(unit: str, found: Dimension, wanted: Dimension) -> str | None:
+    """Read ``N/m/s`` as ``N/(m/s)``, also where the mass in it is a force."""
+    above, *below = unit.split("/")
+    last = unit_named(below[-1].strip("() ")) if len(below) == 2 and "(" not in unit else None  # noqa: PLR2004
+    if last is None:
+        return None
+    meant, written = found * last.dimension**2, f"{above}/({below[0]}/{below[1]})"
+    if meant == wanted:
+        return f"'/' divides each time: write '{written}'"
+    mass = _mass_slip(written, meant, wanted)
+    return f"'/' divides each time, and {mass}" if mass else None
+
+
+def _mass_slip(unit: str, found: Dimension, wanted: Dimension) -> str | None:
     for instead, more, kinds in ((_FORCES, wanted, ("mass", "force")), (_MASSES, found, ("force", "mass"))):
         written = next((name for name in re.findall(r"[A-Za-z_]+", unit) if name in instead), None)
         if written and more == (found if more is wanted else wanted) * _GRAVITY.dimension:

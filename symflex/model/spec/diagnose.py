@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from symflex.errors import Diagnostic, Source, Span
 from symflex.model.spec.scan import KEY, Scan, Statement
+from symflex.quantities import name_hint
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -145,7 +146,8 @@ def _bad_key(source: Source, text: str, statement: Statement) -> Diagnostic:
             message, hint = "no key before '='", "write key = value"
         else:
             quoted = found.replace("\\", "\\\\").replace('"', '\\"')
-            message, hint = f"{_shown(found)} is not a key", f'put it in quotes: "{_cut(quoted)}"'
+            message = f"{_shown(found)} is not a key"
+            hint = name_hint(found) or f'put it in quotes: "{_cut(quoted)}"'
     elif match and match[2] == ":":
         message = f"expected '=' after the key {_shown(match[1])}, found ':'"
         colon = statement.start + match.start(2)
@@ -230,6 +232,10 @@ _SCALAR_HINTS: tuple[tuple[Callable[[str], bool], Callable[[str], str]], ...] = 
     (lambda f: f.lower() in {"none", "null", "nil"}, lambda f: "leave the key out"),
     (_matches(r"[\u201c\u201d\u201e\u2018\u2019\u00ab].*"), lambda f: 'write straight quotes: "'),
     (_matches(rf"{_DIGITS},[0-9]++"), lambda f: f"write a decimal point: {_cut(f.replace(',', '.'))}"),
+    (
+        _matches(r"[\u2010-\u2015\u2212][0-9.]++.*"),
+        lambda f: f"write '-' for U+{ord(f[0]):04X}: {_cut('-' + f[1:])}",
+    ),
     (_matches(rf"[+-]?\.[0-9]++{_EXPONENT}"), lambda f: f"begin with a digit: {_cut(f.replace('.', '0.'))}"),
     (
         _matches(rf"{_DIGITS}\.{_EXPONENT}"),
