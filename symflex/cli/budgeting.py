@@ -12,6 +12,7 @@ import os
 import re
 import signal
 import sys
+from contextlib import nullcontext
 from functools import wraps
 from math import inf
 from time import monotonic
@@ -21,6 +22,7 @@ import click
 
 from symflex.budget import GB, TIME_OVER, Budget, memory_held, memory_used_up
 from symflex.cli import BUDGET_EXCEEDED, WATCHED
+from symflex.cli.progress import Waiting
 from symflex.cli.reporting import show_error
 from symflex.errors import BudgetError, Diagnostic
 
@@ -88,7 +90,8 @@ def budgeted(command: Callable[..., int]) -> Callable[..., int]:
             code = _watched(budget, memory)
             if code is not None:
                 return code
-        with whole.entered():
+        waiting = Waiting(str(click.get_current_context().info_name)) if is_program else nullcontext()
+        with waiting, whole.entered():
             code = command(*args, **kwargs)
         if is_watched:
             os.kill(os.getppid(), FINISHED)

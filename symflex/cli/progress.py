@@ -1,20 +1,24 @@
-"""A bar on stderr for what takes longer than a second."""
+"""A bar on stderr for what takes longer than a second, and the time where nothing says how far it is."""
 
 from __future__ import annotations
 
 import os
+import signal
 import sys
+from contextlib import contextmanager
 from math import isnan
 from time import monotonic
 from typing import TYPE_CHECKING, TextIO
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
 DELAY = 1.0
 """Seconds before anything is drawn: what is done by then needs no bar."""
 INTERVAL = 0.1
 """Seconds between two drawings."""
+FIRST_WORD = 2.0
+"""Seconds before a command without a bar says that it works."""
 COLUMNS = 79
 BAR = 20
 
@@ -48,9 +52,7 @@ class ProgressBar:
     def __init__(self, stream: TextIO | None = None, clock: Callable[[], float] = monotonic) -> None:
         self._stream = sys.stderr if stream is None else stream
         self._clock = clock
-        self._is_shown = (
-            self._stream.isatty() and "NO_COLOR" not in os.environ and os.environ.get("TERM") != "dumb"
-        )
+        self._is_shown = _is_rewritable(self._stream)
         self._next = clock() + DELAY
         self._drawn = 0
 
@@ -76,6 +78,7 @@ class ProgressBar:
         """Erase the bar; nothing is drawn afterwards."""
         if self._drawn:
             self._write(f"\r{' ' * self._drawn}\r")
+            _give_way(to_bar=False)
         self._drawn = 0
         self._is_shown = False
 
@@ -87,12 +90,93 @@ class ProgressBar:
 
     def _draw(self, line: str) -> None:
         # What was longer before is covered with blanks.
+        _give_way(to_bar=True)
         self._write(f"\r{line.ljust(self._drawn)}")
         self._drawn = len(line)
 
     def _write(self, text: str) -> None:
-        self._stream.write(text)
-        self._stream.flush()
+        with hushed():
+            self._stream.write(text)
+            self._stream.flush()
+
+
+class Waiting:
+    """Seconds on stderr while a command works and no bar has been drawn; erased before anything is printed.
+
+    A timer of the process draws it, as a computation that reports nothing calls nothing. Only a command that
+    was started as a program has one, and on terminals only.
+
+    Parameters
+    ----------
+    what : str
+        The name of the command.
+    """
+
+    def __init__(self, what: str) -> None:
+        self.what = what
+        self.drawn = 0
+        self.is_hushed = False
+        self.has_bar = False
+        self._begin = self._spoken = monotonic()
+
+    def __enter__(self) -> Waiting:
+        global _waiting  # noqa: PLW0603
+        if _is_rewritable(sys.stderr) and hasattr(signal, "setitimer"):
+            _waiting = self
+            signal.signal(signal.SIGALRM, self._draw)
+            signal.setitimer(signal.ITIMER_REAL, FIRST_WORD, 1.0)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        global _waiting  # noqa: PLW0603
+        if _waiting is self:
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
+            signal.signal(signal.SIGALRM, signal.SIG_IGN)  # one may be on its way
+            self.erase()
+            _waiting = None
+
+    def erase(self) -> None:
+        """Make room for what is printed."""
+        if self.drawn:
+            os.write(sys.stderr.fileno(), f"\r{' ' * self.drawn}\r".encode())
+        self.drawn, self._spoken = 0, monotonic()
+
+    def _draw(self, *_: object) -> None:
+        now = monotonic()
+        is_early = not self.drawn and now - self._spoken < FIRST_WORD
+        if self.is_hushed or self.has_bar or is_early:
+            return
+        line = f"symflex {self.what}: {now - self._begin:.0f} s"
+        os.write(sys.stderr.fileno(), f"\r{line}".encode())
+        self.drawn = len(line)
+
+
+_waiting: Waiting | None = None
+"""Of the command that runs."""
+
+
+@contextmanager
+def hushed() -> Iterator[None]:
+    """Keep the seconds away while something is printed."""
+    waiting = _waiting
+    if waiting is None:
+        yield
+        return
+    waiting.is_hushed = True
+    waiting.erase()
+    try:
+        yield
+    finally:
+        waiting.is_hushed = False
+
+
+def _give_way(*, to_bar: bool) -> None:
+    if _waiting is not None:
+        _waiting.has_bar = to_bar
+
+
+def _is_rewritable(stream: TextIO) -> bool:
+    return stream.isatty() and "NO_COLOR" not in os.environ and os.environ.get("TERM") != "dumb"
 
 
 def _line(done: float, text: str) -> str:

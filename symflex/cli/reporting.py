@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, ParamSpec, TextIO
 
 import click
 
+from symflex.cli.progress import hushed
 from symflex.errors import Diagnostic, SymflexError, UsageError
 from symflex.errors.diagnostic import printable
 
@@ -94,7 +95,8 @@ def say(text: str, *, nl: bool = True, err: bool = False) -> None:
 
 def _print(text: str, *, nl: bool = True, err: bool = False) -> None:
     try:
-        click.echo(text, nl=nl, err=err)
+        with hushed():
+            click.echo(text, nl=nl, err=err)
     except BrokenPipeError:
         raise
     except OSError as error:

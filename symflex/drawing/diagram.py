@@ -44,7 +44,9 @@ WIDEST: Final = 66.0
 WIDEST_FORMULA, BETWEEN_FORMULAS = 200.0, 4.0
 """Of a formula that is written out below the diagrams, and the space after it [points]."""
 MOST_PATHS: Final = 2000
-"""Paths that are tried for the longest one."""
+"""Paths that are tried for the longest one, from a start."""
+MANY_STARTS: Final = 20
+"""More share the paths of so many."""
 NAMED: Final = ("input", "reading", "signal")
 BOXES: Final = ("gain", "block")
 
@@ -132,18 +134,22 @@ def _longest(graph: SignalGraph, drawn: set[int], joined: set[tuple[int, int]]) 
     ]
     minus = {(before, i) for i, n in enumerate(graph.nodes) for before, is_minus in n.before if is_minus}
     best: list[int] = []
-    best_rank = (False, 0, 0)
+    best_rank = (0, 0)
+    # From anywhere else no path is better than one from an input, so that these are tried only without one.
+    starts = [i for i in starts if graph.nodes[i].kind == "input"] or starts
+    shared = MANY_STARTS * MOST_PATHS // max(len(starts), 1)
+    most = min(MOST_PATHS, max(shared, len(graph.nodes) + 1))  # so that each reaches the end of one path
     for start in starts:
         pending, tries = [[start]], 0
-        while pending and tries < MOST_PATHS:
+        while pending and tries < most:
             path = pending.pop()
             tries += 1
-            onward = [n for n in ahead(path[-1]) if n not in path]
+            passed = set(path)
+            onward = [n for n in ahead(path[-1]) if n not in passed]
             while len(path) > 1 and not onward and _leads_back(graph, path):
                 path = path[:-1]
                 onward = []
-            rank = (graph.nodes[start].kind == "input", _forward(path, minus), len(path))
-            if not onward and rank > best_rank:
+            if not onward and (rank := (_forward(path, minus), len(path))) > best_rank:
                 best, best_rank = path, rank
             pending += [[*path, n] for n in reversed(onward)]
     return best
