@@ -37,6 +37,8 @@ if TYPE_CHECKING:
     from symflex.drawing.scheme import DrawnPart, Scheme
     from symflex.model import Model
 
+    _Row = tuple[Sequence[Placed], tuple[str, ...]]  # what is drawn, and elements that are left out
+
 __all__ = ["Drawing", "Extent", "Placed", "draw_model", "drawing_of", "render_drawing"]
 
 LEGEND: Final = 230.0
@@ -77,10 +79,11 @@ def drawing_of(
         ends = [loose_ends(bands(room)) for room in (*rooms, 1e9)]
         if ends[0] > ends[-1] >= ends[1]:
             usual = usual[1:]  # a loop is closed there
+        networks = cache(partial(_networks, content))  # by their spacing
         for width in asked or usual:
             points = width / MM_PER_INCH * POINTS
             for spacing in SPACINGS:
-                drawing = _laid_out(content, spacing, points, bands(points - 2 * MARGIN))
+                drawing = _laid_out(content, networks(spacing), points, bands(points - 2 * MARGIN))
                 if drawing.width <= points:
                     return _with_joins(content, drawing)
             if points >= (SMALLEST_ASKED if asked else SMALLEST) * drawing.width:
@@ -95,9 +98,7 @@ def drawing_of(
         raise UsageError(Diagnostic("SF902", message, None, hint))
 
 
-def _network(
-    network: DrawnNetwork, scheme: Scheme, model: Model, spacing: Spacing
-) -> Iterator[tuple[Sequence[Placed], tuple[str, ...]]]:
+def _network(network: DrawnNetwork, scheme: Scheme, model: Model, spacing: Spacing) -> Iterator[_Row]:
     """Yield a frame in its plane, and the row of what is no frame with the elements it leaves out."""
     plan = frame_plan(network, model) if is_planar(network) else None
     if plan is not None:
@@ -150,9 +151,13 @@ def _legend(model: Model, labels: Labels) -> list[Placed]:
     return [Placed("values", "", (), lines)] if lines else []
 
 
-def _laid_out(content: _Content, spacing: Spacing, width: float, bands: list[list[Placed]]) -> Drawing:
-    model, scheme, graph = content.model, content.scheme, content.graph
-    found = [row for network in scheme.networks for row in _network(network, scheme, model, spacing)]
+def _networks(content: _Content, spacing: Spacing) -> list[_Row]:
+    model, scheme = content.model, content.scheme
+    return [row for network in scheme.networks for row in _network(network, scheme, model, spacing)]
+
+
+def _laid_out(content: _Content, found: list[_Row], width: float, bands: list[list[Placed]]) -> Drawing:
+    model, graph = content.model, content.graph
     rows = [*(items for items, _ in found), *(f.items for f in content.fields)]
     rows += [*bands, statements(graph), _legend(model, graph.labels)]
     gone = tuple(name for _, left_out in found for name in left_out)

@@ -80,7 +80,10 @@ def figure_of(drawing: Drawing) -> Figure:
                     joinstyle="miter" if stroke.fill else "round",
                 )
             )
-        for shown in item.texts:
+        for j, shown in enumerate(item.texts):
             place = (shown.x / across, shown.y / up)
-            figure.text(*place, shown.markup, fontsize=shown.size, ha="left", va="baseline")
+            # An input of a block diagram is a name at the beginning of a wire.
+            is_first = j == 0 and not item.strokes and item.kind in TITLED
+            gid = f"{item.kind}.{item.name}.{i}" if is_first else None
+            figure.text(*place, shown.markup, gid=gid, fontsize=shown.size, ha="left", va="baseline")
     return figure

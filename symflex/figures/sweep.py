@@ -176,11 +176,17 @@ def _spans_decades(values: Doubles) -> bool:
     return bool(finite.size and finite.min() > 0 and finite.max() > DECADES * finite.min())
 
 
+def _is_evenly_spaced(values: Doubles) -> bool:
+    """Tell whether values are those of a linear design, which a logarithmic axis would crowd at its end."""
+    steps = np.diff(np.unique(values[np.isfinite(values)]))
+    return steps.size > 1 and bool(np.allclose(steps, steps[0], rtol=1e-6, atol=0.0))
+
+
 def _set_parameter_axis(axes: Axes, parameter: Labelled) -> None:
     axes.set_xlabel(_label(parameter))
     if parameter.values.size > 1:
         axes.set_xlim(float(parameter.values.min()), float(parameter.values.max()))
-    if _spans_decades(parameter.values):
+    if _spans_decades(parameter.values) and not _is_evenly_spaced(parameter.values):
         axes.set_xscale("log")
         _set_plain_ticks(axes.xaxis)
     axes.grid(visible=True)
@@ -285,7 +291,8 @@ def _short(value: float) -> str:
 
 def _colours(values: Doubles) -> tuple[Normalize, Colormap]:
     low, high = float(np.min(values)), float(np.max(values))
-    norm = LogNorm(low, high) if _spans_decades(values) else Normalize(low, high)
+    is_log = _spans_decades(values) and not _is_evenly_spaced(values)
+    norm = LogNorm(low, high) if is_log else Normalize(low, high)
     whole = colormaps[MAP]
     return norm, ListedColormap([whole(x) for x in np.linspace(0, MAP_END, 256)])
 
