@@ -29,6 +29,8 @@ PITCH: Final = {"dc_motor": 19.0}
 USUAL_PITCH, GROUNDED_PITCH = 9.0, 20.0
 PLACES: Final = {"dc_motor": 3, "voice_coil": 3}
 """Ends for which a symbol has places of their own, where that is fewer than two on each side."""
+FEEDBACK: Final = 15.0
+"""How far above the axis of an amplifier a wire goes from its output's side to an input."""
 INSET: Final = {"dc_motor": (0.233, 0.5)}
 """How far one end, and how far two, reach into a symbol, as a share of its length."""
 COORDINATES: Final = ("beam", "rod", "shaft", "string")
@@ -72,9 +74,23 @@ class SymbolCell:
 
     def offsets(self, side: Sequence[End]) -> list[float]:
         """Return where the ends of a side are, upwards from the axis."""
+        if self.is_fed_back:
+            # The output stays at the tip, and the input beside it comes round the triangle.
+            has_output = any(not self.is_input(e) for e in side)
+            return [(FEEDBACK if self.is_input(e) else 0.0) if has_output else -USUAL_PITCH / 2 for e in side]
         usual = GROUNDED_PITCH if any(not e.node for e in side) else USUAL_PITCH
         pitch = usual if self.is_boxed else PITCH.get(self.part.type_name, usual)
         return [pitch * ((len(side) - 1) / 2 - i) for i in range(len(side))]
+
+    def is_input(self, end: End) -> bool:
+        """Whether an end is an input of an amplifier."""
+        return self.part.type_name == "op_amp" and any(e is end for e in self.part.ends[:2])
+
+    @property
+    def is_fed_back(self) -> bool:
+        """Whether an input of an amplifier lies on the side of its output, as one node or near it."""
+        sides = ([self.is_input(e) for e in side] for side in (self.left, self.right))
+        return not self.is_boxed and any(len(set(side)) > 1 for side in sides)
 
     @property
     def is_boxed(self) -> bool:
@@ -207,10 +223,19 @@ def _wires(
     """Draw what leads to a symbol: from the edge of its place, or from the ground."""
     part, found = cell.part, []
     insets = (0.0, 0.2) if cell.is_boxed else INSET.get(part.type_name, (0.0, 0.2))
+    amplifier = part.type_name == "op_amp" and not cell.is_boxed
     for side, (edge, ground, inner), sign in ((cell.left, left, 1), (cell.right, right, -1)):
         inset = insets[len(side) > 1] * abs(right[2] - left[2])
         for one, y in zip(side, cell.offsets(side), strict=True):
             at, reach = edge if one.node else ground, inner + sign * inset
+            if amplifier:
+                reach = inner + sign * 0.2 * abs(right[2] - left[2]) * cell.is_input(one)
+            if y == FEEDBACK:
+                back = (right if sign > 0 else left)[2]
+                into = (back - sign * 0.2 * (right[2] - left[2]), USUAL_PITCH / 2)
+                route = ((at, y), (back, y), (back, USUAL_PITCH / 2), into)
+                found.append(Placed("wire", part.name, (line(*route),)))
+                continue
             if at != reach:
                 bold = BOLD if one.domain == "rotation" else LINE
                 route = [(at, y), (reach, y)]

@@ -541,6 +541,10 @@ class _Layout:
                         x, level = column.lead_x, y + offset
                         self.leads.append(Extent(x - 1, column.top, x + 1, level))
                         route = ((edge, level), (x, level), (x, column.top), (column.x, column.top))
+                        if column.crown:  # beside the label of a disc, to the end of its shaft
+                            x = column.x - column.half
+                            shaft = (column.top - column.crown + column.bottom) / 2
+                            route = ((edge, level), (x, level), (x, shaft))
                         self._wire(cell.part.name, *route, width=_wire_width(cell, end))
 
     def _draw_above(self) -> None:
