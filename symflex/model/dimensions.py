@@ -206,7 +206,7 @@ class DimensionSystem:
         if not self._learn(self._reduce(measure.times(left.power(-1)))) and not measure.literal:
             found, wanted = self._reduce(measure).dimension, self._reduce(left).dimension
             message = f"'{variable}' is used in '{wanted}' but its expression is in '{found}'"
-            self._note("SF203", message, expression.span, _gain_hint(found, wanted))
+            self._note("SF203", message, expression.span, _gain_hint(expression, found, wanted))
 
     def place_field(self, unknowns: Sequence[str], ends: Sequence[Expression]) -> None:
         """Take x of a field to be measured as its ends are; a bare number may stand for any unit."""
@@ -445,7 +445,9 @@ class DimensionSystem:
             if not self._learn(self._reduce(measure.times(first.power(-1))), only_check=loose) and not loose:
                 here, there = self._reduce(measure).dimension, self._reduce(first).dimension
                 message = f"terms of a sum disagree: '{there}' and '{here}'"
-                self._note("SF205", message, term.span or expression.span, _gain_hint(here, there))
+                self._note(
+                    "SF205", message, term.span or expression.span, _gain_hint(expression, here, there)
+                )
         result = self._reduce(first)
         if mixed:
             return replace(result, cycles=Fraction(0), pis=Fraction(0), cyclic=frozenset())
@@ -523,8 +525,9 @@ class DimensionSystem:
         return None
 
 
-def _gain_hint(found: Dimension, wanted: Dimension) -> str | None:
+def _gain_hint(expression: Expression, found: Dimension, wanted: Dimension) -> str | None:
     """Say that an integral or a derivative has another unit; a gain makes it fit, also a plain number."""
-    if any(found == wanted * SECOND**power for power in (-2, -1, 1, 2)):
+    has_s = any(isinstance(n, Name) and n.name == LAPLACE for n in names(expression))
+    if has_s and any(found == wanted * SECOND**power for power in (-2, -1, 1, 2)):
         return "'s' and '1/s' have units: multiply by a gain; a plain number, as in '1*(u/s)', fits any unit"
     return None

@@ -6,7 +6,8 @@ from io import StringIO
 
 import pytest
 
-from symflex.cli.progress import ProgressBar
+from symflex.cli import progress
+from symflex.cli.progress import ProgressBar, Waiting, hushed
 
 
 class Screen(StringIO):
@@ -131,3 +132,20 @@ def test_stderr_is_the_default(capsys):
     progress.report(0.5, "roots")
     progress.close()
     assert capsys.readouterr() == ("", "")
+
+
+def test_a_command_without_a_bar_shows_its_seconds_and_gives_way_to_what_is_printed(monkeypatch):
+    written, at = [], iter([0.0, 1.0, 3.2, 3.3, 3.4, 4.0])
+    monkeypatch.setattr(progress, "monotonic", lambda: next(at))
+    monkeypatch.setattr(progress.os, "write", lambda _, text: written.append(text.decode()))
+    waiting = Waiting("draw")
+    monkeypatch.setattr(progress, "_waiting", waiting)
+    monkeypatch.setattr(progress.sys, "stderr", open(progress.os.devnull, "w"))
+    waiting._draw()  # too early
+    waiting._draw()
+    assert written == ["\rsymflex draw: 3 s"]
+    with hushed():
+        waiting._draw()
+    assert written[1:] == [f"\r{' ' * 17}\r"]
+    waiting._draw()
+    assert len(written) == 2

@@ -73,6 +73,8 @@ def test_a_common_mistake_is_pointed_at_with_what_to_write() -> None:
         ("m = .5\n", ".5", "begin with a digit: 0.5"),
         ("m = 5.\n", "5.", "put a digit after the point: 5.0"),
         ("m = 0,5\n", "0,5", "write a decimal point: 0.5"),
+        ("m = \u22125\n", "\u22125", "write '-' for U+2212: -5"),
+        ("m\u00fc = 5\n", "m\u00fc", "names are ASCII: write 'mue'"),
         ("m = 007\n", "007", "write it without leading zeros"),
         ("m = \u201cx\u201d\n", "\u201cx\u201d", 'write straight quotes: "'),
         ('m = "60 kg\n', '"60 kg', 'add the closing quote: "'),

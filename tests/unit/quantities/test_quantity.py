@@ -354,3 +354,18 @@ def test_whatever_is_read_with_a_unit_looks_like_a_quantity(value):
 @given(st.text())
 def test_the_shape_of_any_text_can_be_asked(value):
     assert looks_like_quantity(value) in {True, False}
+
+
+@pytest.mark.parametrize(
+    ("text", "hint"),
+    [
+        ("0,05 m", "write a decimal point: '0.05'"),
+        ("1,000 kg", "write a decimal point: '1.000', or '1000' for thousands"),
+        ("1.234,5 kg", "digits are not grouped: write '1234.5'"),
+        ("\u22123 m", "write '-'"),
+        ("3*10\u207b\u00b3 m", "write '^-3'"),
+        ("3 \u00d7 10^3 m", "write '*'"),
+    ],
+)
+def test_what_typesetters_write_is_named_with_what_to_type(text, hint):
+    assert refused(text).hint == hint
