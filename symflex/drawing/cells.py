@@ -233,8 +233,8 @@ def _wires(
             if y == FEEDBACK:
                 back = (right if sign > 0 else left)[2]
                 into = (back - sign * 0.2 * (right[2] - left[2]), USUAL_PITCH / 2)
-                route = ((at, y), (back, y), (back, USUAL_PITCH / 2), into)
-                found.append(Placed("wire", part.name, (line(*route),)))
+                around = ((at, y), (back, y), (back, USUAL_PITCH / 2), into)
+                found.append(Placed("wire", part.name, (line(*around),)))
                 continue
             if at != reach:
                 bold = BOLD if one.domain == "rotation" else LINE

@@ -540,6 +540,7 @@ class _Layout:
                         column = self.columns[self.at[end.node]]
                         x, level = column.lead_x, y + offset
                         self.leads.append(Extent(x - 1, column.top, x + 1, level))
+                        route: tuple[Point, ...]
                         route = ((edge, level), (x, level), (x, column.top), (column.x, column.top))
                         if column.crown:  # beside the label of a disc, to the end of its shaft
                             x = column.x - column.half
