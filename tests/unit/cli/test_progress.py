@@ -140,7 +140,8 @@ def test_a_command_without_a_bar_shows_its_seconds_and_gives_way_to_what_is_prin
     monkeypatch.setattr(progress.os, "write", lambda _, text: written.append(text.decode()))
     waiting = Waiting("draw")
     monkeypatch.setattr(progress, "_waiting", waiting)
-    monkeypatch.setattr(progress.sys, "stderr", open(progress.os.devnull, "w"))
+    monkeypatch.setattr(Screen, "fileno", lambda _: 2)
+    monkeypatch.setattr(progress.sys, "stderr", Screen())
     waiting._draw()  # too early
     waiting._draw()
     assert written == ["\rsymflex draw: 3 s"]

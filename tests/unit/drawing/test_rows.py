@@ -152,3 +152,45 @@ def test_values_stand_below_names_with_the_units_they_were_written_in():
     drawing = drawing_of(read(CHAIN), values=True)
     texts = {t.markup for i in drawing.items if i.name == "wall" for t in i.texts}
     assert texts == {"$k$", r"$95\,\mathrm{kN/m}$"}
+
+
+def test_a_follower_is_fed_back_round_its_amplifier():
+    drawn = drawing_of(
+        pipeline.loads("""
+symflex = 1
+[elements]
+o = { type = "op_amp", inputs = ["p", "o"], out = "o" }
+[inputs]
+V = { voltage = "p" }
+[outputs]
+U = "o"
+""")
+    ).items
+    triangle = next(i.strokes[0] for i in drawn if i.kind == "element" and i.name == "o")
+    left = min(x for x, _ in triangle.points)
+    ends = [s.points[-1] for i in drawn if i.kind == "wire" and i.name == "o" for s in i.strokes]
+    # One for each input, apart from each other.
+    assert len({round(y, 1) for x, y in ends if abs(x - left) < 0.1}) == 2
+
+
+def test_wires_of_a_gear_lead_to_the_shafts_of_its_discs():
+    drawn = drawing_of(
+        pipeline.loads("""
+symflex = 1
+[elements]
+a = { type = "inertia", at = "s1", J = 1 }
+b = { type = "inertia", at = "c", J = 2 }
+d = { type = "inertia", at = "r", J = 3 }
+g = { type = "planetary_gear", sun = "s1", ring = "r", carrier = "c", rho = 2.5 }
+[inputs]
+T = { torque = "s1" }
+[outputs]
+C = "c"
+""")
+    ).items
+    wires = [s.points for i in drawn if i.kind == "wire" and i.name == "g" for s in i.strokes]
+    discs = [i.box for i in drawn if i.kind == "element" and i.name in ("a", "b", "d")]
+    ends = [points[-1] for points in wires]
+    # At half the height of each disc, to the left of it, where its shaft begins.
+    for disc in discs:
+        assert any(abs(y - disc.centre[1]) < 0.1 and 0 <= disc.x0 - x < 12 for x, y in ends)
