@@ -64,7 +64,7 @@ def from_control(sys: object) -> Model:
     else:
         hint = "read_measurement() takes measured responses" if hasattr(given, "omega") else None
         raise _refused(f"a '{type(sys).__name__}' is no transfer function and no state equations", hint)
-    names = _Names()
+    names = _FreeNames()
     inputs = names.of(getattr(given, "input_labels", None), "u", len(blocks[0]))
     outputs = names.of(getattr(given, "output_labels", None), "y", len(blocks))
     tables: dict[str, object] = {}
@@ -165,10 +165,10 @@ def from_matrices(
 
 def _of_states(given: Any, title: str) -> Model:  # noqa: ANN401 (a system of either program)
     a, b, c, d = (_rows(key, getattr(given, key)) for key in "ABCD")
-    names = _Names()
+    names = _FreeNames()
     inputs = names.of(getattr(given, "input_labels", None), "u", len(d[0]))
     states = names.of(getattr(given, "state_labels", None), "x", len(a))
-    outputs = _Names().of(getattr(given, "output_labels", None), "y", len(d))
+    outputs = _FreeNames().of(getattr(given, "output_labels", None), "y", len(d))
     equations = [
         f"s*{x} = {_combined([*zip(a[i], states, strict=True), *zip(b[i], inputs, strict=True)])}"
         for i, x in enumerate(states)
@@ -279,7 +279,7 @@ def _symbols(entries: Sequence[Any]) -> dict[str, object]:
     }
 
 
-class _Names:
+class _FreeNames:
     """Names for what programs label as they like, each once."""
 
     def __init__(self) -> None:

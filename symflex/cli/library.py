@@ -144,13 +144,15 @@ def _entry(signature: str, summary: str) -> str:
     """Return a line of the library; what does not fit beside the signature stands below it."""
     first, margin = f"  {signature.ljust(SIGNATURE_WIDTH)}  ", " " * (SIGNATURE_WIDTH + 4)
     if len(signature) > SIGNATURE_WIDTH:
-        first = f"  {signature}\n{margin}"
+        lines = textwrap.wrap(signature, terminal_width(), initial_indent="  ", subsequent_indent=margin)
+        first = "\n".join([*lines, margin])
     room = terminal_width() - len(margin)
     return first + f"\n{margin}".join(textwrap.wrap(summary, room, break_long_words=False))
 
 
 def _describe(element: Element) -> None:
-    say(_signature(element.type_name, _element_keys(element)))
+    signature = _signature(element.type_name, _element_keys(element))
+    say(textwrap.fill(signature, terminal_width(), subsequent_indent="    "))
     say(_paragraph(_plain(element.__doc__), "  ", "  "))
     for port in element.ports:
         nodes = "node" if port.terminals == 1 else f"{port.terminals} nodes"

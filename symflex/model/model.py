@@ -85,7 +85,7 @@ class ModelParameter:
         >>> E = ModelParameter("E", ExactValue(Fraction(70 * 10**9)), "Pa", written_unit="GPa",
         ...               scale=ExactValue(Fraction(10**9)))
         >>> E.as_written()
-        (ExactValue(rational=Fraction(70, 1), pi_power=0), 'GPa')
+        (ExactValue(rational=Fraction(70, 1), pi_power=0, is_imaginary=False), 'GPa')
         """
         known = self.value if value is None else value
         if not self.written_unit:

@@ -153,7 +153,7 @@ def _upper(
             return [_lossy(r) for r, side in zip(roots, sides, strict=True) if side]
     message = f"a root of {bound.name} is not told from the mirror image of another"
     raise UncertifiedError(
-        Diagnostic("SF402", message, None, "loss factors as small as this may be left out")
+        Diagnostic("SF404", message, None, "loss factors as small as this may be left out")
     )
 
 
@@ -241,7 +241,7 @@ def _moved(name: str, function: Callable[[acb], tuple[acb, acb]], root: Root, bi
 
 def _not_followed(name: str, root: Root) -> UncertifiedError:
     message = f"a mode of {name} near {root.frequency_hz():.6g} Hz cannot be followed from no losses"
-    return UncertifiedError(Diagnostic("SF402", message, None, "look at its frequency response"))
+    return UncertifiedError(Diagnostic("SF404", message, None, "look at its frequency response"))
 
 
 def _series(bound: BoundTransferFunction, part: Factored, bits: int) -> Callable[[acb], tuple[acb, acb]]:

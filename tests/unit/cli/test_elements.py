@@ -17,7 +17,7 @@ def test_every_entry_is_described_with_all_its_keys(shell):
     for name in ENTRIES:
         done = shell("elements", name)
         assert done.code == 0, name
-        keys = done.out.split(")")[0].split("(")[1].split(", ")
+        keys = " ".join(done.out.split(")")[0].split("(")[1].split()).split(", ")
         lines = done.out.splitlines()
         assert all(any(line.startswith(f"  {key} ") for line in lines) for key in keys), name
 
