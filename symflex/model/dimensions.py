@@ -206,7 +206,8 @@ class DimensionSystem:
         if not self._learn(self._reduce(measure.times(left.power(-1)))) and not measure.literal:
             found, wanted = self._reduce(measure).dimension, self._reduce(left).dimension
             message = f"'{variable}' is used in '{wanted}' but its expression is in '{found}'"
-            self._note("SF203", message, expression.span, _gain_hint(expression, found, wanted))
+            hint = _gain_hint(expression, found, wanted) or f"a gain in '{wanted / found}' makes it fit"
+            self._note("SF203", message, expression.span, hint)
 
     def place_field(self, unknowns: Sequence[str], ends: Sequence[Expression]) -> None:
         """Take x of a field to be measured as its ends are; a bare number may stand for any unit."""

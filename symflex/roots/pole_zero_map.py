@@ -49,7 +49,7 @@ class StabilityVerdict:
     >>> StabilityVerdict("unknown", None, False, "poles have no end").headline
     'stability not known'
     >>> StabilityVerdict("stable", 0, True, hidden="a hidden pole at s = 0", moving=("phi",)).hidden_motion
-    'a hidden pole at s = 0: phi moves without input or output seeing it'
+    'a hidden pole at s = 0: phi may rest anywhere'
     """
 
     word: Literal["stable", "marginal", "unstable", "unknown"]
@@ -94,9 +94,8 @@ class StabilityVerdict:
             return f"{self.hidden}, which input and output do not see"
         more = len(self.moving) - MOST_NAMES
         shown = [*self.moving[:MOST_NAMES], *([f"{more} more"] if more > 0 else [])]
-        verb, it = ("moves", "it") if len(self.moving) == 1 else ("move", "them")
         names = " and ".join([", ".join(shown[:-1]), shown[-1]] if len(shown) > 1 else shown)
-        return f"{self.hidden}: {names} {verb} without input or output seeing {it}"
+        return f"{self.hidden}: {names} may rest anywhere"
 
     @property
     def brief(self) -> str:

@@ -217,8 +217,15 @@ def of_powers(front: Fraction, powers: Mapping[Expression, int]) -> Expression:
 
 
 def _joined(factors: Sequence[Expression]) -> Sequence[Expression]:
-    """Return factors with ``exp(-(T_1 + T_2)*s)`` for several exponentials, and no squares of roots."""
-    if any(isinstance(f, Power) and isinstance(f.base, Call) and f.base.name == "sqrt" for f in factors):
+    """Return factors with ``exp(-(T_1 + T_2)*s)`` for several exponentials, and no squares of roots.
+
+    Sums that were written in two orders are one power as soon as they are turned alike.
+    """
+    bases = [f.base if isinstance(f, Power) else f for f in factors]
+    is_squared = any(
+        isinstance(f, Power) and isinstance(f.base, Call) and f.base.name == "sqrt" for f in factors
+    )
+    if is_squared or len({*bases}) < len(bases):
         factors = (of_powers(*powers_of(product_of(factors))),)
     decays = [f for f in factors if isinstance(f, Call) and f.name == "exp"]
     times = [powers_of(f.argument) for f in decays]

@@ -72,9 +72,9 @@ def test_hidden_poles_on_the_axis_are_named_and_leave_the_word_those_on_the_righ
 def test_hidden_motion_is_a_line_that_names_what_moves():
     for moving, said in [
         ("", ", which input and output do not see"),
-        ("u", ": u moves without input or output seeing it"),
-        ("xy", ": x and y move without input or output seeing them"),
-        ("abcde", ": a, b, c and 2 more move without input or output seeing them"),
+        ("u", ": u may rest anywhere"),
+        ("xy", ": x and y may rest anywhere"),
+        ("abcde", ": a, b, c and 2 more may rest anywhere"),
     ]:
         verdict = StabilityVerdict("stable", 0, True, hidden="a hidden pole at s = 0", moving=tuple(moving))
         assert verdict.hidden_motion == f"a hidden pole at s = 0{said}"
