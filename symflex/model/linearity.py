@@ -47,6 +47,7 @@ NONLINEAR = frozenset(
     "sign sgn abs fabs sat saturate saturation min max floor ceil round mod deadzone backlash relay".split()
 )
 LINEARISE = "linearise about an operating point, so that only one factor varies in time"
+RATIO = "the ratio of two is a transfer function: let the lower one be an input, and the upper an output"
 
 
 def integer_exponent(exponent: Expression) -> int | None:
@@ -127,7 +128,7 @@ class _Degrees:
                 top, bottom = self.of(numerator), self.of(denominator)
                 if bottom == "linear":
                     message = "division by a quantity that varies in time is not linear"
-                    self.note("SF222", message, denominator.span, LINEARISE)
+                    self.note("SF222", message, denominator.span, RATIO if top == "linear" else LINEARISE)
                 if is_number(denominator, 0):
                     self.note("SF224", "division by zero", denominator.span)
                 return _strongest([top, bottom])
