@@ -25,11 +25,14 @@ def walk(heading):
 def passed(run):
     """Return the files of the package in the order in which a run first calls a function of each."""
     run()  # what is imported or remembered once is no part of a walk
-    found = {}
+    found, seen = {}, set()
 
     def note(frame, event, _):
+        if event != "call" or frame.f_code in seen:
+            return
+        seen.add(frame.f_code)
         folder, inside, file = frame.f_code.co_filename.partition(f"{ROOT / 'symflex'}/")
-        if event == "call" and inside and not folder and frame.f_code.co_name != "<module>":
+        if inside and not folder and frame.f_code.co_name != "<module>":
             found.setdefault(file, len(found))
 
     sys.setprofile(note)

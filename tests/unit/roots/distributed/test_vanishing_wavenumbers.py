@@ -39,6 +39,7 @@ Y = "{output}"
 AXIAL = 'N = "3 N"\nk_f = "14 N/m^2"'
 RAYLEIGH = 'theory = "rayleigh"\nk_f = "14 N/m^2"'
 TIMOSHENKO = 'theory = "timoshenko"\nkappa = "0.5"\nG = "28 Pa"'
+CUT_OFF = Band(Fraction("0.4"), Fraction("0.44"))  # sqrt(7) rad/s = 0.421 Hz
 PINNED = '[elements]\np = { type = "pin", at = "a" }\nq = { type = "pin", at = "c" }'
 
 
@@ -81,8 +82,8 @@ def test_translation_with_rotary_inertia():
 def test_where_two_wavenumbers_meet_or_one_vanishes_without_a_motion_there_is_no_mode():
     # w'''' - (3/4) w'' + (s^2 + 7)/2 w = 0 has double wavenumbers where (3/4)^2 = 2 (s^2 + 7); at the cut-off
     # frequency of a free Timoshenko beam its shear force, kappa G A (w' - phi), is not zero at the ends.
-    for more, place in ((AXIAL, mpf(7) - mpf(9) / 32), (TIMOSHENKO, mpf(7))):
-        result = solved(more, 15, Modes(2), output="c.y")
+    for more, place, region in ((AXIAL, mpf(7) - mpf(9) / 32, Modes(2)), (TIMOSHENKO, mpf(7), CUT_OFF)):
+        result = solved(more, 15, region, output="c.y")
         found = [*result.poles, *result.zeros, *(h.root for h in result.hidden)]
         assert result.certificate.certified
         assert not any(abs(float(root.im.mid()) - float(sqrt(place))) < 1e-3 for root in found), more
@@ -90,7 +91,6 @@ def test_where_two_wavenumbers_meet_or_one_vanishes_without_a_motion_there_is_no
 
 @pytest.mark.slow
 def test_sections_of_a_pinned_timoshenko_beam_turn_alike_at_the_cut_off_frequency():
-    cut_off = Band(Fraction("0.4"), Fraction("0.44"))  # sqrt(7) rad/s = 0.421 Hz
-    result = solved(TIMOSHENKO, 30, cut_off, PINNED, 'torque = "a.theta"', "a.theta")
+    result = solved(TIMOSHENKO, 30, CUT_OFF, PINNED, 'torque = "a.theta"', "a.theta")
     assert check(result.poles, lambda: mpc(0, sqrt(7)), 30).on_imaginary_axis
     assert result.certificate.certified
