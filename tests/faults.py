@@ -260,8 +260,10 @@ def main(count, seed):
         os.chmod(scratch, 0o755)
         reference = Reference(names, scratch)
         for i in range(count):
-            name = names[i % len(names)]
-            fault = Fault(FAULTS[i // len(names) % len(FAULTS)], random_numbers.random())
+            turn, place = divmod(i, len(names))
+            name = names[place]
+            kind = FAULTS[(place + turn) % len(FAULTS)]  # every kind in every turn
+            fault = Fault(kind, random_numbers.random())
             is_felt, found = one(name, fault, reference, scratch)
             done[fault.kind] = [done[fault.kind][0] + 1, done[fault.kind][1] + is_felt]
             wrong += [f"{name}, {fault.kind} at {fault.when:.4f}: {text}" for text in found]

@@ -339,7 +339,7 @@ def _system(case: Case, s: mpc) -> tuple[matrix, matrix]:
 
 
 def _determinant(case: Case, s: mpc) -> mpc:
-    """Return the determinant of the conditions in doubles, of which a count of turns needs the first digit."""
+    """Return the determinant of the conditions in doubles: turns need its first digit only."""
     slope = np.array(case.slope(s), complex)
     grown = {x: linalg.expm(slope * float(x)) for x, *_ in case.conditions}
     rows = [sum(complex(_number(w, s)) * grown[x][k] for k, w in ws.items()) for x, ws, _ in case.conditions]

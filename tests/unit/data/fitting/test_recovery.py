@@ -32,7 +32,7 @@ def recover(count, seed, **settings):
 
 @pytest.mark.slow
 def test_many_systems_are_recovered_and_intervals_are_honest():
-    errors, deviations = recover(60, seed=2)
+    errors, deviations = recover(20, seed=2)
     assert errors[:, 0].max() < 0.002
     assert errors[:, 1].max() < 0.10
     inside = np.mean(errors < deviations, axis=(0, 2))
