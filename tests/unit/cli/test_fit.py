@@ -159,7 +159,7 @@ def test_driving_with_another_number_of_modes_than_there_are_ends_in_shapes(shel
 
 @pytest.mark.slow
 def test_a_poor_fit_says_so_first_and_strict_makes_it_exit_code_4(oscillator):
-    f = np.arange(2.0, 60.0, 0.25)
+    f = np.arange(2.0, 60.0, 0.5)
     noise = np.random.default_rng(1).standard_normal((2, f.size)) * 0.02
     h = 1 / ((1 + 0.04j * f / 20 - (f / 20) ** 2) * (1 + 0.04j * f / 30 - (f / 30) ** 2))
     h = h * (1 + noise[0] + 1j * noise[1])

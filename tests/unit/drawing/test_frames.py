@@ -71,7 +71,7 @@ Y = "q.y"
     assert wrongly_counted(model, drawing) == []
 
 
-@pytest.mark.parametrize(("first", "count"), [(1, 3), pytest.param(1000, 20, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(("first", "count"), [(1, 3), pytest.param(1000, 10, marks=pytest.mark.slow)])
 def test_random_models_are_drawn_with_everything_in_its_place(first, count):
     for seed, model in models(first, count):
         assert faults(model, drawing_of(model)) == [], seed
@@ -79,7 +79,7 @@ def test_random_models_are_drawn_with_everything_in_its_place(first, count):
 
 @pytest.mark.slow
 def test_random_models_give_the_same_bytes_twice():
-    for seed, model in models(7000, 6):
+    for seed, model in models(7000, 3):
         one, other = (render_drawing(drawing_of(model), "svg") for _ in range(2))
         assert one == other, seed
 

@@ -168,7 +168,8 @@ def test_margins_are_what_routh_says():
 
 # --------------------------------------------------------------------------- processes, kills and clusters
 
-ARGUMENTS = ["--over", "E=+-5%", "--over", "l=+-2%", "--monte-carlo", "600", "--modes", "6"]
+POINTS = 400
+ARGUMENTS = ["--over", "E=+-5%", "--over", "l=+-2%", "--monte-carlo", str(POINTS), "--modes", "6"]
 
 
 def symflex_sweep(folder, output, *more):
@@ -198,7 +199,7 @@ def test_a_sweep_that_is_killed_goes_on_to_the_same_bytes(tmp_path):
             time.sleep(0.01)
         p.send_signal(signal.SIGKILL)
     kept = {path.name: path.stat().st_mtime_ns for path in journal.glob("chunk-*.npz")}
-    assert 0 < len(kept) < 600 // chunk_size(600)
+    assert 0 < len(kept) < POINTS // chunk_size(POINTS)
     assert not (tmp_path / "killed.nc").exists()
     assert run(tmp_path, "killed.nc", "--workers", "2") == expected
     assert not journal.exists()
