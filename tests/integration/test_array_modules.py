@@ -304,6 +304,19 @@ def test_the_response_at_negative_frequencies_is_conjugate(over_any):
 
 # ---------------------------------------------------------------- wavenumbers without a formula
 
+# Of third order: jax compiles what finds three wavenumbers in a quarter of the time that four of a pipe take.
+WAVE = """
+symflex = 1
+parameters = { c = "2.1 m/s", d = "0.9 m^3/s", l = "3 m" }
+[fields.w]
+domain = ["0", "l"]
+equation = "s*w + c*w' + d*w''' = 0"
+conditions = ["w(0) = u", "w(l) = 0", "w'(l) = 0"]
+[inputs]
+u = {}
+[outputs]
+out = "w(l/3)"
+"""
 NAMELESS = {"pipe": PIPE, "massless": MASSLESS}
 
 
@@ -338,24 +351,24 @@ def test_a_member_without_mass_serves_compiled_functions(over_jax, jax):
 @needs_jax
 def test_compiled_values_and_derivatives_of_found_wavenumbers_are_those_of_their_equation(over_jax, jax, jnp):
     def parts(x):
-        value = over_jax(PIPE).Y_over_p(1j * x[0], U=x[1])
+        value = over_jax(WAVE).out_over_u(1j * x[0], c=x[1])
         return jnp.stack([jnp.real(value), jnp.imag(value)])
 
     along = jax.jit(lambda x, direction: jax.jvp(parts, (x,), (direction,)))
-    (tf,) = functions_of(PIPE)
-    for omega, speed in ((40.0, 5.0), (3.0, 11.0)):
+    (tf,) = functions_of(WAVE)
+    for omega, speed in ((40.0, 2.0), (3.0, 5.0)):
         x = jnp.asarray([omega, speed])
         (value, by_omega), (_, by_speed) = (
             [complex(*pair) for pair in along(x, jnp.asarray(direction))]
             for direction in ([1.0, 0.0], [0.0, 1.0])
         )
-        bound, s = pipeline.bind(tf, {"U": Fraction(speed)}), 1j * omega
+        bound, s = pipeline.bind(tf, {"c": Fraction(speed)}), 1j * omega
         assert value == pytest.approx(bound(s), rel=1e-12)
         logarithmic = complex(bound.enclosed(400).logarithmic_derivative(acb(0, omega)))
         assert by_omega == pytest.approx(1j * bound(s) * logarithmic, rel=1e-12)
         # By the speed: central differences of enclosures.
         step = Fraction(1, 10**4)
-        ends = [pipeline.bind(tf, {"U": Fraction(speed) + sign * step})(s) for sign in (1, -1)]
+        ends = [pipeline.bind(tf, {"c": Fraction(speed) + sign * step})(s) for sign in (1, -1)]
         assert by_speed == pytest.approx((ends[0] - ends[1]) / (2 * float(step)), rel=1e-7)
 
 
