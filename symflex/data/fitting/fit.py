@@ -302,9 +302,11 @@ def _fit(
         )
         for r in range(len(measured))
     )
+    fit = ResonanceFit(problem, bases, candidate, scores, given.criterion, tests, ())
     if stages.is_cut:
         reasons = ("the time given was over before the fit was complete", *reasons)
-    fit = ResonanceFit(problem, bases, candidate, scores, given.criterion, tests, ())
+    elif _is_drowned(fit):
+        reasons = (*reasons, "the data show no resonance, and noise as large as the response")
     return replace(fit, warnings=_warnings(fit), poor=(*reasons, *_poor(fit)))
 
 
@@ -380,9 +382,13 @@ def _poor(fit: ResonanceFit) -> tuple[str, ...]:
         if not errors.zeta_p[i] <= WEAK * found.zeta_p[i]:
             where = f"{named_pair(fit, i)} at {found.omega_p[i] / (2 * np.pi):.4g} Hz"
             reasons.append(f"the damping of {where} is lost in its error")
-    if not found.order and float(np.median([fit.misfit_db(r) for r in range(found.responses)])) > DROWNED_DB:
-        reasons.append("the data show no resonance, and noise as large as the response")
     return tuple(reasons)
+
+
+def _is_drowned(fit: ResonanceFit) -> bool:
+    """Tell whether nothing but noise was found."""
+    misfits = [fit.misfit_db(r) for r in range(fit.resonances.responses)]
+    return not fit.resonances.order and float(np.median(misfits)) > DROWNED_DB
 
 
 def named_pair(fit: ResonanceFit, i: int) -> str:
