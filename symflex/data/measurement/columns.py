@@ -31,7 +31,7 @@ Complex = npt.NDArray[np.complex128]
 _WORDS: Final = {
     "coherence": "coherence coh gamma2 gamma^2 coherency kohärenz cohérence",
     "phase": "phase phas angle ang arg phi φ θ θz theta zphz",
-    "imaginary": "im imag imaginary imaginär zim zimag z'' quadrature",
+    "imaginary": "im imag imaginary imaginär zim zimag zimg z'' quadrature",
     "real": "re real zre zreal z' inphase",
     "power": "psd power pxx autopower",
     "magnitude": "magnitude mag gain amplitude ampl amp abs modulus module level spl |h| |z| z zmod "

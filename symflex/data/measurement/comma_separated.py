@@ -99,6 +99,11 @@ def _responses(
 ) -> tuple[list[Assembled], list[str]]:
     """Return the responses of blocks: each alone, or side by side where each holds a part of the values."""
     parts = [_columns(table, block, guesses) for block in blocks]
+    named = next((i for i, part in enumerate(parts) if part[1] is not None), 0)
+    if named and not asked:
+        lines = f"{blocks[0].lines[0] + 1} to {blocks[named - 1].lines[-1] + 1}"
+        guesses.append(f"lines {lines} hold a table without a frequency, and are skipped")
+        blocks, parts = blocks[named:], parts[named:]
     for i in range(1, len(parts)):  # a table below another one of the same shape has its names
         if parts[i][1] is None and len(parts[i][0]) == len(parts[0][0]) and parts[0][1] is not None:
             above = parts[0][0]
@@ -221,7 +226,7 @@ def _units(table: TextTable, line: int, width: int) -> list[str]:
 def _ways_to_cut(table: TextTable, line: int, width: int) -> list[list[str]]:
     """Return the ways to cut a line into as many names as there are columns, or one less: the frequency's."""
     text = table.lines[line].strip()
-    if text.startswith(COMMENTS):
+    if text.startswith(COMMENTS) or (text.count('"') == 2 and text[0] == text[-1] == '"'):  # noqa: PLR2004
         text = text.strip('"').lstrip(SIGNS)
     ways = [cut(text, table.delimiter)]
     if table.delimiter in " " or table.delimiter not in text:

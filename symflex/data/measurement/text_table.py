@@ -162,6 +162,11 @@ class NumberBlock:
         """How many cells most rows have."""
         return Counter(map(len, self.rows)).most_common(1)[0][0]
 
+    @property
+    def names_frequency(self) -> bool:
+        """Whether one of the three lines above speaks of a frequency."""
+        return any(re.search(r"\bfreq", self.table.lines[i], re.I) for i in self.above[-3:])
+
     def numbers(self, index: int) -> tuple[npt.NDArray[Any], tuple[int, ...]]:
         """Return a column, and the rows where it has no number."""
         cells = [row[index] if index < len(row) else "" for row in self.rows]
@@ -246,7 +251,9 @@ class TextTable:
                 continue
             rows = found[-1][2] if found else []
             is_stray = len(rows) == 1 and len(cells) > len(rows[0])
-            if not found or is_stray or (gap and self._begins(rows, cells)):
+            # A blank line below the first row tells nothing: rows may stand two lines apart.
+            is_apart = len(rows) != 1 or any(self.lines[i].strip() for i in gap)
+            if not found or is_stray or (gap and is_apart and self._begins(rows, cells)):
                 found.append((gap, [], []))
             gap = []
             found[-1][1].append(i)
@@ -254,7 +261,7 @@ class TextTable:
         blocks = [NumberBlock(self, tuple(a), tuple(b), tuple(c)) for a, b, c in found]
         most = max((len(block.rows) for block in blocks), default=0)
         fewest = min(most, max(FEWEST_ROWS, most // SMALL_SHARE))
-        return [block for block in blocks if len(block.rows) >= fewest]
+        return [b for b in blocks if len(b.rows) >= (min(most, FEWEST_ROWS) if b.names_frequency else fewest)]
 
     def _is_row(self, cells: list[str], width: int, has_text_in_front: bool) -> bool:
         if len(cells) < 2 or (number(cells[0], self.decimal) is None and not has_text_in_front):  # noqa: PLR2004

@@ -204,6 +204,28 @@ def text_files():  # noqa: PLR0915 - one statement a file
         ).encode("cp1252"),
     )
     yield Saved(
+        "one_quoted_header.z",
+        (
+            '"ZPlotW Data File: Version 3.2c"\n"Raw Data"\nDate: 1-2-2020\n"  Freq(Hz)    Ampl     Bias   Time(Sec)   Z\'(a)    Z\'\'(b)    GD   Err   Range"\n'
+            + rows(F[::-1], TEN, TEN, POINT, RE[::-1], IM[::-1], TEN, form="{:.7E}")
+        ).encode(),
+    )
+    yield Saved(
+        "two_tables.DTA",
+        (
+            "EXPLAIN\nTAG\tEISPOT\nOCVCURVE\tTABLE\t1500\n\tPt\tT\tVf\tVm\n\t#\ts\tV vs. Ref.\tV\n"
+            + "".join(f"\t{i}\t{0.25 * i:g}\t-0.34\t-0.35\n" for i in range(1500))
+            + "ZCURVE\tTABLE\n\tPt\tFreq\tZreal\tZimag\tZsig\n\t#\tHz\tohm\tohm\tV\n"
+            + "".join(
+                f"\t{line}\n" for line in rows(POINT, F[::-1], RE[::-1], IM[::-1], TEN, sep="\t").splitlines()
+            )
+        ).encode(),
+    )
+    yield Saved(
+        "blank_lines_between.txt",
+        ("Frequency\t Zre\t Zimg\n\n" + rows(F, RE, IM, sep="\t ").replace("\n", "\n\n")).encode(),
+    )
+    yield Saved(
         "autolab.txt",
         (
             "Index;Frequency (Hz);Z' (Ω);-Z'' (Ω);Z (Ω);-Phase (°);Time (s)\n"
