@@ -7,7 +7,8 @@ Output: a :class:`~symflex.roots.PoleZeroMap` of the roots with im s >= 0, as j 
 
 A polynomial f = g + j h with real g and h has the roots of ``g^2 + h^2 = f(s) conj(f)(s)`` at which f
 vanishes; g and h being coprime, conj(f) does not. Of a function with kernels Newton steps begin at
-the roots without losses, and each root is proved by an interval Newton step; that there are no others is not.
+the roots without losses, each root is proved by an interval Newton step, and the argument principle on a
+circle about s = 0, all of the plane within, shows that there are no others.
 """
 
 from __future__ import annotations
@@ -15,24 +16,29 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
-from itertools import combinations
+from itertools import accumulate
+from math import inf, log, pi
 from typing import TYPE_CHECKING, Final
 
 from flint import acb, acb_series, arb
 
 from symflex.algebra import Factored, by_powers, degree_in
 from symflex.algebra.interval_newton import stays_inside
-from symflex.budget import spend
-from symflex.errors import Diagnostic, UncertifiedError
+from symflex.budget import Budget, entered_budget, spend
+from symflex.errors import BudgetError, Diagnostic, UncertifiedError
 from symflex.model import with_numbers
 from symflex.model.model import IMAGINARY, ExactValue
+from symflex.roots.counting.argument_principle import CertifiedWinding
+from symflex.roots.counting.winding import RootOnPathError
+from symflex.roots.distributed.proof import limits
 from symflex.roots.engines import POLYNOMIAL
+from symflex.roots.functions.kernel_function import KernelFunction, has_kernels, split_off_kernels
 from symflex.roots.pole_zero_map import Certificate, HiddenRoot, PoleZeroMap, StabilityVerdict
 from symflex.roots.polynomial_roots import find_polynomial_roots
 from symflex.roots.precision import precision
 from symflex.roots.problem import problem_of
-from symflex.roots.region import Position
-from symflex.roots.root import Root
+from symflex.roots.region import Band, Mode, Modes, Position, Rectangle
+from symflex.roots.root import FLOAT_BITS, ROUNDING, Root, overlap
 from symflex.transfer import bind
 from symflex.transfer.balls import expansion
 from symflex.transfer.of_model import derive_all
@@ -53,6 +59,10 @@ NO_STABILITY: Final = StabilityVerdict(
 )
 FOLLOWED: Final = "Newton steps from roots without losses"
 NOT_COUNTED: Final = "each root is proved; that no other lies between them is not"
+FURTHER: Final = 3
+"""Modes without losses beyond those wanted: the circle that is counted lies between two."""
+WIDER: Final = Fraction(5, 4)
+"""How far beyond a band roots without losses are followed."""
 NEWTON: Final = 60
 DOUBLINGS: Final = 5
 """Of digits, until a root is told from its mirror image."""
@@ -95,20 +105,24 @@ def locate_lossy(
         Factored.number(bound.ratio.ring, 1),
     )
     reason: str | None = None
-    engine = POLYNOMIAL
+    engine, missing = POLYNOMIAL, 0
     if bound.is_distributed:
-        found, reason, engine = _followed(bound, region, digits, locate), NOT_COUNTED, FOLLOWED
+        followed, engine = _followed(bound, region, digits, locate), FOLLOWED
+        found = [[r for r in side.roots if not r.im < 0] for side in followed]
+        missing = sum(side.missing for side in followed)
+        reason = "; ".join(dict.fromkeys(side.reason for side in followed if side.reason)) or None
     else:
         found = [_of_polynomials(bound, side.factors, digits) for side in (*sides, hidden)]
-    poles, zeros, concealed = (_inside(region, roots) for roots in found)
-    total = sum(root.multiplicity for roots in found for root in roots)
+    poles, zeros = (_inside(region, roots) for roots in found[:2])
+    concealed = _inside(_among(poles, region) if bound.is_distributed else region, found[2])
+    total = sum(root.multiplicity for roots in (poles, zeros, concealed) for root in roots)
     return PoleZeroMap(
         bound.name,
         region,
         poles,
         zeros,
         tuple(HiddenRoot(root) for root in concealed),
-        Certificate(engine, reason is None, total, total, reason),
+        Certificate(engine, reason is None, total + missing, total, reason),
         digits,
         is_infinite=bound.is_distributed,
         verdict=NO_STABILITY,
@@ -117,7 +131,7 @@ def locate_lossy(
 
 def _inside(region: Region, roots: Sequence[Root]) -> tuple[Root, ...]:
     """Return the roots in a region, by natural frequency."""
-    ordered = sorted(roots, key=lambda root: 0.0 if root.is_zero else float(root.natural_frequency().mid()))
+    ordered = sorted(roots, key=_size)
     places = zip(ordered, region.classify(ordered), strict=True)
     return tuple(root for root, place in places if place is not Position.OUTSIDE)
 
@@ -189,41 +203,167 @@ def _lossy(root: Root) -> Root:
     )
 
 
+@dataclass(frozen=True, slots=True)
+class _Followed:
+    """One side of a function with kernels: roots in all of the plane, and why others may be missing."""
+
+    roots: list[Root]
+    missing: int = 0  # counted but not found
+    reason: str | None = None
+
+
 def _followed(
     bound: BoundTransferFunction,
     region: Region,
     digits: int,
     locate: Callable[[BoundTransferFunction, Region, int], PoleZeroMap],
-) -> list[list[Root]]:
-    """Return poles and zeros of a function with kernels, begun at those without losses, and nothing hidden.
-
-    Raises UncertifiedError: SF402 two of them become one.
-    """
+) -> list[_Followed]:
+    """Return poles, zeros and hidden modes of a function with kernels, begun at those without losses."""
     model, source = bound.source.model, bound.source
     others = [p.name for p in model.settable]
     without = with_numbers(model, others, {IMAGINARY: ExactValue(Fraction(0))}, in_kernels=True)
     (plain,) = derive_all(without, [(source.output.name, source.input.name)])
-    known = locate(bind(plain, {n: v for n, v in bound.values if n != IMAGINARY}), region, digits)
-    bits = int(digits * 3.33) + GUARD_BITS
-    found: list[list[Root]] = []
-    for roots, part in ((known.poles, bound.den), (known.zeros, bound.num)):
-        function = _series(bound, part, bits)
-        moved = [
-            _lossy(r) if r.is_zero else _moved(bound.name, function, r, bits) for r in roots if not r.im < 0
-        ]
-        if any(a.enclosure().overlaps(b.enclosure()) for a, b in combinations(moved, 2)):
-            raise _not_followed(bound.name, moved[-1])
-        found.append(moved)
-    return [*found, []]
+    values = {n: v for n, v in bound.values if n != IMAGINARY}
+    known = locate(bind(plain, values), _wider(region), digits)
+    poles = _side(bound, bound.den, known.poles, region, digits, known.certificate.reason)
+    zeros = _side(bound, bound.num, known.zeros, region, digits, known.certificate.reason)
+    product = Factored(
+        bound.ratio.ring, Fraction(1), tuple((h.polynomial, h.multiplicity) for h in bound.hidden)
+    )
+    within = _among(poles.roots, region)
+    roots = [h.root for h in known.hidden]
+    return [poles, zeros, _side(bound, product, roots, within, digits, known.certificate.reason)]
 
 
-def _moved(name: str, function: Callable[[acb], tuple[acb, acb]], root: Root, bits: int) -> Root:
-    """Return the root that one without losses becomes, proved.
+def _among(poles: Sequence[Root], region: Region) -> Region:
+    """Return where hidden modes are shown: of a number of modes those up to the highest pole shown."""
+    if not isinstance(region, Modes | Mode):
+        return region
+    shown = _inside(region, [r for r in poles if not r.im < 0])
+    highest = max((_size(r) for r in shown), default=0.0) / (2 * pi) * (1 + 4 * ROUNDING)
+    return Band(Fraction(0), Fraction(highest))
 
-    Raises UncertifiedError: SF402 it is not found near, or is not simple.
+
+def _wider(region: Region) -> Region:
+    """Return where to begin, so that the roots that losses move into a region are among those followed."""
+    match region:
+        case Modes(count) | Mode(count):
+            return Modes(count + FURTHER)
+        case Band(low, high):
+            return Band(low / WIDER, high * WIDER)
+        case Rectangle(re_low, re_high, im_low, im_high):
+            high = max(map(abs, (re_low, re_high))) + max(map(abs, (im_low, im_high)))
+            return Band(Fraction(0), high * WIDER / 6)
+    return region
+
+
+def _side(
+    bound: BoundTransferFunction,
+    part: Factored,
+    roots: Sequence[Root],
+    region: Region,
+    digits: int,
+    reason: str | None,
+) -> _Followed:
+    """Return the roots that those without losses become, counted on circles about s = 0.
+
+    ``reason`` is what was not proved of those without losses.
     """
-    at = root.enclosure().mid()
+    if not has_kernels(part, bound.kernels):
+        plain, _ = split_off_kernels(part, bound.kernels)
+        return _Followed(_of_polynomials(bound, plain.factors, digits))
+    if not _is_lossy(bound, part):
+        return _Followed([_lossy(root) for root in roots], 0, reason)
+    bits = int(digits * 3.33) + GUARD_BITS
+    function, moved, factor = _series(bound, part, bits), list[Root](), arb(0)
+    for root in sorted(roots, key=_size):
+        if root.is_zero:
+            moved.append(_lossy(root))
+            continue
+        found = _moved(function, root, factor, bits) or _moved(function, root, arb(0), bits)
+        if found is not None and not any(overlap(found, other) for other in moved):
+            moved.append(found)
+            factor = found.loss_factor() or factor
+    moved.sort(key=_size)
+    try:
+        missing = _missing(KernelFunction(bound, part), moved, _circles(moved, region))
+    except (BudgetError, UncertifiedError, RootOnPathError):
+        return _Followed(moved, 0, NOT_COUNTED)
+    return _Followed(moved, missing, f"{missing} roots were counted but not found" if missing else None)
+
+
+def _is_lossy(bound: BoundTransferFunction, part: Factored) -> bool:
+    """Tell whether j stands in a product or in the laws of its waves."""
+    kernels = [k for k in bound.kernels.kernels if part.depends_on(k.generator)]
+    laws = {id(k.dispersion): k.dispersion for k in kernels}.values()
+    return part.depends_on(IMAGINARY) or any(c.depends_on(IMAGINARY) for d in laws for c in d.coefficients)
+
+
+def _size(root: Root) -> float:
+    return 0.0 if root.is_zero else float(root.size().mid())
+
+
+def _circles(roots: Sequence[Root], region: Region) -> tuple[float, float]:
+    """Return ln of two radii [rad/s] about 0 between which a region lies; the first may be -inf.
+
+    Raises RootOnPathError where too few roots are known to tell a circle between the last two.
+    """
+    match region:
+        case Modes(count) | Mode(count):
+            upper = [r for r in roots if not r.is_zero and not r.im < 0]
+            numbers = accumulate(r.multiplicity for r in upper)
+            last = next((i for i, n in enumerate(numbers) if n >= count), len(upper))
+            if last + 1 >= len(upper):
+                raise RootOnPathError
+            return -inf, (log(_size(upper[last])) + log(_size(upper[last + 1]))) / 2
+        case Band() | Rectangle():
+            low, high, *_ = limits(region, is_even=False)
+            return low, high
+    raise RootOnPathError
+
+
+def _missing(function: KernelFunction, roots: Sequence[Root], circles: tuple[float, float]) -> int:
+    """Return how many roots between two circles about 0 are not among those given: proved.
+
+    Raises RootOnPathError where that is not proved; SF505 after too much work.
+    """
+    low, high = circles
+    order = function.order()
+    with precision(FLOAT_BITS):
+        disc = acb(arb(0, arb(high).exp().upper()), arb(0, arb(high).exp().upper()))
+        if order is None or not function.is_analytic_on(disc, FLOAT_BITS):
+            raise RootOnPathError
+    winding = CertifiedWinding(function, entered_budget() or Budget())
+
+    def within(z: float) -> int:
+        with precision(FLOAT_BITS):
+            turn = winding.certified_turn(complex(z, -pi), complex(z, 0))
+            turn += winding.certified_turn(complex(z, 0), complex(z, pi))
+            turns = (turn / (2 * arb.pi())).unique_fmpz()
+        if turns is None:
+            raise RootOnPathError
+        return int(turns)
+
+    counted, rest = divmod(within(high) - (order if low == -inf else within(low)), function.power)
+    with precision(FLOAT_BITS):
+        inner, outer = (arb(z).exp() if z > -inf else arb(0) for z in circles)
+        found = sum(r.multiplicity for r in roots if not r.is_zero and inner < r.size() < outer)
+    at_zero = sum(r.multiplicity for r in roots if r.is_zero)
+    if rest or order != at_zero * function.power:
+        raise RootOnPathError
+    return counted - found
+
+
+def _moved(
+    function: Callable[[acb], tuple[acb, acb]], root: Root, factor: arb, bits: int
+) -> Root | None:
+    """Return the root that one without losses becomes, proved; None where none is found near, or no simple one.
+
+    ``factor`` is the loss factor of a mode nearby.
+    """
     with precision(bits):
+        begun = (root.enclosure().mid() * acb(1, factor).sqrt()).mid()
+        at = begun
         for _ in range(NEWTON):
             spend()
             value, slope = function(at)
@@ -233,15 +373,10 @@ def _moved(name: str, function: Callable[[acb], tuple[acb, acb]], root: Root, bi
                 break
         reach = (abs(at) * arb(2) ** (GUARD_BITS - 8 - bits)).mid()
         box = acb(arb(at.real, reach), arb(at.imag, reach))
-        is_near = abs(at - root.enclosure()) < abs(at) / 2 and at.imag > 0
+        is_near = abs(at - begun) < abs(begun) / 2
         if not (is_near and stays_inside(function(at)[0] / function(box)[1], reach)):
-            raise _not_followed(name, root)
+            return None
     return LossyRoot(box.real, box.imag, 1, on_imaginary_axis=False, is_real=False)
-
-
-def _not_followed(name: str, root: Root) -> UncertifiedError:
-    message = f"a mode of {name} near {root.frequency_hz():.6g} Hz cannot be followed from no losses"
-    return UncertifiedError(Diagnostic("SF404", message, None, "look at its frequency response"))
 
 
 def _series(bound: BoundTransferFunction, part: Factored, bits: int) -> Callable[[acb], tuple[acb, acb]]:

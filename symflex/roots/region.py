@@ -66,7 +66,7 @@ class Band:
         return tuple(self._position(root) for root in roots)
 
     def _position(self, root: Root) -> Position:
-        frequency = root.natural_frequency()
+        frequency = root.size()
         with precision(root.working_bits()):
             turn = 2 * arb.pi()
             signs = [_sign(ball(self.high) * turn - frequency)]
@@ -223,7 +223,7 @@ def _by_frequency(roots: Sequence[Root]) -> list[list[int]]:
     for i, root in enumerate(roots):
         if root.is_zero:
             continue
-        frequency = root.natural_frequency()
+        frequency = root.size()
         if reached is not None and reached.overlaps(frequency):
             grouped[-1].append(i)
         else:

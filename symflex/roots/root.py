@@ -95,6 +95,10 @@ class Root:
         return acb(self.re, self.im)
 
     def natural_frequency(self) -> arb:
+        """Return abs(s) [rad/s], of models with loss factors omega_r."""
+        return self.size()
+
+    def size(self) -> arb:
         """Return abs(s) [rad/s]."""
         if self.on_imaginary_axis or self.is_real:
             size = self.im if self.on_imaginary_axis else self.re
@@ -106,7 +110,7 @@ class Root:
             return abs(self.enclosure())
 
     def frequency_hz(self) -> float:
-        """Return abs(s) / (2 pi) [Hz] in double precision."""
+        """Return the natural frequency over 2 pi [Hz] in double precision."""
         frequency = self.natural_frequency()
         with precision(FLOAT_BITS):
             return float((frequency / (2 * arb.pi())).mid())
