@@ -329,9 +329,7 @@ def facts_of(study: Study) -> ModelFacts:
                 bracket_mathematics=None if bracket is None else mathematics(bracket, tf.model),
             )
         )
-    functions += [
-        _of_roots(model, bound.source, found, "the formula is too large") for bound, found in study.nested
-    ]
+    functions += [_of_roots(model, tf, found, reason) for tf, found, reason in study.unexplained]
     return replace(
         bare_facts(study.stem, model),
         functions=tuple(functions),

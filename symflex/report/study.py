@@ -44,6 +44,8 @@ MOST_FUNCTIONS: Final = 24
 """Transfer functions of one model that a report shows; the number of those it leaves out is said."""
 DIGITS: Final = 15
 MODES: Final = 5
+TOO_LARGE: Final = "the closed form is too large"
+ONLY_ON_AXIS: Final = "loss factors hold on s = j*omega alone"
 T = TypeVar("T")
 
 
@@ -156,9 +158,9 @@ class Study:
         """Every function with numbers that is not zero, with its roots and what its zeros mean.
 
         The function is the one in symbols where :attr:`has_symbols` says that there is one. Empty where the
-        model has no numbers; of networks in nested form it is not known what their zeros mean.
+        model has no numbers; of :attr:`unexplained` it is not known what their zeros mean.
         """
-        if isinstance(self._bound, SymflexError):
+        if isinstance(self._bound, SymflexError) or self.model.imaginary:
             return ()
         by_name = {each.tf: each for each in self.maps}
         derived = self.tfs if self.has_symbols else ()
@@ -172,15 +174,15 @@ class Study:
         return tuple(rows)
 
     @cached_property
-    def nested(self) -> tuple[tuple[BoundNested, PoleZeroMap], ...]:
-        """Every function in nested form with its roots, of which :attr:`located` has none."""
+    def unexplained(self) -> tuple[tuple[AnyTransferFunction, PoleZeroMap, str], ...]:
+        """Functions that :attr:`located` lacks, in nested form or with loss factors, their roots, and why."""
         if isinstance(self._bound, SymflexError):
             return ()
         by_name = {each.tf: each for each in self.maps}
         return tuple(
-            (bound, by_name[bound.name])
+            (bound.source, by_name[bound.name], ONLY_ON_AXIS if self.model.imaginary else TOO_LARGE)
             for bound in self.bounds
-            if isinstance(bound, BoundNested) and bound.name in by_name
+            if bound.name in by_name and (self.model.imaginary or isinstance(bound, BoundNested))
         )
 
     @cached_property

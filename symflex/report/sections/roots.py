@@ -43,21 +43,28 @@ if TYPE_CHECKING:
 
 DIGITS: Final = 10
 LONGEST: Final = 80
+LEFT_OUT: Final = (
+    "Loss factors describe steady motion, s = j*omega with omega > 0: listed are the roots above the real axis, "
+    "and mode shapes, responses in time, stability, state equations and code in other languages than Python "
+    "are left out."
+)
 
 
 def root_section(study: Study) -> ChapterPart:
     """Return the poles and zeros of every transfer function, enclosed, and what its zeros mean."""
     explained = {found.tf: told for _, found, told in study.located}
-    nested = {found.tf for _, found in study.nested}
+    reasons = {found.tf: reason for _, found, reason in study.unexplained}
     derived = attempt(lambda: study.tfs)
     tfs = {} if isinstance(derived, SymflexError) else {tf.name: tf for tf in derived}
-    blocks = []
+    blocks: list[Block] = []
+    if study.model.imaginary:
+        blocks.append(text(LEFT_OUT))
     warnings = []
     for i, found in enumerate(study.maps):
         tf = tfs.get(found.tf)
         content = _of(found, explained.get(found.tf))
-        if found.tf in nested:
-            content = (*content, text("What the zeros mean is not examined: the closed form is too large."))
+        if found.tf in reasons:
+            content = (*content, text(f"What the zeros mean is not examined: {reasons[found.tf]}."))
         blocks.append(Section(found.tf, content, f"{study.stem}-roots-{i + 1}", ratio(tf) if tf else None))
         if not found.certificate.certified:
             warnings.append(f"{study.stem}: poles and zeros of {found.tf} are not certified")
