@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, NamedTuple
 
-from symflex.quantities import character_hint, code_point, unit_named
+from symflex.quantities import IMAGINARY_NAMES, IMAGINARY_UNIT, character_hint, code_point, unit_named
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -124,6 +124,8 @@ def _neighbour_hint(value: str, recent: Sequence[Token]) -> str | None:
     left, right = _short(_operand(recent[:-1], types)), _short(token)
     cure = f"write {_quoted(f'{left}*{right}')}" if left and right else "write '*' to multiply"
     spaced = before.end < token.start
+    if before.type == "NUMBER" and str(token) in IMAGINARY_NAMES and not spaced:
+        return f"write '{before}*j': {IMAGINARY_UNIT}"
     if before.type == "NUMBER" and token.type == "NAME" and spaced:
         if unit_named(str(token)):
             quantity = f"{before} {_units(value[token.start :])}"

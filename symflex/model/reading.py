@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 Made = TypeVar("Made")
 
 NAMED = "in a formula a value with a unit is a name: declare it in [parameters]"
+LOSS_WORDS = ("loss", "loss_factor", "tan_delta", "damping", "structural", "g")
+"""What a key for a loss factor is called elsewhere."""
 SHOWN = 40
 """Characters of a value that a message repeats."""
 MAX_PROBLEMS = 100
@@ -102,6 +104,8 @@ class Reader:
         for entry in table.entries:
             if entry.key not in known:
                 hint = nearest(entry.key, known) or "known keys: " + ", ".join(known)
+                if entry.key in LOSS_WORDS and "eta_s" in known:
+                    hint = "a loss factor is 'eta_s'"
                 self.note("SF207", f"unknown key '{entry.key}' in {what}", entry.key_span, hint)
 
     def name(self, entry: KeyValue, what: str, reserved: Mapping[str, str] | None = None) -> bool:

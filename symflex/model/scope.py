@@ -10,6 +10,7 @@ from symflex.errors import Diagnostic, SpecError, nearest
 from symflex.expressions import Attribute, Name
 from symflex.library.elements import LineElement, Variable
 from symflex.model.model import IMAGINARY, INPUT_KINDS
+from symflex.quantities import IMAGINARY_NAMES, IMAGINARY_UNIT
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -149,6 +150,8 @@ class ModelScope:
             return "x is the coordinate in the equations of [fields] and in what may vary along an element"
         if name == IMAGINARY:
             return WHERE_J
+        if name in IMAGINARY_NAMES:
+            return f"if it is meant, {IMAGINARY_UNIT}"
         if name == "ground":
             return "the reference node is at zero; leave it out"
         if name in self.owners:

@@ -35,6 +35,11 @@ def code_point(character: str) -> str:
     return f" (U+{ord(character):04X} {unicodedata.name(character, 'without a name')})"
 
 
+IMAGINARY_NAMES = ("i", "j", "im", "I")
+"""What other programs call the imaginary unit."""
+IMAGINARY_UNIT = "the imaginary unit is j, as in 'k*(1 + j*eta)'; elements take a loss factor as eta_s"
+
+
 def character_hint(value: str, position: int) -> str | None:
     """Return what to write in place of the character of ``value`` at ``position``.
 
@@ -67,6 +72,8 @@ def character_hint(value: str, position: int) -> str | None:
 
 
 def _comma_hint(value: str, position: int) -> str:
+    if re.search(r"\bcomplex *\([^(),]*$", value[:position]):
+        return f"write 'a + j*b': {IMAGINARY_UNIT}"
     number = re.compile(r"[0-9]+(?:[.,][0-9]+)*").search(value, len(value[:position].rstrip("0123456789.,")))
     if number is None or not number.start() < position < number.end():
         return "a decimal point is written '.', and a function takes one argument"

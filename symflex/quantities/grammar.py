@@ -16,7 +16,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Final, TypeVar
 
-from symflex.quantities.characters import character_hint, code_point
+from symflex.quantities.characters import IMAGINARY_NAMES, IMAGINARY_UNIT, character_hint, code_point
 from symflex.quantities.lalr import END, Grammar, Reading, Token, UnexpectedError
 from symflex.quantities.units import Unit, unit_hint, unit_named
 
@@ -135,6 +135,7 @@ class RejectedError(Exception):
 _Placed = TypeVar("_Placed", Constant, PlacedUnit)
 _Result = tuple[Constant, PlacedUnit]
 
+NOT_IN_PARAMETERS = f"a parameter is real; {IMAGINARY_UNIT}"
 _ONE_NUMBER: Final = "the number stands before the unit and the unit holds no other, except 1 in '1/s'"
 NEARER: Final = "choose a unit in which the number lies nearer to 1"
 _NO_UNIT: Final = Unit(Fraction(1))
@@ -205,7 +206,11 @@ def _syntax_rejection(unexpected: UnexpectedError, value: str, kind: str) -> Rej
 
 
 def _syntax_hint(before: str, after: str, found: str) -> str | None:
+    if found in IMAGINARY_NAMES and re.search("[0-9] *[*]?$", before):
+        return NOT_IN_PARAMETERS
     if UNIT_START.match(found):
+        if not before and after.replace(" ", "").startswith("sqrt(-"):
+            return NOT_IN_PARAMETERS
         if not before:
             return "a quantity begins with a number, as in '1 kg'"
         constant = before[:-1].strip(SPACES)
@@ -324,7 +329,10 @@ class _Evaluator:
         unit = unit_named(str(symbol))
         if unit is None:
             message = f"unknown unit '{symbol}'"
-            raise RejectedError("SF201", message, symbol.start, symbol.end, unit_hint(str(symbol)))
+            meant = unit_hint(str(symbol))
+            if str(symbol) in IMAGINARY_NAMES:
+                meant = f"a joule is J; {NOT_IN_PARAMETERS}" if symbol == "j" else NOT_IN_PARAMETERS
+            raise RejectedError("SF201", message, symbol.start, symbol.end, meant)
         return PlacedUnit(unit, symbol.start, symbol.end)
 
     def raise_unit(self, base: PlacedUnit, exponent: _Exponent) -> PlacedUnit:

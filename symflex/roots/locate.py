@@ -15,7 +15,7 @@ from symflex.algebra import Factored
 from symflex.budget import Budget, entered_budget
 from symflex.equations import assemble
 from symflex.equations.elimination import free_at_rest
-from symflex.errors import BudgetError, Diagnostic, SymflexError
+from symflex.errors import BudgetError, Diagnostic, SymflexError, UncertifiedError
 from symflex.model import with_numbers
 from symflex.model.model import IMAGINARY
 from symflex.model.signs import is_passive
@@ -153,6 +153,10 @@ def _locate_nested(bound: BoundNested, region: Region | None, digits: int, budge
     from symflex.roots.networks.poles_zeros import locate_in_network  # few models are so large
 
     source = bound.source
+    if source.model.imaginary:
+        message = f"modes of {bound.name} are not sought: its closed form is too large with loss factors"
+        hint = "its frequency response shows them (plot bode); or let equal parts share their parameters"
+        raise UncertifiedError(Diagnostic("SF404", message, source.model.imaginary.span, hint))
     model = _with_values(bound)
     pair = (source.output.name, source.input.name)
     if not model.is_distributed:

@@ -354,10 +354,8 @@ def _missing(function: KernelFunction, roots: Sequence[Root], circles: tuple[flo
     return counted - found
 
 
-def _moved(
-    function: Callable[[acb], tuple[acb, acb]], root: Root, factor: arb, bits: int
-) -> Root | None:
-    """Return the root that one without losses becomes, proved; None where none is found near, or no simple one.
+def _moved(function: Callable[[acb], tuple[acb, acb]], root: Root, factor: arb, bits: int) -> Root | None:
+    """Return the root that one without losses becomes, proved; None where no simple one is found near.
 
     ``factor`` is the loss factor of a mode nearby.
     """

@@ -15,7 +15,8 @@ from flint import acb, acb_series, arb, ctx, fmpq
 
 from symflex.algebra import FUNCTIONS, terms_of
 from symflex.errors import Diagnostic, ModelError
-from symflex.expressions import Expression, Number, fold, format_expression
+from symflex.expressions import Call, Expression, Number, fold, format_expression, names
+from symflex.quantities import IMAGINARY_UNIT
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -126,8 +127,14 @@ def enclose(expression: Expression, values: Mapping[str, Callable[[], arb]]) -> 
     result = _enclose(expression, values)
     if not result.is_finite():
         message = f"'{format_expression(expression)}' is not a finite real number for these values"
-        raise ModelError(Diagnostic("SF228", message, expression.span))
+        raise ModelError(Diagnostic("SF228", message, expression.span, _imaginary_hint(expression)))
     return result
+
+
+def _imaginary_hint(expression: Expression) -> str | None:
+    """Name j where the root of a negative number stands for it."""
+    is_root = isinstance(expression, Call) and expression.name == "sqrt"
+    return IMAGINARY_UNIT if is_root and not names(expression.argument) else None
 
 
 def _enclose(expression: Expression, values: Mapping[str, Callable[[], arb]]) -> arb:

@@ -334,11 +334,12 @@ def derive_for_roots(
     roots are found faster without it. With ``is_explained`` the expanded form is wanted for more than roots.
     Raises what :func:`derive_bound` raises otherwise.
     """
-    if not model.is_distributed or model.imaginary or not _may_be_large(model, 1):
+    if not model.is_distributed or not _may_be_large(model, 1):
         return derive_bound(model, pairs)
     numbered = with_numbers(model, in_kernels=True)
     equations = assemble_sparse(numbered)
-    is_quick = not is_explained and not _accumulates(equations)
+    # Modes with loss factors are found in the expanded form alone.
+    is_quick = not is_explained and not model.imaginary and not _accumulates(equations)
     is_counted = is_quick and _may_be_large(model) and is_passive(model)
     most = QUICK_PRODUCTS if is_quick else EXPANDED_PRODUCTS
     if not is_counted and _expanded_terms(numbered, equations, pairs[0]) <= most:
