@@ -22,6 +22,7 @@ from symflex.figures.style import (
     paper_style,
     title_lines,
 )
+from symflex.model.loss_factors import check_causal
 from symflex.transfer import BoundNested
 
 if TYPE_CHECKING:
@@ -63,6 +64,7 @@ def _drawn(
 ) -> Figure:
     closed = []
     for bound in bounds:
+        check_causal(bound.source.model, "a response in time")
         if isinstance(bound, BoundNested):
             message = f"the closed form of {bound.name} is too large for a response in time"
             raise BudgetError(Diagnostic("SF502", message, None, "split the model"))

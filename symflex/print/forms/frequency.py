@@ -23,6 +23,7 @@ from symflex.expressions import (
     quotient,
     sum_of,
 )
+from symflex.model.model import IMAGINARY as LOSS_UNIT
 from symflex.print.forms.arrange import Arranger, ProductPrinter, shortest_sides
 from symflex.print.forms.economical import LARGE, angle_doubled, is_half
 from symflex.print.forms.invariants import IMAGINARY, NOT_ENTIRE, in_krylov_functions, krylov_name
@@ -140,6 +141,8 @@ class _FrequencyPage:
         j = ring.generator(IMAGINARY)
         images = {n: ring.generator(n) for n in ring.names}
         images[LAPLACE] = j * images[LAPLACE]
+        if self._tf.model.imaginary and LOSS_UNIT in images:
+            images[LOSS_UNIT] = j
         for angle in self._straight:
             # Of a pair the second wavenumber is imaginary on the axis, and so is that of a wave.
             first = angle.dispersion.wavenumbers[0] == angle.wavenumber and angle.dispersion.kind == "pair"
@@ -278,7 +281,8 @@ class _FrequencyPage:
     def _explained(self, used: frozenset[str]) -> tuple[tuple[Line, ...], dict[str, Expression]]:
         """Return the lines and the symbols of the generators used."""
         tf, naming = self._tf, Naming.of(self._tf)
-        (omega,), (j,) = naming.take("omega"), naming.take("j")
+        (omega,) = naming.take("omega")
+        (j,) = (LOSS_UNIT,) if tf.model.imaginary else naming.take("j")
         symbols = {**constant_symbols(tf), LAPLACE: Name(omega), IMAGINARY: Name(j)}
         axis = self._printer(symbols)
         lengths = plain_printer(tf)
@@ -308,7 +312,8 @@ class _FrequencyPage:
         for d in tf.kernels.dispersions:
             lines += self._wave_lines(d, symbols, naming, axis)
         lines.append((omega, quotient(Name(LAPLACE), Name(j))))
-        lines.append((j, Call("sqrt", number(-1))))
+        if not tf.model.imaginary:
+            lines.append((j, Call("sqrt", number(-1))))
         return tuple(lines), symbols
 
     def _wave_lines(
