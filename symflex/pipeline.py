@@ -128,7 +128,6 @@ OTHER_S: Final = {
     "characteristic_loop": "a root locus or a loop gain",
     "colocation": "a bound on colocation",
     "measure": "a synthetic measurement",
-    "plan_sweep": "a sweep",
 }
 """Arrows that need more of a model than its values at s = j omega, and what they make."""
 

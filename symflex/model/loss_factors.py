@@ -88,5 +88,8 @@ def check_causal(model: object, what: str) -> None:
     if unit is None:
         return
     message = f"{what} is not available with loss factors (j): these hold on s = j*omega, omega > 0, alone"
-    hint = "frequency responses and modes (roots) are available; a damper or eta in seconds holds at every s"
+    hint = (
+        "formulas, frequency responses, modes (roots) and numpy code are available; "
+        "a damper or eta in seconds holds at every s"
+    )
     raise ModelError(Diagnostic("SF251", message, unit.span, hint))

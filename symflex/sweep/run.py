@@ -28,6 +28,7 @@ from symflex.errors.optional import installed
 from symflex.files.lock import held
 from symflex.files.write import write_atomically
 from symflex.loops import pick_gain
+from symflex.model.loss_factors import check_causal
 from symflex.options import FREQUENCIES, RootsOptions, SweepOptions, band_ends
 from symflex.roots.region import region_of
 from symflex.sweep.design import (
@@ -310,6 +311,8 @@ def plan_sweep(model: Model, given: SweepOptions, frequencies: Sequence[float] =
     Frequencies of a response [Hz] are by default equally spaced in their logarithm. SF902 what cannot be
     swept, read or meant; SF507 too many points.
     """
+    if given.of != "response":
+        check_causal(model, f"a sweep of {given.of}")
     pair = pick_pairs(model, [given.tf] if given.tf else [])[0]
     if isinstance(given.over, Mapping):
         design = design_of(model.parameters, given.over, given.draws or 0, given.seed)

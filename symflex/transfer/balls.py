@@ -133,8 +133,9 @@ def enclose(expression: Expression, values: Mapping[str, Callable[[], arb]]) -> 
 
 def _imaginary_hint(expression: Expression) -> str | None:
     """Name j where the root of a negative number stands for it."""
-    is_root = isinstance(expression, Call) and expression.name == "sqrt"
-    return IMAGINARY_UNIT if is_root and not names(expression.argument) else None
+    if isinstance(expression, Call) and expression.name == "sqrt" and not names(expression.argument):
+        return IMAGINARY_UNIT
+    return None
 
 
 def _enclose(expression: Expression, values: Mapping[str, Callable[[], arb]]) -> arb:
