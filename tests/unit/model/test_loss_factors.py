@@ -8,6 +8,9 @@ import pytest
 
 import symflex
 from symflex.errors import SymflexError
+from symflex.report.facts import facts_of
+from symflex.report.sections.roots import root_section
+from symflex.report.study import Study
 from tests.unit.refusals import refusal
 
 OMEGA = np.array([1.0, 9.9, 10.1, 40.0])
@@ -84,6 +87,7 @@ def test_beam_has_the_modes_and_response_of_its_complex_stiffness():
     poles = bound.poles(modes=3)
     assert [p.frequency_hz for p in poles] == pytest.approx(frequencies, rel=1e-12)
     assert [p.loss_factor for p in poles] == pytest.approx([0.02] * 3, rel=1e-12)
+    assert bound.pole_zero_map(modes=3).certificate.certified
 
     def deflection(omega):
         with mpmath.workdps(30):
@@ -94,6 +98,118 @@ def test_beam_has_the_modes_and_response_of_its_complex_stiffness():
             return complex(0.5**3 / (rigidity * q**3) * top / below)
 
     assert np.allclose(bound(1j * OMEGA), [deflection(w) for w in OMEGA], rtol=1e-12)
+
+
+ROD = """symflex = 1
+parameters = { E = "5 MPa", A = "1 cm^2", rho = "1100 kg/m^3", l = "0.2 m", eta = 0.6 }
+[fields.u]
+domain = ["0", "l"]
+equation = "E*(1 + j*eta)*u'' = rho*s^2*u"
+conditions = ["u(0) = 0", "E*(1 + j*eta)*A*u'(l) = F"]
+[inputs]
+F = { unit = "N" }
+[outputs]
+U = "u(l)"
+"""
+
+
+@pytest.mark.parametrize(
+    ("region", "numbers"),
+    [({"modes": 5}, range(5)), ({"mode": 3}, [2]), ({"band": (200.0, 700.0)}, [1, 2, 3])],
+)
+def test_modes_of_a_field_with_much_loss_are_all_there(region, numbers):
+    found = symflex.loads(ROD).transfer_function("U", "F").bind().pole_zero_map(**region)
+    speed = np.sqrt(5e6 * (1 + 0.6j) / 1100)
+    expected = [1j * (n + 0.5) * np.pi / 0.2 * speed for n in numbers]
+    assert found.certificate.certified
+    assert [complex(p.re.mid(), p.im.mid()) for p in found.poles] == pytest.approx(expected, rel=1e-13)
+
+
+def test_a_damper_beside_the_loss_makes_modes_that_are_counted_too():
+    damper = 'd = { type = "damper", between = ["b.y", "ground"], b = "200 N*s/m" }\n[inputs]'
+    text = CANTILEVER.replace("[inputs]", damper)
+    found = symflex.loads(text).transfer_function("Y", "F").bind().pole_zero_map(modes=3)
+    assert found.certificate.certified
+    rigidity = 56 * (1 + 0.02j)
+
+    def boundary(s):
+        q = (-0.162 * s * s / rigidity) ** mpmath.mpf("0.25") * 0.5
+        shear = mpmath.sin(q) * mpmath.cosh(q) - mpmath.cos(q) * mpmath.sinh(q)
+        return 1 + mpmath.cos(q) * mpmath.cosh(q) + 200 * s * 0.5**3 / (rigidity * q**3) * shear
+
+    poles = [complex(p.re.mid(), p.im.mid()) for p in found.poles]
+    assert [complex(mpmath.findroot(boundary, p)) for p in poles] == pytest.approx(poles, rel=1e-12)
+
+
+def test_what_losses_do_not_touch_stays_on_the_axis():
+    spring = 'p = { type = "spring", between = ["b.y", "ground"], k = "2 kN/m", eta_s = 0.2 }\n[inputs]'
+    text = CANTILEVER.replace(", eta_s = 0.02", "").replace("[inputs]", spring)
+    found = symflex.loads(text).transfer_function("Y", "F").bind().pole_zero_map(modes=2)
+    assert found.certificate.certified
+    assert all(zero.on_imaginary_axis for zero in found.zeros)
+    assert all(pole.re < 0 for pole in found.poles)
+
+
+@pytest.mark.parametrize(("mark", "loss"), [("", 0.1), ("j*", 0.1j)])
+def test_a_viscoelastic_stiffness_may_stand_in_a_definition(mark, loss):
+    text = ONE_MASS.format("", "x").replace('"100 N/m"', '"k_v"')
+    parameters = 'parameters = { k = "100 N/m", w = "10 rad/s" }\n'
+    definitions = f'[definitions]\nk_v = "k*(1 + 0.1*{mark}s/(s + w))"\n[elements]'
+    text = text.replace("[elements]", parameters + definitions)
+    found = symflex.loads(text).transfer_function("X", "F").bind().pole_zero_map()
+    expected = [s for s in np.roots([1, 10, 100 * (1 + loss), 1000]) if s.imag > 0]
+    got = [complex(p.re.mid(), p.im.mid()) for p in found.poles if p.im > 0]
+    assert sorted(got, key=abs) == pytest.approx(sorted(expected, key=abs), rel=1e-12)
+
+
+def test_a_frame_too_large_for_its_formula_has_the_response_of_scaled_frequency():
+    text = """symflex = 1
+[parameters]
+eta = 0.02
+[elements]
+foot = { type = "fixed", at = "a" }
+post = { type = "frame", between = ["a", "b"], angle = "90 deg", EI = "70 N*m^2", EA = "7 MN", rhoA = "0.27 kg/m", l = "0.5 m", eta_s = "eta" }
+arm = { type = "frame", between = ["b", "c"], angle = 0, EI = "60 N*m^2", EA = "6 MN", rhoA = "0.25 kg/m", l = "0.3 m", eta_s = "eta" }
+[inputs]
+F = { force = "c.y" }
+[outputs]
+Y = "c.y"
+"""  # noqa: E501
+    lossy = symflex.loads(text).nested("Y", "F").bind()
+    plain = symflex.loads(text.replace(', eta_s = "eta"', "")).nested("Y", "F").bind()
+    factor = 1 + 0.02j  # every stiffness times this: H(s) = H_0(s/sqrt(factor))/factor
+    for omega in (3.0, 150.0, 900.0):
+        expected = complex(plain(1j * omega / np.sqrt(factor))) / factor
+        assert complex(lossy(1j * omega)) == pytest.approx(expected, rel=1e-12)
+    assert refusal(lossy.pole_zero_map) == "UncertifiedError SF404"
+
+
+def test_a_response_may_be_swept_over_loss_factors():
+    found = symflex.loads(TWO_MASSES).sweep({"eta_1": [0.05, 0.5]}, of="response", frequencies=[2.0])
+    expected = [
+        np.linalg.inv(stiffness(eta) - (4 * np.pi) ** 2 * np.diag([2.0, 1.0]))[0, 0] for eta in (0.05, 0.5)
+    ]
+    assert np.ravel(found["re"] + 1j * found["im"]) == pytest.approx(expected, rel=1e-12)
+
+
+def test_frequency_form_splits_stiffness_into_its_parts_and_has_one_unit():
+    text = str(
+        symflex.loads(ONE_MASS.format(", eta_s = 0.1", "x")).transfer_function("X", "F").form("frequency")
+    )
+    assert "j_1" not in text
+    assert "sqrt(-1)" not in text
+    assert "-s^2" not in text
+
+
+def test_a_report_has_roots_and_says_what_is_left_out(tmp_path):
+    (tmp_path / "rack.toml").write_text(TWO_MASSES, encoding="utf-8")
+    study = Study.of(tmp_path / "rack.toml", "rack")
+    part = root_section(study)
+    assert (part.code, part.warnings) == (0, ())
+    page = repr(part.blocks)
+    assert "loss factor" in page
+    assert "What the zeros mean is not examined: loss factors hold on s = j*omega alone." in page
+    assert [f.tf for f in facts_of(study).functions] == ["X/F", "Y/F"]
 
 
 def test_exported_numpy_is_the_response():
@@ -160,3 +276,33 @@ def test_j_elsewhere_is_refused(text, code):
 def test_a_parameter_may_still_be_called_j():
     text = ONE_MASS.format("", "j*x").replace("[elements]", "parameters.j = 3\n[elements]")
     assert "j" in str(symflex.loads(text).transfer_function("X", "F"))
+
+
+@pytest.mark.parametrize(
+    "stiffness",
+    ["k*(1 + 1i*e)", "k*(1 + i*e)", "k*(1 + 2j*e)", "k*(1 + 0.05j)", "complex(k, e)", "k*(1 + sqrt(-1)*e)"],
+)
+def test_who_writes_a_complex_number_elsewise_is_told_of_j_and_eta_s(stiffness):
+    text = ONE_MASS.format("", "x").replace('"100 N/m"', f'"{stiffness}"')
+    text = text.replace("[elements]", 'parameters = { k = "100 N/m", e = 0.1 }\n[elements]')
+    with pytest.raises(SymflexError) as caught:
+        symflex.loads(text).transfer_function("X", "F").bind()(1j)
+    hint = caught.value.diagnostics[0].hint
+    assert "the imaginary unit is j" in hint
+    assert "eta_s" in hint
+
+
+@pytest.mark.parametrize(
+    "value", ["(100 + 5j) N/m", "100 + 5j N/m", "100*(1 + 0.05*j) N/m", "sqrt(-1)", "1i"]
+)
+def test_a_complex_parameter_is_told_that_parameters_are_real(value):
+    text = ONE_MASS.format("", "x").replace("[elements]", f'parameters.k_2 = "{value}"\n[elements]')
+    with pytest.raises(SymflexError) as caught:
+        symflex.loads(text)
+    assert "a parameter is real; the imaginary unit is j" in caught.value.diagnostics[0].hint
+
+
+def test_a_loss_factor_by_another_name_is_told_its_key():
+    with pytest.raises(SymflexError) as caught:
+        symflex.loads(ONE_MASS.format(", tan_delta = 0.1", "x"))
+    assert caught.value.diagnostics[0].hint == "a loss factor is 'eta_s'"
