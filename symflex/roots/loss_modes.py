@@ -349,7 +349,7 @@ def _missing(function: KernelFunction, roots: Sequence[Root], circles: tuple[flo
         inner, outer = (arb(z).exp() if z > -inf else arb(0) for z in circles)
         found = sum(r.multiplicity for r in roots if not r.is_zero and inner < r.size() < outer)
     at_zero = sum(r.multiplicity for r in roots if r.is_zero)
-    if rest or order != at_zero * function.power:
+    if rest or (low == -inf and order != at_zero * function.power):
         raise RootOnPathError
     return counted - found
 
