@@ -13,9 +13,9 @@ circle about s = 0, all of the plane within, shows that there are no others.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from functools import reduce
+from functools import partial, reduce
 from itertools import accumulate
 from math import inf, log, pi
 from typing import TYPE_CHECKING, Final
@@ -113,6 +113,7 @@ def locate_lossy(
         reason = "; ".join(dict.fromkeys(side.reason for side in followed if side.reason)) or None
     else:
         found = [_of_polynomials(bound, side.factors, digits) for side in (*sides, hidden)]
+    cause = "coincident" if bound.is_distributed and followed[2].is_shared else "cancelled"
     poles, zeros = (_inside(region, roots) for roots in found[:2])
     concealed = _inside(_among(poles, region) if bound.is_distributed else region, found[2])
     total = sum(root.multiplicity for roots in (poles, zeros, concealed) for root in roots)
@@ -121,7 +122,7 @@ def locate_lossy(
         region,
         poles,
         zeros,
-        tuple(HiddenRoot(root) for root in concealed),
+        tuple(HiddenRoot(root, cause) for root in concealed),
         Certificate(engine, reason is None, total + missing, total, reason),
         digits,
         is_infinite=bound.is_distributed,
@@ -210,6 +211,8 @@ class _Followed:
     roots: list[Root]
     missing: int = 0  # counted but not found
     reason: str | None = None
+    shared: list[Root] = field(default_factory=list)  # further ones, which the other side may have too
+    is_shared: bool = False  # hidden modes that agree in all digits
 
 
 def _followed(
@@ -225,14 +228,25 @@ def _followed(
     (plain,) = derive_all(without, [(source.output.name, source.input.name)])
     values = {n: v for n, v in bound.values if n != IMAGINARY}
     known = locate(bind(plain, values), _wider(region), digits)
-    poles = _side(bound, bound.den, known.poles, region, digits, known.certificate.reason)
-    zeros = _side(bound, bound.num, known.zeros, region, digits, known.certificate.reason)
     product = Factored(
         bound.ratio.ring, Fraction(1), tuple((h.polynomial, h.multiplicity) for h in bound.hidden)
     )
-    within = _among(poles.roots, region)
     roots = [h.root for h in known.hidden]
-    return [poles, zeros, _side(bound, product, roots, within, digits, known.certificate.reason)]
+    cancels = has_kernels(product, bound.kernels)
+    side = partial(_side, bound, digits=digits, reason=known.certificate.reason)
+    # What cancels without losses and not with j, whose square is reduced, numerator and denominator share.
+    shared = [] if cancels else [root for root in roots if not root.is_zero]
+    poles = side(bound.den, known.poles, shared, region)
+    zeros = side(bound.num, known.zeros, shared, region)
+    if cancels or not shared:
+        return [poles, zeros, side(product, roots, (), _among(poles.roots, region))]
+    both = [r for r in poles.shared if any(overlap(r, other) for other in zeros.shared)]
+    own = [
+        replace(one, roots=[*one.roots, *(r for r in one.shared if not any(overlap(r, b) for b in both))])
+        for one in (poles, zeros)
+    ]
+    rest = _of_polynomials(bound, product.factors, digits)
+    return [*own, _Followed([*rest, *both], is_shared=True)]
 
 
 def _among(poles: Sequence[Root], region: Region) -> Region:
@@ -261,35 +275,40 @@ def _side(
     bound: BoundTransferFunction,
     part: Factored,
     roots: Sequence[Root],
+    shared: Sequence[Root],
     region: Region,
+    *,
     digits: int,
     reason: str | None,
 ) -> _Followed:
     """Return the roots that those without losses become, counted on circles about s = 0.
 
-    ``reason`` is what was not proved of those without losses.
+    ``shared`` are further ones, which are no modes; ``reason`` is what was not proved of those without
+    losses.
     """
     if not has_kernels(part, bound.kernels):
         plain, _ = split_off_kernels(part, bound.kernels)
         return _Followed(_of_polynomials(bound, plain.factors, digits))
     if not _is_lossy(bound, part):
-        return _Followed([_lossy(root) for root in roots], 0, reason)
+        return _Followed([_lossy(root) for root in roots], 0, reason, [_lossy(root) for root in shared])
     bits = int(digits * 3.33) + GUARD_BITS
     function, moved, factor = _series(bound, part, bits), list[Root](), arb(0)
-    for root in sorted(roots, key=_size):
+    extra = list[Root]()
+    for root in sorted((*roots, *shared), key=_size):
         if root.is_zero:
             moved.append(_lossy(root))
             continue
         found = _moved(function, root, factor, bits) or _moved(function, root, arb(0), bits)
-        if found is not None and not any(overlap(found, other) for other in moved):
-            moved.append(found)
+        if found is not None and not any(overlap(found, other) for other in (*moved, *extra)):
+            (extra if any(root is other for other in shared) else moved).append(found)
             factor = found.loss_factor() or factor
     moved.sort(key=_size)
     try:
-        missing = _missing(KernelFunction(bound, part), moved, _circles(moved, region))
+        missing = _missing(KernelFunction(bound, part), (*moved, *extra), _circles(moved, region))
     except (BudgetError, UncertifiedError, RootOnPathError):
-        return _Followed(moved, 0, NOT_COUNTED)
-    return _Followed(moved, missing, f"{missing} roots were counted but not found" if missing else None)
+        return _Followed(moved, 0, NOT_COUNTED, extra)
+    said = f"{missing} roots were counted but not found" if missing else None
+    return _Followed(moved, missing, said, extra)
 
 
 def _is_lossy(bound: BoundTransferFunction, part: Factored) -> bool:

@@ -125,6 +125,7 @@ def test_modes_of_a_field_with_much_loss_are_all_there(region, numbers):
     assert [complex(p.re.mid(), p.im.mid()) for p in found.poles] == pytest.approx(expected, rel=1e-13)
 
 
+@pytest.mark.slow
 def test_a_damper_beside_the_loss_makes_modes_that_are_counted_too():
     damper = 'd = { type = "damper", between = ["b.y", "ground"], b = "200 N*s/m" }\n[inputs]'
     text = CANTILEVER.replace("[inputs]", damper)
@@ -139,6 +140,36 @@ def test_a_damper_beside_the_loss_makes_modes_that_are_counted_too():
 
     poles = [complex(p.re.mid(), p.im.mid()) for p in found.poles]
     assert [complex(mpmath.findroot(boundary, p)) for p in poles] == pytest.approx(poles, rel=1e-12)
+
+
+HALVES = """symflex = 1
+[elements]
+left = { type = "fixed", at = "a" }
+right = { type = "fixed", at = "c" }
+one = { type = "beam", between = ["a", "b"], EI = "70 N*m^2", rhoA = "0.27 kg/m", l = "0.4 m", eta_s = 0.1 }
+two = { type = "beam", between = ["b", "c"], EI = "70 N*m^2", rhoA = "0.27 kg/m", l = "0.4 m", eta_s = 0.1 }
+[inputs]
+F = { force = "b.y" }
+[outputs]
+Y = "b.y"
+"""
+
+
+@pytest.mark.slow
+def test_modes_that_a_force_in_the_middle_does_not_move_are_hidden_with_losses_too():
+    lossy, plain = (
+        symflex.loads(text).transfer_function("Y", "F").bind().pole_zero_map(modes=2)
+        for text in (HALVES, HALVES.replace(", eta_s = 0.1", ""))
+    )
+    assert lossy.certificate.certified
+    turn = np.sqrt(1 + 0.1j)  # every stiffness times 1 + 0.1 j
+    for ours, theirs in ((lossy.poles, plain.poles), (lossy.zeros, plain.zeros)):
+        expected = [1j * float(r.im.mid()) * turn for r in theirs if r.im > 0]
+        assert [complex(r.re.mid(), r.im.mid()) for r in ours] == pytest.approx(expected, rel=1e-12)
+    ours, theirs = ([h.root for h in one.hidden if h.root.im > 0] for one in (lossy, plain))
+    expected = [1j * float(r.im.mid()) * turn for r in theirs]
+    assert [complex(r.re.mid(), r.im.mid()) for r in ours] == pytest.approx(expected, rel=1e-12)
+    assert len(ours) == 1
 
 
 def test_what_losses_do_not_touch_stays_on_the_axis():
@@ -162,6 +193,7 @@ def test_a_viscoelastic_stiffness_may_stand_in_a_definition(mark, loss):
     assert sorted(got, key=abs) == pytest.approx(sorted(expected, key=abs), rel=1e-12)
 
 
+@pytest.mark.slow
 def test_a_frame_too_large_for_its_formula_has_the_response_of_scaled_frequency():
     text = """symflex = 1
 [parameters]
