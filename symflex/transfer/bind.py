@@ -65,6 +65,8 @@ if TYPE_CHECKING:
 Given = int | float | Fraction | Decimal | str | ExactValue
 """A value as a user gives it; one that was read before stays exact."""
 
+LOSSY_TAPER = ("a loss factor is", "divide it into uniform members")
+"""What is not available of members that taper, and what to do."""
 NAMES_SHOWN = 40
 """Names of parameters without value that one message lists."""
 
@@ -408,7 +410,7 @@ def bind(tf: TransferFunction, values: Mapping[str, Given] | None = None) -> Bou
     SF231 the denominator vanishes for these values; UsageError: SF902 an unknown parameter.
     """
     if tf.model.imaginary:
-        tf.kernels.without_tapers("a loss factor is", "divide it into uniform members")
+        tf.kernels.without_tapers(*LOSSY_TAPER)
     used = (*tf.parameters, *(p for p in tf.hidden_parameters if p not in tf.parameters))
     exact = values_for(tf.model, used, dict(values or {}))
     if tf.is_large:

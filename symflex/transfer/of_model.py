@@ -21,7 +21,7 @@ from symflex.model import with_numbers
 from symflex.model.along import is_tapered
 from symflex.model.signs import is_passive
 from symflex.transfer import nested_form
-from symflex.transfer.bind import bind, is_degenerate
+from symflex.transfer.bind import LOSSY_TAPER, bind, is_degenerate
 from symflex.transfer.derive import Terms, nested_transfer
 from symflex.transfer.derive import derive_all as derive_from
 from symflex.transfer.nested_form import bind_nested
@@ -144,6 +144,8 @@ def _derive_expanded(
         if not joined.is_joined:
             raise
         found = derive_from(joined, wanted, most)
+    if model.imaginary:
+        found[0].kernels.without_tapers(*LOSSY_TAPER)
     mixed = [i for i, tf in enumerate(found) if tf.is_mixed or is_degenerate(tf)]
     if not mixed:
         return found

@@ -216,6 +216,15 @@ Y = "c.y"
     assert refusal(lossy.pole_zero_map) == "UncertifiedError SF404"
 
 
+def test_members_that_taper_take_no_loss_factor_yet():
+    text = CANTILEVER.replace('EI = "56 N*m^2"', 'EI = "B*(1 - x/l/2)"').replace('"0.5 m"', '"l"')
+    model = symflex.loads(
+        text.replace("[elements]", 'parameters = { B = "56 N*m^2", l = "0.5 m" }\n[elements]')
+    )
+    assert refusal(model.transfer_function, "Y", "F") == "ModelError SF910"
+    assert refusal(model.export_numpy) == "ModelError SF910"
+
+
 def test_a_response_may_be_swept_over_loss_factors():
     found = symflex.loads(TWO_MASSES).sweep({"eta_1": [0.05, 0.5]}, of="response", frequencies=[2.0])
     expected = [
