@@ -17,6 +17,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations
+from math import gcd, lcm
 from typing import TYPE_CHECKING, Final
 
 from flint import acb
@@ -45,6 +46,7 @@ from symflex.expressions import (
     sum_of,
 )
 from symflex.expressions.format import number_text
+from symflex.model.model import IMAGINARY
 from symflex.transfer.balls import enclosure, principal_values
 
 if TYPE_CHECKING:
@@ -114,7 +116,7 @@ class _Signs:
     def _oriented(self, part: Expression) -> Expression:
         match part:
             case Sum(terms):
-                return self._sum(terms)
+                return self._with_loss_factor(self._sum(terms))
             case Negative(Product() as product):
                 return negative(self._oriented(product))
             case Product(factors):
@@ -122,6 +124,23 @@ class _Signs:
             case Call("sqrt", Negative(Sum(terms))):
                 return replace(part, argument=sum_of(_led([negative(t) for t in terms])))
         return part
+
+    def _with_loss_factor(self, total: Expression) -> Expression:
+        """Return ``10*(1 + 0.1*j)`` for ``j + 10``, as loss factors are typed; no content in a sum."""
+        if self.known.get(IMAGINARY) != acb(0, 1) or not isinstance(total, Sum):
+            return total
+        terms = [powers_of(t) for t in total.terms]
+        content = Fraction(gcd(*(f.numerator for f, _ in terms)), lcm(*(f.denominator for f, _ in terms)))
+        if content != 1:
+            return product_of([number(content), sum_of([of_powers(f / content, p) for f, p in terms])])
+        fronts = {tuple(powers.items()): front for front, powers in terms}
+        if fronts.keys() != {(), ((Name(IMAGINARY), 1),)}:
+            return total
+        plain, lossy = fronts[()], fronts[(Name(IMAGINARY), 1),]
+        factor = _number_in(lossy / plain)
+        if factor is None:
+            return total
+        return product_of([number(plain), sum_of([number(1), product_of([factor, Name(IMAGINARY)])])])
 
     def _rejoined(self, product: Expression) -> Expression:
         """Return a product with ``1 - nu^2`` for ``(1 - nu)*(nu + 1)`` where the model has it."""
@@ -355,7 +374,8 @@ def _decimals(model: Model, num: Expression, den: Expression) -> tuple[Expressio
     if (own := _number_in(scale)) is None:
         return num, den
     tried = [product_of([own, *(power(b, n) for b, n in powers.items())])]
-    inside = next((b for b, n in powers.items() if isinstance(b, Sum) and n == 1), None)
+    sums = (b for b, n in powers.items() if isinstance(b, Sum) and n == 1)
+    inside = next((b for b in sums if Name(IMAGINARY) not in names(b)), None)
     if inside is not None and scale != 1 and (spread := _scaled(inside, 1 / scale)) is not None:
         tried.append(product_of([spread if b == inside else power(b, n) for b, n in powers.items()]))
     new = min(tried, key=_length), product_of([power(b, n) for b, n in divisors.items()])
