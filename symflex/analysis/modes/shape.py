@@ -156,9 +156,13 @@ class DistributedShape:
 
     def state_at_share(self, share: Fraction) -> tuple[acb, ...]:
         """Return the state at a share of the length from the start, enclosed."""
+        return self.state_beyond(self.initial, Fraction(0), share)
+
+    def state_beyond(self, state: tuple[acb, ...], first: Fraction, second: Fraction) -> tuple[acb, ...]:
+        """Return the state at a share of the length, enclosed, given that at another share."""
         with precision(self.bits):
-            distance = self.length * share.numerator / share.denominator
-            return self._carried(self._step(arb(0), distance), self.initial)
+            ends = (self.length * share.numerator / share.denominator for share in (first, second))
+            return self._carried(self._step(*ends), state)
 
     def sampled(self, intervals: int) -> Iterator[tuple[Fraction, tuple[acb, ...]]]:
         """Yield the share of the length, from 0 to 1, and the state there, at equal steps."""
@@ -385,8 +389,14 @@ def _refined(place: _PlacedAmplitude) -> _PlacedAmplitude:
     if part is None or place.share in (0, 1):
         return place
 
+    before = place.share - place.width
+    start = part.state_at_share(before)
+
+    def value(share: float | Fraction) -> acb:
+        return part.state_beyond(start, before, Fraction(share))[place.place]
+
     def size(share: float) -> float:
-        return float(abs(part.state_at_share(Fraction(share))[place.place].mid()))
+        return float(abs(value(share).mid()))
 
     low, high = float(place.share - place.width), float(place.share + place.width)
     left, right = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
@@ -401,7 +411,7 @@ def _refined(place: _PlacedAmplitude) -> _PlacedAmplitude:
             left = high - GOLDEN * (high - low)
             at_left = size(left)
     share = Fraction((low + high) / 2)
-    return replace(place, share=share, value=part.state_at_share(share)[place.place])
+    return replace(place, share=share, value=value(share))
 
 
 def _scaled(shape: EnclosedModeShape, reference: _PlacedAmplitude) -> EnclosedModeShape:
