@@ -183,7 +183,7 @@ class CertifiedWinding(Winding):
                 by_series = self._series.change(centre, reach, here, there, bits)
                 return min(by_series, by_exponentials, key=lambda found: found[0])
             return by_exponentials
-        if self.function.has_fundamental:
+        if self.function.cancels:
             return self._series.change(centre, reach, here, there, bits)
         found = self.function.enclosed_about(ball, centre, bits)
         off = 0.0

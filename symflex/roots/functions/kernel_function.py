@@ -147,12 +147,20 @@ class KernelFunction:
         return self.part.unit < 0
 
     @cached_property
-    def has_fundamental(self) -> bool:
-        """Some kernels are fundamental functions: sums over roots that have no names."""
-        return any(
-            kernel.function == "fundamental" and self.part.depends_on(kernel.generator)
-            for kernel in self.bound.kernels.kernels
-        )
+    def cancels(self) -> bool:
+        """Some kernels are sums over roots that have no names, or entries along one law multiply each other.
+
+        The motion within a tapered member is such a difference of products, e^(2 L) times smaller.
+        """
+        ring, kernels = self.part.ring, self.bound.kernels.kernels
+        if any(k.function == "fundamental" and self.part.depends_on(k.generator) for k in kernels):
+            return True
+        along: dict[str, list[int]] = {}
+        for k in kernels:
+            if k.function == "entry":
+                along.setdefault(k.dispersion.name, []).append(ring.index[k.generator])
+        monomials = [powers for factor, _ in self.part.factors for powers in factor.monoms()]
+        return any(sum(powers[i] for i in places) > 1 for places in along.values() for powers in monomials)
 
     def at_logarithm(self, z: complex, *, is_simple: bool = False) -> Sample | None:
         """Return the sample at ``s = exp(z)``, with the slope in z; ``None`` on a root.

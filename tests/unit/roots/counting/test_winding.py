@@ -196,7 +196,7 @@ def test_half_a_turn_could_be_either_way_and_turns_are_whole_where_one_integer_i
 class Followed(KnownFunction):
     """A known product with what windings ask of a function; its exponents may be negative."""
 
-    has_fundamental: bool = False
+    cancels: bool = False
     work: int = 0
     levels: list = field(default_factory=list)
 
@@ -592,7 +592,7 @@ def test_small_cells_and_functions_without_a_formula_are_counted():
         expected = function.count_inside(lambda root, cell=cell: cell.holds(log(root)))
         assert expected >= 1, name
         assert CertifiedWinding(function, Budget()).count(cell) == expected, name
-    function = Followed(PRODUCTS["double"], has_fundamental=True)
+    function = Followed(PRODUCTS["double"], cancels=True)
     assert CertifiedWinding(function, Budget()).count(CELL) == in_cell(function)
 
 
