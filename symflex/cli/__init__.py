@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import os
 import sys
+import warnings
 from importlib import import_module
 from io import StringIO, TextIOWrapper
 from pathlib import Path
@@ -101,6 +102,8 @@ def main(arguments: list[str] | None = None) -> None:
     # The matrices of a fit are small: threads that wait for each other cost more than they compute.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     gc.set_threshold(YOUNG_OBJECTS)
+    if not sys.warnoptions:
+        warnings.simplefilter("ignore")  # of libraries; those of models are diagnostics
     for name in ("stdout", "stderr"):
         if getattr(sys, name) is None:  # closed by who started the program
             setattr(sys, name, Path(os.devnull).open("w", encoding="utf-8"))

@@ -16,7 +16,7 @@ from contextlib import nullcontext
 from functools import wraps
 from math import inf
 from time import monotonic
-from typing import TYPE_CHECKING, Final
+from typing import IO, TYPE_CHECKING, Final
 
 import click
 
@@ -41,6 +41,9 @@ INTERVAL: Final = 0.05
 """Seconds between two looks; a process can take 100 MB in between."""
 FINISHED: Final = getattr(signal, "SIGUSR1", signal.SIGTERM)
 """Sent by the process that works when it has written everything; not every system has it."""
+STDERR: Final = 2
+LONGEST_WORDS: Final = 200
+"""Letters of a library's last words that are passed on."""
 UNITS: Final = {"MB": 10**6, "GB": GB, "TB": 10**12, "MIB": 2**20, "GIB": 2**30, "TIB": 2**40}
 SIZE: Final = re.compile(r"\s*(\d{1,9}(?:\.\d{1,9})?)\s*([MGT]i?B)\s*", re.ASCII | re.IGNORECASE)
 
@@ -122,6 +125,7 @@ def _watched(seconds: float | None, memory: int) -> int | None:
     before = signal.pthread_sigmask(signal.SIG_BLOCK, heard)
     alive, kept_open = os.pipe()
     watching = os.getpid()
+    said = open(os.memfd_create("said"), "w+b")
     worker = os.fork()
     if worker == 0:
         os.close(kept_open)
@@ -129,6 +133,7 @@ def _watched(seconds: float | None, memory: int) -> int | None:
         if os.getppid() != watching:
             os._exit(BUDGET_EXCEEDED)  # it ended before this could be told
         _limit_memory(memory)
+        _keep(said)
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
         return None
     os.close(alive)
@@ -141,7 +146,7 @@ def _watched(seconds: float | None, memory: int) -> int | None:
             end = None  # all is written, and only taken apart
         done, status = os.waitpid(worker, os.WNOHANG)
         if done:
-            return _code_of(status, memory)
+            return _code_of(status, memory, said)
         over = TIME_OVER if end is not None and monotonic() > end else None
         if memory_held(worker) > memory:
             over = memory_used_up(memory)
@@ -152,19 +157,32 @@ def _watched(seconds: float | None, memory: int) -> int | None:
             return BUDGET_EXCEEDED
 
 
-def _code_of(status: int, memory: int) -> int:
+def _keep(said: IO[bytes]) -> None:
+    """Take up in a file what libraries in C write to stderr of their own accord; Python's stays."""
+    try:
+        is_plain = sys.stderr.fileno() == STDERR
+    except (OSError, ValueError):
+        is_plain = False
+    if is_plain:
+        sys.stderr = open(os.dup(STDERR), "w", 1, sys.stderr.encoding, sys.stderr.errors)
+        os.dup2(said.fileno(), STDERR)
+
+
+def _code_of(status: int, memory: int, said: IO[bytes]) -> int:
     """Return the exit code of the process that worked, and say what ended it if it did not end by itself."""
     code = os.waitstatus_to_exitcode(status)
     if code >= 0:
         return code
     name = signal.Signals(-code)
-    if name is signal.SIGABRT or name is signal.SIGKILL:
+    said.seek(0)
+    last = " ".join(said.read().decode(errors="replace").split())[-LONGEST_WORDS:]
+    if name is signal.SIGKILL or (name is signal.SIGABRT and (not last or "alloc" in last)):
         # Libraries abort where memory is refused; a system that has none left kills.
         show_error(BudgetError(memory_used_up(memory)))
         return BUDGET_EXCEEDED
     if name in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         return 128 - code
-    message = f"a library ended the computation: {signal.strsignal(-code)}"
+    message = f"a library ended the computation: {last or signal.strsignal(-code)}"
     show_error(BudgetError(Diagnostic("SF508", message, None, "please report the model that does this")))
     return BUDGET_EXCEEDED
 
