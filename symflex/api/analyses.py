@@ -60,7 +60,7 @@ class Analyses(Plotted):
         ------
         UsageError
             SF811 for times that are negative or do not increase; SF812, from ``values``, where a response
-            grows beyond the range of doubles.
+            grows beyond the range of doubles, at once where it grows beyond 10^100000.
         UncertifiedError
             SF810 when poles cannot be told apart.
 

@@ -23,6 +23,10 @@ INTEGRATIONS = {"impulse": 0, "step": 1, "ramp": 2}
 """Of the unit impulse, until it is the input."""
 UP = 1 + 2.0**-40
 """Makes up for rounding when the radius of a ball becomes a double."""
+LARGEST_POWER = 100_000
+LARGEST = arb(10) ** LARGEST_POWER
+"""Values beyond it are refused: they would have more digits of an exponent than anyone reads, at great cost."""
+SHORTER = "ask for a shorter time"
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,6 +98,14 @@ class EnclosedResponse:
     modes: PartialSum | None = field(default=None, repr=False)
     method: str = ""
 
+    def __post_init__(self) -> None:
+        huge = next(
+            (t for t, y in zip(self.times, self.enclosures, strict=False) if y.abs_lower() > LARGEST), None
+        )
+        if huge is not None:
+            message = f"the response of {self.tf} is beyond 10^{LARGEST_POWER} from {huge:g} s on"
+            raise UsageError(Diagnostic("SF812", message, None, SHORTER))
+
     @cached_property
     def _doubles(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
         values = np.array(list(map(float, self.enclosures)), dtype=np.float64)  # of midpoints
@@ -101,7 +113,7 @@ class EnclosedResponse:
             message = (
                 f"the response of {self.tf} is beyond the range of doubles from {self.times[huge[0]]:g} s on"
             )
-            raise UsageError(Diagnostic("SF812", message, None, "ask for a shorter time"))
+            raise UsageError(Diagnostic("SF812", message, None, SHORTER))
         off = map(arb.abs_upper, map(sub, self.enclosures, values.tolist()))
         radius = np.array(list(map(float, off)), dtype=np.float64) * UP
         for array in (values, radius):

@@ -217,6 +217,11 @@ def test_what_grows_beyond_doubles_is_printed_in_decimals_and_not_drawn(shell, t
     drawn = shell("respond", "up.toml", "--until", "1000", "--points", "3", "-o", "up.svg")
     assert drawn.code == 2
     assert "error[SF812]: the response of y/u is beyond the range of doubles from 500 s on" in drawn.err
+    beyond = shell("respond", "up.toml", "--until", "1e10s")
+    assert (beyond.code, "error[SF812]: the response of y/u is beyond 10^100000 from" in beyond.err) == (
+        2,
+        True,
+    )
     sampled = shell("export", "up.toml", "--to", "c", "--sample", "1000s")
     assert sampled.code == 3
     assert "error[SF233]" in sampled.err
