@@ -506,14 +506,16 @@ FOLLOWING_ERROR = 0.02
 FOLLOWING_ROUNDS = 12
 MOST_POINTS = 20_000
 BEYOND_LAST_POLE = 1.3
-"""A distributed system has further poles just above the last one found."""
+"""A distributed system has further poles just above the last one found; no band ends nearer to a root."""
 
 
 def default_band(*maps: PoleZeroMap) -> tuple[float, float]:
     """Return a band [Hz] that shows all poles and zeros of functions that are to be shown together.
 
-    It goes from a decade below the lowest to a decade above the highest nonzero natural frequency, of a
-    distributed system a little above the highest pole found; 0.1 Hz to 10 Hz when there is none.
+    It goes from a decade below the lowest to a decade above the highest nonzero natural frequency, or less
+    where a function would fall by more than 60 dB there, and of a distributed system a little above the
+    highest pole found; 0.1 Hz to 10 Hz when there is none. Real roots more than a decade above the highest
+    that oscillate do not count.
 
     Examples
     --------
@@ -525,14 +527,26 @@ def default_band(*maps: PoleZeroMap) -> tuple[float, float]:
     """
     lows, highs = [], []
     for found in maps:
-        poles = [root.frequency_hz() for root in found.poles if not root.is_zero]
-        zeros = [root.frequency_hz() for root in found.zeros if not root.is_zero]
-        lows += poles + zeros
+        moving = [root for root in (*found.poles, *found.zeros) if not root.is_zero]
+        far = 10 * max((root.frequency_hz() for root in moving if not root.is_real), default=inf)
+        counted = [root for root in moving if root.frequency_hz() <= far]
+        if not counted:
+            continue
+        poles = [root for root in counted if root in found.poles]
+        ends = [root.frequency_hz() for root in counted]
+        order = _order_at_rest(found)
+        lows.append(min(ends) / _room(order))
         if found.is_infinite and poles:
-            highs.append(max(poles) * BEYOND_LAST_POLE)
+            highs.append(max(root.frequency_hz() for root in poles) * BEYOND_LAST_POLE)
         else:
-            highs += [frequency * 10 for frequency in poles + zeros]
-    return (min(lows) / 10, max(highs)) if lows else DEFAULT_BAND_HZ
+            slope = order + sum(-r.multiplicity if r in poles else r.multiplicity for r in counted)
+            highs.append(max(ends) * _room(slope))
+    return (min(lows), max(highs)) if lows else DEFAULT_BAND_HZ
+
+
+def _room(slope: int) -> float:
+    """Return how far to go beyond the last root: a decade, or until a power of s changes by 60 dB."""
+    return max(BEYOND_LAST_POLE, 10 ** min(1, 3 / max(1, abs(slope))))
 
 
 def roots_if_found(bound: AnyBoundFunction, band: Band | None = None) -> PoleZeroMap:

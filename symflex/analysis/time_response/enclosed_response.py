@@ -25,7 +25,7 @@ UP = 1 + 2.0**-40
 """Makes up for rounding when the radius of a ball becomes a double."""
 LARGEST_POWER = 100_000
 LARGEST = arb(10) ** LARGEST_POWER
-"""Values beyond it are refused: they would have more digits of an exponent than anyone reads, at great cost."""
+"""Values beyond it are refused: their decimals take minutes, and nobody reads them."""
 SHORTER = "ask for a shorter time"
 
 
