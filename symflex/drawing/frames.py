@@ -19,7 +19,7 @@ from symflex.drawing.columns import flat_mark, mark_of_source, upright_mark
 from symflex.drawing.geometry import BOLD, FILLED, MEMBER, THIN, Extent, Placed, around, union
 from symflex.drawing.lettering import SMALL, name_latex, text
 from symflex.drawing.scheme import Mark, evaluate, values_of
-from symflex.drawing.symbols import DOT, HALF, arrow, circle, head, line, outline, rectangle, wall
+from symflex.drawing.symbols import DOT, HALF, arrow, circle, guide, head, line, outline, rectangle, wall
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -35,6 +35,9 @@ LONGEST: Final = 500.0
 """Of a member beside one of the least length; other frames are drawn in a row."""
 JOINT: Final = 2.4
 """Radius of a joint of members."""
+SPIRAL: Final = 7.0
+"""From the inner to the outer end of a spiral spring [points]."""
+SPIRAL_TURNS, SPIRAL_POINTS = 1.75, 48
 APART: Final = 0.3
 """Between members that no node joins, as a share of the length of one."""
 CLAMP: Final = 8.0
@@ -83,6 +86,8 @@ class _Plan:
             for e, xy in zip(p.ends, self.ends[p.name], strict=True)
             if e.node
         }
+        # What a joint holds, such as a cart below its pole, has the place of the member's end.
+        at = {self.joint(node): place for node, place in at.items()} | at
         self.at = {n: at[self.joint(n)] for n in self.network.nodes if self.joint(n) in at}
         self.at = at | self.at
         self.others = [p for p in self.network.parts if not self._belongs(p)]
@@ -95,7 +100,9 @@ class _Plan:
             if part.symbol.role == "support":
                 self._draw_support(part)
         for part in own:
-            if part.type_name in ALONE:
+            if part.type_name == "torsion_spring":
+                self._draw_spiral(part)
+            elif part.type_name in ALONE:
                 self._draw_grounded(part)
         for mark in (
             *map(mark_of_source, (p for p in own if p.symbol.role == "source")),
@@ -127,6 +134,8 @@ class _Plan:
             return True
         places = {tuple(round(v, 3) for v in self.at[n]) for n in part.nodes}
         if part.symbol.role in ("support", "source"):
+            return len(places) == 1
+        if part.type_name == "torsion_spring" and len(part.nodes) > 1:
             return len(places) == 1
         return part.type_name in ALONE and len(part.nodes) == 1 and any(not e.node for e in part.ends)
 
@@ -307,6 +316,7 @@ class _Plan:
         node = part.nodes[0]
         x, y = self.at[node]
         if len(part.nodes) > 1:
+            x, y = self._hinge(part.nodes[1])
             ring = (
                 circle(x, y, JOINT - 0.3)
                 if part.type_name == "pin"
@@ -316,7 +326,12 @@ class _Plan:
             self.solid.append(self.items[-1].box)
             return
         symbol = Placed(part.kind, part.name, part.symbol.hold())
-        for d in self._free_directions(node):
+        component, directions = part.ends[0].component, self._free_directions(node)
+        if part.type_name == "fixed" and component in ("x", "y"):
+            # It rolls along the other one.
+            symbol = Placed(part.kind, part.name, guide(-7, 7, -1, 0)).rotated(0, 1)
+            directions = [d for d in directions if bool(d[0]) is (component == "x")]
+        for d in directions:
             reach = self._surface(node, d) + CLEAR
             turned = symbol.rotated(-d[1], d[0])
             place = (x + d[0] * reach, y + d[1] * reach)
@@ -377,6 +392,35 @@ class _Plan:
                     return
         self._near(tried[0], _about((x, y), 4.0, 4.0))
         self._finish(part, self.items[-len(tried[0])])
+
+    def _hinge(self, node: str) -> Point:
+        """Return where a member or spring turns about what a joint holds: the surface of a body there."""
+        place = self.at[node]
+        has_body = any(self.at[other] == place for other in self.radius)
+        for part in self.members if has_body and self.joint(node) != node else ():
+            for end, at in zip(part.ends, self._shortened(part), strict=True):
+                if end.node == node:
+                    return at
+        return place
+
+    def _draw_spiral(self, part: DrawnPart) -> None:
+        """Draw a torsion spring round the joint that it acts on; its outer end may be held by the ground."""
+        node = part.nodes[0]
+        x, y = next((xy for n in part.nodes if (xy := self._hinge(n)) != self.at[n]), self.at[node])
+        is_apart = (x, y) != self.at[node]
+        sizes = (max(size) for n, size in self.radius.items() if self.at[n] == (x, y) and not is_apart)
+        inner = max(sizes, default=JOINT)
+        dx, dy = self._free_directions(node)[-1 if len(part.nodes) > 1 else 1]
+        steps = (i / SPIRAL_POINTS for i in range(SPIRAL_POINTS + 1))
+        polar = [(inner + CLEAR + SPIRAL * share, 2 * pi * SPIRAL_TURNS * (share - 1)) for share in steps]
+        items = [Placed(part.kind, part.name, (line(*((r * cos(a), r * sin(a)) for r, a in polar)),))]
+        if len(part.nodes) == 1:
+            items.append(Placed("ground", "", wall(-5, 5, 1, polar[-1][0])))
+        turned = [i.rotated(dx, dy).moved(x, y) for i in items]
+        self._add(*turned)
+        if is_apart:  # behind the body, whose letters it would strike out
+            self.items = [turned[0], *(i for i in self.items if i is not turned[0])]
+        self._finish(part, turned[0])
 
     def _finish(self, part: DrawnPart, symbol: Placed) -> None:
         """Write what belongs to a symbol beside it."""
