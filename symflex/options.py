@@ -70,6 +70,8 @@ SHAPED_MODES: Final = {
 JOINT: Final = {"help": "One shaper for all modes together, shorter than those of each one after another."}
 REPRESENTATIONS: Final = ("auto", "expanded", "nested")
 WIDTHS: Final = "ieee|a4|MM"
+WIDTH: Final = {"metavar": WIDTHS, "help": "Width of the figure: 88.5, 170 or so many mm."}
+FONT: Final = {"metavar": "FONT", "help": "times (the default), latex or sans."}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -240,6 +242,10 @@ class RespondOptions:
     output: str | None = option(
         None, "-o", "--output", is_path=True, help="File to write: .csv, .pdf, .pgf, .png or .svg."
     )
+    xlim: Ends | None = option(None, "--xlim", **TWO, help="Times shown in a figure [s].")
+    ylim: Ends | None = option(None, "--ylim", **TWO, help="Values shown in a figure.")
+    width: float | str | None = option(None, "--width", **WIDTH)
+    font: str | None = option(None, "--font", **FONT)
     shaped: str | None = option(
         None, "--shaped", choices=SHAPERS, help="Let the input go through a shaper first, as of shape."
     )
@@ -372,10 +378,9 @@ class PlotOptions:
     output: str | None = option(
         None, "-o", "--output", is_path=True, help="File to write: .pdf, .pgf, .svg or .png."
     )
-    width: float | str | None = option(
-        None, "--width", metavar=WIDTHS, help="Width of the figure: 88.5, 170 or so many mm."
-    )
-    font: str | None = option(None, "--font", metavar="FONT", help="times (the default), latex or sans.")
+    width: float | str | None = option(None, "--width", **WIDTH)
+    font: str | None = option(None, "--font", **FONT)
+    until: str | None = option(None, "--until", metavar="TIME", help="Last time of step and impulse: 0.5s.")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -389,7 +394,7 @@ class DrawOptions:
     width: str | None = option(
         None, "--width", metavar=WIDTHS, help="Width of the drawing: 88.5, 170 or so many mm."
     )
-    font: str | None = option(None, "--font", metavar="FONT", help="times (the default), latex or sans.")
+    font: str | None = option(None, "--font", **FONT)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

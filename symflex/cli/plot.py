@@ -10,7 +10,7 @@ from symflex.cli.command import Specification, command_of
 from symflex.cli.reporting import note
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
-from symflex.options import DrawOptions, PlotOptions, gain_ends
+from symflex.options import DrawOptions, PlotOptions, duration, gain_ends
 
 if TYPE_CHECKING:
     from symflex.model import Model
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 SUFFIXES = (".pdf", ".pgf", ".png", ".svg")
 SWEEP = "sweep"
+IN_TIME = ("step", "impulse")
 
 
 @command_of("draw", DrawOptions)
@@ -35,7 +36,7 @@ def draw(spec: Specification, given: DrawOptions) -> int:
     from symflex.print.latex import column_width
 
     path = _checked_path(given.output or f"{Path(spec.path).stem}_drawing.svg")
-    font = _checked_font(given.font, path)
+    font = checked_font(given.font, path)
     width_mm = None if given.width is None else column_width(given.width)
     drawing = drawing_of(spec.load(), values=given.values, width_mm=width_mm, font=font)
     write_atomically(path, render_drawing(drawing, path.suffix.removeprefix("."), font=font))
@@ -59,8 +60,8 @@ def plot(spec: Specification, given: PlotOptions) -> int:
 
     --band shows a band of frequencies: of bode and nyquist the curves, of modes those in it, and of what is
     drawn in the s plane all up to its end. --xlim, --ylim and --phase set the ends of axes; those of a
-    frequency or in the s plane may have a unit, '1 kHz'. step and impulse are drawn up to the end of --xlim
-    [s], by default until the slowest motion has died away.
+    frequency or in the s plane may have a unit, '1 kHz'. step and impulse are drawn up to --until, or the end
+    of --xlim [s], by default until the slowest motion has died away.
 
     Without -o the figure is written to the current folder as SPEC_KIND.pdf.
 
@@ -82,7 +83,7 @@ def plot(spec: Specification, given: PlotOptions) -> int:
     figure, drawn = _named(model, given.kind)
     path = path or _checked_path(f"{Path(spec.path).stem}_{given.kind}.pdf")
     width_mm = None if given.width is None else column_width(given.width)
-    font = _checked_font(given.font, path)
+    font = checked_font(given.font, path)
     gain = given.gain or (figure.gain if figure else "")
     if (given.gain or given.limits) and drawn not in LOOP_FIGURES:
         message = f"--gain and --range are for {' and '.join(LOOP_FIGURES)}, not for '{drawn}'"
@@ -91,6 +92,11 @@ def plot(spec: Specification, given: PlotOptions) -> int:
     shown = shown or (figure.band if figure else None)
     if figure and figure.until and frame.x is None:
         frame = replace(frame, x=(0.0, float(figure.until)))
+    if given.until is not None:
+        if drawn not in IN_TIME or given.xlim:
+            message = f"--until is for {' and '.join(IN_TIME)}, in place of --xlim"
+            raise UsageError(Diagnostic("SF902", message))
+        frame = replace(frame, x=(0.0, float(duration(given.until, "--until"))))
     if drawn == "locus" and not gain:
         message = "a locus is drawn of a loop"
         raise UsageError(Diagnostic("SF902", message, None, "name its gain: --gain K, or gain in [figures]"))
@@ -140,7 +146,7 @@ def _plot_sweep(spec: Specification, given: PlotOptions) -> int:
 
     file = spec.path if given.kind == SWEEP else given.kind
     path = _checked_path(given.output or f"{Path(file).stem}_{SWEEP}.pdf")
-    font = _checked_font(given.font, path)
+    font = checked_font(given.font, path)
     inches = None if given.width is None else column_width(given.width) / MM_PER_INCH
     save(draw_sweep(read_sweep(file), modes=given.modes, width=inches, font=font), path, font=font)
     note(f"wrote {path}")
@@ -182,7 +188,7 @@ def _checked_path(name: str) -> Path:
     return path
 
 
-def _checked_font(font: str | None, path: Path) -> str:
+def checked_font(font: str | None, path: Path) -> str:
     """Return the name of a font for a figure.
 
     Raises

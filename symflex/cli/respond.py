@@ -5,11 +5,15 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from symflex.cli.command import Specification, command_of, first_pair
 from symflex.cli.reporting import check_place, emit_json, note, say
 from symflex.errors import Diagnostic, UncertifiedError, UsageError
-from symflex.options import RespondOptions, ShapeOptions, duration
+from symflex.options import RespondOptions, ShapeOptions, axis_ends, duration
+
+if TYPE_CHECKING:
+    from symflex.analysis.time_response import EnclosedResponse
 
 POINTS = 201
 TABLE = ".csv"
@@ -40,10 +44,7 @@ def respond(spec: Specification, given: RespondOptions) -> int:
     from symflex.data.measurement.input_signal import read_signal
     from symflex.transfer import BoundNested
 
-    if given.output:
-        check_place(given.output, (TABLE, *PICTURES))
-        if given.as_json:
-            raise UsageError(Diagnostic("SF902", "give only one of --json and -o"))
+    _check_place(given)
     if given.shaped is None and (given.joint or given.modes != 1):
         raise UsageError(Diagnostic("SF902", "--modes and --joint are of --shaped zv, zvd or ei"))
     until = None if given.until is None else duration(given.until, "--until")
@@ -74,9 +75,7 @@ def respond(spec: Specification, given: RespondOptions) -> int:
         write_atomically(Path(given.output), found.to_csv().encode())
         note(f"wrote {given.output}")
     elif given.output:
-        from symflex.figures import draw_in_time, save
-
-        save(draw_in_time(found), Path(given.output))
+        _draw(found, given, Path(given.output))
         note(f"wrote {given.output}")
     else:
         is_told = given.to == "step" and shaper is None and found.certified
@@ -89,6 +88,32 @@ def respond(spec: Specification, given: RespondOptions) -> int:
     if given.strict and not found.certified:
         raise UncertifiedError(Diagnostic("SF810", f"not every value is certified: {found.reason}"))
     return 0
+
+
+def _check_place(given: RespondOptions) -> None:
+    """Refuse what is not said of a file, or of a figure where none is written."""
+    if given.output:
+        check_place(given.output, (TABLE, *PICTURES))
+        if given.as_json:
+            raise UsageError(Diagnostic("SF902", "give only one of --json and -o"))
+    is_figure = Path(given.output or "").suffix in PICTURES
+    if not is_figure and any((given.xlim, given.ylim, given.width, given.font)):
+        message = "--xlim, --ylim, --width and --font are of a figure"
+        raise UsageError(Diagnostic("SF902", message, None, "name one, as in -o step.svg"))
+
+
+def _draw(found: EnclosedResponse, given: RespondOptions, path: Path) -> None:
+    """Write a figure as options ask for it."""
+    from symflex.cli.plot import checked_font
+    from symflex.figures import draw_in_time, save
+    from symflex.figures.axes import AxisLimits
+    from symflex.figures.files import MM_PER_INCH
+    from symflex.print.latex import column_width
+
+    font = checked_font(given.font, path)
+    width = None if given.width is None else column_width(given.width) / MM_PER_INCH
+    frame = AxisLimits(axis_ends(given.xlim, "--xlim"), axis_ends(given.ylim, "--ylim"))
+    save(draw_in_time(found, frame=frame, width=width, font=font), path, font=font)
 
 
 @command_of("shape", ShapeOptions)

@@ -10,11 +10,12 @@ import numpy as np
 
 from symflex.analysis.time_response import INTEGRATIONS, SampleTimes, responses_by_default, time_response
 from symflex.errors import BudgetError, Diagnostic
-from symflex.figures.axes import Canvas, add_legend_above, write_title
+from symflex.figures.axes import FREE, AxisLimits, Canvas, add_legend_above, write_title
 from symflex.figures.style import (
     COLOURS,
     COLUMN_INCHES,
     DASHES,
+    DEFAULT_FONT,
     LINE_INCHES,
     QUIET,
     label_of_tf,
@@ -85,29 +86,42 @@ def _drawn(
             label = f"{label} [{unit}]"
         _draw_curve(axes, response, look, label)
     _label(axes, responses[0], units.pop() if len(units) == 1 else "")
-    if canvas.frame.x:
-        scale, _ = _prefix(responses[0])
-        axes.set_xlim(canvas.frame.x[0] / scale, canvas.frame.x[1] / scale)
-    if canvas.frame.y:
-        axes.set_ylim(*canvas.frame.y)
+    _limit(axes, responses[0], canvas.frame)
     add_legend_above(axes, len(tfs) if len(tfs) < len(DASHES) else len(DASHES) - 1)
     figure = axes.figure.get_figure(root=True)
     write_title(figure, lines)
     return figure
 
 
-def draw_in_time(response: EnclosedResponse, ax: Axes | None = None) -> Figure:
-    """Draw one response at its own times, on axes of the user's own if they are given."""
-    canvas = Canvas(axes=() if ax is None else (ax,))
-    first = title_lines(f"{response.tf}, {response.title}", COLUMN_INCHES)
-    lines = [*first, *_said([response], COLUMN_INCHES)]
-    with paper_style():
+def draw_in_time(
+    response: EnclosedResponse,
+    ax: Axes | None = None,
+    *,
+    frame: AxisLimits = FREE,
+    width: float | None = None,
+    font: str = DEFAULT_FONT,
+) -> Figure:
+    """Draw one response at its own times, on axes of the user's own if they are given; a width in inches."""
+    canvas = Canvas(frame=frame, width=width, axes=() if ax is None else (ax,))
+    first = title_lines(f"{response.tf}, {response.title}", width or COLUMN_INCHES)
+    lines = [*first, *_said([response], width or COLUMN_INCHES)]
+    with paper_style(font):
         axes = canvas.one_panel(HEIGHT_INCHES + LINE_INCHES * len(lines))
         _draw_curve(axes, response, (COLOURS[0], "-"), None)
         _label(axes, response, response.unit)
+        _limit(axes, response, frame)
         figure = axes.figure.get_figure(root=True)
         write_title(figure, lines)
     return figure
+
+
+def _limit(axes: Axes, response: EnclosedResponse, frame: AxisLimits) -> None:
+    """Show the times and values that were asked for."""
+    scale, _ = _prefix(response)
+    if frame.x:
+        axes.set_xlim(frame.x[0] / scale, frame.x[1] / scale)
+    if frame.y:
+        axes.set_ylim(*frame.y)
 
 
 def _said(responses: Sequence[EnclosedResponse], width: float) -> list[str]:
