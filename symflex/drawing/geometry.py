@@ -82,7 +82,12 @@ def free_level(room: Extent, limit: float, occupied: Sequence[Extent], *, is_up:
     6.1
     """
     y = limit - (room.y0 if is_up else room.y1)
-    while hit := [b for b in occupied if b.overlaps(room.moved(0, y))]:
+    beside = [b for b in occupied if b.x0 < room.x1 and room.x0 < b.x1]
+
+    def hits(place: Extent) -> list[Extent]:
+        return [b for b in beside if b.overlaps(place)]
+
+    while hit := hits(room.moved(0, y)):
         y = max(b.y1 for b in hit) - room.y0 + 0.1 if is_up else min(b.y0 for b in hit) - room.y1 - 0.1
     return y
 
