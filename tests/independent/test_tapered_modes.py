@@ -8,9 +8,12 @@ from math import isclose
 import numpy as np
 import pytest
 from mpmath import besseli, besselj, mp, mpf
+from scipy.optimize import brentq
+from scipy.special import jv, yv
 
 from symflex import pipeline
 from symflex.analysis.modes.find import mode_shape
+from symflex.roots.locate import locate
 from tests.independent.test_tapers import propagated
 
 HEAD = """
@@ -162,3 +165,38 @@ def test_a_damped_arm_with_a_hub_moves_as_collocation_says():
         expected = moved[0] / (whole @ start)[0]
         found = part.at(Fraction(str(x)))[0] / tip
         assert complex(found.mid()) == pytest.approx(expected, rel=1e-7)
+
+
+CABLE = """
+symflex = 1
+[parameters]
+mu = "0.35 kg/m"
+g = "9.81 m/s^2"
+l = "12 m"
+m = "15 kg"
+[elements]
+cable = { type = "string", between = ["top", "load"], N = "(m + mu*(l - x))*g", rhoA = "mu", l = "l" }
+load = { type = "mass", at = "load", m = "m" }
+[inputs]
+z = { displacement = "top" }
+[outputs]
+mid = "cable.y(l/2)"
+"""
+
+
+@pytest.mark.slow
+def test_where_the_middle_of_a_hanging_cable_rests_its_lower_half_swings_alone():
+    """``y = a J0(v) + b Y0(v)``, ``v = 2 omega sqrt(N/mu)/g``, and ``N dy/dx = m omega^2 y`` at the load."""
+    mu, g, half, m = 0.35, 9.81, 6.0, 15.0
+
+    def residue(omega):
+        high, low = (2 * omega * np.sqrt((m + mu * x) / mu / g) for x in (half, 0.0))
+        a, b = yv(0, high), -jv(0, high)
+        slope = (a * jv(1, low) + b * yv(1, low)) * low / 2
+        return mu * g * slope - m * omega**2 * (a * jv(0, low) + b * yv(0, low))
+
+    (bound,) = pipeline.derive_bound(model := pipeline.loads(CABLE), model.transfer_functions)
+    zeros = [float(r.im.mid()) for r in locate(bound).zeros if r.im > 0]
+    assert len(zeros) == 5
+    for omega in zeros:
+        assert brentq(residue, omega * 0.99, omega * 1.01) == pytest.approx(omega, rel=1e-9)

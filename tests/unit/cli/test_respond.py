@@ -195,6 +195,12 @@ def test_inputs_that_were_broken_by_hand_get_a_sentence(oscillator, tmp_path):
     for asked, code, said in (
         (["--until", "1e300"], 2, "error[SF103]: --until '1e300': a decimal exponent beyond 60"),
         (["--until", "1", "--modes", "2"], 2, "--modes and --joint are of --shaped"),
+        (["--until", "1", "--width", "a4"], 2, "--xlim, --ylim, --width and --font are of a figure"),
+        (
+            ["--until", "1", "-o", "osc.svg", "--width", "a4", "--font", "sans", "--ylim", "0", "1"],
+            0,
+            "wrote",
+        ),
         (["--until", "1", "--shaped", "zv", "--modes", "7"], 2, "has 1 modes that oscillate, not 7"),
         (["--to", "gap.csv"], 3, "gap.csv:3:1: error[SF603]: a number is missing"),
         (["--to", "odd.csv"], 2, "times have too little in common"),

@@ -54,6 +54,34 @@ def test_x_runs_along_the_members_of_a_frame_from_their_first_nodes():
         assert [a.y0 for a in beside] == [pytest.approx(post.y0, abs=2)]
 
 
+def test_springs_turn_about_joints_and_a_cart_rolls_below_its_pole():
+    member = 'E = "E", I = 1e-9, A = 1e-4, rho = 7800, l = 0.5'
+    text = f"""
+symflex = 1
+parameters = {{ E = "210 GPa", k = "10 N*m/rad", M = "2 kg" }}
+[elements]
+cart  = {{ type = "mass", at = "c.x", m = "M" }}
+rail  = {{ type = "fixed", at = "c.y" }}
+hinge = {{ type = "pin", between = ["c", "p"] }}
+pole  = {{ type = "frame", between = ["p", "q"], angle = "90 deg", {member} }}
+knee  = {{ type = "pin", between = ["q", "r"] }}
+coil  = {{ type = "torsion_spring", between = ["q.theta", "r.theta"], k = "k" }}
+arm   = {{ type = "frame", between = ["r", "tip"], {member} }}
+[inputs]
+F = {{ force = "c.x" }}
+[outputs]
+Y = "tip.y"
+"""
+    drawing = drawing_of(pipeline.loads(text))
+    pole, cart, rail, hinge, knee, coil = (
+        place(drawing, "element", n) for n in ("pole", "cart", "rail", "hinge", "knee", "coil")
+    )
+    assert rail.y0 < cart.y0 < cart.y1 == pytest.approx(hinge.centre[1]) == pytest.approx(pole.y0)
+    assert [b.centre[0] for b in (cart, rail, hinge)] == pytest.approx([pole.centre[0]] * 3, abs=0.1)
+    assert coil.overlaps(knee)
+    assert coil.centre == pytest.approx(knee.centre, abs=2)
+
+
 def test_what_a_frame_shares_with_a_row_beside_it_is_named_in_both():
     text = """
 symflex = 1
