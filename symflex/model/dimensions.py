@@ -146,12 +146,14 @@ class DimensionSystem:
         definitions: Mapping[str, Expression],
         known: Mapping[Variable, Dimension],  # variables whose dimension their domain fixes
         block_measures: Mapping[str, Measure],  # what transfer functions of blocks are measured in
+        laplace: Dimension = PER_SECOND,
     ) -> None:
         self._scope = scope
         self._quantities = quantities
         self._definitions = definitions
         self._known = dict(known)
         self._blocks = block_measures
+        self._laplace = laplace
         self._solved: dict[Variable, Solution] = {}
         self._uses: dict[str, list[Use]] = {}
         self._ratios: list[tuple[tuple[str, ...], Span | None]] = []
@@ -367,7 +369,7 @@ class DimensionSystem:
         if meaning is None:
             return Measure(open=True)
         if meaning.kind == "laplace":
-            return Measure(PER_SECOND)
+            return Measure(self._laplace)
         if meaning.kind == "pi":
             return Measure(pis=Fraction(1))
         if meaning.kind == "parameter":

@@ -10,7 +10,7 @@ from symflex.errors import Span
 from symflex.expressions import Equation, Expression, Name, names, power, product_of, substitute
 from symflex.library.elements import ACROSS_UNIT, COMPONENT_DOMAIN, THROUGH_UNIT, LineElement, Variable
 from symflex.model.declarations import CycleReading, DeclaredParameter
-from symflex.model.dimensions import DimensionSystem, Measure
+from symflex.model.dimensions import PER_SECOND, DimensionSystem, Measure
 from symflex.model.model import (
     IMAGINARY,
     INPUT_KINDS,
@@ -45,11 +45,31 @@ def check_units(
 
     Fields that are not ``fields_placed`` have no sound domain, and x is measured in any unit there.
     """
+    given = (reader, draft, placed, scope, unsound, fields_placed)
+    system = _measured(*given)
+    quantities = declared_quantities(draft.declared, draft.inherited)
+    has_units = any((placed, draft.fields, _known_dimensions(draft, placed), *quantities.values()))
+    if not has_units and any(d.code in ("SF203", "SF205") for d in system.problems):
+        # A model of numbers alone, as forums have them: there s is a number, too.
+        plain = _measured(*given, laplace=DIMENSIONLESS)
+        return system if plain.problems else plain
+    return system
+
+
+def _measured(
+    reader: Reader,
+    draft: Draft,
+    placed: Sequence[PlacedElement],
+    scope: ModelScope,
+    unsound: Collection[Span | None],
+    fields_placed: Collection[str],
+    laplace: Dimension = PER_SECOND,
+) -> DimensionSystem:
     quantities = declared_quantities(draft.declared, draft.inherited)
     known = _known_dimensions(draft, placed)
     blocks = {b.name: _block_measure(b) for b in draft.blocks}
     system = DimensionSystem(
-        scope, quantities, {d.name: d.expression for d in draft.definitions}, known, blocks
+        scope, quantities, {d.name: d.expression for d in draft.definitions}, known, blocks, laplace
     )
 
     def require(expression: Expression, unit: str, what: str, doc: str, *, varies: bool = False) -> None:

@@ -226,3 +226,19 @@ def test_a_frequency_that_counts_cycles_is_in_hertz_wherever_its_2_pi_comes_from
         for declared in ['"30 Hz"', '"1800 rpm"', '{ unit = "Hz" }']:
             (parameter,) = resolve(with_output(declared, f"U/(s + {where})")).parameters
             assert parameter.unit == "Hz", (where, declared)
+
+
+def test_where_nothing_has_a_unit_state_equations_of_numbers_may_mix_derivatives():
+    text = """symflex = 1
+[signals]
+x_1 = "(-0.4*x_1 - x_2 + 2*u)/s"
+x_2 = "x_1/s"
+[inputs]
+u = {}
+[outputs]
+y = "x_1 + 1.5*x_2"
+"""
+    bound = pipeline.derive_bound(resolve(text), [("y", "u")])[0]
+    s = 0.3 + 1.7j
+    assert bound(s) == pytest.approx((2 * s + 3) / (s**2 + 0.4 * s + 1), rel=1e-14)  # C (s I - A)^-1 B
+    assert codes(text.replace("u = {}", 'u = { unit = "V" }'))[0] in ("SF203", "SF205")
