@@ -11,10 +11,10 @@ from symflex.errors import Diagnostic, SpecError, Text
 from symflex.expressions import names, names_among
 from symflex.model.labels import check_label
 from symflex.model.model import ONE, Assumption, Definition, ExactValue, ModelParameter, Output, Signal
-from symflex.model.reading import Reader, read_entries
+from symflex.model.reading import NAME, Reader, read_entries
 from symflex.model.scope import RESERVED
 from symflex.model.spec import NumberValue, StringValue, TableValue
-from symflex.quantities import DIMENSIONLESS, Quantity, parse_unit, unit_of
+from symflex.quantities import DIMENSIONLESS, Quantity, parse_unit, unit_named, unit_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -136,6 +136,47 @@ def read_label(reader: Reader, table: TableValue, what: str) -> str:
         return ""
 
 
+def with_formulas_defined(
+    sections: Mapping[str, TableValue | None],
+) -> dict[str, TableValue | None]:
+    """Return the sections with formulas among the parameters, as ``A = "b*h"``, among the definitions.
+
+    A formula holds names that are declared, and no others. What may be a quantity written wrongly, as
+    ``2*m``, and what has no name that can be, stays, to be refused.
+    """
+    parameters, definitions = sections["parameters"], sections["definitions"]
+    if parameters is None:
+        return dict(sections)
+    declared = {*parameters.keys(), *(definitions.keys() if definitions else ()), "pi"}
+    own, moved = [], []
+    for entry in parameters.entries:
+        table = entry.value if isinstance(entry.value, TableValue) else None
+        inner = table.get("value") if table else entry
+        value = inner.value if inner else None
+        used, starts = {""}, ""
+        if isinstance(value, StringValue):
+            used, starts = _formula_names(value.text), value.text.value.lstrip()[:1]
+        may_be_units = starts.isdigit() and all(unit_named(name) for name in used)
+        is_twice = bool(definitions and definitions.get(entry.key))
+        if not used <= declared or may_be_units or is_twice or not NAME.match(entry.key):
+            own.append(entry)
+        elif table is None:
+            moved.append(entry)
+        elif {*table.keys()} <= {"value", "doc", "latex"}:
+            parts = (replace(e, key="expr") if e is inner else e for e in table.entries)
+            moved.append(replace(entry, value=TableValue(tuple(parts), table.span)))
+        else:
+            own.append(entry)
+    if not moved:
+        return dict(sections)
+    others = definitions.entries if definitions else ()
+    return {
+        **sections,
+        "parameters": TableValue(tuple(own), parameters.span),
+        "definitions": TableValue((*others, *moved), (definitions or parameters).span),
+    }
+
+
 def read_parameters(reader: Reader, section: TableValue | None) -> tuple[DeclaredParameter, ...]:
     """Return the declared parameters in order."""
     return read_entries(section, lambda entry: _read_parameter(reader, entry))
@@ -190,8 +231,13 @@ def _quantity(reader: Reader, entry: KeyValue, what: str) -> tuple[Quantity | No
 
 def _is_formula(text: Text) -> bool:
     """Tell whether a text is an expression with names in it."""
+    return _formula_names(text) != {""}
+
+
+def _formula_names(text: Text) -> set[str]:
+    """Return the names in an expression, a nameless one where a text is none or has no names."""
     expression = Reader().parsed(text)
-    return expression is not None and bool(names(expression))
+    return {n.name for n in names(expression)} if expression is not None and names(expression) else {""}
 
 
 def _with_unit(

@@ -37,6 +37,7 @@ from symflex.model.declarations import (
     read_outputs,
     read_parameters,
     read_signals,
+    with_formulas_defined,
 )
 from symflex.model.dimensions import turned_name
 from symflex.model.equations import check_unknowns, read_equations
@@ -150,7 +151,7 @@ def resolve(spec: Spec, origin: Origin) -> Model:
     """
     reader = Reader()
     check_header(reader, spec)
-    sections = {name: read_section(reader, spec, name) for name in SECTIONS}
+    sections = with_formulas_defined({name: read_section(reader, spec, name) for name in SECTIONS})
     declared = read_parameters(reader, sections["parameters"])
     declared = settled(reader, declared, origin.loads.settings)
     definitions = read_definitions(reader, sections["definitions"])

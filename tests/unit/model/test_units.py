@@ -242,3 +242,28 @@ y = "x_1 + 1.5*x_2"
     s = 0.3 + 1.7j
     assert bound(s) == pytest.approx((2 * s + 3) / (s**2 + 0.4 * s + 1), rel=1e-14)  # C (s I - A)^-1 B
     assert codes(text.replace("u = {}", 'u = { unit = "V" }'))[0] in ("SF203", "SF205")
+
+
+def test_a_formula_among_the_parameters_is_a_definition():
+    text = """symflex = 1
+[parameters]
+b = "2 cm"
+h = { value = "1 cm" }
+I = { value = "b*h^3/12", doc = "second moment of area", latex = "I_y" }
+EI = "E*I"
+E = "70 GPa"
+[elements]
+arm = { type = "massless_beam", between = ["root", "tip"], EI = "EI", l = "b" }
+clamp = { type = "fixed", at = "root" }
+[inputs]
+F = { force = "tip" }
+[outputs]
+Y = "tip"
+"""
+    model = pipeline.loads(text)
+    assert [p.name for p in model.parameters] == ["b", "h", "E"]
+    assert [(d.name, d.label) for d in model.definitions] == [("I", "I_y"), ("EI", "")]
+    (bound,) = pipeline.derive_bound(model, [("Y", "F")])
+    assert bound(1j) == pytest.approx(0.02**3 / (3 * 70e9 * 0.02 * 0.01**3 / 12), rel=1e-14)
+    with pytest.raises(SpecError, match="SF202"):
+        pipeline.loads(text.replace('b = "2 cm"', 'm = 1\nb = "2*m"'))  # two metres, or twice the mass
