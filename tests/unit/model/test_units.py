@@ -262,7 +262,7 @@ Y = "tip"
 """
     model = pipeline.loads(text)
     assert [p.name for p in model.parameters] == ["b", "h", "E"]
-    assert [(d.name, d.label) for d in model.definitions] == [("I", "I_y"), ("EI", "")]
+    assert [(d.name, d.latex) for d in model.definitions] == [("I", "I_y"), ("EI", "")]
     (bound,) = pipeline.derive_bound(model, [("Y", "F")])
     assert bound(1j) == pytest.approx(0.02**3 / (3 * 70e9 * 0.02 * 0.01**3 / 12), rel=1e-14)
     with pytest.raises(SpecError, match="SF202"):
