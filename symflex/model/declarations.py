@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, cast
 
 from symflex.errors import Diagnostic, SpecError, Text
-from symflex.expressions import names, names_among
+from symflex.expressions import FUNCTIONS, names, names_among
 from symflex.model.labels import check_label
 from symflex.model.model import ONE, Assumption, Definition, ExactValue, ModelParameter, Output, Signal
 from symflex.model.reading import NAME, Reader, read_entries
@@ -147,7 +147,7 @@ def with_formulas_defined(
     parameters, definitions = sections["parameters"], sections["definitions"]
     if parameters is None:
         return dict(sections)
-    declared = {*parameters.keys(), *(definitions.keys() if definitions else ()), "pi"}
+    declared = {*parameters.keys(), *(definitions.keys() if definitions else ()), "pi", *FUNCTIONS}
     own, moved = [], []
     for entry in parameters.entries:
         table = entry.value if isinstance(entry.value, TableValue) else None
@@ -158,7 +158,7 @@ def with_formulas_defined(
             used, starts = _formula_names(value.text), value.text.value.lstrip()[:1]
         may_be_units = starts.isdigit() and all(unit_named(name) for name in used)
         is_twice = bool(definitions and definitions.get(entry.key))
-        if not used <= declared or may_be_units or is_twice or not NAME.match(entry.key):
+        if not used <= declared - {entry.key} or may_be_units or is_twice or not NAME.match(entry.key):
             own.append(entry)
         elif table is None:
             moved.append(entry)
