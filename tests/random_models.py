@@ -963,6 +963,7 @@ ANY_BLOCKS = (
     'type = "lag", T = "3 ms"',
     'type = "notch", omega = "5 Hz", zeta_p = 0.3, zeta_z = 0.01',
     'type = "low_pass", omega = "20 Hz", zeta = 0.7',
+    'type = "ss", A = [[-1, 2], [0, -30]], B = [[0], [1]], C = [[1, 0]], D = [[0]]',
     'type = "integrator"',
     'type = "lead_lag", T_1 = "2 s", T_2 = "50 ms"',
     'type = "pid", k_p = 3, k_i = 2, k_d = 1, T_f = "1 ms"',

@@ -14,7 +14,7 @@ from symflex.model.model import ONE, Assumption, Definition, ExactValue, ModelPa
 from symflex.model.reading import NAME, Reader, read_entries
 from symflex.model.scope import RESERVED
 from symflex.model.spec import NumberValue, StringValue, TableValue
-from symflex.quantities import DIMENSIONLESS, Quantity, parse_unit, unit_named, unit_of
+from symflex.quantities import DIMENSIONLESS, Quantity, looks_like_quantity, parse_unit, unit_named, unit_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -154,7 +154,7 @@ def with_formulas_defined(
         inner = table.get("value") if table else entry
         value = inner.value if inner else None
         used, starts = {""}, ""
-        if isinstance(value, StringValue):
+        if isinstance(value, StringValue) and not looks_like_quantity(value.text.value):
             used, starts = _formula_names(value.text), value.text.value.lstrip()[:1]
         may_be_units = starts.isdigit() and all(unit_named(name) for name in used)
         is_twice = bool(definitions and definitions.get(entry.key))

@@ -23,7 +23,8 @@ MEASURE = """
 const pen = document.createElement("canvas").getContext("2d"), found = {};
 for (const svg of document.querySelectorAll("svg")) {
   const page = svg.getBoundingClientRect(), boxes = [];
-  for (const group of svg.querySelectorAll("g[id^=text]")) {
+  for (const group of svg.querySelectorAll("g[id^=text], g[id*='put.']")) {
+    if (!group.querySelector("text")) continue;
     const ink = [Infinity, Infinity, -Infinity, -Infinity];
     for (const one of group.querySelectorAll("tspan, text")) {
       if (one.children.length || !one.textContent.trim()) continue;
