@@ -23,8 +23,7 @@ from symflex.analysis.time_response.enclosed_response import (
     JumpAt,
 )
 from symflex.analysis.time_response.exponentials import values_of
-from symflex.analysis.time_response.horizon import default_until, until_many_turns
-from symflex.analysis.time_response.looped_modes import looped_modes
+from symflex.analysis.time_response.horizon import default_until
 from symflex.analysis.time_response.modal import estimated, proved_modes
 from symflex.analysis.time_response.partial_fractions import (
     EnclosedQuotient,
@@ -81,8 +80,7 @@ def time_response(
     UsageError
         SF902 for an unknown input, or a shaper with fewer digits.
     ModelError
-        SF813 for large networks with delays, and impulses of beams in loops with delays that could only be
-        estimated.
+        SF813 for large networks with delays.
     UncertifiedError
         SF810 when poles cannot be told apart and the time is too long for a power series.
 
@@ -132,25 +130,12 @@ def responses_by_default(
 ) -> list[EnclosedResponse]:
     """Return responses at evenly spaced times, where nobody says up to which.
 
-    That is until the slowest motion has died away; where echoes in a loop are too many by then, for fifty
-    turns of it. Raises as :func:`time_response` does.
+    That is until the slowest motion has died away. Raises as :func:`time_response` does.
     """
-
-    def over(until: float) -> list[EnclosedResponse]:
-        times = SampleTimes.evenly(Fraction(until), points)
-        return [time_response(bound, kind, times, digits, shaper) for bound in bounds]
-
     for bound in bounds:
         check_causal(bound.source.model, "a response in time")
-    until = max(map(default_until, bounds))
-    try:
-        return over(until)
-    except UncertifiedError as error:
-        shorter = min(map(until_many_turns, bounds))
-        if error.diagnostics[0].code != "SF810" or not shorter < until:
-            raise
-        spend()
-        return over(shorter)
+    times = SampleTimes.evenly(Fraction(max(map(default_until, bounds))), points)
+    return [time_response(bound, kind, times, digits, shaper) for bound in bounds]
 
 
 def _shaped(
@@ -234,18 +219,7 @@ def _found(
         late = _without_delay(bound) if quotient is None else None
         if late is not None:
             return _later(*late, integrations, times, digits)
-        if quotient is not None or waves is not None:
-            raise _too_many(bound)
-        try:
-            looped = looped_modes(bound, integrations, times, digits)
-        except TooManyEchoesError:
-            raise _too_many(bound) from None
-        if looped is not None:
-            return looped
-        message = f"{bound.name} has waves that spread in a loop with a delay: this response is not known"
-        raise ModelError(
-            Diagnostic("SF813", message, None, "ask for a step, or take 'symflex rational' of the beam first")
-        )
+        return estimated(bound, integrations, times)
     proved = proved_modes(bound, integrations, times, digits)
     return (proved.sampled, None) if proved is not None else estimated(bound, integrations, times)
 
@@ -274,11 +248,6 @@ def _of_quotient(
             if modes is not None and is_precise(modes.sampled.values, ENOUGH_DIGITS):
                 return modes.sampled
     return None
-
-
-def _too_many(bound: BoundTransferFunction) -> UncertifiedError:
-    message = f"too many echoes of the delays of {bound.name} arrive by then"
-    return UncertifiedError(Diagnostic("SF810", message, None, "ask for a shorter time"))
 
 
 def _without_delay(bound: BoundTransferFunction) -> tuple[BoundTransferFunction, Callable[[], arb]] | None:

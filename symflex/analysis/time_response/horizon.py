@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import inf, pi
+from math import pi
 from typing import TYPE_CHECKING
 
 from flint import acb
@@ -16,8 +16,6 @@ if TYPE_CHECKING:
 
 TIME_CONSTANTS = 5.0
 """After which 1 % of a motion is left."""
-TURNS = 50
-"""Of a loop, whose echoes are too many to be followed until its slowest motion has died away."""
 PERIODS, UNDAMPED_PERIODS = 12, 4
 """Of the slowest oscillation: more show nothing new."""
 
@@ -42,11 +40,6 @@ def default_until(bound: AnyBoundFunction) -> float:
         decay = TIME_CONSTANTS / damping if damping else UNDAMPED_PERIODS * period
         waits.append(decay if root.is_real else min(decay, PERIODS * period))
     return max(waits, default=0.0) or 1.0
-
-
-def until_many_turns(bound: AnyBoundFunction) -> float:
-    """Return a time [s] by which a loop with delays has been run through often; infinite without delays."""
-    return max((TURNS * delay for delay in _delays(bound)), default=inf)
 
 
 def _delays(bound: AnyBoundFunction) -> list[float]:

@@ -549,14 +549,6 @@ def estimated(bound: AnyBoundFunction, integrations: int, times: SampleTimes) ->
     return sampled, f"what the modes beyond the lowest {found.count} add is estimated"
 
 
-def estimated_step(bound: AnyBoundFunction, times: SampleTimes) -> PartialSum:
-    """Return a step response whose rest is estimated, as it is at first; SF810 where that is too much."""
-    found = estimated_modes(bound, 1, times)
-    if not found.rest < TOO_MUCH * max((abs(y.mid()) for y in found.values), default=arb(0)):
-        raise _said_nothing(bound, 1)
-    return found
-
-
 def _said_nothing(bound: AnyBoundFunction, integrations: int) -> UncertifiedError:
     message = f"the modes of {bound.name} fall off too slowly to say what it does in time"
     # The smoother the input is, the less high modes add.
