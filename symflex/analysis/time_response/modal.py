@@ -5,8 +5,7 @@ Input: a bound transfer function with waves. Output: enclosed values, and whethe
     y(t)  =  principal part at s = 0  +  sum over poles  +  the modes left out
 
 The first two are balls. What is left out is bounded for beams that lose nothing, see
-:mod:`~symflex.analysis.time_response.lossless_modes`, for those that lose energy along their length
-alone, see :mod:`~symflex.analysis.time_response.damped_modes`, for all that a force moves where nothing else
+:mod:`~symflex.analysis.time_response.lossless_modes`, for all that a force moves where nothing else
 supplies energy, see :mod:`~symflex.analysis.time_response.passive_modes`, and for all that loses energy in
 the material of its beams and rods, loops about them too, see
 :mod:`~symflex.analysis.time_response.lossy_modes`. For others it is estimated from the last residues, and the
@@ -24,10 +23,8 @@ from flint import acb, arb
 
 from symflex.algebra import Factored
 from symflex.analysis.rational.laurent import LaurentSeries, expand_at_zero, residues_at
-from symflex.analysis.time_response.damped_modes import Damping, damping_of
 from symflex.analysis.time_response.echoes import Sampled
 from symflex.analysis.time_response.exponentials import ExponentialTerm, values_of
-from symflex.analysis.time_response.filtered import filtered
 from symflex.analysis.time_response.function_size import ZERO, SizeOfExponentials
 from symflex.analysis.time_response.lossless_modes import LosslessModes, lossless_modes
 from symflex.analysis.time_response.lossy_modes import LossyBound, lossy_bound
@@ -59,8 +56,6 @@ MOST_DIGITS = 9
 """Of the largest value, where modes have no end: 10^-9 takes some 500 of a beam's displacement."""
 DIGITS = 24
 """Of poles: those of a double, and what the phase loses after some million turns."""
-RIGID = -2
-"""Order of a free body's pole at s = 0."""
 FIRST_MODES = (16, 32)
 """From whose bounds it is told how many modes it takes."""
 MOST_MODES = 2000
@@ -137,13 +132,7 @@ def lossy_modes(
 def _of_proved_modes(
     bound: BoundTransferFunction, integrations: int, times: SampleTimes, digits: int
 ) -> PartialSum | None:
-    damping = damping_of(bound)
-    if damping is not None and damping.is_none:
-        damping = None
-    plain = bound if damping is None else damping.undamped
-    if damping is not None and integrations > 1 and damping.is_lossy:
-        return None  # what a ramp leaves of a damped mode is not bounded by what it leaves of another
-    modes = lossless_modes(plain, DIGITS)
+    modes = lossless_modes(bound, DIGITS)
     if modes is None:
         return None
     few, many = FIRST_MODES
@@ -151,21 +140,19 @@ def _of_proved_modes(
     if first is None or second is None:
         return None
     bounds = [modes.rest(reached, integrations) for _, reached in (first, second)]
-    found = _summed(bound, modes, damping, many, integrations, times)
+    found = _summed(bound, modes, many, integrations, times)
     if bounds[0] is None or bounds[1] is None or found is None:
         return None
     largest = max((abs(y.mid()) for y in found.values), default=arb(0))
     goal = ENOUGH * float(largest) * 10.0 ** -min(digits, MOST_DIGITS)
     count = _needed((few, float(bounds[0])), (many, float(bounds[1])), AIMED_AT * goal)
-    if damping is not None and count > many:
-        count = _until_faded(damping, (many, second[1]), count, integrations, times, goal / float(bounds[1]))
     for _ in range(ROUNDS):
         if count <= many:
             break
         turned = float(second[0][-1].im.mid()) * (count / many) ** 2 * float(times.seconds[-1])
         lost = max(0, int(log(turned + 1, 10)) - (DIGITS - 16))
-        finer = lossless_modes(plain, DIGITS + lost) if lost else modes
-        found = None if finer is None else _summed(bound, finer, damping, count, integrations, times)
+        finer = lossless_modes(bound, DIGITS + lost) if lost else modes
+        found = None if finer is None else _summed(bound, finer, count, integrations, times)
         if found is None or count == MOST_MODES or not goal > 0 or found.left <= goal:
             break
         # It fell off more slowly than it had begun to, so at least with the first power.
@@ -178,9 +165,7 @@ def _of_passive_modes(
 ) -> PartialSum | None:
     """Return the same for a passive model, from its energy."""
     bounding = passive_bound(bound)
-    if bounding is None:
-        return _of_filtered(bound, integrations, times, digits)
-    return _of_bounded(bounding, integrations, times, digits)
+    return None if bounding is None else _of_bounded(bounding, integrations, times, digits)
 
 
 def _of_bounded(
@@ -210,23 +195,6 @@ def _of_bounded(
     return found
 
 
-def _of_filtered(
-    bound: BoundTransferFunction, integrations: int, times: SampleTimes, digits: int
-) -> PartialSum | None:
-    """Return the same where something rational stands between the input and a force."""
-    found = filtered(bound, DIGITS)
-    force = None if found is None else passive_bound(found.driven)
-    inner = None if force is None else _of_bounded(force, integrations, times, digits)
-    if found is None or inner is None:
-        return None
-    with precision(bits_for_digits(2 * DIGITS)):
-        terms = found.convolved(inner.terms)
-        if terms is None:
-            return None
-        rest = (inner.rest * found.weight).upper()
-        return PartialSum(tuple(terms), tuple(values_of(terms, times)), rest, method="filtered modes")
-
-
 @dataclass(frozen=True, slots=True)
 class PartialSum:
     """The sum over some modes, at all times, and how much all others add at most."""
@@ -235,7 +203,6 @@ class PartialSum:
     values: tuple[arb, ...]  # of the terms, at all times
     rest: arb  # at any time
     at_times: tuple[arb, ...] = ()  # at each of the times, where that is less
-    speed: arb | None = None  # how much the derivative of what is left out is at most, where that is known
     fade: arb = ZERO  # at a time t [s] exp(-fade t) times the rest is left, at most [1/s]
     method: str = "estimated modes"  # what bounds the rest, such as ``passive modes``
     count: int = ESTIMATED_MODES  # of modes, where it is estimated
@@ -295,7 +262,6 @@ class BoundedModes:
         rest = self._bounding.rest(reached, self._integrations, self._times) if reached >= least else None
         if origin is None or rest is None:
             return None
-        smoother = self._bounding.rest(reached, self._integrations - 1, self._times)
         with precision(bits_for_digits(2 * DIGITS)):
             radius = arb(reached).exp()
             poles = [root for root in roots if self._may_be_pole(root, radius)]
@@ -318,15 +284,11 @@ class BoundedModes:
             left = [own + missing for own in rest.at_times]
             if rest.start is not None and self._times.seconds[0] == 0:
                 values[0], left[0] = rest.start, arb(0)
-            speed = None
-            if smoother is not None and smoother.always.is_finite():
-                speed = smoother.always + missing * max((r.reach for r in rings), default=arb(0), key=arb.mid)
             total = PartialSum(
                 tuple(terms),
                 tuple(values),
                 (rest.always + missing).upper(),
                 tuple(own.upper() for own in left),
-                speed,
                 min((rest.fade, *(ring.fade for ring in rings)), key=arb.mid).lower(),
                 "passive modes" if isinstance(self._bounding, PassiveBound) else "lossy modes",
             )
@@ -419,12 +381,7 @@ def _term_at(bound: BoundTransferFunction, root: Root, integrations: int) -> Exp
 
 
 def _summed(
-    bound: BoundTransferFunction,
-    modes: LosslessModes,
-    damping: Damping | None,
-    count: int,
-    integrations: int,
-    times: SampleTimes,
+    bound: BoundTransferFunction, modes: LosslessModes, count: int, integrations: int, times: SampleTimes
 ) -> PartialSum | None:
     lowest = modes.lowest(count)
     origin = _proved_at_origin(bound, integrations)
@@ -432,51 +389,15 @@ def _summed(
         return None
     roots, reached = lowest
     rest = modes.rest(reached, integrations)
-    speed = modes.rest(reached, integrations - 1) if integrations else None
     with precision(modes.bits):
-        if damping is None:
-            terms = [modes.term(root, integrations) for root in roots]
-        else:
-            terms = _damped(modes, damping, roots, integrations)
+        terms = [modes.term(root, integrations) for root in roots]
         known = [term for term in terms if term is not None]
         if rest is None or len(known) < len(terms):
             return None
         # Poles are known to half of the bits, and their sum is no better than these.
         with precision(modes.bits // 2):
             values = values_of([*origin, *known], times)
-        at_times: tuple[arb, ...] = ()
-        if damping is not None:
-            squared = (2 * arb(reached)).exp()
-            at_times = tuple(rest * damping.fading(squared, integrations, t) for t in times.enclosed())
-            # Every mode begins at rest.
-            values = [y if left > 0 else arb(0) for y, left in zip(values, at_times, strict=True)]
-        method = "lossless modes" if damping is None else "damped modes"
-        return PartialSum((*origin, *known), tuple(values), rest, at_times, speed, method=method)
-
-
-def _damped(
-    modes: LosslessModes, damping: Damping, roots: Sequence[Root], integrations: int
-) -> list[ExponentialTerm | None]:
-    """Return the terms of damped modes, and of the rigid body; None among them where one is not found."""
-    series = expand_at_zero(modes.bound, -1, DIGITS)
-    found: list[ExponentialTerm | None] = []
-    pairs: list[tuple[arb, arb]] = []
-    if series.is_estimate or series.order not in (0, RIGID) or not modes.falls_off:
-        return [None]
-    if series.order == RIGID:
-        pairs.append((series.coefficient(RIGID).real, arb(0)))
-    for root in roots:
-        term = modes.term(root, 0)
-        # Of w/(s^2 + kappa) the residue at j omega is w/(2 j omega), and a term holds two.
-        if term is None:
-            return [None]
-        pairs.append(((term.coefficients[0] * root.im * acb(0, 1)).real, root.im**2))
-    for weight, squared in pairs:
-        terms = damping.terms(weight, squared, integrations)
-        if terms is None and squared == 0 and damping.inertial[1] == 0 == damping.inertial[0]:
-            continue  # a rigid body without loss: all of it is at the origin
-        found += [None] if terms is None else terms
-    return found
+        return PartialSum((*origin, *known), tuple(values), rest, method="lossless modes")
 
 
 def _needed(few: tuple[int, float], many: tuple[int, float], goal: float, most: int = MOST_MODES) -> int:
@@ -495,30 +416,6 @@ def _needed(few: tuple[int, float], many: tuple[int, float], goal: float, most: 
     # Logarithms, as a power of a small number may overflow.
     growth = log(many[1] / goal) / power
     return min(most, round(1.2 * many[0] * 2 ** min(growth / log(2), 20)))
-
-
-def _until_faded(
-    damping: Damping,
-    known: tuple[int, float],
-    most: int,
-    integrations: int,
-    times: SampleTimes,
-    share: float,
-) -> int:
-    """Return how many modes it takes until a share is left of all beyond at the first time after 0.
-
-    ``known`` are a count and ln of the frequency it reaches, which grows with its square.
-    """
-    first = next((t for t in times.enclosed() if t > 0), None)
-    count, reached = known
-    if first is None:
-        return most
-    while count < most:
-        squared = (2 * arb(reached)).exp() * arb(count / known[0]) ** 4
-        if damping.fading(squared, integrations, first) < share:
-            return count
-        count = min(most, count * 5 // 4)
-    return most
 
 
 def _proved_at_origin(bound: AnyBoundFunction, integrations: int) -> list[ExponentialTerm] | None:

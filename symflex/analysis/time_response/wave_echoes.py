@@ -29,7 +29,6 @@ from flint import acb, acb_series, arb, arb_poly, arb_series
 from symflex.algebra import Factored, degree_in
 from symflex.algebra.exponential_sum import ExponentialSum, arguments_of, exponential_sum
 from symflex.analysis.rational.laurent import series_length
-from symflex.analysis.time_response.damped_modes import coefficient_of
 from symflex.analysis.time_response.delayed_terms import (
     NO_DELAY,
     Delay,
@@ -419,5 +418,7 @@ def _at_fronts(bound: BoundTransferFunction, value: Factored, power: int) -> Fac
         return None
     total = Factored.number(ring, value.unit if degree == power else 0)
     for factor, exponent in value.factors:
-        total = total * coefficient_of(bound, factor, degree_in(factor, 0)) ** exponent
+        highest = degree_in(factor, 0)
+        terms = {(0, *map(int, m[1:])): int(c) for m, c in factor.terms() if int(m[0]) == highest}
+        total = total * Factored.polynomial(ring, ring.context.from_dict(terms)) ** exponent
     return total

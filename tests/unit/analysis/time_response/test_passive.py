@@ -9,8 +9,6 @@ from flint import acb, arb
 
 from symflex import loads
 from symflex.analysis.time_response import SampleTimes, time_response
-from symflex.analysis.time_response.exponentials import ExponentialTerm, values_of
-from symflex.analysis.time_response.filtered import Filtered
 from symflex.analysis.time_response.modal import BoundedModes, estimated
 from symflex.analysis.time_response.passive_modes import passive_bound
 
@@ -180,20 +178,6 @@ def test_an_arm_driven_by_a_ramp_of_a_voltage_moves_as_its_inverse_transform():
         return tip_of_hub(s, lambda s: mpmath.mpf("0.09") * s / around, "0.02") * mpmath.mpf("0.3") / around
 
     assert_holds(found, inverted(tip, 2, TIMES), off=1e-15)
-
-
-def test_a_filter_of_a_ramp_and_an_oscillation_gives_their_convolutions():
-    decay = Filtered(clamped(), (ExponentialTerm(acb(-3), (acb(2),)),))
-    assert 2 / 3 <= float(decay.weight) < 0.667
-    times = SampleTimes.of([0.0, 0.4, 1.3])
-    ramp = decay.convolved([ExponentialTerm(acb(0), (acb(1), acb(6)))])  # 1 + 6 t
-    turns = decay.convolved([ExponentialTerm(acb(0, 5), (acb(0, -1),))])  # sin 5 t
-    t = np.array([0.0, 0.4, 1.3])
-    fading = np.exp(-3 * t)
-    of_ramp = 2 / 3 * (1 - fading) + 12 * (t / 3 - (1 - fading) / 9)
-    of_turns = 2 * (3 * np.sin(5 * t) - 5 * np.cos(5 * t) + 5 * fading) / 34
-    assert [float(y) for y in values_of(ramp, times)] == pytest.approx(of_ramp, abs=1e-14)
-    assert [float(y) for y in values_of(turns, times)] == pytest.approx(of_turns, abs=1e-14)
 
 
 def modes_of_damped_tip(b, count):
