@@ -1,11 +1,19 @@
 """The response of a transfer function to an input of unit size: which way to find it, and how precisely.
 
-Input: a bound transfer function, the name of an input, times. Output: a :class:`EnclosedResponse`.
+Input: a bound transfer function, the name of an input, times. Output: an :class:`EnclosedResponse`.
+
+Ways are asked in the order of :data:`WAYS`, and the first that answers is taken. What others refused for is
+told of a response that is only estimated:
+
+    a servo about a beam without loss    lossless modes: waves lose energy
+                                         lossy modes: some waves lose nothing in their material
+                                         passive modes: something in the model may supply energy
+                                         estimated modes answer
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING
@@ -13,25 +21,20 @@ from typing import TYPE_CHECKING
 from flint import acb, arb
 
 from symflex.algebra import Factored, KernelTable
-from symflex.analysis.time_response.delayed_decay import settling_echoes
-from symflex.analysis.time_response.delayed_terms import DelayedQuotient, delayed_quotient
-from symflex.analysis.time_response.echoes import FEW_POWERS, MOST_POWERS, Sampled, TooManyEchoesError, echoed
-from symflex.analysis.time_response.enclosed_response import (
-    INTEGRATIONS,
-    EnclosedResponse,
-    ImpulseAt,
-    JumpAt,
-)
-from symflex.analysis.time_response.exponentials import values_of
-from symflex.analysis.time_response.horizon import default_until
-from symflex.analysis.time_response.modal import estimated, proved_modes
+from symflex.analysis.time_response.echoes import TooManyEchoesError, echoed
+from symflex.analysis.time_response.effort import EFFORT
+from symflex.analysis.time_response.enclosed_response import INTEGRATIONS, EnclosedResponse
+from symflex.analysis.time_response.estimated_modes import estimated
+from symflex.analysis.time_response.modal import BOUNDS, summed
 from symflex.analysis.time_response.partial_fractions import (
     EnclosedQuotient,
     at_infinity,
     partial_fractions,
-    power_series_terms,
+    values_of,
 )
-from symflex.analysis.time_response.sample_times import SampleTimes
+from symflex.analysis.time_response.sample_times import SampleTimes, default_until
+from symflex.analysis.time_response.sampled import Asked, ImpulseAt, JumpAt, Refused, Sampled, is_precise
+from symflex.analysis.time_response.settling import settling_echoes
 from symflex.analysis.time_response.wave_echoes import wave_quotient
 from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
@@ -51,16 +54,18 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from symflex.analysis.input_shaping import InputShaper
+    from symflex.analysis.time_response.function_size import ModesBound
     from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 
-GUARD_DIGITS = 6
-SHAPED_DIGITS = 2
-"""Of responses that a shaper sums, beyond those of the sum, which may be smaller."""
-ATTEMPTS = 7
-"""Doublings of the digits: poles that lie together to 10^-1000 are as good as a double one."""
-MOST_DIGITS = 20_000
-ENOUGH_DIGITS = 8
-"""Of modes, where many echoes would give more, but take longer."""
+    Plan = Callable[[], "Sampled | Refused"]
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """One way of finding a response."""
+
+    name: str
+    applies: Callable[[Asked], Plan | Refused]  # what finds it, or why nothing is tried
 
 
 def time_response(
@@ -99,25 +104,28 @@ def time_response(
         raise UsageError(Diagnostic("SF902", f"there is no input '{kind[:64]}'", None, hint))
     if shaper is not None:
         return _shaped(bound, kind, times, digits, shaper)
-    if isinstance(bound, BoundNested):
-        found, reason = _of_network(bound, INTEGRATIONS[kind], times, digits)
+    integrations = INTEGRATIONS[kind]
+    if bound.is_zero or not len(times):
+        found = Sampled((arb(0),) * len(times))
+    elif isinstance(bound, BoundNested) and bound.is_distributed:
+        found = _of_network(bound, integrations, times)
     else:
-        bound = without_lengths_of_zero(bound)
-        found, reason = _found(bound, INTEGRATIONS[kind], times, digits)
-    unit, certified = bound.source.output.unit, reason is None
+        written = lumped(bound) if isinstance(bound, BoundNested) else without_lengths_of_zero(bound)
+        found = _answer(Asked(written, integrations, times, digits))
     return EnclosedResponse(
         bound.name,
         kind,
-        unit,
+        bound.source.output.unit,
         times.seconds,
         found.values,
         found.impulses,
         found.jumps,
-        certified,
-        reason,
+        found.reason is None,
+        found.reason,
         digits,
-        modes=found.modes if certified else None,
+        modes=found.modes,
         method=found.method,
+        refused=found.refused,
     )
 
 
@@ -142,7 +150,7 @@ def _shaped(
     bound: AnyBoundFunction, kind: str, times: SampleTimes, digits: int, shaper: InputShaper
 ) -> EnclosedResponse:
     """Return the sum of the responses to the impulses of a shaper, each from its own moment on."""
-    inner = digits + SHAPED_DIGITS
+    inner = digits + EFFORT.shaped_digits
     accuracy = min(int(t.rel_accuracy_bits()) for t, _ in shaper.impulses[1:])
     if accuracy < bits_for_digits(inner):
         message = f"the shaper has {shaper.digits} digits, too few for a response with {digits}"
@@ -180,74 +188,109 @@ def _shaped(
     )
 
 
-def _of_network(
-    bound: BoundNested, integrations: int, times: SampleTimes, digits: int
-) -> tuple[Sampled, str | None]:
-    """Return the response of a network that nobody writes out, and what is not proved of it."""
-    if bound.is_zero or not len(times):
-        return Sampled((arb(0),) * len(times)), None
+def _of_network(bound: BoundNested, integrations: int, times: SampleTimes) -> Sampled:
+    """Return the response of a network with waves that nobody writes out."""
     propagation = equations_of(bound).propagation
     laws = () if propagation is None else propagation.table.dispersions
     if any(law.kind == "exponential" for law in laws):
         message = f"{bound.name} is of a large network with delays: its response in time is not known"
         raise ModelError(Diagnostic("SF813", message, None, "take 'symflex rational' of it first"))
-    if not bound.is_distributed:
-        return _found(lumped(bound), integrations, times, digits)
     return estimated(bound, integrations, times)
 
 
-def _found(
-    bound: BoundTransferFunction, integrations: int, times: SampleTimes, digits: int
-) -> tuple[Sampled, str | None]:
-    """Return the response, and what is not proved of it."""
-    if bound.is_zero or not len(times):
-        return Sampled((arb(0),) * len(times)), None
-    if not bound.is_distributed:
-        return _of_lumped(bound, integrations, times, digits), None
-    quotient = delayed_quotient(bound)
-    if quotient is not None:
-        known = _of_quotient(bound, quotient, integrations, times, digits)
-        if known is not None:
-            return known, None
-    waves = None if quotient is not None else wave_quotient(bound)
-    if waves is not None:
+def _answer(asked: Asked) -> Sampled:
+    """Return what the first way finds that answers, and why those before it do not."""
+    refused: dict[str, list[str]] = {}
+    for way in WAYS:
+        plan = way.applies(asked)
         try:
-            return _of_delays(bound, waves.echoed, integrations, times, digits), None
-        except (TooManyEchoesError, UncertifiedError):
-            spend()
-    if any(law.kind == "exponential" for law in bound.kernels.dispersions):
-        late = _without_delay(bound) if quotient is None else None
-        if late is not None:
-            return _later(*late, integrations, times, digits)
-        return estimated(bound, integrations, times)
-    proved = proved_modes(bound, integrations, times, digits)
-    return (proved.sampled, None) if proved is not None else estimated(bound, integrations, times)
-
-
-def _of_quotient(
-    bound: BoundTransferFunction,
-    quotient: DelayedQuotient,
-    integrations: int,
-    times: SampleTimes,
-    digits: int,
-) -> Sampled | None:
-    """Return a response as echoes, or as few terms or modes; None where all of these are many."""
-    has_delays = any(law.kind == "exponential" for law in bound.kernels.dispersions)
-    few, many = (partial(echoed, quotient, most=most) for most in (FEW_POWERS, MOST_POWERS))
-    late = partial(settling_echoes, bound, quotient)
-    for expanded in (few, late, many) if has_delays else (few, many):
-        try:
-            return _of_delays(bound, expanded, integrations, times, digits)
+            found = plan if isinstance(plan, Refused) else plan()
         except TooManyEchoesError:
-            spend()
-        except UncertifiedError:
-            if expanded is not late:
-                raise
-        if expanded is few and not has_delays:
-            modes = proved_modes(bound, integrations, times, digits)
-            if modes is not None and is_precise(modes.sampled.values, ENOUGH_DIGITS):
-                return modes.sampled
-    return None
+            found = Refused("too many echoes arrive by then")
+        if isinstance(found, Sampled):
+            reasons = tuple(f"{', '.join(names)}: {reason}" for reason, names in refused.items())
+            return replace(found, refused=found.refused or reasons) if found.reason else found
+        if found.reason:
+            refused.setdefault(found.reason, []).append(way.name)
+        spend()
+    message = f"poles of {asked.bound.name} cannot be told apart: its response is not known"
+    raise UncertifiedError(Diagnostic("SF810", message, None, "ask for a shorter time, or fewer digits"))
+
+
+def _by_partial_fractions(asked: Asked) -> Plan | Refused:
+    return Refused() if asked.bound.is_distributed else partial(_of_lumped, asked)
+
+
+def _by_echoes(asked: Asked) -> Plan | Refused:
+    if asked.quotient is None:
+        return Refused("some waves change their form")
+    return partial(_closely, asked, partial(echoed, asked.quotient, asked.integrations))
+
+
+def _by_settling(asked: Asked) -> Plan | Refused:
+    if asked.quotient is None or not asked.has_delays:
+        return Refused()
+    return partial(_closely, asked, partial(settling_echoes, asked.bound, asked.quotient, asked.integrations))
+
+
+def _by_wave_echoes(asked: Asked) -> Plan | Refused:
+    if not asked.bound.is_distributed or asked.quotient is not None:
+        return Refused()
+    waves = wave_quotient(asked.bound)
+    if waves is None:
+        return Refused("some waves have no front")
+    return partial(_closely, asked, partial(waves.echoed, asked.integrations))
+
+
+def _by_waiting(asked: Asked) -> Plan | Refused:
+    late = _without_delay(asked.bound) if asked.has_delays and asked.quotient is None else None
+    return Refused() if late is None else partial(_later, asked, *late)
+
+
+def _by_modes(
+    find: Callable[[BoundTransferFunction, int], tuple[ModesBound, int] | Refused], asked: Asked
+) -> Plan | Refused:
+    if asked.has_delays or not asked.bound.is_distributed:
+        return Refused("there is a delay in a loop")
+    found = find(asked.bound, asked.integrations)
+    return found if isinstance(found, Refused) else partial(_summed, asked, *found)
+
+
+def _by_estimate(asked: Asked) -> Plan | Refused:
+    if not asked.bound.is_distributed:
+        return Refused()
+    return partial(estimated, asked.bound, asked.integrations, asked.times)
+
+
+WAYS = (
+    Way("partial fractions", _by_partial_fractions),
+    Way("echoes", _by_echoes),
+    Way("settling echoes", _by_settling),
+    Way("wave echoes", _by_wave_echoes),
+    Way("a delay in front", _by_waiting),
+    *(Way(name, partial(_by_modes, find)) for name, find in BOUNDS.items()),
+    Way("estimated modes", _by_estimate),
+)
+"""All ways, in the order in which they are asked: exact ones first, then those that take the least time."""
+
+
+def _summed(asked: Asked, bounding: ModesBound, integrations: int) -> Sampled | Refused:
+    found = summed(bounding, integrations, asked.times, asked.digits)
+    return Refused("what modes add does not fall off fast enough") if found is None else found.sampled
+
+
+def _closely(asked: Asked, find: Callable[[SampleTimes, int], Sampled | None]) -> Sampled | Refused:
+    """Return a response from ever more digits and sharper times, until it is precise."""
+    times, wanted = asked.times, asked.digits + EFFORT.guard_digits
+    for _ in range(EFFORT.attempts):
+        found = find(times, wanted)
+        if found is not None:
+            apart = [y for i, y in enumerate(found.values) if i not in found.at_jumps]
+            if is_precise(apart, asked.digits) and (times.is_exact or not found.at_jumps):
+                return found
+            times = times if times.is_exact else times.one_by_one()
+        wanted *= 2
+    return Refused("the poles between the delays lie too close together")
 
 
 def _without_delay(bound: BoundTransferFunction) -> tuple[BoundTransferFunction, Callable[[], arb]] | None:
@@ -280,27 +323,24 @@ def _without_delay(bound: BoundTransferFunction) -> tuple[BoundTransferFunction,
     return undelayed, seconds
 
 
-def _later(
-    undelayed: BoundTransferFunction,
-    delay: Callable[[], arb],
-    integrations: int,
-    times: SampleTimes,
-    digits: int,
-) -> tuple[Sampled, str | None]:
+def _later(asked: Asked, undelayed: BoundTransferFunction, delay: Callable[[], arb]) -> Sampled:
     """Return a response that comes a delay later."""
-    with precision(bits_for_digits(2 * digits)):
+    with precision(bits_for_digits(2 * asked.digits)):
         wait = delay()
-        start, later = times.since(wait)
-        instants = times.enclosed(start)
-    found, reason = _found(undelayed, integrations, later, digits)
+        start, later = asked.times.since(wait)
+        instants = asked.times.enclosed(start)
+    if not len(later):
+        return Sampled((arb(0),) * start)
+    found = _answer(replace(asked, bound=undelayed, times=later))
     values = [y if t > wait else y.union(arb(0)) for t, y in zip(instants, found.values, strict=False)]
-    return Sampled((*[arb(0)] * start, *values), method=found.method), reason
+    return replace(found, values=(*[arb(0)] * start, *values), modes=None)
 
 
-def _of_lumped(bound: BoundTransferFunction, integrations: int, times: SampleTimes, digits: int) -> Sampled:
+def _of_lumped(asked: Asked) -> Sampled | Refused:
+    bound, integrations, times, digits = asked.bound, asked.integrations, asked.times, asked.digits
     problem = problem_of(bound, [(f, -e) for f, e in bound.ratio.factors if e < 0])
-    wanted = digits + GUARD_DIGITS
-    for attempt in range(ATTEMPTS):
+    wanted = digits + EFFORT.guard_digits
+    for _ in range(EFFORT.attempts):
         spend()
         poles = find_polynomial_roots(problem, wanted)
         bits = max((root.working_bits() for root in poles), default=0) + bits_for_digits(wanted)
@@ -308,61 +348,20 @@ def _of_lumped(bound: BoundTransferFunction, integrations: int, times: SampleTim
             last = arb(float(times.seconds[-1]))
             turned = max((root.natural_frequency() * last for root in poles), default=arb(0), key=arb.mid)
             quotient = EnclosedQuotient.of(bound, bits)
-            terms, method = partial_fractions(quotient, poles, integrations), "partial fractions"
-            if terms is None and attempt:
-                method = "power series"
-                terms = power_series_terms(quotient, integrations, last, bits_for_digits(wanted))
+            terms = partial_fractions(quotient, poles, integrations)
             if terms is not None:
                 weights, _ = at_infinity(quotient, integrations)
                 impulses = tuple(ImpulseAt(arb(0), k, w) for k, w in enumerate(weights) if w != 0)
                 # Residues may need all bits that poles have; sums of exponentials need those of their result.
                 with precision(bits_for_digits(wanted + decimal_exponent(exact_fraction(turned + 1)) + 1)):
-                    found = Sampled(tuple(values_of(terms, times)), impulses, method=method)
+                    found = Sampled(tuple(values_of(terms, times)), impulses, method="partial fractions")
                 if is_precise(found.values, digits):
                     return found
                 if not times.is_exact:
                     times = times.one_by_one()
-        wanted = max(2 * wanted, digits + GUARD_DIGITS + decimal_exponent(exact_fraction(turned + 1)) + 1)
-        if wanted > MOST_DIGITS:
+        wanted = max(
+            2 * wanted, digits + EFFORT.guard_digits + decimal_exponent(exact_fraction(turned + 1)) + 1
+        )
+        if wanted > EFFORT.most_digits:
             break
-    raise _unknown(bound, digits)
-
-
-def _of_delays(
-    bound: BoundTransferFunction,
-    echoes: Callable[[int, SampleTimes, int], Sampled | None],
-    integrations: int,
-    times: SampleTimes,
-    digits: int,
-) -> Sampled:
-    wanted = digits + GUARD_DIGITS
-    for _ in range(ATTEMPTS):
-        found = echoes(integrations, times, wanted)
-        if found is not None:
-            apart = [y for i, y in enumerate(found.values) if i not in found.at_jumps]
-            if is_precise(apart, digits) and (times.is_exact or not found.at_jumps):
-                return found
-            if not times.is_exact:
-                times = times.one_by_one()
-        wanted *= 2
-    message = f"the poles between the delays of {bound.name} lie too close together"
-    raise UncertifiedError(Diagnostic("SF810", message, None, "ask for a shorter time"))
-
-
-def _unknown(bound: BoundTransferFunction, digits: int) -> UncertifiedError:
-    message = f"poles of {bound.name} cannot be told apart: its response is not known to {digits} digits"
-    return UncertifiedError(Diagnostic("SF810", message, None, "ask for a shorter time, or fewer digits"))
-
-
-def is_precise(values: Sequence[arb], digits: int) -> bool:
-    """Tell whether all balls are narrow beside the largest value.
-
-    Examples
-    --------
-    >>> is_precise([arb(0, 1e-13), arb(1)], 12), is_precise([arb(0, 1e-3), arb(1)], 12)
-    (True, False)
-    """
-    if not all(map(arb.is_finite, values)):
-        return False
-    largest = max(map(abs, map(arb.mid, values)), default=arb(0))
-    return bool(max(map(arb.rad, values), default=arb(0)) <= largest * arb(10) ** -digits)
+    return Refused("poles cannot be told apart")

@@ -19,15 +19,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, acb_series, arb, arb_poly
 
 from symflex.analysis.rational.laurent import series_length
 from symflex.analysis.time_response.delayed_terms import NO_DELAY, later
 from symflex.analysis.time_response.echoes import TooManyEchoesError, earliest, echoed, echoes, terms_of_echo
-from symflex.analysis.time_response.enclosed_response import ImpulseAt, JumpAt
-from symflex.analysis.time_response.exponentials import ExponentialTerm, values_of
+from symflex.analysis.time_response.effort import EFFORT
+from symflex.analysis.time_response.partial_fractions import ExponentialTerm, values_of
+from symflex.analysis.time_response.sampled import ImpulseAt, JumpAt
 from symflex.budget import spend
 from symflex.roots import Modes
 from symflex.roots.locate import locate
@@ -39,18 +40,10 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symflex.analysis.time_response.delayed_terms import DelayedQuotient
-    from symflex.analysis.time_response.echoes import Sampled
     from symflex.analysis.time_response.sample_times import SampleTimes
+    from symflex.analysis.time_response.sampled import Sampled
     from symflex.roots import Root
     from symflex.transfer import BoundTransferFunction
-
-SHARES: Final = (4.0, 3.0, 2.5, 2.0, 1.5, 1.0, 0.7, 0.5, 0.3, 0.2, 0.1)
-"""Lines that are tried: far from the axis there are many poles right of them, and a loop is soon beyond."""
-MORE_MODES: Final = 6
-"""Modes looked at besides, where the lowest are not those right of the line."""
-MOST_PARTS: Final = 4000
-"""Of a line; a loop that rings at a thousand times its bandwidth takes some of them."""
-FIRST_PARTS: Final = 16
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,7 +174,7 @@ def late_response(
     longest = max((p.seconds.upper() for p in loop.below), key=float, default=arb(0))
     fastest = max((abs(pole.enclosure()).upper() for pole in loop.poles), key=float, default=arb(0))
     unit = 1 / longest if longest > 0 else fastest
-    for share in SHARES:
+    for share in EFFORT.lines:
         spend()
         rate = (unit * share).mid()
         on_line = _on_line(loop, falling, falls, integrations, rate) if rate > 0 else None
@@ -246,7 +239,7 @@ def _settled(late: LateResponse, times: SampleTimes, digits: int) -> tuple[int, 
 def _right_of(bound: BoundTransferFunction, rate: arb, count: int, digits: int) -> list[Root]:
     """Return the poles right of a line, of which there are so many; fewer where these are not the lowest."""
     poles: list[Root] = []
-    for more in (0, MORE_MODES) if count else ():
+    for more in (0, EFFORT.line_modes) if count else ():
         found = locate(bound, Modes(count + more), digits)
         poles = [p for p in found.all_poles if p.enclosure().real + rate > 0]
         if sum(p.multiplicity for p in poles) == count:
@@ -276,9 +269,9 @@ def _on_line(
     power = integrations + falls - 1
     total = 2 * loop.far(falling, rate, radius, falls) / (power * radius**power)
     turned = arb(0)
-    ends = [radius * k / FIRST_PARTS for k in range(FIRST_PARTS + 1)]
+    ends = [radius * k / EFFORT.line_begun for k in range(EFFORT.line_begun + 1)]
     pending = [(a.mid(), b.mid()) for a, b in pairwise(ends)][::-1]
-    for _ in range(MOST_PARTS):
+    for _ in range(EFFORT.line_parts):
         if not pending:
             break
         low, high = pending.pop()
@@ -305,49 +298,23 @@ def pieces_of(
 
     None where poles are not told apart. Raises TooManyEchoesError.
     """
-    expansion = echoes(quotient, until)
     loop = _Loop(quotient, digits)
     below = acb_poly(loop.leading)
     found: list[tuple[arb, tuple[ExponentialTerm, ...]]] = []
     known: dict[tuple[tuple[int, ...], ...], ExponentialTerm] = {}
-    if expansion is None:
-        return None
     before = arb(0)
-    for echo in expansion:
+    for echo in echoes(quotient, until):
         spend()
         start = quotient.durations.seconds(echo.delay)
-        terms = terms_of_echo(echo, below, loop.poles, 1, until, digits)
+        terms = terms_of_echo(echo, below, loop.poles, 1)
         if terms is None:
             return None
         if not found and start > 0:
             found.append((arb(0), ()))
-        known = {key: _later(term, start - before) for key, term in known.items()}
+        known = {key: term.later(start - before) for key, term in known.items()}
         for term in terms:
             key = tuple(tuple(map(int, x.mid().man_exp())) for x in (term.rate.real, term.rate.imag))
-            known[key] = _sum(known.get(key), term)
+            known[key] = known[key] + term if key in known else term
         found.append((start, tuple(known.values())))
         before = start
     return found
-
-
-def _later(term: ExponentialTerm, by: arb) -> ExponentialTerm:
-    """Return a term as one of the time from a later start on."""
-    factorial, powers = arb(1), []
-    for j, c in enumerate(term.coefficients):
-        factorial = factorial * j if j else factorial
-        powers.append(c / factorial)
-    shifted = acb_poly(powers)(acb_poly([by, 1])) * (term.rate * by).exp()
-    factorial, found = arb(1), []
-    for j, c in enumerate(shifted.coeffs()):
-        factorial = factorial * j if j else factorial
-        found.append(c * factorial)
-    return ExponentialTerm(term.rate, tuple(found))
-
-
-def _sum(one: ExponentialTerm | None, other: ExponentialTerm) -> ExponentialTerm:
-    """Return the sum of two terms of one rate."""
-    if one is None:
-        return other
-    longer, shorter = sorted((one.coefficients, other.coefficients), key=len, reverse=True)
-    padded = (*shorter, *[acb(0)] * (len(longer) - len(shorter)))
-    return ExponentialTerm(one.rate, tuple(a + b for a, b in zip(longer, padded, strict=True)))
