@@ -98,10 +98,13 @@ def echoes(quotient: DelayedQuotient, last: arb) -> list[Echo]:
 def check_order(begun: Iterable[Delay], durations: Durations) -> None:
     """Raise UncertifiedError: SF810 where something comes before the input."""
     if any(delay and durations.seconds(delay) < 0 for delay in begun):
-        message = "the output would come before the input"
-        raise UncertifiedError(
-            Diagnostic("SF810", message, None, "a delay in a denominator foresees its input")
-        )
+        raise too_early()
+
+
+def too_early() -> UncertifiedError:
+    """Return what is wrong where something comes before the input."""
+    message, hint = "the output would come before the input", "a delay in a denominator foresees its input"
+    return UncertifiedError(Diagnostic("SF810", message, None, hint))
 
 
 Coming = TypeVar("Coming")

@@ -20,8 +20,8 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
-from symflex.algebra import Factored, KernelTable
-from symflex.analysis.time_response.echoes import TooManyEchoesError, echoed
+from symflex.algebra import Factored, KernelTable, degree_in
+from symflex.analysis.time_response.echoes import TooManyEchoesError, echoed, too_early
 from symflex.analysis.time_response.effort import EFFORT
 from symflex.analysis.time_response.enclosed_response import INTEGRATIONS, EnclosedResponse
 from symflex.analysis.time_response.estimated_modes import estimated
@@ -33,8 +33,15 @@ from symflex.analysis.time_response.partial_fractions import (
     values_of,
 )
 from symflex.analysis.time_response.sample_times import SampleTimes, default_until
-from symflex.analysis.time_response.sampled import Asked, ImpulseAt, JumpAt, Refused, Sampled, is_precise
-from symflex.analysis.time_response.settling import settling_echoes
+from symflex.analysis.time_response.sampled import (
+    Asked,
+    Gathered,
+    ImpulseAt,
+    JumpAt,
+    Refused,
+    Sampled,
+    is_precise,
+)
 from symflex.analysis.time_response.wave_echoes import wave_quotient
 from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
@@ -53,11 +60,13 @@ from symflex.transfer.balls import at_centre
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from symflex.algebra import Kernel
     from symflex.analysis.input_shaping import InputShaper
     from symflex.analysis.time_response.function_size import ModesBound
     from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 
     Plan = Callable[[], "Sampled | Refused"]
+    Delays = list[tuple[Kernel, int]]  # kernels, and how often each is taken
 
 
 @dataclass(frozen=True, slots=True)
@@ -227,12 +236,6 @@ def _by_echoes(asked: Asked) -> Plan | Refused:
     return partial(_closely, asked, partial(echoed, asked.quotient, asked.integrations))
 
 
-def _by_settling(asked: Asked) -> Plan | Refused:
-    if asked.quotient is None or not asked.has_delays:
-        return Refused()
-    return partial(_closely, asked, partial(settling_echoes, asked.bound, asked.quotient, asked.integrations))
-
-
 def _by_wave_echoes(asked: Asked) -> Plan | Refused:
     if not asked.bound.is_distributed or asked.quotient is not None:
         return Refused()
@@ -242,9 +245,11 @@ def _by_wave_echoes(asked: Asked) -> Plan | Refused:
     return partial(_closely, asked, partial(waves.echoed, asked.integrations))
 
 
-def _by_waiting(asked: Asked) -> Plan | Refused:
-    late = _without_delay(asked.bound) if asked.has_delays and asked.quotient is None else None
-    return Refused() if late is None else partial(_later, asked, *late)
+def _by_delays(asked: Asked) -> Plan | Refused:
+    if not asked.has_delays or asked.quotient is not None:
+        return Refused()
+    parts = _taken_apart(asked.bound)
+    return partial(_later, asked, parts) if any(delay for delay, _ in parts) else Refused()
 
 
 def _by_modes(
@@ -265,9 +270,8 @@ def _by_estimate(asked: Asked) -> Plan | Refused:
 WAYS = (
     Way("partial fractions", _by_partial_fractions),
     Way("echoes", _by_echoes),
-    Way("settling echoes", _by_settling),
     Way("wave echoes", _by_wave_echoes),
-    Way("a delay in front", _by_waiting),
+    Way("parts that come later", _by_delays),
     *(Way(name, partial(_by_modes, find)) for name, find in BOUNDS.items()),
     Way("estimated modes", _by_estimate),
 )
@@ -293,47 +297,65 @@ def _closely(asked: Asked, find: Callable[[SampleTimes, int], Sampled | None]) -
     return Refused("the poles between the delays lie too close together")
 
 
-def _without_delay(bound: BoundTransferFunction) -> tuple[BoundTransferFunction, Callable[[], arb]] | None:
-    """Return a function without the delay that it is multiplied by, and that [s]; None where delays are else.
+def _taken_apart(bound: BoundTransferFunction) -> list[tuple[Delays, BoundTransferFunction]]:
+    """Return a function as parts that come after delays, each as often as told; delays of loops stay in them.
 
-    So it is with a sensor that is late: ``exp(-s T) w(l)/F``.
+    So it is with sensors that are late: ``(1 + exp(-s T)) w(l)/F``.
     """
-    table, ratio, num = bound.kernels, bound.ratio, bound.num
-    ring = ratio.ring
-    delays = [k for k in table.kernels if k.dispersion.kind == "exponential"]
-    shares = [(k, ratio.exponent_of(ring.generator(k.generator))) for k in delays]
-    for kernel, exponent in shares:
-        factor = Factored.generator(ring, kernel.generator) ** exponent
-        ratio, num = ratio / factor, num / factor
-        if exponent < 0 or any(part.depends_on(kernel.generator) for part in (ratio, num, bound.den)):
-            return None
+    ring, table = bound.ratio.ring, bound.kernels
+    delays = {ring.index[k.generator]: k for k in table.kernels if k.dispersion.kind == "exponential"}
+    if any(bound.den.exponent_of(ring.generator(k.generator)) > 0 for k in delays.values()):
+        raise too_early()
+    plain, mixed = Factored(ring, bound.num.unit), ring.constant(1)
+    for factor, exponent in bound.num.factors:
+        if any(degree_in(factor, place) for place in delays):
+            mixed = mixed * factor**exponent
+        else:
+            plain = plain * Factored.polynomial(ring, factor) ** exponent
+    parts: dict[tuple[int, ...], dict[tuple[int, ...], int]] = {}
+    for monomial, number in mixed.terms():
+        kept = tuple(0 if place in delays else int(e) for place, e in enumerate(monomial))
+        parts.setdefault(tuple(int(monomial[place]) for place in delays), {})[kept] = int(number)
+    found = []
+    for exponents, terms in parts.items():
+        num = plain * Factored.polynomial(ring, ring.context.from_dict(terms))
+        ratio = num / bound.den
+        out = [k for k in delays.values() if not ratio.depends_on(k.generator)]
+        kernels = tuple(k for k in table.kernels if k not in out)
+        laws = tuple(law for law in table.dispersions if any(k.dispersion is law for k in kernels))
+        part = replace(
+            bound, ratio=ratio, parts=(num, bound.den), kernels=KernelTable(laws, kernels), hidden=()
+        )
+        found.append(([(k, e) for k, e in zip(delays.values(), exponents, strict=True) if e], part))
+    return found
 
-    def seconds() -> arb:
-        evaluator = bound.kernel_values()
+
+def _later(asked: Asked, parts: list[tuple[Delays, BoundTransferFunction]]) -> Sampled:
+    """Return the sum of responses that come after delays."""
+    bits, evaluator = bits_for_digits(2 * asked.digits), asked.bound.kernel_values()
+    found = Sampled(())
+    with precision(bits):
+        total = Gathered(asked.times.enclosed())
         values = {"s": acb(1), **{name: acb(c) for name, c in evaluator.constants.items()}}
-        total = arb(0)
-        for kernel, exponent in shares:
-            rate, length = (evaluator.value(x, values) for x in (kernel.dispersion.shift, kernel.length))
-            total += exponent * at_centre(rate * length).real
-        return total
-
-    laws = tuple(law for law in table.dispersions if law.kind != "exponential")
-    kernels = tuple(k for k in table.kernels if k not in delays)
-    undelayed = replace(bound, ratio=ratio, parts=(num, bound.den), kernels=KernelTable(laws, kernels))
-    return undelayed, seconds
-
-
-def _later(asked: Asked, undelayed: BoundTransferFunction, delay: Callable[[], arb]) -> Sampled:
-    """Return a response that comes a delay later."""
-    with precision(bits_for_digits(2 * asked.digits)):
-        wait = delay()
-        start, later = asked.times.since(wait)
-        instants = asked.times.enclosed(start)
-    if not len(later):
-        return Sampled((arb(0),) * start)
-    found = _answer(replace(asked, bound=undelayed, times=later))
-    values = [y if t > wait else y.union(arb(0)) for t, y in zip(instants, found.values, strict=False)]
-    return replace(found, values=(*[arb(0)] * start, *values), modes=None)
+        waits = []
+        for delays, _ in parts:
+            wait = arb(0)
+            for kernel, exponent in delays:
+                rate, length = (evaluator.value(x, values) for x in (kernel.dispersion.shift, kernel.length))
+                wait += exponent * at_centre(rate * length).real
+            waits.append(wait)
+    reason: str | None = None
+    refused: tuple[str, ...] = ()
+    for wait, (_, part) in zip(waits, parts, strict=True):
+        with precision(bits):
+            start, later = asked.times.since(wait)
+        if len(later):
+            found = _answer(replace(asked, bound=part, times=later))
+            reason, refused = reason or found.reason, refused or found.refused
+            with precision(bits):
+                own = found.values[: len(asked.times) - start]
+                total.add(wait, (), arb(0), own, is_late=bool(wait > 0))
+    return replace(total.sampled(found.method), reason=reason, refused=refused)
 
 
 def _of_lumped(asked: Asked) -> Sampled | Refused:

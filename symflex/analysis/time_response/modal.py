@@ -136,7 +136,7 @@ class BoundedModes:
             reached, roots = side.reached, side.roots
         if reached in self._known:
             return self._known[reached]
-        origin = _proved_at_origin(self._bound, self._integrations)
+        origin = proved_at_origin(self._bound, self._integrations)
         rest = self._bounding.rest(reached, self._integrations, self._times) if reached >= least else None
         if origin is None or rest is None:
             return None
@@ -154,7 +154,7 @@ class BoundedModes:
                     return None
                 if any(within):
                     continue
-                term = self._bounding.term(root, self._integrations) or _term_at(
+                term = self._bounding.term(root, self._integrations) or term_at(
                     self._bound, root, self._integrations
                 )
                 if term is None:
@@ -240,7 +240,7 @@ def _root_of(pole: Root) -> complex:
     return csqrt(complex(float(pole.re.mid()), abs(float(pole.im.mid()))))
 
 
-def _term_at(bound: BoundTransferFunction, root: Root, integrations: int) -> ExponentialTerm | None:
+def term_at(bound: BoundTransferFunction, root: Root, integrations: int) -> ExponentialTerm | None:
     """Return what a pole and its conjugate add; None where it is not told from other points."""
     try:
         (part,) = residues_at(bound, [root], EFFORT.pole_digits)
@@ -271,7 +271,8 @@ def _needed(few: tuple[int, float], many: tuple[int, float], goal: float, most: 
     return min(most, round(1.2 * many[0] * 2 ** min(growth / log(2), 20)))
 
 
-def _proved_at_origin(bound: AnyBoundFunction, integrations: int) -> list[ExponentialTerm] | None:
+def proved_at_origin(bound: AnyBoundFunction, integrations: int) -> list[ExponentialTerm] | None:
+    """Return what the pole at s = 0 adds; None where that is not proved."""
     series = expand_at_zero(bound, integrations - 1, EFFORT.pole_digits)
     return None if series.is_estimate else at_origin(series, integrations)
 

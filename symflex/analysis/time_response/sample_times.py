@@ -11,7 +11,7 @@ so exp(p t) at n of them takes some 2 sqrt(n) exponentials and one product of ma
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from math import isqrt, pi
 from typing import TYPE_CHECKING
@@ -138,16 +138,6 @@ class SampleTimes:
             return start, SampleTimes(left, self.step, 2 * self.slack, moment)
         off = arb(float(left[0])) - arb(float(self.seconds[0])) - ball(self.step) * start
         return start, SampleTimes(left, self.step, 0.0, moment + off)
-
-    def until(self, count: int) -> SampleTimes:
-        """Return the first so many times.
-
-        Examples
-        --------
-        >>> SampleTimes.evenly(Fraction(1), 5).until(2).seconds.tolist()
-        [0.0, 0.25]
-        """
-        return replace(self, seconds=self.seconds[:count])
 
     def spread(self, start: int = 0, delay: arb | None = None) -> tuple[list[arb], list[arb]]:
         """Return two lists of balls at the current precision: the sums a + b, a by a, begin with all times.

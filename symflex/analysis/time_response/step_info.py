@@ -228,8 +228,8 @@ def _of_delays(bound: BoundTransferFunction) -> StepInfo | None:
     if quotient is None:
         return None
     with precision(bits_for_digits(2 * DELAYS_DIGITS)):
-        late = late_response(bound, quotient, 1, DELAYS_DIGITS)
-        final = None if late is None or late.through else _resting(late.terms)
+        late = late_response(bound, quotient, DELAYS_DIGITS)
+        final = None if late is None else _resting(late.terms)
         if late is None or final is None:
             return None
         terms = tuple(_scaled(t, final) for t in late.terms if not t.rate.is_zero())

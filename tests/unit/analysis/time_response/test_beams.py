@@ -295,9 +295,9 @@ def test_an_acceleration_of_a_beam_is_refused_as_modes_do_not_fall_off():
         time_response(beam(output="s^2*x"), "impulse", SampleTimes.of([0.5]))
 
 
-def with_delay(output):
+def with_delay(rest, output="D*x"):
     text = f'blocks.D = {{ type = "delay", T = "1 s" }}\nelements.arm = {{ type = "beam", {UNIT}, '
-    text += f'between = ["ground", "x"] }}\ninputs.F = {{}}\n{output}\noutputs.X = "D*x"'
+    text += f'between = ["ground", "x"] }}\ninputs.F = {{}}\n{rest}\noutputs.X = "{output}"'
     return loads(f"symflex = 1\n{text}").transfer_function("X", "F").bind().bound
 
 
@@ -314,3 +314,16 @@ def test_a_beam_that_is_seen_late_does_the_same_later():
     assert alone.enclosures[1].overlaps(found.enclosures[2])
     assert np.all(np.abs(found.values[2:] - expected) <= found.radius[2:] + left + 1e-14)
     assert found.radius.max() <= 1e-9 * np.max(np.abs(expected))
+
+
+@pytest.mark.slow
+def test_a_beam_that_is_seen_at_once_and_late_is_the_sum_of_both():
+    push = 'elements.push = { type = "force_source", at = "x", f = "F" }'
+    times = SampleTimes.of([0.5, 1.37, 3.9])
+    both = time_response(with_delay(push, "x + D*x/2"), "step", times)
+    expected, left = step_of(*cantilever(), [0.5, 1.37, 3.9])
+    later, _ = step_of(*cantilever(), [0.37, 2.9])
+    assert both.certified
+    assert np.all(
+        np.abs(both.values - expected - np.array([0, *later]) / 2) <= both.radius + 2 * left + 1e-14
+    )

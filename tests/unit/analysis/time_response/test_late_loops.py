@@ -12,14 +12,14 @@ from symflex.analysis.time_response import SampleTimes, time_response
 BEAM = 'between = ["ground", "x"], E = "1 Pa", A = "1 m^2", I = "1 m^4", rho = "1 kg/m^3", l = "1 m"'
 
 
-def loop(force):
+def loop(force, output="x"):
     """Return x/r of a cantilever that a force pushes at its tip, behind a controller that is late."""
     text = f"""
 symflex = 1
 blocks.D = {{ type = "delay", T = "0.3 s" }}
 parameters = {{ T_d = "0.1 s", T_f = "0.05 s", k = "2 N/m" }}
 inputs.r = {{ unit = "m" }}
-outputs.X = "x"
+outputs.X = "{output}"
 [elements]
 arm = {{ type = "beam", {BEAM}, eta = "0.02 s" }}
 push = {{ type = "force_source", at = "x", f = "{force}" }}
@@ -82,3 +82,11 @@ def test_a_loop_is_what_the_method_of_steps_says(force, gain, late, kind):
     assert "estimated" in found.reason
     assert np.all(np.abs(found.values - expected) <= found.radius)
     assert found.radius[1:].max() < 0.02 * np.max(np.abs(expected))
+
+
+@pytest.mark.slow
+def test_what_sensors_outside_of_the_loop_see_comes_later():
+    alone = time_response(loop("k*(r - D*x)"), "step", SampleTimes.of([0.5, 1.37]))
+    late = time_response(loop("k*(r - D*x)", "D*D*x"), "step", SampleTimes.of([0.1, 0.59, 1.1, 1.97]))
+    assert late.values[:2].tolist() == [0, 0]
+    assert late.values[2:] == pytest.approx(alone.values, abs=1e-12)
