@@ -96,7 +96,7 @@ def time_response(
     ModelError
         SF813 for large networks with delays.
     UncertifiedError
-        SF810 when poles cannot be told apart and the time is too long for a power series.
+        SF810 when poles cannot be told apart, or modes do not say what the response is.
 
     Examples
     --------
@@ -324,7 +324,12 @@ def _taken_apart(bound: BoundTransferFunction) -> list[tuple[Delays, BoundTransf
         kernels = tuple(k for k in table.kernels if k not in out)
         laws = tuple(law for law in table.dispersions if any(k.dispersion is law for k in kernels))
         part = replace(
-            bound, ratio=ratio, parts=(num, bound.den), kernels=KernelTable(laws, kernels), hidden=()
+            bound,
+            ratio=ratio,
+            parts=(num, bound.den),
+            kernels=KernelTable(laws, kernels),
+            hidden=(),
+            is_of_model=bound.is_of_model and len(parts) == 1,
         )
         found.append(([(k, e) for k, e in zip(delays.values(), exponents, strict=True) if e], part))
     return found
