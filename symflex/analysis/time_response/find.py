@@ -308,7 +308,7 @@ def _taken_apart(bound: BoundTransferFunction) -> list[tuple[Delays, BoundTransf
         raise too_early()
     plain, mixed = Factored(ring, bound.num.unit), ring.constant(1)
     for factor, exponent in bound.num.factors:
-        if any(degree_in(factor, place) for place in delays):
+        if exponent > 0 and any(degree_in(factor, place) for place in delays):
             mixed = mixed * factor**exponent
         else:
             plain = plain * Factored.polynomial(ring, factor) ** exponent

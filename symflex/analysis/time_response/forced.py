@@ -117,6 +117,7 @@ def forced_response(
         digits,
         ramp.shaper,
         method=ramp.method,
+        refused=ramp.refused,
     )
 
 
