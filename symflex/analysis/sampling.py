@@ -27,8 +27,7 @@ import numpy as np
 from flint import acb, acb_poly, arb
 
 from symflex.analysis.time_response.delayed_terms import delayed_quotient
-from symflex.analysis.time_response.exponentials import values_of
-from symflex.analysis.time_response.partial_fractions import EnclosedQuotient, partial_fractions
+from symflex.analysis.time_response.partial_fractions import EnclosedQuotient, partial_fractions, values_of
 from symflex.analysis.time_response.sample_times import SampleTimes
 from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError

@@ -15,7 +15,7 @@ import pytest
 
 from symflex import pipeline
 from symflex.analysis.time_response import SampleTimes, time_response
-from symflex.analysis.time_response.horizon import default_until
+from symflex.analysis.time_response.sample_times import default_until
 from symflex.print.forms import print_forms
 from tests.house.repository import ROOT, specifications
 

@@ -29,15 +29,17 @@ from symflex.analysis.time_response.delayed_terms import (
     later,
     sum_of,
 )
-from symflex.analysis.time_response.enclosed_response import ImpulseAt, JumpAt
-from symflex.analysis.time_response.exponentials import ExponentialTerm, values_of
+from symflex.analysis.time_response.effort import EFFORT
 from symflex.analysis.time_response.partial_fractions import (
     EnclosedQuotient,
+    ExponentialTerm,
     at_infinity,
     partial_fractions,
-    power_series_terms,
+    values_of,
 )
+from symflex.analysis.time_response.sampled import Gathered, Sampled
 from symflex.budget import spend
+from symflex.errors import Diagnostic, UncertifiedError
 from symflex.roots.polynomial_roots import find_polynomial_roots
 from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.problem import RootProblem
@@ -45,34 +47,12 @@ from symflex.roots.problem import RootProblem
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
-    from symflex.analysis.time_response.modal import PartialSum
     from symflex.analysis.time_response.sample_times import SampleTimes
     from symflex.roots import Root
-
-MOST_ECHOES = 2000
-"""Rational functions that one response is made of."""
-MOST_POWERS = 30_000
-"""Sum of the powers of their denominators, which grow from one to the next: 250 echoes take a while."""
-FEW_POWERS = 3000
-"""The same, tried first where modes may say it as well: 50 echoes of a shaft between discs take a second."""
-TIE_BITS = 256
-"""At which delays are put in order; equal ones are equal exactly."""
 
 
 class TooManyEchoesError(Exception):
     """More echoes arrive by the last time than are worth a sum."""
-
-
-@dataclass(frozen=True)
-class Sampled:
-    """Values at given times, and what is between and besides them."""
-
-    values: tuple[arb, ...]
-    impulses: tuple[ImpulseAt, ...] = ()
-    jumps: tuple[JumpAt, ...] = ()
-    at_jumps: frozenset[int] = frozenset()  # positions of values that hold both sides of a jump
-    modes: PartialSum | None = None  # of which it is a sum, at any time
-    method: str = ""  # what found it, such as ``echoes``; empty where there is nothing to find
 
 
 @dataclass(frozen=True)
@@ -84,10 +64,10 @@ class Echo:
     power: int
 
 
-def echoes(quotient: DelayedQuotient, last: arb, most: int = MOST_POWERS) -> list[Echo] | None:
+def echoes(quotient: DelayedQuotient, last: arb) -> list[Echo]:
     """Return the expansion up to a time [s], in order, at the current precision.
 
-    None where the output would come before the input; TooManyEchoesError where it is too long.
+    Raises TooManyEchoesError, and UncertifiedError: SF810 where the output would come before the input.
     """
     first = earliest(quotient.below, quotient.durations)
     below = {later(delay, first): quotient.durations.polynomial(p) for delay, p in quotient.below.items()}
@@ -98,21 +78,33 @@ def echoes(quotient: DelayedQuotient, last: arb, most: int = MOST_POWERS) -> lis
         numerator = sum((p * leading ** (power - m) for p, m in parts), arb_poly([0]))
         return None if numerator.degree() < 0 else (numerator, power)
 
+    def followed(own: tuple[arb_poly, int], p: arb_poly) -> tuple[arb_poly, int]:
+        return -(own[0] * p), own[1] + 1
+
     begun = {
         later(delay, first): (quotient.durations.polynomial(p), 1) for delay, p in quotient.above.items()
     }
-    if any(delay and quotient.durations.seconds(delay) < 0 for delay in begun):
-        return None
+    check_order(begun, quotient.durations)
     found: list[Echo] = []
     powers = 0
-    for delay, (numerator, power) in arriving(
-        begun, below, joined, lambda own, p: (-(own[0] * p), own[1] + 1), quotient.durations, last
-    ):
+    for delay, (numerator, power) in arriving(begun, below, joined, followed, quotient.durations, last):
         found.append(Echo(delay, numerator, power))
         powers += power if leading.degree() else 0
-        if powers > most:
+        if powers > EFFORT.powers:
             raise TooManyEchoesError
     return found
+
+
+def check_order(begun: Iterable[Delay], durations: Durations) -> None:
+    """Raise UncertifiedError: SF810 where something comes before the input."""
+    if any(delay and durations.seconds(delay) < 0 for delay in begun):
+        raise too_early()
+
+
+def too_early() -> UncertifiedError:
+    """Return what is wrong where something comes before the input."""
+    message, hint = "the output would come before the input", "a delay in a denominator foresees its input"
+    return UncertifiedError(Diagnostic("SF810", message, None, hint))
 
 
 Coming = TypeVar("Coming")
@@ -155,7 +147,7 @@ def arriving(
         if whole is None:
             continue
         count += 1
-        if count > MOST_ECHOES:
+        if count > EFFORT.echoes:
             raise TooManyEchoesError
         yield delay, whole
         for more, factor in below.items():
@@ -165,76 +157,29 @@ def arriving(
 
 def earliest(below: Iterable[Delay], durations: Durations) -> Delay:
     """Return the shortest delay of a denominator; a negative one is a growing exponential."""
-    with precision(TIE_BITS):
+    with precision(EFFORT.tie_bits):
         return min(below, key=lambda delay: durations.seconds(delay).mid())
 
 
-def echoed(
-    quotient: DelayedQuotient, integrations: int, times: SampleTimes, digits: int, most: int = MOST_POWERS
-) -> Sampled | None:
-    """Return the response at one precision, from poles of so many digits; None where it cannot be told.
-
-    Where only poles that are not told apart stand in the way, more digits may help.
-    """
+def echoed(quotient: DelayedQuotient, integrations: int, times: SampleTimes, digits: int) -> Sampled | None:
+    """Return the response at one precision, from poles of so many digits; None where these may be too few."""
     first = earliest(quotient.below, quotient.durations)
     leading = quotient.durations.exact(quotient.below[first])
     poles = find_polynomial_roots(RootProblem(((leading, 1),)), digits) if leading.degree else ()
     bits = max((root.working_bits() for root in poles), default=0) + bits_for_digits(digits)
     with precision(bits):
         seconds = times.enclosed()
-        last = seconds[-1] if seconds else arb(0)
-        expansion = echoes(quotient, last, most)
-        if expansion is None:
-            return None
         below = acb_poly(quotient.durations.polynomial(quotient.below[first]))
         total = Gathered(seconds)
-        for echo in expansion:
+        for echo in echoes(quotient, seconds[-1] if seconds else arb(0)):
             spend()
-            part = _part(echo, below)
             delay = quotient.durations.seconds(echo.delay)
-            terms = terms_of_echo(echo, below, poles, integrations, last, digits)
+            terms = terms_of_echo(echo, below, poles, integrations)
             if terms is None:
                 return None
-            start = total.start(delay)
-            values = values_of(terms, times, start, delay)
-            total.add(delay, *at_infinity(part, integrations), values, is_late=bool(echo.delay))
-        return replace(total.sampled, method="echoes")
-
-
-class Gathered:
-    """The sum of what has come by each time [s]."""
-
-    def __init__(self, seconds: Sequence[arb]) -> None:
-        self._seconds = seconds
-        self._values = [arb(0)] * len(seconds)
-        self._impulses: list[ImpulseAt] = []
-        self._jumps: list[JumpAt] = []
-        self._at_jumps: set[int] = set()
-
-    def start(self, delay: arb) -> int:
-        """Return the number of the first time that may lie after a delay."""
-        return next((i for i, t in enumerate(self._seconds) if not t < delay), len(self._seconds))
-
-    def add(
-        self, delay: arb, weights: Sequence[arb], height: arb, values: Iterable[arb], *, is_late: bool
-    ) -> None:
-        """Add what comes after a delay: weights of impulses, a jump, and values from then on."""
-        self._impulses += [ImpulseAt(delay, k, w) for k, w in enumerate(weights) if not w.contains(0)]
-        if is_late and not height.contains(0):
-            self._jumps.append(JumpAt(delay, height))
-        for i, value in enumerate(values, self.start(delay)):
-            if is_late and not self._seconds[i] > delay:
-                self._values[i] = self._values[i] + value.union(arb(0))
-                self._at_jumps |= set() if height == 0 else {i}
-            else:
-                self._values[i] = self._values[i] + value
-
-    @property
-    def sampled(self) -> Sampled:
-        """All of it."""
-        return Sampled(
-            tuple(self._values), tuple(self._impulses), tuple(self._jumps), frozenset(self._at_jumps)
-        )
+            values = values_of(terms, times, total.start(delay), delay)
+            total.add(delay, *at_infinity(_part(echo, below), integrations), values, is_late=bool(echo.delay))
+        return total.sampled("echoes")
 
 
 def _part(echo: Echo, leading: acb_poly) -> EnclosedQuotient:
@@ -242,12 +187,8 @@ def _part(echo: Echo, leading: acb_poly) -> EnclosedQuotient:
 
 
 def terms_of_echo(
-    echo: Echo, leading: acb_poly, poles: Sequence[Root], integrations: int, last: arb, digits: int
+    echo: Echo, leading: acb_poly, poles: Sequence[Root], integrations: int
 ) -> list[ExponentialTerm] | None:
     """Return one rational function as exponentials of the time from its delay on; ``leading`` is D_0."""
-    part = _part(echo, leading)
     repeated = [replace(root, multiplicity=root.multiplicity * echo.power) for root in poles]
-    found = partial_fractions(part, repeated, integrations)
-    if found is not None:
-        return found
-    return power_series_terms(part, integrations, last, bits_for_digits(digits))
+    return partial_fractions(_part(echo, leading), repeated, integrations)

@@ -14,9 +14,11 @@ from symflex.errors import Diagnostic, UsageError
 from symflex.roots.root import RootDecimals, decimals
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import numpy.typing as npt
 
-    from symflex.analysis.time_response.modal import PartialSum
+    from symflex.analysis.time_response.sampled import ImpulseAt, JumpAt, PartialSum
 
 SCHEMA = "symflex.respond/1"
 INTEGRATIONS = {"impulse": 0, "step": 1, "ramp": 2}
@@ -27,23 +29,11 @@ LARGEST_POWER = 100_000
 LARGEST = arb(10) ** LARGEST_POWER
 """Values beyond it are refused: their decimals take minutes, and nobody reads them."""
 SHORTER = "ask for a shorter time"
-
-
-@dataclass(frozen=True, slots=True)
-class ImpulseAt:
-    """An impulse in a response, or a derivative of one: it has a weight, and no value."""
-
-    time: arb  # [s]
-    order: int  # 0 for an impulse, 1 for its derivative, and so on
-    weight: arb  # enclosure, in the output's unit times seconds to the power of order + 1
-
-
-@dataclass(frozen=True, slots=True)
-class JumpAt:
-    """A time at which a response jumps, a front that arrives; what rises is the value."""
-
-    time: arb  # [s]
-    height: arb  # of the value after it over that before
+ROWS = 21
+"""Of the table; all points are in the JSON and in files."""
+SHOWN_DIGITS = 17
+SHORT_DIGITS = 6
+IMPULSES = ("an impulse", "the derivative of an impulse")
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +72,8 @@ class EnclosedResponse:
         The proved sum over modes that it is, at any time, where it was found so.
     method : str
         What found it, such as ``partial fractions`` or ``passive modes``; empty where nothing is to be found.
+    refused : tuple of str
+        Where it is not certified, the ways that would prove it, and why each does not answer.
     """
 
     tf: str
@@ -97,6 +89,7 @@ class EnclosedResponse:
     shaper: str | None = None
     modes: PartialSum | None = field(default=None, repr=False)
     method: str = ""
+    refused: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         huge = next(
@@ -171,3 +164,47 @@ class EnclosedResponse:
         told = [self.told(y) for y in self.enclosures]
         rows = [f"{t!r},{d.re},{d.radius}" for t, d in zip(self.times.tolist(), told, strict=True)]
         return "\n".join([*heads, "time_s,value,radius", *rows]) + "\n"
+
+
+def response_text(found: EnclosedResponse, notes: Sequence[str] = ()) -> str:
+    """Return a response as the command line prints it, with notes between its head and its table."""
+    unit = f" [{found.unit}]" if found.unit else ""
+    trust = "certified" if found.certified else f"NOT CERTIFIED: {found.reason}"
+    lines = [f"{found.tf}   {found.title}{unit}, {trust}", *(f"  not by {why}" for why in found.refused), ""]
+    if found.impulses:
+        lines += [f"  {_impulse(found, impulse)}" for impulse in found.impulses[:ROWS]]
+        lines += _more(found.impulses)
+    if found.jumps:
+        lines += [f"  jumps by {_short(j.height)} at {_short(j.time)} s" for j in found.jumps[:ROWS]]
+        lines += _more(found.jumps)
+    lines += [f"  {note}" for note in notes]
+    lines += [""] if found.impulses or found.jumps or notes else []
+    count = len(found.enclosures)
+    step = max(1, -(-(count - 1) // (ROWS - 1)))
+    rows = [("t [s]", "value", "radius")]
+    for i in range(0, count, step):
+        rows.append((f"{found.times[i]:.6g}", *_told(found.enclosures[i], found.digits)))
+    widths = [max(len(row[k]) for row in rows) for k in range(3)]
+    lines += ["  " + "  ".join(c.rjust(w) for c, w in zip(row, widths, strict=True)) for row in rows]
+    if step > 1:
+        lines += ["", f"  every {step} of {count} points; --json and -o FILE.csv have them all"]
+    return "\n".join(lines)
+
+
+def _told(ball: arb, digits: int) -> tuple[str, str]:
+    told = decimals(ball, arb(0), min(digits, SHOWN_DIGITS)).told
+    return told.re, told.radius
+
+
+def _short(ball: arb) -> str:
+    return decimals(ball, arb(0), SHORT_DIGITS).told.re
+
+
+def _impulse(found: EnclosedResponse, impulse: ImpulseAt) -> str:
+    order = impulse.order
+    what = IMPULSES[order] if order < len(IMPULSES) else f"derivative {order} of an impulse"
+    return f"besides, at {_short(impulse.time)} s, {what} of weight {_short(impulse.weight)}"
+
+
+def _more(shown: Sequence[object]) -> list[str]:
+    return [f"  and {len(shown) - ROWS} more"] if len(shown) > ROWS else []

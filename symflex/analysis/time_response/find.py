@@ -1,38 +1,47 @@
 """The response of a transfer function to an input of unit size: which way to find it, and how precisely.
 
-Input: a bound transfer function, the name of an input, times. Output: a :class:`EnclosedResponse`.
+Input: a bound transfer function, the name of an input, times. Output: an :class:`EnclosedResponse`.
+
+Ways are asked in the order of :data:`WAYS`, and the first that answers is taken. What others refused for is
+told of a response that is only estimated:
+
+    a servo about a beam without loss    lossless modes: waves lose energy
+                                         lossy modes: some waves lose nothing in their material
+                                         passive modes: something in the model may supply energy
+                                         estimated modes answer
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
-from symflex.algebra import Factored, KernelTable
-from symflex.analysis.time_response.delayed_decay import settling_echoes
-from symflex.analysis.time_response.delayed_terms import DelayedQuotient, delayed_quotient
-from symflex.analysis.time_response.echoes import FEW_POWERS, MOST_POWERS, Sampled, TooManyEchoesError, echoed
-from symflex.analysis.time_response.enclosed_response import (
-    INTEGRATIONS,
-    EnclosedResponse,
-    ImpulseAt,
-    JumpAt,
-)
-from symflex.analysis.time_response.exponentials import values_of
-from symflex.analysis.time_response.horizon import default_until, until_many_turns
-from symflex.analysis.time_response.looped_modes import looped_modes
-from symflex.analysis.time_response.modal import estimated, proved_modes
+from symflex.algebra import Factored, KernelTable, degree_in
+from symflex.analysis.time_response.echoes import TooManyEchoesError, echoed, too_early
+from symflex.analysis.time_response.effort import EFFORT
+from symflex.analysis.time_response.enclosed_response import INTEGRATIONS, EnclosedResponse
+from symflex.analysis.time_response.estimated_modes import estimated
+from symflex.analysis.time_response.modal import BOUNDS, summed
 from symflex.analysis.time_response.partial_fractions import (
     EnclosedQuotient,
     at_infinity,
     partial_fractions,
-    power_series_terms,
+    values_of,
 )
-from symflex.analysis.time_response.sample_times import SampleTimes
+from symflex.analysis.time_response.sample_times import SampleTimes, default_until
+from symflex.analysis.time_response.sampled import (
+    Asked,
+    Gathered,
+    ImpulseAt,
+    JumpAt,
+    Refused,
+    Sampled,
+    is_precise,
+)
 from symflex.analysis.time_response.wave_echoes import wave_quotient
 from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
@@ -51,17 +60,21 @@ from symflex.transfer.balls import at_centre
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from symflex.algebra import Kernel
     from symflex.analysis.input_shaping import InputShaper
+    from symflex.analysis.time_response.function_size import ModesBound
     from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 
-GUARD_DIGITS = 6
-SHAPED_DIGITS = 2
-"""Of responses that a shaper sums, beyond those of the sum, which may be smaller."""
-ATTEMPTS = 7
-"""Doublings of the digits: poles that lie together to 10^-1000 are as good as a double one."""
-MOST_DIGITS = 20_000
-ENOUGH_DIGITS = 8
-"""Of modes, where many echoes would give more, but take longer."""
+    Plan = Callable[[], "Sampled | Refused"]
+    Delays = list[tuple[Kernel, int]]  # kernels, and how often each is taken
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """One way of finding a response."""
+
+    name: str
+    applies: Callable[[Asked], Plan | Refused]  # what finds it, or why nothing is tried
 
 
 def time_response(
@@ -81,10 +94,9 @@ def time_response(
     UsageError
         SF902 for an unknown input, or a shaper with fewer digits.
     ModelError
-        SF813 for large networks with delays, and impulses of beams in loops with delays that could only be
-        estimated.
+        SF813 for large networks with delays.
     UncertifiedError
-        SF810 when poles cannot be told apart and the time is too long for a power series.
+        SF810 when poles cannot be told apart, or modes do not say what the response is.
 
     Examples
     --------
@@ -101,25 +113,28 @@ def time_response(
         raise UsageError(Diagnostic("SF902", f"there is no input '{kind[:64]}'", None, hint))
     if shaper is not None:
         return _shaped(bound, kind, times, digits, shaper)
-    if isinstance(bound, BoundNested):
-        found, reason = _of_network(bound, INTEGRATIONS[kind], times, digits)
+    integrations = INTEGRATIONS[kind]
+    if bound.is_zero or not len(times):
+        found = Sampled((arb(0),) * len(times))
+    elif isinstance(bound, BoundNested) and bound.is_distributed:
+        found = _of_network(bound, integrations, times)
     else:
-        bound = without_lengths_of_zero(bound)
-        found, reason = _found(bound, INTEGRATIONS[kind], times, digits)
-    unit, certified = bound.source.output.unit, reason is None
+        written = lumped(bound) if isinstance(bound, BoundNested) else without_lengths_of_zero(bound)
+        found = _answer(Asked(written, integrations, times, digits))
     return EnclosedResponse(
         bound.name,
         kind,
-        unit,
+        bound.source.output.unit,
         times.seconds,
         found.values,
         found.impulses,
         found.jumps,
-        certified,
-        reason,
+        found.reason is None,
+        found.reason,
         digits,
-        modes=found.modes if certified else None,
+        modes=found.modes,
         method=found.method,
+        refused=found.refused,
     )
 
 
@@ -132,32 +147,19 @@ def responses_by_default(
 ) -> list[EnclosedResponse]:
     """Return responses at evenly spaced times, where nobody says up to which.
 
-    That is until the slowest motion has died away; where echoes in a loop are too many by then, for fifty
-    turns of it. Raises as :func:`time_response` does.
+    That is until the slowest motion has died away. Raises as :func:`time_response` does.
     """
-
-    def over(until: float) -> list[EnclosedResponse]:
-        times = SampleTimes.evenly(Fraction(until), points)
-        return [time_response(bound, kind, times, digits, shaper) for bound in bounds]
-
     for bound in bounds:
         check_causal(bound.source.model, "a response in time")
-    until = max(map(default_until, bounds))
-    try:
-        return over(until)
-    except UncertifiedError as error:
-        shorter = min(map(until_many_turns, bounds))
-        if error.diagnostics[0].code != "SF810" or not shorter < until:
-            raise
-        spend()
-        return over(shorter)
+    times = SampleTimes.evenly(Fraction(max(map(default_until, bounds))), points)
+    return [time_response(bound, kind, times, digits, shaper) for bound in bounds]
 
 
 def _shaped(
     bound: AnyBoundFunction, kind: str, times: SampleTimes, digits: int, shaper: InputShaper
 ) -> EnclosedResponse:
     """Return the sum of the responses to the impulses of a shaper, each from its own moment on."""
-    inner = digits + SHAPED_DIGITS
+    inner = digits + EFFORT.shaped_digits
     accuracy = min(int(t.rel_accuracy_bits()) for t, _ in shaper.impulses[1:])
     if accuracy < bits_for_digits(inner):
         message = f"the shaper has {shaper.digits} digits, too few for a response with {digits}"
@@ -195,143 +197,177 @@ def _shaped(
     )
 
 
-def _of_network(
-    bound: BoundNested, integrations: int, times: SampleTimes, digits: int
-) -> tuple[Sampled, str | None]:
-    """Return the response of a network that nobody writes out, and what is not proved of it."""
-    if bound.is_zero or not len(times):
-        return Sampled((arb(0),) * len(times)), None
+def _of_network(bound: BoundNested, integrations: int, times: SampleTimes) -> Sampled:
+    """Return the response of a network with waves that nobody writes out."""
     propagation = equations_of(bound).propagation
     laws = () if propagation is None else propagation.table.dispersions
     if any(law.kind == "exponential" for law in laws):
         message = f"{bound.name} is of a large network with delays: its response in time is not known"
         raise ModelError(Diagnostic("SF813", message, None, "take 'symflex rational' of it first"))
-    if not bound.is_distributed:
-        return _found(lumped(bound), integrations, times, digits)
     return estimated(bound, integrations, times)
 
 
-def _found(
-    bound: BoundTransferFunction, integrations: int, times: SampleTimes, digits: int
-) -> tuple[Sampled, str | None]:
-    """Return the response, and what is not proved of it."""
-    if bound.is_zero or not len(times):
-        return Sampled((arb(0),) * len(times)), None
-    if not bound.is_distributed:
-        return _of_lumped(bound, integrations, times, digits), None
-    quotient = delayed_quotient(bound)
-    if quotient is not None:
-        known = _of_quotient(bound, quotient, integrations, times, digits)
-        if known is not None:
-            return known, None
-    waves = None if quotient is not None else wave_quotient(bound)
-    if waves is not None:
+def _answer(asked: Asked) -> Sampled:
+    """Return what the first way finds that answers, and why those before it do not."""
+    refused: dict[str, list[str]] = {}
+    for way in WAYS:
+        plan = way.applies(asked)
         try:
-            return _of_delays(bound, waves.echoed, integrations, times, digits), None
-        except (TooManyEchoesError, UncertifiedError):
-            spend()
-    if any(law.kind == "exponential" for law in bound.kernels.dispersions):
-        late = _without_delay(bound) if quotient is None else None
-        if late is not None:
-            return _later(*late, integrations, times, digits)
-        if quotient is not None or waves is not None:
-            raise _too_many(bound)
-        try:
-            looped = looped_modes(bound, integrations, times, digits)
+            found = plan if isinstance(plan, Refused) else plan()
         except TooManyEchoesError:
-            raise _too_many(bound) from None
-        if looped is not None:
-            return looped
-        message = f"{bound.name} has waves that spread in a loop with a delay: this response is not known"
-        raise ModelError(
-            Diagnostic("SF813", message, None, "ask for a step, or take 'symflex rational' of the beam first")
-        )
-    proved = proved_modes(bound, integrations, times, digits)
-    return (proved.sampled, None) if proved is not None else estimated(bound, integrations, times)
+            found = Refused("too many echoes arrive by then")
+        if isinstance(found, Sampled):
+            reasons = tuple(f"{', '.join(names)}: {reason}" for reason, names in refused.items())
+            return replace(found, refused=found.refused or reasons) if found.reason else found
+        if found.reason:
+            refused.setdefault(found.reason, []).append(way.name)
+        spend()
+    message = f"poles of {asked.bound.name} cannot be told apart: its response is not known"
+    raise UncertifiedError(Diagnostic("SF810", message, None, "ask for a shorter time, or fewer digits"))
 
 
-def _of_quotient(
-    bound: BoundTransferFunction,
-    quotient: DelayedQuotient,
-    integrations: int,
-    times: SampleTimes,
-    digits: int,
-) -> Sampled | None:
-    """Return a response as echoes, or as few terms or modes; None where all of these are many."""
-    has_delays = any(law.kind == "exponential" for law in bound.kernels.dispersions)
-    few, many = (partial(echoed, quotient, most=most) for most in (FEW_POWERS, MOST_POWERS))
-    late = partial(settling_echoes, bound, quotient)
-    for expanded in (few, late, many) if has_delays else (few, many):
-        try:
-            return _of_delays(bound, expanded, integrations, times, digits)
-        except TooManyEchoesError:
-            spend()
-        except UncertifiedError:
-            if expanded is not late:
-                raise
-        if expanded is few and not has_delays:
-            modes = proved_modes(bound, integrations, times, digits)
-            if modes is not None and is_precise(modes.sampled.values, ENOUGH_DIGITS):
-                return modes.sampled
-    return None
+def _by_partial_fractions(asked: Asked) -> Plan | Refused:
+    return Refused() if asked.bound.is_distributed else partial(_of_lumped, asked)
 
 
-def _too_many(bound: BoundTransferFunction) -> UncertifiedError:
-    message = f"too many echoes of the delays of {bound.name} arrive by then"
-    return UncertifiedError(Diagnostic("SF810", message, None, "ask for a shorter time"))
+def _by_echoes(asked: Asked) -> Plan | Refused:
+    if asked.quotient is None:
+        return Refused("some waves change their form")
+    return partial(_closely, asked, partial(echoed, asked.quotient, asked.integrations))
 
 
-def _without_delay(bound: BoundTransferFunction) -> tuple[BoundTransferFunction, Callable[[], arb]] | None:
-    """Return a function without the delay that it is multiplied by, and that [s]; None where delays are else.
+def _by_wave_echoes(asked: Asked) -> Plan | Refused:
+    if not asked.bound.is_distributed or asked.quotient is not None:
+        return Refused()
+    waves = wave_quotient(asked.bound)
+    if waves is None:
+        return Refused("some waves have no front")
+    return partial(_closely, asked, partial(waves.echoed, asked.integrations))
 
-    So it is with a sensor that is late: ``exp(-s T) w(l)/F``.
+
+def _by_delays(asked: Asked) -> Plan | Refused:
+    if not asked.has_delays or asked.quotient is not None:
+        return Refused()
+    parts = _taken_apart(asked.bound)
+    return partial(_later, asked, parts) if any(delay for delay, _ in parts) else Refused()
+
+
+def _by_modes(
+    find: Callable[[BoundTransferFunction, int], tuple[ModesBound, int] | Refused], asked: Asked
+) -> Plan | Refused:
+    if asked.has_delays or not asked.bound.is_distributed:
+        return Refused("there is a delay in a loop")
+    found = find(asked.bound, asked.integrations)
+    return found if isinstance(found, Refused) else partial(_summed, asked, *found)
+
+
+def _by_estimate(asked: Asked) -> Plan | Refused:
+    if not asked.bound.is_distributed:
+        return Refused()
+    return partial(estimated, asked.bound, asked.integrations, asked.times)
+
+
+WAYS = (
+    Way("partial fractions", _by_partial_fractions),
+    Way("echoes", _by_echoes),
+    Way("wave echoes", _by_wave_echoes),
+    Way("parts that come later", _by_delays),
+    *(Way(name, partial(_by_modes, find)) for name, find in BOUNDS.items()),
+    Way("estimated modes", _by_estimate),
+)
+"""All ways, in the order in which they are asked: exact ones first, then those that take the least time."""
+
+
+def _summed(asked: Asked, bounding: ModesBound, integrations: int) -> Sampled | Refused:
+    found = summed(bounding, integrations, asked.times, asked.digits)
+    return Refused("what modes add does not fall off fast enough") if found is None else found.sampled
+
+
+def _closely(asked: Asked, find: Callable[[SampleTimes, int], Sampled | None]) -> Sampled | Refused:
+    """Return a response from ever more digits and sharper times, until it is precise."""
+    times, wanted = asked.times, asked.digits + EFFORT.guard_digits
+    for _ in range(EFFORT.attempts):
+        found = find(times, wanted)
+        if found is not None:
+            apart = [y for i, y in enumerate(found.values) if i not in found.at_jumps]
+            if is_precise(apart, asked.digits) and (times.is_exact or not found.at_jumps):
+                return found
+            times = times if times.is_exact else times.one_by_one()
+        wanted *= 2
+    return Refused("the poles between the delays lie too close together")
+
+
+def _taken_apart(bound: BoundTransferFunction) -> list[tuple[Delays, BoundTransferFunction]]:
+    """Return a function as parts that come after delays, each as often as told; delays of loops stay in them.
+
+    So it is with sensors that are late: ``(1 + exp(-s T)) w(l)/F``.
     """
-    table, ratio, num = bound.kernels, bound.ratio, bound.num
-    ring = ratio.ring
-    delays = [k for k in table.kernels if k.dispersion.kind == "exponential"]
-    shares = [(k, ratio.exponent_of(ring.generator(k.generator))) for k in delays]
-    for kernel, exponent in shares:
-        factor = Factored.generator(ring, kernel.generator) ** exponent
-        ratio, num = ratio / factor, num / factor
-        if exponent < 0 or any(part.depends_on(kernel.generator) for part in (ratio, num, bound.den)):
-            return None
+    ring, table = bound.ratio.ring, bound.kernels
+    delays = {ring.index[k.generator]: k for k in table.kernels if k.dispersion.kind == "exponential"}
+    if any(bound.den.exponent_of(ring.generator(k.generator)) > 0 for k in delays.values()):
+        raise too_early()
+    plain, mixed = Factored(ring, bound.num.unit), ring.constant(1)
+    for factor, exponent in bound.num.factors:
+        if exponent > 0 and any(degree_in(factor, place) for place in delays):
+            mixed = mixed * factor**exponent
+        else:
+            plain = plain * Factored.polynomial(ring, factor) ** exponent
+    parts: dict[tuple[int, ...], dict[tuple[int, ...], int]] = {}
+    for monomial, number in mixed.terms():
+        kept = tuple(0 if place in delays else int(e) for place, e in enumerate(monomial))
+        parts.setdefault(tuple(int(monomial[place]) for place in delays), {})[kept] = int(number)
+    found = []
+    for exponents, terms in parts.items():
+        num = plain * Factored.polynomial(ring, ring.context.from_dict(terms))
+        ratio = num / bound.den
+        out = [k for k in delays.values() if not ratio.depends_on(k.generator)]
+        kernels = tuple(k for k in table.kernels if k not in out)
+        laws = tuple(law for law in table.dispersions if any(k.dispersion is law for k in kernels))
+        part = replace(
+            bound,
+            ratio=ratio,
+            parts=(num, bound.den),
+            kernels=KernelTable(laws, kernels),
+            hidden=(),
+            is_of_model=bound.is_of_model and len(parts) == 1,
+        )
+        found.append(([(k, e) for k, e in zip(delays.values(), exponents, strict=True) if e], part))
+    return found
 
-    def seconds() -> arb:
-        evaluator = bound.kernel_values()
+
+def _later(asked: Asked, parts: list[tuple[Delays, BoundTransferFunction]]) -> Sampled:
+    """Return the sum of responses that come after delays."""
+    bits, evaluator = bits_for_digits(2 * asked.digits), asked.bound.kernel_values()
+    found = Sampled(())
+    with precision(bits):
+        total = Gathered(asked.times.enclosed())
         values = {"s": acb(1), **{name: acb(c) for name, c in evaluator.constants.items()}}
-        total = arb(0)
-        for kernel, exponent in shares:
-            rate, length = (evaluator.value(x, values) for x in (kernel.dispersion.shift, kernel.length))
-            total += exponent * at_centre(rate * length).real
-        return total
-
-    laws = tuple(law for law in table.dispersions if law.kind != "exponential")
-    kernels = tuple(k for k in table.kernels if k not in delays)
-    undelayed = replace(bound, ratio=ratio, parts=(num, bound.den), kernels=KernelTable(laws, kernels))
-    return undelayed, seconds
-
-
-def _later(
-    undelayed: BoundTransferFunction,
-    delay: Callable[[], arb],
-    integrations: int,
-    times: SampleTimes,
-    digits: int,
-) -> tuple[Sampled, str | None]:
-    """Return a response that comes a delay later."""
-    with precision(bits_for_digits(2 * digits)):
-        wait = delay()
-        start, later = times.since(wait)
-        instants = times.enclosed(start)
-    found, reason = _found(undelayed, integrations, later, digits)
-    values = [y if t > wait else y.union(arb(0)) for t, y in zip(instants, found.values, strict=False)]
-    return Sampled((*[arb(0)] * start, *values), method=found.method), reason
+        waits = []
+        for delays, _ in parts:
+            wait = arb(0)
+            for kernel, exponent in delays:
+                rate, length = (evaluator.value(x, values) for x in (kernel.dispersion.shift, kernel.length))
+                wait += exponent * at_centre(rate * length).real
+            waits.append(wait)
+    reason: str | None = None
+    refused: tuple[str, ...] = ()
+    for wait, (_, part) in zip(waits, parts, strict=True):
+        with precision(bits):
+            start, later = asked.times.since(wait)
+        if len(later):
+            found = _answer(replace(asked, bound=part, times=later))
+            reason, refused = reason or found.reason, refused or found.refused
+            with precision(bits):
+                own = found.values[: len(asked.times) - start]
+                total.add(wait, (), arb(0), own, is_late=bool(wait > 0))
+    return replace(total.sampled(found.method), reason=reason, refused=refused)
 
 
-def _of_lumped(bound: BoundTransferFunction, integrations: int, times: SampleTimes, digits: int) -> Sampled:
+def _of_lumped(asked: Asked) -> Sampled | Refused:
+    bound, integrations, times, digits = asked.bound, asked.integrations, asked.times, asked.digits
     problem = problem_of(bound, [(f, -e) for f, e in bound.ratio.factors if e < 0])
-    wanted = digits + GUARD_DIGITS
-    for attempt in range(ATTEMPTS):
+    wanted = digits + EFFORT.guard_digits
+    for _ in range(EFFORT.attempts):
         spend()
         poles = find_polynomial_roots(problem, wanted)
         bits = max((root.working_bits() for root in poles), default=0) + bits_for_digits(wanted)
@@ -339,61 +375,20 @@ def _of_lumped(bound: BoundTransferFunction, integrations: int, times: SampleTim
             last = arb(float(times.seconds[-1]))
             turned = max((root.natural_frequency() * last for root in poles), default=arb(0), key=arb.mid)
             quotient = EnclosedQuotient.of(bound, bits)
-            terms, method = partial_fractions(quotient, poles, integrations), "partial fractions"
-            if terms is None and attempt:
-                method = "power series"
-                terms = power_series_terms(quotient, integrations, last, bits_for_digits(wanted))
+            terms = partial_fractions(quotient, poles, integrations)
             if terms is not None:
                 weights, _ = at_infinity(quotient, integrations)
                 impulses = tuple(ImpulseAt(arb(0), k, w) for k, w in enumerate(weights) if w != 0)
                 # Residues may need all bits that poles have; sums of exponentials need those of their result.
                 with precision(bits_for_digits(wanted + decimal_exponent(exact_fraction(turned + 1)) + 1)):
-                    found = Sampled(tuple(values_of(terms, times)), impulses, method=method)
+                    found = Sampled(tuple(values_of(terms, times)), impulses, method="partial fractions")
                 if is_precise(found.values, digits):
                     return found
                 if not times.is_exact:
                     times = times.one_by_one()
-        wanted = max(2 * wanted, digits + GUARD_DIGITS + decimal_exponent(exact_fraction(turned + 1)) + 1)
-        if wanted > MOST_DIGITS:
+        wanted = max(
+            2 * wanted, digits + EFFORT.guard_digits + decimal_exponent(exact_fraction(turned + 1)) + 1
+        )
+        if wanted > EFFORT.most_digits:
             break
-    raise _unknown(bound, digits)
-
-
-def _of_delays(
-    bound: BoundTransferFunction,
-    echoes: Callable[[int, SampleTimes, int], Sampled | None],
-    integrations: int,
-    times: SampleTimes,
-    digits: int,
-) -> Sampled:
-    wanted = digits + GUARD_DIGITS
-    for _ in range(ATTEMPTS):
-        found = echoes(integrations, times, wanted)
-        if found is not None:
-            apart = [y for i, y in enumerate(found.values) if i not in found.at_jumps]
-            if is_precise(apart, digits) and (times.is_exact or not found.at_jumps):
-                return found
-            if not times.is_exact:
-                times = times.one_by_one()
-        wanted *= 2
-    message = f"the poles between the delays of {bound.name} lie too close together"
-    raise UncertifiedError(Diagnostic("SF810", message, None, "ask for a shorter time"))
-
-
-def _unknown(bound: BoundTransferFunction, digits: int) -> UncertifiedError:
-    message = f"poles of {bound.name} cannot be told apart: its response is not known to {digits} digits"
-    return UncertifiedError(Diagnostic("SF810", message, None, "ask for a shorter time, or fewer digits"))
-
-
-def is_precise(values: Sequence[arb], digits: int) -> bool:
-    """Tell whether all balls are narrow beside the largest value.
-
-    Examples
-    --------
-    >>> is_precise([arb(0, 1e-13), arb(1)], 12), is_precise([arb(0, 1e-3), arb(1)], 12)
-    (True, False)
-    """
-    if not all(map(arb.is_finite, values)):
-        return False
-    largest = max(map(abs, map(arb.mid, values)), default=arb(0))
-    return bool(max(map(arb.rad, values), default=arb(0)) <= largest * arb(10) ** -digits)
+    return Refused("poles cannot be told apart")

@@ -20,9 +20,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from flint import arb, arb_poly
 
-from symflex.analysis.time_response.enclosed_response import EnclosedResponse, ImpulseAt, JumpAt
+from symflex.analysis.time_response.enclosed_response import EnclosedResponse
 from symflex.analysis.time_response.find import time_response
 from symflex.analysis.time_response.sample_times import MOST_TIMES, SampleTimes
+from symflex.analysis.time_response.sampled import ImpulseAt, JumpAt
 from symflex.errors import Diagnostic, UncertifiedError, UsageError
 from symflex.options import exact
 from symflex.roots.precision import precision
@@ -116,6 +117,7 @@ def forced_response(
         digits,
         ramp.shaper,
         method=ramp.method,
+        refused=ramp.refused,
     )
 
 

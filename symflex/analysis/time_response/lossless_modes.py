@@ -23,34 +23,31 @@ off on the paths like a power of t, and with it what lies beyond them (Jordan's 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from flint import acb, arb
 
 from symflex.algebra import Factored, degree_in
-from symflex.analysis.time_response.exponentials import ExponentialTerm
-from symflex.budget import entered_budget, spend
+from symflex.analysis.time_response.effort import EFFORT
+from symflex.analysis.time_response.function_size import ModesBound, Rest
+from symflex.analysis.time_response.partial_fractions import ExponentialTerm
+from symflex.analysis.time_response.sampled import Refused
+from symflex.budget import spend
 from symflex.roots.axes.axis_function import IMAGINARY, AxisFunction, bits_of
 from symflex.roots.axes.harmonic_sum import UNITS, lossless_function
-from symflex.roots.distributed.side import Side
-from symflex.roots.engines import LOSSLESS
 from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.precision import precision
-from symflex.roots.region import Modes
 
 if TYPE_CHECKING:
     from symflex.algebra.exponential_sum import Polynomial
+    from symflex.analysis.time_response.sample_times import SampleTimes
     from symflex.roots import Root
     from symflex.transfer import BoundTransferFunction
 
-CELLS = 360
-"""Balls that one turn is covered with."""
-PATHS = 24
-"""Thetas at which paths between poles are tried."""
-DEPTHS = 64
-"""Balls that a path is covered with."""
+BITS = 2 * bits_of(EFFORT.pole_digits)
+"""Of everything."""
 ANYWHERE = 0.7310585786
 """Turns of theta at which there is no root as a rule: the constant in front is read off there."""
 
@@ -103,8 +100,8 @@ class AxisFactor:
 
         Then the values over ``t^degree e^(turns abs(y))`` keep away from 0, too.
         """
-        for i in range(DEPTHS):
-            v = (arb(i).union(arb(i + 1))) / DEPTHS  # exp(-abs(y))
+        for i in range(EFFORT.depths):
+            v = (arb(i).union(arb(i + 1))) / EFFORT.depths  # exp(-abs(y))
             if self._across(theta, v, least).contains(0):
                 return False
         return True
@@ -146,24 +143,25 @@ class AxisFactor:
 
 
 @dataclass(frozen=True)
-class LosslessModes:
+class LosslessModes(ModesBound):
     """The modes of one function on the imaginary axis, with ``H = constant * exp(growth t) * factors``."""
 
-    bound: BoundTransferFunction
+    name: ClassVar = "lossless modes"
+    slow: ClassVar = EFFORT.axis_modes
+
+    function: BoundTransferFunction
     factors: tuple[AxisFactor, ...]
     rate: arb  # r of theta = t r
-    digits: int  # of poles
-    bits: int  # of everything
+
+    @property
+    def bound(self) -> BoundTransferFunction:
+        """The function."""
+        return self.function
 
     @property
     def poles(self) -> list[AxisFactor]:
         """The factors that have poles."""
         return [f for f in self.factors if f.exponent < 0 and f.turns]
-
-    @property
-    def falls_off(self) -> bool:
-        """Whether the function itself tends to 0 between its poles: then it is a sum over them alone."""
-        return sum(f.degree * f.exponent for f in self.factors) < 0
 
     @cached_property
     def growth(self) -> arb:
@@ -173,20 +171,22 @@ class LosslessModes:
     @cached_property
     def constant(self) -> acb:
         """What the product of all factors lacks to be the transfer function."""
-        with precision(self.bits):
+        with precision(BITS):
             t = 2 * arb.pi() * arb(ANYWHERE) / self.rate
-            value = self.bound.enclosed(self.bits)(acb(0, 2 * t * t))
+            value = self.bound.enclosed(BITS)(acb(0, 2 * t * t))
             for factor in self.factors:
-                value = value / factor.function.values(self.bits).value(t) ** factor.exponent
+                value = value / factor.function.values(BITS).value(t) ** factor.exponent
             return value / (self.growth * t).exp()
 
     def term(self, root: Root, integrations: int) -> ExponentialTerm | None:
-        """Return what a pole on the axis and its conjugate add to the response; None if it is not simple."""
-        with precision(self.bits):
+        """Return what a pole on the axis and its conjugate add; None if it is not simple, or off the axis."""
+        if not root.on_imaginary_axis:
+            return None
+        with precision(BITS):
             t = (root.im / 2).sqrt()
             found, steep = self.constant * (self.growth * t).exp(), 0
             for factor in self.factors:
-                values = factor.function.values(self.bits)
+                values = factor.function.values(BITS)
                 value = values.value(t)
                 if value.contains(0) and factor.exponent < 0:
                     value, steep = values.slope(t), steep - factor.exponent
@@ -196,38 +196,21 @@ class LosslessModes:
             found = 2 * found * acb(0, 4 * t) / s**integrations
             return ExponentialTerm(s, (found,)) if steep == 1 and found.is_finite() else None
 
-    def lowest(self, count: int) -> tuple[list[Root], float] | None:
-        """Return the poles of the lowest modes with positive frequency, and ln of a radius that holds all.
-
-        None where it is not proved that these are all, and on the axis.
-        """
-        side = Side(self.bound, self.bound.den, self.digits, entered_budget())
-        side.search(Modes(count))
-        if side.engine != LOSSLESS or not side.prove(Modes(count)).is_complete:
-            return None
-        if not all(root.on_imaginary_axis and root.certified for root in side.roots):
-            return None
-        return [root for root in side.roots if root.im > 0], side.reached
-
-    def rest(self, reached: float, integrations: int) -> arb | None:
-        """Return a bound of all modes with ln(abs(s)) beyond a radius together; None if none is found."""
-        with precision(self.bits):
+    def rest(self, reached: float, integrations: int, times: SampleTimes) -> Rest | None:
+        """Return a bound of all modes beyond a radius together."""
+        with precision(BITS):
             power = sum(f.degree * f.exponent for f in self.factors) + 1 - 2 * integrations
             if power >= -1 or not all(f.has_corner for f in self.poles):
                 return None
             least = (arb(reached).exp() / 2).sqrt()
-            if reached not in self._sizes:
-                self._sizes[reached] = self._size_beyond(least)
-            size = self._sizes[reached]
+            size = self._size_beyond(least)
+            if size is None:
+                return None
             turn = 2 * arb.pi() / self.rate
             # One turn may begin and end in the middle of a place.
             total = least**power + least ** (power + 1) / (turn * (-power - 1))
-            return None if size is None else (size / arb(2) ** integrations * total).upper()
-
-    @cached_property
-    def _sizes(self) -> dict[float, arb | None]:
-        """What was found of the modes beyond some radii: a step and its speed ask for the same."""
-        return {}
+            left = (size / arb(2) ** integrations * total).upper()
+            return Rest(left, (left,) * len(times))
 
     def _size_beyond(self, least: arb) -> arb | None:
         """Return how large all residues in a turn are together over a power of t, for all t beyond one."""
@@ -245,7 +228,7 @@ class LosslessModes:
 
     def _has_paths(self, least: arb) -> bool:
         """Tell whether paths pass between the poles on which no denominator comes close to 0."""
-        places = (2 * arb.pi() * k / PATHS for k in range(PATHS))
+        places = (2 * arb.pi() * k / EFFORT.paths for k in range(EFFORT.paths))
         return any(all(f.keeps_away_from_zero(theta, least) for f in self.poles) for theta in places)
 
     def _largest(self, factor: AxisFactor, least: arb) -> tuple[arb, int] | None:
@@ -253,9 +236,9 @@ class LosslessModes:
 
         None where the slope may vanish, or another factor that has poles.
         """
-        cell = 2 * arb.pi() / CELLS
+        cell = 2 * arb.pi() / EFFORT.cells
         largest, signs = arb(0), []
-        for k in range(CELLS):
+        for k in range(EFFORT.cells):
             spend()
             theta = cell * arb(k + 0.5, 0.5)
             value, slope = factor.around(theta, least)
@@ -275,36 +258,43 @@ class LosslessModes:
         return largest, sum(1 for a, b in zip(signs, signs[1:] + signs[:1], strict=True) if a and a != b)
 
 
-def lossless_modes(bound: BoundTransferFunction, digits: int) -> LosslessModes | None:
-    """Return the modes of a function, with poles of so many digits.
+def lossless_modes(bound: BoundTransferFunction, integrations: int) -> tuple[LosslessModes, int] | Refused:
+    """Return what bounds the modes of a function of beams without loss, of one length.
 
-    None where waves lose energy, or are of other kinds than bending, or the function grows faster than its
-    poles allow for.
+    A step of a velocity is an impulse of a displacement, and so a function over s is tried as well.
     """
+    modes = _modes_of(bound)
+    if isinstance(modes, Refused) and integrations:
+        s = Factored.generator(bound.ratio.ring, "s")
+        modes = _modes_of(replace(bound, ratio=bound.ratio / s, parts=(bound.num, bound.den * s)))
+        integrations -= 1
+    return modes if isinstance(modes, Refused) else (modes, integrations)
+
+
+def _modes_of(bound: BoundTransferFunction) -> LosslessModes | Refused:
     whole = _multiplied(bound)
-    bits = 2 * bits_of(digits)
     function = None if whole is None else KernelFunction(bound, whole)
     if whole is None or function is None or function.power != 1 or not (function.part / whole).is_one:
-        return None
-    found = lossless_function(function, bits)
+        return Refused("poles may be multiple")
+    found = lossless_function(function, BITS)
     if found is None:
-        return None
+        return Refused("waves lose energy")
     enclosures = found.enclosures
     if len(enclosures.rates) != 1 or enclosures.degrees[0] != 1:
-        return None
+        return Refused("waves are of other kinds than bending, or of several lengths")
     factors = []
-    with precision(bits):
+    with precision(BITS):
         for i, (terms, exponent) in enumerate(found.factors):
             on_axis = found.on_axis(i, IMAGINARY)
             waves = terms.turned(UNITS[IMAGINARY], enclosures.degrees).waves(1)
             if on_axis is None or not on_axis.waves or waves is None:
-                return None
+                return Refused("it is not real on the imaginary axis")
             fastest = max(wave.growth[0] for wave in waves)
             factors.append(AxisFactor(on_axis, exponent, enclosures.rates[0] * fastest))
-        modes = LosslessModes(bound, tuple(factors), enclosures.rates[0], digits, bits)
+        modes = LosslessModes(bound, tuple(factors), enclosures.rates[0])
         above = sum(f.turns * f.exponent for f in factors)
         if modes.growth > 0 or above > 0 or not modes.constant.is_finite():
-            return None
+            return Refused("it grows faster than its poles allow for")
     return modes
 
 

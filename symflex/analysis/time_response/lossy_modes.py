@@ -31,7 +31,9 @@ from typing import TYPE_CHECKING, ClassVar
 
 from flint import arb
 
-from symflex.analysis.time_response.function_size import BITS, Rest, SizeOfExponentials
+from symflex.analysis.time_response.effort import EFFORT
+from symflex.analysis.time_response.function_size import ZERO, BoundBySize, Rest, SizeOfExponentials
+from symflex.analysis.time_response.sampled import Refused
 from symflex.roots.distributed.far_out import SECTORS, TILTED, FunctionFarOut
 from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.precision import precision
@@ -52,21 +54,23 @@ INWARD = 1 - 1e-12
 
 
 @dataclass(frozen=True, eq=False)
-class LossyBound:
+class LossyBound(BoundBySize):
     """A transfer function that is about a power of s in the right half plane, and beyond, far from 0."""
+
+    name: ClassVar = "lossy modes"
 
     function: SizeOfExponentials
     far_out: FunctionFarOut
-    least: float  # ln of the radius from which on it is
+    known_from: float  # ln of the radius from which on it is
 
-    is_passive: ClassVar = False
+    @property
+    def least(self) -> float:
+        """Return ln of the radius from which on something is known."""
+        return self.known_from
 
     def rest(self, reached: float, integrations: int, times: SampleTimes) -> Rest | None:
-        """Return how much a response differs at most from what the poles with ln(abs(s)) < ``reached`` add.
-
-        The input is an impulse, integrated so often. None where nothing is proved.
-        """
-        with precision(BITS):
+        """Return what two rays and the arcs between them add at most."""
+        with precision(EFFORT.bits):
             radius = arb(reached).exp()
             size = self.far_out.size(float(radius.mid()) * INWARD)
             if size is None:
@@ -93,15 +97,15 @@ class LossyBound:
                 if not own.is_finite() and not (t == 0 and start is not None):
                     return None
                 found.append(own.upper())
-            fade = SLOPE * radius if is_tilted else arb(0)
+            fade = SLOPE * radius if is_tilted else ZERO
             return Rest(always, tuple(found), start, fade)
 
 
-def lossy_bound(bound: BoundTransferFunction) -> LossyBound | None:
-    """Return what bounds the modes of a function; None where poles have no end along the imaginary axis."""
+def lossy_bound(bound: BoundTransferFunction, integrations: int) -> tuple[LossyBound, int] | Refused:
+    """Return what bounds the modes of a function whose waves all lose energy in the material."""
     function = SizeOfExponentials.of(bound)
     if function is None:
-        return None
+        return Refused("it is no short sum of exponentials")
     start = KernelFunction(bound, bound.den).frequency_of(1.0)
     found = []
     for sectors in (TILTED, SECTORS):
@@ -109,6 +113,6 @@ def lossy_bound(bound: BoundTransferFunction) -> LossyBound | None:
         least = None if far_out is None else far_out.least(start)
         if far_out is not None and least is not None:
             found.append(LossyBound(function, far_out, log(least)))
-    if len(found) > 1 and found[0].least > found[1].least + log(FAR):
-        return found[1]
-    return found[0] if found else None
+    if not found:
+        return Refused("some waves lose nothing in their material")
+    return found[-1 if found[0].least > found[-1].least + log(FAR) else 0], integrations

@@ -1,7 +1,8 @@
 """A rational function as a sum over its poles, which is a sum of exponentials in time.
 
 Input: a bound transfer function without kernels, and how often its input is integrated.
-Output: :class:`~symflex.analysis.time_response.exponentials.ExponentialTerm`, one a conjugate pair.
+Output: :class:`ExponentialTerm`, one a conjugate pair, and values of their sums at many times, by one product
+of matrices in balls; see :mod:`~symflex.analysis.time_response.sample_times`.
 
     1/(s (s + 2)^2)  =  (1/4)/s - (1/4)/(s + 2) - (1/2)/(s + 2)^2
     in time             1/4     - (1/4) e^(-2t) - (1/2) t e^(-2t)
@@ -14,19 +15,81 @@ large coefficients of opposite sign; the digits that these lose are made up for 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import zip_longest
+from math import factorial
 from typing import TYPE_CHECKING
 
-from flint import acb, acb_poly, acb_series, arb
+from flint import acb, acb_poly, acb_series, arb, arb_mat
 
 from symflex.analysis.rational.laurent import series_length
-from symflex.analysis.time_response.exponentials import ExponentialTerm
 from symflex.transfer.bind import EnclosedTransferFunction
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from symflex.analysis.time_response.sample_times import SampleTimes
     from symflex.roots import Root
     from symflex.transfer import BoundTransferFunction
+
+
+@dataclass(frozen=True, slots=True)
+class ExponentialTerm:
+    """The real part of ``exp(rate*t) * sum(coefficients[j] * t^j/j!)``."""
+
+    rate: acb  # [rad/s]
+    coefficients: tuple[acb, ...]
+
+    def later(self, by: arb) -> ExponentialTerm:
+        """Return it as one of the time from a later start [s] on."""
+        powers = acb_poly([c / factorial(j) for j, c in enumerate(self.coefficients)])
+        shifted = powers(acb_poly([by, 1])) * (self.rate * by).exp()
+        return ExponentialTerm(self.rate, tuple(c * factorial(j) for j, c in enumerate(shifted.coeffs())))
+
+    def __add__(self, other: ExponentialTerm) -> ExponentialTerm:
+        """Return the sum of two terms of one rate."""
+        pairs = zip_longest(self.coefficients, other.coefficients, fillvalue=acb(0))
+        return ExponentialTerm(self.rate, tuple(a + b for a, b in pairs))
+
+
+def values_of(
+    terms: Sequence[ExponentialTerm], times: SampleTimes, start: int = 0, delay: arb | None = None
+) -> list[arb]:
+    """Return the sum of the terms at all times, in balls of the current precision.
+
+    With ``start`` and ``delay`` [s] at the times from number ``start`` on, each less the delay.
+
+    Examples
+    --------
+    >>> from symflex.analysis.time_response.sample_times import SampleTimes
+    >>> decay = ExponentialTerm(acb(-1), (acb(0), acb(2)))
+    >>> [round(float(y), 6) for y in values_of([decay], SampleTimes.of([0.0, 1.0]))]
+    [0.0, 0.735759]
+    """
+    count = len(times) - start
+    outer, inner = times.spread(start, delay)
+    left: list[list[arb]] = [[] for _ in outer]
+    right: list[list[arb]] = []
+    for term in terms:
+        # What P(a + b) exp(rate (a + b)) is, sorted by powers of b: products of a's factor and b's.
+        polynomial = acb_poly([c / factorial(j) for j, c in enumerate(term.coefficients)])
+        powers = len(term.coefficients) if len(inner) > 1 else 1
+        for row, a in zip(left, outer, strict=True):
+            grown = (term.rate * a).exp()
+            if powers == 1:
+                factors = [(polynomial(a) if len(term.coefficients) > 1 else term.coefficients[0]) * grown]
+            else:
+                moved = polynomial(acb_poly([a, acb(1)]))
+                factors = [moved[i] * grown for i in range(powers)]
+            row += [part for w in factors for part in (w.real, -w.imag)]
+        column = [(term.rate * b).exp() for b in inner]
+        for i in range(powers):
+            if i:
+                column = [b * w for b, w in zip(inner, column, strict=True)]
+            right += [[w.real for w in column], [w.imag for w in column]]
+    if not right or not count:
+        return [arb(0)] * count
+    found: list[arb] = (arb_mat(left) * arb_mat(right)).entries()
+    return found[:count]
 
 
 @dataclass(frozen=True)
@@ -130,44 +193,3 @@ def at_infinity(quotient: EnclosedQuotient, integrations: int) -> tuple[tuple[ar
     with series_length(surplus + 2):
         series = acb_series(num.coeffs()[::-1], surplus + 2) / acb_series(den.coeffs()[::-1], surplus + 2)
         return tuple(series[surplus - k].real for k in range(surplus + 1)), series[surplus + 1].real
-
-
-LONGEST = 4000
-"""Terms of a power series in time, and the bits it loses; beyond, it takes too long."""
-
-
-def power_series_terms(
-    quotient: EnclosedQuotient, integrations: int, last: arb, bits: int
-) -> list[ExponentialTerm] | None:
-    """Return the same inverse as a power series in t, valid up to ``last``, without knowing any pole.
-
-    The coefficients of F(s) = h_1/s + h_2/s^2 + ... are those of t^(k-1)/(k-1)!. With abs(F) <= M on the
-    circle abs(s) = r around all poles Cauchy's estimate gives abs(h_k) <= M r^k, and what n terms leave is at
-    most M r (r t)^n/n! / (1 - r t/(n + 1)). None where that takes too many terms.
-    """
-    num, den = quotient.multiplied_out()
-    degree = int(den.degree())
-    lead = den[degree].abs_lower()
-    if not lead > 0:
-        return None
-    below = [den[i].abs_upper() for i in range(degree)]
-    radius = arb(1)
-    while not sum((c * radius**i for i, c in enumerate(below)), arb(0)) < lead * radius**degree / 2:
-        radius = radius * 2
-    reach = radius * last
-    if not reach < LONGEST / 8:
-        return None
-    count = int(float((4 * reach + bits).upper())) + degree + 8
-    bound = sum((num[i].abs_upper() * radius**i for i in range(int(num.degree()) + 1)), arb(0))
-    bound = bound / (lead * radius**degree / 2) / radius**integrations
-    missing = bound * radius * reach**count / arb(count).gamma() / count / (1 - reach / (count + 1))
-    shift = degree + integrations - int(num.degree())
-    length = count + max(-shift, 0) + 2
-    with series_length(length):
-        series = acb_series(num.coeffs()[::-1], length) / acb_series(den.coeffs()[::-1], length)
-    coefficients = [acb(0)] * count
-    for i in range(length):
-        if 0 <= (k := i + shift - 1) < count:
-            coefficients[k] = series[i]
-    coefficients[0] = coefficients[0] + acb(arb(0, missing.upper()))
-    return [ExponentialTerm(acb(0), tuple(coefficients))]

@@ -27,14 +27,16 @@ about how fast H falls off.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import inf, pi
+from math import pi
 from typing import TYPE_CHECKING, ClassVar
 
 from flint import acb, arb
 
 from symflex.algebra import Factored
 from symflex.analysis.explanation.coordinates import PAIR, acting, in_one_way, measured, parted_at
-from symflex.analysis.time_response.function_size import BITS, Rest, SizeOfFunction
+from symflex.analysis.time_response.effort import EFFORT
+from symflex.analysis.time_response.function_size import BoundBySize, Rest, SizeOfExponentials
+from symflex.analysis.time_response.sampled import Refused
 from symflex.expressions import Attribute, Expression, Name, Negative, Sum
 from symflex.library.elements import CIRCUITS, COMPONENT_DOMAIN
 from symflex.model.model import INPUT_KINDS, Input, NodeReference, Output
@@ -49,6 +51,7 @@ if TYPE_CHECKING:
     from symflex.analysis.time_response.sample_times import SampleTimes
     from symflex.library.elements import Variable
     from symflex.model import Model
+    from symflex.roots import Root
     from symflex.transfer import BoundTransferFunction
 
 STEP, RAMP = 1, 2
@@ -58,27 +61,24 @@ OUTPUT, INPUT = "displacement", "reaction"
 
 
 @dataclass(frozen=True, eq=False)
-class PassiveBound:
+class PassiveBound(BoundBySize):
     """A passive model's transfer function from a force to ``factor * s^order`` times a displacement."""
 
-    function: SizeOfFunction
+    name: ClassVar = "passive modes"
+
+    function: SizeOfExponentials
     order: int
     factor: arb  # its size
-    colocated: tuple[SizeOfFunction, ...]  # what forces at both ends move; none where these are one
+    colocated: tuple[SizeOfExponentials, ...]  # what forces at both ends move; none where these are one
 
-    is_passive: ClassVar = True
-    least: ClassVar = -inf  # ln of the radius from which on something is known
+    def may_be_pole(self, root: Root) -> bool:
+        """Tell whether a root may be a pole: none is right of the axis, without losses none left."""
+        return not (root.re > 0 or (root.re < 0 and self.function.is_even))
 
     def rest(self, reached: float, integrations: int, times: SampleTimes) -> Rest | None:
-        """Return how much a response differs at most from what the poles with ln(abs(s)) < ``reached`` add.
-
-        The input is an impulse, integrated so often. None where nothing is proved: a step of a displacement,
-        and what is smoother, is.
-        """
+        """Return what energy bounds: a step of a displacement, and what is smoother."""
         smooth = integrations - self.order
-        if smooth not in (STEP, RAMP):
-            return None
-        with precision(BITS):
+        with precision(EFFORT.bits):
             radius = arb(reached).exp()
             right = self.function.on_arc(reached, 0.0, pi / 2)
             left = right if self.function.is_even else self.function.on_arc(reached, pi / 2, pi)
@@ -97,37 +97,46 @@ class PassiveBound:
             return Rest(step.upper(), (step.upper(),) * len(times))
 
 
-def passive_bound(bound: BoundTransferFunction) -> PassiveBound | None:
-    """Return what bounds the modes of a function; None where its model is not known to be passive.
+def passive_bound(bound: BoundTransferFunction, integrations: int) -> tuple[PassiveBound, int] | Refused:
+    """Return what bounds the modes of a passive model's function.
 
     Its input is a force or torque, its output a node's displacement or angle, the difference of two, or a
     derivative of one.
     """
     model = bound.source.model
     if not bound.is_of_model or not is_passive(model, bound.all_values):
-        return None
+        return Refused("something in the model may supply energy")
     model = in_one_way(model)
     here = acting(model, bound.source.input)
-    function = SizeOfFunction.of(bound)
-    if not here or function is None:
-        return None
+    function = SizeOfExponentials.of(bound)
+    if not here:
+        return Refused("the input is no force or torque on a node")
+    if function is None:
+        return Refused("it is no short sum of exponentials")
     there = measured(assemble(model), bound.source.output.name)
     if there is None:
         model = parted_at(model, bound.source.output.name)
         there = measured(assemble(model), bound.source.output.name)
     if there is None:
-        return None
+        return Refused("the output is no displacement of a node")
     order = there.factor.exponent_of(there.factor.ring.context.gen(0))
-    s = Factored.generator(there.factor.ring, "s")
-    factor = there.factor / s**order
+    factor = there.factor / Factored.generator(there.factor.ring, "s") ** order
     if not factor.is_constant or order < 0:
-        return None
-    size = abs(ball(factor.unit))
-    if here == there.coordinates:
-        return None if force_on(model, here[0][0]) is None else PassiveBound(function, order, size, ())
-    found = [SizeOfFunction.of(c) for c in _colocated(bound, model, [here, there.coordinates])]
+        return Refused("the output is no derivative of a displacement")
+    if integrations - order not in (STEP, RAMP):
+        return Refused("only a step of a displacement, and what is smoother, is bounded by energy")
+    size, ends = abs(ball(factor.unit)), [here]
+    if here != there.coordinates:
+        ends.append(there.coordinates)
+    if None in (force_on(model, coordinates[0][0]) for coordinates in ends):
+        return Refused("no force does work on a node")
+    if len(ends) == 1:
+        return PassiveBound(function, order, size, ()), integrations
+    found = (SizeOfExponentials.of(c) for c in _colocated(bound, model, ends))
     sizes = tuple(each for each in found if each is not None)
-    return PassiveBound(function, order, size, sizes) if len(sizes) == PAIR else None
+    if len(sizes) < PAIR:
+        return Refused("a force at one end does not move the other as much as the other way round")
+    return PassiveBound(function, order, size, sizes), integrations
 
 
 def _colocated(
@@ -139,9 +148,7 @@ def _colocated(
     """
     forces, shown = [], []
     for i, coordinates in enumerate(ends):
-        kind = force_on(model, coordinates[0][0])
-        if kind is None:
-            return []
+        kind = force_on(model, coordinates[0][0]) or ""
         nodes = tuple(NodeReference(v.owner, v.component) for v, _ in coordinates)
         forces.append(Input(f"{INPUT}_{i}", kind, nodes))
         shown.append(Output(f"{OUTPUT}_{i}", _written(coordinates)))

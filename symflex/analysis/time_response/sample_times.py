@@ -1,4 +1,4 @@
-"""Times at which a response is asked for.
+"""Times at which a response is asked for, and how long it is looked at when nobody says.
 
 Input: doubles, or an end and a number of points. Output: :class:`SampleTimes`, exact.
 
@@ -11,20 +11,24 @@ so exp(p t) at n of them takes some 2 sqrt(n) exponentials and one product of ma
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
-from math import isqrt
+from math import isqrt, pi
 from typing import TYPE_CHECKING
 
 import numpy as np
-from flint import arb
+from flint import acb, arb
 
+from symflex.analysis.response import roots_if_found
 from symflex.errors import Diagnostic, UsageError
 from symflex.options import exact
-from symflex.transfer.balls import ball
+from symflex.transfer import BoundNested
+from symflex.transfer.balls import at_centre, ball
 
 if TYPE_CHECKING:
     import numpy.typing as npt
+
+    from symflex.transfer import AnyBoundFunction
 
 MOST_TIMES = 1_000_000
 """As many lines as a file of measured data may have."""
@@ -32,6 +36,10 @@ ROUNDING = 4 * 2.0**-53
 """What numpy.linspace may be off by, of the last time: a product and a sum of doubles, and room."""
 FEWEST = 9
 """Times from which their even spacing saves anything."""
+TIME_CONSTANTS = 5.0
+"""After which 1 % of a motion is left."""
+PERIODS, UNDAMPED_PERIODS = 12, 4
+"""Of the slowest oscillation: more show nothing new."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,16 +139,6 @@ class SampleTimes:
         off = arb(float(left[0])) - arb(float(self.seconds[0])) - ball(self.step) * start
         return start, SampleTimes(left, self.step, 0.0, moment + off)
 
-    def until(self, count: int) -> SampleTimes:
-        """Return the first so many times.
-
-        Examples
-        --------
-        >>> SampleTimes.evenly(Fraction(1), 5).until(2).seconds.tolist()
-        [0.0, 0.25]
-        """
-        return replace(self, seconds=self.seconds[:count])
-
     def spread(self, start: int = 0, delay: arb | None = None) -> tuple[list[arb], list[arb]]:
         """Return two lists of balls at the current precision: the sums a + b, a by a, begin with all times.
 
@@ -170,3 +168,37 @@ def evenly(until: Fraction, points: int) -> tuple[Fraction, ...]:
 
 def _refused(message: str) -> UsageError:
     return UsageError(Diagnostic("SF811", message))
+
+
+def default_until(bound: AnyBoundFunction) -> float:
+    """Return a time [s] by which the slowest motion has died away, or has been seen often enough.
+
+    Examples
+    --------
+    >>> from symflex import loads
+    >>> lag = loads('symflex = 1' + chr(10) + 'inputs.u = {}' + chr(10) + 'outputs.y = "u/(s + 2)"')
+    >>> default_until(lag.transfer_function("y", "u").bind().bound)
+    2.5
+    """
+    waits = [TIME_CONSTANTS * delay for delay in _delays(bound)]
+    for root in roots_if_found(bound).all_poles:
+        size = float(root.natural_frequency())
+        if root.is_zero or not size > 0:
+            continue
+        damping = abs(float(root.re.mid())) if not root.on_imaginary_axis else 0.0
+        period = 2 * pi / size
+        decay = TIME_CONSTANTS / damping if damping else UNDAMPED_PERIODS * period
+        waits.append(decay if root.is_real else min(decay, PERIODS * period))
+    return max(waits, default=0.0) or 1.0
+
+
+def _delays(bound: AnyBoundFunction) -> list[float]:
+    if isinstance(bound, BoundNested) or not bound.is_distributed:
+        return []
+    evaluator, found = bound.kernel_values(), []
+    values = {"s": acb(1), **{name: acb(c) for name, c in evaluator.constants.items()}}
+    for kernel in bound.kernels.kernels:
+        if kernel.function == "exp":
+            delay = evaluator.value(kernel.dispersion.shift, values) * evaluator.value(kernel.length, values)
+            found.append(abs(float(at_centre(delay).real)))
+    return found

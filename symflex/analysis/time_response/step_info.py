@@ -8,26 +8,29 @@ below the highest value found holds no peak, one whose ball leaves out a level n
 found first, or last, is proved to be the first, or the last.
 
 With delays the response is made of pieces, each a sum of exponentials, until what residues of few poles leave
-out has faded (see :mod:`symflex.analysis.time_response.delayed_decay`). With waves it is made of pieces too:
+out has faded (see :mod:`symflex.analysis.time_response.settling`). With waves it is made of pieces too:
 the later one begins, the fewer modes are still alive, and the smoother it is.
 """
 
 from __future__ import annotations
 
 import heapq
+import itertools
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from flint import acb, arb
 
-from symflex.analysis.time_response.delayed_decay import late_response, pieces_of
 from symflex.analysis.time_response.delayed_terms import delayed_quotient
 from symflex.analysis.time_response.echoes import TooManyEchoesError
-from symflex.analysis.time_response.exponentials import ExponentialTerm
-from symflex.analysis.time_response.horizon import default_until
 from symflex.analysis.time_response.modal import proved_modes
-from symflex.analysis.time_response.partial_fractions import EnclosedQuotient, partial_fractions
-from symflex.analysis.time_response.sample_times import SampleTimes
+from symflex.analysis.time_response.partial_fractions import (
+    EnclosedQuotient,
+    ExponentialTerm,
+    partial_fractions,
+)
+from symflex.analysis.time_response.sample_times import SampleTimes, default_until
+from symflex.analysis.time_response.settling import late_response, pieces_of
 from symflex.budget import spend
 from symflex.model.loss_factors import check_causal
 from symflex.print.text import Passage
@@ -41,7 +44,7 @@ from symflex.transfer import BoundNested
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.analysis.time_response.modal import PartialSum
+    from symflex.analysis.time_response.sampled import PartialSum
     from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 
 RISE = (0.1, 0.9)
@@ -225,8 +228,8 @@ def _of_delays(bound: BoundTransferFunction) -> StepInfo | None:
     if quotient is None:
         return None
     with precision(bits_for_digits(2 * DELAYS_DIGITS)):
-        late = late_response(bound, quotient, 1, DELAYS_DIGITS)
-        final = None if late is None or late.through else _resting(late.terms)
+        late = late_response(bound, quotient, DELAYS_DIGITS)
+        final = None if late is None else _resting(late.terms)
         if late is None or final is None:
             return None
         terms = tuple(_scaled(t, final) for t in late.terms if not t.rate.is_zero())
@@ -299,54 +302,35 @@ class Piece:
         constant: int = 0,
         rest: arb = ZERO,
     ) -> None:
-        self._orders = [terms]
+        self.terms = terms
         self.begins = begins
         self.rest = rest
+        self._slopes = tuple(_derivative(term) for term in terms)
         self._origin = origin
         self._constant = constant
 
-    @property
-    def terms(self) -> tuple[ExponentialTerm, ...]:
-        """What is summed."""
-        return self._orders[0]
-
-    def at(self, t: arb, order: int = 0) -> arb:
-        """Return the value of the sum, or of a derivative, on a ball of times."""
-        while len(self._orders) <= order:
-            self._orders.append(tuple(_derivative(term) for term in self._orders[-1]))
-        total, t = arb(0 if order else self._constant), t - self._origin
-        for term in self._orders[order]:
-            power, own = arb(1), acb(0)
-            for j, c in enumerate(term.coefficients):
-                power = power * t / j if j else power
-                own = own + c * power
-            total += ((term.rate * t).exp() * own).real
-        return total
+    def at(self, t: arb) -> arb:
+        """Return the value of the sum on a ball of times."""
+        return self._constant + _sum_of(self.terms, t - self._origin)
 
     def over(self, low: arb, high: arb) -> arb:
-        """Return a ball around the values between two times."""
-        middle, half = (low + high) / 2, (high - low) / 2
-        between = middle + arb(0, half.abs_upper())
-        return self.at(middle) + self.at(between, 1) * arb(0, half.abs_upper())
+        """Return a ball around the values between two times: the middle one, and the slope's ball."""
+        return self.at((low + high) / 2) + self.slope(low, high) * arb(0, ((high - low) / 2).abs_upper())
 
-    def passed(self, level: arb, low: arb, high: arb, order: int) -> arb:
-        """Return where the value, or a derivative, passes a level between two times; it is monotonic there.
+    def slope(self, low: arb, high: arb) -> arb:
+        """Return a ball around the slopes between two times."""
+        return _sum_of(self._slopes, low.union(high) - self._origin)
 
-        Newton's steps in balls, and halves where these do not yet make it shorter.
-        """
-        rises = self.at(high, order) > level
-        for _ in range(HALVINGS):
-            middle = ((low + high) / 2).mid()
-            box = middle + arb(0, (high - middle).abs_upper())
-            off = self.at(middle, order) - level
-            step = middle - off / self.at(box, order + 1)
-            if step.is_finite() and step.rad() < box.rad() / 4:
-                low, high = step.lower().max(low), step.upper().min(high)
-            elif off < 0 or off > 0:
-                low, high = (middle, high) if (off < 0) == rises else (low, middle)
-            else:
-                break
-        return (low + high) / 2 + arb(0, ((high - low) / 2).abs_upper())
+
+def _sum_of(terms: Sequence[ExponentialTerm], t: arb) -> arb:
+    total = arb(0)
+    for term in terms:
+        power, own = arb(1), acb(0)
+        for j, c in enumerate(term.coefficients):
+            power = power * t / j if j else power
+            own = own + c * power
+        total += ((term.rate * t).exp() * own).real
+    return total
 
 
 class NormalisedResponse:
@@ -376,72 +360,49 @@ class NormalisedResponse:
     def peak(self) -> tuple[arb | None, arb] | None:
         """Return when the response is the highest and how high; no time where it exceeds 1 nowhere.
 
-        None where it cannot be told.
+        None where it cannot be told. Of all intervals that may hold the highest value the one that may be the
+        highest is halved, until all that are left are short.
         """
         close = CLOSE + 4 * float(self.pieces[-1].rest)
         until = self.quiet(close)
         if until is None:
             return None
+        shortest = until * arb(2) ** -HALVINGS
         best = 1 + arb(close)
-        parts = self.parts(until)
-        found: list[tuple[arb | None, arb]] = []
-        # Where a piece begins the slope may change its sign at once.
-        for (before, *_), (piece, low, _) in zip((parts[0], *parts), parts, strict=False):
-            rest = piece.rest + (2 * before.rest if low > 0 else 0)
-            begun = piece.at(low) + arb(0, rest.upper())
-            if begun.upper() > best:
-                found.append((low if rest == 0 or low == 0 else None, begun))
-            best = best.max(begun.lower())
+        queue: list[tuple[arb, int, Piece, arb, arb, arb]] = []
+        left: list[tuple[arb, arb, arb, Piece]] = []
 
-        def most(piece: Piece, low: arb, high: arb) -> float:
-            return float((piece.over(low, high) + piece.rest).upper())
+        def add(piece: Piece, low: arb, high: arb) -> None:
+            nonlocal best
+            span = piece.over(low, high)
+            best = best.max((span - piece.rest).lower())
+            heapq.heappush(queue, (-(span + piece.rest).upper(), next(count), piece, low, high, span))
 
-        queue = [(-most(*part), -k, *part) for k, part in enumerate(parts)]
-        heapq.heapify(queue)
-        for count in range(1, MOST_INTERVALS):
+        count = itertools.count()
+        for part in self.parts(until):
+            add(*part)
+        while queue and -queue[0][0] >= best:
             spend()
-            if not queue or -queue[0][0] < float(best.lower()):
-                break
-            _, _, piece, low, high = heapq.heappop(queue)
-            middle = ((low + high) / 2).mid()
-            box = middle + arb(0, (high - middle).abs_upper())
-            if not piece.at(box, 1).contains(0):
-                continue  # the largest value is where a piece begins, or next to where the slope vanishes
-            if piece.at(box, 2) < 0:
-                # The slope falls all the time: there is one maximum at most.
-                ends = piece.at(low, 1), piece.at(high, 1)
-                if ends[0] > 0 > ends[1]:
-                    when = piece.passed(arb(0), low, high, 1)
-                    height = piece.at(when) + arb(0, piece.rest)
-                    found.append((self._about_peak(piece, when), height))
-                    best = best.max(height.lower())
-                elif not (ends[0] < 0 or ends[1] > 0):
-                    return None
-                continue
-            if not high - low > until * arb(2) ** -HALVINGS:
+            _, number, piece, low, high, span = heapq.heappop(queue)
+            if number > MOST_INTERVALS:
                 return None
-            for k, (a, b) in enumerate(((low, middle), (middle, high))):
-                heapq.heappush(queue, (-most(piece, a, b), 2 * count + k, piece, a, b))
-        else:
-            return None
-        highest = [each for each in found if not each[1] < best]
-        if not highest:
+            if high - low > shortest and not span.rad() < piece.rest / 4:
+                middle = ((low + high) / 2).mid()
+                add(piece, low, middle)
+                add(piece, middle, high)
+            else:
+                left.append((low, high, span + arb(0, piece.rest.upper()), piece))
+        left = sorted((own for own in left if not own[2] < best), key=lambda own: own[0].mid())
+        if not left:
             return None, arb(1).union(best)
-        return highest[0] if len(highest) == 1 else None
-
-    def _about_peak(self, piece: Piece, when: arb) -> arb | None:
-        """Return when the response with its rest is highest, given when it is without."""
-        if piece.rest == 0:
-            return when
-        reach = when.rad()
-        for _ in range(HALVINGS):
-            # Within a box the response falls off from its peak as bent as it is the least.
-            reach = 2 * reach.max(piece.rest)
-            bent = -piece.at(when.mid() + arb(0, reach), 2).upper()
-            needed = (4 * piece.rest / bent).sqrt() + 2 * when.rad() if bent > 0 else reach
-            if bent > 0 and needed < reach:
-                return arb(when.mid(), needed.upper())
-        return None
+        if any(a[1] < b[0] for a, b in itertools.pairwise(left)):
+            return None  # two peaks, maybe
+        begun, ended, highest, piece = left[0]
+        if piece.rest == 0 and all(own[3] is piece and piece.slope(*own[:2]) < 0 for own in left):
+            return begun, piece.at(begun)  # it begins at its peak
+        for own in left[1:]:
+            ended, highest = own[1], highest.union(own[2])
+        return begun.union(ended), highest
 
     def first(self, level: float, until: arb) -> arb | None:
         """Return when the response first reaches a level below 1; at once, if it begins above."""
@@ -470,33 +431,29 @@ class NormalisedResponse:
 
         None where it does not; None, and ``is_lost``, too, where that cannot be told.
         """
+        shortest = until * arb(2) ** -HALVINGS
         pending = self.parts(until)[:: 1 if is_last else -1]
         before: bool | None = None  # whether it is above the level next to what is looked at now
+        unclear: arb | None = None  # where it may be either, between
         for _ in range(MOST_INTERVALS):
             spend()
             if not pending:
+                self.is_lost = self.is_lost or unclear is not None
                 return None
             piece, low, high = pending.pop()
-            target = level - sign * piece.rest
-            next_to = high if is_last else low
-            span = piece.over(low, high) - target
+            span = piece.over(low, high) - (level - sign * piece.rest)
             if not span.contains(0):
-                # Where a piece begins, less may be left out than before.
                 if before is not None and before != (span > 0):
-                    return next_to
-                before = bool(span > 0)
-                continue
-            ends = piece.at(low) - target, piece.at(high) - target
-            middle = ((low + high) / 2).mid()
-            slope = piece.at(middle + arb(0, (high - middle).abs_upper()), 1)
-            if ends[0] * ends[1] < 0 and not slope.contains(0):
-                if before is not None and before != (ends[1 if is_last else 0] > 0):
-                    return next_to
-                return piece.passed(target, low, high, 0)
-            if not high - low > until * arb(2) ** -HALVINGS:
-                break
-            halves = [(piece, low, middle), (piece, middle, high)]
-            pending += halves if is_last else halves[::-1]
+                    return (high if is_last else low) if unclear is None else unclear
+                if before is not None and unclear is not None:
+                    break  # it touches the level, or passes it twice
+                before, unclear = bool(span > 0), None
+            elif high - low > shortest:
+                middle = ((low + high) / 2).mid()
+                halves = [(piece, low, middle), (piece, middle, high)]
+                pending += halves if is_last else halves[::-1]
+            else:
+                unclear = low.union(high) if unclear is None else unclear.union(low.union(high))
         self.is_lost = True
         return None
 

@@ -18,7 +18,7 @@ place of series. Nothing is known or asked of poles, and loops need not be stabl
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from math import isqrt
@@ -29,7 +29,6 @@ from flint import acb, acb_series, arb, arb_poly, arb_series
 from symflex.algebra import Factored, degree_in
 from symflex.algebra.exponential_sum import ExponentialSum, arguments_of, exponential_sum
 from symflex.analysis.rational.laurent import series_length
-from symflex.analysis.time_response.damped_modes import coefficient_of
 from symflex.analysis.time_response.delayed_terms import (
     NO_DELAY,
     Delay,
@@ -37,13 +36,9 @@ from symflex.analysis.time_response.delayed_terms import (
     later,
     sum_of,
 )
-from symflex.analysis.time_response.echoes import (
-    Gathered,
-    Sampled,
-    TooManyEchoesError,
-    arriving,
-    earliest,
-)
+from symflex.analysis.time_response.echoes import TooManyEchoesError, arriving, check_order, earliest
+from symflex.analysis.time_response.effort import EFFORT
+from symflex.analysis.time_response.sampled import Gathered, Sampled
 from symflex.budget import spend
 from symflex.roots.functions.exponential_values import ExponentialValues
 from symflex.roots.precision import bits_for_digits, precision
@@ -56,19 +51,6 @@ if TYPE_CHECKING:
     from symflex.algebra import Dispersion
     from symflex.analysis.time_response.sample_times import SampleTimes
     from symflex.transfer import BoundTransferFunction
-
-SIZE_BITS = 64
-"""Of bounds."""
-LARGER = 1.25
-"""From one circle that is tried to the next."""
-ARCS = 48
-"""Balls that half a circle is covered with."""
-GUARD_BITS = 32
-"""For what sums of echoes lose."""
-LONGEST = 3000
-"""The largest R t: 1300 digits cancel then, and a series has some three times as many terms."""
-MOST_WORK = 3e7
-"""Echoes times squared terms of their series: some five seconds."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +66,7 @@ class WaveQuotient:
 
         Raises TooManyEchoesError where that takes too long, or nothing is proved.
         """
-        with precision(SIZE_BITS):
+        with precision(EFFORT.wave_bits):
             seconds = times.enclosed()
             last = seconds[-1].upper()
             known = self._bounded(last)
@@ -92,7 +74,7 @@ class WaveQuotient:
                 raise TooManyEchoesError
             radius, largest, echoes = known
             reach = radius * last
-            bits = bits_for_digits(digits) + GUARD_BITS
+            bits = bits_for_digits(digits) + EFFORT.wave_guard_bits
             shift = self._fall + integrations
             missing = largest * radius ** (1 - shift)
             count = 1
@@ -100,7 +82,7 @@ class WaveQuotient:
             while not (count > 2 * reach and missing < arb(2) ** -bits):
                 missing = missing * reach / count
                 count += 1
-                if echoes * count**2 > MOST_WORK:
+                if echoes * count**2 > EFFORT.wave_work:
                     raise TooManyEchoesError
             missing = (2 * missing).upper()
             lost = int(1.5 * float((reach + largest.log() + abs(radius.log())).upper()))
@@ -110,7 +92,7 @@ class WaveQuotient:
     @cached_property
     def degrees(self) -> tuple[int, ...]:
         """Per factor, the highest power of s and of wavenumbers."""
-        with precision(SIZE_BITS):
+        with precision(EFFORT.wave_bits):
             return tuple(
                 max(sum(e for _, e in powers) for terms in factor for _, powers in terms)
                 for factor in self.values.coefficients
@@ -133,14 +115,13 @@ class WaveQuotient:
         begun = None if origin is None else self._normalised(origin)
         if origin is None or begun is None:
             return None
-        if any(d and durations.seconds(d) < 0 for side in (begun.above, begun.below) for d in side):
-            return None
+        check_order((*begun.above, *begun.below), durations)
         radius = 1 / last
-        while radius * last < LONGEST:
+        while radius * last < EFFORT.wave_reach:
             spend()
             sizes = self._sizes(radius, origin, at_centre(begun.lead))
             if sizes is None:
-                radius = LARGER * radius
+                radius = EFFORT.wave_circles * radius
                 continue
             echoes = arriving(*sizes, _total, lambda own, q: (own * q).upper(), durations, last)
             found = [size for _, size in echoes]
@@ -156,8 +137,8 @@ class WaveQuotient:
         """
         above: dict[Delay, arb] = {}
         below: dict[Delay, arb] = {}
-        for k in reversed(range(ARCS)):
-            turn = arb(k).union(arb(k + 1)) / ARCS * arb.pi()
+        for k in reversed(range(EFFORT.wave_arcs)):
+            turn = arb(k).union(arb(k + 1)) / EFFORT.wave_arcs * arb.pi()
             place = _AtInfinity.on(self, acb(0, turn).exp() / radius, origin)
             parts = None if place is None else self._normalised(place)
             if parts is None or _may_turn(at_centre(parts.lead) / lead):
@@ -209,7 +190,7 @@ class WaveQuotient:
             rest = [by_power.get(k, zero) for k in range(1, max(by_power, default=0) + 1)] or [zero]
             values = _in_time(rest, times, total.start(delay), delay, off)
             total.add(delay, weights, rest[0], values, is_late=bool(echo))
-        return replace(total.sampled, method="wave echoes")
+        return total.sampled("wave echoes")
 
 
 def _in_time(coefficients: Sequence[arb], times: SampleTimes, start: int, delay: arb, off: arb) -> list[arb]:
@@ -419,5 +400,7 @@ def _at_fronts(bound: BoundTransferFunction, value: Factored, power: int) -> Fac
         return None
     total = Factored.number(ring, value.unit if degree == power else 0)
     for factor, exponent in value.factors:
-        total = total * coefficient_of(bound, factor, degree_in(factor, 0)) ** exponent
+        highest = degree_in(factor, 0)
+        terms = {(0, *map(int, m[1:])): int(c) for m, c in factor.terms() if int(m[0]) == highest}
+        total = total * Factored.polynomial(ring, ring.context.from_dict(terms)) ** exponent
     return total

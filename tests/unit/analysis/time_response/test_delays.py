@@ -166,20 +166,21 @@ def test_even_and_single_times_agree():
 
 
 @pytest.mark.slow
-def test_where_nobody_says_how_long_a_neutral_loop_is_followed_for_fifty_turns():
+def test_a_neutral_loop_of_too_many_echoes_is_estimated_by_its_modes():
     text = 'symflex = 1\nparameters = { T = "1 ms", w = "1 1/s" }\ninputs.u = {}\n'
     text += 'blocks.D = { type = "delay", T = "T" }\noutputs.y = "w^2*u/(s^2 + w*s + w^2 + s^2*D/2)"\n'
-    function = loads(text).transfer_function("y", "u").bind()
-    found = function.step_response()
-    assert found.certified
-    assert found.times[-1] == pytest.approx(0.05)
-    # Until the first echo the loop is open: 1 - e^(-t/2) (cos + sin/sqrt 3) of sqrt(3)/2 t.
-    early = found.times < 0.001
-    t = found.times[early]
-    expected = 1 - np.exp(-t / 2) * (np.cos(sqrt(0.75) * t) + np.sin(sqrt(0.75) * t) / sqrt(3))
-    assert found.values[early] == pytest.approx(expected, rel=1e-12)
-    with pytest.raises(UncertifiedError, match="too many echoes"):
-        function.step_response([20.0])
+    found = loads(text).transfer_function("y", "u").bind().step_response()
+    # Newton's method for s^2 + s + 1 + s^2 e^(-s T)/2 = 0: all other roots lie near Re s = -693.
+    s = complex(-0.33, 0.75)
+    for _ in range(30):
+        late = np.exp(-0.001 * s) / 2
+        slope = 2 * s + 1 + (2 * s - 0.001 * s**2) * late
+        s -= (s**2 + s + 1 + s**2 * late) / slope
+    t = found.times[2:]
+    expected = 1 + 2 * (np.exp(s * t) / (s * slope)).real
+    assert not found.certified
+    assert np.all(np.abs(found.values[2:] - expected) <= found.radius[2:] + 1e-12)
+    assert found.radius[2:].max() < 1e-9
 
 
 @pytest.mark.slow
@@ -193,50 +194,36 @@ def test_where_nobody_says_how_long_a_slow_loop_is_followed_until_it_has_settled
         late = np.exp(-0.001 * s)
         slope = 0.09 * s**2 + 2.06 * s + 1 - 0.001 * late
         s -= (s * (s + 1) * (1 + 0.03 * s) + late) / slope
-    assert found.certified
     assert found.times[-1] == pytest.approx(-5 / s.real, rel=0.01)
     t = found.times[-20:]
     assert found.values[-20:] == pytest.approx(1 + 2 * (late / (slope * s) * np.exp(s * t)).real, abs=1e-9)
 
 
-SETTLING_TIMES = np.array([0.4, 7.3, 55.0, 80.5, 300.0, 2000.0])
-
-
-def roots_of_a_delayed_integrator(gain):
-    """Return 60 pairs of roots of s + gain e^-s = 0: s = W_n(-gain), Corless et al. 1996."""
-    return np.array([complex(lambertw(-gain, n)) for n in range(-60, 60)])
-
-
-# K/(s + K e^-s): at a root its residue is K/(1 + s), and about s = 0 it is 1 - (1 - K) s/K + ...
 @pytest.mark.parametrize(
     ("gain", "law", "kind"),
     [(1.2, "a*(u - D*x)", "step"), (1.7, "x", "ramp")],
     ids=["through", "unstable"],
 )
 @pytest.mark.slow
-def test_a_loop_run_through_many_times_settles_into_its_residues(gain, law, kind):
+def test_a_loop_run_through_many_times_is_the_sum_of_its_residues(gain, law, kind):
     signals = 'signals.x = "k*(u - D*x)/s"\n'
     found = time_response(
         bound(f'parameters.k = "{gain} 1/s"\nparameters.a = "{gain}"\n'
               f'blocks.D = {{ type = "delay", T = "1 s" }}\ninputs.u = {{}}\n{signals}outputs.y = "{law}"\n'),
-        kind, SampleTimes.of(SETTLING_TIMES[: 6 if gain < 1.5 else 5]),
+        kind, SampleTimes.of([55.0, 80.5, 300.0]),
     )  # fmt: skip
-    s = roots_of_a_delayed_integrator(gain)[:, None]
-    t = found.times[1:]  # at 7.3 s modes left out are below 1e-12; earlier the first echoes are all
+    # K/(s + K e^-s): s = W_n(-K) are its poles (Corless et al. 1996), K/(1 + s) its residues.
+    s = np.array([complex(lambertw(-gain, n)) for n in range(-60, 60)])[:, None]
     order = 2 if kind == "ramp" else 0  # x goes through the integrator as well, and a ramp through another
-    expected = np.sum(gain / (s**order * (1 + s)) * np.exp(s * t), axis=0).real
+    expected = np.sum(gain / (s**order * (1 + s)) * np.exp(s * found.times), axis=0).real
     if kind == "ramp":
-        expected = expected + t - (1 - gain) / gain
-    first = 0.08 * gain if kind == "ramp" else gain
-    assert found.certified
-    assert found.values[0] == pytest.approx(first, abs=1e-12 + found.radius[0])
-    assert found.values[1:] == pytest.approx(expected, rel=1e-11, abs=1e-12)
-    assert found.radius.max() <= 1e-12 * np.abs(found.values).max()
+        expected = expected + found.times - (1 - gain) / gain
+    assert not found.certified
+    assert found.values == pytest.approx(expected, rel=1e-11, abs=1e-12)
 
 
 @pytest.mark.slow
-def test_only_the_first_of_the_times_may_come_before_a_loop_has_settled():
-    # At t = 0 the response is 0 within a radius, which no digits of itself could be smaller than.
+def test_a_loop_of_a_plant_that_rings_is_what_small_steps_give():
     text = (
         'parameters = { m = "2 kg", k = "20 kN/m", b = "60 N*s/m", T = "3 ms", K = "4 1/s", P = "0.6" }\n'
         'blocks.D = { type = "delay", T = "T" }\ninputs.r = {}\n'
@@ -258,6 +245,4 @@ def test_only_the_first_of_the_times_may_come_before_a_loop_has_settled():
         past.append(state[0])
         if n % 30_000 == 0:
             expected.append(state[0])
-    assert found.certified
     assert found.values == pytest.approx(expected, abs=2e-6)
-    assert found.radius.max() <= 1e-12 * np.abs(found.values).max()

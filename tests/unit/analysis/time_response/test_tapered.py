@@ -1,4 +1,4 @@
-"""Members that taper, pushed at an end: responses hold what finite elements give, sizes hold values."""
+"""Members that taper, pushed at an end: responses hold what finite elements give."""
 
 from __future__ import annotations
 
@@ -11,10 +11,8 @@ from flint import acb, arb
 
 from symflex import loads
 from symflex.analysis.time_response import SampleTimes, time_response
-from symflex.analysis.time_response.function_size import SizeBySeries, SizeOfExponentials, SizeOfFunction
 from symflex.roots.counting.local_series import SeriesSteps
 from symflex.roots.functions.kernel_function import KernelFunction
-from symflex.roots.precision import precision
 
 BEAM = """
 symflex = 1
@@ -78,44 +76,18 @@ TIMES = [0.0, 0.01, 0.1, 0.37, 1.0, 2.9]
 
 
 @pytest.mark.slow
-def test_a_step_of_a_tapered_beam_is_certified_and_what_finite_elements_give():
+def test_a_step_of_a_tapered_beam_is_what_finite_elements_give():
     found = time_response(bound(5e-3, 0.2), "step", SampleTimes.of(TIMES), 3)
     expected = stepped(TIMES, 5e-3, 0.2)
     largest = np.max(np.abs(expected))
-    assert found.certified
+    assert not found.certified
     assert np.all(np.abs(found.values - expected) <= found.radius + 1e-7 * largest)
     assert np.all(found.radius < 3e-4 * largest)
-
-
-POINTS = [3000j, -400 + 1500j]
 
 
 @pytest.fixture(scope="module")
 def lossless():
     return bound()
-
-
-@pytest.mark.slow
-def test_a_size_by_series_is_no_less_than_values_near_and_hardly_more(lossless):
-    size = SizeOfFunction.of(lossless)
-    assert isinstance(size, SizeBySeries)
-    assert size.is_even
-    for s in POINTS:
-        with precision(128):
-            disc = acb(arb(s.real, abs(s) / 400), arb(s.imag, abs(s) / 400))
-            most = size.at(disc, 0.5)
-            corners = [acb(s) + abs(s) / 400 * z for z in (1, -1j, 0.7 + 0.7j, 0)]
-            values = [abs(lossless.enclosed(128)(corner)) for corner in corners]
-            assert all(value < most for value in values)
-            assert most < 4 * max(values, key=arb.mid)
-            assert values[-1] < size.at(acb(s)) * (1 + arb(1e-30)) < values[-1] * (1 + arb(1e-29))
-
-
-def test_a_size_is_not_told_on_a_ball_that_holds_a_pole(lossless):
-    size = SizeBySeries.of(lossless)
-    mass, stiffness = finite_elements()
-    omega = float(scipy.linalg.eigh(stiffness, mass, eigvals_only=True)[0] ** 0.5)
-    assert size.at(acb(arb(0, 0.1), arb(omega, 0.1))) is None
 
 
 def test_a_polynomial_about_a_point_holds_the_function_on_the_disc(lossless):
@@ -127,10 +99,3 @@ def test_a_polynomial_about_a_point_holds_the_function_on_the_disc(lossless):
         told = sum((c * (radius * acb(direction)) ** k for k, c in enumerate(coefficients)), acb(0))
         assert abs(value - told) < missed + abs(told) * 1e-20
         assert missed < 1e-3 * abs(value)
-
-
-def test_uniform_beams_keep_to_exponentials():
-    text = BEAM.replace("*(1 - 0.6*x/l)^4", "").replace("*(1 - 0.6*x/l)^2", "")
-    uniform = loads(text).transfer_function("y", "F").bind().bound
-    assert isinstance(SizeOfFunction.of(uniform), SizeOfExponentials)
-    assert SizeBySeries.of(uniform) is None

@@ -14,8 +14,8 @@ from symflex import loads
 from symflex.analysis.time_response import SampleTimes, time_response
 from symflex.analysis.time_response.delayed_terms import delayed_quotient
 from symflex.analysis.time_response.echoes import echoed
-from symflex.analysis.time_response.find import is_precise
 from symflex.analysis.time_response.modal import proved_modes
+from symflex.analysis.time_response.sampled import is_precise
 
 TIMES = [0.3, 1.0, 2.9, 7.7]
 ROD = 'E = "1 Pa", A = "1 m^2", rho = "1 kg/m^3", l = "1 m"'

@@ -1,0 +1,215 @@
+"""How step responses of loops with delays die away, and the pieces they are made of.
+
+Input: a :class:`DelayedQuotient`, ``H = (N_0 + N_1 e^(-s n_1) + ...)/(D_0 + D_1 e^(-s d_1) + ...)``.
+Output: its step response as residues of few poles and a proved bound on the rest, which fades, and the pieces
+it is made of at first, as exponentials.
+
+    1/(s + 1 + e^(-s)/2)    y = 2/3 + residues + (1/2 pi j) integral of H e^(s t)/s along Re s = -c
+
+with the residues at poles right of that line. The integral is at most ``e^(-c t)`` times that of abs(H/s)
+over pi. The poles right of the line are counted by how often ``F = 1 + D_1/D_0 e^(-s d_1) + ...`` turns about
+zero on it (Nyquist): far out F is about 1, if the delayed terms fall off against D_0, and so must H.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from flint import acb, acb_poly, arb, arb_poly
+
+from symflex.analysis.time_response.delayed_terms import NO_DELAY, later
+from symflex.analysis.time_response.echoes import earliest, echoes, terms_of_echo
+from symflex.analysis.time_response.effort import EFFORT
+from symflex.analysis.time_response.modal import proved_at_origin, term_at
+from symflex.budget import spend
+from symflex.roots import Modes
+from symflex.roots.locate import locate
+from symflex.roots.polynomial_roots import find_polynomial_roots
+from symflex.roots.problem import RootProblem
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.analysis.time_response.delayed_terms import Amplitude, Delay, DelayedQuotient
+    from symflex.analysis.time_response.partial_fractions import ExponentialTerm
+    from symflex.roots import Root
+    from symflex.transfer import BoundTransferFunction
+
+
+@dataclass(frozen=True, slots=True)
+class LateResponse:
+    """A step response within ``size * e^(-rate t)`` of some terms, at every time t [s]."""
+
+    terms: tuple[ExponentialTerm, ...]
+    size: arb
+    rate: arb
+
+
+@dataclass(frozen=True)
+class LatePolynomial:
+    """A polynomial that comes a time [s] later."""
+
+    polynomial: arb_poly
+    seconds: arb
+
+
+class _Loop:
+    """A quotient over its leading polynomial D_0, at the current precision."""
+
+    def __init__(self, quotient: DelayedQuotient, digits: int) -> None:
+        durations, self.first = quotient.durations, earliest(quotient.below, quotient.durations)
+
+        def late(delay: Delay, amplitude: Amplitude) -> LatePolynomial:
+            return LatePolynomial(
+                durations.polynomial(amplitude), durations.seconds(later(delay, self.first))
+            )
+
+        self.leading = durations.polynomial(quotient.below[self.first])
+        self.above = [late(d, p) for d, p in quotient.above.items()]
+        self.below = [late(d, p) for d, p in quotient.below.items() if later(d, self.first) != NO_DELAY]
+        exact = durations.exact(quotient.below[self.first])
+        self.poles = find_polynomial_roots(RootProblem(((exact, 1),)), digits) if exact.degree else ()
+
+    @property
+    def falls_off(self) -> bool:
+        """Whether delayed terms, and H, fall off far out, so that nothing passes straight through."""
+        n = self.leading.degree()
+        parts = (*self.above, *self.below)
+        return all(p.polynomial.degree() < n for p in parts) and all(p.seconds >= 0 for p in self.above)
+
+    def turned(self, s: acb) -> acb:
+        """Return F."""
+        return 1 + _at(self.below, s) / acb_poly(self.leading)(s)
+
+    def value(self, s: acb) -> acb:
+        """Return H."""
+        return _at(self.above, s) / (acb_poly(self.leading)(s) + _at(self.below, s))
+
+    def far(self, parts: Sequence[LatePolynomial], rate: arb, radius: arb) -> arb:
+        """Return what ``abs(s)`` times the size of a sum over D_0 is at most, far out."""
+        n = self.leading.degree()
+        size = [abs(c) for c in self.leading.coeffs()]
+        least = size[n] - sum((c * radius ** (i - n) for i, c in enumerate(size[:n])), arb(0))
+        total = arb(0)
+        for part in parts:
+            powers = (abs(c) * radius ** (i - n + 1) for i, c in enumerate(part.polynomial.coeffs()))
+            total += sum(powers, arb(0)) * (rate * part.seconds).exp()
+        return total / least if least > 0 else arb("inf")
+
+
+def _at(parts: Sequence[LatePolynomial], s: acb) -> acb:
+    return sum((acb_poly(p.polynomial)(s) * (-s * p.seconds).exp() for p in parts), acb(0))
+
+
+def late_response(
+    bound: BoundTransferFunction, quotient: DelayedQuotient, digits: int
+) -> LateResponse | None:
+    """Return what a step response settles into, at the current precision, from poles of so many digits.
+
+    None where that is not proved: delayed terms do not fall off against D_0, or H does not.
+    """
+    loop = _Loop(quotient, digits)
+    if not loop.falls_off:
+        return None
+    # Lines lie in units of the inverse of the loop's delay, or where it has none of the largest pole.
+    longest = max((p.seconds.upper() for p in loop.below), key=float, default=arb(0))
+    fastest = max((abs(pole.enclosure()).upper() for pole in loop.poles), key=float, default=arb(0))
+    unit = 1 / longest if longest > 0 else fastest
+    for share in EFFORT.lines:
+        spend()
+        rate = (unit * share).mid()
+        on_line = _on_line(loop, rate) if rate > 0 else None
+        if on_line is None:
+            continue
+        size, count = on_line
+        poles = _right_of(bound, rate, count, digits)
+        if sum(p.multiplicity for p in poles) != count or not all(p.certified for p in poles):
+            continue
+        terms = [term_at(bound, root, 1) for root in poles if not root.im < 0 and not root.is_zero]
+        origin = proved_at_origin(bound, 1)
+        if origin is not None and None not in terms:
+            return LateResponse((*origin, *filter(None, terms)), size, rate)
+    return None
+
+
+def _right_of(bound: BoundTransferFunction, rate: arb, count: int, digits: int) -> list[Root]:
+    """Return the poles right of a line, of which there are so many; fewer where these are not the lowest."""
+    poles: list[Root] = []
+    for more in (0, EFFORT.line_modes) if count else ():
+        found = locate(bound, Modes(count + more), digits)
+        poles = [p for p in found.all_poles if p.enclosure().real + rate > 0]
+        if sum(p.multiplicity for p in poles) == count:
+            break
+    return poles
+
+
+def _on_line(loop: _Loop, rate: arb) -> tuple[arb, int] | None:
+    """Return the integral of abs(H/s) along a line over pi, and how many poles are right of it.
+
+    None where a pole is too close to the line.
+    """
+    radius = (1 + rate).mid()
+    while not loop.far(loop.below, rate, radius) < radius / 2:
+        radius = radius * 2
+        if not radius < arb(10) ** 30:
+            return None
+    right = 0
+    for pole in loop.poles:
+        place = pole.enclosure().real + rate
+        if place.contains(0):
+            return None
+        right += pole.multiplicity if place > 0 else 0
+    # Beyond the radius F is at least 1/2, and H/s falls as one over s squared.
+    total = 2 * loop.far(loop.above, rate, radius) / radius
+    turned = arb(0)
+    ends = [radius * k / EFFORT.line_begun for k in range(EFFORT.line_begun + 1)]
+    pending = [(a.mid(), b.mid()) for a, b in pairwise(ends)][::-1]
+    for _ in range(EFFORT.line_parts):
+        if not pending:
+            break
+        low, high = pending.pop()
+        middle = ((low + high) / 2).mid()
+        part = acb(-rate, middle + arb(0, ((high - low) / 2).abs_upper()))
+        turns, value = loop.turned(part), loop.value(part) / part
+        if turns.contains(0) or not value.is_finite():
+            pending += [(middle, high), (low, middle)]
+            continue
+        turned += (loop.turned(acb(-rate, high)) / loop.turned(acb(-rate, low))).arg()
+        total += value.abs_upper() * (high - low)
+    else:
+        return None
+    # The rest of the way around is an arc on which F stays within 1/2 of 1.
+    count = right + (loop.turned(acb(-rate, radius)).arg() - turned) / arb.pi()
+    whole = count.unique_fmpz()
+    return None if whole is None else ((total / arb.pi()).upper(), int(whole))
+
+
+def pieces_of(
+    quotient: DelayedQuotient, until: arb, digits: int
+) -> list[tuple[arb, tuple[ExponentialTerm, ...]]] | None:
+    """Return a step response as pieces up to a time [s]: when each begins, and its terms from then on.
+
+    None where poles are not told apart. Raises TooManyEchoesError.
+    """
+    loop = _Loop(quotient, digits)
+    below = acb_poly(loop.leading)
+    found: list[tuple[arb, tuple[ExponentialTerm, ...]]] = []
+    known: dict[tuple[tuple[int, ...], ...], ExponentialTerm] = {}
+    before = arb(0)
+    for echo in echoes(quotient, until):
+        spend()
+        start = quotient.durations.seconds(echo.delay)
+        terms = terms_of_echo(echo, below, loop.poles, 1)
+        if terms is None:
+            return None
+        if not found and start > 0:
+            found.append((arb(0), ()))
+        known = {key: term.later(start - before) for key, term in known.items()}
+        for term in terms:
+            key = tuple(tuple(map(int, x.mid().man_exp())) for x in (term.rate.real, term.rate.imag))
+            known[key] = known[key] + term if key in known else term
+        found.append((start, tuple(known.values())))
+        before = start
+    return found
