@@ -3,5 +3,3 @@
 from symflex.equations.assemble import assemble
 from symflex.equations.equations import ConstantFunction, Continuum, Equations, OutputRow
 from symflex.equations.radicals import radicals_of
-
-__all__ = ["ConstantFunction", "Continuum", "Equations", "OutputRow", "assemble", "radicals_of"]

@@ -9,26 +9,3 @@ from symflex.sweep.design import Axis, Design, Range, Task, check_design, design
 from symflex.sweep.points import QUANTITIES, solve_chunk
 from symflex.sweep.run import Journal, chunk_size, plan_sweep, run_sweep, sweep, sweep_key, sweep_task
 from symflex.sweep.sweep import Labelled, Sweep, sweep_html
-
-__all__ = [
-    "QUANTITIES",
-    "Axis",
-    "Design",
-    "Journal",
-    "Labelled",
-    "Range",
-    "Sweep",
-    "Task",
-    "check_design",
-    "chunk_size",
-    "design_of",
-    "fingerprint",
-    "plan_sweep",
-    "read_design",
-    "run_sweep",
-    "solve_chunk",
-    "sweep",
-    "sweep_html",
-    "sweep_key",
-    "sweep_task",
-]

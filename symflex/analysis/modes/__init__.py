@@ -2,13 +2,3 @@
 
 from symflex.analysis.modes.find import NumberedShape, lowest_modes, mode_shape, mode_shapes
 from symflex.analysis.modes.shape import DistributedShape, EnclosedModeShape, Motion
-
-__all__ = [
-    "DistributedShape",
-    "EnclosedModeShape",
-    "Motion",
-    "NumberedShape",
-    "lowest_modes",
-    "mode_shape",
-    "mode_shapes",
-]

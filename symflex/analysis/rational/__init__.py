@@ -9,16 +9,3 @@ from symflex.analysis.rational.laurent import (
     expand_at_zero,
     find_residues,
 )
-
-__all__ = [
-    "FORMS",
-    "BandError",
-    "ErrorScan",
-    "LaurentSeries",
-    "PrincipalPart",
-    "RationalApproximation",
-    "approximate",
-    "expand_at_pole",
-    "expand_at_zero",
-    "find_residues",
-]

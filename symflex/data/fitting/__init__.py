@@ -6,19 +6,3 @@ from symflex.data.fitting.order import CRITERIA, STARTS, Score
 from symflex.data.fitting.phase_test import PartedBand, PhaseTest
 from symflex.data.fitting.resonances import Resonances
 from symflex.data.fitting.stabilisation import StablePoles, stabilisation
-
-__all__ = [
-    "CRITERIA",
-    "STARTS",
-    "Base",
-    "FittedModeShapes",
-    "PartedBand",
-    "PhaseTest",
-    "ResonanceFit",
-    "Resonances",
-    "Score",
-    "StablePoles",
-    "fit_resonances",
-    "mode_shapes",
-    "stabilisation",
-]

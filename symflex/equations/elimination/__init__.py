@@ -9,19 +9,3 @@ from symflex.equations.elimination.closing import (
 )
 from symflex.equations.elimination.determinants import Determinants, Minors, expanded_terms, expansion_order
 from symflex.equations.elimination.singular import explain_singular, free_at_rest, is_singular, unreached
-
-__all__ = [
-    "ClosedSystem",
-    "Closure",
-    "Determinants",
-    "Minors",
-    "ReducedSystem",
-    "close",
-    "eliminate_unit_pivots",
-    "expanded_terms",
-    "expansion_order",
-    "explain_singular",
-    "free_at_rest",
-    "is_singular",
-    "unreached",
-]

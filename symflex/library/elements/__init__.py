@@ -106,32 +106,3 @@ ELEMENTS: dict[str, Element] = {
         Piston(),
     )
 }
-
-__all__ = [
-    "ACROSS_UNIT",
-    "CIRCUITS",
-    "COMPONENTS",
-    "COMPONENT_DOMAIN",
-    "COMPONENT_UNIT",
-    "ELEMENTS",
-    "THROUGH_NAME",
-    "THROUGH_UNIT",
-    "Admittance",
-    "Choice",
-    "Domain",
-    "Element",
-    "ElementUse",
-    "EquationRow",
-    "Injection",
-    "LineElement",
-    "LinearForm",
-    "ParameterPort",
-    "Placing",
-    "Port",
-    "PortTerminal",
-    "Sign",
-    "Stamp",
-    "Terms",
-    "Variable",
-    "put_in",
-]
