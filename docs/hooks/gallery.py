@@ -27,6 +27,7 @@ from symflex.drawing import draw_model
 from symflex.errors import SymflexError, Text
 from symflex.expressions import parse, parse_equation
 from symflex.figures import draw, draw_loop, render
+from symflex.loops.of_model import characteristic_loop
 from symflex.print.forms import print_form, with_hidden
 from symflex.print.mathml import EQUALS, math_element, mathml_expression, transfer_function_mathml
 
@@ -174,7 +175,7 @@ def _figures(
         "bode": lambda: draw("bode", sources, bounds),
     }
     if is_loop:
-        kinds["map"] = lambda: draw_loop("locus", pipeline.characteristic_loop(model, GAIN))
+        kinds["map"] = lambda: draw_loop("locus", characteristic_loop(model, GAIN))
     for name, drawing in kinds.items():
         try:
             yield name, render(drawing(), "svg")

@@ -6,8 +6,9 @@ from dataclasses import fields
 from math import inf
 from typing import TYPE_CHECKING
 
-from symflex import pipeline
+from symflex.analysis import rational as rational_room
 from symflex.analysis import response as response_room
+from symflex.analysis.rational import find_residues
 from symflex.analysis.time_response import StepInfo
 from symflex.api.mode_shape import ModeShape
 from symflex.api.plots import Plotted
@@ -24,13 +25,13 @@ from symflex.api.root import (
 from symflex.budget import Budget, entered_budget
 from symflex.errors import Diagnostic, UsageError
 from symflex.options import RootsOptions
+from symflex.roots.locate import locate
 from symflex.roots.region import region_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from symflex import roots as roots_room
-    from symflex.analysis import rational as rational_room
     from symflex.analysis.input_shaping import InputShaper
 
 POINTS = 201
@@ -138,12 +139,12 @@ class Analyses(Plotted):
     def _in_time(
         self, kind: str, times: ArrayLike | None, digits: int, shaper: InputShaper | None
     ) -> TimeResponse:
-        from symflex.analysis.time_response import SampleTimes, responses_by_default
+        from symflex.analysis.time_response import SampleTimes, responses_by_default, time_response
 
         if times is None:
             (found,) = responses_by_default([self.bound], kind, POINTS, digits, shaper)
         else:
-            found = pipeline.time_response(self.bound, kind, SampleTimes.of(times), digits, shaper)
+            found = time_response(self.bound, kind, SampleTimes.of(times), digits, shaper)
         return TimeResponse(**{f.name: getattr(found, f.name) for f in fields(found)})
 
     def poles(
@@ -228,7 +229,7 @@ class Analyses(Plotted):
 
     def _map(self, given: RootsOptions, budget: float | None) -> roots_room.PoleZeroMap:
         digits = 15 if given.digits is None else given.digits
-        return pipeline.roots(self.bound, region_of(given), digits, budget_of(budget))
+        return locate(self.bound, region_of(given), digits, budget_of(budget))
 
     def pole_zero_map(
         self,
@@ -301,9 +302,7 @@ class Analyses(Plotted):
         [(-0.5+0j)]
         """
         region = region_of(RootsOptions(None, modes, mode, band))
-        return ResidueTable(
-            Residue(r) for r in pipeline.residues(self.bound, region, digits, budget_of(budget))
-        )
+        return ResidueTable(Residue(r) for r in find_residues(self.bound, region, digits, budget_of(budget)))
 
     def rational(
         self, modes: int | None = None, form: str = "product", *, band: tuple[float, float] | None = None
@@ -328,7 +327,7 @@ class Analyses(Plotted):
         UncertifiedError
             SF405 when residues, or the behaviour near s = 0, cannot be told.
         """
-        return pipeline.rational(self.bound, modes, form, band)
+        return rational_room.approximate(self.bound, modes, form, band)
 
     def mode_shape(self, mode: Mode, digits: int = 15) -> ModeShape:
         """Return how everything moves in one mode; the largest displacement is 1.

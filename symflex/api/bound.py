@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
-from symflex import pipeline
+from symflex.analysis.explanation import explain_zeros
+from symflex.analysis.sensitivity.sensitivity import sensitivities
 from symflex.api.analyses import Analyses
 from symflex.api.response import TimeResponse
 from symflex.api.root import Sensitivity, SensitivityTable
@@ -98,12 +99,12 @@ class BoundTransferFunction(Toolboxes, Analyses):
         >>> integrator.bind().forced_response([0.0, 1.0, 3.0], [0.0, 2.0, 2.0]).values.tolist()
         [0.0, 1.0, 5.0]
         """
-        from symflex.analysis.time_response import SampleTimes, exact_values
+        from symflex.analysis.time_response import SampleTimes, exact_values, forced_response
 
         instants = SampleTimes.of(times)
         exactly = instants.exactly()
         given = exact_values(u, len(exactly))
-        found = pipeline.forced_response(self.bound, exactly, given, exactly, digits, shaper)
+        found = forced_response(self.bound, exactly, given, exactly, digits, shaper)
         return TimeResponse(**{f.name: getattr(found, f.name) for f in fields(found)})
 
     def sensitivities(
@@ -137,7 +138,7 @@ class BoundTransferFunction(Toolboxes, Analyses):
         found = self._found(RootsOptions(None, modes, mode, band, digits=digits), budget)
         model = self.bound.source.model
         return SensitivityTable(
-            Sensitivity(m) for m in pipeline.sensitivities(model, self.bound, found, parameters, digits)
+            Sensitivity(m) for m in sensitivities(model, self.bound, found, parameters, digits)
         )
 
     def explain_zeros(
@@ -162,4 +163,4 @@ class BoundTransferFunction(Toolboxes, Analyses):
             As for :meth:`poles`.
         """
         found = self._found(RootsOptions(None, modes, mode, band, digits=digits), budget)
-        return pipeline.explain_zeros(self.bound.source.model, self.bound, found)
+        return explain_zeros(self.bound.source.model, self.bound, found)

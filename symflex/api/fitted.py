@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from symflex import pipeline
+from symflex.analysis import measured
 from symflex.api.model import Model, loads
+from symflex.data.fitting.specification import fit_specification
 from symflex.data.measurement import MeasuredResponse, prepared, read_measurement
 from symflex.options import FitOptions
 
@@ -83,7 +84,7 @@ class Fit:
 
         ``loop`` is the name of a gain: a loop is closed with it, from the first response to the input.
         """
-        return pipeline.fit_specification(self.found, folder, loop)
+        return fit_specification(self.found, folder, loop)
 
     def model(self) -> Model:
         """Return the fitted model, which derives, prints and exports like any other."""
@@ -230,4 +231,4 @@ def fit(
         slope=slope,
         allow_outside=allow_outside,
     )
-    return Fit(pipeline.fit(prepared(responses, band, averages, window), asked))
+    return Fit(measured.fit(prepared(responses, band, averages, window), asked))

@@ -294,7 +294,7 @@ class Model:
             for source in (self.inputs if inputs is None else inputs)
         ]
         pairs = pipeline.pick_pairs(self.resolved, wanted)
-        return StateSpace(pipeline.state_space(self.resolved, pairs, is_minimal=minimal))
+        return StateSpace.of(self.resolved, pairs, minimal=minimal)
 
     def stability(
         self,
@@ -344,8 +344,10 @@ class Model:
         >>> model.stability("K")
         <Stability: 0.0 < K < 6.0, certified>
         """
+        from symflex.loops.of_model import stability  # imports numpy
+
         given = StabilityOptions(gain, limits, up_to_hz, digits)
-        return Stability(pipeline.stability(self.resolved, given, values, budget_of(budget)))
+        return Stability(stability(self.resolved, given, values, budget_of(budget)))
 
     def locus(
         self,
@@ -401,11 +403,18 @@ class Model:
         >>> figure.axes[0].get_ylim() == (-4, 4), figure.axes[0].get_xlabel()
         (True, '$\\mathrm{Re}(s)$ [rad/s]')
         """
-        loop = pipeline.characteristic_loop(self.resolved, gain, values)
         given = PlotOptions(
-            "locus", band=band, xlim=xlim, ylim=ylim, limits=limits, modes=modes, width=width, font=font
+            "locus",
+            gain=gain,
+            band=band,
+            xlim=xlim,
+            ylim=ylim,
+            limits=limits,
+            modes=modes,
+            width=width,
+            font=font,
         )
-        return plot_loop(given, loop, ax)
+        return plot_loop(given, self.resolved, values, ax)
 
     def nyquist(
         self,
@@ -436,9 +445,8 @@ class Model:
         open loop: no pole in the right half plane
         closed loop stable
         """
-        loop = pipeline.characteristic_loop(self.resolved, gain, values)
-        given = PlotOptions("nyquist", band=band, xlim=xlim, ylim=ylim, width=width, font=font)
-        return plot_loop(given, loop, ax)
+        given = PlotOptions("nyquist", gain=gain, band=band, xlim=xlim, ylim=ylim, width=width, font=font)
+        return plot_loop(given, self.resolved, values, ax)
 
     def colocation(
         self,
@@ -477,8 +485,10 @@ class Model:
         >>> print(model.colocation("Y", "X", "F", band=(0.01, 1)))
         Y/F within 10 deg and 1 dB of X/F: up to 0.104969441593 Hz, where the magnitude differs by more
         """
+        from symflex.loops.of_model import colocation
+
         given = ColocationOptions(f"{output}/{input}", f"{reference}/{input}", phase, magnitude, band)
-        return pipeline.colocation(self.resolved, given)
+        return colocation(self.resolved, given)
 
     def measure(
         self,
@@ -534,8 +544,10 @@ class Model:
         >>> symflex.fit(data, modes=1, slope=2)
         <Fit to synthetic data: 10.1 Hz>
         """
+        from symflex.analysis.measured import measure
+
         given = MeasureOptions(f"{output}/{input}", "", band, spacing, averages, noise, rolloff, seed)
-        return pipeline.measure(self.resolved, given)
+        return measure(self.resolved, given)
 
     def sweep(
         self,
@@ -622,8 +634,8 @@ class Model:
         if of == "response" and not len(frequencies):
             raise UsageError(Diagnostic("SF902", "a response needs frequencies"))
         given = SweepOptions(over, draws, seed, of, tf, modes, band, gain=gain, output=output, fresh=fresh)
-        task, design = pipeline.plan_sweep(self.resolved, given, frequencies)
-        return Sweep.of_plain(pipeline.sweep(task, design, given, executor, workers=workers))
+        task, design = sweep_room.plan_sweep(self.resolved, given, frequencies)
+        return Sweep.of_plain(sweep_room.sweep(task, design, given, executor, workers=workers))
 
     def export_numpy(self) -> str:
         """Return a numpy module with a function per transfer function."""

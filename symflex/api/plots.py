@@ -9,14 +9,14 @@ from symflex.options import PlotOptions, gain_ends
 from symflex.print.latex import column_width
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from matplotlib.figure import Figure
 
     from symflex.figures import AxesGiven
-    from symflex.loops import AnyLoop
+    from symflex.model import Model
     from symflex.options import Ends
-    from symflex.transfer import AnyBoundFunction
+    from symflex.transfer import AnyBoundFunction, Given
 
 
 def width_of(width: float | str | None) -> float | None:
@@ -194,10 +194,14 @@ class Plotted:
         return plot_functions(given, [self.bound, *(other.bound for other in others)], ax)
 
 
-def plot_loop(given: PlotOptions, loop: AnyLoop, ax: AxesGiven | None = None) -> Figure:
+def plot_loop(
+    given: PlotOptions, model: Model, values: Mapping[str, Given], ax: AxesGiven | None = None
+) -> Figure:
     """Draw a root locus or the Nyquist plot of a loop gain; see :func:`symflex.figures.draw_loop`."""
     from symflex.figures import DEFAULT_FONT, draw_loop, part_shown  # imports matplotlib
+    from symflex.loops.of_model import characteristic_loop
 
+    loop = characteristic_loop(model, given.gain or "", values)
     band, frame = part_shown(given.kind, given)
     return draw_loop(
         given.kind,

@@ -6,19 +6,20 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Final
 
+from symflex import state_space as state_space_room
 from symflex.codegen.state_space import StateEquations
 from symflex.options import duration, exact
 from symflex.print.sympy import symbols_of, to_sympy
 from symflex.transfer.bind import read_values
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from decimal import Decimal
     from fractions import Fraction
 
     import sympy
 
-    from symflex import state_space as state_space_room
-    from symflex.model import ExactValue
+    from symflex.model import ExactValue, Model
     from symflex.state_space.numeric import BoundStateSpace
     from symflex.state_space.popov import Vector
     from symflex.state_space.sampled import SampledStateSpace
@@ -63,6 +64,12 @@ class StateSpace:
     """
 
     exact: state_space_room.StateSpace
+
+    @staticmethod
+    def of(model: Model, pairs: Sequence[tuple[str, str]], *, minimal: bool) -> StateSpace:
+        """Return the face of a realisation with the outputs and inputs of the given pairs."""
+        found = state_space_room.realise(model, pairs)
+        return StateSpace(state_space_room.minimal(found) if minimal else found)
 
     @property
     def states(self) -> tuple[str, ...]:

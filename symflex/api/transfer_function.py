@@ -230,7 +230,7 @@ class TransferFunction(_Derived):
             SF502 when the matrices become too large.
         """
         pair = (self.exact.output.name, self.exact.input.name)
-        return StateSpace(pipeline.state_space(self.exact.model, [pair], is_minimal=minimal))
+        return StateSpace.of(self.exact.model, [pair], minimal=minimal)
 
     def to_sympy(self) -> sympy.Basic:
         """Return a ``sympy.physics.control.TransferFunction`` of ``s`` with the parameters as symbols.

@@ -38,7 +38,9 @@ def fit(given: FitOptions) -> int:
     that no fit came of them, or with --strict a poor one.
     """
     from symflex import pipeline
+    from symflex.analysis.measured import fit as fitted
     from symflex.data.fitting import mode_shapes
+    from symflex.data.fitting.specification import fit_specification
     from symflex.data.fitting.text import fit_json, fit_text
     from symflex.data.measurement import prepared
     from symflex.files.write import write_atomically
@@ -72,13 +74,13 @@ def fit(given: FitOptions) -> int:
             raise UsageError(Diagnostic("SF902", "--driving is for fits without --base"))
     budget = entered_budget()
     with ProgressBar() as bar, budget.told(bar).entered():
-        found = pipeline.fit(measured, given)
+        found = fitted(measured, given)
     shapes = mode_shapes(found, every) if given.driving else None
     if given.strict and found.poor:
         hint = "without --strict it is printed all the same"
         raise FitError(Diagnostic("SF618", f"the fit is poor: {found.poor[0]}", None, hint))
     if given.output:
-        text = pipeline.fit_specification(found, Path(given.output).parent, given.loop)
+        text = fit_specification(found, Path(given.output).parent, given.loop)
         write_atomically(Path(given.output), text.encode())
         note(f"wrote {given.output}")
         try:
@@ -130,14 +132,14 @@ def measure(spec: Specification, given: MeasureOptions) -> int:
     records with a Hann window are averaged to an H1 estimate and its coherence. The same seed gives
     the same file.
     """
-    from symflex import pipeline
+    from symflex.analysis.measured import measure as measured_of
     from symflex.data.measurement import WRITERS, measurement_bytes
     from symflex.files.write import write_atomically
 
     check_place(given.output, WRITERS)
     model = spec.load()
     tf = "/".join(first_pair(model, given.tf, "measuring"))
-    measured = pipeline.measure(model, replace(given, tf=tf, rolloff=given.rolloff or None))
+    measured = measured_of(model, replace(given, tf=tf, rolloff=given.rolloff or None))
     write_atomically(Path(given.output), measurement_bytes(measured, given.output))
     note(f"wrote {given.output}: {measured.values.size} lines of SYNTHETIC data")
     return 0

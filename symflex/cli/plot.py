@@ -72,6 +72,7 @@ def plot(spec: Specification, given: PlotOptions) -> int:
     from symflex import pipeline
     from symflex.figures import LOOP_FIGURES, draw, draw_loop, part_shown, save
     from symflex.loops import pick_gain
+    from symflex.loops.of_model import characteristic_loop
     from symflex.print.latex import column_width
 
     if SWEEP in (spec.path, given.kind):
@@ -105,7 +106,7 @@ def plot(spec: Specification, given: PlotOptions) -> int:
         limits = gain_ends(given.limits, pick_gain(model.parameters, gain))
         drawing = draw_loop(
             drawn,
-            pipeline.characteristic_loop(model, gain),
+            characteristic_loop(model, gain),
             limits=limits,
             modes=given.modes,
             band_hz=shown,

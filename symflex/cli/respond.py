@@ -40,7 +40,14 @@ def respond(spec: Specification, given: RespondOptions) -> int:
     Exit code 4 says that the response could not be found, and with --strict that it is not certified.
     """
     from symflex import pipeline
-    from symflex.analysis.time_response import SampleTimes, evenly, find_step_info, response_text
+    from symflex.analysis.time_response import (
+        SampleTimes,
+        evenly,
+        find_step_info,
+        forced_response,
+        response_text,
+        time_response,
+    )
     from symflex.data.measurement.input_signal import read_signal
     from symflex.transfer import BoundNested
 
@@ -61,13 +68,13 @@ def respond(spec: Specification, given: RespondOptions) -> int:
         shaper = input_shaper(bound, given.modes, given.shaped, given.digits, joint=given.joint)
     if signal is None:
         times = SampleTimes.evenly(until or Fraction(1), given.points or POINTS)
-        found = pipeline.time_response(bound, given.to, times, given.digits, shaper)
+        found = time_response(bound, given.to, times, given.digits, shaper)
     else:
         wanted = signal.times
         if until is not None or given.points is not None:
             wanted = evenly(until or signal.times[-1], given.points or POINTS)
         whole = pipeline.derive_bound(model, [pair])[0] if isinstance(bound, BoundNested) else bound
-        forced = pipeline.forced_response(whole, signal.times, signal.values, wanted, given.digits, shaper)
+        forced = forced_response(whole, signal.times, signal.values, wanted, given.digits, shaper)
         found = replace(forced, input=Path(given.to).name)
     if given.output and Path(given.output).suffix.lower() == TABLE:
         from symflex.files.write import write_atomically

@@ -24,6 +24,7 @@ from symflex.analysis.time_response.enclosed_response import EnclosedResponse, I
 from symflex.analysis.time_response.find import time_response
 from symflex.analysis.time_response.sample_times import MOST_TIMES, SampleTimes
 from symflex.errors import Diagnostic, UncertifiedError, UsageError
+from symflex.model.loss_factors import check_causal
 from symflex.options import exact
 from symflex.roots.precision import precision
 from symflex.transfer.balls import ball
@@ -75,6 +76,7 @@ def forced_response(
     >>> found.values.tolist()
     [0.125, 0.5, 1.5]
     """
+    check_causal(bound.source.model, "a response in time")
     first, step, places = _grid(sampled, times)
     bends, moments = places[: len(sampled)], places[len(sampled) :]
     count = max(moments, default=0) + 1
