@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
 from math import inf
 from typing import TYPE_CHECKING
 
@@ -10,6 +9,7 @@ from symflex.analysis import rational as rational_room
 from symflex.analysis import response as response_room
 from symflex.analysis.rational import find_residues
 from symflex.analysis.time_response import StepInfo
+from symflex.api.face import face_of
 from symflex.api.mode_shape import ModeShape
 from symflex.api.plots import Plotted
 from symflex.api.response import FrequencyResponse, TimeResponse
@@ -43,7 +43,7 @@ class Analyses(Plotted):
 
     def frequency_response(self, omega: ArrayLike) -> FrequencyResponse:
         """Return the response at real angular frequencies [rad/s]."""
-        return FrequencyResponse.of(response_room.respond(self.bound, omega))
+        return face_of(FrequencyResponse, response_room.respond(self.bound, omega))
 
     def step_response(
         self, times: ArrayLike | None = None, digits: int = 12, shaper: InputShaper | None = None
@@ -145,7 +145,7 @@ class Analyses(Plotted):
             (found,) = responses_by_default([self.bound], kind, POINTS, digits, shaper)
         else:
             found = time_response(self.bound, kind, SampleTimes.of(times), digits, shaper)
-        return TimeResponse(**{f.name: getattr(found, f.name) for f in fields(found)})
+        return face_of(TimeResponse, found)
 
     def poles(
         self,
@@ -189,14 +189,9 @@ class Analyses(Plotted):
         --------
         >>> from symflex import Model
         >>> from symflex.errors import BudgetError
-        >>> rod = Model(
-        ...     elements={
-        ...         "bar": {"type": "rod", "between": ["ground", "x"], "E": "1 Pa", "A": "1 m^2",
-        ...                 "rho": "1 kg/m^3", "l": "1 m"},
-        ...     },
-        ...     inputs={"F": {"force": "x"}},
-        ...     outputs={"X": "x"},
-        ... ).transfer_function("X", "F").bind()
+        >>> bar = {"type": "rod", "between": ["ground", "x"], "E": 1, "A": 1, "rho": 1, "l": 1}
+        >>> model = Model(elements={"bar": bar}, inputs={"F": {"force": "x"}}, outputs={"X": "x"})
+        >>> rod = model.transfer_function("X", "F").bind()
         >>> upper, lower = rod.poles(mode=1000)  # (1000 - 1/2) pi
         >>> upper
         <Root 0, 3140.02185726 j, radius ...
@@ -225,7 +220,7 @@ class Analyses(Plotted):
 
     def _found(self, given: RootsOptions, budget: float | None) -> PoleZeroMap:
         """Return the map if the budget suffices: a tuple of roots could not say that it did not."""
-        return PoleZeroMap.of(self._map(given, budget).complete())
+        return face_of(PoleZeroMap, self._map(given, budget).complete())
 
     def _map(self, given: RootsOptions, budget: float | None) -> roots_room.PoleZeroMap:
         digits = 15 if given.digits is None else given.digits
@@ -269,7 +264,8 @@ class Analyses(Plotted):
         >>> [root.decimal(6).im for root in found.poles], found.certificate.is_exceeded
         (['3.00000', '-3.00000'], False)
         """
-        return PoleZeroMap.of(self._map(RootsOptions(None, modes, mode, band, region, digits), budget))
+        given = RootsOptions(None, modes, mode, band, region, digits)
+        return face_of(PoleZeroMap, self._map(given, budget))
 
     def residues(
         self,
@@ -282,17 +278,8 @@ class Analyses(Plotted):
     ) -> tuple[Residue, ...]:
         r"""Return the residues at the poles, in their order; see :meth:`poles`.
 
-        Parameters
-        ----------
-        modes, mode, band, digits, budget : optional
-            As for :meth:`poles`: at which poles, and how they are searched for.
-
-        Raises
-        ------
-        UncertifiedError
-            SF405 when poles cannot be told apart, or the behaviour at one cannot be told.
-        BudgetError
-            As for :meth:`poles`.
+        Parameters and errors are those of :meth:`poles`. UncertifiedError: SF405 when poles cannot be told
+        apart, or the behaviour at one cannot be told.
 
         Examples
         --------

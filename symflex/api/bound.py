@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from symflex.analysis.explanation import explain_zeros
 from symflex.analysis.sensitivity.sensitivity import sensitivities
 from symflex.api.analyses import Analyses
+from symflex.api.face import face_of
 from symflex.api.response import TimeResponse
 from symflex.api.root import Sensitivity, SensitivityTable
 from symflex.api.toolboxes import Toolboxes
@@ -105,7 +106,7 @@ class BoundTransferFunction(Toolboxes, Analyses):
         exactly = instants.exactly()
         given = exact_values(u, len(exactly))
         found = forced_response(self.bound, exactly, given, exactly, digits, shaper)
-        return TimeResponse(**{f.name: getattr(found, f.name) for f in fields(found)})
+        return face_of(TimeResponse, found)
 
     def sensitivities(
         self,
@@ -152,15 +153,7 @@ class BoundTransferFunction(Toolboxes, Analyses):
     ) -> ZeroExplanation:
         """Return what the zeros are the poles of; print it to read it.
 
-        Parameters
-        ----------
-        modes, mode, band, digits, budget : optional
-            As for :meth:`zeros`: which zeros are spoken of one by one.
-
-        Raises
-        ------
-        BudgetError
-            As for :meth:`poles`.
+        Parameters and errors are those of :meth:`zeros`: which zeros are spoken of one by one.
         """
         found = self._found(RootsOptions(None, modes, mode, band, digits=digits), budget)
         return explain_zeros(self.bound.source.model, self.bound, found)

@@ -44,15 +44,14 @@ class StateSpace:
     Examples
     --------
     >>> import symflex
-    >>> model = symflex.Model(
-    ...     parameters={"m": "2 kg", "k": "8 N/m"},
-    ...     elements={
-    ...         "body": {"type": "mass", "at": "x", "m": "m"},
-    ...         "wall": {"type": "spring", "between": ["x", "ground"], "k": "k"},
-    ...     },
-    ...     inputs={"F": {"force": "x"}},
-    ...     outputs={"X": "x"},
-    ... )
+    >>> model = symflex.loads('''
+    ... symflex = 1
+    ... parameters = { m = "2 kg", k = "8 N/m" }
+    ... elements.body = { type = "mass", at = "x", m = "m" }
+    ... elements.wall = { type = "spring", between = ["x", "ground"], k = "k" }
+    ... inputs.F = { force = "x" }
+    ... outputs.X = "x"
+    ... ''')
     >>> system = model.state_space()
     >>> system.states, system.A
     (('x', 'x_dot'), Matrix([
@@ -193,12 +192,8 @@ class StateSpace:
         Examples
         --------
         >>> import symflex
-        >>> model = symflex.Model(
-        ...     parameters={"m": "2 kg"},
-        ...     elements={"body": {"type": "mass", "at": "x", "m": "m"}},
-        ...     inputs={"F": {"force": "x"}},
-        ...     outputs={"X": "x"},
-        ... )
+        >>> body = {"type": "mass", "at": "x", "m": "2 kg"}
+        >>> model = symflex.Model(elements={"b": body}, inputs={"F": {"force": "x"}}, outputs={"X": "x"})
         >>> step = model.state_space().discretise("100 ms")
         >>> step.A.tolist(), step.B.tolist()  # 1, h and h^2/(2 m), h/m
         ([[1.0, 0.1], [0.0, 1.0]], [[0.0025], [0.05]])

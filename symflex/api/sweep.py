@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from symflex import sweep as sweep_room
@@ -18,11 +18,6 @@ if TYPE_CHECKING:
 class Sweep(sweep_room.Sweep):
     """What was found at all points of a design, which draws itself. See :class:`symflex.sweep.Sweep`."""
 
-    @staticmethod
-    def of_plain(found: sweep_room.Sweep) -> Sweep:
-        """Return the face of a sweep."""
-        return Sweep(*(getattr(found, field.name) for field in fields(found)))
-
     def plot(
         self,
         *,
@@ -37,12 +32,8 @@ class Sweep(sweep_room.Sweep):
         ----------
         modes : int, optional
             Only those with the first names.
-        width : float or str, optional
-            Of the figure [mm], or ``"ieee"`` or ``"a4"``.
-        font : str, optional
-            ``times``, ``latex`` or ``sans``.
-        ax : matplotlib axes, optional
-            Of your own, to draw on, as many as there are panels.
+        width, font, ax : optional
+            As for :meth:`BoundTransferFunction.bode`; as many axes as there are panels.
 
         Raises
         ------
@@ -54,17 +45,9 @@ class Sweep(sweep_room.Sweep):
         Examples
         --------
         >>> from symflex import Model
-        >>> model = Model(
-        ...     parameters={"k": "4 N/m"},
-        ...     elements={
-        ...         "m": {"type": "mass", "at": "x", "m": "1 kg"},
-        ...         "k": {"type": "spring", "between": ["x", "ground"], "k": "k"},
-        ...     },
-        ...     inputs={"F": {"force": "x"}},
-        ...     outputs={"X": "x"},
-        ... )
+        >>> model = Model(parameters={"k": 4}, inputs={"u": {}}, outputs={"x": "u/(s^2 + k)"})
         >>> (panel,) = model.sweep({"k": [1, 4, 9]}).plot().axes
-        >>> panel.get_lines()[0].get_ydata()  # sqrt(k/m)/(2 pi)
+        >>> panel.get_lines()[0].get_ydata()  # sqrt(k)/(2 pi)
         array([0.15915494, 0.31830989, 0.47746483])
         """
         from symflex.figures import DEFAULT_FONT, draw_sweep  # imports matplotlib
