@@ -168,11 +168,10 @@ def _figures(
     model: Model, bounds: Sequence[AnyBoundFunction], *, is_loop: bool
 ) -> Iterator[tuple[str, bytes]]:
     """Draw what can be drawn of a model."""
-    sources = [bound.source for bound in bounds]
     kinds: dict[str, Callable[[], Figure]] = {
         "drawing": lambda: draw_model(model),
-        "map": lambda: draw("poles_zeros", sources, bounds),
-        "bode": lambda: draw("bode", sources, bounds),
+        "map": lambda: draw("poles_zeros", bounds),
+        "bode": lambda: draw("bode", bounds),
     }
     if is_loop:
         kinds["map"] = lambda: draw_loop("locus", characteristic_loop(model, GAIN))

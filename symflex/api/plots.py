@@ -41,7 +41,6 @@ def plot_functions(
     band, frame = part_shown(given.kind, given)
     return draw(
         given.kind,
-        [bound.source for bound in bounds],
         bounds,
         band_hz=band,
         frame=frame,

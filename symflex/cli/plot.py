@@ -125,10 +125,7 @@ def plot(spec: Specification, given: PlotOptions) -> int:
                 if bound.is_zero:
                     note(f"{bound.name} is identically zero and is left out")
             bounds = tuple(bound for bound in bounds if not bound.is_zero) or bounds
-        sources = [bound.source for bound in bounds]
-        drawing = draw(
-            drawn, sources, bounds, band_hz=shown, frame=frame, title=title, width_mm=width_mm, font=font
-        )
+        drawing = draw(drawn, bounds, band_hz=shown, frame=frame, title=title, width_mm=width_mm, font=font)
     save(drawing, path, font=font)
     note(f"wrote {path}")
     return 0

@@ -23,7 +23,6 @@ from symflex.figures.style import (
     paper_style,
     title_lines,
 )
-from symflex.model.loss_factors import check_causal
 from symflex.transfer import BoundNested
 
 if TYPE_CHECKING:
@@ -33,7 +32,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from symflex.analysis.time_response import EnclosedResponse
-    from symflex.transfer import AnyBoundFunction, AnyTransferFunction
+    from symflex.transfer import AnyBoundFunction
 
 HEIGHT_INCHES: Final = 2.2
 FARTHEST: Final = 0.5
@@ -46,48 +45,39 @@ DIGITS: Final = 6
 """Of values, far more than a line shows."""
 
 
-def draw_step(
-    tfs: Sequence[AnyTransferFunction], bounds: Sequence[AnyBoundFunction], canvas: Canvas
-) -> Figure:
+def draw_step(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
     """Draw step responses in one figure; see :func:`symflex.figures.draw`."""
-    return _drawn("step", tfs, bounds, canvas)
+    return _drawn("step", bounds, canvas)
 
 
-def draw_impulse(
-    tfs: Sequence[AnyTransferFunction], bounds: Sequence[AnyBoundFunction], canvas: Canvas
-) -> Figure:
+def draw_impulse(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
     """Draw impulse responses in one figure, without the impulses they hold themselves."""
-    return _drawn("impulse", tfs, bounds, canvas)
+    return _drawn("impulse", bounds, canvas)
 
 
-def _drawn(
-    kind: str, tfs: Sequence[AnyTransferFunction], bounds: Sequence[AnyBoundFunction], canvas: Canvas
-) -> Figure:
-    closed = []
+def _drawn(kind: str, bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
     for bound in bounds:
-        check_causal(bound.source.model, "a response in time")
         if isinstance(bound, BoundNested):
             message = f"the closed form of {bound.name} is too large for a response in time"
             raise BudgetError(Diagnostic("SF502", message, None, "split the model"))
-        closed.append(bound)
     if canvas.frame.x:
         times = SampleTimes.evenly(Fraction(canvas.frame.x[1]), POINTS)
-        responses = [time_response(bound, kind, times, DIGITS) for bound in closed]
+        responses = [time_response(bound, kind, times, DIGITS) for bound in bounds]
     else:
-        responses = responses_by_default(closed, kind, POINTS, DIGITS)
+        responses = responses_by_default(bounds, kind, POINTS, DIGITS)
     width = canvas.width or COLUMN_INCHES
     lines = [*title_lines(canvas.title, width), *_said(responses, width)]
     units = {response.unit for response in responses}
     axes = canvas.one_panel(HEIGHT_INCHES + LINE_INCHES * (len(lines) + 1))
     looks = zip(cycle(COLOURS), cycle(DASHES), strict=False)
-    for tf, response, look in zip(tfs, responses, looks, strict=False):
-        label = label_of_tf(tf)
+    for bound, response, look in zip(bounds, responses, looks, strict=False):
+        label = label_of_tf(bound.source)
         if len(units) > 1 and (unit := label_of_unit(response.unit)):
             label = f"{label} [{unit}]"
         _draw_curve(axes, response, look, label)
     _label(axes, responses[0], units.pop() if len(units) == 1 else "")
     _limit(axes, responses[0], canvas.frame)
-    add_legend_above(axes, len(tfs) if len(tfs) < len(DASHES) else len(DASHES) - 1)
+    add_legend_above(axes, len(bounds) if len(bounds) < len(DASHES) else len(DASHES) - 1)
     figure = axes.figure.get_figure(root=True)
     write_title(figure, lines)
     return figure

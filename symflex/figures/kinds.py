@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from symflex.figures.style import Raster
     from symflex.loops import AnyLoop
     from symflex.model import Model
-    from symflex.transfer import AnyBoundFunction, AnyTransferFunction
+    from symflex.transfer import AnyBoundFunction
 
 FIGURES: dict[str, Drawing] = {
     "bode": draw_bode,
@@ -55,7 +55,6 @@ LOOP_FIGURES: tuple[str, ...] = ("locus", "nyquist")
 
 def draw(
     kind: str,
-    tfs: Sequence[AnyTransferFunction],
     bounds: Sequence[AnyBoundFunction],
     *,
     band_hz: tuple[float | Fraction, float | Fraction] | None = None,
@@ -67,18 +66,17 @@ def draw(
 ) -> Figure:
     """Draw a figure of one or several transfer functions.
 
-    ``kind`` is a key of :data:`FIGURES`, ``bounds`` are the functions ``tfs`` with numbers. Without
-    ``band_hz`` [Hz] a Bode plot takes the model's ``band``, or else one that shows all poles and zeros; a
-    pole-zero plot focuses on the resonances that belong together and marks the rest at its border, and with
-    it shows those up to its end; of modes, the lowest are shown, or those in it. ``frame`` takes the place of
-    limits that suit what is drawn; ``title`` is printed as it is, never read as mathematics. The figure is
-    3.5 inches wide by default, or 7.16 for what needs the width of a page. :func:`render` is to be told the
-    same ``font``, a key of :data:`FONTS`. On ``ax``, axes of the user's own, it is drawn in the user's style,
-    with as many of them as it has panels; of a Bode plot, the first alone shows magnitudes. Raises
-    UsageError: SF208 an unknown kind; SF227 an empty band; SF208 an
-    unknown font; SF902 the width is not between 80 and 1000 mm or too small for what is drawn, ``ax`` are too
-    many or too few, or limits are of axes that the figure has not; ModelError: SF402 a transfer function is
-    identically zero.
+    ``kind`` is a key of :data:`FIGURES`, ``bounds`` are the functions with numbers. Without ``band_hz`` [Hz]
+    a Bode plot takes the model's ``band``, or else one that shows all poles and zeros; a pole-zero plot
+    focuses on the resonances that belong together and marks the rest at its border, and with it shows those
+    up to its end; of modes, the lowest are shown, or those in it. ``frame`` takes the place of limits that
+    suit what is drawn; ``title`` is printed as it is, never read as mathematics. The figure is 3.5 inches
+    wide by default, or 7.16 for what needs the width of a page. :func:`render` is to be told the same
+    ``font``, a key of :data:`FONTS`. On ``ax``, axes of the user's own, it is drawn in the user's style, with
+    as many of them as it has panels; of a Bode plot, the first alone shows magnitudes. Raises UsageError:
+    SF208 an unknown kind; SF227 an empty band; SF208 an unknown font; SF902 the width is not between 80 and
+    1000 mm or too small for what is drawn, ``ax`` are too many or too few, or limits are of axes that the
+    figure has not; ModelError: SF402 a transfer function is identically zero.
     """
     if kind not in FIGURES:
         if kind in LOOP_FIGURES:
@@ -89,17 +87,15 @@ def draw(
         hint = nearest(kind, FIGURES) or "kinds: " + ", ".join(FIGURES)
         raise UsageError(Diagnostic("SF208", f"there is no figure of kind '{kind[:64]}'", None, hint))
     _check_frame(kind, frame)
-    if not tfs or len(tfs) != len(bounds):
-        message = (
-            f"a figure needs as many bound as symbolic transfer functions, not {len(bounds)} and {len(tfs)}"
-        )
+    if not bounds:
+        message = "a figure needs a transfer function"
         raise ValueError(message)
     for bound in bounds:
         if bound.is_zero:
             raise ModelError(Diagnostic("SF402", f"{bound.name} is identically zero: nothing to draw"))
     canvas = _canvas(band_hz, frame, title, width_mm, ax)
     with _style(font, canvas):
-        figure = FIGURES[kind](tfs, bounds, canvas)
+        figure = FIGURES[kind](bounds, canvas)
     return figure if canvas.axes else _with_every_letter(figure, font)
 
 
