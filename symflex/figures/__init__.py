@@ -13,8 +13,7 @@ if TYPE_CHECKING:
     from symflex.figures.bode import draw_response
     from symflex.figures.files import FORMATS, render, save
     from symflex.figures.fitted import draw_fit, draw_measured, draw_orders
-    from symflex.figures.in_time import draw_in_time
-    from symflex.figures.input_shaping import draw_residual
+    from symflex.figures.in_time import draw_in_time, draw_residual
     from symflex.figures.kinds import (
         FIGURES,
         LOOP_FIGURES,
@@ -32,8 +31,7 @@ _HOME: Final = {
     "bode": "draw_response",
     "files": "FORMATS render save",
     "fitted": "draw_fit draw_measured draw_orders",
-    "in_time": "draw_in_time",
-    "input_shaping": "draw_residual",
+    "in_time": "draw_in_time draw_residual",
     "kinds": "FIGURES LOOP_FIGURES draw draw_loop draw_shape part_shown picture_of_shape",
     "style": "DEFAULT_FONT FONTS",
     "sweep": "draw_sweep",

@@ -1,4 +1,7 @@
-"""Responses over time, with the band their enclosures leave where that is wide enough to be seen."""
+"""Responses over time, with the band their enclosures leave where that is wide enough to be seen.
+
+And what is left of a vibration after an input shaper, over the error of a frequency.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +10,7 @@ from itertools import cycle
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+from flint import acb
 
 from symflex.analysis.time_response import INTEGRATIONS, SampleTimes, responses_by_default, time_response
 from symflex.errors import BudgetError, Diagnostic
@@ -31,6 +35,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from symflex.analysis.input_shaping import InputShaper
     from symflex.analysis.time_response import EnclosedResponse
     from symflex.transfer import AnyBoundFunction
 
@@ -43,6 +48,11 @@ PREFIXES: Final = ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns"))
 POINTS: Final = 801
 DIGITS: Final = 6
 """Of values, far more than a line shows."""
+RESIDUAL_INCHES: Final = 2.3
+SPAN: Final = (0.5, 1.5)
+RATIOS: Final = 401
+TICK: Final = 5
+"""Percent of residual vibration that designers ask for."""
 
 
 def draw_step(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
@@ -149,3 +159,24 @@ def _label(axes: Axes, response: EnclosedResponse, unit: str) -> None:
     label = label_of_unit(unit)
     name = f"{response.input} response".capitalize() if response.input in INTEGRATIONS else "Response"
     axes.set_ylabel(f"{name} [{label}]" if label else name)
+
+
+def draw_residual(shaper: InputShaper) -> Figure:
+    """Draw what each mode still rings, over the frequency it has in truth; its damping ratio stays."""
+    ratios = np.linspace(*SPAN, RATIOS)
+    with paper_style():
+        axes = Canvas().one_panel(RESIDUAL_INCHES)
+        for pole, colour, dash in zip(shaper.poles, COLOURS, DASHES, strict=False):
+            middle = acb(pole.re.mid(), pole.im.mid())
+            left = [100 * float(shaper.residual(middle * r).mid()) for r in ratios.tolist()]
+            axes.plot(ratios, left, color=colour, linestyle=dash, label=f"{pole.frequency_hz():.4g} Hz")
+        axes.grid(visible=True)
+        axes.axhline(TICK, color=COLOURS[-1], linewidth=0.5)
+        axes.set_xlim(*SPAN)
+        axes.set_ylim(0, None)
+        axes.set_xlabel("Frequency over that of the model")
+        axes.set_ylabel("Residual vibration [%]")
+        add_legend_above(axes, len(DASHES))
+        figure = axes.figure.get_figure(root=True)
+        write_title(figure, title_lines(f"{shaper.tf}, {shaper.title}", COLUMN_INCHES))
+    return figure
