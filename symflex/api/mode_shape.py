@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import mpmath
 
-from symflex.api.plots import width_of
 from symflex.api.root import Root, radius_of
 from symflex.errors import Diagnostic, UsageError
+from symflex.print.latex import width_of
 from symflex.roots import precision
 from symflex.roots.precision import to_complex_mpmath
 

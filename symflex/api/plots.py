@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from symflex.options import PlotOptions, gain_ends
-from symflex.print.latex import column_width
+from symflex.print.latex import width_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -17,17 +17,6 @@ if TYPE_CHECKING:
     from symflex.model import Model
     from symflex.options import Ends
     from symflex.transfer import AnyBoundFunction, Given
-
-
-def width_of(width: float | str | None) -> float | None:
-    """Return the width of a figure [mm], from a number of mm or the name of a column.
-
-    Examples
-    --------
-    >>> width_of("ieee"), width_of(120), width_of(None)
-    (88.5, 120, None)
-    """
-    return None if width is None else column_width(width)
 
 
 def plot_functions(

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from symflex import sweep as sweep_room
-from symflex.api.plots import width_of
+from symflex.print.latex import width_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -51,11 +51,8 @@ class Sweep(sweep_room.Sweep):
         array([0.15915494, 0.31830989, 0.47746483])
         """
         from symflex.figures import DEFAULT_FONT, draw_sweep  # imports matplotlib
-        from symflex.figures.files import MM_PER_INCH
 
-        mm = width_of(width)
-        inches = None if mm is None else mm / MM_PER_INCH
-        return draw_sweep(self, modes=modes, width=inches, font=font or DEFAULT_FONT, ax=ax)
+        return draw_sweep(self, modes=modes, width_mm=width_of(width), font=font or DEFAULT_FONT, ax=ax)
 
     def _repr_html_(self) -> str:
         return sweep_room.sweep_html(self)

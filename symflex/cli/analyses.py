@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from symflex.budget import entered_budget
 from symflex.cli.command import Specification, command_of, first_pair
-from symflex.cli.reporting import emit_json, note, say, show_error, terminal_width
+from symflex.cli.reporting import answer, emit_json, note, say, show_error, terminal_width
 from symflex.errors import BudgetError, Diagnostic, UsageError
 from symflex.options import ColocationOptions, RationalOptions, RootsOptions, StabilityOptions, SweepOptions
 
@@ -114,10 +114,7 @@ def rational(spec: Specification, given: RationalOptions) -> None:
     model = spec.load()
     (bound,) = pipeline.derive_for_roots(model, [first_pair(model, given.tf, "showing")], is_explained=True)
     found = approximate(bound, given.modes, given.form)
-    if given.as_json:
-        emit_json(rational_json(found))
-    else:
-        say(rational_text(found))
+    answer(given.as_json, lambda: rational_json(found), lambda: rational_text(found))
 
 
 @command_of("stability", StabilityOptions)
@@ -138,10 +135,7 @@ def stability(spec: Specification, given: StabilityOptions) -> int:
     model = spec.load()
     with ProgressBar() as bar:
         found = of_model.stability(model, given, budget=entered_budget().told(bar))
-    if given.as_json:
-        emit_json(found.to_json_dict())
-    else:
-        say(stability_text(found))
+    answer(given.as_json, found.to_json_dict, lambda: stability_text(found))
     return 0 if found.certified else 4
 
 
@@ -156,10 +150,7 @@ def colocation(spec: Specification, given: ColocationOptions) -> int:
     from symflex.loops import of_model
 
     found = of_model.colocation(spec.load(), given)
-    if given.as_json:
-        emit_json(found.to_json_dict())
-    else:
-        say(str(found))
+    answer(given.as_json, found.to_json_dict, lambda: str(found))
     return 0 if found.is_decided else 4
 
 
@@ -201,10 +192,7 @@ def sweep(spec: Specification, given: SweepOptions) -> int:
         found = run.sweep(task, design, given, executor, workers=size, progress=bar)
     if given.output:
         note(f"wrote {Path(given.output)}")
-    if given.as_json:
-        emit_json(sweep_json(found))
-    else:
-        say(sweep_text(found, terminal_width()))
+    answer(given.as_json, lambda: sweep_json(found), lambda: sweep_text(found, terminal_width()))
     if found.is_certified:
         return 0
     return 5 if any(code.startswith(BUDGET_CODE) for code in found["code"].reshape(-1).tolist()) else 4

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from symflex.budget import entered_budget
 from symflex.cli.command import Specification, bare_command, command_of, first_pair
 from symflex.cli.progress import ProgressBar
-from symflex.cli.reporting import check_place, emit_json, note, say, terminal_width
+from symflex.cli.reporting import answer, check_place, note, terminal_width
 from symflex.errors import Diagnostic, FitError, SymflexError, UsageError
 from symflex.options import FitOptions, MeasureOptions
 
@@ -88,10 +88,7 @@ def fit(given: FitOptions) -> int:
         except SymflexError:
             folders = " ".join(f"--allow-outside {folder}" for folder in given.allow_outside)
             note(f"its base reads other folders: give {folders} where it is read")
-    if given.as_json:
-        emit_json(fit_json(found, shapes))
-    else:
-        say(fit_text(found, terminal_width(), shapes))
+    answer(given.as_json, lambda: fit_json(found, shapes), lambda: fit_text(found, terminal_width(), shapes))
     _draw(found, given)
     return 0
 

@@ -33,11 +33,11 @@ def draw(spec: Specification, given: DrawOptions) -> int:
     """
     from symflex.drawing import drawing_of, render_drawing
     from symflex.files.write import write_atomically
-    from symflex.print.latex import column_width
+    from symflex.print.latex import width_of
 
     path = _checked_path(given.output or f"{Path(spec.path).stem}_drawing.svg")
     font = checked_font(given.font, path)
-    width_mm = None if given.width is None else column_width(given.width)
+    width_mm = width_of(given.width)
     drawing = drawing_of(spec.load(), values=given.values, width_mm=width_mm, font=font)
     write_atomically(path, render_drawing(drawing, path.suffix.removeprefix("."), font=font))
     note(f"wrote {path}")
@@ -73,7 +73,7 @@ def plot(spec: Specification, given: PlotOptions) -> int:
     from symflex.figures import LOOP_FIGURES, draw, draw_loop, part_shown, save
     from symflex.loops import pick_gain
     from symflex.loops.of_model import characteristic_loop
-    from symflex.print.latex import column_width
+    from symflex.print.latex import width_of
 
     if SWEEP in (spec.path, given.kind):
         return _plot_sweep(spec, given)
@@ -83,7 +83,7 @@ def plot(spec: Specification, given: PlotOptions) -> int:
         model = replace(model, analysis=replace(model.analysis, modes=given.modes))
     figure, drawn = _named(model, given.kind)
     path = path or _checked_path(f"{Path(spec.path).stem}_{given.kind}.pdf")
-    width_mm = None if given.width is None else column_width(given.width)
+    width_mm = width_of(given.width)
     font = checked_font(given.font, path)
     gain = given.gain or (figure.gain if figure else "")
     if (given.gain or given.limits) and drawn not in LOOP_FIGURES:
@@ -138,15 +138,14 @@ def _plot_sweep(spec: Specification, given: PlotOptions) -> int:
         message = "--set, --tf, --gain, --range, --band and ends of axes are not for a sweep"
         raise UsageError(Diagnostic("SF902", message))
     from symflex.figures import draw_sweep, save
-    from symflex.figures.files import MM_PER_INCH
-    from symflex.print.latex import column_width
+    from symflex.print.latex import width_of
     from symflex.sweep.files import read_sweep
 
     file = spec.path if given.kind == SWEEP else given.kind
     path = _checked_path(given.output or f"{Path(file).stem}_{SWEEP}.pdf")
     font = checked_font(given.font, path)
-    inches = None if given.width is None else column_width(given.width) / MM_PER_INCH
-    save(draw_sweep(read_sweep(file), modes=given.modes, width=inches, font=font), path, font=font)
+    width_mm = width_of(given.width)
+    save(draw_sweep(read_sweep(file), modes=given.modes, width_mm=width_mm, font=font), path, font=font)
     note(f"wrote {path}")
     return 0
 

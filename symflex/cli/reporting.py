@@ -124,6 +124,14 @@ def emit_json(document: Mapping[str, object]) -> None:
     _print("".join(c if c.isprintable() or c == "\n" else json.dumps(c)[1:-1] for c in text))
 
 
+def answer(is_json: bool, document: Callable[[], Mapping[str, object]], text: Callable[[], str]) -> None:
+    """Print a result as JSON or as a text; the other one is not made."""
+    if is_json:
+        emit_json(document())
+    else:
+        say(text())
+
+
 def diagnostic_json(diagnostic: Diagnostic) -> dict[str, object]:
     """Return a diagnostic as JSON data."""
     span = diagnostic.span

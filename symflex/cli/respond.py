@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from symflex.cli.command import Specification, command_of, first_pair
-from symflex.cli.reporting import check_place, emit_json, note, say
+from symflex.cli.reporting import answer, check_place, emit_json, note, say
 from symflex.errors import Diagnostic, UncertifiedError, UsageError
 from symflex.options import RespondOptions, ShapeOptions, axis_ends, duration
 
@@ -114,13 +114,11 @@ def _draw(found: EnclosedResponse, given: RespondOptions, path: Path) -> None:
     from symflex.cli.plot import checked_font
     from symflex.figures import draw_in_time, save
     from symflex.figures.axes import AxisLimits
-    from symflex.figures.files import MM_PER_INCH
-    from symflex.print.latex import column_width
+    from symflex.print.latex import width_of
 
     font = checked_font(given.font, path)
-    width = None if given.width is None else column_width(given.width) / MM_PER_INCH
     frame = AxisLimits(axis_ends(given.xlim, "--xlim"), axis_ends(given.ylim, "--ylim"))
-    save(draw_in_time(found, frame=frame, width=width, font=font), path, font=font)
+    save(draw_in_time(found, frame=frame, width_mm=width_of(given.width), font=font), path, font=font)
 
 
 @command_of("shape", ShapeOptions)
@@ -140,10 +138,7 @@ def shape(spec: Specification, given: ShapeOptions) -> int:
     model = spec.load()
     (bound,) = pipeline.derive_for_roots(model, [first_pair(model, given.tf, "shaping")], is_explained=True)
     found = input_shaper(bound, given.modes, given.kind, given.digits, joint=given.joint)
-    if given.as_json:
-        emit_json(found.to_json_dict())
-    else:
-        say(str(found))
+    answer(given.as_json, found.to_json_dict, lambda: str(found))
     if given.output:
         from symflex.figures import draw_residual, save
 

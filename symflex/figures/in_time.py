@@ -15,6 +15,7 @@ from flint import acb
 from symflex.analysis.time_response import INTEGRATIONS, SampleTimes, responses_by_default, time_response
 from symflex.errors import BudgetError, Diagnostic
 from symflex.figures.axes import FREE, AxisLimits, Canvas, add_legend_above, write_title
+from symflex.figures.files import MM_PER_INCH
 from symflex.figures.style import (
     COLOURS,
     COLUMN_INCHES,
@@ -98,13 +99,14 @@ def draw_in_time(
     ax: Axes | None = None,
     *,
     frame: AxisLimits = FREE,
-    width: float | None = None,
+    width_mm: float | None = None,
     font: str = DEFAULT_FONT,
 ) -> Figure:
-    """Draw one response at its own times, on axes of the user's own if they are given; a width in inches."""
+    """Draw one response at its own times, on axes of the user's own if they are given."""
+    width = width_mm / MM_PER_INCH if width_mm else COLUMN_INCHES
     canvas = Canvas(frame=frame, width=width, axes=() if ax is None else (ax,))
-    first = title_lines(f"{response.tf}, {response.title}", width or COLUMN_INCHES)
-    lines = [*first, *_said([response], width or COLUMN_INCHES)]
+    first = title_lines(f"{response.tf}, {response.title}", width)
+    lines = [*first, *_said([response], width)]
     with paper_style(font):
         axes = canvas.one_panel(HEIGHT_INCHES + LINE_INCHES * len(lines))
         _draw_curve(axes, response, (COLOURS[0], "-"), None)

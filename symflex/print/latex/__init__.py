@@ -20,6 +20,6 @@ from symflex.print.latex.equation import (
     transfer_function_latex,
 )
 from symflex.print.latex.expression import latex_expression
-from symflex.print.latex.page import COLUMNS_MM, column_width
+from symflex.print.latex.page import COLUMNS_MM, column_width, width_of
 from symflex.print.latex.table import mode_table, parameter_table, root_table
 from symflex.print.latex.text import escape_text
