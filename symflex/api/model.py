@@ -87,23 +87,10 @@ class Model:
         title: str = "",
         source: str = "",
     ) -> None:
-        tables = {
-            "parameters": parameters,
-            "definitions": definitions,
-            "elements": elements,
-            "signals": signals,
-            "equations": equations,
-            "blocks": blocks,
-            "fields": fields,
-            "inputs": inputs,
-            "outputs": outputs,
-            "analysis": analysis,
-            "figures": figures,
-            "drawing": drawing,
-            "published": published,
-        }
-        header = {"symflex": 1, **{k: v for k, v in (("title", title), ("source", source)) if v}}
-        text = write({**header, **{name: table for name, table in tables.items() if table}})
+        # The keywords are the keys of a specification, in their order; those of the whole stand above tables.
+        given = {key: value for key, value in locals().items() if value and key != "self"}
+        above = {key: given.pop(key) for key in ("title", "source") if key in given}
+        text = write({"symflex": 1, **above, **given})
         object.__setattr__(self, "resolved", pipeline.loads(text, "<python>"))
 
     @staticmethod
