@@ -16,7 +16,6 @@ from symflex.algebra.ring import (
     FUNCTIONS,
     LAPLACE,
     MEMORY_LIMIT,
-    ElementaryFunction,
     PolynomialMemo,
     Ring,
     by_powers,

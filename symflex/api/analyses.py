@@ -5,9 +5,7 @@ from __future__ import annotations
 from math import inf
 from typing import TYPE_CHECKING
 
-from symflex.analysis import rational as rational_room
 from symflex.analysis import response as response_room
-from symflex.analysis.rational import find_residues
 from symflex.analysis.time_response import StepInfo
 from symflex.api.face import face_of
 from symflex.api.mode_shape import ModeShape
@@ -33,6 +31,7 @@ if TYPE_CHECKING:
 
     from symflex import roots as roots_room
     from symflex.analysis.input_shaping import InputShaper
+    from symflex.analysis.rational import RationalApproximation
 
 POINTS = 201
 """Of a response in time where no times are given."""
@@ -288,12 +287,14 @@ class Analyses(Plotted):
         >>> [complex(r) for r in loop.transfer_function("y", "u").bind().residues(mode=2)]
         [(-0.5+0j)]
         """
+        from symflex.analysis.rational import find_residues  # not needed for roots
+
         region = region_of(RootsOptions(None, modes, mode, band))
         return ResidueTable(Residue(r) for r in find_residues(self.bound, region, digits, budget_of(budget)))
 
     def rational(
         self, modes: int | None = None, form: str = "product", *, band: tuple[float, float] | None = None
-    ) -> rational_room.RationalApproximation:
+    ) -> RationalApproximation:
         """Return a rational approximation, with its error along the imaginary axis.
 
         Parameters
@@ -314,7 +315,9 @@ class Analyses(Plotted):
         UncertifiedError
             SF405 when residues, or the behaviour near s = 0, cannot be told.
         """
-        return rational_room.approximate(self.bound, modes, form, band)
+        from symflex.analysis.rational import approximate  # not needed for roots
+
+        return approximate(self.bound, modes, form, band)
 
     def mode_shape(self, mode: Mode, digits: int = 15) -> ModeShape:
         """Return how everything moves in one mode; the largest displacement is 1.

@@ -9,9 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from symflex.analysis import measured
 from symflex.api.model import Model, loads
-from symflex.data.fitting.specification import fit_specification
 from symflex.data.measurement import MeasuredResponse, prepared, read_measurement
 from symflex.options import FitOptions
 
@@ -84,6 +82,8 @@ class Fit:
 
         ``loop`` is the name of a gain: a loop is closed with it, from the first response to the input.
         """
+        from symflex.data.fitting.specification import fit_specification  # imports scipy
+
         return fit_specification(self.found, folder, loop)
 
     def model(self) -> Model:
@@ -214,6 +214,8 @@ def fit(
     >>> found.model().outputs, len(found.plot().axes)
     (('A_tip',), 4)
     """
+    from symflex.analysis.measured import fit as fitted  # imports scipy
+
     given = [data] if isinstance(data, str | Path | MeasuredResponse) else list(data)
     responses: list[MeasuredResponse] = []
     for one in given:
@@ -231,4 +233,4 @@ def fit(
         slope=slope,
         allow_outside=allow_outside,
     )
-    return Fit(measured.fit(prepared(responses, band, averages, window), asked))
+    return Fit(fitted(prepared(responses, band, averages, window), asked))

@@ -1,7 +1,7 @@
 """Expressions as text and as trees: read, printed, built and searched."""
 
 from symflex.expressions.format import format_expression
-from symflex.expressions.limits import PROGRAM_LIMITS, USER_LIMITS, Limits
+from symflex.expressions.limits import PROGRAM_LIMITS, USER_LIMITS
 from symflex.expressions.nodes import (
     Attribute,
     Bessel,

@@ -260,7 +260,6 @@ FARTHEST_DECADES: Final = 1e4
 """Times the end of the band up to which a curve may go on."""
 ONWARDS: Final = 60
 """Values on the way, which is nearly straight."""
-MOST_COLUMNS: Final = 3
 LEGEND_POINTS: Final = 8.0
 LINE_POINTS: Final = 34.0
 """Length of a legend's line with the gaps beside it: 2 of handle, 0.8 and 1.4 of gaps, in letters."""

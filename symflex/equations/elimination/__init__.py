@@ -1,9 +1,7 @@
 """Exact elimination: closed sub-impedances, unit pivots, memoised minors, and singular systems explained."""
 
 from symflex.equations.elimination.closing import (
-    ClosedSystem,
     Closure,
-    ReducedSystem,
     close,
     eliminate_unit_pivots,
 )

@@ -6,7 +6,6 @@ from symflex.library.elements.element import (
     ACROSS_UNIT,
     CIRCUITS,
     COMPONENT_DOMAIN,
-    COMPONENT_UNIT,
     COMPONENTS,
     THROUGH_NAME,
     THROUGH_UNIT,
