@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import nullcontext
 from typing import TYPE_CHECKING
 
 from matplotlib.text import Text
@@ -23,8 +22,7 @@ from symflex.options import PlotOptions, axis_ends, band_ends
 from symflex.print.latex.page import checked_width
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from contextlib import AbstractContextManager
+    from collections.abc import Callable, Sequence
     from fractions import Fraction
 
     from matplotlib.figure import Figure
@@ -94,9 +92,7 @@ def draw(
         if bound.is_zero:
             raise ModelError(Diagnostic("SF402", f"{bound.name} is identically zero: nothing to draw"))
     canvas = _canvas(band_hz, frame, title, width_mm, ax)
-    with _style(font, canvas):
-        figure = FIGURES[kind](bounds, canvas)
-    return figure if canvas.axes else _with_every_letter(figure, font)
+    return _styled(font, canvas, lambda: FIGURES[kind](bounds, canvas))
 
 
 def draw_shape(
@@ -114,9 +110,7 @@ def draw_shape(
     canvas = _canvas(None, FREE, None, width_mm, ax)
     if not panels_of(model, [shape]):
         raise ModelError(Diagnostic("SF402", "nothing that moves in this mode could be drawn"))
-    with _style(font, canvas):
-        figure = draw_shapes(model, [shape], canvas)
-    return figure if canvas.axes else _with_every_letter(figure, font)
+    return _styled(font, canvas, lambda: draw_shapes(model, [shape], canvas))
 
 
 def picture_of_shape(model: Model, shape: EnclosedModeShape) -> Raster | None:
@@ -164,8 +158,17 @@ def _canvas(
     return Canvas(band, frame, title, width, axes_of(ax))
 
 
-def _style(font: str, canvas: Canvas) -> AbstractContextManager[None]:
-    return nullcontext() if canvas.axes else paper_style(font)
+def _styled(font: str, canvas: Canvas, drawing: Callable[[], Figure]) -> Figure:
+    """Draw in the style of a paper, with texts in a font that has their letters; or on axes as they are."""
+    if canvas.axes:
+        return drawing()
+    with paper_style(font):
+        figure = drawing()
+    for text in figure.findobj(Text):
+        family = family_of(text.get_text(), font)
+        if family and not text.get_parse_math():
+            text.set_fontfamily(family)
+    return figure
 
 
 def _check_frame(kind: str, frame: AxisLimits) -> None:
@@ -176,15 +179,6 @@ def _check_frame(kind: str, frame: AxisLimits) -> None:
         raise UsageError(Diagnostic("SF902", "the frequencies of a Bode plot are its band"))
     if frame != FREE and kind == "modes":
         raise UsageError(Diagnostic("SF902", "mode shapes have no limits: their largest displacement is 1"))
-
-
-def _with_every_letter(figure: Figure, font: str) -> Figure:
-    """Set texts with letters that a font lacks in one that has them."""
-    for text in figure.findobj(Text):
-        family = family_of(text.get_text(), font)
-        if family and not text.get_parse_math():
-            text.set_fontfamily(family)
-    return figure
 
 
 def draw_loop(
@@ -215,20 +209,12 @@ def draw_loop(
         )
     _check_frame(kind, frame)
     canvas = _canvas(band_hz, frame, title, width_mm, ax)
-    with _style(font, canvas):
-        figure = _drawn_loop(kind, loop, limits, modes, canvas)
-    return figure if canvas.axes else _with_every_letter(figure, font)
 
-
-def _drawn_loop(
-    kind: str,
-    loop: AnyLoop,
-    limits: tuple[Fraction | None, Fraction | None] | None,
-    modes: int | None,
-    canvas: Canvas,
-) -> Figure:
-    if kind == "locus":
+    def drawing() -> Figure:
+        if kind == "nyquist":
+            return draw_loop_gain(loop, canvas)
         locus = trace_locus(loop, limits, modes, band_hz=canvas.band_hz)
         require_arrival(locus)
         return draw_locus(locus, canvas)
-    return draw_loop_gain(loop, canvas)
+
+    return _styled(font, canvas, drawing)
