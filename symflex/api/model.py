@@ -89,7 +89,7 @@ class Model:
     ) -> None:
         # The keywords are the keys of a specification, in their order; those of the whole stand above tables.
         given = {key: value for key, value in locals().items() if value and key != "self"}
-        above = {key: given.pop(key) for key in ("title", "source") if key in given}
+        above: dict[str, object] = {key: given.pop(key) for key in ("title", "source") if key in given}
         text = write({"symflex": 1, **above, **given})
         object.__setattr__(self, "resolved", pipeline.loads(text, "<python>"))
 
