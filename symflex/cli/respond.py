@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from symflex.cli.command import Specification, command_of, first_pair
-from symflex.cli.reporting import answer, check_place, emit_json, note, say
+from symflex.cli.reporting import PICTURES, answer, check_place, emit_json, note, say
 from symflex.errors import Diagnostic, UncertifiedError, UsageError
 from symflex.options import RespondOptions, ShapeOptions, axis_ends, duration
 
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
 POINTS = 201
 TABLE = ".csv"
-PICTURES = (".pdf", ".pgf", ".png", ".svg")
 
 
 @command_of("respond", RespondOptions)
