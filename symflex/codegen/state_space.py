@@ -41,6 +41,7 @@ from symflex.expressions import (
 )
 from symflex.library.blocks import BLOCKS
 from symflex.model.linearity import integer_exponent
+from symflex.model.loss_factors import check_causal
 from symflex.print.forms.arrange import Arranger
 from symflex.state_space import minimal, not_rational, realise
 from symflex.state_space.numeric import Arrays, response
@@ -404,6 +405,7 @@ class StateSpaceExporter:
         self, model: Model, tfs: Sequence[AnyTransferFunction], stem: str = "", *, is_alone: bool = True
     ) -> Export:
         """Return the module; accuracy that was not reached is a warning."""
+        check_causal(model, "a state-space model")
         plain, delay = model, Fraction(0)
         if self.sampling is not None and model.is_distributed:
             plain, delay = _without_delays(model, tfs, self.sampling)
