@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from symflex.quantities import DIMENSIONLESS, Dimension, unit_of
-from symflex.quantities.dimension import _NAMED, PREFERRED_UNITS
+from symflex.quantities.dimension import _UNITS, PREFERRED_UNITS
 
 MASS, LENGTH, TIME = Dimension(kg=Fraction(1)), Dimension(m=Fraction(1)), Dimension(s=Fraction(1))
 CURRENT = Dimension(A=Fraction(1))
@@ -111,4 +111,4 @@ def test_any_printed_dimension_reads_back_as_itself(dimension):
 
 
 def test_no_dimension_is_listed_twice():
-    assert len(_NAMED) == len(PREFERRED_UNITS)
+    assert len(_UNITS) == len(PREFERRED_UNITS)
