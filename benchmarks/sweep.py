@@ -22,7 +22,7 @@ from benchmarks.measure import OWN, Claim, Extent, Measured, Measurement, run_sn
 from symflex import pipeline
 from symflex.options import SweepOptions
 from symflex.roots import Modes
-from symflex.sweep import Sweep, read_design
+from symflex.sweep import Sweep, plan_sweep, read_design, sweep
 from symflex.sweep.run import open_executor
 
 POINTS, QUICK_POINTS = (2500, 5000, 10_000), (10_000,)
@@ -48,10 +48,10 @@ def time_sweep(points: int) -> float:
     begin = time.perf_counter()
     model = pipeline.load(BEAM)
     given = SweepOptions(OVER, points, modes=MODES)
-    task, design = pipeline.plan_sweep(model, given)
+    task, design = plan_sweep(model, given)
     with tempfile.TemporaryDirectory() as folder, open_executor(WORKERS) as (executor, size):
         asked = replace(given, output=Path(folder) / "a.nc")
-        found = pipeline.sweep(task, design, asked, executor, workers=size)
+        found = sweep(task, design, asked, executor, workers=size)
     taken = time.perf_counter() - begin
     _check(found, points)
     return taken

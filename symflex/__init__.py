@@ -57,33 +57,6 @@ if TYPE_CHECKING:
 
 __version__ = "0.1.0"
 
-_HOME = {
-    "BoundNestedTransferFunction": "symflex.api",
-    "BoundTransferFunction": "symflex.api",
-    "Budget": "symflex.budget",
-    "Fit": "symflex.api",
-    "Form": "symflex.api",
-    "MeasuredResponse": "symflex.data.measurement",
-    "ModeShape": "symflex.api",
-    "Model": "symflex.api",
-    "NestedTransferFunction": "symflex.api",
-    "Residue": "symflex.api",
-    "Root": "symflex.api",
-    "Sensitivity": "symflex.api",
-    "Stability": "symflex.api",
-    "StateSpace": "symflex.api",
-    "SymflexError": "symflex.errors",
-    "TransferFunction": "symflex.api",
-    "WrittenReport": "symflex.api",
-    "fit": "symflex.api",
-    "from_control": "symflex.api",
-    "from_matrices": "symflex.api",
-    "load": "symflex.api",
-    "loads": "symflex.api",
-    "read_measurement": "symflex.data.measurement",
-    "write_report": "symflex.api",
-}
-
 __all__ = [
     "BoundNestedTransferFunction",
     "BoundTransferFunction",
@@ -112,6 +85,14 @@ __all__ = [
     "write_report",
 ]
 
+_ELSEWHERE = {
+    "Budget": "symflex.budget",
+    "MeasuredResponse": "symflex.data.measurement",
+    "SymflexError": "symflex.errors",
+    "read_measurement": "symflex.data.measurement",
+}
+"""Where public names are found that are not in ``symflex.api``."""
+
 
 def __dir__() -> list[str]:
     """List the public names, imported or not."""
@@ -120,8 +101,8 @@ def __dir__() -> list[str]:
 
 def __getattr__(name: str) -> object:
     """Import a public name when it is first used: the command line starts without numpy and SymPy."""
-    if name in _HOME:
-        return getattr(import_module(_HOME[name]), name)
+    if name in __all__:
+        return getattr(import_module(_ELSEWHERE.get(name, "symflex.api")), name)
     message = f"module 'symflex' has no attribute '{name}'"
     if name == "derivation_cache":
         message += ": derivations are quick and no longer kept on disk, leave it out"

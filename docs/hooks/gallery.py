@@ -27,6 +27,7 @@ from symflex.drawing import draw_model
 from symflex.errors import SymflexError, Text
 from symflex.expressions import parse, parse_equation
 from symflex.figures import draw, draw_loop, render
+from symflex.loops.of_model import characteristic_loop
 from symflex.print.forms import print_form, with_hidden
 from symflex.print.mathml import EQUALS, math_element, mathml_expression, transfer_function_mathml
 
@@ -167,14 +168,13 @@ def _figures(
     model: Model, bounds: Sequence[AnyBoundFunction], *, is_loop: bool
 ) -> Iterator[tuple[str, bytes]]:
     """Draw what can be drawn of a model."""
-    sources = [bound.source for bound in bounds]
     kinds: dict[str, Callable[[], Figure]] = {
         "drawing": lambda: draw_model(model),
-        "map": lambda: draw("poles_zeros", sources, bounds),
-        "bode": lambda: draw("bode", sources, bounds),
+        "map": lambda: draw("poles_zeros", bounds),
+        "bode": lambda: draw("bode", bounds),
     }
     if is_loop:
-        kinds["map"] = lambda: draw_loop("locus", pipeline.characteristic_loop(model, GAIN))
+        kinds["map"] = lambda: draw_loop("locus", characteristic_loop(model, GAIN))
     for name, drawing in kinds.items():
         try:
             yield name, render(drawing(), "svg")

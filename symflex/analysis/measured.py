@@ -12,6 +12,7 @@ from symflex.data.fitting import Base, ResonanceFit, fit_resonances
 from symflex.data.measurement import MeasuredResponse, MeasurementPlan, synthesise
 from symflex.errors import Diagnostic, UsageError
 from symflex.model import Model, load_with
+from symflex.model.loss_factors import check_causal
 from symflex.model.spec import read
 from symflex.roots import Band
 from symflex.roots.locate import locate
@@ -68,6 +69,7 @@ def measure(model: Model, given: MeasureOptions) -> MeasuredResponse:
     An undamped pole, which has no stationary response, and a plan that cannot be meant are refused with
     SF902.
     """
+    check_causal(model, "a synthetic measurement")
     plan = MeasurementPlan.of(given, model.analysis.band)
     (bound,) = derive_bound(model, pick_pairs(model, [given.tf] if given.tf else [])[:1])
     band = Band(Fraction(plan.low_hz) / 2, Fraction(plan.high_hz) * 2)

@@ -1,6 +1,5 @@
 """The classes a user meets: thin faces over the pipeline, with SymPy and mpmath at the surface."""
 
-from symflex.api.bound import BoundTransferFunction
 from symflex.api.fitted import Fit, fit
 from symflex.api.mode_shape import ModeShape
 from symflex.api.model import Model, Table, load, loads
@@ -11,35 +10,9 @@ from symflex.api.state_space import StateSpace
 from symflex.api.systems import from_control, from_matrices
 from symflex.api.transfer_function import (
     BoundNestedTransferFunction,
+    BoundTransferFunction,
     Form,
     NestedTransferFunction,
     Number,
     TransferFunction,
 )
-
-__all__ = [
-    "BoundNestedTransferFunction",
-    "BoundTransferFunction",
-    "Fit",
-    "Form",
-    "Mode",
-    "ModeShape",
-    "Model",
-    "NestedTransferFunction",
-    "Number",
-    "Residue",
-    "Root",
-    "Sensitivity",
-    "Stability",
-    "StabilityBoundary",
-    "StateSpace",
-    "Table",
-    "TransferFunction",
-    "WrittenReport",
-    "fit",
-    "from_control",
-    "from_matrices",
-    "load",
-    "loads",
-    "write_report",
-]

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
 from math import inf
 from typing import TYPE_CHECKING
 
-from symflex import pipeline
 from symflex.analysis import response as response_room
 from symflex.analysis.time_response import StepInfo
+from symflex.api.face import face_of
 from symflex.api.mode_shape import ModeShape
 from symflex.api.plots import Plotted
 from symflex.api.response import FrequencyResponse, TimeResponse
@@ -24,14 +23,15 @@ from symflex.api.root import (
 from symflex.budget import Budget, entered_budget
 from symflex.errors import Diagnostic, UsageError
 from symflex.options import RootsOptions
+from symflex.roots.locate import locate
 from symflex.roots.region import region_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from symflex import roots as roots_room
-    from symflex.analysis import rational as rational_room
     from symflex.analysis.input_shaping import InputShaper
+    from symflex.analysis.rational import RationalApproximation
 
 POINTS = 201
 """Of a response in time where no times are given."""
@@ -42,7 +42,7 @@ class Analyses(Plotted):
 
     def frequency_response(self, omega: ArrayLike) -> FrequencyResponse:
         """Return the response at real angular frequencies [rad/s]."""
-        return FrequencyResponse.of(response_room.respond(self.bound, omega))
+        return face_of(FrequencyResponse, response_room.respond(self.bound, omega))
 
     def step_response(
         self, times: ArrayLike | None = None, digits: int = 12, shaper: InputShaper | None = None
@@ -138,13 +138,13 @@ class Analyses(Plotted):
     def _in_time(
         self, kind: str, times: ArrayLike | None, digits: int, shaper: InputShaper | None
     ) -> TimeResponse:
-        from symflex.analysis.time_response import SampleTimes, responses_by_default
+        from symflex.analysis.time_response import SampleTimes, responses_by_default, time_response
 
         if times is None:
             (found,) = responses_by_default([self.bound], kind, POINTS, digits, shaper)
         else:
-            found = pipeline.time_response(self.bound, kind, SampleTimes.of(times), digits, shaper)
-        return TimeResponse(**{f.name: getattr(found, f.name) for f in fields(found)})
+            found = time_response(self.bound, kind, SampleTimes.of(times), digits, shaper)
+        return face_of(TimeResponse, found)
 
     def poles(
         self,
@@ -188,14 +188,9 @@ class Analyses(Plotted):
         --------
         >>> from symflex import Model
         >>> from symflex.errors import BudgetError
-        >>> rod = Model(
-        ...     elements={
-        ...         "bar": {"type": "rod", "between": ["ground", "x"], "E": "1 Pa", "A": "1 m^2",
-        ...                 "rho": "1 kg/m^3", "l": "1 m"},
-        ...     },
-        ...     inputs={"F": {"force": "x"}},
-        ...     outputs={"X": "x"},
-        ... ).transfer_function("X", "F").bind()
+        >>> bar = {"type": "rod", "between": ["ground", "x"], "E": 1, "A": 1, "rho": 1, "l": 1}
+        >>> model = Model(elements={"bar": bar}, inputs={"F": {"force": "x"}}, outputs={"X": "x"})
+        >>> rod = model.transfer_function("X", "F").bind()
         >>> upper, lower = rod.poles(mode=1000)  # (1000 - 1/2) pi
         >>> upper
         <Root 0, 3140.02185726 j, radius ...
@@ -224,11 +219,11 @@ class Analyses(Plotted):
 
     def _found(self, given: RootsOptions, budget: float | None) -> PoleZeroMap:
         """Return the map if the budget suffices: a tuple of roots could not say that it did not."""
-        return PoleZeroMap.of(self._map(given, budget).complete())
+        return face_of(PoleZeroMap, self._map(given, budget).complete())
 
     def _map(self, given: RootsOptions, budget: float | None) -> roots_room.PoleZeroMap:
         digits = 15 if given.digits is None else given.digits
-        return pipeline.roots(self.bound, region_of(given), digits, budget_of(budget))
+        return locate(self.bound, region_of(given), digits, budget_of(budget))
 
     def pole_zero_map(
         self,
@@ -268,7 +263,8 @@ class Analyses(Plotted):
         >>> [root.decimal(6).im for root in found.poles], found.certificate.is_exceeded
         (['3.00000', '-3.00000'], False)
         """
-        return PoleZeroMap.of(self._map(RootsOptions(None, modes, mode, band, region, digits), budget))
+        given = RootsOptions(None, modes, mode, band, region, digits)
+        return face_of(PoleZeroMap, self._map(given, budget))
 
     def residues(
         self,
@@ -281,17 +277,8 @@ class Analyses(Plotted):
     ) -> tuple[Residue, ...]:
         r"""Return the residues at the poles, in their order; see :meth:`poles`.
 
-        Parameters
-        ----------
-        modes, mode, band, digits, budget : optional
-            As for :meth:`poles`: at which poles, and how they are searched for.
-
-        Raises
-        ------
-        UncertifiedError
-            SF405 when poles cannot be told apart, or the behaviour at one cannot be told.
-        BudgetError
-            As for :meth:`poles`.
+        Parameters and errors are those of :meth:`poles`. UncertifiedError: SF405 when poles cannot be told
+        apart, or the behaviour at one cannot be told.
 
         Examples
         --------
@@ -300,14 +287,14 @@ class Analyses(Plotted):
         >>> [complex(r) for r in loop.transfer_function("y", "u").bind().residues(mode=2)]
         [(-0.5+0j)]
         """
+        from symflex.analysis.rational import find_residues  # not needed for roots
+
         region = region_of(RootsOptions(None, modes, mode, band))
-        return ResidueTable(
-            Residue(r) for r in pipeline.residues(self.bound, region, digits, budget_of(budget))
-        )
+        return ResidueTable(Residue(r) for r in find_residues(self.bound, region, digits, budget_of(budget)))
 
     def rational(
         self, modes: int | None = None, form: str = "product", *, band: tuple[float, float] | None = None
-    ) -> rational_room.RationalApproximation:
+    ) -> RationalApproximation:
         """Return a rational approximation, with its error along the imaginary axis.
 
         Parameters
@@ -328,7 +315,9 @@ class Analyses(Plotted):
         UncertifiedError
             SF405 when residues, or the behaviour near s = 0, cannot be told.
         """
-        return pipeline.rational(self.bound, modes, form, band)
+        from symflex.analysis.rational import approximate  # not needed for roots
+
+        return approximate(self.bound, modes, form, band)
 
     def mode_shape(self, mode: Mode, digits: int = 15) -> ModeShape:
         """Return how everything moves in one mode; the largest displacement is 1.

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from symflex import pipeline
 from symflex.api.model import Model, loads
 from symflex.data.measurement import MeasuredResponse, prepared, read_measurement
 from symflex.options import FitOptions
@@ -83,7 +82,9 @@ class Fit:
 
         ``loop`` is the name of a gain: a loop is closed with it, from the first response to the input.
         """
-        return pipeline.fit_specification(self.found, folder, loop)
+        from symflex.data.fitting.specification import fit_specification  # imports scipy
+
+        return fit_specification(self.found, folder, loop)
 
     def model(self) -> Model:
         """Return the fitted model, which derives, prints and exports like any other."""
@@ -213,6 +214,8 @@ def fit(
     >>> found.model().outputs, len(found.plot().axes)
     (('A_tip',), 4)
     """
+    from symflex.analysis.measured import fit as fitted  # imports scipy
+
     given = [data] if isinstance(data, str | Path | MeasuredResponse) else list(data)
     responses: list[MeasuredResponse] = []
     for one in given:
@@ -230,4 +233,4 @@ def fit(
         slope=slope,
         allow_outside=allow_outside,
     )
-    return Fit(pipeline.fit(prepared(responses, band, averages, window), asked))
+    return Fit(fitted(prepared(responses, band, averages, window), asked))

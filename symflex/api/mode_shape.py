@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import mpmath
 
-from symflex.api.plots import width_of
 from symflex.api.root import Root, radius_of
 from symflex.errors import Diagnostic, UsageError
+from symflex.print.latex import width_of
 from symflex.roots import precision
 from symflex.roots.precision import to_complex_mpmath
 
@@ -46,14 +46,8 @@ class ModeShape:
     Examples
     --------
     >>> from symflex import Model
-    >>> model = Model(
-    ...     elements={
-    ...         "bar": {"type": "rod", "between": ["ground", "x"], "E": "1 Pa", "A": "1 m^2",
-    ...                 "rho": "1 kg/m^3", "l": "1 m"},
-    ...     },
-    ...     inputs={"F": {"force": "x"}},
-    ...     outputs={"X": "x"},
-    ... )
+    >>> bar = {"type": "rod", "between": ["ground", "x"], "E": 1, "A": 1, "rho": 1, "l": 1}
+    >>> model = Model(elements={"bar": bar}, inputs={"F": {"force": "x"}}, outputs={"X": "x"})
     >>> shape = model.transfer_function("X", "F").bind().mode_shape(1)  # sin(pi x/2)
     >>> shape.names, shape.along("bar", [0, 0.5, 1]).round(6)
     (('x', 'bar.f_a', 'bar.f'), array([0.      , 0.707107, 1.      ]))
@@ -172,12 +166,8 @@ class ModeShape:
 
         Parameters
         ----------
-        width : float or str, optional
-            Of the figure [mm], or ``"ieee"`` or ``"a4"``.
-        font : str, optional
-            ``times``, ``latex`` or ``sans``.
-        ax : matplotlib axes, optional
-            Of your own, to draw on, as many as there are panels.
+        width, font, ax : optional
+            As for :meth:`BoundTransferFunction.bode`; as many axes as there are panels.
 
         Raises
         ------
@@ -189,14 +179,8 @@ class ModeShape:
         Examples
         --------
         >>> from symflex import Model
-        >>> model = Model(
-        ...     elements={
-        ...         "bar": {"type": "rod", "between": ["ground", "x"], "E": "1 Pa", "A": "1 m^2",
-        ...                 "rho": "1 kg/m^3", "l": "1 m"},
-        ...     },
-        ...     inputs={"F": {"force": "x"}},
-        ...     outputs={"X": "x"},
-        ... )
+        >>> bar = {"type": "rod", "between": ["ground", "x"], "E": 1, "A": 1, "rho": 1, "l": 1}
+        >>> model = Model(elements={"bar": bar}, inputs={"F": {"force": "x"}}, outputs={"X": "x"})
         >>> figure = model.transfer_function("X", "F").bind().mode_shape(1).plot()
         >>> figure.axes[0].get_title(loc="left"), figure.axes[0].get_xlabel()  # (pi/2)/(2 pi) Hz
         ('$0.2500$ Hz', '$x$ [m]')

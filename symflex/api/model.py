@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from symflex import pipeline
 from symflex.api.analyses import budget_of
+from symflex.api.face import face_of
 from symflex.api.plots import plot_loop
 from symflex.api.stability import Stability
 from symflex.api.state_space import StateSpace
@@ -86,23 +87,10 @@ class Model:
         title: str = "",
         source: str = "",
     ) -> None:
-        tables = {
-            "parameters": parameters,
-            "definitions": definitions,
-            "elements": elements,
-            "signals": signals,
-            "equations": equations,
-            "blocks": blocks,
-            "fields": fields,
-            "inputs": inputs,
-            "outputs": outputs,
-            "analysis": analysis,
-            "figures": figures,
-            "drawing": drawing,
-            "published": published,
-        }
-        header = {"symflex": 1, **{k: v for k, v in (("title", title), ("source", source)) if v}}
-        text = write({**header, **{name: table for name, table in tables.items() if table}})
+        # The keywords are the keys of a specification, in their order; those of the whole stand above tables.
+        given = {key: value for key, value in locals().items() if value and key != "self"}
+        above: dict[str, object] = {key: given.pop(key) for key in ("title", "source") if key in given}
+        text = write({"symflex": 1, **above, **given})
         object.__setattr__(self, "resolved", pipeline.loads(text, "<python>"))
 
     @staticmethod
@@ -134,14 +122,10 @@ class Model:
         values : bool
             Write numbers with units at the symbols.
         width : float, optional
-            Of the figure [mm]; by default a column (88.5), a page (170), or what the model needs.
+            Of the figure [mm]; by default a column (88.5), a page (170), or what the model needs. Lengths in
+            the figure are what they are in print.
         font : str
             ``times``, ``latex`` or ``sans``.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            Lengths in it are what they are in print.
 
         Raises
         ------
@@ -151,14 +135,8 @@ class Model:
 
         Examples
         --------
-        >>> model = Model(
-        ...     elements={
-        ...         "body": {"type": "mass", "at": "x", "m": "2 kg"},
-        ...         "wall": {"type": "spring", "between": ["x", "ground"], "k": "8 N/m"},
-        ...     },
-        ...     inputs={"F": {"force": "x"}},
-        ...     outputs={"X": "x"},
-        ... )
+        >>> wall = {"type": "spring", "between": ["x", "ground"], "k": "8 N/m"}
+        >>> model = Model(elements={"wall": wall}, inputs={"F": {"force": "x"}}, outputs={"X": "x"})
         >>> round(25.4 * float(model.draw().get_figwidth()), 1)
         88.5
         """
@@ -182,15 +160,8 @@ class Model:
 
         Examples
         --------
-        >>> model = Model(
-        ...     parameters={"m": "2 kg", "k": "8 N/m"},
-        ...     elements={
-        ...         "body": {"type": "mass", "at": "x", "m": "m"},
-        ...         "wall": {"type": "spring", "between": ["x", "gruond"], "k": "k"},
-        ...     },
-        ...     inputs={"F": {"force": "x"}},
-        ...     outputs={"X": "x"},
-        ... )
+        >>> wall = {"type": "spring", "between": ["x", "gruond"], "k": "8 N/m"}
+        >>> model = Model(elements={"wall": wall}, inputs={"F": {"force": "x"}}, outputs={"X": "x"})
         >>> [(w.code, w.hint) for w in model.warnings]
         [('SF650', "did you mean 'ground'?")]
         """
@@ -232,16 +203,15 @@ class Model:
 
         Examples
         --------
-        >>> model = Model(
-        ...     parameters={"m_1": {}, "m_2": {}, "k": {}},
-        ...     elements={
-        ...         "motor": {"type": "mass", "at": "x", "m": "m_1"},
-        ...         "tip": {"type": "mass", "at": "y", "m": "m_2"},
-        ...         "link": {"type": "spring", "between": ["x", "y"], "k": "k"},
-        ...     },
-        ...     inputs={"F": {"force": "x"}},
-        ...     outputs={"X": "x"},
-        ... )
+        >>> model = loads('''
+        ... symflex = 1
+        ... parameters = { m_1 = {}, m_2 = {}, k = {} }
+        ... elements.motor = { type = "mass", at = "x", m = "m_1" }
+        ... elements.tip = { type = "mass", at = "y", m = "m_2" }
+        ... elements.link = { type = "spring", between = ["x", "y"], k = "k" }
+        ... inputs.F = { force = "x" }
+        ... outputs.X = "x"
+        ... ''')
         >>> G = model.nested("X", "F")
         >>> G.num, G.den, G.where
         (1, Z_1*k/(Z_1 + k) + m_1*s**2, ((Z_1, m_2*s**2),))
@@ -294,7 +264,7 @@ class Model:
             for source in (self.inputs if inputs is None else inputs)
         ]
         pairs = pipeline.pick_pairs(self.resolved, wanted)
-        return StateSpace(pipeline.state_space(self.resolved, pairs, is_minimal=minimal))
+        return StateSpace.of(self.resolved, pairs, minimal=minimal)
 
     def stability(
         self,
@@ -335,17 +305,15 @@ class Model:
 
         Examples
         --------
-        >>> model = Model(
-        ...     parameters={"K": 1},
-        ...     signals={"y": "K/(s*(s + 1)*(s + 2))*(r - y)"},
-        ...     inputs={"r": {}},
-        ...     outputs={"Y": "y"},
-        ... )
+        >>> loop = {"y": "K/(s*(s + 1)*(s + 2))*(r - y)"}
+        >>> model = Model(parameters={"K": 1}, signals=loop, inputs={"r": {}}, outputs={"Y": "y"})
         >>> model.stability("K")
         <Stability: 0.0 < K < 6.0, certified>
         """
+        from symflex.loops.of_model import stability  # imports numpy
+
         given = StabilityOptions(gain, limits, up_to_hz, digits)
-        return Stability(pipeline.stability(self.resolved, given, values, budget_of(budget)))
+        return Stability(stability(self.resolved, given, values, budget_of(budget)))
 
     def locus(
         self,
@@ -391,21 +359,24 @@ class Model:
 
         Examples
         --------
-        >>> model = Model(
-        ...     parameters={"K": 1},
-        ...     signals={"y": "K/(s*(s + 1)*(s + 2))*(r - y)"},
-        ...     inputs={"r": {}},
-        ...     outputs={"Y": "y"},
-        ... )
+        >>> loop = {"y": "K/(s*(s + 1)*(s + 2))*(r - y)"}
+        >>> model = Model(parameters={"K": 1}, signals=loop, inputs={"r": {}}, outputs={"Y": "y"})
         >>> figure = model.locus("K", (0, 20), ylim=(-4, 4))
         >>> figure.axes[0].get_ylim() == (-4, 4), figure.axes[0].get_xlabel()
         (True, '$\\mathrm{Re}(s)$ [rad/s]')
         """
-        loop = pipeline.characteristic_loop(self.resolved, gain, values)
         given = PlotOptions(
-            "locus", band=band, xlim=xlim, ylim=ylim, limits=limits, modes=modes, width=width, font=font
+            "locus",
+            gain=gain,
+            band=band,
+            xlim=xlim,
+            ylim=ylim,
+            limits=limits,
+            modes=modes,
+            width=width,
+            font=font,
         )
-        return plot_loop(given, loop, ax)
+        return plot_loop(given, self.resolved, values, ax)
 
     def nyquist(
         self,
@@ -426,19 +397,14 @@ class Model:
 
         Examples
         --------
-        >>> model = Model(
-        ...     parameters={"K": 1},
-        ...     signals={"y": "K/(s*(s + 1)*(s + 2))*(r - y)"},
-        ...     inputs={"r": {}},
-        ...     outputs={"Y": "y"},
-        ... )
+        >>> loop = {"y": "K/(s*(s + 1)*(s + 2))*(r - y)"}
+        >>> model = Model(parameters={"K": 1}, signals=loop, inputs={"r": {}}, outputs={"Y": "y"})
         >>> print(model.nyquist("K").legends[0].get_title().get_text())
         open loop: no pole in the right half plane
         closed loop stable
         """
-        loop = pipeline.characteristic_loop(self.resolved, gain, values)
-        given = PlotOptions("nyquist", band=band, xlim=xlim, ylim=ylim, width=width, font=font)
-        return plot_loop(given, loop, ax)
+        given = PlotOptions("nyquist", gain=gain, band=band, xlim=xlim, ylim=ylim, width=width, font=font)
+        return plot_loop(given, self.resolved, values, ax)
 
     def colocation(
         self,
@@ -465,20 +431,15 @@ class Model:
 
         Examples
         --------
-        >>> model = Model(
-        ...     elements={
-        ...         "a": {"type": "mass", "at": "x", "m": "1 kg"},
-        ...         "k": {"type": "spring", "between": ["x", "y"], "k": "4 N/m"},
-        ...         "b": {"type": "mass", "at": "y", "m": "1 kg"},
-        ...     },
-        ...     inputs={"F": {"force": "x"}},
-        ...     outputs={"X": "x", "Y": "y"},
-        ... )
-        >>> print(model.colocation("Y", "X", "F", band=(0.01, 1)))
-        Y/F within 10 deg and 1 dB of X/F: up to 0.104969441593 Hz, where the magnitude differs by more
+        >>> signals = {"x": "(u - 4*(x - y))/s^2", "y": "4*(x - y)/s^2"}  # two masses on a spring
+        >>> model = Model(signals=signals, inputs={"u": {}}, outputs={"X": "x", "Y": "y"})
+        >>> print(model.colocation("Y", "X", "u", band=(0.01, 1)))
+        Y/u within 10 deg and 1 dB of X/u: up to 0.104969441593 Hz, where the magnitude differs by more
         """
+        from symflex.loops.of_model import colocation
+
         given = ColocationOptions(f"{output}/{input}", f"{reference}/{input}", phase, magnitude, band)
-        return pipeline.colocation(self.resolved, given)
+        return colocation(self.resolved, given)
 
     def measure(
         self,
@@ -519,23 +480,17 @@ class Model:
         Examples
         --------
         >>> import symflex
-        >>> model = Model(
-        ...     elements={
-        ...         "body": {"type": "mass", "at": "x", "m": "1 kg"},
-        ...         "wall": {"type": "spring", "between": ["x", "ground"], "k": "4 kN/m"},
-        ...         "loss": {"type": "damper", "between": ["x", "ground"], "b": "3 N*s/m"},
-        ...     },
-        ...     inputs={"F": {"force": "x"}},
-        ...     outputs={"A": "s^2*x"},
-        ... )
-        >>> data = model.measure("A", "F", (2, 40), 0.1)
+        >>> model = Model(inputs={"u": {}}, outputs={"a": "s^2*u/(s^2 + 3*s + 4000)"})
+        >>> data = model.measure("a", "u", (2, 40), 0.1)
         >>> data.is_synthetic, data.frequency_hz.size
         (True, 381)
         >>> symflex.fit(data, modes=1, slope=2)
         <Fit to synthetic data: 10.1 Hz>
         """
+        from symflex.analysis.measured import measure
+
         given = MeasureOptions(f"{output}/{input}", "", band, spacing, averages, noise, rolloff, seed)
-        return pipeline.measure(self.resolved, given)
+        return measure(self.resolved, given)
 
     def sweep(
         self,
@@ -597,18 +552,10 @@ class Model:
 
         Examples
         --------
-        >>> model = Model(
-        ...     parameters={"k": "4 N/m"},
-        ...     elements={
-        ...         "m": {"type": "mass", "at": "x", "m": "1 kg"},
-        ...         "k": {"type": "spring", "between": ["x", "ground"], "k": "k"},
-        ...     },
-        ...     inputs={"F": {"force": "x"}},
-        ...     outputs={"X": "x"},
-        ... )
+        >>> model = Model(parameters={"k": 4}, inputs={"u": {}}, outputs={"x": "u/(s^2 + k)"})
         >>> sweep = model.sweep({"k": [1, 4, 9]})
         >>> sweep
-        <Sweep X/F: poles at 3 points, k, certified>
+        <Sweep x/u: poles at 3 points, k, certified>
         >>> sweep["im"].tolist(), sweep.is_certified
         ([[1.0], [2.0], [3.0]], True)
         """
@@ -622,8 +569,8 @@ class Model:
         if of == "response" and not len(frequencies):
             raise UsageError(Diagnostic("SF902", "a response needs frequencies"))
         given = SweepOptions(over, draws, seed, of, tf, modes, band, gain=gain, output=output, fresh=fresh)
-        task, design = pipeline.plan_sweep(self.resolved, given, frequencies)
-        return Sweep.of_plain(pipeline.sweep(task, design, given, executor, workers=workers))
+        task, design = sweep_room.plan_sweep(self.resolved, given, frequencies)
+        return face_of(Sweep, sweep_room.sweep(task, design, given, executor, workers=workers))
 
     def export_numpy(self) -> str:
         """Return a numpy module with a function per transfer function."""

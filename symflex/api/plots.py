@@ -6,28 +6,17 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from symflex.options import PlotOptions, gain_ends
-from symflex.print.latex import column_width
+from symflex.print.latex import width_of
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from matplotlib.figure import Figure
 
     from symflex.figures import AxesGiven
-    from symflex.loops import AnyLoop
+    from symflex.model import Model
     from symflex.options import Ends
-    from symflex.transfer import AnyBoundFunction
-
-
-def width_of(width: float | str | None) -> float | None:
-    """Return the width of a figure [mm], from a number of mm or the name of a column.
-
-    Examples
-    --------
-    >>> width_of("ieee"), width_of(120), width_of(None)
-    (88.5, 120, None)
-    """
-    return None if width is None else column_width(width)
+    from symflex.transfer import AnyBoundFunction, Given
 
 
 def plot_functions(
@@ -41,7 +30,6 @@ def plot_functions(
     band, frame = part_shown(given.kind, given)
     return draw(
         given.kind,
-        [bound.source for bound in bounds],
         bounds,
         band_hz=band,
         frame=frame,
@@ -194,10 +182,14 @@ class Plotted:
         return plot_functions(given, [self.bound, *(other.bound for other in others)], ax)
 
 
-def plot_loop(given: PlotOptions, loop: AnyLoop, ax: AxesGiven | None = None) -> Figure:
+def plot_loop(
+    given: PlotOptions, model: Model, values: Mapping[str, Given], ax: AxesGiven | None = None
+) -> Figure:
     """Draw a root locus or the Nyquist plot of a loop gain; see :func:`symflex.figures.draw_loop`."""
     from symflex.figures import DEFAULT_FONT, draw_loop, part_shown  # imports matplotlib
+    from symflex.loops.of_model import characteristic_loop
 
+    loop = characteristic_loop(model, given.gain or "", values)
     band, frame = part_shown(given.kind, given)
     return draw_loop(
         given.kind,

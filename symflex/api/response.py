@@ -26,13 +26,6 @@ class FrequencyResponse(response_room.SampledResponse):
     See :class:`symflex.analysis.response.SampledResponse`.
     """
 
-    @staticmethod
-    def of(response: response_room.SampledResponse) -> FrequencyResponse:
-        """Return the face of a response."""
-        return FrequencyResponse(
-            response.tf, response.omega, response.values, response.quantity, response.unit, response.turns
-        )
-
     def __repr__(self) -> str:
         count = len(self.omega)
         if not count:

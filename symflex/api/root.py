@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import mpmath
@@ -192,11 +192,6 @@ def plain_mode(mode: Mode) -> int | CertifiedRoot:
 @dataclass(frozen=True, slots=True, repr=False)
 class PoleZeroMap(roots_room.PoleZeroMap):
     """Poles, zeros and hidden modes; in a notebook, a table. See :class:`symflex.roots.PoleZeroMap`."""
-
-    @staticmethod
-    def of(found: roots_room.PoleZeroMap) -> PoleZeroMap:
-        """Return the face of a map."""
-        return PoleZeroMap(*(getattr(found, field.name) for field in fields(found)))
 
     def _repr_html_(self) -> str:
         from symflex.print.html import roots_html  # only notebooks ask

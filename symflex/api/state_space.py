@@ -6,19 +6,20 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Final
 
+from symflex import state_space as state_space_room
 from symflex.codegen.state_space import StateEquations
 from symflex.options import duration, exact
 from symflex.print.sympy import symbols_of, to_sympy
 from symflex.transfer.bind import read_values
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from decimal import Decimal
     from fractions import Fraction
 
     import sympy
 
-    from symflex import state_space as state_space_room
-    from symflex.model import ExactValue
+    from symflex.model import ExactValue, Model
     from symflex.state_space.numeric import BoundStateSpace
     from symflex.state_space.popov import Vector
     from symflex.state_space.sampled import SampledStateSpace
@@ -43,15 +44,14 @@ class StateSpace:
     Examples
     --------
     >>> import symflex
-    >>> model = symflex.Model(
-    ...     parameters={"m": "2 kg", "k": "8 N/m"},
-    ...     elements={
-    ...         "body": {"type": "mass", "at": "x", "m": "m"},
-    ...         "wall": {"type": "spring", "between": ["x", "ground"], "k": "k"},
-    ...     },
-    ...     inputs={"F": {"force": "x"}},
-    ...     outputs={"X": "x"},
-    ... )
+    >>> model = symflex.loads('''
+    ... symflex = 1
+    ... parameters = { m = "2 kg", k = "8 N/m" }
+    ... elements.body = { type = "mass", at = "x", m = "m" }
+    ... elements.wall = { type = "spring", between = ["x", "ground"], k = "k" }
+    ... inputs.F = { force = "x" }
+    ... outputs.X = "x"
+    ... ''')
     >>> system = model.state_space()
     >>> system.states, system.A
     (('x', 'x_dot'), Matrix([
@@ -63,6 +63,12 @@ class StateSpace:
     """
 
     exact: state_space_room.StateSpace
+
+    @staticmethod
+    def of(model: Model, pairs: Sequence[tuple[str, str]], *, minimal: bool) -> StateSpace:
+        """Return the face of a realisation with the outputs and inputs of the given pairs."""
+        found = state_space_room.realise(model, pairs)
+        return StateSpace(state_space_room.minimal(found) if minimal else found)
 
     @property
     def states(self) -> tuple[str, ...]:
@@ -186,12 +192,8 @@ class StateSpace:
         Examples
         --------
         >>> import symflex
-        >>> model = symflex.Model(
-        ...     parameters={"m": "2 kg"},
-        ...     elements={"body": {"type": "mass", "at": "x", "m": "m"}},
-        ...     inputs={"F": {"force": "x"}},
-        ...     outputs={"X": "x"},
-        ... )
+        >>> body = {"type": "mass", "at": "x", "m": "2 kg"}
+        >>> model = symflex.Model(elements={"b": body}, inputs={"F": {"force": "x"}}, outputs={"X": "x"})
         >>> step = model.state_space().discretise("100 ms")
         >>> step.A.tolist(), step.B.tolist()  # 1, h and h^2/(2 m), h/m
         ([[1.0, 0.1], [0.0, 1.0]], [[0.0025], [0.05]])

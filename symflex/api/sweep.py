@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from symflex import sweep as sweep_room
-from symflex.api.plots import width_of
+from symflex.print.latex import width_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -17,11 +17,6 @@ if TYPE_CHECKING:
 @dataclass(frozen=True, eq=False, repr=False, slots=True)
 class Sweep(sweep_room.Sweep):
     """What was found at all points of a design, which draws itself. See :class:`symflex.sweep.Sweep`."""
-
-    @staticmethod
-    def of_plain(found: sweep_room.Sweep) -> Sweep:
-        """Return the face of a sweep."""
-        return Sweep(*(getattr(found, field.name) for field in fields(found)))
 
     def plot(
         self,
@@ -37,12 +32,8 @@ class Sweep(sweep_room.Sweep):
         ----------
         modes : int, optional
             Only those with the first names.
-        width : float or str, optional
-            Of the figure [mm], or ``"ieee"`` or ``"a4"``.
-        font : str, optional
-            ``times``, ``latex`` or ``sans``.
-        ax : matplotlib axes, optional
-            Of your own, to draw on, as many as there are panels.
+        width, font, ax : optional
+            As for :meth:`BoundTransferFunction.bode`; as many axes as there are panels.
 
         Raises
         ------
@@ -54,25 +45,14 @@ class Sweep(sweep_room.Sweep):
         Examples
         --------
         >>> from symflex import Model
-        >>> model = Model(
-        ...     parameters={"k": "4 N/m"},
-        ...     elements={
-        ...         "m": {"type": "mass", "at": "x", "m": "1 kg"},
-        ...         "k": {"type": "spring", "between": ["x", "ground"], "k": "k"},
-        ...     },
-        ...     inputs={"F": {"force": "x"}},
-        ...     outputs={"X": "x"},
-        ... )
+        >>> model = Model(parameters={"k": 4}, inputs={"u": {}}, outputs={"x": "u/(s^2 + k)"})
         >>> (panel,) = model.sweep({"k": [1, 4, 9]}).plot().axes
-        >>> panel.get_lines()[0].get_ydata()  # sqrt(k/m)/(2 pi)
+        >>> panel.get_lines()[0].get_ydata()  # sqrt(k)/(2 pi)
         array([0.15915494, 0.31830989, 0.47746483])
         """
         from symflex.figures import DEFAULT_FONT, draw_sweep  # imports matplotlib
-        from symflex.figures.files import MM_PER_INCH
 
-        mm = width_of(width)
-        inches = None if mm is None else mm / MM_PER_INCH
-        return draw_sweep(self, modes=modes, width=inches, font=font or DEFAULT_FONT, ax=ax)
+        return draw_sweep(self, modes=modes, width_mm=width_of(width), font=font or DEFAULT_FONT, ax=ax)
 
     def _repr_html_(self) -> str:
         return sweep_room.sweep_html(self)

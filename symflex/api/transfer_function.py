@@ -1,4 +1,4 @@
-"""Exact transfer functions, expanded or nested, and their forms, with SymPy at the surface."""
+"""Exact transfer functions, expanded or nested, in symbols and with numbers, and their forms."""
 
 from __future__ import annotations
 
@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING
 
 from symflex import pipeline
 from symflex.api.analyses import Analyses
-from symflex.api.bound import BoundTransferFunction
+from symflex.api.face import face_of
+from symflex.api.response import TimeResponse
+from symflex.api.root import Sensitivity, SensitivityTable
 from symflex.api.state_space import StateSpace
 from symflex.api.toolboxes import Toolboxes
 from symflex.errors import Diagnostic, UsageError
@@ -18,6 +20,8 @@ from symflex.errors.diagnostic import nearest
 from symflex.expressions import Expression, Name
 from symflex.library.elements import LineElement
 from symflex.model import with_numbers
+from symflex.model.loss_factors import check_causal
+from symflex.options import RootsOptions
 from symflex.print.forms import PrintedForm, counts_of, hidden_expressions, print_form
 from symflex.print.json_format import derive_json
 from symflex.print.sympy import symbols_of, to_sympy
@@ -26,9 +30,15 @@ from symflex.state_space import not_rational
 from symflex.transfer import BoundNested, bind_nested
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import numpy as np
     import sympy
+    from numpy.typing import ArrayLike, NDArray
 
     from symflex import transfer as transfer_room
+    from symflex.analysis.explanation import ZeroExplanation
+    from symflex.analysis.input_shaping import InputShaper
 
 
 Number = int | float | Fraction | Decimal | str
@@ -230,7 +240,7 @@ class TransferFunction(_Derived):
             SF502 when the matrices become too large.
         """
         pair = (self.exact.output.name, self.exact.input.name)
-        return StateSpace(pipeline.state_space(self.exact.model, [pair], is_minimal=minimal))
+        return StateSpace.of(self.exact.model, [pair], minimal=minimal)
 
     def to_sympy(self) -> sympy.Basic:
         """Return a ``sympy.physics.control.TransferFunction`` of ``s`` with the parameters as symbols.
@@ -326,6 +336,143 @@ class NestedTransferFunction(_Derived):
 
     def __repr__(self) -> str:
         return f"<NestedTransferFunction {self.name}, {self.size} operations>"
+
+
+@dataclass(frozen=True)
+class BoundTransferFunction(Toolboxes, Analyses):
+    """A transfer function with numbers: evaluates, and finds its poles and zeros.
+
+    Each is proved. A distributed system has infinitely many; they are found in a region.
+    """
+
+    bound: transfer_room.BoundTransferFunction
+
+    @property
+    def name(self) -> str:
+        """``OUT/IN``."""
+        return self.bound.name
+
+    @property
+    def is_distributed(self) -> bool:
+        """True when the function is transcendental."""
+        return self.bound.is_distributed
+
+    @property
+    def _expanded(self) -> transfer_room.BoundTransferFunction:
+        return self.bound
+
+    def __repr__(self) -> str:
+        return f"<BoundTransferFunction {self.name}>"
+
+    def _repr_html_(self) -> str:
+        from symflex.print.html import bound_html  # only notebooks ask
+
+        return bound_html(self.bound)
+
+    def __call__(self, s: ArrayLike) -> complex | NDArray[np.complex128]:
+        """Return the value at s [rad/s], a number or an array, to double precision."""
+        import numpy as np
+
+        points = np.asarray(s, dtype=complex)
+        if not ((points.real == 0) & (points.imag > 0)).all():
+            check_causal(self.bound.source.model, "a value at another s")
+        if points.ndim == 0:
+            return self.bound(complex(points))
+        values = np.array([self.bound(complex(p)) for p in points.ravel()], dtype=complex)
+        return values.reshape(points.shape)
+
+    def forced_response(
+        self, times: ArrayLike, u: ArrayLike, digits: int = 12, shaper: InputShaper | None = None
+    ) -> TimeResponse:
+        r"""Return the response, from rest, to an input that is a straight line between samples.
+
+        Parameters
+        ----------
+        times : array_like of float, shape (n,)
+            Increasing times [s] of the samples, at which the response is given too. Those that are evenly
+            spaced but for rounding count as even.
+        u : array_like of float, shape (n,)
+            The input at these times. It is 0 before the first; where it does not begin with 0, it jumps.
+        digits : int
+            As for :meth:`step_response`.
+        shaper : InputShaper, optional
+            Convolves the input by its impulses.
+
+        Raises
+        ------
+        UsageError
+            SF811 for times that do not increase, or values that are no numbers or not as many.
+        UncertifiedError
+            SF810 as for :meth:`step_response`, and where the transfer function differentiates its input.
+
+        Examples
+        --------
+        >>> from symflex import loads
+        >>> integrator = loads('symflex = 1\ninputs.u = {}\noutputs.y = "u/s"').transfer_function("y", "u")
+        >>> integrator.bind().forced_response([0.0, 1.0, 3.0], [0.0, 2.0, 2.0]).values.tolist()
+        [0.0, 1.0, 5.0]
+        """
+        from symflex.analysis.time_response import SampleTimes, exact_values, forced_response
+
+        instants = SampleTimes.of(times)
+        exactly = instants.exactly()
+        given = exact_values(u, len(exactly))
+        found = forced_response(self.bound, exactly, given, exactly, digits, shaper)
+        return face_of(TimeResponse, found)
+
+    def sensitivities(
+        self,
+        modes: int | None = None,
+        *,
+        parameters: Sequence[str] = (),
+        mode: int | None = None,
+        band: tuple[float, float] | None = None,
+        digits: int = 15,
+        budget: float | None = None,
+    ) -> tuple[Sensitivity, ...]:
+        """Return how poles, and then zeros, move with parameters.
+
+        Parameters
+        ----------
+        modes, mode, band, budget : optional
+            As for :meth:`poles`; the budget is for the search for the roots.
+        parameters : sequence of str
+            All on which the function depends when none is given.
+        digits : int
+            Correct significant digits of every derivative.
+
+        Raises
+        ------
+        UsageError
+            SF902 for an unknown parameter.
+        BudgetError
+            As for :meth:`poles`.
+        """
+        from symflex.analysis.sensitivity.sensitivity import sensitivities  # not needed for roots
+
+        found = self._found(RootsOptions(None, modes, mode, band, digits=digits), budget)
+        model = self.bound.source.model
+        return SensitivityTable(
+            Sensitivity(m) for m in sensitivities(model, self.bound, found, parameters, digits)
+        )
+
+    def explain_zeros(
+        self,
+        modes: int | None = None,
+        *,
+        mode: int | None = None,
+        band: tuple[float, float] | None = None,
+        digits: int = 15,
+        budget: float | None = None,
+    ) -> ZeroExplanation:
+        """Return what the zeros are the poles of; print it to read it.
+
+        Parameters and errors are those of :meth:`zeros`: which zeros are spoken of one by one.
+        """
+        from symflex.analysis.explanation import explain_zeros  # not needed for roots
+
+        found = self._found(RootsOptions(None, modes, mode, band, digits=digits), budget)
+        return explain_zeros(self.bound.source.model, self.bound, found)
 
 
 @dataclass(frozen=True, repr=False)

@@ -5,5 +5,3 @@ Output: an :class:`Audit`.
 """
 
 from symflex.audit.judge import Audit, audit, check_published, judge
-
-__all__ = ["Audit", "audit", "check_published", "judge"]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from symflex.budget import entered_budget
 from symflex.cli.command import Specification, command_of, first_pair
-from symflex.cli.reporting import emit_json, note, say, show_error, terminal_width
+from symflex.cli.reporting import answer, emit_json, note, say, show_error, terminal_width
 from symflex.errors import BudgetError, Diagnostic, UsageError
 from symflex.options import ColocationOptions, RationalOptions, RootsOptions, StabilityOptions, SweepOptions
 
@@ -18,6 +18,11 @@ if TYPE_CHECKING:
 
 DERIVING = 0.5
 """Seconds that deriving may take in any case, by which a command may exceed its time."""
+NO_CLOSED_FORM = Diagnostic(
+    "SF502",
+    "--sensitivity and --explain need the closed form, which is too large here",
+    hint="split the model, or ask for the roots alone",
+)
 
 
 @command_of("roots", RootsOptions)
@@ -54,15 +59,16 @@ def roots(spec: Specification, given: RootsOptions) -> int:
     try:
         if isinstance(bound, BoundNested):
             if wanted or given.explain:
-                message = "--sensitivity and --explain need the closed form, which is too large here"
-                raise BudgetError(
-                    Diagnostic("SF502", message, None, "split the model, or ask for the roots alone")
-                )
+                raise BudgetError(NO_CLOSED_FORM)
         elif wanted:
-            names = [] if "" in given.sensitivity else given.sensitivity
-            moved = pipeline.sensitivities(model, bound, found, names, shown)
+            from symflex.analysis.sensitivity.sensitivity import sensitivities  # most calls need none of it
+
+            names = () if "" in given.sensitivity else given.sensitivity
+            moved = sensitivities(model, bound, found, names, shown)
         if given.explain and not isinstance(bound, BoundNested):
-            explained = pipeline.explain_zeros(model, bound, found)
+            from symflex.analysis.explanation import explain_zeros
+
+            explained = explain_zeros(model, bound, found)
     except BudgetError as error:
         show_error(error)
         wanted, is_over = False, True
@@ -102,15 +108,13 @@ def rational(spec: Specification, given: RationalOptions) -> None:
     approximation.
     """
     from symflex import pipeline
+    from symflex.analysis.rational import approximate
     from symflex.analysis.rational.text import rational_json, rational_text
 
     model = spec.load()
     (bound,) = pipeline.derive_for_roots(model, [first_pair(model, given.tf, "showing")], is_explained=True)
-    found = pipeline.rational(bound, given.modes, given.form)
-    if given.as_json:
-        emit_json(rational_json(found))
-    else:
-        say(rational_text(found))
+    found = approximate(bound, given.modes, given.form)
+    answer(given.as_json, lambda: rational_json(found), lambda: rational_text(found))
 
 
 @command_of("stability", StabilityOptions)
@@ -124,17 +128,14 @@ def stability(spec: Specification, given: StabilityOptions) -> int:
     Exit code 4 says that something is not proved, and what. Poles of structures without loss have no end
     along the axis: there, poles are counted up to a frequency, which is printed.
     """
-    from symflex import pipeline
     from symflex.cli.progress import ProgressBar
+    from symflex.loops import of_model
     from symflex.loops.stability_map import stability_text
 
     model = spec.load()
     with ProgressBar() as bar:
-        found = pipeline.stability(model, given, budget=entered_budget().told(bar))
-    if given.as_json:
-        emit_json(found.to_json_dict())
-    else:
-        say(stability_text(found))
+        found = of_model.stability(model, given, budget=entered_budget().told(bar))
+    answer(given.as_json, found.to_json_dict, lambda: stability_text(found))
     return 0 if found.certified else 4
 
 
@@ -146,13 +147,10 @@ def colocation(spec: Specification, given: ColocationOptions) -> int:
     the ratio of the two first leaves the tolerances; that it does not before is proved. Exit code 4 says that
     the end could not be told.
     """
-    from symflex import pipeline
+    from symflex.loops import of_model
 
-    found = pipeline.colocation(spec.load(), given)
-    if given.as_json:
-        emit_json(found.to_json_dict())
-    else:
-        say(str(found))
+    found = of_model.colocation(spec.load(), given)
+    answer(given.as_json, found.to_json_dict, lambda: str(found))
     return 0 if found.is_decided else 4
 
 
@@ -172,10 +170,9 @@ def sweep(spec: Specification, given: SweepOptions) -> int:
 
     Exit code 4 says that something is not certified, 5 that a budget was exceeded.
     """
-    from symflex import pipeline
     from symflex.cli.progress import ProgressBar
+    from symflex.sweep import run
     from symflex.sweep.files import check_writable
-    from symflex.sweep.run import open_executor
     from symflex.sweep.sweep import sweep_json, sweep_text
 
     if given.workers and given.scheduler:
@@ -186,19 +183,16 @@ def sweep(spec: Specification, given: SweepOptions) -> int:
         check_writable(Path(given.output))
     model = spec.load()
     _check(given)
-    task, design = pipeline.plan_sweep(model, given)
+    task, design = run.plan_sweep(model, given)
     if doubled := [name for name in design.names if name in spec.settings]:
         raise UsageError(Diagnostic("SF902", f"'{doubled[0]}' is swept and set"))
     if given.of != "margins":
         first_pair(model, given.tf, "sweeping")
-    with ProgressBar() as bar, open_executor(given.workers, given.scheduler) as (executor, size):
-        found = pipeline.sweep(task, design, given, executor, workers=size, progress=bar)
+    with ProgressBar() as bar, run.open_executor(given.workers, given.scheduler) as (executor, size):
+        found = run.sweep(task, design, given, executor, workers=size, progress=bar)
     if given.output:
         note(f"wrote {Path(given.output)}")
-    if given.as_json:
-        emit_json(sweep_json(found))
-    else:
-        say(sweep_text(found, terminal_width()))
+    answer(given.as_json, lambda: sweep_json(found), lambda: sweep_text(found, terminal_width()))
     if found.is_certified:
         return 0
     return 5 if any(code.startswith(BUDGET_CODE) for code in found["code"].reshape(-1).tolist()) else 4

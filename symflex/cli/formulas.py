@@ -307,11 +307,11 @@ def audit(spec: Specification, given: AuditOptions) -> int:
     Every formula of [published] is proved equal, or what is different is shown, with the structural laws it
     violates. A difference is a result: the exit code is 0, and 4 with --strict.
     """
-    from symflex import pipeline
+    from symflex import audit as audit_room
     from symflex.audit.text import audit_document, audit_text
 
     model = spec.load()
-    audits = pipeline.audit(model, given.tfs)
+    audits = audit_room.audit(model, given.tfs)
     if not model.published:
         note('nothing is published in this specification: [published."OUT/IN"] holds a printed formula')
     if given.as_json:

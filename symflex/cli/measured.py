@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from symflex.budget import entered_budget
 from symflex.cli.command import Specification, bare_command, command_of, first_pair
 from symflex.cli.progress import ProgressBar
-from symflex.cli.reporting import check_place, emit_json, note, say, terminal_width
+from symflex.cli.reporting import answer, check_place, note, terminal_width
 from symflex.errors import Diagnostic, FitError, SymflexError, UsageError
 from symflex.options import FitOptions, MeasureOptions
 
@@ -38,7 +38,9 @@ def fit(given: FitOptions) -> int:
     that no fit came of them, or with --strict a poor one.
     """
     from symflex import pipeline
+    from symflex.analysis.measured import fit as fitted
     from symflex.data.fitting import mode_shapes
+    from symflex.data.fitting.specification import fit_specification
     from symflex.data.fitting.text import fit_json, fit_text
     from symflex.data.measurement import prepared
     from symflex.files.write import write_atomically
@@ -72,13 +74,13 @@ def fit(given: FitOptions) -> int:
             raise UsageError(Diagnostic("SF902", "--driving is for fits without --base"))
     budget = entered_budget()
     with ProgressBar() as bar, budget.told(bar).entered():
-        found = pipeline.fit(measured, given)
+        found = fitted(measured, given)
     shapes = mode_shapes(found, every) if given.driving else None
     if given.strict and found.poor:
         hint = "without --strict it is printed all the same"
         raise FitError(Diagnostic("SF618", f"the fit is poor: {found.poor[0]}", None, hint))
     if given.output:
-        text = pipeline.fit_specification(found, Path(given.output).parent, given.loop)
+        text = fit_specification(found, Path(given.output).parent, given.loop)
         write_atomically(Path(given.output), text.encode())
         note(f"wrote {given.output}")
         try:
@@ -86,10 +88,7 @@ def fit(given: FitOptions) -> int:
         except SymflexError:
             folders = " ".join(f"--allow-outside {folder}" for folder in given.allow_outside)
             note(f"its base reads other folders: give {folders} where it is read")
-    if given.as_json:
-        emit_json(fit_json(found, shapes))
-    else:
-        say(fit_text(found, terminal_width(), shapes))
+    answer(given.as_json, lambda: fit_json(found, shapes), lambda: fit_text(found, terminal_width(), shapes))
     _draw(found, given)
     return 0
 
@@ -130,14 +129,14 @@ def measure(spec: Specification, given: MeasureOptions) -> int:
     records with a Hann window are averaged to an H1 estimate and its coherence. The same seed gives
     the same file.
     """
-    from symflex import pipeline
+    from symflex.analysis.measured import measure as measured_of
     from symflex.data.measurement import WRITERS, measurement_bytes
     from symflex.files.write import write_atomically
 
     check_place(given.output, WRITERS)
     model = spec.load()
     tf = "/".join(first_pair(model, given.tf, "measuring"))
-    measured = pipeline.measure(model, replace(given, tf=tf, rolloff=given.rolloff or None))
+    measured = measured_of(model, replace(given, tf=tf, rolloff=given.rolloff or None))
     write_atomically(Path(given.output), measurement_bytes(measured, given.output))
     note(f"wrote {given.output}: {measured.values.size} lines of SYNTHETIC data")
     return 0

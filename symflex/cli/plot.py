@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from symflex.cli.command import Specification, command_of
-from symflex.cli.reporting import note
+from symflex.cli.reporting import PICTURES, check_place, note
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.options import DrawOptions, PlotOptions, duration, gain_ends
@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from symflex.model import Model
     from symflex.model.model import Figure
 
-SUFFIXES = (".pdf", ".pgf", ".png", ".svg")
 SWEEP = "sweep"
 IN_TIME = ("step", "impulse")
 
@@ -33,13 +32,13 @@ def draw(spec: Specification, given: DrawOptions) -> int:
     """
     from symflex.drawing import drawing_of, render_drawing
     from symflex.files.write import write_atomically
-    from symflex.print.latex import column_width
+    from symflex.print.latex import width_of
 
-    path = _checked_path(given.output or f"{Path(spec.path).stem}_drawing.svg")
+    path = check_place(given.output or f"{Path(spec.path).stem}_drawing.svg", PICTURES)
     font = checked_font(given.font, path)
-    width_mm = None if given.width is None else column_width(given.width)
+    width_mm = width_of(given.width)
     drawing = drawing_of(spec.load(), values=given.values, width_mm=width_mm, font=font)
-    write_atomically(path, render_drawing(drawing, path.suffix.removeprefix("."), font=font))
+    write_atomically(path, render_drawing(drawing, path.suffix.removeprefix(".").lower(), font=font))
     note(f"wrote {path}")
     return 0
 
@@ -72,17 +71,18 @@ def plot(spec: Specification, given: PlotOptions) -> int:
     from symflex import pipeline
     from symflex.figures import LOOP_FIGURES, draw, draw_loop, part_shown, save
     from symflex.loops import pick_gain
-    from symflex.print.latex import column_width
+    from symflex.loops.of_model import characteristic_loop
+    from symflex.print.latex import width_of
 
     if SWEEP in (spec.path, given.kind):
         return _plot_sweep(spec, given)
-    path = _checked_path(given.output) if given.output else None
+    path = check_place(given.output, PICTURES) if given.output else None
     model = spec.load()
     if given.modes is not None:
         model = replace(model, analysis=replace(model.analysis, modes=given.modes))
     figure, drawn = _named(model, given.kind)
-    path = path or _checked_path(f"{Path(spec.path).stem}_{given.kind}.pdf")
-    width_mm = None if given.width is None else column_width(given.width)
+    path = path or check_place(f"{Path(spec.path).stem}_{given.kind}.pdf", PICTURES)
+    width_mm = width_of(given.width)
     font = checked_font(given.font, path)
     gain = given.gain or (figure.gain if figure else "")
     if (given.gain or given.limits) and drawn not in LOOP_FIGURES:
@@ -105,7 +105,7 @@ def plot(spec: Specification, given: PlotOptions) -> int:
         limits = gain_ends(given.limits, pick_gain(model.parameters, gain))
         drawing = draw_loop(
             drawn,
-            pipeline.characteristic_loop(model, gain),
+            characteristic_loop(model, gain),
             limits=limits,
             modes=given.modes,
             band_hz=shown,
@@ -124,10 +124,7 @@ def plot(spec: Specification, given: PlotOptions) -> int:
                 if bound.is_zero:
                     note(f"{bound.name} is identically zero and is left out")
             bounds = tuple(bound for bound in bounds if not bound.is_zero) or bounds
-        sources = [bound.source for bound in bounds]
-        drawing = draw(
-            drawn, sources, bounds, band_hz=shown, frame=frame, title=title, width_mm=width_mm, font=font
-        )
+        drawing = draw(drawn, bounds, band_hz=shown, frame=frame, title=title, width_mm=width_mm, font=font)
     save(drawing, path, font=font)
     note(f"wrote {path}")
     return 0
@@ -140,15 +137,14 @@ def _plot_sweep(spec: Specification, given: PlotOptions) -> int:
         message = "--set, --tf, --gain, --range, --band and ends of axes are not for a sweep"
         raise UsageError(Diagnostic("SF902", message))
     from symflex.figures import draw_sweep, save
-    from symflex.figures.files import MM_PER_INCH
-    from symflex.print.latex import column_width
+    from symflex.print.latex import width_of
     from symflex.sweep.files import read_sweep
 
     file = spec.path if given.kind == SWEEP else given.kind
-    path = _checked_path(given.output or f"{Path(file).stem}_{SWEEP}.pdf")
+    path = check_place(given.output or f"{Path(file).stem}_{SWEEP}.pdf", PICTURES)
     font = checked_font(given.font, path)
-    inches = None if given.width is None else column_width(given.width) / MM_PER_INCH
-    save(draw_sweep(read_sweep(file), modes=given.modes, width=inches, font=font), path, font=font)
+    width_mm = width_of(given.width)
+    save(draw_sweep(read_sweep(file), modes=given.modes, width_mm=width_mm, font=font), path, font=font)
     note(f"wrote {path}")
     return 0
 
@@ -171,23 +167,6 @@ def _named(model: Model, kind: str) -> tuple[Figure | None, str]:
     return figure, figure.kind if figure else kind
 
 
-def _checked_path(name: str) -> Path:
-    """Return the path of a figure.
-
-    Raises
-    ------
-    UsageError
-        SF902 when it ends in nothing a figure is written as; SF903 when it could not be written.
-    """
-    from symflex.files.write import check_writable
-
-    path = Path(name)
-    if path.suffix not in SUFFIXES:
-        raise UsageError(Diagnostic("SF902", f"'{path.name}' must end in .pdf, .pgf, .svg or .png"))
-    check_writable(path)
-    return path
-
-
 def checked_font(font: str | None, path: Path) -> str:
     """Return the name of a font for a figure.
 
@@ -198,7 +177,7 @@ def checked_font(font: str | None, path: Path) -> str:
     """
     from symflex.figures import DEFAULT_FONT, FONTS
 
-    font = font or ("latex" if path.suffix == ".pgf" else DEFAULT_FONT)
+    font = font or ("latex" if path.suffix.lower() == ".pgf" else DEFAULT_FONT)
     if font not in FONTS:
         hint = nearest(font, FONTS) or "fonts: " + ", ".join(FONTS)
         raise UsageError(Diagnostic("SF902", f"there is no font '{font[:64]}' for figures", None, hint))

@@ -17,10 +17,11 @@ from symflex.errors import Diagnostic, SymflexError, UsageError
 from symflex.errors.diagnostic import printable
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
 P = ParamSpec("P")
 SMALLER = "ask for fewer transfer functions, roots or points, or give parameters numbers in place of symbols"
+PICTURES = (".pdf", ".pgf", ".svg", ".png")
 LAYOUT = "\n\t" + "".join(map(chr, (0xA0, 0x1680, *range(0x2000, 0x200B), 0x202F, 0x205F, 0x3000)))
 """Ends of lines and blanks, which Python does not count as printable and terminals show."""
 
@@ -72,14 +73,17 @@ def show(diagnostics: Iterable[Diagnostic]) -> None:
         _print(text, err=True)
 
 
-def check_place(name: str, endings: Collection[str]) -> None:
-    """Refuse a file that has none of some endings, or cannot be written."""
+def check_place(name: str, endings: Iterable[str]) -> Path:
+    """Return the path of a file; SF902 when it has none of some endings, SF903 when it cannot be written."""
     from symflex.files.write import check_writable
 
     path = Path(name)
-    if path.suffix.lower() not in endings:
-        raise UsageError(Diagnostic("SF902", f"'{path.name}' must end in {' or '.join(endings)}"))
+    *others, last = endings
+    if path.suffix.lower() not in (*others, last):
+        listed_endings = f"{', '.join(others)} or {last}" if others else last
+        raise UsageError(Diagnostic("SF902", f"'{path.name}' must end in {listed_endings}"))
     check_writable(path)
+    return path
 
 
 def say(text: str, *, nl: bool = True, err: bool = False) -> None:
@@ -122,6 +126,14 @@ def emit_json(document: Mapping[str, object]) -> None:
     """Print a document as JSON to stdout; what could drive a terminal is escaped."""
     text = json.dumps(document, indent=2, ensure_ascii=False)
     _print("".join(c if c.isprintable() or c == "\n" else json.dumps(c)[1:-1] for c in text))
+
+
+def answer(is_json: bool, document: Callable[[], Mapping[str, object]], text: Callable[[], str]) -> None:
+    """Print a result as JSON or as a text; the other one is not made."""
+    if is_json:
+        emit_json(document())
+    else:
+        say(text())
 
 
 def diagnostic_json(diagnostic: Diagnostic) -> dict[str, object]:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from symflex.cli.command import Specification, command_of, first_pair
-from symflex.cli.reporting import check_place, emit_json, note, say
+from symflex.cli.reporting import PICTURES, answer, check_place, emit_json, note, say
 from symflex.errors import Diagnostic, UncertifiedError, UsageError
 from symflex.options import RespondOptions, ShapeOptions, axis_ends, duration
 
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
 POINTS = 201
 TABLE = ".csv"
-PICTURES = (".pdf", ".pgf", ".png", ".svg")
 
 
 @command_of("respond", RespondOptions)
@@ -40,7 +39,14 @@ def respond(spec: Specification, given: RespondOptions) -> int:
     Exit code 4 says that the response could not be found, and with --strict that it is not certified.
     """
     from symflex import pipeline
-    from symflex.analysis.time_response import SampleTimes, evenly, find_step_info, response_text
+    from symflex.analysis.time_response import (
+        SampleTimes,
+        evenly,
+        find_step_info,
+        forced_response,
+        response_text,
+        time_response,
+    )
     from symflex.data.measurement.input_signal import read_signal
     from symflex.transfer import BoundNested
 
@@ -61,13 +67,13 @@ def respond(spec: Specification, given: RespondOptions) -> int:
         shaper = input_shaper(bound, given.modes, given.shaped, given.digits, joint=given.joint)
     if signal is None:
         times = SampleTimes.evenly(until or Fraction(1), given.points or POINTS)
-        found = pipeline.time_response(bound, given.to, times, given.digits, shaper)
+        found = time_response(bound, given.to, times, given.digits, shaper)
     else:
         wanted = signal.times
         if until is not None or given.points is not None:
             wanted = evenly(until or signal.times[-1], given.points or POINTS)
         whole = pipeline.derive_bound(model, [pair])[0] if isinstance(bound, BoundNested) else bound
-        forced = pipeline.forced_response(whole, signal.times, signal.values, wanted, given.digits, shaper)
+        forced = forced_response(whole, signal.times, signal.values, wanted, given.digits, shaper)
         found = replace(forced, input=Path(given.to).name)
     if given.output and Path(given.output).suffix.lower() == TABLE:
         from symflex.files.write import write_atomically
@@ -107,13 +113,11 @@ def _draw(found: EnclosedResponse, given: RespondOptions, path: Path) -> None:
     from symflex.cli.plot import checked_font
     from symflex.figures import draw_in_time, save
     from symflex.figures.axes import AxisLimits
-    from symflex.figures.files import MM_PER_INCH
-    from symflex.print.latex import column_width
+    from symflex.print.latex import width_of
 
     font = checked_font(given.font, path)
-    width = None if given.width is None else column_width(given.width) / MM_PER_INCH
     frame = AxisLimits(axis_ends(given.xlim, "--xlim"), axis_ends(given.ylim, "--ylim"))
-    save(draw_in_time(found, frame=frame, width=width, font=font), path, font=font)
+    save(draw_in_time(found, frame=frame, width_mm=width_of(given.width), font=font), path, font=font)
 
 
 @command_of("shape", ShapeOptions)
@@ -133,10 +137,7 @@ def shape(spec: Specification, given: ShapeOptions) -> int:
     model = spec.load()
     (bound,) = pipeline.derive_for_roots(model, [first_pair(model, given.tf, "shaping")], is_explained=True)
     found = input_shaper(bound, given.modes, given.kind, given.digits, joint=given.joint)
-    if given.as_json:
-        emit_json(found.to_json_dict())
-    else:
-        say(str(found))
+    answer(given.as_json, found.to_json_dict, lambda: str(found))
     if given.output:
         from symflex.figures import draw_residual, save
 

@@ -135,8 +135,7 @@ class LatexExporter:
             else:
                 loop = characteristic_loop(source, pick_gain(source.model.parameters, asked.gain))
             return draw_loop(kind, loop, band_hz=band, width_mm=self.width_mm, font="latex")
-        sources = [bound.source for bound in of]
-        return draw(kind, sources, of, band_hz=band, width_mm=self.width_mm, font="latex")
+        return draw(kind, of, band_hz=band, width_mm=self.width_mm, font="latex")
 
     def _parts(
         self, tfs: Sequence[AnyTransferFunction]

@@ -80,7 +80,7 @@ class StateEquations:
     ... inputs.F = {force = "x"}
     ... outputs.X = "x"
     ... ''')
-    >>> print("\n".join(StateEquations(pipeline.state_space(model)).lines()))
+    >>> print("\n".join(StateEquations(realise(model)).lines()))
     s*x = x_dot
     s*x_dot = -k/m*x - b/m*x_dot + 1/m*F
     X = x

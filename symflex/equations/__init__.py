@@ -1,7 +1,5 @@
 """The linear equations ``A(s) x + B u = 0`` of a model, over an exact ring."""
 
 from symflex.equations.assemble import assemble
-from symflex.equations.equations import ConstantFunction, Continuum, Equations, OutputRow
+from symflex.equations.equations import ConstantFunction, Continuum, Equations
 from symflex.equations.radicals import radicals_of
-
-__all__ = ["ConstantFunction", "Continuum", "Equations", "OutputRow", "assemble", "radicals_of"]

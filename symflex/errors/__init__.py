@@ -13,21 +13,3 @@ from symflex.errors.exceptions import (
     UncertifiedError,
     UsageError,
 )
-
-__all__ = [
-    "REPORT",
-    "BudgetError",
-    "DataError",
-    "Diagnostic",
-    "FitError",
-    "InternalError",
-    "ModelError",
-    "Source",
-    "Span",
-    "SpecError",
-    "SymflexError",
-    "Text",
-    "UncertifiedError",
-    "UsageError",
-    "nearest",
-]

@@ -1,7 +1,7 @@
 """Expressions as text and as trees: read, printed, built and searched."""
 
 from symflex.expressions.format import format_expression
-from symflex.expressions.limits import PROGRAM_LIMITS, USER_LIMITS, Limits
+from symflex.expressions.limits import PROGRAM_LIMITS, USER_LIMITS
 from symflex.expressions.nodes import (
     Attribute,
     Bessel,
@@ -36,43 +36,3 @@ from symflex.expressions.nodes import (
 )
 from symflex.expressions.parse import parse, parse_equation
 from symflex.expressions.slips import FUNCTIONS
-
-__all__ = [
-    "FUNCTIONS",
-    "PROGRAM_LIMITS",
-    "USER_LIMITS",
-    "Attribute",
-    "Bessel",
-    "Call",
-    "Derivative",
-    "Differentiated",
-    "Equation",
-    "Expression",
-    "Limits",
-    "Measured",
-    "Name",
-    "Negative",
-    "Number",
-    "Power",
-    "Product",
-    "Quotient",
-    "Sum",
-    "fold",
-    "format_expression",
-    "is_number",
-    "measured",
-    "names",
-    "names_among",
-    "negative",
-    "nodes",
-    "number",
-    "parse",
-    "parse_equation",
-    "power",
-    "product_of",
-    "quotient",
-    "replace_node",
-    "replace_values",
-    "substitute",
-    "sum_of",
-]

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
     from symflex.model import Model
     from symflex.roots import Root
-    from symflex.transfer import AnyBoundFunction, AnyTransferFunction
+    from symflex.transfer import AnyBoundFunction
 
 
 SHORT_BAND_DECADES: Final = 1.3
@@ -268,5 +268,5 @@ class Canvas:
         return self.band_hz or (None if band is None else (float(band[0]), float(band[1])))
 
 
-Drawing = Callable[["Sequence[AnyTransferFunction]", "Sequence[AnyBoundFunction]", Canvas], "Figure"]
+Drawing = Callable[["Sequence[AnyBoundFunction]", Canvas], "Figure"]
 """A function that draws transfer functions; :func:`symflex.figures.draw` sets the style."""

@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     from symflex.analysis.response import SampledResponse
     from symflex.figures.axes import AxesGiven, Limits
     from symflex.roots import PoleZeroMap
-    from symflex.transfer import AnyBoundFunction, AnyTransferFunction
+    from symflex.transfer import AnyBoundFunction
 
 
 HEIGHT_INCHES: Final = 3.2
@@ -65,16 +65,14 @@ UNDAMPED_MARGIN_DB: Final = 15.0
 """Room beyond the damped values where peaks are cut off."""
 
 
-def draw_bode(
-    tfs: Sequence[AnyTransferFunction], bounds: Sequence[AnyBoundFunction], canvas: Canvas
-) -> Figure:
+def draw_bode(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
     """Draw magnitude and phase of transfer functions in one figure; see :func:`symflex.figures.draw`.
 
     Peaks and troughs without damping have no end; they run to the frame. Where poles lie in the right half
     plane, or may lie there, the legend says so.
     """
     # The default roots of distributed systems serve for nothing but a band.
-    given = canvas.band_of(tfs[0].model)
+    given = canvas.band_of(bounds[0].source.model)
     low, high = given or default_band(*(roots_if_found(bound) for bound in bounds))
     band = Band(Fraction(low), Fraction(high))
     maps = [roots_if_found(bound, band) for bound in bounds]
@@ -90,18 +88,18 @@ def draw_bode(
     ]
     said = stability_lines(shaky, width)
     units = {response.unit for response in responses}
-    legend_columns = min(len(tfs), LEGEND_COLUMNS if len(units) == 1 else LEGEND_COLUMNS_WITH_UNITS)
-    height = HEIGHT_INCHES + LINE_INCHES * (len(lines) + len(said) + ceil(len(tfs) / legend_columns))
+    legend_columns = min(len(bounds), LEGEND_COLUMNS if len(units) == 1 else LEGEND_COLUMNS_WITH_UNITS)
+    height = HEIGHT_INCHES + LINE_INCHES * (len(lines) + len(said) + ceil(len(bounds) / legend_columns))
     top, *below = canvas.own_axes(1, 2) if canvas.axes else magnitude_over_phase(width, height, RATIO)
     limits = canvas.frame.y or _magnitude_limits(responses, maps)
     drawn = len(top.get_lines())  # on the user's axes
     if drawn and canvas.frame.y is None:
         limits = min(limits[0], top.get_ylim()[0]), max(limits[1], top.get_ylim()[1])
     looks = zip(cycle(COLOURS), cycle(DASHES), strict=False)
-    for tf, response, found, (colour, dash) in zip(
-        tfs, responses, maps, islice(looks, drawn, None), strict=False
+    for bound, response, found, (colour, dash) in zip(
+        bounds, responses, maps, islice(looks, drawn, None), strict=False
     ):
-        label = label_of_tf(tf)
+        label = label_of_tf(bound.source)
         if len(units) > 1 and (unit := label_of_unit(response.unit)):
             label = f"{label} [{unit}]"
         top.plot(*_magnitude_curve(response, found, limits), color=colour, linestyle=dash, label=label)

@@ -1,4 +1,7 @@
-"""Responses over time, with the band their enclosures leave where that is wide enough to be seen."""
+"""Responses over time, with the band their enclosures leave where that is wide enough to be seen.
+
+And what is left of a vibration after an input shaper, over the error of a frequency.
+"""
 
 from __future__ import annotations
 
@@ -7,10 +10,12 @@ from itertools import cycle
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+from flint import acb
 
 from symflex.analysis.time_response import INTEGRATIONS, SampleTimes, responses_by_default, time_response
 from symflex.errors import BudgetError, Diagnostic
 from symflex.figures.axes import FREE, AxisLimits, Canvas, add_legend_above, write_title
+from symflex.figures.files import MM_PER_INCH
 from symflex.figures.style import (
     COLOURS,
     COLUMN_INCHES,
@@ -23,7 +28,6 @@ from symflex.figures.style import (
     paper_style,
     title_lines,
 )
-from symflex.model.loss_factors import check_causal
 from symflex.transfer import BoundNested
 
 if TYPE_CHECKING:
@@ -32,8 +36,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from symflex.analysis.input_shaping import InputShaper
     from symflex.analysis.time_response import EnclosedResponse
-    from symflex.transfer import AnyBoundFunction, AnyTransferFunction
+    from symflex.transfer import AnyBoundFunction
 
 HEIGHT_INCHES: Final = 2.2
 FARTHEST: Final = 0.5
@@ -44,50 +49,46 @@ PREFIXES: Final = ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns"))
 POINTS: Final = 801
 DIGITS: Final = 6
 """Of values, far more than a line shows."""
+RESIDUAL_INCHES: Final = 2.3
+SPAN: Final = (0.5, 1.5)
+RATIOS: Final = 401
+TICK: Final = 5
+"""Percent of residual vibration that designers ask for."""
 
 
-def draw_step(
-    tfs: Sequence[AnyTransferFunction], bounds: Sequence[AnyBoundFunction], canvas: Canvas
-) -> Figure:
+def draw_step(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
     """Draw step responses in one figure; see :func:`symflex.figures.draw`."""
-    return _drawn("step", tfs, bounds, canvas)
+    return _drawn("step", bounds, canvas)
 
 
-def draw_impulse(
-    tfs: Sequence[AnyTransferFunction], bounds: Sequence[AnyBoundFunction], canvas: Canvas
-) -> Figure:
+def draw_impulse(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
     """Draw impulse responses in one figure, without the impulses they hold themselves."""
-    return _drawn("impulse", tfs, bounds, canvas)
+    return _drawn("impulse", bounds, canvas)
 
 
-def _drawn(
-    kind: str, tfs: Sequence[AnyTransferFunction], bounds: Sequence[AnyBoundFunction], canvas: Canvas
-) -> Figure:
-    closed = []
+def _drawn(kind: str, bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
     for bound in bounds:
-        check_causal(bound.source.model, "a response in time")
         if isinstance(bound, BoundNested):
             message = f"the closed form of {bound.name} is too large for a response in time"
             raise BudgetError(Diagnostic("SF502", message, None, "split the model"))
-        closed.append(bound)
     if canvas.frame.x:
         times = SampleTimes.evenly(Fraction(canvas.frame.x[1]), POINTS)
-        responses = [time_response(bound, kind, times, DIGITS) for bound in closed]
+        responses = [time_response(bound, kind, times, DIGITS) for bound in bounds]
     else:
-        responses = responses_by_default(closed, kind, POINTS, DIGITS)
+        responses = responses_by_default(bounds, kind, POINTS, DIGITS)
     width = canvas.width or COLUMN_INCHES
     lines = [*title_lines(canvas.title, width), *_said(responses, width)]
     units = {response.unit for response in responses}
     axes = canvas.one_panel(HEIGHT_INCHES + LINE_INCHES * (len(lines) + 1))
     looks = zip(cycle(COLOURS), cycle(DASHES), strict=False)
-    for tf, response, look in zip(tfs, responses, looks, strict=False):
-        label = label_of_tf(tf)
+    for bound, response, look in zip(bounds, responses, looks, strict=False):
+        label = label_of_tf(bound.source)
         if len(units) > 1 and (unit := label_of_unit(response.unit)):
             label = f"{label} [{unit}]"
         _draw_curve(axes, response, look, label)
     _label(axes, responses[0], units.pop() if len(units) == 1 else "")
     _limit(axes, responses[0], canvas.frame)
-    add_legend_above(axes, len(tfs) if len(tfs) < len(DASHES) else len(DASHES) - 1)
+    add_legend_above(axes, len(bounds) if len(bounds) < len(DASHES) else len(DASHES) - 1)
     figure = axes.figure.get_figure(root=True)
     write_title(figure, lines)
     return figure
@@ -98,13 +99,14 @@ def draw_in_time(
     ax: Axes | None = None,
     *,
     frame: AxisLimits = FREE,
-    width: float | None = None,
+    width_mm: float | None = None,
     font: str = DEFAULT_FONT,
 ) -> Figure:
-    """Draw one response at its own times, on axes of the user's own if they are given; a width in inches."""
+    """Draw one response at its own times, on axes of the user's own if they are given."""
+    width = width_mm / MM_PER_INCH if width_mm else COLUMN_INCHES
     canvas = Canvas(frame=frame, width=width, axes=() if ax is None else (ax,))
-    first = title_lines(f"{response.tf}, {response.title}", width or COLUMN_INCHES)
-    lines = [*first, *_said([response], width or COLUMN_INCHES)]
+    first = title_lines(f"{response.tf}, {response.title}", width)
+    lines = [*first, *_said([response], width)]
     with paper_style(font):
         axes = canvas.one_panel(HEIGHT_INCHES + LINE_INCHES * len(lines))
         _draw_curve(axes, response, (COLOURS[0], "-"), None)
@@ -159,3 +161,24 @@ def _label(axes: Axes, response: EnclosedResponse, unit: str) -> None:
     label = label_of_unit(unit)
     name = f"{response.input} response".capitalize() if response.input in INTEGRATIONS else "Response"
     axes.set_ylabel(f"{name} [{label}]" if label else name)
+
+
+def draw_residual(shaper: InputShaper) -> Figure:
+    """Draw what each mode still rings, over the frequency it has in truth; its damping ratio stays."""
+    ratios = np.linspace(*SPAN, RATIOS)
+    with paper_style():
+        axes = Canvas().one_panel(RESIDUAL_INCHES)
+        for pole, colour, dash in zip(shaper.poles, COLOURS, DASHES, strict=False):
+            middle = acb(pole.re.mid(), pole.im.mid())
+            left = [100 * float(shaper.residual(middle * r).mid()) for r in ratios.tolist()]
+            axes.plot(ratios, left, color=colour, linestyle=dash, label=f"{pole.frequency_hz():.4g} Hz")
+        axes.grid(visible=True)
+        axes.axhline(TICK, color=COLOURS[-1], linewidth=0.5)
+        axes.set_xlim(*SPAN)
+        axes.set_ylim(0, None)
+        axes.set_xlabel("Frequency over that of the model")
+        axes.set_ylabel("Residual vibration [%]")
+        add_legend_above(axes, len(DASHES))
+        figure = axes.figure.get_figure(root=True)
+        write_title(figure, title_lines(f"{shaper.tf}, {shaper.title}", COLUMN_INCHES))
+    return figure

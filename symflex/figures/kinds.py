@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import nullcontext
 from typing import TYPE_CHECKING
 
 from matplotlib.text import Text
@@ -23,8 +22,7 @@ from symflex.options import PlotOptions, axis_ends, band_ends
 from symflex.print.latex.page import checked_width
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from contextlib import AbstractContextManager
+    from collections.abc import Callable, Sequence
     from fractions import Fraction
 
     from matplotlib.figure import Figure
@@ -34,7 +32,7 @@ if TYPE_CHECKING:
     from symflex.figures.style import Raster
     from symflex.loops import AnyLoop
     from symflex.model import Model
-    from symflex.transfer import AnyBoundFunction, AnyTransferFunction
+    from symflex.transfer import AnyBoundFunction
 
 FIGURES: dict[str, Drawing] = {
     "bode": draw_bode,
@@ -55,7 +53,6 @@ LOOP_FIGURES: tuple[str, ...] = ("locus", "nyquist")
 
 def draw(
     kind: str,
-    tfs: Sequence[AnyTransferFunction],
     bounds: Sequence[AnyBoundFunction],
     *,
     band_hz: tuple[float | Fraction, float | Fraction] | None = None,
@@ -67,18 +64,17 @@ def draw(
 ) -> Figure:
     """Draw a figure of one or several transfer functions.
 
-    ``kind`` is a key of :data:`FIGURES`, ``bounds`` are the functions ``tfs`` with numbers. Without
-    ``band_hz`` [Hz] a Bode plot takes the model's ``band``, or else one that shows all poles and zeros; a
-    pole-zero plot focuses on the resonances that belong together and marks the rest at its border, and with
-    it shows those up to its end; of modes, the lowest are shown, or those in it. ``frame`` takes the place of
-    limits that suit what is drawn; ``title`` is printed as it is, never read as mathematics. The figure is
-    3.5 inches wide by default, or 7.16 for what needs the width of a page. :func:`render` is to be told the
-    same ``font``, a key of :data:`FONTS`. On ``ax``, axes of the user's own, it is drawn in the user's style,
-    with as many of them as it has panels; of a Bode plot, the first alone shows magnitudes. Raises
-    UsageError: SF208 an unknown kind; SF227 an empty band; SF208 an
-    unknown font; SF902 the width is not between 80 and 1000 mm or too small for what is drawn, ``ax`` are too
-    many or too few, or limits are of axes that the figure has not; ModelError: SF402 a transfer function is
-    identically zero.
+    ``kind`` is a key of :data:`FIGURES`, ``bounds`` are the functions with numbers. Without ``band_hz`` [Hz]
+    a Bode plot takes the model's ``band``, or else one that shows all poles and zeros; a pole-zero plot
+    focuses on the resonances that belong together and marks the rest at its border, and with it shows those
+    up to its end; of modes, the lowest are shown, or those in it. ``frame`` takes the place of limits that
+    suit what is drawn; ``title`` is printed as it is, never read as mathematics. The figure is 3.5 inches
+    wide by default, or 7.16 for what needs the width of a page. :func:`render` is to be told the same
+    ``font``, a key of :data:`FONTS`. On ``ax``, axes of the user's own, it is drawn in the user's style, with
+    as many of them as it has panels; of a Bode plot, the first alone shows magnitudes. Raises UsageError:
+    SF208 an unknown kind; SF227 an empty band; SF208 an unknown font; SF902 the width is not between 80 and
+    1000 mm or too small for what is drawn, ``ax`` are too many or too few, or limits are of axes that the
+    figure has not; ModelError: SF402 a transfer function is identically zero.
     """
     if kind not in FIGURES:
         if kind in LOOP_FIGURES:
@@ -89,18 +85,14 @@ def draw(
         hint = nearest(kind, FIGURES) or "kinds: " + ", ".join(FIGURES)
         raise UsageError(Diagnostic("SF208", f"there is no figure of kind '{kind[:64]}'", None, hint))
     _check_frame(kind, frame)
-    if not tfs or len(tfs) != len(bounds):
-        message = (
-            f"a figure needs as many bound as symbolic transfer functions, not {len(bounds)} and {len(tfs)}"
-        )
+    if not bounds:
+        message = "a figure needs a transfer function"
         raise ValueError(message)
     for bound in bounds:
         if bound.is_zero:
             raise ModelError(Diagnostic("SF402", f"{bound.name} is identically zero: nothing to draw"))
     canvas = _canvas(band_hz, frame, title, width_mm, ax)
-    with _style(font, canvas):
-        figure = FIGURES[kind](tfs, bounds, canvas)
-    return figure if canvas.axes else _with_every_letter(figure, font)
+    return _styled(font, canvas, lambda: FIGURES[kind](bounds, canvas))
 
 
 def draw_shape(
@@ -118,9 +110,7 @@ def draw_shape(
     canvas = _canvas(None, FREE, None, width_mm, ax)
     if not panels_of(model, [shape]):
         raise ModelError(Diagnostic("SF402", "nothing that moves in this mode could be drawn"))
-    with _style(font, canvas):
-        figure = draw_shapes(model, [shape], canvas)
-    return figure if canvas.axes else _with_every_letter(figure, font)
+    return _styled(font, canvas, lambda: draw_shapes(model, [shape], canvas))
 
 
 def picture_of_shape(model: Model, shape: EnclosedModeShape) -> Raster | None:
@@ -168,8 +158,17 @@ def _canvas(
     return Canvas(band, frame, title, width, axes_of(ax))
 
 
-def _style(font: str, canvas: Canvas) -> AbstractContextManager[None]:
-    return nullcontext() if canvas.axes else paper_style(font)
+def _styled(font: str, canvas: Canvas, drawing: Callable[[], Figure]) -> Figure:
+    """Draw in the style of a paper, with texts in a font that has their letters; or on axes as they are."""
+    if canvas.axes:
+        return drawing()
+    with paper_style(font):
+        figure = drawing()
+    for text in figure.findobj(Text):
+        family = family_of(text.get_text(), font)
+        if family and not text.get_parse_math():
+            text.set_fontfamily(family)
+    return figure
 
 
 def _check_frame(kind: str, frame: AxisLimits) -> None:
@@ -180,15 +179,6 @@ def _check_frame(kind: str, frame: AxisLimits) -> None:
         raise UsageError(Diagnostic("SF902", "the frequencies of a Bode plot are its band"))
     if frame != FREE and kind == "modes":
         raise UsageError(Diagnostic("SF902", "mode shapes have no limits: their largest displacement is 1"))
-
-
-def _with_every_letter(figure: Figure, font: str) -> Figure:
-    """Set texts with letters that a font lacks in one that has them."""
-    for text in figure.findobj(Text):
-        family = family_of(text.get_text(), font)
-        if family and not text.get_parse_math():
-            text.set_fontfamily(family)
-    return figure
 
 
 def draw_loop(
@@ -219,20 +209,12 @@ def draw_loop(
         )
     _check_frame(kind, frame)
     canvas = _canvas(band_hz, frame, title, width_mm, ax)
-    with _style(font, canvas):
-        figure = _drawn_loop(kind, loop, limits, modes, canvas)
-    return figure if canvas.axes else _with_every_letter(figure, font)
 
-
-def _drawn_loop(
-    kind: str,
-    loop: AnyLoop,
-    limits: tuple[Fraction | None, Fraction | None] | None,
-    modes: int | None,
-    canvas: Canvas,
-) -> Figure:
-    if kind == "locus":
+    def drawing() -> Figure:
+        if kind == "nyquist":
+            return draw_loop_gain(loop, canvas)
         locus = trace_locus(loop, limits, modes, band_hz=canvas.band_hz)
         require_arrival(locus)
         return draw_locus(locus, canvas)
-    return draw_loop_gain(loop, canvas)
+
+    return _styled(font, canvas, drawing)

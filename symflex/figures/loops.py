@@ -71,7 +71,7 @@ if TYPE_CHECKING:
     from symflex.loops import AnyLoop, RootLocus
     from symflex.roots import PoleZeroMap
     from symflex.roots.pole_zero_map import StabilityVerdict
-    from symflex.transfer import AnyBoundFunction, AnyTransferFunction
+    from symflex.transfer import AnyBoundFunction
 
 
 HEIGHT_INCHES: Final = 3.3
@@ -260,7 +260,6 @@ FARTHEST_DECADES: Final = 1e4
 """Times the end of the band up to which a curve may go on."""
 ONWARDS: Final = 60
 """Values on the way, which is nearly straight."""
-MOST_COLUMNS: Final = 3
 LEGEND_POINTS: Final = 8.0
 LINE_POINTS: Final = 34.0
 """Length of a legend's line with the gaps beside it: 2 of handle, 0.8 and 1.4 of gaps, in letters."""
@@ -272,11 +271,7 @@ SHAFT: Final = 0.01
 """Length of an arrow without its head, in halves of the square."""
 
 
-def draw_nyquist(
-    tfs: Sequence[AnyTransferFunction],
-    bounds: Sequence[AnyBoundFunction],
-    canvas: Canvas,
-) -> Figure:
+def draw_nyquist(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
     """Draw the values of transfer functions for positive frequencies and, dashed, for negative ones.
 
     Where no band is asked for, the curve of a rational function goes on until it is next to where it ends,
@@ -284,7 +279,8 @@ def draw_nyquist(
     in the right half plane, P of them: a closed loop is stable if the curve winds P times counterclockwise
     about -1.
     """
-    return _draw_curves([_curve(bound, canvas) for bound in bounds], [label_of_tf(tf) for tf in tfs], canvas)
+    labels = [label_of_tf(bound.source) for bound in bounds]
+    return _draw_curves([_curve(bound, canvas) for bound in bounds], labels, canvas)
 
 
 def draw_loop_gain(loop: AnyLoop, canvas: Canvas) -> Figure:

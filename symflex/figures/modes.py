@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from symflex.figures.axes import Canvas
     from symflex.figures.runs import Panel
     from symflex.model import Model
-    from symflex.transfer import AnyBoundFunction, AnyTransferFunction
+    from symflex.transfer import AnyBoundFunction
 
 DEFAULT_MODES: Final = 5
 MODES_LIMIT: Final = 40
@@ -69,9 +69,7 @@ LAGGING: Final = (0, (4, 1.5))
 Curve = tuple["npt.NDArray[np.float64]", "npt.NDArray[np.complex128]"]
 
 
-def draw_modes(
-    tfs: Sequence[AnyTransferFunction], bounds: Sequence[AnyBoundFunction], canvas: Canvas
-) -> Figure:
+def draw_modes(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
     """Draw the shapes of the lowest modes of the first function's model, hidden ones among them.
 
     As many as ``[analysis]`` says, else five, or the first 40 of a band; and all of poles in the right half
@@ -80,16 +78,16 @@ def draw_modes(
     :func:`symflex.figures.draw`. Raises ModelError: SF402 when there is no mode other than at 0; UsageError:
     SF902 when the panels have no room in the width asked for.
     """
-    band_hz = canvas.band_hz
+    model, band_hz = bounds[0].source.model, canvas.band_hz
     band = None if band_hz is None else Band(Fraction(band_hz[0]), Fraction(band_hz[1]))
-    count = min(tfs[0].model.analysis.modes or (MODES_LIMIT if band else DEFAULT_MODES), MODES_LIMIT)
+    count = min(model.analysis.modes or (MODES_LIMIT if band else DEFAULT_MODES), MODES_LIMIT)
     numbered, verdict = lowest_modes(bounds[0], count, band)
     shapes = [found.shape for found in numbered]
-    if not panels_of(tfs[0].model, shapes):
+    if not panels_of(model, shapes):
         where = "" if band_hz is None else f" between {band_hz[0]:g} and {band_hz[1]:g} Hz"
         message = f"{bounds[0].name} has no mode other than at 0 that has a shape{where}"
         raise ModelError(Diagnostic("SF402", message))
-    return draw_shapes(tfs[0].model, shapes, canvas, verdict.headline)
+    return draw_shapes(model, shapes, canvas, verdict.headline)
 
 
 def draw_shapes(

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from symflex.figures.axes import Canvas
     from symflex.figures.s_plane import Kind, RootMark
     from symflex.roots import PoleZeroMap
-    from symflex.transfer import AnyBoundFunction, AnyTransferFunction
+    from symflex.transfer import AnyBoundFunction
 
 
 PANELS_IN_COLUMN: Final = 3
@@ -55,9 +55,7 @@ LOOKS: Final[dict[Kind, tuple[str, str, float]]] = {
 COLOUR_OF: Final = {kind: colour for kind, (_, colour, _) in LOOKS.items()}
 
 
-def draw_poles_zeros(
-    tfs: Sequence[AnyTransferFunction], bounds: Sequence[AnyBoundFunction], canvas: Canvas
-) -> Figure:
+def draw_poles_zeros(bounds: Sequence[AnyBoundFunction], canvas: Canvas) -> Figure:
     """Draw poles (crosses) and zeros (circles); see :func:`symflex.figures.draw`.
 
     All panels show the same part of the s plane. A root outside it is named at the border where the ray from
@@ -100,7 +98,7 @@ def draw_poles_zeros(
     figure = root_figure(own[0]) if own else new_figure(width, height)
     # Panels narrower than their room stand in the middle.
     start = LEFT + (width - LEFT - RIGHT - columns * panel_width - (columns - 1) * GAP) / 2
-    for i, (tf, marks) in enumerate(zip(tfs, panels, strict=True)):
+    for i, (bound, marks) in enumerate(zip(bounds, panels, strict=True)):
         row, column = divmod(i, columns)
         x = start + column * (panel_width + GAP)
         y = height - above - (row + 1) * (TOP + panel_height) - row * BOTTOM
@@ -113,14 +111,14 @@ def draw_poles_zeros(
             axes.set_aspect("auto")
         panel = Panel.of(view, panel_width, panel_height, marks)
         write_notes(axes, () if is_asked else marks, panel, COLOUR_OF, marks)
-        axes.set_title(label_of_tf(tf), pad=4)
+        axes.set_title(label_of_tf(bound.source), pad=4)
         axes.set_xlabel(r"$\mathrm{Re}(s)$ [rad/s]", labelpad=2)
         if column == 0 or own:
             axes.set_ylabel(r"$\mathrm{Im}(s)$ [rad/s]", labelpad=1)
         else:
             axes.tick_params(labelleft=False)
     if own:
-        own[0].set_title("\n".join([*lines, label_of_tf(tfs[0])]), pad=4)
+        own[0].set_title("\n".join([*lines, label_of_tf(bounds[0].source)]), pad=4)
     else:
         write_titles(figure, titles, 0.04, height)
     return figure

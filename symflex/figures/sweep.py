@@ -20,6 +20,7 @@ from symflex.figures.axes import (
     set_frequency_axis,
     write_title,
 )
+from symflex.figures.files import MM_PER_INCH
 from symflex.figures.style import (
     COLOURS,
     COLUMN_INCHES,
@@ -81,7 +82,7 @@ def draw_sweep(
     *,
     modes: int | None = None,
     title: str | None = None,
-    width: float | None = None,
+    width_mm: float | None = None,
     font: str = DEFAULT_FONT,
     ax: AxesGiven | None = None,
 ) -> Figure:
@@ -92,7 +93,7 @@ def draw_sweep(
     line for each of these. Otherwise, and of draws: medians and what holds 90 % of the points, from the 5th
     to the 95th percentile.
 
-    ``modes`` are the names of those shown, from the first; ``width`` is in inches, a column by default. On
+    ``modes`` are the names of those shown, from the first; ``width_mm`` is a column by default. On
     ``ax``, as many axes as there are panels, it is drawn in the user's style and without a title. Raises
     ModelError: SF402 there is nothing to draw; UsageError: SF902 ``ax`` are too many or too few.
     """
@@ -103,7 +104,7 @@ def draw_sweep(
             PANELS[panel](axes, sweep, modes)
         return root_figure(own[0])
     with paper_style(font):
-        width = width or COLUMN_INCHES
+        width = width_mm / MM_PER_INCH if width_mm else COLUMN_INCHES
         lines = title_lines(sweep.attribute("title") if title is None else title, width)
         figure = new_figure(width, PANEL_INCHES * len(panels) + 0.3 + LINE_INCHES * len(lines))
         figure.set_layout_engine("constrained", h_pad=0.03, w_pad=0.03)

@@ -1,6 +1,6 @@
 """Stable gains of feedback loops, proved: poles right of the imaginary axis counted, none missing."""
 
-from symflex.loops.apart import PolesApart, poles_apart
+from symflex.loops.apart import poles_apart
 from symflex.loops.colocation import DynamicColocation, dynamic_colocation
 from symflex.loops.find import find_stable_gains
 from symflex.loops.locus import (
@@ -12,50 +12,11 @@ from symflex.loops.locus import (
     require_arrival,
     trace_locus,
 )
-from symflex.loops.loop import GainPolynomial, Loop, characteristic_loop, pick_gain
+from symflex.loops.loop import Loop, characteristic_loop, pick_gain
 from symflex.loops.networks import AnyLoop, NetworkLoop
 from symflex.loops.stability_map import (
     AllowedBandwidth,
-    Boundary,
-    Crossing,
-    GainInterval,
-    GainMargin,
-    PhaseMargin,
-    PoleCount,
     StabilityMap,
-    decibels,
     degrees,
     hertz,
 )
-
-__all__ = [
-    "AllowedBandwidth",
-    "AnyLoop",
-    "Boundary",
-    "Crossing",
-    "DynamicColocation",
-    "GainInterval",
-    "GainMargin",
-    "GainPolynomial",
-    "Loop",
-    "NetworkLoop",
-    "PhaseMargin",
-    "PoleCount",
-    "PolesApart",
-    "RootLocus",
-    "StabilityMap",
-    "characteristic_loop",
-    "closed_loop",
-    "closed_loop_roots",
-    "decibels",
-    "degrees",
-    "dynamic_colocation",
-    "find_stable_gains",
-    "hertz",
-    "loop_gain",
-    "nominal_gain",
-    "pick_gain",
-    "poles_apart",
-    "require_arrival",
-    "trace_locus",
-]

@@ -13,6 +13,7 @@ from symflex.loops.loop import pick_gain
 from symflex.loops.networks import network_loop
 from symflex.model import Model, with_numbers
 from symflex.model.along import is_tapered
+from symflex.model.loss_factors import check_causal
 from symflex.options import (
     ColocationOptions,
     StabilityOptions,
@@ -47,6 +48,7 @@ def characteristic_loop(model: Model, gain: str, values: Mapping[str, Given] | N
     SF902 when there is no such parameter, SF801 when no pole depends on it or it shapes waves; SF501, SF502
     when it is too large written out, SF803 where the gain stands in more than one row of a large network.
     """
+    check_causal(model, "a root locus or a loop gain")
     parameter = pick_gain(model.parameters, gain)
     given = dict(values or {})
     for name in given:
@@ -106,6 +108,7 @@ def stability(
 
     SF902 when there is no such parameter, SF801 when no pole depends on it.
     """
+    check_causal(model, "stability of a loop")
     limits = gain_ends(given.limits, pick_gain(model.parameters, given.gain))
     radians = None if given.up_to is None else 2 * pi * highest_frequency(given.up_to)
     loop = characteristic_loop(model, given.gain, values)
@@ -114,6 +117,7 @@ def stability(
 
 def colocation(model: Model, given: ColocationOptions, budget: Budget | None = None) -> DynamicColocation:
     """Return up to which frequency one output moves with another; see :func:`.loops.dynamic_colocation`."""
+    check_causal(model, "a bound on colocation")
     band = None if given.band is None else band_ends(given.band, above_zero=True)
     tip, joint = derive_bound(model, pick_pairs(model, [given.tf, given.reference]))
     phase = tolerance(given.phase, "--phase", ("deg", "°"), "10 deg")

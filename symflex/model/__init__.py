@@ -22,31 +22,3 @@ from symflex.model.resolve import load_model, load_with, resolve
 from symflex.model.scope import ModelScope, scope_of
 from symflex.model.settings import Setting, read_settings, with_numbers
 from symflex.model.signs import check_value
-
-__all__ = [
-    "Analysis",
-    "Definition",
-    "DrawingHints",
-    "ExactValue",
-    "FieldProblem",
-    "Figure",
-    "Input",
-    "Model",
-    "ModelParameter",
-    "ModelScope",
-    "NetworkNode",
-    "NodeReference",
-    "Output",
-    "PlacedBlock",
-    "PlacedElement",
-    "Published",
-    "Setting",
-    "Signal",
-    "check_value",
-    "load_model",
-    "load_with",
-    "read_settings",
-    "resolve",
-    "scope_of",
-    "with_numbers",
-]

@@ -7,25 +7,6 @@ from symflex.quantities.characters import (
     code_point,
     name_hint,
 )
-from symflex.quantities.dimension import DIMENSIONLESS, Dimension, dimension_name
+from symflex.quantities.dimension import DIMENSIONLESS, Dimension
 from symflex.quantities.quantity import Quantity, looks_like_quantity, parse_quantity, parse_unit, unit_of
 from symflex.quantities.units import Unit, unit_named, unit_slip
-
-__all__ = [
-    "DIMENSIONLESS",
-    "IMAGINARY_NAMES",
-    "IMAGINARY_UNIT",
-    "Dimension",
-    "Quantity",
-    "Unit",
-    "character_hint",
-    "code_point",
-    "dimension_name",
-    "looks_like_quantity",
-    "name_hint",
-    "parse_quantity",
-    "parse_unit",
-    "unit_named",
-    "unit_of",
-    "unit_slip",
-]

@@ -84,108 +84,94 @@ def _power(unit: str, exponent: Fraction) -> str:
     return f"{unit}^{exponent}" if exponent.denominator == 1 else f"{unit}^({exponent})"
 
 
-def _row(unit: str, name: str, *exponents: int) -> tuple[Dimension, str, str]:
-    return Dimension(*(Fraction(exponent) for exponent in exponents)), unit, name
+def _row(unit: str, *exponents: int) -> tuple[Dimension, str]:
+    return Dimension(*(Fraction(exponent) for exponent in exponents)), unit
 
 
 # Exponents in the order kg, m, s, A, K, mol, cd; trailing zeros left out. Where a dimension has several
 # readings (N*m: torque, energy, torsional stiffness) the field's own is chosen.
-_NAMED: Final = (
-    _row("1", "pure number"),
+_UNITS: Final = (
+    _row("1"),  # pure number
     # base
-    _row("kg", "mass", 1),
-    _row("m", "length", 0, 1),
-    _row("s", "time", 0, 0, 1),
-    _row("A", "current", 0, 0, 0, 1),
-    _row("K", "temperature", 0, 0, 0, 0, 1),
-    _row("mol", "amount of substance", 0, 0, 0, 0, 0, 1),
-    _row("cd", "luminous intensity", 0, 0, 0, 0, 0, 0, 1),
+    _row("kg", 1),  # mass
+    _row("m", 0, 1),  # length
+    _row("s", 0, 0, 1),  # time
+    _row("A", 0, 0, 0, 1),  # current
+    _row("K", 0, 0, 0, 0, 1),  # temperature
+    _row("mol", 0, 0, 0, 0, 0, 1),  # amount of substance
+    _row("cd", 0, 0, 0, 0, 0, 0, 1),  # luminous intensity
     # geometry and motion
-    _row("m^2", "area", 0, 2),
-    _row("m^3", "volume", 0, 3),
-    _row("m^4", "second moment of area", 0, 4),
-    _row("1/m", "wavenumber", 0, -1),
-    _row("1/m^2", "squared wavenumber", 0, -2),
-    _row("1/s", "frequency", 0, 0, -1),
-    _row("1/s^2", "angular acceleration", 0, 0, -2),
-    _row("s^2", "squared time", 0, 0, 2),
-    _row("m/s", "velocity", 0, 1, -1),
-    _row("m/s^2", "acceleration", 0, 1, -2),
-    _row("m/s^3", "jerk", 0, 1, -3),
-    _row("m^2/s", "diffusivity", 0, 2, -1),
-    _row("s/m", "slowness", 0, -1, 1),
+    _row("m^2", 0, 2),  # area
+    _row("m^3", 0, 3),  # volume
+    _row("m^4", 0, 4),  # second moment of area
+    _row("1/m", 0, -1),  # wavenumber
+    _row("1/m^2", 0, -2),  # squared wavenumber
+    _row("1/s", 0, 0, -1),  # frequency
+    _row("1/s^2", 0, 0, -2),  # angular acceleration
+    _row("s^2", 0, 0, 2),  # squared time
+    _row("m/s", 0, 1, -1),  # velocity
+    _row("m/s^2", 0, 1, -2),  # acceleration
+    _row("m/s^3", 0, 1, -3),  # jerk
+    _row("m^2/s", 0, 2, -1),  # diffusivity
+    _row("s/m", 0, -1, 1),  # slowness
     # mechanics
-    _row("kg/m", "mass per length", 1, -1),
-    _row("kg/m^2", "mass per area", 1, -2),
-    _row("kg/m^3", "density", 1, -3),
-    _row("kg*m", "first moment of mass", 1, 1),
-    _row("kg*m^2", "moment of inertia", 1, 2),
-    _row("N", "force", 1, 1, -2),
-    _row("N/m", "stiffness", 1, 0, -2),
-    _row("N*s/m", "damping", 1, 0, -1),
-    _row("N*s", "momentum", 1, 1, -1),
-    _row("N*m", "torque", 1, 2, -2),
-    _row("N*m*s", "rotary damping", 1, 2, -1),
-    _row("N*m^2", "bending stiffness", 1, 3, -2),
-    _row("Pa", "pressure", 1, -1, -2),
-    _row("Pa*s", "viscosity", 1, -1, -1),
-    _row("N/m^3", "pressure gradient", 1, -2, -2),
-    _row("W", "power", 1, 2, -3),
-    _row("m/N", "receptance", -1, 0, 2),
-    _row("m/(N*s)", "mobility", -1, 0, 1),
-    _row("m/(N*s^2)", "accelerance", -1),
-    _row("m^2/N", "receptance per load along a line", -1, 1, 2),
-    _row("m^2/(N*s)", "mobility per load along a line", -1, 1, 1),
-    _row("m^2/(N*s^2)", "accelerance per load along a line", -1, 1),
-    _row("1/N", "angular receptance per force", -1, -1, 2),
-    _row("1/(N*s)", "angular mobility per force", -1, -1, 1),
-    _row("1/(N*s^2)", "angular accelerance per force", -1, -1),
-    _row("1/(N*m)", "angular receptance", -1, -2, 2),
-    _row("1/(N*m*s)", "angular mobility", -1, -2, 1),
-    _row("1/(N*m*s^2)", "angular accelerance", -1, -2),
-    _row("K*m^2/W", "thermal resistance of an area", -1, 0, 3, 0, 1),
+    _row("kg/m", 1, -1),  # mass per length
+    _row("kg/m^2", 1, -2),  # mass per area
+    _row("kg/m^3", 1, -3),  # density
+    _row("kg*m", 1, 1),  # first moment of mass
+    _row("kg*m^2", 1, 2),  # moment of inertia
+    _row("N", 1, 1, -2),  # force
+    _row("N/m", 1, 0, -2),  # stiffness
+    _row("N*s/m", 1, 0, -1),  # damping
+    _row("N*s", 1, 1, -1),  # momentum
+    _row("N*m", 1, 2, -2),  # torque
+    _row("N*m*s", 1, 2, -1),  # rotary damping
+    _row("N*m^2", 1, 3, -2),  # bending stiffness
+    _row("Pa", 1, -1, -2),  # pressure
+    _row("Pa*s", 1, -1, -1),  # viscosity
+    _row("N/m^3", 1, -2, -2),  # pressure gradient
+    _row("W", 1, 2, -3),  # power
+    _row("m/N", -1, 0, 2),  # receptance
+    _row("m/(N*s)", -1, 0, 1),  # mobility
+    _row("m/(N*s^2)", -1),  # accelerance
+    _row("m^2/N", -1, 1, 2),  # receptance per load along a line
+    _row("m^2/(N*s)", -1, 1, 1),  # mobility per load along a line
+    _row("m^2/(N*s^2)", -1, 1),  # accelerance per load along a line
+    _row("1/N", -1, -1, 2),  # angular receptance per force
+    _row("1/(N*s)", -1, -1, 1),  # angular mobility per force
+    _row("1/(N*s^2)", -1, -1),  # angular accelerance per force
+    _row("1/(N*m)", -1, -2, 2),  # angular receptance
+    _row("1/(N*m*s)", -1, -2, 1),  # angular mobility
+    _row("1/(N*m*s^2)", -1, -2),  # angular accelerance
+    _row("K*m^2/W", -1, 0, 3, 0, 1),  # thermal resistance of an area
     # electricity
-    _row("C", "charge", 0, 0, 1, 1),
-    _row("V", "voltage", 1, 2, -3, -1),
-    _row("Ohm", "resistance", 1, 2, -3, -2),
-    _row("A/V", "conductance", -1, -2, 3, 2),
-    _row("H", "inductance", 1, 2, -2, -2),
-    _row("F", "capacitance", -1, -2, 4, 2),
-    _row("T", "magnetic flux density", 1, 0, -2, -1),
-    _row("V/m", "electric field", 1, 1, -3, -1),
-    _row("A/m", "magnetic field", 0, -1, 0, 1),
-    _row("A/s", "current slope", 0, 0, -1, 1),
-    _row("V/s", "voltage slope", 1, 2, -4, -1),
-    _row("V/(A*s)", "resistance per time", 1, 2, -4, -2),
+    _row("C", 0, 0, 1, 1),  # charge
+    _row("V", 1, 2, -3, -1),  # voltage
+    _row("Ohm", 1, 2, -3, -2),  # resistance
+    _row("A/V", -1, -2, 3, 2),  # conductance
+    _row("H", 1, 2, -2, -2),  # inductance
+    _row("F", -1, -2, 4, 2),  # capacitance
+    _row("T", 1, 0, -2, -1),  # magnetic flux density
+    _row("V/m", 1, 1, -3, -1),  # electric field
+    _row("A/m", 0, -1, 0, 1),  # magnetic field
+    _row("A/s", 0, 0, -1, 1),  # current slope
+    _row("V/s", 1, 2, -4, -1),  # voltage slope
+    _row("V/(A*s)", 1, 2, -4, -2),  # resistance per time
     # transduction
-    _row("V*s", "motor constant", 1, 2, -2, -1),
-    _row("N/A", "force constant", 1, 1, -2, -1),
-    _row("N/V", "force per voltage", 0, -1, 1, 1),
-    _row("V/N", "voltage per force", 0, 1, -1, -1),
-    _row("V*s^2", "voltage per angular acceleration", 1, 2, -1, -1),
-    _row("V*s^2/m", "voltage per acceleration", 1, 1, -1, -1),
-    _row("m/A", "displacement per current", 0, 1, 0, -1),
-    _row("m/V", "displacement per voltage", -1, -1, 3, 1),
-    _row("m/(V*s)", "velocity per voltage", -1, -1, 2, 1),
-    _row("m/(V*s^2)", "acceleration per voltage", -1, -1, 1, 1),
-    _row("1/V", "angle per voltage", -1, -2, 3, 1),
-    _row("1/(V*s)", "angular velocity per voltage", -1, -2, 2, 1),
-    _row("1/(V*s^2)", "angular acceleration per voltage", -1, -2, 1, 1),
-    _row("1/A", "angle per current", 0, 0, 0, -1),
+    _row("V*s", 1, 2, -2, -1),  # motor constant
+    _row("N/A", 1, 1, -2, -1),  # force constant
+    _row("N/V", 0, -1, 1, 1),  # force per voltage
+    _row("V/N", 0, 1, -1, -1),  # voltage per force
+    _row("V*s^2", 1, 2, -1, -1),  # voltage per angular acceleration
+    _row("V*s^2/m", 1, 1, -1, -1),  # voltage per acceleration
+    _row("m/A", 0, 1, 0, -1),  # displacement per current
+    _row("m/V", -1, -1, 3, 1),  # displacement per voltage
+    _row("m/(V*s)", -1, -1, 2, 1),  # velocity per voltage
+    _row("m/(V*s^2)", -1, -1, 1, 1),  # acceleration per voltage
+    _row("1/V", -1, -2, 3, 1),  # angle per voltage
+    _row("1/(V*s)", -1, -2, 2, 1),  # angular velocity per voltage
+    _row("1/(V*s^2)", -1, -2, 1, 1),  # angular acceleration per voltage
+    _row("1/A", 0, 0, 0, -1),  # angle per current
 )
 
-PREFERRED_UNITS: Final[dict[Dimension, str]] = {dimension: unit for dimension, unit, _ in _NAMED}
-_NAMES: Final[dict[Dimension, str]] = {dimension: name for dimension, _, name in _NAMED}
-
-
-def dimension_name(dimension: Dimension) -> str | None:
-    """Return the field's word for a dimension, or ``None`` when it has none.
-
-    A dimension with several readings gets one: ``N*m`` is "torque", also where an energy is meant.
-
-    Examples
-    --------
-    >>> dimension_name(Dimension(kg=Fraction(1), s=Fraction(-2)))
-    'stiffness'
-    """
-    return _NAMES.get(dimension)
+PREFERRED_UNITS: Final[dict[Dimension, str]] = dict(_UNITS)

@@ -9,10 +9,14 @@ from typing import TYPE_CHECKING, Final, TypeVar
 import numpy as np
 
 from symflex import pipeline
+from symflex.analysis.explanation import explain_zeros
+from symflex.analysis.rational import approximate
 from symflex.analysis.response import adaptive_grid, default_band, respond
+from symflex.audit import audit, check_published
 from symflex.budget import entered_budget
 from symflex.errors import BudgetError, Diagnostic, SymflexError
 from symflex.loops import find_stable_gains
+from symflex.loops.of_model import characteristic_loop, colocation
 from symflex.model import with_numbers
 from symflex.options import ColocationOptions
 from symflex.print.forms import print_forms
@@ -72,7 +76,7 @@ class Study:
         equations have no unique solution.
         """
         model = pipeline.load(path, allow_outside)
-        pipeline.check_published(model, model.published)
+        check_published(model, model.published)
         pipeline.check_solvable(pipeline.assemble_for_checks(with_numbers(model)))
         return Study(path, stem, path.read_text(encoding="utf-8"), model, measured)
 
@@ -169,7 +173,7 @@ class Study:
         for bound in self.bounds:
             if bound.name in by_name and isinstance(bound, BoundTransferFunction):
                 found = by_name[bound.name]
-                explained = pipeline.explain_zeros(self.model, bound, found)
+                explained = explain_zeros(self.model, bound, found)
                 rows.append((symbolic.get(bound.name, bound.source), found, explained))
         return tuple(rows)
 
@@ -188,7 +192,7 @@ class Study:
     @cached_property
     def audits(self) -> tuple[Audit, ...]:
         """What is found about printed formulas."""
-        return pipeline.audit(self.model)
+        return audit(self.model)
 
     @cached_property
     def rigid_counts(self) -> Mapping[tuple[str, str], RigidCounts]:
@@ -242,7 +246,7 @@ class Study:
         Raises ModelError: SF801 when it does not depend on the gain.
         """
         if gain not in self._characteristic:
-            self._characteristic[gain] = attempt(lambda: pipeline.characteristic_loop(self.model, gain))
+            self._characteristic[gain] = attempt(lambda: characteristic_loop(self.model, gain))
         found: AnyLoop | SymflexError = self._characteristic[gain]
         if isinstance(found, SymflexError):
             raise found
@@ -267,9 +271,7 @@ class Study:
         for tf, _, told in self.located:
             joint = joints.get((tf.input.name, tf.quantity, tf.unit))
             if told.kind != "colocated" and joint is not None:
-                one = attempt(
-                    partial(pipeline.colocation, self.model, ColocationOptions(tf.name, joint.name))
-                )
+                one = attempt(partial(colocation, self.model, ColocationOptions(tf.name, joint.name)))
                 if not isinstance(one, SymflexError):
                     found.append(one)
         return tuple(found)
@@ -280,7 +282,7 @@ class Study:
         if not isinstance(bound, BoundTransferFunction):
             return None
         modes = self.model.analysis.modes or MODES
-        found = attempt(lambda: pipeline.rational(bound, modes))
+        found = attempt(lambda: approximate(bound, modes))
         return None if isinstance(found, SymflexError) else found
 
 

@@ -11,28 +11,3 @@ from symflex.roots.precision import precision
 from symflex.roots.problem import PolynomialInS, RealConstant, RootProblem
 from symflex.roots.region import Band, Everything, Mode, Modes, Position, Rectangle, Region
 from symflex.roots.root import Root, RootDecimals, decimals
-
-__all__ = [
-    "ROOT_FINDERS",
-    "Band",
-    "Budget",
-    "Certificate",
-    "Everything",
-    "HiddenRoot",
-    "Mode",
-    "Modes",
-    "PoleZeroMap",
-    "PolynomialInS",
-    "Position",
-    "Progress",
-    "RealConstant",
-    "Rectangle",
-    "Region",
-    "Root",
-    "RootDecimals",
-    "RootProblem",
-    "decimals",
-    "find_pole_zero_map",
-    "find_polynomial_roots",
-    "precision",
-]

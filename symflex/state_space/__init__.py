@@ -2,5 +2,3 @@
 
 from symflex.state_space.realise import Channel, State, StateSpace, not_rational, realise, realise_quotient
 from symflex.state_space.reduction import minimal
-
-__all__ = ["Channel", "State", "StateSpace", "minimal", "not_rational", "realise", "realise_quotient"]

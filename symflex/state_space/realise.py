@@ -26,6 +26,7 @@ from symflex.expressions import Attribute, Expression, Name, names, product_of
 from symflex.expressions import power as power_of
 from symflex.library.elements import CIRCUITS, LinearForm, Variable
 from symflex.library.elements.element import ACROSS_UNIT, COMPONENT_DOMAIN, COMPONENT_UNIT
+from symflex.model.loss_factors import check_causal
 from symflex.quantities import unit_of
 from symflex.state_space.opened import opened, with_filters_apart
 from symflex.state_space.popov import (
@@ -63,12 +64,13 @@ RATES = {"m": ("m", "m/s", "m/s^2"), "rad": ("rad", "rad/s", "rad/s^2")}
 NAMES_OF_RATES = ("", "_dot", "_ddot")
 
 
-def realise(model: Model, pairs: Sequence[tuple[str, str]]) -> StateSpace:
-    """Return one realisation with the outputs and inputs of the given pairs; other inputs are zero.
+def realise(model: Model, pairs: Sequence[tuple[str, str]] | None = None) -> StateSpace:
+    """Return one realisation with the outputs and inputs of the given pairs, all by default.
 
-    Parameters may be symbols or, by :func:`symflex.model.with_numbers`, numbers. All states of the model are
-    in it, uncontrollable and unobservable ones too. SF235 for a distributed model, SF236 for an output that
-    grows with s, SF30x for a singular model, SF502 when the coefficients become too large.
+    Other inputs are zero. Parameters may be symbols or, by :func:`symflex.model.with_numbers`, numbers. All
+    states of the model are in it, uncontrollable and unobservable ones too. SF235 for a distributed model,
+    SF236 for an output that grows with s, SF251 with loss factors, SF30x for a singular model, SF502 when the
+    coefficients become too large.
 
     Examples
     --------
@@ -81,14 +83,16 @@ def realise(model: Model, pairs: Sequence[tuple[str, str]]) -> StateSpace:
     ... inputs.F = {force = "x"}
     ... outputs.X = "x"
     ... ''')
-    >>> found = realise(model, model.transfer_functions)
+    >>> found = realise(model)
     >>> [(state.name, state.unit) for state in found.states]
     [('x', 'm'), ('x_dot', 'm/s')]
     >>> print(found.a[1][0])
     (-k)/(m)
     """
+    check_causal(model, "a state-space model")
     if model.is_distributed:
         raise not_rational("the model")
+    pairs = model.transfer_functions if pairs is None else pairs
     outputs = tuple(dict.fromkeys(output for output, _ in pairs))
     inputs = tuple(dict.fromkeys(source for _, source in pairs))
     plain = opened(model)

@@ -5,30 +5,7 @@ labelled arrays. What is computed at a point depends on nothing but the point, s
 workers, nor the order in which they finish, nor a restart in between changes a byte of the result.
 """
 
-from symflex.sweep.design import Axis, Design, Range, Task, check_design, design_of, fingerprint, read_design
-from symflex.sweep.points import QUANTITIES, solve_chunk
-from symflex.sweep.run import Journal, chunk_size, plan_sweep, run_sweep, sweep, sweep_key, sweep_task
+from symflex.sweep.design import Design, Range, Task, design_of, read_design
+from symflex.sweep.points import QUANTITIES
+from symflex.sweep.run import chunk_size, plan_sweep, run_sweep, sweep, sweep_key, sweep_task
 from symflex.sweep.sweep import Labelled, Sweep, sweep_html
-
-__all__ = [
-    "QUANTITIES",
-    "Axis",
-    "Design",
-    "Journal",
-    "Labelled",
-    "Range",
-    "Sweep",
-    "Task",
-    "check_design",
-    "chunk_size",
-    "design_of",
-    "fingerprint",
-    "plan_sweep",
-    "read_design",
-    "run_sweep",
-    "solve_chunk",
-    "sweep",
-    "sweep_html",
-    "sweep_key",
-    "sweep_task",
-]

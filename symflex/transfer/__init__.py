@@ -19,25 +19,3 @@ from symflex.transfer.nested_form import (
     derive_nested,
 )
 from symflex.transfer.transfer_function import ClosedForm, HiddenFactor, TransferFunction
-
-__all__ = [
-    "AnyBoundFunction",
-    "AnyTransferFunction",
-    "BoundNested",
-    "BoundTransferFunction",
-    "ClosedForm",
-    "EnclosedTransferFunction",
-    "Given",
-    "HiddenFactor",
-    "NestedTransferFunction",
-    "TransferFunction",
-    "bind",
-    "bind_any",
-    "bind_nested",
-    "bind_polynomials",
-    "coefficients_in_s",
-    "derive",
-    "derive_all",
-    "derive_nested",
-    "nested_transfer",
-]

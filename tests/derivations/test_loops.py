@@ -7,6 +7,7 @@ import re
 import pytest
 
 import symflex
+from symflex.loops.of_model import characteristic_loop
 from tests.house.repository import ROOT
 
 FOLDER = ROOT / "derivations" / "eppinger1988" / "loops"
@@ -60,11 +61,10 @@ def test_every_gain_and_frequency_of_the_table_of_the_beam():
 def test_the_beam_goes_to_its_zero_in_the_right_half_plane():
     from fractions import Fraction
 
-    from symflex import pipeline
     from symflex.loops import trace_locus
 
     model = symflex.load(FOLDER / "sliding_free_beam_force.toml").resolved
-    locus = trace_locus(pipeline.characteristic_loop(model, "K"), (Fraction(0), Fraction(10**5)), modes=2)
+    locus = trace_locus(characteristic_loop(model, "K"), (Fraction(0), Fraction(10**5)), modes=2)
     assert locus.arrived
     (zero,) = [z for z in locus.end.zeros if 0 < float(z.re.mid()) < 100]
     target = float(zero.re.mid())

@@ -8,6 +8,7 @@ from functools import cache
 from pathlib import Path
 
 from symflex import pipeline
+from symflex import sweep as sweep_room
 from symflex.errors import SymflexError
 from symflex.options import SweepOptions
 from symflex.sweep import read_design, sweep_task
@@ -35,7 +36,7 @@ def seeds():
     found = []
     for of, frequencies in (("poles", ()), ("zeros", ()), ("response", (0.1, 1.0)), ("margins", ())):
         task = sweep_task(model, ("X", "F"), design, of, None, frequencies, "K" if of == "margins" else "")
-        sweep = pipeline.sweep(task, design, SweepOptions())
+        sweep = sweep_room.sweep(task, design, SweepOptions())
         found += [netcdf_bytes(sweep), unpacked(npz_bytes(sweep))]
     return found
 

@@ -17,6 +17,7 @@ import pytest
 import symflex
 from symflex import pipeline
 from symflex.loops import closed_loop_roots, nominal_gain
+from symflex.loops.of_model import stability
 from symflex.options import StabilityOptions
 from symflex.report.document import Badge
 from symflex.report.sections.roots import loop_section, root_section
@@ -393,7 +394,7 @@ def proved(study: Study) -> dict[str, tuple[str, bool]]:
     closed = study.loop("K")
     verdicts = {
         "roots": study.maps[0].verdict,
-        "stability": pipeline.stability(study.model, StabilityOptions("K")).verdict,
+        "stability": stability(study.model, StabilityOptions("K")).verdict,
         "locus": closed_loop_roots(closed, nominal_gain(closed)).verdict,
     }
     return {name: (verdict.word, bool(verdict.hidden_motion)) for name, verdict in verdicts.items()}

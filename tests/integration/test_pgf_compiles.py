@@ -48,15 +48,13 @@ def pictures():
     for stem, kind in PICTURES:
         model = pipeline.load(DERIVATIONS / f"{stem}.toml")
         bounds = pipeline.derive_bound(model, model.transfer_functions)
-        figure = draw(kind, [b.source for b in bounds], bounds, width_mm=WIDTH_MM, font="latex")
+        figure = draw(kind, bounds, width_mm=WIDTH_MM, font="latex")
         found[kind] = render(figure, "pgf", font="latex").decode("ascii")
     for i, title in enumerate(HOSTILE.values()):
         ends = [replace(b.source.output, latex=LABELS[(i + j) % len(LABELS)]) for j, b in enumerate(bounds)]
         odd = [replace(b, source=replace(b.source, output=end)) for b, end in zip(bounds, ends, strict=True)]
         printed = title.replace("\ud800", "?")  # matplotlib measures no half of a letter
-        figure = draw(
-            "poles_zeros", [b.source for b in odd], odd, title=printed, width_mm=WIDTH_MM, font="latex"
-        )
+        figure = draw("poles_zeros", odd, title=printed, width_mm=WIDTH_MM, font="latex")
         found[f"hostile{i}"] = render(figure, "pgf", font="latex").decode("ascii")
     return found
 

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import ast
-from pathlib import Path
-
 import pytest
 
 from symflex import pipeline
-from symflex.errors import ModelError, SpecError, UsageError
+from symflex.errors import ModelError, Source, SpecError, UsageError
+from symflex.model.spec import parse
 
 TEXT = """
 symflex = 1
@@ -27,7 +25,7 @@ def model():
 
 
 def test_parse_keeps_the_place_of_everything():
-    entry = pipeline.parse(TEXT, "x.toml").root.get("elements")
+    entry = parse(Source("x.toml", TEXT)).root.get("elements")
     assert str(entry.key_span) == "x.toml:6:2"
 
 
@@ -90,24 +88,3 @@ def test_a_model_block_is_derived_within_its_own_file(tmp_path):
     whole = pipeline.bind(pipeline.derive_all(pipeline.load(outer))[0])
     # V/F = s/(m s^2 + k) at s = 2j: 2j/(18 - 8)
     assert whole(2j) == inner(2j) == pytest.approx(0.2j)
-
-
-def imported_for_types():
-    """Return what ``pipeline.py`` imports for the sake of types: the room and the name there, by name."""
-    tree = ast.parse(Path(pipeline.__file__).read_text(encoding="utf-8"))
-    blocks = [node.body for node in tree.body if isinstance(node, ast.If)]
-    found = [each for body in blocks for each in body if isinstance(each, ast.ImportFrom)]
-    return {
-        alias.asname or alias.name: (each.module.removeprefix("symflex."), alias.name)
-        for each in found
-        for alias in each.names
-    }
-
-
-def test_every_arrow_is_there_and_listed_once():
-    assert len(set(pipeline.__all__)) == len(pipeline.__all__)
-    assert all(callable(getattr(pipeline, name)) for name in pipeline.__all__)
-
-
-def test_an_arrow_that_is_imported_later_is_the_one_that_types_are_checked_with():
-    assert pipeline.LATER.items() <= imported_for_types().items()

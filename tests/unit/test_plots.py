@@ -12,7 +12,10 @@ from matplotlib.figure import Figure
 
 import symflex
 from symflex import pipeline
-from symflex.errors import ModelError, UsageError
+from symflex.errors import ModelError, Source, UsageError
+from symflex.loops.of_model import characteristic_loop
+from symflex.model.spec import parse
+from symflex.state_space import realise
 from tests.house.repository import ROOT
 from tests.unit.refusals import refusal
 from tests.unit.test_api import TEXT
@@ -171,7 +174,7 @@ def everything():
     nested = model.nested("X_act", "F")
     looped = symflex.loads(LOOP)
     stability = looped.stability("K")
-    loop = pipeline.characteristic_loop(looped.resolved, "K")
+    loop = characteristic_loop(looped.resolved, "K")
     rational = bound.rational()
     sweep = model.sweep({"k": [80e3, 90e3]})
     shape = bound.mode_shape(1)
@@ -180,7 +183,7 @@ def everything():
         "model": model,
         "resolved model": model.resolved,
         "parameters": model.parameters,
-        "specification": pipeline.parse(TEXT),
+        "specification": parse(Source("<string>", TEXT)),
         "equations": pipeline.assemble(model.resolved),
         "function": function,
         "function inside": function.exact,
@@ -202,7 +205,7 @@ def everything():
         "shape inside": shape.enclosed,
         "response": bound.frequency_response([1.0, 2.0]),
         "state space": function.state_space(),
-        "state space inside": pipeline.state_space(model.resolved),
+        "state space inside": realise(model.resolved),
         "state space with numbers": bound.state_space(),
         "stability": stability,
         "boundaries": stability.boundaries,

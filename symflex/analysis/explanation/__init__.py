@@ -2,15 +2,4 @@
 
 from symflex.analysis.explanation.parts import ConstrainedPart
 from symflex.analysis.explanation.text import explanation_json, explanation_paragraphs, explanation_text
-from symflex.analysis.explanation.zeros import EndChange, RealZero, ZeroExplanation, explain_zeros
-
-__all__ = [
-    "ConstrainedPart",
-    "EndChange",
-    "RealZero",
-    "ZeroExplanation",
-    "explain_zeros",
-    "explanation_json",
-    "explanation_paragraphs",
-    "explanation_text",
-]
+from symflex.analysis.explanation.zeros import ZeroExplanation, explain_zeros

@@ -21,7 +21,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
-from symflex.algebra import LAPLACE, Factored, Ring, degree_in
+from symflex.algebra import LAPLACE, Factored, degree_in
 from symflex.analysis.explanation.constraints import Constraint, hold, open_circuit, replace_condition
 from symflex.analysis.explanation.coordinates import acting, in_one_way, measured, seen_at_the_input
 from symflex.analysis.explanation.ends import (
@@ -41,22 +41,20 @@ from symflex.analysis.explanation.parts import (
     varying,
 )
 from symflex.analysis.explanation.text import explanation_html, explanation_json, explanation_text
-from symflex.equations import Equations, assemble
+from symflex.equations import Equations
 from symflex.equations.elimination import Determinants
 from symflex.errors import ModelError
 from symflex.expressions import format_expression, power, product_of
-from symflex.model import Input, Model, Output, PlacedBlock, with_numbers
+from symflex.model import Input, Model, Output, with_numbers
+from symflex.model.loss_factors import check_causal
 from symflex.print.forms.arrange import Arranger
 from symflex.roots.locate import locate
 from symflex.transfer import BoundTransferFunction, bind, derive_all
 from symflex.transfer.lowest_terms import cancel
+from symflex.transfer.of_model import assemble
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from symflex.roots import PoleZeroMap, Root
-
-    Nested = Callable[[PlacedBlock, Ring], Factored]
 
 Kind = Literal["colocated", "beyond", "partly", "noncolocated", "open circuit", "free", "zero"]
 Status = Literal["proved", "compared", "not shown"]
@@ -177,7 +175,6 @@ class _Case:
 
     model: Model
     pair: tuple[str, str]
-    nested: Nested | None
     equations: Equations
     whole: Determinants
 
@@ -192,7 +189,7 @@ class _Case:
     def constrained(self, constraint: Constraint) -> Determinants | None:
         """Return the determinants of a constrained model, ``None`` when the constraint repeats another."""
         try:
-            return Determinants.of(assemble(constraint.model, self.nested))
+            return Determinants.of(assemble(constraint.model))
         except ModelError:
             return None
 
@@ -204,13 +201,10 @@ class _Case:
         return ZeroExplanation("/".join(self.pair), kind, status, *self.pair, is_direct, *held, order)
 
 
-def explain_zeros(
-    model: Model, bound: BoundTransferFunction, found: PoleZeroMap, nested: Nested | None = None
-) -> ZeroExplanation:
+def explain_zeros(model: Model, bound: BoundTransferFunction, found: PoleZeroMap) -> ZeroExplanation:
     """Explain the zeros of a transfer function; the model's numbers are those of ``bound``.
 
-    ``nested`` returns the transfer function of a ``model`` block over a given ring. A determinant that would
-    be too large raises a BudgetError, SF50x.
+    A determinant that would be too large raises a BudgetError, SF50x.
 
     Examples
     --------
@@ -228,6 +222,7 @@ def explain_zeros(
     >>> told.kind, told.status, told.held, told.parts[0].elements
     ('colocated', 'proved', 'x = 0', ('tail', 'link'))
     """
+    check_causal(model, "an explanation of zeros")
     values = dict(bound.values)
     parameters = tuple(replace(p, value=values.get(p.name, p.value)) for p in model.parameters)
     given = replace(model, parameters=parameters)
@@ -237,8 +232,8 @@ def explain_zeros(
     given = seen_at_the_input(in_one_way(given), pair[0], bound.source.input)
     if bound.ratio.is_zero:
         return ZeroExplanation(bound.name, "zero", "proved", *pair)
-    equations = assemble(given, nested)
-    case = _Case(given, pair, nested, equations, Determinants.of(equations))
+    equations = assemble(given)
+    case = _Case(given, pair, equations, Determinants.of(equations))
     explained = _by_coordinate(case, found) or _by_condition(case, found) or _by_terminals(case)
     plain = ZeroExplanation(bound.name, "noncolocated", "proved", *pair)
     complete = replace(explained or plain, has_zeros=_has_zeros(bound), has_hidden=bool(bound.hidden))
@@ -306,7 +301,7 @@ def _kind(case: _Case, relation: Relation, separation: Separation) -> tuple[Kind
 
 def _compared(case: _Case, constraint: Constraint, found: PoleZeroMap) -> ZeroExplanation:
     """Compare the zeros with the poles of the held system, root by root, in the region shown."""
-    (zero,) = derive_all(assemble(constraint.model, case.nested), [case.pair])
+    (zero,) = derive_all(assemble(constraint.model), [case.pair])
     # Its output is at rest, so that every mode is hidden: the list of hidden modes is that of the poles.
     poles = [h.root for h in locate(bind(zero), found.region, found.digits).hidden]
     zeros = [*found.zeros, *(h.root for h in found.hidden)]

@@ -1,14 +1,4 @@
 """Mode shapes: the motion of everything at a pole, taken from the equations and enclosed in balls."""
 
-from symflex.analysis.modes.find import NumberedShape, lowest_modes, mode_shape, mode_shapes
-from symflex.analysis.modes.shape import DistributedShape, EnclosedModeShape, Motion
-
-__all__ = [
-    "DistributedShape",
-    "EnclosedModeShape",
-    "Motion",
-    "NumberedShape",
-    "lowest_modes",
-    "mode_shape",
-    "mode_shapes",
-]
+from symflex.analysis.modes.find import lowest_modes, mode_shape, mode_shapes
+from symflex.analysis.modes.shape import DistributedShape, EnclosedModeShape

@@ -1,24 +1,10 @@
 """Residues, and rational approximations with the band of frequencies they are valid in."""
 
 from symflex.analysis.rational.approximate import FORMS, approximate
-from symflex.analysis.rational.approximation import BandError, ErrorScan, RationalApproximation
+from symflex.analysis.rational.approximation import BandError, RationalApproximation
 from symflex.analysis.rational.laurent import (
-    LaurentSeries,
     PrincipalPart,
     expand_at_pole,
     expand_at_zero,
     find_residues,
 )
-
-__all__ = [
-    "FORMS",
-    "BandError",
-    "ErrorScan",
-    "LaurentSeries",
-    "PrincipalPart",
-    "RationalApproximation",
-    "approximate",
-    "expand_at_pole",
-    "expand_at_zero",
-    "find_residues",
-]

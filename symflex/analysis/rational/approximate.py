@@ -25,6 +25,7 @@ from symflex.analysis.rational.laurent import about_zero, expand_at_zero, residu
 from symflex.analysis.rational.toolboxes import check_form
 from symflex.analysis.response import check_band, default_band
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
+from symflex.model.loss_factors import check_causal
 from symflex.roots import Band, Everything, Modes, PoleZeroMap, Position, Root, precision
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import locate, lumped
@@ -172,6 +173,7 @@ def approximate(
     >>> print(f"{abs(R(0.5) / bound(0.5)) - 1:.4f}")
     0.0024
     """
+    check_causal(bound.source.model, "a rational approximation")
     check_form(form, tuple(FORMS))
     if band is not None:
         check_band(*band)

@@ -30,6 +30,7 @@ from symflex.algebra.vanishing import OriginSeries
 from symflex.analysis.rational.networks import NetworkSides, Taylor
 from symflex.budget import spend
 from symflex.errors import Diagnostic, UncertifiedError
+from symflex.model.loss_factors import check_causal
 from symflex.roots import Budget, Region, Root, precision
 from symflex.roots.counting.local_series import (
     BITS_A_POINT,
@@ -420,6 +421,7 @@ def find_residues(
     raises SF505 or SF506 when it takes too long. SF405 when poles cannot be told apart, or the behaviour at
     one cannot be told.
     """
+    check_causal(bound.source.model, "a residue")
     if not isinstance(bound, BoundNested):
         bound = without_lengths_of_zero(bound)
     return residues_at(bound, locate(bound, region, digits, budget).complete().all_poles, digits)

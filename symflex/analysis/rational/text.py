@@ -33,8 +33,9 @@ def rational_text(found: RationalApproximation) -> str:
     Examples
     --------
     >>> from symflex import pipeline
+    >>> from symflex.analysis.rational import approximate
     >>> model = pipeline.loads('symflex = 1\ninputs.u = {}\noutputs.y = "3*u/(s + 2)"')
-    >>> print(rational_text(pipeline.rational(pipeline.derive_bound(model, [("y", "u")])[0])))
+    >>> print(rational_text(approximate(pipeline.derive_bound(model, [("y", "u")])[0])))
     y/u   transfer function [s], product form, 1 mode; stable
     <BLANKLINE>
       exact: nothing is left out of this rational function

@@ -27,6 +27,7 @@ from symflex.loops.stability_map import real_json
 from symflex.model import ExactValue, Model, ModelParameter, with_numbers
 from symflex.model.along import COORDINATE, varies_along_x
 from symflex.model.brackets import slope_along_x
+from symflex.model.loss_factors import check_causal
 from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.root import GUARD_BITS, decimals, exact_fraction
 from symflex.transfer.balls import EvaluationPlan, ball, enclosure, later, plan
@@ -334,6 +335,7 @@ def sensitivities(
 
     SF902 for a parameter the model does not have.
     """
+    check_causal(model, "a sensitivity")
     for name in names:
         pick_gain(model.parameters, name)
     given = dict(bound.values)

@@ -5,17 +5,3 @@ from symflex.analysis.time_response.find import responses_by_default, time_respo
 from symflex.analysis.time_response.forced import exact_values, forced_response
 from symflex.analysis.time_response.sample_times import SampleTimes, evenly
 from symflex.analysis.time_response.step_info import StepInfo, find_step_info
-
-__all__ = [
-    "INTEGRATIONS",
-    "EnclosedResponse",
-    "SampleTimes",
-    "StepInfo",
-    "evenly",
-    "exact_values",
-    "find_step_info",
-    "forced_response",
-    "response_text",
-    "responses_by_default",
-    "time_response",
-]

@@ -108,6 +108,7 @@ def time_response(
     >>> found.values.round(9).tolist(), found.certified
     ([0.0, 0.632120559], True)
     """
+    check_causal(bound.source.model, "a response in time")
     if kind not in INTEGRATIONS:
         hint = nearest(kind, INTEGRATIONS) or "inputs: " + ", ".join(INTEGRATIONS)
         raise UsageError(Diagnostic("SF902", f"there is no input '{kind[:64]}'", None, hint))

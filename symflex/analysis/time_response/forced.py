@@ -25,6 +25,7 @@ from symflex.analysis.time_response.find import time_response
 from symflex.analysis.time_response.sample_times import MOST_TIMES, SampleTimes
 from symflex.analysis.time_response.sampled import ImpulseAt, JumpAt
 from symflex.errors import Diagnostic, UncertifiedError, UsageError
+from symflex.model.loss_factors import check_causal
 from symflex.options import exact
 from symflex.roots.precision import precision
 from symflex.transfer.balls import ball
@@ -76,6 +77,7 @@ def forced_response(
     >>> found.values.tolist()
     [0.125, 0.5, 1.5]
     """
+    check_causal(bound.source.model, "a response in time")
     first, step, places = _grid(sampled, times)
     bends, moments = places[: len(sampled)], places[len(sampled) :]
     count = max(moments, default=0) + 1

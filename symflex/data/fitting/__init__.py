@@ -2,23 +2,7 @@
 
 from symflex.data.fitting.fit import Base, ResonanceFit, fit_resonances
 from symflex.data.fitting.mode_shapes import FittedModeShapes, mode_shapes
-from symflex.data.fitting.order import CRITERIA, STARTS, Score
-from symflex.data.fitting.phase_test import PartedBand, PhaseTest
+from symflex.data.fitting.order import STARTS
+from symflex.data.fitting.phase_test import PhaseTest
 from symflex.data.fitting.resonances import Resonances
 from symflex.data.fitting.stabilisation import StablePoles, stabilisation
-
-__all__ = [
-    "CRITERIA",
-    "STARTS",
-    "Base",
-    "FittedModeShapes",
-    "PartedBand",
-    "PhaseTest",
-    "ResonanceFit",
-    "Resonances",
-    "Score",
-    "StablePoles",
-    "fit_resonances",
-    "mode_shapes",
-    "stabilisation",
-]

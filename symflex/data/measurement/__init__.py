@@ -3,14 +3,3 @@
 from symflex.data.measurement.files import READERS, WRITERS, measurement_bytes, prepared, read_measurement
 from symflex.data.measurement.measured_response import MeasuredResponse
 from symflex.data.measurement.synthesise import MeasurementPlan, synthesise
-
-__all__ = [
-    "READERS",
-    "WRITERS",
-    "MeasuredResponse",
-    "MeasurementPlan",
-    "measurement_bytes",
-    "prepared",
-    "read_measurement",
-    "synthesise",
-]

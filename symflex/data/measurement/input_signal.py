@@ -59,17 +59,6 @@ def read_signal(path: str | Path) -> InputSignal:
     return _signal(TextTable.of(name, data))
 
 
-def signal_of(name: str, text: str) -> InputSignal:
-    r"""Return the signal that a text holds.
-
-    Examples
-    --------
-    >>> signal_of("u.csv", "time_ms,u\n0,0\n1,0.5\n").times
-    (Fraction(0, 1), Fraction(1, 1000))
-    """
-    return _signal(TextTable.of(name, text.encode()))
-
-
 def _signal(table: TextTable) -> InputSignal:
     name = table.source.name
     lines = [

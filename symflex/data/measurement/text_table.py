@@ -72,11 +72,6 @@ def decoded(name: str, data: bytes) -> tuple[str, tuple[str, ...]]:
     return text + "\n", guesses
 
 
-def decoded_text(name: str, data: bytes) -> str:
-    """Return the text of a file, with newlines as line ends; DataError SF601 when it is none."""
-    return decoded(name, data)[0]
-
-
 def _no_text(name: str, why: str) -> DataError:
     hint = "binary formats end in .npz, .npy, .mat, .uff"
     return DataError(Diagnostic("SF601", f"'{name}' is not text: {why}", None, hint))

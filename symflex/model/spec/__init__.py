@@ -14,19 +14,3 @@ from symflex.model.spec.positions import (
 )
 from symflex.model.spec.read import read
 from symflex.model.spec.write import write
-
-__all__ = [
-    "ArrayValue",
-    "BooleanValue",
-    "KeyValue",
-    "NumberValue",
-    "OtherValue",
-    "Spec",
-    "StringValue",
-    "TableValue",
-    "Value",
-    "parse",
-    "parse_with_recovery",
-    "read",
-    "write",
-]

@@ -20,31 +20,6 @@ from symflex.print.latex.equation import (
     transfer_function_latex,
 )
 from symflex.print.latex.expression import latex_expression
-from symflex.print.latex.page import COLUMNS_MM, column_width
+from symflex.print.latex.page import COLUMNS_MM, column_width, width_of
 from symflex.print.latex.table import mode_table, parameter_table, root_table
 from symflex.print.latex.text import escape_text
-
-__all__ = [
-    "COLUMNS_MM",
-    "DOCUMENT",
-    "TEXT_WIDTH_MM",
-    "Picture",
-    "column_width",
-    "equation_label",
-    "escape_text",
-    "form_labels",
-    "formula_latex",
-    "inline_latex",
-    "label_of",
-    "latex_document",
-    "latex_expression",
-    "latex_files",
-    "latex_fragment",
-    "mode_table",
-    "model_labels",
-    "notebook_latex",
-    "parameter_table",
-    "ratio_latex",
-    "root_table",
-    "transfer_function_latex",
-]

@@ -41,6 +41,11 @@ def column_width(said: float | str) -> float:
     return checked_width(float(match[1]))
 
 
+def width_of(said: float | str | None) -> float | None:
+    """Return the width of a column [mm] as :func:`column_width` does, None where nothing is said."""
+    return None if said is None else column_width(said)
+
+
 def checked_width(width_mm: float) -> float:
     """Return the width of a column [mm] if it is one.
 

@@ -133,7 +133,7 @@ def _picture(
         caption += f"{told.measured.name} over {kind}, {told.measured.values.size} lines."
         return picture(f"{study.stem}_{figure.name}", drawn, caption, files)
     frame = AxisLimits(x=(0.0, float(figure.until))) if figure.until else FREE
-    drawn = draw(figure.kind, [b.source for b in chosen], chosen, band_hz=figure.band, frame=frame)
+    drawn = draw(figure.kind, chosen, band_hz=figure.band, frame=frame)
     caption += f"{WORDS.get(figure.kind, figure.kind)} of {', '.join(b.name for b in chosen)}."
     return picture(f"{study.stem}_{figure.name}", drawn, caption, files)
 

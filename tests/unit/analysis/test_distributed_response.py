@@ -101,5 +101,5 @@ def test_the_band_shown_ends_a_little_above_the_last_pole():
 
 def test_a_panel_reaches_up_to_the_highest_of_the_default_poles():
     bounds = [bound(SLIDING_FREE)]
-    (axes,) = draw("poles_zeros", [bounds[0].source], bounds).axes
+    (axes,) = draw("poles_zeros", bounds).axes
     assert axes.get_ylim()[1] > max(float(root.im.mid()) for root in locate(bounds[0], Modes(5)).poles)

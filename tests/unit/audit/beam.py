@@ -9,6 +9,7 @@ from __future__ import annotations
 from functools import cache
 
 from symflex import pipeline
+from symflex.audit import audit
 
 COLOCATED = "-1/2*sqrt(2/p)*((S^2 + C^2)^2 + 2*S^2 + 6*C^2 + 1)/((S^2 + C^2)^2 - 4*C*S - 1)"
 TIP = "-2*sqrt(2/p)*C*(S^2 + C^2 + 1)/((S^2 + C^2)^2 - 4*C*S - 1)"
@@ -67,5 +68,5 @@ def measured(output, expr, where=None, scale=None):
 
 @cache
 def _audited(text):
-    (found,) = pipeline.audit(pipeline.loads(text))
+    (found,) = audit(pipeline.loads(text))
     return found

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from symflex import pipeline
+from symflex.audit import audit
 from tests.unit.audit.beam import COLOCATED, KRYLOV, SCALE, TIP, VAUGHAN, audited, measured
 
 PAPER = COLOCATED.replace("-1/2", "-1").replace("6*C^2", "2*C^2")
@@ -51,7 +52,7 @@ band = ["0.1 Hz", "100 Hz"]
 [published."{pair}"]
 expr = "{expr}/((m*s^2 + k)*(m*s^2 + 3*k))"
 """
-    (found,) = pipeline.audit(pipeline.loads(text))
+    (found,) = audit(pipeline.loads(text))
     return {law.law: law.kept for law in found.laws}
 
 

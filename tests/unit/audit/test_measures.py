@@ -5,6 +5,7 @@ from math import pi
 import pytest
 
 from symflex import pipeline
+from symflex.audit import audit
 
 OSCILLATOR = """
 symflex = 1
@@ -29,7 +30,7 @@ band = ["0.1 Hz", "100 Hz"]
 
 
 def audited(expr, extra=""):
-    (found,) = pipeline.audit(pipeline.loads(OSCILLATOR.format(expr=expr, extra=extra)))
+    (found,) = audit(pipeline.loads(OSCILLATOR.format(expr=expr, extra=extra)))
     return found
 
 
@@ -87,7 +88,7 @@ def test_without_losses_a_wrong_factor_is_measured_too_and_a_wrong_sign_is_half_
     lossless = OSCILLATOR.replace('damper = {{ type = "damper", between = ["x", "ground"], b = "b" }}\n', "")
 
     def deviation(expr):
-        (found,) = pipeline.audit(pipeline.loads(lossless.format(expr=expr, extra="")))
+        (found,) = audit(pipeline.loads(lossless.format(expr=expr, extra="")))
         return found.deviation
 
     assert deviation("2/(m*s^2 + k)").magnitude_db == pytest.approx(6.0206, abs=1e-3)

@@ -5,12 +5,15 @@ from __future__ import annotations
 import pytest
 
 from symflex import pipeline
+from symflex.analysis import measured
 
 
 @pytest.fixture(autouse=True)
 def _nothing_is_computed(monkeypatch):
-    for name in ("assemble", "derive_all", "derive_as", "derive_bound", "fit", "measure"):
+    for name in ("assemble", "derive_all", "derive_as", "derive_bound"):
         monkeypatch.setattr(pipeline, name, None)
+    for name in ("fit", "measure"):
+        monkeypatch.setattr(measured, name, None)
 
 
 def test_a_place_that_cannot_be_written_is_refused_before_anything_is_computed(shell):

@@ -27,6 +27,7 @@ from symflex.codegen.program.verify import choose_programs
 from symflex.codegen.python.module import ARRAY_API, ARRAY_API_DIALECT, JAX, JAX_DIALECT, NUMPY, NUMPY_DIALECT
 from symflex.codegen.state_space import state_space_module
 from symflex.print import forms
+from symflex.state_space import realise
 from tests.integration.julia_in_python import functions_of
 from tests.integration.octave import Octave
 from tests.unit.codegen import hostile_names as hostile
@@ -74,7 +75,7 @@ WRITERS = {
     "numpy": lambda tfs, model: NUMPY.export(model, tfs).text,
     "array-api": lambda tfs, model: ARRAY_API.export(model, tfs).text,
     "jax": lambda tfs, model: JAX.export(model, tfs).text,
-    "state-space": lambda tfs, model: state_space_module(pipeline.state_space(model), tfs, samples=3).text,
+    "state-space": lambda tfs, model: state_space_module(realise(model), tfs, samples=3).text,
     "c": c_text,
     "matlab": lambda tfs, model: MATLAB.export(model, tfs, "plant").text,
     "julia": lambda tfs, model: JULIA.export(model, tfs, "plant").text,
@@ -496,7 +497,7 @@ def test_builtins_are_not_shadowed_where_the_code_uses_them():
 @pytest.mark.slow
 def test_names_and_units_of_states_and_their_ends_are_only_strings():
     model, _ = springs(("k_1",))
-    system = pipeline.state_space(model)
+    system = realise(model)
     for text in (*hostile.TEXTS, *hostile.ODD):
         ends = {
             kind: tuple(replace(x, name=text, unit=text) for x in getattr(system, kind))

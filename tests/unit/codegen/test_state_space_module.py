@@ -13,6 +13,7 @@ from symflex import pipeline
 from symflex.codegen.exporters import EXPORTERS
 from symflex.codegen.state_space import StateEquations, StateSpaceExporter, state_space_module
 from symflex.errors import BudgetError, ModelError
+from symflex.state_space import minimal, realise
 from tests.unit.codegen.exportable import executed
 from tests.unit.codegen.hostile_names import SPEC
 
@@ -22,7 +23,8 @@ PAPER = ROOT / "derivations" / "eppinger1988"
 
 def exported(model, samples=5, *, is_minimal=False):
     tfs = pipeline.derive_all(model)
-    return state_space_module(pipeline.state_space(model, is_minimal=is_minimal), tfs, samples=samples)
+    system = minimal(realise(model)) if is_minimal else realise(model)
+    return state_space_module(system, tfs, samples=samples)
 
 
 def response(matrices, s):
@@ -149,5 +151,5 @@ def test_the_printed_equations_of_large_systems_end_with_how_many_are_left(monke
 
 def test_the_meaning_of_a_state_is_an_expression_of_the_model():
     text = SPEC.replace('V = "s*x"', 'V = "x + F/k"')
-    system = pipeline.state_space(pipeline.loads(text))
+    system = realise(pipeline.loads(text))
     assert [str(line) for line in StateEquations(system).lines()][-1] == "V = x + 1/k*F"

@@ -53,12 +53,12 @@ def undamped():
 
 
 def drawn(kind, tfs, **asked):
-    return draw(kind, tfs, [bind(tf) for tf in tfs], **asked)
+    return draw(kind, [bind(tf) for tf in tfs], **asked)
 
 
 def drawn_rational(kind, expression, **asked):
     bound = rational(expression)
-    return draw(kind, [bound.source], [bound], **asked)
+    return draw(kind, [bound], **asked)
 
 
 def texts(axes):
@@ -87,8 +87,8 @@ def test_an_unknown_kind_names_the_nearest(tfs):
 
 def test_a_figure_of_nothing_is_refused():
     for kind in FIGURES:
-        with pytest.raises(ValueError, match="as many bound as symbolic"):
-            draw(kind, [], [])
+        with pytest.raises(ValueError, match="needs a transfer function"):
+            draw(kind, [])
 
 
 def test_a_function_that_is_zero_has_no_figure():

@@ -24,7 +24,7 @@ outputs = { Y = "y", E = "r - y" }
 def drawn(kind, frame=None):
     loop = loads(LOOP)
     bounds = [loop.transfer_function(name, "r").bind().bound for name in ("Y", "E")]
-    return draw(kind, [b.source for b in bounds], bounds, frame=frame or AxisLimits())
+    return draw(kind, bounds, frame=frame or AxisLimits())
 
 
 def test_a_step_figure_has_a_curve_a_function_up_to_the_time_asked_for():

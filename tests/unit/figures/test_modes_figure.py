@@ -30,7 +30,7 @@ def model_of(elements, source="x"):
 def drawn(model, modes=3):
     model = replace(model, analysis=replace(model.analysis, modes=modes))
     (bound,) = pipeline.derive_bound(model, model.transfer_functions[:1])
-    return draw("modes", [bound.source], [bound])
+    return draw("modes", [bound])
 
 
 def panels(model, modes=2):
@@ -49,7 +49,7 @@ def test_hidden_modes_are_drawn_in_their_place_and_as_many_as_the_analysis_says(
     model = pipeline.load(CLASSICS / "clamped_clamped.toml")
     assert model.analysis.modes == 3
     (bound,) = pipeline.derive_bound(model, model.transfer_functions[:1])
-    titles = [axes.get_title(loc="left") for axes in draw("modes", [bound.source], [bound]).axes]
+    titles = [axes.get_title(loc="left") for axes in draw("modes", [bound]).axes]
     assert titles == ["$51.88$ Hz", "$143.0$ Hz", "$280.4$ Hz"]
 
 

@@ -62,7 +62,7 @@ def drawn(bounds):
 
 
 def text_of(kind, bounds, **asked):
-    figure = draw(kind, [bound.source for bound in bounds], bounds, font="latex", **asked)
+    figure = draw(kind, bounds, font="latex", **asked)
     return render(figure, "pgf", font="latex").decode("ascii")
 
 
@@ -141,9 +141,8 @@ def test_equal_figures_give_equal_text(bounds, drawn):
 
 @pytest.mark.slow
 def test_a_figure_in_the_font_of_latex_embeds_computer_modern(bounds):
-    sources = [bound.source for bound in bounds]
     for font, name in (("latex", b"Cmr10"), ("times", b"STIX"), ("sans", b"DejaVuSans")):
-        data = render(draw("poles_zeros", sources, bounds, font=font, width_mm=100), "pdf", font=font)
+        data = render(draw("poles_zeros", bounds, font=font, width_mm=100), "pdf", font=font)
         assert name in data
         # 100 mm in points of 1/72 inch
         width = float(re.search(rb"/MediaBox \[ 0 0 ([0-9.]+) ", data)[1])
@@ -153,7 +152,7 @@ def test_a_figure_in_the_font_of_latex_embeds_computer_modern(bounds):
 def test_a_font_or_width_that_does_not_exist_is_refused(bounds):
     for asked in ({"font": "comic"}, {"width_mm": 20.0}, {"width_mm": 1e9}):
         with pytest.raises(UsageError):
-            draw("bode", [bound.source for bound in bounds], bounds, **asked)
+            draw("bode", bounds, **asked)
 
 
 @pytest.mark.slow

@@ -39,7 +39,7 @@ def test_colocated_and_noncolocated_arrays_share_their_scale_and_arrows_meet_no_
     model = pipeline.load(f"derivations/{path}.toml")
     (found,) = (f for f in model.figures if f.name == figure)
     bounds = pipeline.derive_bound(model, found.of)
-    drawn = draw("poles_zeros", [b.source for b in bounds], bounds)
+    drawn = draw("poles_zeros", bounds)
     left, right = drawn.axes
     assert left.get_xlim() == right.get_xlim()
     assert left.get_ylim() == right.get_ylim()

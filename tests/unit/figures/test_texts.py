@@ -9,6 +9,7 @@ import pytest
 import symflex
 from symflex import pipeline
 from symflex.figures import draw, draw_loop
+from symflex.loops.of_model import characteristic_loop
 from tests.house.repository import ROOT
 from tests.unit.figures.texts import faults
 
@@ -33,14 +34,14 @@ def bounds_of(model):
 def test_texts_of_a_figure_keep_apart(name, kinds):
     bounds = bounds_of(pipeline.load(MODELS / f"{name}.toml"))
     for kind in kinds:
-        assert not faults(draw(kind, [one.source for one in bounds], bounds)), kind
+        assert not faults(draw(kind, bounds)), kind
 
 
 @pytest.mark.slow
 def test_texts_of_a_figure_of_a_loop_keep_apart():
     model = pipeline.load(MODELS / "eppinger1988/loops/lumped_bending_beam_position.toml")
     for kind in ("locus", "nyquist"):
-        assert not faults(draw_loop(kind, pipeline.characteristic_loop(model, "K"))), kind
+        assert not faults(draw_loop(kind, characteristic_loop(model, "K"))), kind
 
 
 def loop(expression, **parameters):
@@ -76,7 +77,7 @@ def crowded(seeds):
     found = {}
     for seed in seeds:
         bounds = bounds_of(symflex.Model(inputs={"u": {}}, outputs=scattered(seed)).resolved)
-        found[seed] = faults(draw("poles_zeros", [b.source for b in bounds], bounds))
+        found[seed] = faults(draw("poles_zeros", bounds))
     return {seed: said for seed, said in found.items() if said}
 
 

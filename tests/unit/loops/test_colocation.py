@@ -8,9 +8,8 @@ import pytest
 from flint import arb
 
 import symflex
-from symflex import pipeline
 from symflex.errors import UsageError
-from symflex.loops import DynamicColocation
+from symflex.loops import DynamicColocation, of_model
 from symflex.options import ColocationOptions
 from tests.unit.refusals import refusal
 
@@ -75,7 +74,7 @@ def test_what_has_no_band_is_refused():
     assert refusal(colocation, "Zero", "X", "F") == "ModelError SF402"
     assert refusal(bare.colocation, "Y", "X", "F") == "UsageError SF804"
     options = ColocationOptions("Y/F", "X/G")  # of two inputs
-    assert refusal(pipeline.colocation, model().resolved, options) == "UsageError SF805"
+    assert refusal(of_model.colocation, model().resolved, options) == "UsageError SF805"
 
 
 def test_metres_are_not_compared_with_radians():

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from symflex import pipeline
+from symflex.loops.of_model import stability
 from symflex.loops.stability_map import stability_text
 from symflex.options import StabilityOptions
 
@@ -82,7 +83,7 @@ def cascade(speed, current, voltage):
 def test_a_cascade_is_proved_with_dead_time_in_several_places():
     place = (2, 0, 1)
     model = cascade(*place)
-    found = pipeline.stability(model, StabilityOptions("K_v", (Fraction(3), Fraction(5))))
+    found = stability(model, StabilityOptions("K_v", (Fraction(3), Fraction(5))))
     assert (found.certified, found.reasons) == (True, ())
     assert found.nominal_interval.poles.right == counted(*place)
     # The roots of its transfer functions say the same.
@@ -94,13 +95,13 @@ def test_a_cascade_is_proved_with_dead_time_in_several_places():
 def test_a_loop_that_cannot_be_proved_has_a_reason():
     # The current's rate fed back with dead time: K_d D s^2 beside L s^2, neutral and not small enough.
     text = CASCADE.format(speed=0, current=1, voltage=0).replace("D_c*motor.i", "D_c*(1 + s/1000)*motor.i")
-    found = pipeline.stability(pipeline.loads(text), StabilityOptions("K_v", (Fraction(3), Fraction(5))))
+    found = stability(pipeline.loads(text), StabilityOptions("K_v", (Fraction(3), Fraction(5))))
     assert not found.certified
     assert "share the highest power of s" in found.reasons[0]
     assert f"not proved: {found.reasons[0]}" in stability_text(found)
 
 
 def test_a_map_that_is_not_complete_cannot_be_without_a_reason():
-    found = pipeline.stability(cascade(0, 0, 1), StabilityOptions("K_v", (Fraction(3), Fraction(5))))
+    found = stability(cascade(0, 0, 1), StabilityOptions("K_v", (Fraction(3), Fraction(5))))
     with pytest.raises(ValueError, match="needs a reason"):
         replace(found, is_complete=False, reasons=())

@@ -9,15 +9,15 @@ import pytest
 from scipy.special import lambertw
 
 import symflex
-from symflex import pipeline
 from symflex.errors import UsageError
 from symflex.figures import AxisLimits, draw_loop
 from symflex.loops import loop_gain, trace_locus
+from symflex.loops.of_model import characteristic_loop
 from tests.unit.refusals import refusal
 
 
 def characteristic(model, gain="K"):
-    return pipeline.characteristic_loop(model.resolved, gain)
+    return characteristic_loop(model.resolved, gain)
 
 
 @pytest.mark.slow

@@ -14,6 +14,7 @@ from symflex.budget import Budget
 from symflex.errors import ModelError
 from symflex.figures import draw_loop
 from symflex.loops import Loop, NetworkLoop, of_model, trace_locus
+from symflex.loops.of_model import stability
 from symflex.options import StabilityOptions
 from symflex.roots import Modes
 from tests.unit.refusals import refusal
@@ -65,7 +66,7 @@ def chain(count, *, loss='"0.5 N*s/m"', law="K*(r - v)"):
 
 def found(text, up_to="300 Hz", limits=("0", "100")):
     given = StabilityOptions(gain="K", limits=limits, up_to=up_to)
-    return pipeline.stability(pipeline.loads(text), given)
+    return stability(pipeline.loads(text), given)
 
 
 def unstable(count, gain, up_to):

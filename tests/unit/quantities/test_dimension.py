@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from symflex.quantities import DIMENSIONLESS, Dimension, dimension_name, unit_of
-from symflex.quantities.dimension import _NAMED, PREFERRED_UNITS
+from symflex.quantities import DIMENSIONLESS, Dimension, unit_of
+from symflex.quantities.dimension import _UNITS, PREFERRED_UNITS
 
 MASS, LENGTH, TIME = Dimension(kg=Fraction(1)), Dimension(m=Fraction(1)), Dimension(s=Fraction(1))
 CURRENT = Dimension(A=Fraction(1))
@@ -110,30 +110,5 @@ def test_any_printed_dimension_reads_back_as_itself(dimension):
     assert unit_of(str(dimension)).dimension == dimension
 
 
-def test_a_dimension_has_the_fields_own_name():
-    for unit, name in [
-        ("1", "pure number"),
-        ("kg", "mass"),
-        ("kN/m", "stiffness"),
-        ("lbf", "force"),
-        ("N*s/m", "damping"),
-        ("in*lbf", "torque"),
-        ("N*m*s/rad", "rotary damping"),
-        ("kg*cm^2", "moment of inertia"),
-        ("V/krpm", "motor constant"),
-        ("GPa", "pressure"),
-        ("mH", "inductance"),
-        ("um/N", "receptance"),
-        ("m/s/N", "mobility"),
-        ("m/s^2/N", "accelerance"),
-        ("mm^4", "second moment of area"),
-    ]:
-        assert dimension_name(unit_of(unit).dimension) == name, unit
-
-
-def test_a_dimension_without_a_word_has_no_name():
-    assert dimension_name(unit_of("kg^2*K").dimension) is None
-
-
 def test_no_dimension_is_listed_twice():
-    assert len(_NAMED) == len(PREFERRED_UNITS)
+    assert len(_UNITS) == len(PREFERRED_UNITS)

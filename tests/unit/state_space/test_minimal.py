@@ -155,4 +155,4 @@ outputs = {{ y = "w^4*u/({sections})", z = "w*u/(s + sqrt(x^2))" }}
     assert (len(found.states), found.is_minimal) == (4, True)
     # The square root of x^2 is x or -x, and nothing is said of more.
     with pytest.raises(UncertifiedError, match="SF401"):
-        pipeline.state_space(model.resolved, [("z", "u")], is_minimal=True)
+        minimal(realise(model.resolved, [("z", "u")]))

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from symflex import pipeline
+from symflex.analysis.explanation import explain_zeros
 from symflex.analysis.explanation import zeros as zeros_module
 from symflex.analysis.explanation.parts import agree
 from symflex.roots import Band
@@ -21,7 +22,7 @@ def explained(model, tf, region=None, digits=15):
     (pair,) = pipeline.pick_pairs(model, [tf])
     (bound,) = pipeline.derive_bound(model, [pair])
     found = pipeline.roots(bound, region, digits)
-    return pipeline.explain_zeros(model, bound, found), found
+    return explain_zeros(model, bound, found), found
 
 
 def points(roots):

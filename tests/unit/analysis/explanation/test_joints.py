@@ -3,6 +3,7 @@
 import pytest
 
 from symflex import pipeline
+from symflex.analysis.explanation import explain_zeros
 from symflex.report.structure import is_colocated
 
 SPANS = """
@@ -64,7 +65,7 @@ conditions = ["w(0) = 0", "w'(0) = 0", "w''(l) = 0", "w(l) = x"]
 def told(text, tf):
     model = pipeline.loads(text)
     (bound,) = pipeline.derive_bound(model, pipeline.pick_pairs(model, [tf]))
-    found = pipeline.explain_zeros(model, bound, pipeline.roots(bound))
+    found = explain_zeros(model, bound, pipeline.roots(bound))
     return found.kind, found.status
 
 

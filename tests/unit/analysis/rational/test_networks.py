@@ -7,7 +7,8 @@ from fractions import Fraction
 import pytest
 
 from symflex import pipeline
-from symflex.analysis.time_response import SampleTimes
+from symflex.analysis.rational import approximate, find_residues
+from symflex.analysis.time_response import SampleTimes, time_response
 from symflex.roots import Modes
 from symflex.transfer import BoundNested
 from symflex.transfer.nested_form import bind_any
@@ -31,7 +32,7 @@ def bound_of(count, representation):
 def test_residues_are_those_of_the_formula():
     written, network = (bound_of(1, kind) for kind in ("expanded", "nested"))
     assert isinstance(network, BoundNested)
-    expected, found = (pipeline.residues(bound, Modes(3), 20) for bound in (written, network))
+    expected, found = (find_residues(bound, Modes(3), 20) for bound in (written, network))
     assert len(found) == len(expected) == 6
     for one, other in zip(found, expected, strict=True):
         assert not one.is_estimate
@@ -42,7 +43,7 @@ def test_residues_are_those_of_the_formula():
 @pytest.mark.slow
 def test_an_approximation_of_two_beams_is_close_to_them_below_its_modes():
     bound = bound_of(2, "nested")
-    found = pipeline.rational(bound, 2, "product")
+    found = approximate(bound, 2, "product")
     assert found.modes == 2
     assert found.leading_coefficient == pytest.approx(bound(0j).real, rel=1e-12)
     omega = 2.5
@@ -52,9 +53,7 @@ def test_an_approximation_of_two_beams_is_close_to_them_below_its_modes():
 @pytest.mark.slow
 def test_a_step_response_is_that_of_the_formula_and_not_certified():
     times = SampleTimes.evenly(Fraction(1, 5), 9)
-    written, network = (
-        pipeline.time_response(bound_of(1, k), "step", times, 4) for k in ("expanded", "nested")
-    )
+    written, network = (time_response(bound_of(1, k), "step", times, 4) for k in ("expanded", "nested"))
     assert not network.certified and "the lowest 12" in network.reason
     assert all(a.overlaps(b) for a, b in zip(network.enclosures, written.enclosures, strict=True))
     largest = max(abs(written.values))

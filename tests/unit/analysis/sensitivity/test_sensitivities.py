@@ -13,6 +13,7 @@ from flint import acb, ctx
 
 import symflex
 from symflex import pipeline
+from symflex.analysis.sensitivity.sensitivity import sensitivities
 from symflex.errors import UsageError
 from symflex.quantities import unit_of
 from symflex.roots import Modes
@@ -47,7 +48,7 @@ def moved(model, modes=None, names=(), digits=15, tf=None):
     pair = tf or model.transfer_functions[0]
     (bound,) = pipeline.derive_bound(model, [pair])
     found = pipeline.roots(bound, modes and Modes(modes), digits)
-    return pipeline.sensitivities(model, bound, found, names, digits)
+    return sensitivities(model, bound, found, names, digits)
 
 
 def by_name(found, kind="pole"):
@@ -400,7 +401,7 @@ def test_an_enclosure_that_holds_no_root_gives_no_derivative():
     (bound,) = pipeline.derive_bound(model, model.transfer_functions)
     found = pipeline.roots(bound, None, 15)
     wrong = tuple(replace(root, im=root.im + 1) for root in found.poles)
-    shown = pipeline.sensitivities(model, bound, replace(found, poles=wrong))
+    shown = sensitivities(model, bound, replace(found, poles=wrong))
     assert {(s.status, s.derivative) for s in shown} == {("undecided", None)}
 
 
