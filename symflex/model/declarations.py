@@ -147,7 +147,7 @@ def with_formulas_defined(
     parameters, definitions = sections["parameters"], sections["definitions"]
     if parameters is None:
         return dict(sections)
-    declared = {*parameters.keys(), *(definitions.keys() if definitions else ()), "pi", *FUNCTIONS}
+    declared = {*parameters.keys(), *(definitions.keys() if definitions else ())}
     own, moved = [], []
     for entry in parameters.entries:
         table = entry.value if isinstance(entry.value, TableValue) else None
@@ -158,6 +158,7 @@ def with_formulas_defined(
             used, starts = _formula_names(value.text), value.text.value.lstrip()[:1]
         may_be_units = starts.isdigit() and all(unit_named(name) for name in used)
         is_twice = bool(definitions and definitions.get(entry.key))
+        used = used - {"pi", *FUNCTIONS} or {""}
         if not used <= declared - {entry.key} or may_be_units or is_twice or not NAME.match(entry.key):
             own.append(entry)
         elif table is None:
