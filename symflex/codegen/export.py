@@ -247,8 +247,8 @@ def parts_of(file: str, dialect: str = "") -> Mapping[tuple[str, ...], str]:
 
     Examples
     --------
-    >>> [names for names in parts_of("matlab.m") if "modal_value" in names]
-    [('mode_values', 'modal_value')]
+    >>> [names for names in parts_of("matlab.m") if "columns" in names]
+    [('columns',)]
     """
     source = resources.files("symflex.codegen").joinpath("sources", file).read_text(encoding="utf-8")
     _, *cut = _MARK.split(source)

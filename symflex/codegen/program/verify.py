@@ -223,7 +223,7 @@ def choose_band(
         message = f"{tf.name} in band form consists of numbers, and {', '.join(missing[:NAMED])} has no value"
         raise ModelError(Diagnostic("SF229", message, None, "give values, or export it to numpy"))
     (bound,) = derive_for_roots(tf.model, [(tf.output.name, tf.input.name)])
-    values = Enclosures(bound)
+    values = EnclosedValues(bound)
     end = up_to_hz or (band_hz[1] if band_hz else None)
     form = BandForm.zero(tf.name) if _vanishes(bound) else band_form(values, end)
     program, high = form.program(), form.end_hz
@@ -525,7 +525,7 @@ class EnclosedValue:
     bits: int  # they were computed with
 
 
-class Enclosures:
+class EnclosedValues:
     """Enclosed values of a bound transfer function, as precise as doubles are compared with."""
 
     def __init__(self, bound: BoundTransferFunction | BoundNested) -> None:
@@ -561,7 +561,7 @@ class References:
     The function is bound to the declared values.
     """
 
-    def __init__(self, values: Enclosures, points: NDArray[Any]) -> None:
+    def __init__(self, values: EnclosedValues, points: NDArray[Any]) -> None:
         self.bound = values.bound
         found = [(s, _reference(values, complex(s))) for s in points]
         self._lost = [s.imag for s, reference in found if reference is None]
@@ -589,7 +589,7 @@ class References:
         hertz = (
             np.geomspace(low, high, count) if is_plain else sample_frequencies(bound, band_hz, count, pieces)
         )
-        return cls(Enclosures(bound), 1j * (tau * hertz))
+        return cls(EnclosedValues(bound), 1j * (tau * hertz))
 
     @property
     def are_complex(self) -> bool:
@@ -633,7 +633,7 @@ class References:
         return [r.error_of(complex(v)) for r, v in zip(self._references, values, strict=True)]
 
 
-def _reference(values: Enclosures, s: complex) -> _Reference | None:
+def _reference(values: EnclosedValues, s: complex) -> _Reference | None:
     """Return the value at ``s``, or ``None`` at a pole or zero."""
     if _vanishes(values.bound):
         return _Reference(acb(0), FIRST_BITS, acb(1).abs_lower())
