@@ -87,7 +87,7 @@ def case_of(name: str) -> Case:
     model = pipeline.load(MODELS[name])
     tfs = tuple(pipeline.derive_all(model))
     band = model.analysis.band or DEFAULT_BAND
-    return Case(name, model, tfs, {tf.name: References(bind_any(tf), band) for tf in tfs})
+    return Case(name, model, tfs, {tf.name: References.over(bind_any(tf), band) for tf in tfs})
 
 
 # --------------------------------------------------------------------------- values, language by language

@@ -121,7 +121,16 @@ class ExportOptions:
     target: str = option("", "--to", required=True, metavar="TARGET", help="One of the targets below.")
     tfs: Sequence[str] = option((), "--tf", **SOME_TFS)
     form: str | None = option(
-        None, "--form", metavar="FORM", help="latex: form of the functions, as for derive."
+        None,
+        "--form",
+        metavar="FORM",
+        help="latex: form of the functions, as for derive; code: band, a product over poles and zeros.",
+    )
+    up_to: Stated | None = option(
+        None,
+        "--up-to",
+        metavar="FREQUENCY",
+        help="Where the band of --form band ends, in Hz or with a unit.  [default: the model's band or modes]",
     )
     width: str | None = option(
         None, "--width", metavar=WIDTHS, help="latex: width of the column; a4 (170 mm) by default."

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,7 +15,7 @@ from symflex.cli.reporting import diagnostic_json, emit_json, listed, note, say,
 from symflex.errors import Diagnostic, SymflexError, UsageError
 from symflex.errors.diagnostic import nearest, printable
 from symflex.expressions import Equation
-from symflex.options import AuditOptions, CheckOptions, DeriveOptions, ExportOptions
+from symflex.options import AuditOptions, CheckOptions, DeriveOptions, ExportOptions, highest_frequency
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -200,7 +201,8 @@ def export(spec: Specification, given: ExportOptions) -> int:
     if given.output:
         (check_folder if is_folder else check_writable)(Path(given.output))
     model = spec.load()
-    representation = chosen_representation(given.representation, given.form)
+    form = given.form if given.target == "latex" else None
+    representation = chosen_representation(given.representation, form)
     pairs = pipeline.pick_pairs(model, given.tfs)
     derived, reason = pipeline.derive_as(
         model, pairs, representation, solves=exporter.solves, is_read=given.target == "latex"
@@ -230,6 +232,7 @@ def export(spec: Specification, given: ExportOptions) -> int:
 
 def _chosen(exporter: Exporter, given: ExportOptions) -> Exporter:
     """Return an exporter with the options that are its own."""
+    from symflex.codegen.export import BAND, Language
     from symflex.codegen.latex import LatexExporter
     from symflex.codegen.state_space import StateSpaceExporter
     from symflex.print.latex import column_width
@@ -237,8 +240,18 @@ def _chosen(exporter: Exporter, given: ExportOptions) -> Exporter:
     if isinstance(exporter, LatexExporter):
         column = column_width(given.width or "a4")
         exporter = replace(exporter, form=given.form, width_mm=column, has_figures=not given.no_figures)
-    elif given.form is not None or given.width is not None or given.no_figures:
-        raise UsageError(Diagnostic("SF902", "--form, --width and --no-figures are for --to latex"))
+    elif given.width is not None or given.no_figures:
+        raise UsageError(Diagnostic("SF902", "--width and --no-figures are for --to latex"))
+    elif isinstance(exporter, Language):
+        if given.form not in (None, BAND):
+            message = f"code has the form {BAND} besides its own, not '{given.form[:64]}'"
+            raise UsageError(Diagnostic("SF902", message, None, "other forms are for --to latex"))
+        end = None if given.up_to is None else Fraction(highest_frequency(given.up_to))
+        exporter = replace(exporter, form=given.form, up_to=end)
+    elif given.form is not None:
+        raise UsageError(Diagnostic("SF902", "--form is for --to latex and for code"))
+    if given.up_to is not None and not isinstance(exporter, Language):
+        raise UsageError(Diagnostic("SF902", "--up-to is for code"))
     if given.sample is None and (given.method or given.prewarp or given.is_direct):
         raise UsageError(Diagnostic("SF902", "--method, --prewarp and --direct are of --sample"))
     sampling = None

@@ -20,11 +20,10 @@ from importlib import resources
 from math import isfinite
 from typing import TYPE_CHECKING, Protocol
 
-from symflex.codegen.module_text import formula_of, identifiers
-from symflex.codegen.program.verify import SAMPLES, choose_programs
-from symflex.errors import Diagnostic, ModelError
+from symflex.codegen.module_text import formula_of, identifiers, inert
+from symflex.codegen.program.band import is_closed
+from symflex.codegen.program.verify import SAMPLES, choose_band, choose_programs
 from symflex.model.loss_factors import check_causal
-from symflex.transfer import NestedTransferFunction
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
@@ -35,6 +34,9 @@ if TYPE_CHECKING:
     from symflex.model import Model, ModelParameter
     from symflex.transfer import AnyTransferFunction
 
+
+BAND = "band"
+"""The form of code that is a product over poles and zeros."""
 
 ACCURACY = 1e-13
 """Relative error of exported code above which the user is warned."""
@@ -68,7 +70,7 @@ class Exporter(Protocol):
 
     @property
     def solves(self) -> bool:
-        """True where there is code that solves networks of line elements."""
+        """True where functions of networks are wanted as equations, which values at points are had of."""
         ...
 
     def export(
@@ -138,9 +140,13 @@ class Language:
     suffix: str  # of the file's name
     summary: str  # what is made, in a line
     print: Callable[[Contents], Export]  # makes the file of its contents
-    solves: bool = False  # true where there is what solves networks of line elements
+    # True where generated code solves networks, follows waves along members that taper and finds roots of
+    # polynomials; elsewhere what has no short formula is written in band form, with numbers for parameters.
+    is_open: bool = False
     is_complex: bool = False  # true where parameters may be complex, as the imaginary unit is
-    follows: bool = False  # true where there is what follows waves through members that vary along x
+    form: str | None = None  # "band" to write all functions in band form
+    up_to: Fraction | None = None  # where the band of band forms ends [Hz]
+    solves: bool = True
 
     def export(
         self,
@@ -162,8 +168,8 @@ class Language:
         comments.
 
         Raises BudgetError: SF503 when a function's text would be too long; ModelError: SF233 when a number
-        does not fit in double precision, SF910 when the language has no code for a network of many beams;
-        UsageError: SF902 when ``stem`` cannot be the name of a companion.
+        does not fit in double precision, SF229 and SF910 when a function without a short formula has no band
+        form; UsageError: SF902 when ``stem`` cannot be the name of a companion.
 
         Examples
         --------
@@ -181,42 +187,30 @@ class Language:
         >>> next(line for line in text.splitlines() if line.startswith("function V_over_F("))
         'function V_over_F(s::Number; m::Number = 2.0, b::Number = 3.0)'
         """
-        if not self.is_complex:
-            check_causal(model, "code in this language")
-        if not self.solves:
-            _refuse_networks(tfs)
-        for tf in tfs:
-            if not isinstance(tf, NestedTransferFunction) and not self.follows:
-                tf.kernels.without_tapers("code in this language is", "export it to numpy, jax, c or matlab")
-        members = _members(tfs, band_hz or model.analysis.band, samples)
+        if not self.is_complex or self.form:
+            check_causal(model, "band form" if self.form else "code in this language")
+        members = self._members(tfs, band_hz, samples)
         contents = Contents(model, members, stem, is_alone, digits)
         made = self.print(contents)
         warnings = (*shortfalls(contents.verified), *made.warnings)
         return replace(made, warnings=warnings, verified=contents.verified)
 
-
-def _refuse_networks(tfs: Sequence[AnyTransferFunction]) -> None:
-    """Raise SF910 for a function of a network of line elements, which has no formula."""
-    for tf in tfs:
-        if isinstance(tf, NestedTransferFunction) and tf.is_distributed:
-            message = (
-                f"{tf.name} is solved as a network of beams, rods or delays, for which there is no code yet"
-            )
-            hint = "export it to numpy or c; small networks have a formula with --representation expanded"
-            raise ModelError(Diagnostic("SF910", message, None, hint))
-
-
-def _members(
-    tfs: Sequence[AnyTransferFunction], band_hz: tuple[Fraction, Fraction] | None, samples: int
-) -> tuple[Member, ...]:
-    found: list[Member] = []
-    for tf in {tf.name: tf for tf in tfs}.values():
-        (program, verification), real = choose_programs(tf, band_hz, samples)
-        wanted, formula = f"{tf.output.name}_over_{tf.input.name}", formula_of(tf)
-        found.append(Member(tf, program, wanted, verification, formula))
-        if real is not None:
-            found.append(Member(tf, real[0], f"{wanted}_at", real[1], formula))
-    return tuple(found)
+    def _members(
+        self, tfs: Sequence[AnyTransferFunction], band_hz: tuple[Fraction, Fraction] | None, samples: int
+    ) -> tuple[Member, ...]:
+        found: list[Member] = []
+        for tf in {tf.name: tf for tf in tfs}.values():
+            wanted = f"{tf.output.name}_over_{tf.input.name}"
+            if self.form == BAND or not (self.is_open or is_closed(tf)):
+                program, verification, formula = choose_band(tf, band_hz, self.up_to, samples)
+                found.append(Member(tf, program, wanted, verification, tuple(map(inert, formula))))
+                continue
+            (program, verification), real = choose_programs(tf, band_hz or tf.model.analysis.band, samples)
+            formula = formula_of(tf)
+            found.append(Member(tf, program, wanted, verification, formula))
+            if real is not None:
+                found.append(Member(tf, real[0], f"{wanted}_at", real[1], formula))
+        return tuple(found)
 
 
 def shortfalls(verified: Sequence[Verification]) -> tuple[str, ...]:

@@ -244,7 +244,7 @@ def _public(member: Member, functions: JuliaFunctions, digits: int) -> str:
     """Return the function that a user calls."""
     tf, variable = member.tf, functions.variable
     kind = "Real" if member.program.is_real else "Number"
-    parameters = [(p, functions.parameters[p.name]) for p in tf.parameters]
+    parameters = [(p, functions.parameters[p.name]) for p in member.parameters]
     signature, arguments = (
         [],
         [f"float({variable})" if member.program.is_real else f"complex(float({variable}))"],

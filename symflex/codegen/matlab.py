@@ -477,7 +477,7 @@ class _File:
         member = self.members[0]
         field = self.fields[member.key]
         rows = [(f"G = {self.main}();", ""), (f"G.{field}(s)", "s: Laplace variable [rad/s], of any size")]
-        for p in member.tf.parameters[:1]:
+        for p in member.parameters[:1]:
             name, value = self.parameters[p.name], default_value(p) or "1.0"
             rows += [
                 (f"G.{field}(s, '{name}', {value})", "another value, or an array of values"),
@@ -575,7 +575,6 @@ MATLAB = Language(
     ".m",
     "MATLAB and Octave function file, a handle per transfer function, verified likewise",
     matlab_function_file,
-    follows=True,
 )
 
 

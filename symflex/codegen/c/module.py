@@ -284,6 +284,4 @@ C99 = Language(
     ".c",
     "C99 source and header, values at s and arrays of frequencies, verified likewise",
     c_files,
-    solves=True,
-    follows=True,
 )

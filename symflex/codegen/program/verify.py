@@ -16,11 +16,12 @@ import numpy as np
 from flint import acb, arb, ctx
 
 from symflex.budget import spend
+from symflex.codegen.program.band import BandForm, band_form
 from symflex.codegen.program.build import available_forms, build_nested, build_program
 from symflex.codegen.program.distributed import Pieces, series_uses
 from symflex.codegen.program.evaluate import evaluate, nearest_double
 from symflex.codegen.program.positive_frequencies import for_positive, in_half_angles
-from symflex.errors import BudgetError, ModelError
+from symflex.errors import BudgetError, Diagnostic, ModelError
 from symflex.transfer import BoundNested, NestedTransferFunction, bind, bind_nested
 from symflex.transfer.bind import EnclosedTransferFunction
 from symflex.transfer.enclosed_network import EnclosedNetwork
@@ -92,6 +93,15 @@ ASIDE_SAMPLES = 30
 PROMISED = 1e-12
 """What such a function promises up to the frequency named."""
 
+BAND_SHARE = 8
+"""Of a band form whose roots are known one in so many of the usual samples shows how smooth the rest is."""
+
+ASIDE_OF_AXIS = 0.1
+"""Distance from the imaginary axis, in bands, at which a band form is measured too."""
+
+HEIGHTS = np.linspace(0.02, 0.98, 9)
+"""Heights at which it is, in bands."""
+
 TINY = 1e-307
 """What is smaller has no more digits in double precision."""
 
@@ -112,7 +122,7 @@ class Verification:
 
     name: str  # ``OUT/IN``
     # The form evaluated: ``closed``, ``closed in s``, ``nested`` or ``factors``; of a distributed system
-    # ``pieces`` or ``real``, of a network of many members ``solved``.
+    # ``pieces`` or ``real``, of a network of many members ``solved``; of roots in and around a band ``band``.
     form: str
     # The worst ``|dG| / (|G| (1 + |s G'/G|))`` on the imaginary axis: the relative error beyond what one
     # rounding of ``s`` would cause. ``None`` when it was not measured.
@@ -195,6 +205,39 @@ def choose_programs(
     return _choose(gauge), _choose_real(gauge)
 
 
+def choose_band(
+    tf: AnyTransferFunction,
+    band_hz: tuple[Fraction, Fraction] | None = None,
+    up_to_hz: Fraction | None = None,
+    samples: int = SAMPLES,
+) -> tuple[Piecewise, Verification, tuple[str, ...]]:
+    """Return the program of the band form, how well it agrees with the function, and what is said of it.
+
+    Raises ModelError: SF229 without values for all parameters, SF910 where no band form serves.
+    """
+    if missing := [p.name for p in tf.parameters if p.value is None]:
+        message = f"{tf.name} in band form consists of numbers, and {', '.join(missing[:NAMED])} has no value"
+        raise ModelError(Diagnostic("SF229", message, None, "give values, or export it to numpy"))
+    bound = bind_nested(tf) if isinstance(tf, NestedTransferFunction) else bind(tf)
+    values = Enclosures(bound)
+    end = up_to_hz or (band_hz[1] if band_hz else None)
+    form = BandForm.zero(tf.name) if _vanishes(bound) else band_form(values, end)
+    program, high = form.program(), form.end_hz
+    low = (band_hz or tf.model.analysis.band or (DEFAULT_BAND[0],))[0]
+    band = (min(low, high / 1000), high)
+    centers = [f for f in form.centers_hz if band[0] <= f <= band[1]]
+    if len(centers) > 2 * MOST_EXTREMES:
+        centers = [*centers[:MOST_EXTREMES], *centers[-MOST_EXTREMES:]]
+    count = max(1, int(samples * _part(bound) / BAND_SHARE))
+    references = References(values, 1j * tau * _frequencies(band, count, centers, ASIDE))
+    error = None if not len(references.s) else references.worst_error(program)
+    reason = "" if error is not None else "no value could be enclosed"
+    verified = Verification(tf.name, "band", error, band, len(references.s), reason)
+    off = [form.end * complex(x, y) for x in (-ASIDE_OF_AXIS, ASIDE_OF_AXIS) for y in HEIGHTS]
+    worst = References(values, np.array(off)).worst_error(program)
+    return program, verified, (*form.sentences(), form.beside(ASIDE_OF_AXIS, _error_text(worst, 2)))
+
+
 def measure_values(
     tf: AnyTransferFunction,
     values: Callable[[NDArray[np.complex128]], Sequence[complex]],
@@ -246,7 +289,7 @@ def _gauge(tf: AnyTransferFunction, band_hz: tuple[Fraction, Fraction] | None, s
         return _Gauge(tf, band, pieces, None, "no values for " + ", ".join(missing))
     try:
         bound = bind_nested(tf) if isinstance(tf, NestedTransferFunction) else bind(tf)
-        return _Gauge(tf, band, pieces, References(bound, band, samples, pieces=pieces))
+        return _Gauge(tf, band, pieces, References.over(bound, band, samples, pieces=pieces))
     except ModelError as problem:
         return _Gauge(tf, band, pieces, None, problem.diagnostics[0].message)
 
@@ -371,11 +414,18 @@ def sample_frequencies(
     The ``pieces`` are those of a distributed system where it has been begun to make them.
     """
     low, high = float(band_hz[0]), float(band_hz[1])
-    frequencies = [np.geomspace(low, high, samples)]
     is_costly = isinstance(bound, BoundNested) and bound.source.is_distributed
-    aside = ASIDE[::2] if is_costly else ASIDE
+    centers = _centers(bound, low, high, pieces)
+    return _frequencies(band_hz, samples, centers, ASIDE[::2] if is_costly else ASIDE)
+
+
+def _frequencies(
+    band_hz: tuple[Fraction, Fraction], samples: int, centers: Sequence[float], aside: Sequence[float]
+) -> NDArray[np.float64]:
+    """Return so many frequencies [Hz] over a band, and those at relative distances from some of them."""
+    low, high = float(band_hz[0]), float(band_hz[1])
     around = np.array([1 + sign * x for x in aside for sign in (1, -1)])
-    frequencies += [center * around for center in _centers(bound, low, high, pieces)]
+    frequencies = [np.geomspace(low, high, samples), *(center * around for center in centers)]
     merged = np.unique(np.concatenate(frequencies))
     return merged[(merged >= low) & (merged <= high)]
 
@@ -462,37 +512,80 @@ def _roots(coefficients: Sequence[acb], *, is_scaled: bool = False) -> NDArray[n
     return float(mean.mid()) * _roots([c * mean**i for i, c in enumerate(coefficients)], is_scaled=True)
 
 
-class References:
-    """Enclosures of a bound transfer function at frequencies over a band.
+@dataclass(frozen=True, slots=True)
+class EnclosedValue:
+    """A transfer function's value and logarithmic derivative at a point, in balls."""
 
-    The function is bound to the declared values, the band is in Hz; there are so many samples besides those
-    around poles and zeros, of which there are none where ``is_plain``.
+    value: acb
+    slope: acb
+    bits: int  # they were computed with
+
+
+class Enclosures:
+    """Enclosed values of a bound transfer function, as precise as doubles are compared with."""
+
+    def __init__(self, bound: BoundTransferFunction | BoundNested) -> None:
+        self.bound = bound
+        self._first_bits = FIRST_BITS
+        self._known: dict[int, Enclosed | EnclosedNested | EnclosedNetwork] = {}
+
+    def at(self, s: complex) -> EnclosedValue | None:
+        """Return the value at ``s``, or ``None`` at a pole or zero."""
+        point = acb(s.real, s.imag)
+        bits = self._first_bits
+        while bits <= LAST_BITS:
+            spend()
+            function = self._function(bits)
+            value, slope = function.value_and_slope(point)
+            if value.is_finite() and slope.is_finite() and value.rel_accuracy_bits() >= ENOUGH_BITS:
+                if isinstance(function, EnclosedNested | EnclosedNetwork):
+                    self._first_bits = bits  # the next point most likely needs as many
+                return EnclosedValue(value, slope, bits)
+            bits *= 2
+        return None
+
+    def _function(self, bits: int) -> Enclosed | EnclosedNested | EnclosedNetwork:
+        if bits not in self._known:
+            solved = self.bound.solved(bits) if isinstance(self.bound, BoundNested) else None
+            self._known[bits] = solved or self.bound.enclosed(bits)
+        return self._known[bits]
+
+
+class References:
+    """Enclosures of a transfer function at points of the imaginary axis, or elsewhere.
+
+    The function is bound to the declared values.
     """
 
-    def __init__(
-        self,
+    def __init__(self, values: Enclosures, points: NDArray[np.complex128]) -> None:
+        self.bound = values.bound
+        found = [(s, _reference(values, complex(s))) for s in points]
+        self._lost = [s.imag for s, reference in found if reference is None]
+        self._references = [reference for _, reference in found if reference is not None]
+        self.s = np.array([s for s, reference in found if reference is not None], dtype=complex)
+
+    @classmethod
+    def over(
+        cls,
         bound: BoundTransferFunction | BoundNested,
         band_hz: tuple[Fraction, Fraction],
         samples: int = SAMPLES,
         *,
         is_plain: bool = False,
         pieces: Pieces | None = None,
-    ) -> None:
-        self.bound = bound
+    ) -> References:
+        """Return those at so many frequencies over a band [Hz], besides those around poles and zeros.
+
+        There are none of the latter where it ``is_plain``.
+        """
         if not isinstance(bound, BoundNested):
             bound.expect(0, tau * float(band_hz[1]))
-        self._first_bits = FIRST_BITS
-        self._known: dict[int, Enclosed | EnclosedNested | EnclosedNetwork] = {}
         low, high = (float(f) for f in band_hz)
         count = max(1, int(samples * _part(bound)))
         hertz = (
             np.geomspace(low, high, count) if is_plain else sample_frequencies(bound, band_hz, count, pieces)
         )
-        points = 1j * (tau * hertz)
-        found = [(s, self._reference(complex(s))) for s in points]
-        self._lost = [s.imag for s, reference in found if reference is None]
-        self._references = [reference for _, reference in found if reference is not None]
-        self.s = np.array([s for s, reference in found if reference is not None], dtype=complex)
+        return cls(Enclosures(bound), 1j * (tau * hertz))
 
     @property
     def are_complex(self) -> bool:
@@ -535,29 +628,17 @@ class References:
         values = evaluate(program, _arguments(program, self.s), doubles(self.bound))
         return [r.error_of(complex(v)) for r, v in zip(self._references, values, strict=True)]
 
-    def _reference(self, s: complex) -> _Reference | None:
-        """Return the value at ``s``, or ``None`` at a pole or zero."""
-        point = acb(s.real, s.imag)
-        if _vanishes(self.bound):
-            return _Reference(acb(0), FIRST_BITS, acb(1).abs_lower())
-        bits = self._first_bits
-        while bits <= LAST_BITS:
-            spend()
-            function = self._at(bits)
-            value, slope = function.value_and_slope(point)
-            if value.is_finite() and slope.is_finite() and value.rel_accuracy_bits() >= ENOUGH_BITS:
-                if isinstance(function, EnclosedNested | EnclosedNetwork):
-                    self._first_bits = bits  # the next point most likely needs as many
-                with ctx.workprec(bits):
-                    return _Reference(value, bits, value.abs_lower() * (1 + (point * slope).abs_lower()))
-            bits *= 2
-        return None
 
-    def _at(self, bits: int) -> Enclosed | EnclosedNested | EnclosedNetwork:
-        if bits not in self._known:
-            solved = self.bound.solved(bits) if isinstance(self.bound, BoundNested) else None
-            self._known[bits] = solved or self.bound.enclosed(bits)
-        return self._known[bits]
+def _reference(values: Enclosures, s: complex) -> _Reference | None:
+    """Return the value at ``s``, or ``None`` at a pole or zero."""
+    if _vanishes(values.bound):
+        return _Reference(acb(0), FIRST_BITS, acb(1).abs_lower())
+    found = values.at(s)
+    if found is None:
+        return None
+    with ctx.workprec(found.bits):
+        size = found.value.abs_lower() * (1 + (acb(s.real, s.imag) * found.slope).abs_lower())
+        return _Reference(found.value, found.bits, size)
 
 
 class _Aside:
@@ -567,9 +648,11 @@ class _Aside:
         self, bound: BoundTransferFunction | BoundNested, band_hz: tuple[Fraction, Fraction]
     ) -> None:
         low, high = band_hz
-        self._below = References(bound, (LOWEST, low), ASIDE_SAMPLES, is_plain=True) if low > LOWEST else None
+        self._below = (
+            References.over(bound, (LOWEST, low), ASIDE_SAMPLES, is_plain=True) if low > LOWEST else None
+        )
         self._above = (
-            References(bound, (high, HIGHEST), ASIDE_SAMPLES, is_plain=True) if high < HIGHEST else None
+            References.over(bound, (high, HIGHEST), ASIDE_SAMPLES, is_plain=True) if high < HIGHEST else None
         )
 
     def extended(self, program: Piecewise, inner: Reach, band_hz: tuple[Fraction, Fraction]) -> Reach:

@@ -395,19 +395,16 @@ NUMPY = Language(
     ".py",
     "numpy module, one function per transfer function, verified against ball arithmetic",
     partial(python_module, dialect=NUMPY_DIALECT),
-    solves=True,
+    is_open=True,
     is_complex=True,
-    follows=True,
 )
 ARRAY_API = Language(
     ".py",
     "the same for numpy, torch, jax.numpy, cupy: whatever library the arguments are of",
     partial(python_module, dialect=ARRAY_API_DIALECT),
-    follows=True,
 )
 JAX = Language(
     ".py",
     "the same for jax: jit, grad and vmap work through it",
     partial(python_module, dialect=JAX_DIALECT),
-    follows=True,
 )

@@ -45,7 +45,7 @@ def spoiled(program, factor):
 @pytest.mark.parametrize("name", ["two_mass", "rigid_body", "lumped_bending_beam"])
 def test_the_error_of_every_form_is_of_the_size_of_rounding_and_the_best_is_taken(name):
     for tf in transfer_functions(name)[:2]:
-        references = References(pipeline.bind(tf), DEFAULT_BAND)
+        references = References.over(pipeline.bind(tf), DEFAULT_BAND)
         errors = {f: references.worst_error(build_program(tf, f)) for f in available_forms(tf)}
         assert len(errors) > 2
         assert max(errors.values()) < 1e-13
@@ -58,13 +58,13 @@ def test_an_error_in_the_ninth_digit_is_measured_as_such(two_mass):
     bound = pipeline.bind(two_mass)
     program = spoiled(build_program(two_mass), 1 + Fraction(1, 10**9))
     # Where |s G'/G| = 2, at low frequencies, the measure divides by 3.
-    assert 1e-9 / 3.1 < References(bound, BAND).worst_error(program) < 1.01e-9
+    assert 1e-9 / 3.1 < References.over(bound, BAND).worst_error(program) < 1.01e-9
 
 
 def test_a_value_that_is_not_finite_is_an_infinite_error(two_mass):
     bound = pipeline.bind(two_mass)
     program = build_program(two_mass)
-    assert References(bound, BAND).worst_error(spoiled(spoiled(program, 10**300), 10**300)) == np.inf
+    assert References.over(bound, BAND).worst_error(spoiled(spoiled(program, 10**300), 10**300)) == np.inf
 
 
 def test_samples_stand_at_every_pole_and_zero(two_mass):
@@ -83,7 +83,7 @@ def test_recurrences_are_taken_for_the_six_masses_because_they_are_the_most_accu
     tf = transfer_functions("six_mass")[0]
     _, verification = choose_programs(tf)[0]
     errors = {
-        f: References(pipeline.bind(tf), DEFAULT_BAND).worst_error(build_program(tf, f))
+        f: References.over(pipeline.bind(tf), DEFAULT_BAND).worst_error(build_program(tf, f))
         for f in available_forms(tf)
     }
     assert verification.form == "closed" == min(errors, key=errors.get)

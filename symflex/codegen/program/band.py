@@ -1,0 +1,392 @@
+"""From proved poles and zeros to a program that is exact over a band: the band form.
+
+Input: a transfer function with numbers, and up to which frequency it is wanted.
+Output: a :class:`BandForm`, the transfer function as
+
+    H(s) = gain * s^k * product of (1 - s/z) over zeros / product of (1 - s/p) over poles * exp(q(s))
+
+with the zeros z and poles p in the band and around it, and q a Chebyshev polynomial of what is left.
+
+Theorem (Hadamard 1893; Bernstein 1912). What is left has neither poles nor zeros near the band, so its
+logarithm is analytic there, and the coefficients of its Chebyshev series fall like ``rho^-n``, where the
+ellipse of axes ``rho + 1/rho`` and ``rho - 1/rho``, in halves of the band, touches the next root. With roots
+known to one and a half times the band's end, in s^2, rho is 6.9 and some 20 coefficients are all that doubles can tell.
+
+Every root is two doubles, its value and what that leaves: then ``(z - s) + rest`` has all its digits also where s
+is close to z. The error of one double would be that of ``s - z``, 1e-10 at a distance of 1e-6 of z.
+
+Example: a string of length 1 m and wave speed 1 m/s, fixed at one end and driven at the other, is
+``1/cosh(s)``. Up to 3 rad/s it is one pole pair at ``j pi/2`` beyond which the next, at ``3 pi/2``, lies within reach:
+
+    1 / ((1 + s^2/2.4674) (1 + s^2/22.207)) * exp(q(s)),  q = 0 at s = 0
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import zip_longest
+from math import inf, log2, sqrt, tau
+from typing import TYPE_CHECKING
+
+from flint import acb, arb, ctx, fmpq
+
+from symflex.codegen.program.forge import Forge, schedule
+from symflex.errors import Diagnostic, ModelError
+from symflex.roots.locate import DEFAULT_MODES, locate
+from symflex.roots.region import Band, Everything, Modes
+from symflex.roots.root import groups
+from symflex.transfer import NestedTransferFunction
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symflex.codegen.program.nodes import Piecewise
+    from symflex.codegen.program.verify import Enclosures
+    from symflex.roots import PoleZeroMap, Root
+    from symflex.transfer import AnyBoundFunction, AnyTransferFunction
+
+
+BEYOND = 5
+"""Modes that are found beyond those of the band."""
+
+FURTHER = Fraction(3, 2)
+"""How far beyond a band that is given in Hz roots are found, in frequencies."""
+
+ROUNDS = 3
+"""How often roots are sought further away where what they leave is not smooth."""
+
+DIGITS = 36
+"""Of the roots: more than two doubles hold."""
+
+FIRST_NODES, MOST_NODES = 24, 216
+"""Points on the positive half of the band at which what is left is taken; three times as many in the next try."""
+
+NEGLIGIBLE = 2.0**-57
+"""Size of a coefficient that changes no double."""
+
+BITS = 160
+"""With which coefficients are summed: those of two doubles, and as many again for what cancels."""
+
+LUMPED_END = Fraction(10_000)
+"""End of the band [Hz] of a function with finitely many roots where nothing says another one."""
+
+
+@dataclass(frozen=True, slots=True)
+class SplitRoot:
+    """A root, with its conjugate where it is not real, as sums of two doubles a part."""
+
+    re: tuple[float, float]
+    im: tuple[float, float]  # positive, or zero for a real root
+
+    @property
+    def is_real(self) -> bool:
+        """True for one real root, false for a pair."""
+        return self.im == (0.0, 0.0)
+
+    @property
+    def is_negative(self) -> bool:
+        """True for a root on the negative half of the real axis."""
+        return self.is_real and self.re[0] < 0
+
+    @property
+    def scale(self) -> Fraction:
+        """A power of two near to the size of the root's factor at s = 0."""
+        size = abs(self.re[0]) if self.is_real else self.re[0] ** 2 + self.im[0] ** 2
+        return Fraction(2) ** round(log2(size))
+
+    def factor(self, s: acb) -> acb:
+        """Return the factor that :func:`_factor` programs, over the scale."""
+        re, im = (arb(x[0]) + arb(x[1]) for x in (self.re, self.im))
+        value = acb(re, im) - s
+        if self.is_negative:
+            value = -value
+        if not self.is_real:
+            value = value * (acb(re, -im) - s)
+        return value / arb(fmpq(self.scale.numerator, self.scale.denominator))
+
+
+@dataclass(frozen=True)
+class BandForm:
+    """A transfer function as a product over its roots in and around a band."""
+
+    name: str  # ``OUT/IN``
+    end_hz: Fraction  # of the band
+    gain: float
+    power: int  # of s
+    # zeros and poles: by rising frequency.
+    zeros: tuple[SplitRoot, ...]
+    poles: tuple[SplitRoot, ...]
+    # q(s) = P(v) + (s/end) Q(v) with v = 2 (s/end)^2 + 1: Chebyshev coefficients of P and Q.
+    even: tuple[float, ...]
+    odd: tuple[float, ...]
+    reason: str = ""  # why it is not proved that these are all roots; empty where it is
+
+    @classmethod
+    def zero(cls, name: str) -> BandForm:
+        """Return that of a function that is zero at every s."""
+        return cls(name, LUMPED_END, 0.0, 0, (), (), (), ())
+
+    @property
+    def end(self) -> float:
+        """The end of the band [rad/s]."""
+        return tau * float(self.end_hz)
+
+    @property
+    def centers_hz(self) -> list[float]:
+        """The frequencies of poles and zeros [Hz]: by their imaginary parts, and by their sizes."""
+        found = [(r.im[0], sqrt(r.re[0] ** 2 + r.im[0] ** 2)) for r in (*self.zeros, *self.poles)]
+        return sorted({x / tau for pair in found for x in pair if x})
+
+    def sentences(self) -> tuple[str, ...]:
+        """Return what a docstring says of it, in paragraphs."""
+        words = [
+            f"{len(roots)} {kind if len(roots) == 1 else kind + 's'}"
+            for roots, kind in ((self.poles, "pole"), (self.zeros, "zero"))
+        ]
+        degree = max(2 * len(self.even) - 2, 2 * len(self.odd) - 1, 0)
+        at_zero = f"s^{self.power} * " if self.power else ""
+        formula = (
+            f"{self.name} = gain * {at_zero}product of (1 - s/z) over {words[1]} / product of (1 - s/p) over "
+            f"{words[0]} * exp(q(s)), conjugate pairs counted once, q a polynomial of degree {degree}."
+        )
+        proof = (
+            f"It was not proved that these are all poles and zeros there: {self.reason}."
+            if self.reason
+            else "The poles and zeros in the band and around it are proved, and that there are no others."
+        )
+        return (
+            formula,
+            f"Band form: it holds for abs(s) up to {self.end:.5g} rad/s, {float(self.end_hz):.5g} Hz, and not "
+            f"beyond. {proof} Numbers are those of the file: no parameter can be changed here.",
+        )
+
+    def beside(self, part: float, error: str) -> str:
+        """Return what a docstring says of values beside the axis, where the error was measured."""
+        return f"Beside the axis, at abs(re(s)) = {part * self.end:.3g} rad/s, the worst relative error is {error}."
+
+    def program(self) -> Piecewise:
+        """Return the program."""
+        forge = Forge()
+        factors = [forge.constant(Fraction(self.gain))]
+        base = forge.power(forge.s, abs(self.power))
+        factors += [base] if self.power > 0 else [forge.divide(forge.constant(1), base)] if self.power else []
+        for zero, pole in zip_longest(self.zeros, self.poles):
+            above, below = (_factor(forge, root) for root in (zero, pole))
+            scale = (pole.scale if pole else Fraction(1)) / (zero.scale if zero else Fraction(1))
+            factors.append(forge.multiply([forge.constant(scale), forge.divide(above, below)]))
+        if exponent := self._exponent(forge):
+            factors.append(forge.apply("complex_exp", exponent))
+        return schedule(forge, (), forge.multiply(factors), None, inf)
+
+    def _exponent(self, forge: Forge) -> int | None:
+        """Return q(s), nothing where it is zero."""
+        if not self.even and not self.odd:
+            return None
+        s, end = forge.s, Fraction(self.end)
+        twice = forge.label(
+            forge.add([forge.constant(2), forge.multiply([forge.constant(4 / end**2), s, s])]), "w"
+        )
+        parts = []
+        if self.even:
+            parts.append(_clenshaw(forge, self.even, twice))
+        if self.odd:
+            parts.append(forge.multiply([forge.constant(1 / end), s, _clenshaw(forge, self.odd, twice)]))
+        return forge.label(forge.add(parts), "q")
+
+
+def _factor(forge: Forge, root: SplitRoot | None) -> int:
+    """Return ``z - s``, of a pair the product of two such, ``s - z`` of a negative z: its rest is added last."""
+    if root is None:
+        return forge.constant(1)
+    if root.is_negative:
+        return forge.add(
+            [forge.constant(-Fraction(root.re[0])), forge.s, forge.constant(-Fraction(root.re[1]))]
+        )
+    minus = forge.negate(forge.s)
+    factors = []
+    for sign in (1,) if root.is_real else (1, -1):
+        terms = []
+        for re, im in zip(root.re, root.im, strict=True):
+            if im:
+                terms.append(forge.complex_number(Fraction(re), sign * Fraction(im)))
+            else:
+                terms.append(forge.constant(Fraction(re)))
+        factors.append(forge.add([terms[0], minus, terms[1]]))
+    return forge.multiply(factors)
+
+
+def _clenshaw(forge: Forge, coefficients: Sequence[float], twice: int) -> int:
+    """Return a Chebyshev sum at half of ``twice`` (Clenshaw 1955)."""
+    zero = forge.constant(0)
+    after, last = zero, zero
+    for c in reversed(coefficients[1:]):
+        terms = [forge.constant(Fraction(c)), forge.multiply([twice, after]), forge.negate(last)]
+        after, last = forge.add(terms), after
+    half = forge.multiply([forge.constant(Fraction(1, 2)), twice, after])
+    return forge.add([forge.constant(Fraction(coefficients[0])), half, forge.negate(last)])
+
+
+def is_closed(tf: AnyTransferFunction) -> bool:
+    """Tell whether a function is a closed expression, not the solution of equations at every s."""
+    if isinstance(tf, NestedTransferFunction):
+        return not tf.is_distributed
+    return not tf.is_nameless and not any(law.matrix for law in tf.kernels.dispersions)
+
+
+def band_form(values: Enclosures, up_to: Fraction | None = None) -> BandForm:
+    """Return the band form of a function whose ``values`` are enclosed, up to a frequency [Hz].
+
+    By default up to the end of the model's band, or as far as the model's modes, five where it says none,
+    and five more tell. Roots that could not be proved serve where the rest proves to be smooth.
+
+    Raises ModelError: SF910 where it is not.
+    """
+    bound = values.bound
+    found, end = _located(bound, up_to)
+    far = found.region.high if isinstance(found.region, Band) else end
+    for _ in range(ROUNDS):
+        made = _fitted(values, found, end)
+        if made is not None:
+            return made
+        if isinstance(found.region, Everything):
+            break
+        far *= FURTHER
+        found = locate(bound, Band(Fraction(0), far), DIGITS)
+    reason = found.certificate.reason or "it is not smooth beside its poles and zeros"
+    message = f"{bound.name} has no band form up to {float(end):.4g} Hz: {reason}"
+    raise ModelError(Diagnostic("SF910", message, None, "ask for a lower --up-to, or export it to numpy"))
+
+
+def _located(bound: AnyBoundFunction, up_to: Fraction | None) -> tuple[PoleZeroMap, Fraction]:
+    """Return poles and zeros in the band and around it, and the end of the band [Hz]."""
+    analysis = bound.source.model.analysis
+    if up_to is None and analysis.band is not None:
+        up_to = analysis.band[1]
+    if not bound.is_distributed:
+        return locate(bound, Everything(), DIGITS), up_to or LUMPED_END
+    if up_to is not None:
+        return locate(bound, Band(Fraction(0), up_to * FURTHER), DIGITS), up_to
+    modes = analysis.modes or DEFAULT_MODES
+    found = locate(bound, Modes(modes + BEYOND), DIGITS)
+    poles, zeros = ([group[0].frequency_hz() for group in groups(x)] for x in (found.poles, found.zeros))
+    if len(poles) <= modes:
+        return found, LUMPED_END
+    # Between two modes, where the function is neither large nor small.
+    end = Fraction(f"{sqrt(poles[modes - 1] * poles[modes]):.3g}")
+    if len(zeros) >= modes + BEYOND and max(zeros) < FURTHER * end:
+        found = locate(bound, Band(Fraction(0), Fraction(max(poles))), DIGITS)
+    return found, end
+
+
+def _split(roots: Sequence[Root]) -> tuple[int, tuple[SplitRoot, ...]]:
+    """Return how many roots are zero, and the others, each as often as it occurs, pairs once."""
+    at_zero, found = 0, []
+    for root in roots:
+        if root.is_zero:
+            at_zero += root.multiplicity
+        elif not root.im < 0:
+            re = (0.0, 0.0) if root.on_imaginary_axis else _two_doubles(root.re)
+            im = (0.0, 0.0) if root.is_real else _two_doubles(root.im)
+            found += [SplitRoot(re, im)] * root.multiplicity
+    return at_zero, tuple(found)
+
+
+def _two_doubles(x: arb) -> tuple[float, float]:
+    with ctx.workprec(max(BITS, x.bits())):
+        high = float(x.mid())
+        return high, float((x.mid() - arb(high)).mid())
+
+
+def _fitted(values: Enclosures, found: PoleZeroMap, end: Fraction) -> BandForm | None:
+    """Return the band form with given roots, None where what they leave is not smooth."""
+    (below, poles), (above, zeros) = _split(found.poles), _split(found.zeros)
+    name, reason = values.bound.name, found.certificate.reason or ""
+    made = BandForm(name, end, 1.0, above - below, zeros, poles, (), (), reason)
+    count = FIRST_NODES
+    while count <= MOST_NODES:
+        fit = _fit(values, made, count)
+        if fit is None:
+            return None
+        gain, even, odd = fit
+        kept = [_trimmed(part) for part in (even, odd)]
+        if all(len(part) <= 2 * count // 3 for part in kept):
+            return BandForm(name, end, gain, above - below, zeros, poles, kept[0], kept[1], reason)
+        count *= 3
+    return None
+
+
+def _trimmed(coefficients: Sequence[float]) -> tuple[float, ...]:
+    """Return the coefficients up to the last one that counts."""
+    last = max((i for i, c in enumerate(coefficients) if abs(c) > NEGLIGIBLE), default=-1)
+    return tuple(coefficients[: last + 1])
+
+
+def _fit(values: Enclosures, made: BandForm, count: int) -> tuple[float, list[float], list[float]] | None:
+    """Return the gain and the Chebyshev coefficients of the logarithm of what roots leave.
+
+    On ``s = j x end`` its real part is even in x, its imaginary part odd; in ``v = 1 - 2 x^2`` points x are
+    Chebyshev's. The imaginary part is continued from point to point along its derivative.
+    """
+    nodes = []
+    for i in range(count):
+        # Doubles, since functions are enclosed at doubles.
+        x = float(_node(count, i).mid())
+        s = complex(0.0, x * made.end)
+        enclosed = values.at(s)
+        if enclosed is None:
+            return None
+        nodes.append((x, *_left(made, acb(s), enclosed.value, enclosed.slope)))
+    (lowest, first, slope), *_ = nodes
+    with ctx.workprec(BITS):
+        at_zero = first * (acb(0, -lowest * made.end) * slope.real).exp()
+        gain = (-1.0 if at_zero.real < 0 else 1.0) * float(abs(first).mid())
+        even, odd, angle, before, tilt = [], [], arb(0), 0.0, float(slope.real.mid())
+        for i, (x, value, slope) in enumerate(nodes):
+            relative = value / arb(gain)
+            own = float(slope.real.mid())
+            expected = angle + arb((tilt + own) / 2 * (x - before) * made.end)
+            turned = (relative * (acb(0, -1) * expected).exp()).arg()
+            angle, before, tilt = expected + turned, x, own
+            # From the double to the point itself: else the series would end in the double's rounding.
+            node = _node(count, i)
+            step = slope * acb(0, arb(made.end) * node - arb(x * made.end))
+            even.append(abs(relative).log() + step.real)
+            odd.append((angle + step.imag) / node)
+        return gain, _chebyshev(even), _chebyshev(odd)
+
+
+def _node(count: int, i: int) -> arb:
+    """Return a positive point x, from small to large, with ``1 - 2 x^2`` a Chebyshev point."""
+    return (arb.pi() * (2 * i + 1) / (4 * count)).sin()
+
+
+def _left(made: BandForm, s: acb, value: acb, slope: acb) -> tuple[acb, acb]:
+    """Return what is left of a value where roots are taken out, and its logarithmic derivative."""
+    with ctx.workprec(BITS):
+        value, slope = value / s**made.power, slope - made.power / s
+        for roots, sign in ((made.zeros, 1), (made.poles, -1)):
+            for root in roots:
+                value = value / root.factor(s) ** sign
+                re, im = (arb(x[0]) + arb(x[1]) for x in (root.re, root.im))
+                for z in (acb(re),) if root.is_real else (acb(re, im), acb(re, -im)):
+                    slope = slope - sign / (s - z)
+        return value, slope
+
+
+def _chebyshev(samples: Sequence[arb]) -> list[float]:
+    """Return the coefficients of the polynomial with given values at Chebyshev points, from v = 1 down.
+
+    Examples
+    --------
+    >>> [round(c, 12) for c in _chebyshev([arb((2 * i + 1) / 8 * pi).cos() for i in range(4)])]
+    [0.0, 1.0, 0.0, 0.0]
+    """
+    count = len(samples)
+    found = []
+    for k in range(count):
+        angles = ((2 * i + 1) * k for i in range(count))
+        turns = [(arb.pi() * n / (2 * count)).cos() for n in angles]
+        total = sum((y * turn for y, turn in zip(samples, turns, strict=True)), arb(0))
+        found.append(float((total * (1 if k == 0 else 2) / count).mid()))
+    return found
