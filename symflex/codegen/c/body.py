@@ -163,9 +163,10 @@ class CPrinter:
         if x.kind is not Kind.REAL:
             message = f"no text for {function} of a complex number"
             raise TypeError(message)
-        if self.in_lanes and x.varies and function in LANE_FUNCTIONS:
-            return _call(f"lane_{function}", Kind.REAL, x)
-        return _call(REAL_FUNCTIONS[function], Kind.REAL, x)
+        name = REAL_FUNCTIONS[function]
+        if self.in_lanes and x.varies and name in LANE_FUNCTIONS:
+            return _call(f"lane_{name}", Kind.REAL, x)
+        return _call(name, Kind.REAL, x)
 
 
 def _complex(real: float, imaginary: float) -> Term:
@@ -233,7 +234,7 @@ def difference(x: Term, y: Term) -> Term:
         case (Kind.REAL, Kind.COMPLEX):
             return _call("cx_rsub", Kind.COMPLEX, x, y)
         case (Kind.IMAGINARY, Kind.COMPLEX):
-            return _call("cx_sub", Kind.COMPLEX, complex_term(x), y)
+            return _call("cx_isub", Kind.COMPLEX, x, y)
         case (Kind.REAL, Kind.REAL) | (Kind.IMAGINARY, Kind.IMAGINARY):
             return _infix(x, "-", y, x.kind)
     return total(x, negative(y))

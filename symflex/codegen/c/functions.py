@@ -528,11 +528,12 @@ def fits_lanes(program: tree.Piecewise) -> bool:
 
 
 def is_rational_in_lanes(program: tree.Piecewise) -> bool:
-    """Tell whether a program varies, has one branch, and calls no function of s."""
+    """Tell whether a program varies, has one branch, and calls no function of s but an exponential."""
     near = program.near
     values = (*(a.value for a in near.assignments), *near.values)
-    calls = (n for value in values for n in value.walk() if isinstance(n, tree.Apply | tree.Solutions))
-    return program.varies and program.far is None and not any(calls)
+    nodes = [n for value in values for n in value.walk()]
+    calls = any(isinstance(n, tree.Solutions) or (isinstance(n, tree.Apply) and n.function != "complex_exp") for n in nodes)
+    return program.varies and program.far is None and not calls
 
 
 def lanes(program: tree.Piecewise, members: Mapping[str, str]) -> list[str]:

@@ -25,8 +25,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import zip_longest
-from math import inf, log2, sqrt, tau
+from math import inf, log2, prod, sqrt, tau
 from typing import TYPE_CHECKING
 
 from flint import acb, arb, ctx, fmpq
@@ -64,6 +63,9 @@ FIRST_NODES, MOST_NODES = 24, 216
 
 NEGLIGIBLE = 2.0**-57
 """Size of a coefficient that changes no double."""
+
+GROUP = 8
+"""Zeros, and poles, that are multiplied before their products are divided: a division costs several of them."""
 
 BITS = 160
 """With which coefficients are summed: those of two doubles, and as many again for what cancels."""
@@ -171,9 +173,10 @@ class BandForm:
         factors = [forge.constant(Fraction(self.gain))]
         base = forge.power(forge.s, abs(self.power))
         factors += [base] if self.power > 0 else [forge.divide(forge.constant(1), base)] if self.power else []
-        for zero, pole in zip_longest(self.zeros, self.poles):
-            above, below = (_factor(forge, root) for root in (zero, pole))
-            scale = (pole.scale if pole else Fraction(1)) / (zero.scale if zero else Fraction(1))
+        for first in range(0, max(len(self.zeros), len(self.poles)), GROUP):
+            zeros, poles = (x[first : first + GROUP] for x in (self.zeros, self.poles))
+            above, below = (forge.multiply([_factor(forge, root) for root in x]) for x in (zeros, poles))
+            scale = prod((r.scale for r in poles), start=Fraction(1)) / prod(r.scale for r in zeros)
             factors.append(forge.multiply([forge.constant(scale), forge.divide(above, below)]))
         if exponent := self._exponent(forge):
             factors.append(forge.apply("complex_exp", exponent))
@@ -195,7 +198,7 @@ class BandForm:
         return forge.label(forge.add(parts), "q")
 
 
-def _factor(forge: Forge, root: SplitRoot | None) -> int:
+def _factor(forge: Forge, root: SplitRoot) -> int:
     """Return ``z - s``, of a pair the product of two such, ``s - z`` of a negative z: its rest is added last."""
     if root is None:
         return forge.constant(1)

@@ -48,6 +48,12 @@ static inline cx cx_rsub(double a, cx z)    /* a - z */
     return cx_of(a - z.re, -z.im);
 }
 
+//: cx_isub
+static inline cx cx_isub(double a, cx z)    /* j a - z */
+{
+    return cx_of(-z.re, a - z.im);
+}
+
 //: cx_scale
 static inline cx cx_scale(double a, cx z)    /* a z */
 {
