@@ -130,7 +130,7 @@ class ExportOptions:
         None,
         "--up-to",
         metavar="FREQUENCY",
-        help="Where the band of --form band ends, in Hz or with a unit.  [default: the model's band or modes]",
+        help="Where the band of band forms ends, in Hz or with a unit.  [default: the model's band or modes]",
     )
     width: str | None = option(
         None, "--width", metavar=WIDTHS, help="latex: width of the column; a4 (170 mm) by default."

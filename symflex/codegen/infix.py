@@ -8,7 +8,7 @@ own way is overridden: numbers, powers, a statement, a branch, a function.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from textwrap import TextWrapper
 from typing import TYPE_CHECKING, ClassVar
 
@@ -34,8 +34,6 @@ class InfixPrinter(ABC):
     locals: Mapping[str, str]
     variable: str  # identifier of s, or of what takes its place
     inverse: str = ""  # identifier of 1/s; only far branches have it
-    # What calls the functions of x that members vary like.
-    follows: Mapping[tree.Straight, str] = field(default_factory=dict, kw_only=True)
 
     times: ClassVar[str] = "*"
     over: ClassVar[str] = "/"
@@ -104,18 +102,6 @@ class InfixPrinter(ABC):
         """Return a call of a run-time function, named as in :mod:`symflex.codegen.program.evaluate`."""
         return f"_{function}({', '.join(arguments)})"
 
-    @abstractmethod
-    def frames(self, frames: tree.Frames) -> str:
-        """Return the frames of a sum of exponentials."""
-
-    def follower(self, minors: tree.FundamentalMinors) -> str:
-        """Return what follows a matrix along x."""
-        return "fundamental_minors"
-
-    def positions(self, minors: tree.FundamentalMinors) -> list[str]:
-        """Return where parts of a law along x stand, and which minors of its matrix are wanted."""
-        return [repr(minors.places), repr(minors.wanted)]
-
     # -------------------------------------------------------------------------------------------- the tree
 
     def _print(self, node: tree.CodeNode) -> tuple[str, int]:
@@ -144,31 +130,13 @@ class InfixPrinter(ABC):
                 return self.power(self.within(base, LEAF), exponent), _POWER
             case tree.Apply(function, argument):
                 return self.applied(function, argument), LEAF
-        return self._with_lists(node), LEAF
+        return self.with_lists(node), LEAF
 
-    def _with_lists(self, node: tree.CodeNode) -> str:
+    def with_lists(self, node: tree.CodeNode) -> str:
         """Return the text of what takes lists or gives them."""
         match node:
             case tree.Solutions(coefficients, terms):
-                given = self._listed(coefficients)
-                return (
-                    self.call("series_solutions", [given, str(terms)])
-                    if terms
-                    else self.call("propagated", [given])
-                )
-            case tree.Roots(coefficients):
-                return self.call("characteristic_roots", [self._listed(coefficients)])
-            case tree.ModeValues(roots, length):
-                return self.call("mode_values", [self.print(roots), self.print(length)])
-            case tree.ModalValue(modes, coefficients, frames):
-                lists = [self._listed(modes), self._listed(coefficients)]
-                return self.call("modal_value", [*lists, self.frames(frames)])
-            case tree.ScaledSum(amplitudes, exponents):
-                return self.call("scaled_sum", [self._listed(x) for x in (amplitudes, exponents)])
-            case tree.FundamentalMinors(start, length, bases, along):
-                ends = [self.print(start), self.print(length), self._listed(bases)]
-                everything = [self.follows[along], *ends, *self.positions(node)]
-                return self.call(self.follower(node), everything)
+                return self.call("series_solutions", [self.list_of(coefficients), str(terms)])
             case tree.Item(values, position):
                 return self.item(self.within(values, LEAF), position)
         message = f"no text for {type(node).__name__}"
@@ -187,7 +155,8 @@ class InfixPrinter(ABC):
             case tree.Negate(operand):
                 return f"-{self.within(operand, _POWER)}", _SIGN
 
-    def _listed(self, nodes: Iterable[tree.CodeNode]) -> str:
+    def list_of(self, nodes: Iterable[tree.CodeNode]) -> str:
+        """Return a list of expressions."""
         return self.listed(self.print(n) for n in nodes)
 
     def _sum(self, terms: Sequence[tree.CodeNode]) -> str:
@@ -242,11 +211,6 @@ class PrivateFunctions(ABC):
     def blocks(self) -> list[str]:
         """Return the functions, each as text that ends with a line end."""
 
-    def along(self, number: int) -> str:
-        """Return the text of a function without name, of x, that gives the parts of a law along x."""
-        message = f"no text for what member {number} varies like"
-        raise TypeError(message)
-
     def arguments(self, variable: str) -> list[str]:
         """Return what the functions take: s or its like, and the parameters."""
         return [variable, *(self.parameters[p] for p in self.program.parameters)]
@@ -257,8 +221,7 @@ class PrivateFunctions(ABC):
         taken = {*self.reserved, *self.parameters.values()}
         names = identifiers({**own, **{a.name: a.name for a in assignments}}, taken, self.longest)
         found = [names[key] for key in own]
-        follows = {minors.along: self.along(number) for number, minors in enumerate(self.program.minors)}
-        return self.printer(self.parameters, names, found[0], found[-1], follows=follows), found
+        return self.printer(self.parameters, names, found[0], found[-1]), found
 
     def assigned(
         self, assignments: Sequence[tree.Assignment], printer: InfixPrinter, depth: int = 1

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, ClassVar
 from symflex.codegen.export import Export, Language, called_parts, parts_of
 from symflex.codegen.infix import InfixPrinter, NumberFunctions, in_lines
 from symflex.codegen.module_text import (
-    COST,
     default_value,
     described,
     formula_lines,
@@ -28,7 +27,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from symflex.codegen.export import Contents, Member
-    from symflex.codegen.program.nodes import Frames
     from symflex.model import Model
 
 WIDTH = 92
@@ -76,20 +74,6 @@ class JuliaPrinter(InfixPrinter):
     def item(self, values: str, position: int) -> str:
         """Return one value of a vector, counted from 0."""
         return f"{values}[{position + 1}]"
-
-    def frames(self, frames: Frames) -> str:
-        """Return a triple per frame: slots, terms, and keys with their divisors."""
-        texts = []
-        for slots, terms, keys in frames:
-            pairs = self.listed(f"({_tuple(orders)}, {i + 1})" for orders, i in terms)
-            products = self.listed(f"({_tuple(key)}, {divisor})" for key, divisor in keys)
-            texts.append(f"({_tuple(slots)}, {pairs}, {products})")
-        return self.listed(texts)
-
-
-def _tuple(numbers: Sequence[int]) -> str:
-    """Return positions, counted from 0, as a tuple of those counted from 1."""
-    return repr(tuple(n + 1 for n in numbers))
 
 
 def head(name: str, arguments: Sequence[str]) -> list[str]:
@@ -150,13 +134,10 @@ def julia_module(contents: Contents) -> Export:
         private = functions.blocks()
         blocks += [_public(m, functions, digits), *private]
         code += "\n".join(private)
-    called = called_parts(code, parts_of("julia.jl"))
-    blocks += called
+    blocks += called_parts(code, parts_of("julia.jl"))
     for table, is_real in (("TRANSFER_FUNCTIONS", False), ("FREQUENCY_RESPONSES", True)):
         blocks.append(_function_table(table, [m for m in members if m.program.is_real == is_real], public))
     header = [*_docstring(_header(model, members, digits)), f"module {main}", ""]
-    if any("LinearAlgebra." in text for text in called):
-        header += ["import LinearAlgebra", ""]
     if public:
         header += [*_exported(list(public.values())), ""]
     text = "\n".join([*header, "\n".join(blocks), f"end # module {main}", ""])
@@ -265,8 +246,6 @@ def _public(member: Member, functions: JuliaFunctions, digits: int) -> str:
         lines += wrapped(text, WIDTH, "", "  ")
     lines += ["", *wrapped(_disarmed(inert(f"{member.verification.text(digits)}.")), WIDTH)]
     lines.append("Not finite at poles.")
-    if member.program.solves:
-        lines += wrapped(COST, WIDTH)
     whole = f"{opening}{'; ' if signature else ''}{', '.join(signature)})"
     first = [f"function {whole}"]
     if len(first[0]) > WIDTH:

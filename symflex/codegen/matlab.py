@@ -15,8 +15,6 @@ from symflex.algebra import LAPLACE, Factored
 from symflex.codegen.export import Export, Language, called_parts, parts_of
 from symflex.codegen.infix import InfixPrinter, PrivateFunctions, in_lines
 from symflex.codegen.module_text import (
-    COST,
-    FOLLOWED,
     FORMULA_TERMS,
     default_value,
     described,
@@ -38,14 +36,7 @@ if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
     from symflex.codegen.export import Contents, Member
-    from symflex.codegen.program.nodes import (
-        CodeNode,
-        CodePiece,
-        Frames,
-        FundamentalMinors,
-        Piecewise,
-        Straight,
-    )
+    from symflex.codegen.program.nodes import CodeNode, CodePiece, Piecewise
     from symflex.expressions import Expression
     from symflex.transfer import AnyTransferFunction
 
@@ -151,44 +142,6 @@ class MatlabPrinter(InfixPrinter):
         """Return a call of a run-time function."""
         return f"{function}({', '.join(arguments)})"
 
-    def positions(self, minors: FundamentalMinors) -> list[str]:
-        """Return matrices of positions counted from 1, and what tells of a tip where there is one."""
-        wanted = "; ".join(", ".join(_matrix([lines], 1) for lines in minor) for minor in minors.wanted)
-        texts = [_places(minors.places), f"{{{wanted}}}"]
-        if (tip := minors.tip) is None:
-            return texts
-        own = [_matrix([tip.powers], 0), _matrix([tip.exponents], 0), _matrix([tip.free], 1)]
-        return [*texts, self.listed([_places(tip.places), *own])]
-
-    def follower(self, minors: FundamentalMinors) -> str:
-        """Return what follows a matrix along x: where it begins at a tip, a function of its own."""
-        return "minors_from_tip" if minors.tip else super().follower(minors)
-
-    def frames(self, frames: Frames) -> str:
-        """Return a cell per frame: slots, orders and coefficients of terms, roots and divisors of keys."""
-        texts = []
-        for slots, terms, keys in frames:
-            parts = [
-                _matrix([slots], 1),
-                _matrix([orders for orders, _ in terms], 1),
-                _matrix([[i for _, i in terms]], 1),
-                _matrix([key for key, _ in keys], 1),
-                _matrix([[divisor for _, divisor in keys]], 0),
-            ]
-            texts.append(self.listed(parts))
-        return self.listed(texts)
-
-
-def _places(places: Sequence[Sequence[int]]) -> str:
-    """Return the matrix of where parts of a law stand, by rows and columns counted from 1."""
-    return _matrix([(row + 1, column + 1, *powers) for row, column, *powers in places], 0)
-
-
-def _matrix(rows: Sequence[Sequence[int]], shift: int) -> str:
-    if not rows or not rows[0]:
-        return f"zeros({len(rows)}, 0)"
-    return f"[{'; '.join(', '.join(str(x + shift) for x in row) for row in rows)}]"
-
 
 def continued(text: str, indent: str) -> list[str]:
     """Return one statement, without strings that hold blanks, continued over lines where it is long."""
@@ -230,17 +183,9 @@ class LocalFunctions(PrivateFunctions):
         if self.program.is_lumped:
             return [self._lumped(self.program)]
         blocks = [self._number(self.program)]
-        for i, minors in enumerate(self.program.minors):
-            blocks.append(self._along(i, minors.along))
         for i, piece in enumerate(self.program.code):
             blocks += self._piece(i, piece)
         return blocks
-
-    def along(self, number: int) -> str:
-        """Return the text of a function without name, of x, that gives the parts of a law along x."""
-        x = identifiers({"x": "x"}, {*self.reserved, *self.parameters.values()}, self.longest)["x"]
-        given = ", ".join(self.arguments(x))
-        return f"@({x}) {self.names[f'{number}_along']}({given})"
 
     # ------------------------------------------------------------------------------------------- functions
 
@@ -309,13 +254,6 @@ class LocalFunctions(PrivateFunctions):
             text = f"(-1.0i) .* ({text})"
         lines += [*self.statement(num, text), *self.statement(den, printer.print(below))]
         return [self._function(f"[{num}, {den}]", str(number), variable, lines)]
-
-    def _along(self, number: int, code: Straight) -> str:
-        assignments = (*code.constants, *code.assignments)
-        printer, (x, value) = self.scope(assignments, "x", "value")
-        listed = printer.listed(printer.print(v) for v in code.values)
-        lines = [*self.assigned(assignments, printer), *self.statement(value, listed)]
-        return self._function(value, f"{number}_along", x, lines)
 
     def _mean(self, number: int, points: int) -> str:
         _, (variable, value, z) = self.scope((), self.variable, "value", "z")
@@ -410,7 +348,6 @@ class _File:
         roles = ["value"] if program.is_lumped else ["number"]
         for i, piece in enumerate(() if program.is_lumped else program.code):
             roles += [f"{i}_parts", str(i)] if piece.circle else [str(i)]
-        roles += [f"{i}_along" for i, _ in enumerate(program.minors)]
         return [*roles, *(SYSTEM_ROLES if member.key in self.systems else ())]
 
     def made(self) -> Export:
@@ -522,8 +459,6 @@ class _File:
         if origin := origin_lines(tf.model, ROOM):
             help_text += [*(_disarmed(line) for line in origin), ""]
         help_text += wrapped(_text(member.verification.text(self.digits)), ROOM)
-        if member.program.solves:
-            help_text += wrapped(FOLLOWED if member.program.minors else COST, ROOM)
         first = f"{name.upper()}  {_disarmed(headline(tf, is_real=member.program.is_real))}"
         return _function(
             f"function value = {name}({functions.variable}, varargin)",

@@ -46,22 +46,10 @@ FOLLOWED = (
 )
 """What is said of functions of members that vary along x."""
 
-CUT = (
-    "Waves are followed along members whose coefficients vary, in pieces that were made for the model's "
-    "values and twice the band's end; beyond it, and where waves are much slower, there is no number."
-)
-"""The same where pieces do not depend on values."""
-
 COST = (
     "Exponents without a formula are found numerically, which costs some hundred times a complex exponential."
 )
 """What is said of functions that solve for their exponents."""
-
-ITERATED = (
-    "Exponents without a formula are found by iteration, which costs some hundred times a complex "
-    "exponential; the error was measured with exponents from eigenvalues."
-)
-"""What is said of those that find their exponents otherwise than the code that was measured."""
 
 
 def formula_of(tf: AnyTransferFunction) -> tuple[str, ...]:

@@ -1,8 +1,7 @@
 """Expressions in C, and the body of a function while it is printed: variables, statements, branches.
 
 Input: assignments and conditions of a program.
-Output: lines. What a name of a model cannot be called in C stands here too, and how a sum of exponentials of
-characteristic roots becomes a table of numbers that C code follows.
+Output: lines. What a name of a model cannot be called in C stands here too.
 
 C's own complex multiplication and division look for infinities in every result, which costs several times the
 arithmetic and depends on compiler flags. Here an expression is known to be real, imaginary or complex when it
@@ -68,8 +67,6 @@ class Term:
     varies: bool = False  # true when it depends on s
     binding: int = _LEAF  # how tightly its outermost operator binds
     depth: int = 0  # how many calls are nested in it
-    # Of an array of complex numbers, the position from which on they are real; negative for none.
-    real_at: int = -1
 
     def within(self, tightest: int) -> str:
         """Return the text, in parentheses where an operator around it binds tighter."""
@@ -126,8 +123,7 @@ class CPrinter:
                 return self._apply(function, self.print(argument))
             case tree.Item(values, position):
                 held = self.listed(values)
-                part, kind = (".re", Kind.REAL) if 0 <= held.real_at <= position else ("", held.kind)
-                return Term(f"{held.text}[{position}]{part}", kind, held.varies)
+                return Term(f"{held.text}[{position}]", held.kind, held.varies)
         message = f"no text for {type(node).__name__}"
         raise TypeError(message)
 
@@ -344,14 +340,12 @@ FUNCTIONS = frozenset(
     main size_t ptrdiff_t
     sqrt exp log log2 ldexp ceil fmax fmin sin cos tan sinh cosh tanh fabs hypot pow copysign
     creal cimag
-    memcpy uint64_t malloc free rint
+    memcpy uint64_t rint
     """.split()
 ).union(*PARTS)
 """What the code calls, and the types it uses."""
 
-LOCALS = frozenset(
-    "s p omega n i j w x g re im real imag sign value padded near is_near count entry part kept".split()
-)
+LOCALS = frozenset("s p omega n i j w x g re im real imag sign value padded near is_near count".split())
 """Arguments and variables that every function has under these names."""
 
 RESERVED = KEYWORDS | MACROS
@@ -399,17 +393,6 @@ def statement(opening: str, value: str, depth: int) -> list[str]:
     return wrapper.wrap(f"{opening} {value};")
 
 
-LISTS = (
-    tree.Solutions,
-    tree.Roots,
-    tree.ModeValues,
-    tree.ModalValue,
-    tree.FundamentalMinors,
-    tree.ScaledSum,
-)
-"""Nodes whose values are lists."""
-
-
 @dataclass
 class Body:
     """The variables of one C function, and the statements that make them."""
@@ -421,8 +404,6 @@ class Body:
     lines: list[str] = field(default_factory=list)  # the statements so far
     known: dict[str, Term] = field(default_factory=dict)  # assigned values by their names in the program
     used: set[str] = field(default_factory=set)  # names of the parameters in use
-    # What the functions of matrices followed along x are called, of each its number and its program's name.
-    followed: Mapping[tree.FundamentalMinors, str] = field(default_factory=dict)
     _taken: set[str] = field(default_factory=set)
     _shared: dict[tuple[str, Kind], Term] = field(default_factory=dict)
 
@@ -474,7 +455,7 @@ class Body:
     def assign(self, assignments: Sequence[tree.Assignment]) -> None:
         """Make variables; what is free of s and made already is not made again."""
         for assignment in assignments:
-            if isinstance(assignment.value, LISTS):
+            if isinstance(assignment.value, tree.Solutions):
                 self.known[assignment.name] = self._array(assignment.value, assignment.name)
                 continue
             term = self.printer.whole(assignment.value)
@@ -509,91 +490,20 @@ class Body:
         return self.parameters[name]
 
     def _array(self, node: tree.CodeNode, wanted: str = "solutions") -> Term:
-        match node:
-            case tree.Solutions(coefficients, count):
-                given, order, varies = self._given(coefficients)
-                found = self.name(wanted)
-                call = (
-                    f"cx_series({given}, {order}, {count}," if count else f"cx_propagated({given}, {order},"
-                )
-                self.add(f"cx {found}[{order}];", f"{call} {found});")
-                return Term(found, Kind.COMPLEX, varies)
-            case tree.Roots(coefficients):
-                given, order, varies = self._given(coefficients)
-                found = self.name(wanted)
-                self.add(f"cx {found}[{order + 1}];", f"cx_roots({given}, {order}, {found});")
-                return Term(found, Kind.COMPLEX, varies, real_at=order)
-            case tree.ModeValues(roots, length):
-                held, scale = self.printer.listed(roots), complex_term(self.term(length))
-                found = self.name(wanted)
-                self.add(f"cx_mode {found};")
-                self.say(f"cx_modes({held.text}, {held.real_at},", f"{scale.text}, &{found})")
-                return Term(found, Kind.COMPLEX, held.varies or scale.varies)
-            case tree.ModalValue():
-                return self._modal(node, wanted)
-            case tree.ScaledSum(amplitudes, exponents):
-                given, number, varies = self._given(amplitudes)
-                logarithms, _, grows = self._given(exponents)
-                found = self.name(wanted)
-                self.add(f"cx {found}[2];", f"cx_total({given}, {logarithms}, {number}, {found});")
-                return Term(found, Kind.COMPLEX, varies or grows, real_at=1)
-            case tree.FundamentalMinors(wanted=minors):
-                found, own = self.name(wanted), self.followed[node]
-                self.say(f"const cx *const {found} =", f"kept[{own.partition('_')[0]}].now")
-                return Term(found, Kind.COMPLEX, varies=True, real_at=len(minors))
-        message = f"no text for {type(node).__name__}"
-        raise TypeError(message)
+        if not isinstance(node, tree.Solutions):
+            message = f"no text for {type(node).__name__}"
+            raise TypeError(message)
+        given, varies = self._given(node.coefficients)
+        order, found = len(node.coefficients), self.name(wanted)
+        self.add(f"cx {found}[{order}];", f"cx_series({given}, {order}, {node.terms}, {found});")
+        return Term(found, Kind.COMPLEX, varies)
 
-    def _given(self, nodes: Sequence[tree.CodeNode]) -> tuple[str, int, bool]:
-        """Declare an array of coefficients; return its name, its length and whether it depends on s."""
+    def _given(self, nodes: Sequence[tree.CodeNode]) -> tuple[str, bool]:
+        """Declare an array of coefficients; return its name and whether it depends on s."""
         terms = [complex_term(self.term(c)) for c in nodes]
         given = self.name("coefficients")
         self.say(f"const cx {given}[{len(terms)}] =", f"{{{', '.join(t.text for t in terms)}}}")
-        return given, len(terms), any(t.varies for t in terms)
-
-    def _modal(self, node: tree.ModalValue, wanted: str) -> Term:
-        modes = [self.printer.listed(mode) for mode in node.modes]
-        given, _, varies = self._given(node.coefficients)
-        plan, most = modal_plan(node.frames)
-        names = [self.name(x) for x in ("modes", "plan", "sums", wanted)]
-        self.say(f"const cx_mode *const {names[0]}[] =", f"{{{', '.join(f'&{m.text}' for m in modes)}}}")
-        self.say(f"static const int {names[1]}[] =", f"{{{', '.join(map(str, plan))}}}")
-        self.add(f"cx {names[2]}[{most}], {names[3]}[2];")
-        self.say(f"cx_modal({names[0]}, {given}, {names[1]},", f"{names[2]}, {names[3]})")
-        return Term(names[3], Kind.COMPLEX, varies or any(m.varies for m in modes), real_at=1)
-
-
-def modal_plan(frames: tree.Frames) -> tuple[list[int], int]:
-    """Return a sum as a table of numbers in the order in which ``cx_modal`` reads them, and its partial sums.
-
-    What :func:`~symflex.algebra.modal_sum.modal_amplitudes` finds out as it goes, which terms come together
-    after each slot, is in the table; so many partial sums are kept at a time.
-
-    Examples
-    --------
-    Two terms over the two roots of one mode, c_0 h + c_1 h':
-
-    >>> modal_plan((((0,), (((0,), 0), ((1,), 1)), (((0,), 1), ((1,), 1))),))
-    ([1, 1, 0, 2, 1, 0, 0, 1, 0, 2, 0, 1, 2, 0, 1, 1, 1], 3)
-    """
-    plan, most = [len(frames)], 0
-    for slots, terms, keys in frames:
-        plan += [len(slots), *slots]
-        left = [orders for orders, _ in terms]
-        kept = len(left)
-        for _ in slots:
-            rest = list(dict.fromkeys(orders[1:] for orders in left))
-            places = {orders: i for i, orders in enumerate(rest)}
-            plan += [len(left), len(rest)]
-            for orders in left:
-                plan += [orders[0], places[orders[1:]]]
-            left = rest
-            kept += len(left)
-        most = max(most, kept)
-        plan += [len(terms), *(i for _, i in terms), len(keys)]
-        for key, divisor in keys:
-            plan += [*key, divisor]
-    return plan, most
+        return given, any(t.varies for t in terms)
 
 
 def conditions_of(program: tree.Piecewise, scope: Body, varying: Body | None = None) -> list[str]:

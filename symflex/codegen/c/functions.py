@@ -9,10 +9,9 @@ compilers make it work on several values at once: in lanes.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from itertools import chain, pairwise
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from symflex.algebra.varying_minors import lines_of
 from symflex.codegen.c.body import (
     AXIS,
     AXIS_LANE,
@@ -30,12 +29,11 @@ from symflex.codegen.c.body import (
     conditions_of,
     limit_text,
     quotient,
-    statement,
 )
 from symflex.codegen.program import nodes as tree
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
 
 @dataclass(frozen=True)
@@ -79,158 +77,17 @@ class Functions:
     def text(self) -> str:
         """Return the definitions."""
         program = self.program
-        if program.network is not None:
-            return "\n\n".join("\n".join(block) for block in self._solving(program.network)) + "\n"
-        if program.minors:
-            return "\n\n".join("\n".join(block) for block in self._following(program)) + "\n"
         blocks = [self._lumped_value(program)] if program.is_lumped else self._pieces(program)
         return "\n\n".join("\n".join(block) for block in (*blocks, self._frequency_response())) + "\n"
 
     @property
     def order(self) -> int:
-        """The largest order of a differential equation, or degree of a polynomial, they solve; 0 for none."""
-        if self.program.network is not None:
-            return max((len(signs) for _, signs, _ in self.program.network.network[-1]), default=1)
+        """The largest order of a differential equation that they solve; 0 for none."""
         codes = [c for p in (self.program, self.axis) if p for c in (p.tests, *(x.code for x in p.code))]
-        solving = (n for code in codes for n in code.nodes() if isinstance(n, tree.Solutions | tree.Roots))
-        followed = (max(n.size, len(n.bases)) for n in self.program.minors)
-        return max((*(len(n.coefficients) for n in solving), *followed), default=0)
+        solving = (n for code in codes for n in code.nodes() if isinstance(n, tree.Solutions))
+        return max((len(n.coefficients) for n in solving), default=0)
 
     # ------------------------------------------------------------------------------------- at a complex s
-
-    def network(self, solve: tree.Solve) -> str:
-        """Return what all functions share that solve a network: its plan, and its entries."""
-        scope = Body.of(self.members, S)
-        scope.assign((*self.program.near.constants, *self.program.near.assignments))
-        for i, entry in enumerate(solve.entries):
-            scope.say(f"entry[{i}] =", complex_term(scope.term(entry)).text)
-        head = [f"static void network_entries(cx s, const {self.structure} *p, cx *entry)", "{"]
-        plan = statement(
-            "static const int network_plan[] =", f"{{{', '.join(map(str, network_plan(solve)))}}}", 0
-        )
-        return "\n".join([*plan, "", *self._ends(scope, head)]) + "\n"
-
-    def _solving(self, solve: tree.Solve) -> list[list[str]]:
-        """Return the functions of a network's output and input."""
-        ends = f"network_plan, {solve.output}, {solve.source}"
-        whole = [
-            *self._head(f"value_of_{self.name}"),
-            f"{STEP}cx entry[{len(solve.entries)}];",
-            f"{STEP}network_entries(s, p, entry);",
-            f"{STEP}return cx_network(entry, {ends});",
-            "}",
-        ]
-        call = f"value_of_{self.name}(cx_of(0.0, omega[i]), p)"
-        return [self._wrapped_value(whole), self._response(call)]
-
-    def _following(self, program: tree.Piecewise) -> list[list[str]]:
-        """Return the functions of a program that follows matrices along x."""
-        (piece,) = program.code
-        blocks, followed = [], {node: f"{k}_of_{self.name}" for k, node in enumerate(program.minors)}
-        for node, own in followed.items():
-            table = f"{{{', '.join(map(str, minors_plan(node)))}}}"
-            blocks.append(statement(f"static const int plan_{own}[] =", table, 0))
-            blocks.append(self._parts(f"along_{own}", node.along, node.along.values[: len(node.places)]))
-            if node.tip is not None:
-                blocks += self._beginning(own, node, node.tip)
-            scope = Body.of(self.members, S)
-            given = (node.start, node.length, *node.bases)
-            code = piece.code.needed(given)
-            scope.assign((*code.constants, *code.assignments))
-            for k, value in enumerate(given):
-                scope.say(f"given[{k}] =", complex_term(scope.term(value)).text)
-            head = [f"static void given_{own}(cx s, const {self.structure} *p, cx *given)", "{"]
-            blocks.append(self._ends(scope, head))
-        members = ", ".join(
-            f"{{along_{own}, given_{own}, {'NULL' if node.tip is None else f'begun_{own}'}, plan_{own}}}"
-            for node, own in followed.items()
-        )
-        blocks.append(statement(f"static const cx_member members_of_{self.name}[] =", f"{{{members}}}", 0))
-        scope = Body.of(self.members, S)
-        scope.followed = followed
-        code = piece.code.needed(piece.code.values, (tree.FundamentalMinors,))
-        scope.assign((*code.constants, *code.assignments))
-        num, den = (scope.term(v) for v in code.values)
-        scope.say("return", complex_term(quotient(num, den)).text)
-        count = len(followed)
-        head = [
-            f"static cx value_at_{self.name}(cx s, const {self.structure} *p, const cx_pieces *kept)",
-            "{",
-        ]
-        begin = [
-            f"{STEP}cx_pieces kept[{count}];",
-            f"{STEP}cx_begin(kept, members_of_{self.name}, {count});",
-        ]
-        follow = f"cx_follow(kept, {count}, value_at_{self.name}, p,"
-        end = [f"{STEP}cx_end(kept, {count});"]
-        whole = [
-            *self._head(f"value_of_{self.name}"),
-            *begin,
-            f"{STEP}{follow} &s, 1);",
-            *end,
-            f"{STEP}return s;",
-            "}",
-        ]
-        response = [
-            *self.freq_prototype.split("\n"),
-            "{",
-            *begin,
-            f"{STEP}for (size_t i = 0; i < n; i += cx_lanes) {{",
-            f"{STEP * 2}const int count = n - i < cx_lanes ? (int)(n - i) : cx_lanes;",
-            f"{STEP * 2}cx g[cx_lanes];",
-            f"{STEP * 2}for (int j = 0; j < count; j++) {{",
-            f"{STEP * 3}g[j] = cx_of(0.0, omega[i + j]);",
-            f"{STEP * 2}}}",
-            f"{STEP * 2}{follow} g, count);",
-            f"{STEP * 2}for (int j = 0; j < count; j++) {{",
-            f"{STEP * 3}real[i + j] = g[j].re;",
-            f"{STEP * 3}imag[i + j] = g[j].im;",
-            f"{STEP * 2}}}",
-            f"{STEP}}}",
-            *end,
-            "}",
-        ]
-        return [*blocks, self._ends(scope, head), self._wrapped_value(whole), response]
-
-    def _parts(self, name: str, along: tree.Straight, values: Sequence[tree.CodeNode]) -> list[str]:
-        """Return the function of x that gives some of the values of a program."""
-        scope = Body.of(self.members, ALONG)
-        code = along.needed(values)
-        scope.assign((*code.constants, *code.assignments))
-        for k, value in enumerate(values):
-            scope.say(f"part[{k}] =", scope.term(value).text)
-        head = [f"static void {name}(double x, const {self.structure} *p, double *part)", "{"]
-        return self._ends(scope, head, "x")
-
-    def _beginning(self, own: str, node: tree.FundamentalMinors, tip: tree.Tip) -> list[list[str]]:
-        """Return what begins a member where a stiffness vanishes."""
-        table = f"{{{', '.join(map(str, tip_plan(node, tip)))}}}"
-        opening = f"static int begun_{own}("
-        begun = [
-            f"{opening}const cx_law *law, const cx_table *table, double to, int halvings,",
-            f"{' ' * len(opening)}double *sum)",
-            "{",
-            f"{STEP}return cx_begun(law, table, beginning_{own}, tip_{own}, to, halvings, sum);",
-            "}",
-        ]
-        return [
-            statement(f"static const int tip_{own}[] =", table, 0),
-            self._parts(f"beginning_{own}", node.along, node.along.values[len(node.places) :]),
-            begun,
-        ]
-
-    def _response(self, value: str) -> list[str]:
-        """Return the response whose values calls at ``omega[i]`` give."""
-        return [
-            *self.freq_prototype.split("\n"),
-            "{",
-            f"{STEP}for (size_t i = 0; i < n; i++) {{",
-            f"{STEP * 2}const cx g = {value};",
-            f"{STEP * 2}real[i] = g.re;",
-            f"{STEP * 2}imag[i] = g.im;",
-            f"{STEP}}}",
-            "}",
-        ]
 
     def _head(self, name: str) -> list[str]:
         return [f"static cx {name}(cx s, const {self.structure} *p)", "{"]
@@ -405,94 +262,6 @@ def _lumped(
     inner.enclose(opening, [*block.lines, f"{STEP * inner.depth}}} else {{", *other.lines])
 
 
-def network_plan(solve: tree.Solve) -> list[int]:
-    """Return a network as a table of numbers in the order in which ``cx_network`` reads them."""
-    size, height, width, lumped, groups = solve.network
-    total = len(lumped) + sum(2 * len(signs) ** 2 * len(elements) for _, signs, elements in groups)
-    plan = [size, total, height, width, len(lumped), *chain.from_iterable(lumped), len(groups)]
-    for positions, signs, elements in groups:
-        plan += [len(signs), len(positions), *chain.from_iterable(positions), *signs, len(elements)]
-        for first, entries, length, start, end in elements:
-            plan += [first, *entries, length, *start, *end]
-    return plan
-
-
-ALONG = Term("x", Kind.REAL, varies=True)
-"""What the leaf for s stands for in functions of x."""
-
-
-GROWTH, LAST = 3.0, 1e-18
-"""By which power of e waves grow on a piece at most, and the last term of Picard's iteration."""
-
-
-def _products(node: tree.FundamentalMinors) -> list[tuple[int, ...]]:
-    """Return the powers of the bases in the products that matter."""
-    bases, size = len(node.bases), node.size
-    # No piece takes more steps of Picard's iteration. At a tip waves grow by another power than is expected.
-    steps, left, growth = 0, 1.0, GROWTH if node.tip is None else 2.0 * GROWTH
-    while left > LAST or steps < 2 * size:
-        steps += 1
-        left *= growth / steps
-    reached = {(i, (0,) * bases) for i in range(size)}
-    every = set(reached)
-    for _ in range(steps):
-        reached = {
-            (row, tuple(p + q for p, q in zip(before, powers, strict=True)))
-            for row, column, *powers in node.places
-            for i, before in reached
-            if i == column
-        }
-        every |= reached
-    return sorted({powers for _, powers in every})
-
-
-def _made(places: Iterable[Sequence[int]], products: Sequence[tuple[int, ...]]) -> list[int]:
-    """Return, per part, its row, its column, its powers, and what it makes of each product, -1 for none."""
-    numbers = {powers: k for k, powers in enumerate(products)}
-    parts: list[int] = []
-    for row, column, *powers in places:
-        made = (tuple(p + q for p, q in zip(before, powers, strict=True)) for before in products)
-        parts += [row, column, *powers, *(numbers.get(x, -1) for x in made)]
-    return parts
-
-
-def minors_plan(node: tree.FundamentalMinors) -> list[int]:
-    """Return a law along x as a table of numbers in the order in which ``cx_minors`` reads them."""
-    bases, size, products = len(node.bases), node.size, _products(node)
-    parts = _made(node.places, products)
-    lines = {q: lines_of(size, q) for q in range(1, size + 1)}
-    largest = max(len(rows) for rows, _ in node.wanted)
-    choices = [largest]
-    for q in range(2, largest + 1):
-        choices.append(len(lines[q]))
-        for chosen in lines[q]:
-            rest = (lines[q - 1].index(chosen[:k] + chosen[k + 1 :]) for k in range(q))
-            choices += [*chosen, *rest]
-    starts = sorted({columns for _, columns in node.wanted}, key=lambda columns: (len(columns), columns))
-    ends = [len(starts)]
-    for columns in starts:
-        ends += [len(columns), lines[len(columns)].index(columns)]
-    ends.append(len(node.wanted))
-    for rows, columns in node.wanted:
-        ends += [starts.index(columns), lines[len(rows)].index(rows)]
-    room = len(products) + size**2 + sum(len(lines[q]) ** 2 for q in range(1, largest + 1))
-    room += 2 * sum(len(lines[len(columns)]) for columns in starts)
-    at = 7 + len(parts) + len(products) * bases
-    head = [size, len(node.places), bases, len(products), room, at, at + len(choices)]
-    return [*head, *parts, *chain.from_iterable(products), *choices, *ends]
-
-
-def tip_plan(node: tree.FundamentalMinors, tip: tree.Tip) -> list[int]:
-    """Return how a law begins as a table of numbers in the order in which ``cx_begun`` reads them."""
-    products = _products(node)
-    parts = _made(((row, column, *powers) for row, column, _, *powers in tip.places), products)
-    # As a law's plan; what cx_through reads is that of the law.
-    head = [node.size, len(tip.places), len(node.bases), len(products), 0, 0, 0]
-    orders = [place[2] for place in tip.places]
-    is_free = [int(i in tip.free) for i in range(node.size)]
-    return [*head, *parts, *orders, *tip.powers, *(-b for b in tip.exponents), *is_free]
-
-
 LOOP = "for (int j = 0; j < LANES; j++) {"
 
 PADDING = """\
@@ -532,7 +301,10 @@ def is_rational_in_lanes(program: tree.Piecewise) -> bool:
     near = program.near
     values = (*(a.value for a in near.assignments), *near.values)
     nodes = [n for value in values for n in value.walk()]
-    calls = any(isinstance(n, tree.Solutions) or (isinstance(n, tree.Apply) and n.function != "complex_exp") for n in nodes)
+    calls = any(
+        isinstance(n, tree.Solutions) or (isinstance(n, tree.Apply) and n.function != "complex_exp")
+        for n in nodes
+    )
     return program.varies and program.far is None and not calls
 
 

@@ -7,16 +7,12 @@ Output: the texts of both files.
 from __future__ import annotations
 
 import re
-from math import comb
 from typing import TYPE_CHECKING
 
 from symflex.codegen.c.body import KEYWORDS, LANE_FUNCTIONS, PARTS, RESERVED, WIDTH
 from symflex.codegen.c.functions import Functions
 from symflex.codegen.export import Export, Language, called_parts
 from symflex.codegen.module_text import (
-    COST,
-    FOLLOWED,
-    ITERATED,
     default_value,
     formula_lines,
     identifiers,
@@ -159,17 +155,13 @@ class _Files:
         files = f"{self.name}.h" if self.name else "C99"
         public = [f"{self.prefix}_{f.name}" for f in self.functions.values()]
         example = public[0] if public and len(public[0]) < WIDTH // 2 else f"{self.prefix}_OUT_over_IN"
-        allocates = any(f.program.network or f.program.minors for f in self.functions.values())
-        kept = "Nothing is allocated and nothing is kept between calls"
-        if allocates:
-            kept = "Memory is allocated during calls and freed; values are NAN where there is none"
         paragraphs = [
             f"Written by symflex. For every transfer function OUT/IN there are {example}(s, p), its value at "
             f"the Laplace variable s, and {example}_freq(omega, real, imag, n, p), which writes the real and "
             "imaginary parts of the values at s = j omega[i] for all i < n. omega is an angular frequency "
             "[rad/s]: 2 pi times the frequency in Hz. It may be negative. One of real and imag may be the "
             "array omega.",
-            f"{kept}: all functions are reentrant. Values at "
+            "Nothing is allocated and nothing is kept between calls: all functions are reentrant. Values at "
             "poles are not finite. Parameters are real numbers in SI units; p may be "
             f"&{self.prefix}_defaults, or point to a changed copy of it. Link with the mathematical library, "
             "and compile without -ffast-math.",
@@ -215,7 +207,7 @@ class _Files:
 
     def _described(self, key: str) -> list[str]:
         member = self.of_s[key]
-        tf, program = member.tf, member.program
+        tf = member.tf
         unit = f" [{tf.unit}]" if tf.unit else ""
         lines = [inert(f"{tf.quantity[:1].upper()}{tf.quantity[1:]} {tf.name}{unit}."), ""]
         lines += [f"  {line}" if line else "" for line in formula_lines(member.formula, WIDTH - 5)]
@@ -224,10 +216,6 @@ class _Files:
         if key in self.on_axis:
             real = self.on_axis[key].verification.text(self.digits)
             sentences = [f"Of s, {said}.", f"At s = j omega, in real arithmetic, {real}."]
-        if program.minors:
-            sentences.append(FOLLOWED)
-        elif program.solves:
-            sentences.append(ITERATED if program.finds_roots else COST)
         lines.append("")
         for sentence in sentences:
             lines += wrapped(inert(sentence), WIDTH - 3)
@@ -237,20 +225,18 @@ class _Files:
 
     def _source(self) -> str:
         printed = {key: functions.text() for key, functions in self.functions.items()}
-        network = next((f.network(x) for f in self.functions.values() if (x := f.program.network)), "")
         # Comments tell nothing about which functions are called.
         order = max((f.order for f in self.functions.values()), default=1)
-        below = helpers("\n".join([network, *printed.values()]), self.structure, order)
+        below = helpers("\n".join(printed.values()), self.structure, order)
         code = "\n".join("\n".join([*comment([inert(key)]), "", text]) for key, text in printed.items())
         signs = {
             "float": "FLT_EVAL_METHOD",
             "math": "",
             "stdint": "uint64_t",
-            "stdlib": "malloc(",
             "string": "memcpy(",
         }
         includes = "".join(f"#include <{name}.h>\n" for name, sign in signs.items() if sign in below)
-        parts = [includes, self._defaults(), below, network, code]
+        parts = [includes, self._defaults(), below, code]
         return "\n".join(part for part in parts if part)
 
     def _defaults(self) -> str:
@@ -275,9 +261,7 @@ def helpers(code: str, parameters: str, order: int) -> str:
         always += ["ROUNDER", "OTHERWISE"] if own else ["LANES"]
         others = "".join(f"#define lane_{f} {f}\n" for f in own)
     text = "\n".join(called_parts(code, PARTS, always)).replace("OTHERWISE\n", others)
-    order = max(order, 1)
-    text = text.replace("CX_CHOICES", str(comb(order, order // 2)))
-    return text.replace("PARAMETERS", parameters).replace("CX_ORDER", str(order))
+    return text.replace("PARAMETERS", parameters).replace("CX_ORDER", str(max(order, 1)))
 
 
 C99 = Language(

@@ -9,14 +9,15 @@ with the zeros z and poles p in the band and around it, and q a Chebyshev polyno
 
 Theorem (Hadamard 1893; Bernstein 1912). What is left has neither poles nor zeros near the band, so its
 logarithm is analytic there, and the coefficients of its Chebyshev series fall like ``rho^-n``, where the
-ellipse of axes ``rho + 1/rho`` and ``rho - 1/rho``, in halves of the band, touches the next root. With roots
-known to one and a half times the band's end, in s^2, rho is 6.9 and some 20 coefficients are all that doubles can tell.
+ellipse of axes ``rho + 1/rho`` and ``rho - 1/rho``, in halves of the band, touches the next root. With
+roots known to one and a half times the band's end rho is 6.9, in s^2, and 20 coefficients are all that
+doubles can tell.
 
-Every root is two doubles, its value and what that leaves: then ``(z - s) + rest`` has all its digits also where s
-is close to z. The error of one double would be that of ``s - z``, 1e-10 at a distance of 1e-6 of z.
+Every root is two doubles, its value and what that leaves: then ``(z - s) + rest`` has all its digits also
+where s is close to z. The error of one double would be that of ``s - z``, 1e-10 at a distance of 1e-6 of z.
 
-Example: a string of length 1 m and wave speed 1 m/s, fixed at one end and driven at the other, is
-``1/cosh(s)``. Up to 3 rad/s it is one pole pair at ``j pi/2`` beyond which the next, at ``3 pi/2``, lies within reach:
+Example: the end of a string of length 1 m and wave speed 1 m/s moves by ``1/cosh(s)`` where the other end
+is driven. Up to 3 rad/s, with the poles at ``j pi/2`` and, beyond, at ``3 j pi/2``:
 
     1 / ((1 + s^2/2.4674) (1 + s^2/22.207)) * exp(q(s)),  q = 0 at s = 0
 """
@@ -59,13 +60,13 @@ DIGITS = 36
 """Of the roots: more than two doubles hold."""
 
 FIRST_NODES, MOST_NODES = 24, 216
-"""Points on the positive half of the band at which what is left is taken; three times as many in the next try."""
+"""Points on the positive half of the band at which what is left is taken; the next try has thrice as many."""
 
 NEGLIGIBLE = 2.0**-57
 """Size of a coefficient that changes no double."""
 
 GROUP = 8
-"""Zeros, and poles, that are multiplied before their products are divided: a division costs several of them."""
+"""Zeros, and poles, that are multiplied before their products are divided: a division costs more."""
 
 BITS = 160
 """With which coefficients are summed: those of two doubles, and as many again for what cancels."""
@@ -159,13 +160,14 @@ class BandForm:
         )
         return (
             formula,
-            f"Band form: it holds for abs(s) up to {self.end:.5g} rad/s, {float(self.end_hz):.5g} Hz, and not "
-            f"beyond. {proof} Numbers are those of the file: no parameter can be changed here.",
+            f"Band form: it holds for abs(s) up to {self.end:.5g} rad/s, {float(self.end_hz):.5g} Hz, and "
+            f"not beyond. {proof} Numbers are those of the file: no parameter can be changed here.",
         )
 
     def beside(self, part: float, error: str) -> str:
         """Return what a docstring says of values beside the axis, where the error was measured."""
-        return f"Beside the axis, at abs(re(s)) = {part * self.end:.3g} rad/s, the worst relative error is {error}."
+        at = f"abs(re(s)) = {part * self.end:.3g} rad/s"
+        return f"Beside the axis, at {at}, the worst relative error is {error}."
 
     def program(self) -> Piecewise:
         """Return the program."""
@@ -199,13 +201,13 @@ class BandForm:
 
 
 def _factor(forge: Forge, root: SplitRoot) -> int:
-    """Return ``z - s``, of a pair the product of two such, ``s - z`` of a negative z: its rest is added last."""
-    if root is None:
-        return forge.constant(1)
+    """Return ``z - s``, of a pair the product of two such, ``s - z`` of a negative z.
+
+    What a double leaves of z is added last.
+    """
     if root.is_negative:
-        return forge.add(
-            [forge.constant(-Fraction(root.re[0])), forge.s, forge.constant(-Fraction(root.re[1]))]
-        )
+        high, rest = (forge.constant(-Fraction(x)) for x in root.re)
+        return forge.add([high, forge.s, rest])
     minus = forge.negate(forge.s)
     factors = []
     for sign in (1,) if root.is_real else (1, -1):

@@ -133,17 +133,6 @@ def value_of_piece(piece: tree.CodePiece, point: Values, given: Mapping[str, Val
     return num / den[0] if den else num
 
 
-def law_along(
-    code: tree.Straight, minors: tree.FundamentalMinors, s: Values, given: Mapping[str, Values]
-) -> tuple[Callable[[Values], list[Values]], Values, Values, list[Values]]:
-    """Return what a matrix is followed by: the parts of its law, start, length, and the bases at some s."""
-    run = _ProgramRun(s, given)
-    run.assign(code.constants)
-    run.assign(code.assignments)
-    bases = [np.broadcast_to(run.value(base), np.shape(s)) for base in minors.bases]
-    return run.along(minors.along), run.value(minors.start), run.value(minors.length), bases
-
-
 def number_of(node: tree.CodeNode, known: Mapping[str, Values]) -> Values:
     """Return the value of an expression that depends on no argument, ``None`` for one that does.
 

@@ -413,12 +413,6 @@ class Piecewise:
         return self.turn is not None
 
     @property
-    def finds_roots(self) -> bool:
-        """True when exponents are roots of polynomials without a formula."""
-        codes = (self.tests, *(piece.code for piece in self.code))
-        return any(isinstance(n, Roots) for code in codes for n in code.nodes())
-
-    @property
     def minors(self) -> tuple[FundamentalMinors, ...]:
         """The fundamental matrices that are followed along x, one for every law and length."""
         nodes = (n for piece in self.code for n in piece.code.nodes())

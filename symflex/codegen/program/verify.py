@@ -557,7 +557,7 @@ class References:
     The function is bound to the declared values.
     """
 
-    def __init__(self, values: Enclosures, points: NDArray[np.complex128]) -> None:
+    def __init__(self, values: Enclosures, points: NDArray[Any]) -> None:
         self.bound = values.bound
         found = [(s, _reference(values, complex(s))) for s in points]
         self._lost = [s.imag for s, reference in found if reference is None]

@@ -19,9 +19,7 @@ from symflex.algebra.modal_sum import modal_amplitudes, mode_values
 from symflex.codegen.export import Export, Language, called_parts, parts_of
 from symflex.codegen.module_text import (
     COST,
-    CUT,
     FOLLOWED,
-    ITERATED,
     default_value,
     described,
     formula_lines,
@@ -111,15 +109,12 @@ class Dialect:
 
     def support(self, code: str) -> list[str]:
         """Return the functions that some code calls."""
-        own = parts_of(*self.sources)
-        defined = {name for names in own for name in names}
         parts: dict[tuple[str, ...], str] = {}
-        for names, text in own.items():
-            if names == _COPIES:
-                wanted = (f for f in COPIED if f"_{f.__name__}" not in defined)
-                parts |= {(f"_{f.__name__}",): private_copy(f) for f in wanted}
-            else:
-                parts[names] = text
+        for names, text in parts_of(*self.sources).items():
+            own = (
+                {(f"_{f.__name__}",): private_copy(f) for f in COPIED} if names == _COPIES else {names: text}
+            )
+            parts |= own
         found = called_parts(code, parts, ("_numbers", "BLOCK"))
         return found if self.is_argument else [for_one_library(text, self.space) for text in found]
 
@@ -233,8 +228,7 @@ def python_module(contents: Contents, dialect: Dialect) -> Export:
     for member in members:
         public = (responses if member.program.is_real else functions)[member.tf.name]
         made = TracedText if dialect.is_traced else BlockText
-        low, high = (float(end) for end in member.verification.band)
-        private = made(member.program, public, names, values, dialect, (low, high))
+        private = made(member.program, public, names, values, dialect)
         function = _Function(member, private, member.verification.text(contents.digits))
         own = "\n".join(private.functions())
         blocks.append(f"{function.head()}\n\n\n{own}\n")
@@ -310,9 +304,9 @@ class _Function:
         lines += ["", "    Notes", "    -----", *origin(tf.model, "    ")]
         notes = [self.sentence, *([MEASURED] if dialect.is_traced else [])]
         if program.minors:
-            notes.append(CUT if dialect.is_traced else FOLLOWED)
+            notes.append(FOLLOWED)
         elif program.solves:
-            notes.append(ITERATED if dialect.is_traced and program.finds_roots else COST)
+            notes.append(COST)
         for note in notes:
             lines += wrapped(inert(note), WIDTH, "    ")
         return docstring(lines, "    ")

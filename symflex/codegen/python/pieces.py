@@ -16,13 +16,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from symflex.algebra.varying_minors import edges_along
 from symflex.codegen.infix import InfixPrinter, in_lines
 from symflex.codegen.module_text import identifiers
 from symflex.codegen.program import nodes as tree
 from symflex.codegen.program.evaluate import (
     NUMPY_FUNCTIONS,
-    law_along,
     number_of,
     numbers_of_pieces,
     value_of_piece,
@@ -49,7 +47,6 @@ class PrivateText(ABC):
     parameters: Mapping[str, str]  # identifiers of the parameters
     values: Mapping[str, float]  # values of the parameters that have one
     dialect: Dialect  # of Python
-    band: tuple[float, float]  # in which it is verified [Hz]
 
     @property
     def variable(self) -> str:
@@ -95,37 +92,6 @@ class PrivateText(ABC):
     @abstractmethod
     def _value(self, piece: tree.CodePiece, lines: list[str], printer: PythonPrinter) -> list[str]:
         """Return the last lines of a piece's function."""
-
-    @property
-    def _follows(self) -> Mapping[tree.Straight, str]:
-        """What calls the functions of x that members vary like."""
-        given = ", ".join(["_x", *self.arguments[1:]])
-        return {
-            minors.along: self._joined(
-                [f"lambda _x: {name}({self.leading}{given})" for name in self._laws(number, minors)]
-            )
-            for number, minors in enumerate(self.given.minors)
-        }
-
-    def _laws(self, number: int, minors: tree.FundamentalMinors) -> Mapping[str, tuple[tree.CodeNode, ...]]:
-        """Return the functions of x that a matrix is followed by, by their names."""
-        return {f"_along_{number}_of_{self.name}": minors.along.values}
-
-    def _joined(self, laws: Sequence[str]) -> str:
-        """Return how functions of x are given to what follows a matrix."""
-        return laws[0]
-
-    def _along(self) -> list[str]:
-        """Return the lines of the functions of x that members vary like."""
-        lines: list[str] = []
-        variable = identifiers({"x": "x"}, {*self.dialect.reserved, *self.arguments})["x"]
-        for number, minors in enumerate(self.given.minors):
-            for name, values in self._laws(number, minors).items():
-                own, printer = self._body(minors.along.needed(values), variable)
-                texts = ", ".join(printer.print(v) for v in values)
-                head = self._head(name, [variable, *self.arguments[1:]])
-                lines += [*head, *own, *statement("return", f"[{texts}]", "    "), "", ""]
-        return lines
 
     def _piece(self, number: int, piece: tree.CodePiece) -> list[str]:
         name, parts = (f"_{word}_{number}_of_{self.name}" for word in ("piece", "parts"))
@@ -199,6 +165,26 @@ class BlockText(PrivateText):
             "    ]",
         ]
 
+    @property
+    def _follows(self) -> Mapping[tree.Straight, str]:
+        """What calls the functions of x that members vary like."""
+        given = ", ".join(["_x", *self.arguments[1:]])
+        return {
+            minors.along: f"lambda _x: _along_{number}_of_{self.name}({given})"
+            for number, minors in enumerate(self.given.minors)
+        }
+
+    def _along(self) -> list[str]:
+        """Return the lines of the functions of x that members vary like."""
+        lines: list[str] = []
+        variable = identifiers({"x": "x"}, {*self.dialect.reserved, *self.arguments})["x"]
+        for number, minors in enumerate(self.given.minors):
+            own, printer = self._body(minors.along, variable)
+            texts = ", ".join(printer.print(v) for v in minors.along.values)
+            head = self._head(f"_along_{number}_of_{self.name}", [variable, *self.arguments[1:]])
+            lines += [*head, *own, *statement("return", f"[{texts}]", "    "), "", ""]
+        return lines
+
     def _lumped(self, program: tree.Piecewise) -> list[str]:
         """Return the function that computes with numbers or arrays of any shape."""
         lines = [f"def _value_of_{self.name}("]
@@ -210,7 +196,7 @@ class BlockText(PrivateText):
         used |= set(own.values())
         assignments = [*near.constants, *near.assignments, *program.late]
         intermediates = identifiers({a.name: a.name for a in assignments}, used)
-        printer = PythonPrinter(self.parameters, intermediates, "s", own["inverse"])
+        printer = NumpyPrinter(self.parameters, intermediates, "s", own["inverse"])
         for assignment in (*near.constants, *near.assignments):
             lines += printer.assignment(assignment.name, assignment.value, "    ")
         value = printer.print(near.values[0])
@@ -230,7 +216,7 @@ class BlockText(PrivateText):
         assignments: list[tree.Assignment] = [*code.constants, *code.assignments]
         taken = {*self.dialect.reserved, *self.parameters.values(), self.variable, variable, "z"}
         names = identifiers({a.name: a.name for a in assignments}, taken)
-        printer = PythonPrinter(self.parameters, names, variable, "inverse", follows=self._follows)
+        printer = NumpyPrinter(self.parameters, names, variable, "inverse", follows=self._follows)
         return [line for a in assignments for line in printer.assignment(a.name, a.value, "    ")], printer
 
     def _tests(self, program: tree.Piecewise) -> list[str]:
@@ -313,7 +299,7 @@ class TracedText(PrivateText):
         """Return the lines of all functions; no text of the model is in them."""
         program = self.program
         if not program.conditions:
-            return [*self._along(), *self._piece(0, program.code[0])]
+            return self._piece(0, program.code[0])
         lines = [*self._tests(program), "", ""]
         for i, piece in enumerate(program.code):
             lines += [*self._piece(i, piece), "", ""]
@@ -327,16 +313,6 @@ class TracedText(PrivateText):
                 "    )),",
             ]
         return [*lines, ")"]
-
-    def _laws(self, number: int, minors: tree.FundamentalMinors) -> Mapping[str, tuple[tree.CodeNode, ...]]:
-        # Libraries may warn of the law's poles at a tip, where that of the beginning is regular.
-        words = ("along", "beginning") if minors.tip else ("along",)
-        values, count = minors.along.values, len(minors.places)
-        parts = (values[:count], values[count:])
-        return {f"_{word}_{number}_of_{self.name}": part for word, part in zip(words, parts, strict=False)}
-
-    def _joined(self, laws: Sequence[str]) -> str:
-        return f"[{', '.join(laws)}]"
 
     def _body(self, code: tree.Straight, variable: str) -> tuple[list[str], ArrayPrinter]:
         assignments = (*code.constants, *code.assignments)
@@ -359,8 +335,6 @@ class TracedText(PrivateText):
             numbers,
             has_fixed_sizes,
             self.leading,
-            cuts_along(program, self.values, self.band) if (program := self.given).minors else {},
-            follows=self._follows,
         )
         lines = [line for a in assignments for line in printer.assignment(a.name, a.value, "    ")]
         if any(inverse in line for line in lines):
@@ -429,10 +403,6 @@ class PythonPrinter(InfixPrinter):
         """The number pi."""
         return f"{self.space}.pi"
 
-    def positions(self, minors: tree.FundamentalMinors) -> list[str]:
-        """Return where parts of a law along x stand, also at a tip, and which minors are wanted."""
-        return [*super().positions(minors), repr(minors.beginning)]
-
     def applied(self, function: str, argument: tree.CodeNode) -> str:
         """Return the text of a function's value."""
         if function == "complex_exp":
@@ -449,17 +419,34 @@ class PythonPrinter(InfixPrinter):
         """Return a power of text that needs no parentheses."""
         return f"{base}**{exponent}"
 
-    def call(self, function: str, arguments: Sequence[str]) -> str:
-        """Return a call of a run-time function."""
-        if function == "mode_values":
-            # What finds the roots also gives the least distance of two.
-            roots, length = arguments
-            arguments = (f"{roots}[:-1]", length)
-        return super().call(function, arguments)
 
-    def frames(self, frames: tree.Frames) -> str:
-        """Return the frames of a sum of exponentials."""
-        return repr(frames)
+@dataclass(frozen=True)
+class NumpyPrinter(PythonPrinter):
+    """Prints expressions as Python of numpy, with what finds roots and follows matrices along x."""
+
+    # What calls the functions of x that members vary like.
+    follows: Mapping[tree.Straight, str] = field(default_factory=dict, kw_only=True)
+
+    def with_lists(self, node: tree.CodeNode) -> str:
+        """Return the text of what takes lists or gives them."""
+        match node:
+            case tree.Solutions(coefficients, terms) if not terms:
+                return self.call("propagated", [self.list_of(coefficients)])
+            case tree.Roots(coefficients):
+                return self.call("characteristic_roots", [self.list_of(coefficients)])
+            case tree.ModeValues(roots, length):
+                # What finds the roots also gives the least distance of two.
+                return self.call("mode_values", [f"{self.print(roots)}[:-1]", self.print(length)])
+            case tree.ModalValue(modes, coefficients, frames):
+                lists = [self.list_of(modes), self.list_of(coefficients)]
+                return self.call("modal_value", [*lists, repr(frames)])
+            case tree.ScaledSum(amplitudes, exponents):
+                return self.call("scaled_sum", [self.list_of(x) for x in (amplitudes, exponents)])
+            case tree.FundamentalMinors(start, length, bases, along, places, wanted):
+                ends = [self.print(start), self.print(length), self.list_of(bases)]
+                rest = (places, wanted, node.beginning)
+                return self.call("fundamental_minors", [self.follows[along], *ends, *map(repr, rest)])
+        return super().with_lists(node)
 
 
 @dataclass(frozen=True)
@@ -471,13 +458,6 @@ class ArrayPrinter(PythonPrinter):
     numbers: Mapping[str, Any] = field(default_factory=dict)
     has_fixed_sizes: bool = False  # true to print magnitudes as ``_size``, which has no derivative
     leading: str = ""  # first arguments of functions that look others up
-    # Where members that vary along x are cut, and up to which sizes of the bases that serves.
-    cuts: Mapping[tree.FundamentalMinors, tuple[Any, Any]] = field(default_factory=dict)
-
-    def positions(self, minors: tree.FundamentalMinors) -> list[str]:
-        """Return what a matrix is followed by, along cuts that no value changes."""
-        places, wanted, tip = super().positions(minors)
-        return [places, wanted, *(repr(x) for x in self.cuts[minors]), tip]
 
     def print(self, node: tree.CodeNode) -> str:
         """Return the text of an expression."""
@@ -496,12 +476,6 @@ class ArrayPrinter(PythonPrinter):
             # numpy's one tangent costs less than a complex exponential, but its derivative loses digits.
             return f"{self.space}.exp({self.print(argument)})"
         return super().applied(function, argument)
-
-    def call(self, function: str, arguments: Sequence[str]) -> str:
-        """Return a call of a run-time function."""
-        text = super().call(function, arguments)
-        takes_space = function not in ("series_solutions", "mode_values")
-        return text.replace("(", f"({self.leading}", 1) if takes_space else text
 
 
 def statement(target: str, value: str, indent: str) -> list[str]:
@@ -525,9 +499,6 @@ DIRECTIONS = np.exp(1j * np.array([0.9, -0.9, 2.2, -2.2]))
 
 INWARDS = 1.5
 """Decades between a place and the lower end of the range that a piece serves, or its only end."""
-
-BEYOND = 2.0
-"""How far beyond the band waves are followed where pieces are made beforehand."""
 
 BESIDE = np.array([1.0, 0.999, 1.001])
 
@@ -587,28 +558,6 @@ def places_of(program: Piecewise, values: Mapping[str, float]) -> tuple[complex,
         changes = np.flatnonzero((served[1:] != served[:-1]).any(axis=1))
         last = float(np.log10(SIZES[changes[-1]])) if len(changes) else 0.0
         return tuple(_place(piece, points, served == k, last, given) for k, piece in enumerate(program.code))
-
-
-def cuts_along(
-    program: Piecewise, values: Mapping[str, float], band: tuple[float, float]
-) -> dict[tree.FundamentalMinors, tuple[tuple[float, ...], tuple[float, ...]]]:
-    """Return for every matrix followed along x the edges of pieces, and limits of the bases.
-
-    They serve up to twice the end of a band [Hz]. Parameters without a value count as 1.
-    """
-    given = {name: values.get(name, 1.0) for name in program.parameters}
-    top = BEYOND * 2.0 * np.pi * band[1]
-    s = 1j * np.array([0.0, *np.geomspace(1e-6 * top, top, 61)])
-    found = {}
-    for minors in program.minors:
-        along, start, length, bases = law_along(program.code[0].code, minors, s, given)
-        sizes = (np.max(np.abs(base[np.isfinite(base)])) for base in bases)
-        # Beside the imaginary axis what divides may be smaller than on it.
-        limits = np.array([BEYOND * size for size in sizes])
-        cut = edges_along(along, start, length, minors.places, limits, np.array([0]), minors.beginning)
-        edges = np.linspace(0.0, 1.0, 2) if cut is None else cut[0]
-        found[minors] = tuple(map(float, edges)), tuple(map(float, limits))
-    return found
 
 
 def _place(
