@@ -114,8 +114,8 @@ class InfixPrinter(ABC):
                 return self.complex_number(nearest_double(real), nearest_double(imaginary)), LEAF
             case tree.ToComplex(operand):
                 return self.to_complex(operand)
-            case tree.LargerRoot(formula):
-                return self._print(formula)
+            case tree.LargerRoot() | tree.RootFactor():
+                return self._print(node.spelled)
             case tree.ParameterValue(name):
                 return self.parameters[name], LEAF
             case tree.Assigned(name):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 import types
-from fractions import Fraction
 from functools import cache, partial
 
 import mpmath as mp
@@ -14,10 +13,8 @@ from flint import acb
 
 from symflex import pipeline
 from symflex.codegen.exporters import EXPORTERS
-from tests.unit.codegen.against_balls import axis_points, worst_errors
-from tests.unit.codegen.exportable import DERIVATIONS, MASSLESS, PIPE, executed, free_chain
+from tests.unit.codegen.exportable import DERIVATIONS, executed, free_chain
 from tests.unit.codegen.test_numpy_distributed import beam, clamped_end_compliance, specification
-from tests.unit.codegen.test_numpy_tapers import CONE, hanging, receptance
 
 needs_strict = pytest.mark.needs_module("array_api_strict")
 needs_jax = pytest.mark.needs_module("jax")
@@ -110,42 +107,6 @@ def error(computed, name, function, where=slice(None)):
     s, found = references(name)
     value, slope = (x[where] for x in found[function])
     return np.max(np.abs(np.asarray(computed) - value) / np.abs(value) / (1 + np.abs(s[where] * slope)))
-
-
-@pytest.mark.slow
-@needs_strict
-def test_a_conical_rod_is_its_formula_up_to_twice_its_band(over_any, strict):
-    function = over_any(CONE).y_over_F
-    s = np.array([30j, 400.0, 2000 + 9000j, -5000 + 20000j, 6e4j, 1e9j])
-    with np.errstate(invalid="ignore"):
-        found = np.asarray(function(strict.asarray(s)))
-    assert found[:5] == pytest.approx(receptance(s[:5]), rel=1e-11)
-    assert np.isnan(found[5])
-    c = np.array([0.0, 0.3, 0.8])
-    found = np.asarray(function(strict.asarray([[4000j], [9000 + 500j]]), c=strict.asarray(c)))
-    assert found == pytest.approx(receptance(np.array([[4000j], [9000 + 500j]]), c), rel=1e-11)
-    with np.errstate(invalid="ignore"):
-        assert np.isnan(complex(function(strict.asarray(30j), l=50.0)))  # more waves than pieces are for
-
-
-@pytest.mark.slow
-@needs_jax
-def test_jax_compiles_and_differentiates_a_string_that_hangs(over_jax, jax, jnp):
-    text = DERIVATIONS["hanging_string"].read_text(encoding="utf-8").replace('"5 Hz"', '"1 Hz"')
-    function = over_jax(text).mid_over_w_0
-
-    def seen(length, s):
-        value = function(s, l=length)
-        return jnp.real(value) + jnp.imag(value)
-
-    s = np.array([2j, 9j, 0.3 + 4j, -0.5 + 12j, 1.5])
-    both = jax.jit(jax.value_and_grad(seen))
-    values, slopes = np.array([both(2.0, x) for x in s]).T
-    # Half of the length is above the free end.
-    exact, above, below = (hanging(s, 1.0 + h / 2, 2.0 + h) for h in (0.0, 1e-5, -1e-5))
-    assert values == pytest.approx(exact.real + exact.imag, rel=1e-11)
-    expected = (above - below) / 2e-5
-    assert slopes == pytest.approx(expected.real + expected.imag, rel=1e-8)
 
 
 ON_AXIS = slice(0, 30)
@@ -300,121 +261,6 @@ def test_the_response_at_negative_frequencies_is_conjugate(over_any):
     omega = np.array([-300.0, -1e-3, 1e-3, 300.0])
     value = over_any("rod_tip_mass").X_tip_over_F_at(omega)
     assert np.all(value[:2] == np.conj(value[:1:-1]))
-
-
-# ---------------------------------------------------------------- wavenumbers without a formula
-
-# Of third order: jax compiles what finds three wavenumbers in a quarter of the time that four of a pipe take.
-WAVE = """
-symflex = 1
-parameters = { c = "2.1 m/s", d = "0.9 m^3/s", l = "3 m" }
-[fields.w]
-domain = ["0", "l"]
-equation = "s*w + c*w' + d*w''' = 0"
-conditions = ["w(0) = u", "w(l) = 0", "w'(l) = 0"]
-[inputs]
-u = {}
-[outputs]
-out = "w(l/3)"
-"""
-NAMELESS = {"pipe": PIPE, "massless": MASSLESS}
-
-
-def nameless_points(tf):
-    omega = axis_points(tf, 20)
-    return np.concatenate([1j * omega, omega[::5] * np.exp(1j * np.linspace(0.1, 6.2, len(omega[::5])))])
-
-
-@needs_strict
-@pytest.mark.parametrize("name", [pytest.param("pipe", marks=pytest.mark.slow), "massless"])
-def test_wavenumbers_without_a_formula_are_found_by_any_library(name, over_any, strict):
-    text = NAMELESS[name]
-    (tf,) = functions_of(text)
-    (function,) = over_any(text).TRANSFER_FUNCTIONS.values()
-    s = nameless_points(tf)
-    found = function(strict.asarray(s))
-    assert type(found) is type(strict.asarray(s))
-    assert max(worst_errors(tf, s, np.asarray(found), function(s))) < 1e-13
-
-
-@pytest.mark.slow
-@needs_jax
-def test_a_member_without_mass_serves_compiled_functions(over_jax, jax):
-    (tf,) = functions_of(MASSLESS)
-    (function,) = over_jax(MASSLESS).TRANSFER_FUNCTIONS.values()
-    s = nameless_points(tf)
-    computed = np.asarray(jax.jit(function)(s)), np.asarray(function(s))
-    assert max(worst_errors(tf, s, *computed)) < 1e-13
-
-
-@pytest.mark.slow
-@needs_jax
-def test_compiled_values_and_derivatives_of_found_wavenumbers_are_those_of_their_equation(over_jax, jax, jnp):
-    def parts(x):
-        value = over_jax(WAVE).out_over_u(1j * x[0], c=x[1])
-        return jnp.stack([jnp.real(value), jnp.imag(value)])
-
-    along = jax.jit(lambda x, direction: jax.jvp(parts, (x,), (direction,)))
-    (tf,) = functions_of(WAVE)
-    for omega, speed in ((40.0, 2.0), (3.0, 5.0)):
-        x = jnp.asarray([omega, speed])
-        (value, by_omega), (_, by_speed) = (
-            [complex(*pair) for pair in along(x, jnp.asarray(direction))]
-            for direction in ([1.0, 0.0], [0.0, 1.0])
-        )
-        bound, s = pipeline.bind(tf, {"c": Fraction(speed)}), 1j * omega
-        assert value == pytest.approx(bound(s), rel=1e-12)
-        logarithmic = complex(bound.enclosed(400).logarithmic_derivative(acb(0, omega)))
-        assert by_omega == pytest.approx(1j * bound(s) * logarithmic, rel=1e-12)
-        # By the speed: central differences of enclosures.
-        step = Fraction(1, 10**4)
-        ends = [pipeline.bind(tf, {"c": Fraction(speed) + sign * step})(s) for sign in (1, -1)]
-        assert by_speed == pytest.approx((ends[0] - ends[1]) / (2 * float(step)), rel=1e-7)
-
-
-@pytest.mark.slow
-@needs_strict
-def test_functions_that_find_wavenumbers_broadcast_s_and_parameters(over_any, strict):
-    s, speeds = 1j * np.logspace(-3, 3, 4), np.array([[5.0], [11.0]])
-    expected = over_numpy(PIPE).Y_over_p(s, U=speeds)
-    found = over_any(PIPE).Y_over_p(strict.asarray(s), U=strict.asarray(speeds))
-    assert found.shape == (2, 4)
-    assert np.allclose(np.asarray(found), expected, rtol=1e-12, atol=0)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "library", [pytest.param("array_api_strict", marks=needs_strict), pytest.param("jax", marks=needs_jax)]
-)
-def test_roots_of_any_sizes_are_found(library, over_any, request):
-    if library == "jax":
-        module, convert = request.getfixturevalue("over_jax")(PIPE), request.getfixturevalue("jnp").asarray
-        find = module._characteristic_roots
-    else:
-        strict = request.getfixturevalue("strict")
-        convert = strict.asarray
-
-        def find(coefficients):
-            return over_any(PIPE)._characteristic_roots(strict, coefficients)
-
-    expected = np.array(
-        [
-            [1.0, -2.0, 3.0, -4.0],
-            [1e-6, 1.0, -1e3, 2e6],
-            [1j, -1j, 5.0, -5.0],
-            [1.0 + 1.0j, 1.0 - 1.0j, -3.0, 0.0],
-            [0.0, 0.0, 2.0, -7.0],
-        ]
-    )
-    rows = np.array([np.poly(e)[:0:-1].astype(complex) for e in expected] + [[1.0, np.nan, 1.0, 1.0]])
-    with np.errstate(invalid="ignore"):
-        *found, least = (np.asarray(x) for x in find([convert(c) for c in rows.T]))
-    roots = np.array(found)[:, :-1].T
-    nearest = np.min(np.abs(roots[:, :, None] - expected[:, None, :]), axis=1)
-    assert np.all(nearest <= 1e-14 * np.abs(expected) + 1e-50)
-    distances = np.abs(expected[:, :, None] - expected[:, None, :]) + np.diag([np.inf] * 4)
-    assert least[:-1] == pytest.approx(distances.min(axis=(1, 2)), rel=1e-13)
-    assert np.all(np.isnan(np.array(found)[:, -1]))
 
 
 # -------------------------------------------------------------------------------------------------- jax

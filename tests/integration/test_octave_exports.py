@@ -11,7 +11,6 @@ from symflex.transfer import bind
 from tests.integration.octave import Octave
 from tests.unit.codegen.against_balls import axis_points, worst_errors
 from tests.unit.codegen.exportable import SPECS, derived, public_name
-from tests.unit.codegen.test_numpy_tapers import CONE, FAST, TIPS, hanging, kirchhoff, receptance
 
 pytestmark = pytest.mark.needs_tool("octave")
 
@@ -53,45 +52,6 @@ def test_what_else_a_program_can_hold_agrees_on_the_axis_and_in_both_half_planes
     octave.run()
     for tf, s, key in asked:
         assert worst_errors(tf, s, octave.value(key))[0] <= ACCURACY, tf.name
-
-
-@pytest.mark.slow
-def test_a_conical_rod_is_its_formula_also_where_the_taper_is_an_array(octave):
-    model = pipeline.loads(CONE)
-    octave.write("cone", MATLAB.export(model, pipeline.derive_all(model), "cone", samples=5).text)
-    octave.do("G = cone();")
-    s = np.array([30j, 400.0, 2000 + 9000j, -5000 + 20000j, 19000j, 1e9j])
-    keys = octave.keep(f"G.y_over_F({octave.points(s)})"), octave.keep("G.y_over_F(9000i, 'c', [0 0.3 0.8])")
-    octave.run()
-    assert octave.value(keys[0])[:5] == pytest.approx(receptance(s[:5]), rel=1e-11)
-    assert np.isnan(octave.value(keys[0])[5])  # too many waves
-    found = octave.value(keys[1])
-    assert found == pytest.approx(receptance(9000j, np.array([0.0, 0.3, 0.8])), rel=1e-11)
-
-
-@pytest.mark.slow
-def test_a_hanging_string_is_bessels_function_also_far_above_its_band(octave):
-    exported(octave, "hanging_string", samples=5)
-    points = octave.points(TIPS)
-    keys = [octave.keep(f"G.{name}_over_w_0({points})") for name in ("tip", "mid")]
-    lengths = np.array([0.5, 3.0, 0.7, 2.0, 1.0, 1.5])
-    keys += [octave.keep(f"G.tip_over_w_0({points}, 'l', {octave.points(lengths)})")]
-    far = np.array([200j, 40 + 600j, 0.0])
-    keys += [octave.keep(f"G.tip_over_w_0({octave.points(far)})")]
-    octave.run()
-    found = [octave.value(key) for key in keys]
-    assert found[0] == pytest.approx(hanging(TIPS, 0.0, 2.0), rel=1e-13)
-    assert found[1] == pytest.approx(hanging(TIPS, 1.0, 2.0), rel=1e-13)
-    assert found[2] == pytest.approx(hanging(TIPS, 0.0, lengths), rel=1e-13)
-    assert found[3] == pytest.approx(hanging(far, 0.0, 2.0), rel=1e-12)
-
-
-@pytest.mark.slow
-def test_a_wedge_is_kirchhoffs(octave):
-    exported(octave, "wedge", samples=5)
-    key = octave.keep(f"G.tip_over_w_0({octave.points(FAST)})")
-    octave.run()
-    assert octave.value(key) == pytest.approx(kirchhoff(FAST, 1), rel=1e-13)
 
 
 # ------------------------------------------------------------------------------------------ what is called

@@ -121,9 +121,17 @@ class CPrinter:
                 return negative(self.print(operand))
             case tree.Apply(function, argument):
                 return self._apply(function, self.print(argument))
+        return self._special(node)
+
+    def _special(self, node: tree.CodeNode) -> Term:
+        match node:
             case tree.Item(values, position):
                 held = self.listed(values)
                 return Term(f"{held.text}[{position}]", held.kind, held.varies)
+            case tree.RootFactor(point) if node.is_pair:
+                return _pair(self.print(point), node)
+            case tree.RootFactor():
+                return self.whole(node.spelled)
         message = f"no text for {type(node).__name__}"
         raise TypeError(message)
 
@@ -171,6 +179,14 @@ def _complex(real: float, imaginary: float) -> Term:
     if not imaginary:
         return Term(repr(real), Kind.REAL, binding=_SIGN if real < 0 else _LEAF)
     return Term(f"cx_of({real!r}, {imaginary!r})", Kind.COMPLEX)
+
+
+def _pair(s: Term, factor: tree.RootFactor) -> Term:
+    """Return the factor of two conjugate roots, on the imaginary axis of imaginary ones a real number."""
+    numbers = [Term(repr(x), Kind.REAL) for x in (*factor.im, *factor.re)]
+    if s.kind is Kind.IMAGINARY and factor.re == (0.0, 0.0):
+        return _call("cx_axial", Kind.REAL, s, *numbers[:2])
+    return _call("cx_pair", Kind.COMPLEX, complex_term(s), *numbers)
 
 
 def _infix(x: Term, operator: str, y: Term, kind: Kind) -> Term:

@@ -150,6 +150,8 @@ class Functions:
         if self.axis is not None and fits_lanes(self.axis):
             return [*self.freq_prototype.split("\n"), "{", *lanes(self.axis, self.members), "}"]
         program = self.axis or self.program
+        if has_losses(program):
+            return self._called()
         if program.is_lumped and is_rational_in_lanes(program):
             return [*self.freq_prototype.split("\n"), "{", *rational_lanes(program, self.members), "}"]
         is_axis = self.axis is not None
@@ -175,6 +177,19 @@ class Functions:
             *outer.lines,
             *loop,
             *inner.lines,
+            f"{STEP}}}",
+            "}",
+        ]
+
+    def _called(self) -> list[str]:
+        """Return a response that calls the function of s."""
+        return [
+            *self.freq_prototype.split("\n"),
+            "{",
+            f"{STEP}for (size_t i = 0; i < n; i++) {{",
+            f"{STEP * 2}const cx g = value_of_{self.name}(cx_of(0.0, omega[i]), p);",
+            f"{STEP * 2}real[i] = g.re;",
+            f"{STEP * 2}imag[i] = g.im;",
             f"{STEP}}}",
             "}",
         ]
@@ -294,6 +309,12 @@ def fits_lanes(program: tree.Piecewise) -> bool:
         and len(set(program.pieces)) > 1
         and not any(p.is_complex or p.circle for p in program.code)
     )
+
+
+def has_losses(program: tree.Piecewise) -> bool:
+    """Tell whether a program is a product over roots of which some lie beside the imaginary axis."""
+    roots = (n for n in program.near.nodes() if isinstance(n, tree.RootFactor))
+    return program.is_lumped and any(n.re != (0.0, 0.0) for n in roots)
 
 
 def is_rational_in_lanes(program: tree.Piecewise) -> bool:

@@ -99,7 +99,7 @@ class SplitRoot:
         return Fraction(2) ** round(log2(size))
 
     def factor(self, s: acb) -> acb:
-        """Return the factor that :func:`_factor` programs, over the scale."""
+        """Return the value of :class:`symflex.codegen.program.nodes.RootFactor`, over the scale."""
         re, im = (arb(x[0]) + arb(x[1]) for x in (self.re, self.im))
         value = acb(re, im) - s
         if self.is_negative:
@@ -177,7 +177,9 @@ class BandForm:
         factors += [base] if self.power > 0 else [forge.divide(forge.constant(1), base)] if self.power else []
         for first in range(0, max(len(self.zeros), len(self.poles)), GROUP):
             zeros, poles = (x[first : first + GROUP] for x in (self.zeros, self.poles))
-            above, below = (forge.multiply([_factor(forge, root) for root in x]) for x in (zeros, poles))
+            above, below = (
+                forge.multiply([forge.root_factor(r.re, r.im) for r in x]) for x in (zeros, poles)
+            )
             scale = prod((r.scale for r in poles), start=Fraction(1)) / prod(r.scale for r in zeros)
             factors.append(forge.multiply([forge.constant(scale), forge.divide(above, below)]))
         if exponent := self._exponent(forge):
@@ -198,27 +200,6 @@ class BandForm:
         if self.odd:
             parts.append(forge.multiply([forge.constant(1 / end), s, _clenshaw(forge, self.odd, twice)]))
         return forge.label(forge.add(parts), "q")
-
-
-def _factor(forge: Forge, root: SplitRoot) -> int:
-    """Return ``z - s``, of a pair the product of two such, ``s - z`` of a negative z.
-
-    What a double leaves of z is added last.
-    """
-    if root.is_negative:
-        high, rest = (forge.constant(-Fraction(x)) for x in root.re)
-        return forge.add([high, forge.s, rest])
-    minus = forge.negate(forge.s)
-    factors = []
-    for sign in (1,) if root.is_real else (1, -1):
-        terms = []
-        for re, im in zip(root.re, root.im, strict=True):
-            if im:
-                terms.append(forge.complex_number(Fraction(re), sign * Fraction(im)))
-            else:
-                terms.append(forge.constant(Fraction(re)))
-        factors.append(forge.add([terms[0], minus, terms[1]]))
-    return forge.multiply(factors)
 
 
 def _clenshaw(forge: Forge, coefficients: Sequence[float], twice: int) -> int:
@@ -298,6 +279,8 @@ def _split(roots: Sequence[Root]) -> tuple[int, tuple[SplitRoot, ...]]:
 
 
 def _two_doubles(x: arb) -> tuple[float, float]:
+    if x.contains(0):
+        return 0.0, 0.0
     with ctx.workprec(max(BITS, x.bits())):
         high = float(x.mid())
         return high, float((x.mid() - arb(high)).mid())

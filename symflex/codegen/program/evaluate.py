@@ -184,8 +184,8 @@ class _ProgramRun:
                 return complex(nearest_double(real), nearest_double(imaginary))
             case tree.ToComplex(operand):
                 return (1 + 0j) * self.value(operand)
-            case tree.LargerRoot(formula):
-                return self.value(formula)
+            case tree.LargerRoot() | tree.RootFactor():
+                return self.value(node.spelled)
             case tree.ParameterValue(name):
                 return self._parameters[name]
             case tree.Assigned(name):

@@ -188,6 +188,11 @@ class LargerRoot(CodeNode):
     middle: CodeNode  # m
     product: CodeNode  # p
 
+    @property
+    def spelled(self) -> CodeNode:
+        """The root in sums and products."""
+        return self.formula
+
 
 @dataclass(frozen=True, slots=True)
 class Apply(CodeNode):
@@ -201,6 +206,54 @@ class Apply(CodeNode):
 
     function: str
     argument: CodeNode
+
+
+@dataclass(frozen=True, slots=True)
+class RootFactor(CodeNode):
+    """A factor of a product over roots: ``z - s``, of a pair of roots the product of two such.
+
+    Parts of the root z are two doubles each, the value and what that leaves. That is added last, so that all
+    digits are right also where s is close to z. Of a negative real root it is ``s - z``.
+    """
+
+    OPERANDS: ClassVar = ("point",)
+
+    point: CodeNode  # s
+    # re and im: of z; im is positive, or zero for a single real root.
+    re: tuple[float, float]
+    im: tuple[float, float]
+
+    @property
+    def is_pair(self) -> bool:
+        """True for two conjugate roots."""
+        return self.im != (0.0, 0.0)
+
+    @property
+    def spelled(self) -> CodeNode:
+        """The factor in sums and products.
+
+        Examples
+        --------
+        >>> RootFactor(Laplace(), (-2.0, 0.0), (0.0, 0.0)).spelled
+        Add(terms=(RealNumber(value=Fraction(2, 1), pi_power=0), Laplace()))
+        """
+        if not self.is_pair and self.re[0] < 0:
+            parts = [_real(-self.re[0]), self.point, _real(-self.re[1])]
+            return Add(tuple(x for x in parts if x is not None))
+        factors = []
+        for sign in (1, -1) if self.is_pair else (1,):
+            high, rest = (
+                ComplexNumber(Fraction(re), sign * Fraction(im)) if im else _real(re)
+                for re, im in zip(self.re, self.im, strict=True)
+            )
+            factors.append(Add(tuple(x for x in (high, Negate(self.point), rest) if x is not None)))
+        return Multiply(tuple(factors)) if self.is_pair else factors[0]
+
+
+def _real(value: float) -> CodeNode | None:
+    """Return a number, nothing for zero."""
+    number = RealNumber(Fraction(abs(value)))
+    return (Negate(number) if value < 0 else number) if value else None
 
 
 @dataclass(frozen=True, slots=True)

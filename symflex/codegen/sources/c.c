@@ -99,6 +99,20 @@ static inline cx cx_div(cx z, cx w)
     return cx_of((z.re * r + z.im) / d, (z.im * r - z.re) / d);
 }
 
+//: cx_pair
+/* (z - s) (conj z - s), where z = a + da + j (b + db) is known to more digits than a double has. */
+static inline cx cx_pair(cx s, double b, double db, double a, double da)
+{
+    const double re = a - s.re + da;
+    return cx_mul(cx_of(re, b - s.im + db), cx_of(re, -b - s.im - db));
+}
+
+//: cx_axial
+static inline double cx_axial(double w, double b, double db)    /* the same where a = 0 and s = j w */
+{
+    return (b - w + db) * (b + w + db);
+}
+
 //: lane_div
 /* As accurate as Smith's method, and without branches. */
 static inline cx lane_div(cx z, cx w)

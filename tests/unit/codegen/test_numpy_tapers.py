@@ -8,7 +8,6 @@ from scipy.special import factorial, ive, jv
 
 from symflex import pipeline
 from symflex.codegen.exporters import EXPORTERS
-from symflex.errors import ModelError
 from tests.unit.codegen.exportable import derived, executed
 
 CONE = """
@@ -88,15 +87,6 @@ def test_a_uniform_rod_before_the_cone_is_followed_too():
     strain = (slope * np.cos(k) - u * k * np.sin(k) + c * tip) / (1 - c)
     assert made.verified[0].error < 1e-12
     assert function_of(made)(s) == pytest.approx(tip / (200e9 * 16e-4 * (1 - c) ** 2 * strain), rel=1e-11)
-
-
-def test_languages_without_code_for_it_refuse_and_name_one_that_has():
-    model = pipeline.loads(CONE)
-    with pytest.raises(ModelError) as caught:
-        EXPORTERS["julia"].export(model, pipeline.derive_all(model), "cone")
-    (problem,) = caught.value.diagnostics
-    assert problem.code == "SF910"
-    assert "numpy" in problem.hint
 
 
 # ---------------------------------------------------------------------------------------------------- tips

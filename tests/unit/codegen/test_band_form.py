@@ -1,0 +1,131 @@
+"""The band form: code that is a product over poles and zeros, where there is no short formula."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from fractions import Fraction
+from functools import cache
+
+import numpy as np
+import pytest
+from scipy.special import jv
+
+from symflex import pipeline
+from symflex.codegen.exporters import EXPORTERS
+from symflex.codegen.program.verify import choose_band
+from symflex.errors import ModelError
+from tests.unit.codegen.exportable import PIPE, derived, executed
+from tests.unit.codegen.test_c_files import compiled, value_at
+from tests.unit.codegen.test_c_files import response as c_response
+
+STRING = """
+symflex = 1
+parameters = { T = "10 N", mu = "10 g/m", l = "1 m" }
+[fields.w]
+domain = ["0", "l"]
+equation = "T*w'' = mu*s^2*w"
+conditions = ["w(0) = u", "w'(l) = 0"]
+[inputs]
+u = {}
+[outputs]
+end = "w(l)"
+"""
+"""Whose end moves by 1/cosh(s l/c) with c = sqrt(1000) m/s."""
+
+HANGING = """
+symflex = 1
+parameters = { rhoA = "20 g/m", g = "9.81 m/s^2", l = "2 m" }
+[fields.w]
+domain = ["0", "l"]
+equation = "(rhoA*g*(l - x)*w')' = rhoA*s^2*w"
+conditions = ["w(0) = w_0"]
+[inputs]
+w_0 = { unit = "m" }
+[outputs]
+tip = "w(l)"
+"""
+
+
+def band(target, **options):
+    return replace(EXPORTERS[target], form="band", **options)
+
+
+def exported(text, target, **options):
+    model = pipeline.loads(text)
+    return band(target, **options).export(model, pipeline.derive_all(model), "plant", is_alone=False)
+
+
+@cache
+def string():
+    made = exported(STRING, "numpy")
+    return made, executed(made.text)["end_over_u"]
+
+
+def test_a_string_is_its_hyperbolic_cosine_also_beside_its_poles():
+    made, end = string()
+    assert made.verified[0].form == "band"
+    assert made.verified[0].error < 1e-14
+    poles = np.pi * np.sqrt(1000) * (np.arange(5) + 0.5)
+    s = 1j * np.concatenate([poles * (1 + x) for x in (-1e-3, 1e-7, 1e-9)] + [np.linspace(1, poles[-1], 30)])
+    for at in (s, s + 40, s - 40):
+        exact = 1 / np.cosh(at / np.sqrt(1000))
+        room = 1e-13 + 1e-15 * np.abs(at * np.tanh(at / np.sqrt(1000)) / np.sqrt(1000))
+        assert np.all(np.abs(end(at) / exact - 1) < room)
+
+
+def test_a_docstring_says_where_it_holds_and_that_parameters_are_fixed():
+    text = re.sub(r"\s+", " ", string()[1].__doc__)
+    assert "10 poles" in text
+    assert "Hz, and not beyond" in text
+    assert "Numbers are those of the file" in text
+    assert "at abs(re(s)) = " in text
+    with pytest.raises(TypeError):
+        string()[1](1j, T=11.0)
+
+
+def test_the_band_ends_where_it_is_asked_to():
+    (tf,) = pipeline.derive_all(pipeline.loads(STRING))
+    _, verified, said = choose_band(tf, up_to_hz=Fraction(100))
+    assert verified.band[1] == 100
+    assert "628.32 rad/s, 100 Hz" in said[1]
+
+
+def test_what_is_lumped_is_exact_and_needs_no_rest():
+    _, tfs = derived("six_mass")
+    program, verified, said = choose_band(tfs[0])
+    assert verified.error < 1e-14
+    assert "a polynomial of degree 0" in said[0]
+    assert not program.parameters
+
+
+@pytest.mark.needs_tool("gcc")
+def test_c_has_it_where_waves_would_have_to_be_followed(tmp_path):
+    library, _ = compiled(tmp_path, exported(HANGING, "c"))
+    omega = np.linspace(0.5, 18, 40)
+    x = 2 * omega * np.sqrt(2 / 9.81)
+    room = 1e-13 * (1 + np.abs(x * jv(1, x) / jv(0, x)))
+    assert np.all(np.abs(c_response(library, 0, omega) * jv(0, x) - 1) < room)
+    assert np.all(np.abs(value_at(library, 0, 1j * omega) * jv(0, x) - 1) < room)
+
+
+@pytest.mark.parametrize("target", ["array-api", "jax", "c", "matlab", "julia"])
+def test_other_languages_have_it_where_exponents_have_no_formula(target):
+    model = pipeline.loads(PIPE)
+    made = EXPORTERS[target].export(model, pipeline.derive_all(model)[:1], "plant", samples=50)
+    assert made.verified[0].form == "band"
+    assert made.verified[0].error < 1e-13
+    assert len(made.text) < 40_000
+
+
+def test_a_function_that_is_zero_stays_so():
+    model = pipeline.loads(STRING.replace('end = "w(l)"', 'end = "w(l)"\nnone = "w(0) - u"'))
+    program, verified, _ = choose_band(pipeline.derive_all(model)[1])
+    assert verified.error == 0
+    assert not program.conditions
+
+
+def test_it_needs_values():
+    model = pipeline.loads(STRING.replace('T = "10 N"', 'T = { unit = "N" }'))
+    with pytest.raises(ModelError, match=r"SF229.*T has no value"):
+        choose_band(pipeline.derive_all(model)[0])
