@@ -59,8 +59,11 @@ ROUNDS = 3
 DIGITS = 36
 """Of the roots: more than two doubles hold."""
 
-FIRST_NODES, MOST_NODES = 24, 216
-"""Points on the positive half of the band at which what is left is taken; the next try has thrice as many."""
+FIRST_NODES, MOST_NODES = 24, 192
+"""Points on the positive half of the band at which what is left is taken; the next try has twice as many."""
+
+SPARE = 4
+"""Last coefficients that count for nothing where there were points enough."""
 
 NEGLIGIBLE = 2.0**-57
 """Size of a coefficient that changes no double."""
@@ -298,9 +301,9 @@ def _fitted(values: Enclosures, found: PoleZeroMap, end: Fraction) -> BandForm |
             return None
         gain, even, odd = fit
         kept = [_trimmed(part) for part in (even, odd)]
-        if all(len(part) <= 2 * count // 3 for part in kept):
+        if all(len(part) <= count - SPARE for part in kept):
             return BandForm(name, end, gain, above - below, zeros, poles, kept[0], kept[1], reason)
-        count *= 3
+        count *= 2
     return None
 
 

@@ -93,13 +93,16 @@ ASIDE_SAMPLES = 30
 PROMISED = 1e-12
 """What such a function promises up to the frequency named."""
 
+BESIDE_ROOTS = (0.0, 1e-9, 1e-4)
+"""Relative distances from a root's frequency at which a band form is measured: it has all digits of each."""
+
 BAND_SHARE = 8
 """Of a band form whose roots are known one in so many of the usual samples shows how smooth the rest is."""
 
 ASIDE_OF_AXIS = 0.1
 """Distance from the imaginary axis, in bands, at which a band form is measured too."""
 
-HEIGHTS = np.linspace(0.02, 0.98, 9)
+HEIGHTS = np.linspace(0.02, 0.98, 5)
 """Heights at which it is, in bands."""
 
 TINY = 1e-307
@@ -229,7 +232,7 @@ def choose_band(
     if len(centers) > 2 * MOST_EXTREMES:
         centers = [*centers[:MOST_EXTREMES], *centers[-MOST_EXTREMES:]]
     count = max(1, int(samples * _part(bound) / BAND_SHARE))
-    references = References(values, 1j * tau * _frequencies(band, count, centers, ASIDE))
+    references = References(values, 1j * tau * _frequencies(band, count, centers, BESIDE_ROOTS))
     error = None if not len(references.s) else references.worst_error(program)
     reason = "" if error is not None else "no value could be enclosed"
     verified = Verification(tf.name, "band", error, band, len(references.s), reason)
