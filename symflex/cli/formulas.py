@@ -186,6 +186,10 @@ def export(spec: Specification, given: ExportOptions) -> int:
 
     With --sample, --to c and numpy write difference equations: code for a controller or a filter that takes
     one step at every sample, whose rounding errors are measured. Dead times may be any fraction of samples.
+
+    With --form band code is a product over the poles and zeros in a band, times what they leave: exact up to
+    the band's end, and for these values of the parameters only. C, MATLAB, Julia, jax and arrays have what
+    has no short formula, such as networks and members that taper, in this form.
     """
     from symflex import pipeline
     from symflex.codegen.exporters import EXPORTERS

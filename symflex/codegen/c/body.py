@@ -128,8 +128,8 @@ class CPrinter:
             case tree.Item(values, position):
                 held = self.listed(values)
                 return Term(f"{held.text}[{position}]", held.kind, held.varies)
-            case tree.RootFactor(point) if node.is_pair:
-                return _pair(self.print(point), node)
+            case tree.RootFactor(point) if node.is_pair or node.is_mirrored:
+                return _roots(self.print(point), node)
             case tree.RootFactor():
                 return self.whole(node.spelled)
         message = f"no text for {type(node).__name__}"
@@ -181,12 +181,21 @@ def _complex(real: float, imaginary: float) -> Term:
     return Term(f"cx_of({real!r}, {imaginary!r})", Kind.COMPLEX)
 
 
-def _pair(s: Term, factor: tree.RootFactor) -> Term:
-    """Return the factor of two conjugate roots, on the imaginary axis of imaginary ones a real number."""
-    numbers = [Term(repr(x), Kind.REAL) for x in (*factor.im, *factor.re)]
-    if s.kind is Kind.IMAGINARY and factor.re == (0.0, 0.0):
-        return _call("cx_axial", Kind.REAL, s, *numbers[:2])
-    return _call("cx_pair", Kind.COMPLEX, complex_term(s), *numbers)
+def _roots(s: Term, factor: tree.RootFactor) -> Term:
+    """Return the factor of two or four roots, a real number where the imaginary axis mirrors them."""
+    im, re = ([Term(repr(x), Kind.REAL) for x in part] for part in (factor.im, factor.re))
+    if s.kind is Kind.IMAGINARY and factor.is_real_on_axis:
+        if not factor.is_mirrored:
+            return _call("cx_axial", Kind.REAL, s, *im)
+        if not factor.is_pair:
+            return _call("cx_two", Kind.REAL, s, re[0])
+        return _call("cx_four", Kind.REAL, s, *im, re[0])
+    s = complex_term(s)
+    if not factor.is_pair:
+        return _call("cx_mirrored", Kind.COMPLEX, s, *re)
+    found = _call("cx_pair", Kind.COMPLEX, s, *im, *re)
+    minus = [Term(repr(-x), Kind.REAL) for x in factor.re]
+    return product(found, _call("cx_pair", Kind.COMPLEX, s, *im, *minus)) if factor.is_mirrored else found
 
 
 def _infix(x: Term, operator: str, y: Term, kind: Kind) -> Term:

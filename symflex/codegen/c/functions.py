@@ -312,9 +312,9 @@ def fits_lanes(program: tree.Piecewise) -> bool:
 
 
 def has_losses(program: tree.Piecewise) -> bool:
-    """Tell whether a program is a product over roots of which some lie beside the imaginary axis."""
+    """Tell whether a program is a product over roots that the imaginary axis does not mirror."""
     roots = (n for n in program.near.nodes() if isinstance(n, tree.RootFactor))
-    return program.is_lumped and any(n.re != (0.0, 0.0) for n in roots)
+    return program.is_lumped and not all(n.is_real_on_axis for n in roots)
 
 
 def is_rational_in_lanes(program: tree.Piecewise) -> bool:

@@ -68,7 +68,7 @@ SPARE = 4
 NEGLIGIBLE = 2.0**-57
 """Size of a coefficient that changes no double."""
 
-GROUP = 8
+GROUP = 12
 """Zeros, and poles, that are multiplied before their products are divided: a division costs more."""
 
 BITS = 160
@@ -84,6 +84,7 @@ class SplitRoot:
 
     re: tuple[float, float]
     im: tuple[float, float]  # positive, or zero for a real root
+    is_mirrored: bool = False  # true where minus the root is one as well; re is positive then
 
     @property
     def is_real(self) -> bool:
@@ -91,25 +92,29 @@ class SplitRoot:
         return self.im == (0.0, 0.0)
 
     @property
-    def is_negative(self) -> bool:
-        """True for a root on the negative half of the real axis."""
-        return self.is_real and self.re[0] < 0
+    def count(self) -> int:
+        """How many roots these are."""
+        return (1 if self.is_real else 2) * (2 if self.is_mirrored else 1)
 
     @property
     def scale(self) -> Fraction:
         """A power of two near to the size of the root's factor at s = 0."""
-        size = abs(self.re[0]) if self.is_real else self.re[0] ** 2 + self.im[0] ** 2
-        return Fraction(2) ** round(log2(size))
+        return Fraction(2) ** round(self.count * log2(sqrt(self.re[0] ** 2 + self.im[0] ** 2)))
+
+    @property
+    def every(self) -> tuple[acb, ...]:
+        """The roots that these are."""
+        re, im = (arb(x[0]) + arb(x[1]) for x in (self.re, self.im))
+        upper = (acb(re, im), acb(-re, im)) if self.is_mirrored else (acb(re, im),)
+        return upper if self.is_real else (*upper, *(z.conjugate() for z in upper))
 
     def factor(self, s: acb) -> acb:
-        """Return the value of :class:`symflex.codegen.program.nodes.RootFactor`, over the scale."""
-        re, im = (arb(x[0]) + arb(x[1]) for x in (self.re, self.im))
-        value = acb(re, im) - s
-        if self.is_negative:
-            value = -value
-        if not self.is_real:
-            value = value * (acb(re, -im) - s)
-        return value / arb(fmpq(self.scale.numerator, self.scale.denominator))
+        """Return the value of a :class:`symflex.codegen.program.nodes.RootFactor`, over the scale."""
+        sign = -1 if self.is_real and (self.is_mirrored or self.re[0] < 0) else 1
+        value = acb(sign) / arb(fmpq(self.scale.numerator, self.scale.denominator))
+        for z in self.every:
+            value = value * (z - s)
+        return value
 
 
 @dataclass(frozen=True)
@@ -147,14 +152,15 @@ class BandForm:
     def sentences(self) -> tuple[str, ...]:
         """Return what a docstring says of it, in paragraphs."""
         words = [
-            f"{len(roots)} {kind if len(roots) == 1 else kind + 's'}"
+            f"{number} {kind if number == 1 else kind + 's'}"
             for roots, kind in ((self.poles, "pole"), (self.zeros, "zero"))
+            for number in (sum(root.count for root in roots),)
         ]
         degree = max(2 * len(self.even) - 2, 2 * len(self.odd) - 1, 0)
         at_zero = f"s^{self.power} * " if self.power else ""
         formula = (
             f"{self.name} = gain * {at_zero}product of (1 - s/z) over {words[1]} / product of (1 - s/p) over "
-            f"{words[0]} * exp(q(s)), conjugate pairs counted once, q a polynomial of degree {degree}."
+            f"{words[0]} * exp(q(s)), q a polynomial of degree {degree}."
         )
         proof = (
             f"It was not proved that these are all poles and zeros there: {self.reason}."
@@ -181,7 +187,8 @@ class BandForm:
         for first in range(0, max(len(self.zeros), len(self.poles)), GROUP):
             zeros, poles = (x[first : first + GROUP] for x in (self.zeros, self.poles))
             above, below = (
-                forge.multiply([forge.root_factor(r.re, r.im) for r in x]) for x in (zeros, poles)
+                forge.multiply([forge.root_factor(r.re, r.im, is_mirrored=r.is_mirrored) for r in x])
+                for x in (zeros, poles)
             )
             scale = prod((r.scale for r in poles), start=Fraction(1)) / prod(r.scale for r in zeros)
             factors.append(forge.multiply([forge.constant(scale), forge.divide(above, below)]))
@@ -269,16 +276,17 @@ def _located(bound: AnyBoundFunction, up_to: Fraction | None) -> tuple[PoleZeroM
 
 
 def _split(roots: Sequence[Root]) -> tuple[int, tuple[SplitRoot, ...]]:
-    """Return how many roots are zero, and the others, each as often as it occurs, pairs once."""
-    at_zero, found = 0, []
-    for root in roots:
-        if root.is_zero:
-            at_zero += root.multiplicity
-        elif not root.im < 0:
+    """Return how many roots are zero, and the others, each as often as it occurs, images once."""
+    found = []
+    for group in groups(roots):
+        upper = [root for root in group if not root.im < 0]
+        left, right = ([r for r in upper if bool(r.re < 0) == is_left] for is_left in (True, False))
+        is_mirrored = len(left) == len(right) == 1 and left[0].multiplicity == right[0].multiplicity
+        for root in right if is_mirrored else upper:
             re = (0.0, 0.0) if root.on_imaginary_axis else _two_doubles(root.re)
             im = (0.0, 0.0) if root.is_real else _two_doubles(root.im)
-            found += [SplitRoot(re, im)] * root.multiplicity
-    return at_zero, tuple(found)
+            found += [SplitRoot(re, im, is_mirrored)] * root.multiplicity
+    return sum(root.multiplicity for root in roots if root.is_zero), tuple(found)
 
 
 def _two_doubles(x: arb) -> tuple[float, float]:
@@ -359,8 +367,7 @@ def _left(made: BandForm, s: acb, value: acb, slope: acb) -> tuple[acb, acb]:
         for roots, sign in ((made.zeros, 1), (made.poles, -1)):
             for root in roots:
                 value = value / root.factor(s) ** sign
-                re, im = (arb(x[0]) + arb(x[1]) for x in (root.re, root.im))
-                for z in (acb(re),) if root.is_real else (acb(re, im), acb(re, -im)):
+                for z in root.every:
                     slope = slope - sign / (s - z)
         return value, slope
 

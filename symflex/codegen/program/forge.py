@@ -181,9 +181,9 @@ class Forge:
         """Return an elementary function."""
         return self._make(tree.Apply, function, argument)
 
-    def root_factor(self, re: tuple[float, float], im: tuple[float, float]) -> int:
+    def root_factor(self, re: tuple[float, float], im: tuple[float, float], *, is_mirrored: bool) -> int:
         """Return the factor of a root or a pair; see :class:`nodes.RootFactor`."""
-        return self._make(tree.RootFactor, self.s, re, im)
+        return self._make(tree.RootFactor, self.s, re, im, is_mirrored)
 
     def solutions(self, coefficients: Sequence[int], terms: int) -> tuple[int, ...]:
         """Return a differential equation's solutions at 1; see :class:`nodes.Solutions`."""

@@ -222,11 +222,17 @@ class RootFactor(CodeNode):
     # re and im: of z; im is positive, or zero for a single real root.
     re: tuple[float, float]
     im: tuple[float, float]
+    is_mirrored: bool = False  # true where -z is a root as well; re is positive then
 
     @property
     def is_pair(self) -> bool:
         """True for two conjugate roots."""
         return self.im != (0.0, 0.0)
+
+    @property
+    def is_real_on_axis(self) -> bool:
+        """True where the factor is real for imaginary s: roots mirror each other in the imaginary axis."""
+        return self.is_mirrored or self.re == (0.0, 0.0)
 
     @property
     def spelled(self) -> CodeNode:
@@ -237,17 +243,21 @@ class RootFactor(CodeNode):
         >>> RootFactor(Laplace(), (-2.0, 0.0), (0.0, 0.0)).spelled
         Add(terms=(RealNumber(value=Fraction(2, 1), pi_power=0), Laplace()))
         """
+        minus = Negate(self.point)
         if not self.is_pair and self.re[0] < 0:
-            parts = [_real(-self.re[0]), self.point, _real(-self.re[1])]
-            return Add(tuple(x for x in parts if x is not None))
+            return _sum(_real(-self.re[0]), self.point, _real(-self.re[1]))
         factors = []
         for sign in (1, -1) if self.is_pair else (1,):
             high, rest = (
                 ComplexNumber(Fraction(re), sign * Fraction(im)) if im else _real(re)
                 for re, im in zip(self.re, self.im, strict=True)
             )
-            factors.append(Add(tuple(x for x in (high, Negate(self.point), rest) if x is not None)))
-        return Multiply(tuple(factors)) if self.is_pair else factors[0]
+            factors += [_sum(high, s, rest) for s in ((minus, self.point) if self.is_mirrored else (minus,))]
+        return Multiply(tuple(factors)) if len(factors) > 1 else factors[0]
+
+
+def _sum(*terms: CodeNode | None) -> CodeNode:
+    return Add(tuple(x for x in terms if x is not None))
 
 
 def _real(value: float) -> CodeNode | None:

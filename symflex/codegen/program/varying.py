@@ -45,9 +45,8 @@ def build_varying(tf: TransferFunction) -> Piecewise:
         tf = followed_along_x(tf)
     if _has_uniform(tf):
         message = f"{tf.name} has members of frames besides tapered ones, for which there is no code yet"
-        raise ModelError(
-            Diagnostic("SF910", message, None, "its poles, zeros and values at frequencies are there")
-        )
+        hint = "--form band has it, with numbers for parameters"
+        raise ModelError(Diagnostic("SF910", message, None, hint))
     return _Workshop(tf).program()
 
 

@@ -111,10 +111,11 @@ class Dialect:
         """Return the functions that some code calls."""
         parts: dict[tuple[str, ...], str] = {}
         for names, text in parts_of(*self.sources).items():
-            own = (
-                {(f"_{f.__name__}",): private_copy(f) for f in COPIED} if names == _COPIES else {names: text}
-            )
-            parts |= own
+            if names != _COPIES:
+                parts[names] = text
+                continue
+            for function in COPIED:
+                parts[f"_{function.__name__}",] = private_copy(function)
         found = called_parts(code, parts, ("_numbers", "BLOCK"))
         return found if self.is_argument else [for_one_library(text, self.space) for text in found]
 

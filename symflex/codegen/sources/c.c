@@ -113,6 +113,25 @@ static inline double cx_axial(double w, double b, double db)    /* the same wher
     return (b - w + db) * (b + w + db);
 }
 
+//: cx_two
+static inline double cx_two(double w, double a)    /* (a - s) (a + s) at s = j w */
+{
+    return a * a + w * w;
+}
+
+//: cx_four
+static inline double cx_four(double w, double b, double db, double a)    /* of a + j b and its images */
+{
+    const double near = b - w + db, far = b + w + db;
+    return (near * near + a * a) * (far * far + a * a);
+}
+
+//: cx_mirrored
+static inline cx cx_mirrored(cx s, double a, double da)    /* (a - s) (a + s), with a to more digits */
+{
+    return cx_mul(cx_of(a - s.re + da, -s.im), cx_of(a + s.re + da, s.im));
+}
+
 //: lane_div
 /* As accurate as Smith's method, and without branches. */
 static inline cx lane_div(cx z, cx w)
