@@ -53,6 +53,9 @@ BEYOND = 5
 FURTHER = Fraction(3, 2)
 """How far beyond a band that is given in Hz roots are found, in frequencies."""
 
+ENOUGH = Fraction(6, 5)
+"""How far beyond the band the highest of as many zeros as poles has to lie."""
+
 ROUNDS = 3
 """How often roots are sought further away where what they leave is not smooth."""
 
@@ -265,12 +268,20 @@ def _located(bound: AnyBoundFunction, up_to: Fraction | None) -> tuple[PoleZeroM
         return locate(bound, Band(Fraction(0), up_to * FURTHER), DIGITS), up_to
     modes = analysis.modes or DEFAULT_MODES
     found = locate(bound, Modes(modes + BEYOND), DIGITS)
-    poles, zeros = ([group[0].frequency_hz() for group in groups(x)] for x in (found.poles, found.zeros))
+    poles, zeros = (
+        [
+            root.frequency_hz()
+            for root in x
+            if not root.im < 0 and not root.is_zero
+            for _ in range(root.multiplicity)
+        ]
+        for x in (found.poles, found.zeros)
+    )
     if len(poles) <= modes:
         return found, LUMPED_END
     # Between two modes, where the function is neither large nor small.
     end = Fraction(f"{sqrt(poles[modes - 1] * poles[modes]):.3g}")
-    if len(zeros) >= modes + BEYOND and max(zeros) < FURTHER * end:
+    if len(zeros) >= modes + BEYOND and max(zeros) < ENOUGH * end:
         found = locate(bound, Band(Fraction(0), Fraction(max(poles))), DIGITS)
     return found, end
 

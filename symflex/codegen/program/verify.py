@@ -26,6 +26,7 @@ from symflex.transfer import BoundNested, NestedTransferFunction, bind, bind_nes
 from symflex.transfer.bind import EnclosedTransferFunction
 from symflex.transfer.enclosed_network import EnclosedNetwork
 from symflex.transfer.nested_form import EnclosedNested
+from symflex.transfer.of_model import derive_for_roots
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -221,7 +222,7 @@ def choose_band(
     if missing := [p.name for p in tf.parameters if p.value is None]:
         message = f"{tf.name} in band form consists of numbers, and {', '.join(missing[:NAMED])} has no value"
         raise ModelError(Diagnostic("SF229", message, None, "give values, or export it to numpy"))
-    bound = bind_nested(tf) if isinstance(tf, NestedTransferFunction) else bind(tf)
+    (bound,) = derive_for_roots(tf.model, [(tf.output.name, tf.input.name)])
     values = Enclosures(bound)
     end = up_to_hz or (band_hz[1] if band_hz else None)
     form = BandForm.zero(tf.name) if _vanishes(bound) else band_form(values, end)
