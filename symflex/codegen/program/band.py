@@ -47,6 +47,9 @@ if TYPE_CHECKING:
     from symflex.transfer import AnyBoundFunction, AnyTransferFunction
 
 
+CLOSED_TERMS = 60
+"""Terms with kernels up to which a formula is short: twice as many are some hundred kilobytes of code."""
+
 BEYOND = 5
 """Modes that are found beyond those of the band."""
 
@@ -227,10 +230,11 @@ def _clenshaw(forge: Forge, coefficients: Sequence[float], twice: int) -> int:
 
 
 def is_closed(tf: AnyTransferFunction) -> bool:
-    """Tell whether a function is a closed expression, not the solution of equations at every s."""
-    if isinstance(tf, NestedTransferFunction):
+    """Tell whether a function is a short closed expression, not the solution of equations at every s."""
+    if isinstance(tf, NestedTransferFunction) or not tf.is_distributed:
         return not tf.is_distributed
-    return not tf.is_nameless and not any(law.matrix for law in tf.kernels.dispersions)
+    is_followed = any(law.matrix for law in tf.kernels.dispersions)
+    return not tf.is_nameless and not is_followed and tf.length <= CLOSED_TERMS
 
 
 def band_form(values: Enclosures, up_to: Fraction | None = None) -> BandForm:
