@@ -69,8 +69,8 @@ TIMES_SERIES = 3.0
 POINTS_OF_C = 10_000
 BAND_OF_C = 60.0, HIGHEST**2
 """In rad/s: the five modes are in it."""
-TIMES_UNIFORM = 30.0
-"""Most that C may take over that of the uniform beam, whose formula is computed in vectors; 24 is usual."""
+TIMES_UNIFORM = 2.0
+"""Most that C in band form may take over the formula of the uniform beam, both in vectors; 1.6 is usual."""
 
 
 def ours(modes: int, digits: int) -> NDArray[Any]:
