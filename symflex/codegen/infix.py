@@ -90,6 +90,10 @@ class InfixPrinter(ABC):
     def power(self, base: str, exponent: int) -> str:
         """Return a power of text that needs no parentheses."""
 
+    @abstractmethod
+    def cut_off(self, point: tree.CodeNode, end: float) -> str:
+        """Return the text, one operand, of a :class:`symflex.codegen.program.nodes.Within`."""
+
     def listed(self, texts: Iterable[str]) -> str:
         """Return a list."""
         return f"[{', '.join(texts)}]"
@@ -116,6 +120,8 @@ class InfixPrinter(ABC):
                 return self.to_complex(operand)
             case tree.LargerRoot() | tree.RootFactor():
                 return self._print(node.spelled)
+            case tree.Within(point, end):
+                return self.cut_off(point, end), LEAF
             case tree.ParameterValue(name):
                 return self.parameters[name], LEAF
             case tree.Assigned(name):

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from symflex.codegen.export import Contents, Member
+    from symflex.codegen.program.nodes import CodeNode
     from symflex.model import Model
 
 WIDTH = 92
@@ -70,6 +71,11 @@ class JuliaPrinter(InfixPrinter):
     def power(self, base: str, exponent: int) -> str:
         """Return a power of text that needs no parentheses."""
         return f"{base}^{exponent}"
+
+    def cut_off(self, point: CodeNode, end: float) -> str:
+        """Return the text of a number that is NaN beyond an end."""
+        z = self.print(point)
+        return f"(abs({z}) <= {end!r} ? {z} : NaN * {z})"
 
     def item(self, values: str, position: int) -> str:
         """Return one value of a vector, counted from 0."""

@@ -130,6 +130,11 @@ class MatlabPrinter(InfixPrinter):
         """Return a power of text that needs no parentheses."""
         return f"{base}.^{exponent}"
 
+    def cut_off(self, point: CodeNode, end: float) -> str:
+        """Return the text of numbers to which 0/0 is added beyond an end."""
+        z = self.print(point)
+        return f"({z} + 0.0 ./ (abs({z}) <= {end!r}))"
+
     def listed(self, texts: Iterable[str]) -> str:
         """Return a cell array."""
         return f"{{{', '.join(texts)}}}"

@@ -128,6 +128,8 @@ class CPrinter:
             case tree.Item(values, position):
                 held = self.listed(values)
                 return Term(f"{held.text}[{position}]", held.kind, held.varies)
+            case tree.Within(point, end):
+                return _cut_off(self.print(point), end)
             case tree.RootFactor(point) if node.is_pair or node.is_mirrored:
                 return _roots(self.print(point), node)
             case tree.RootFactor():
@@ -179,6 +181,13 @@ def _complex(real: float, imaginary: float) -> Term:
     if not imaginary:
         return Term(repr(real), Kind.REAL, binding=_SIGN if real < 0 else _LEAF)
     return Term(f"cx_of({real!r}, {imaginary!r})", Kind.COMPLEX)
+
+
+def _cut_off(s: Term, end: float) -> Term:
+    """Return s up to an absolute value, beyond which it is not a number."""
+    if s.kind is Kind.COMPLEX:
+        return _call("cx_scale", Kind.COMPLEX, Term(f"cx_abs({s.text}) <= {end!r} ? 1.0 : NAN", Kind.REAL), s)
+    return replace(s, text=f"(fabs({s.text}) <= {end!r} ? {s.text} : NAN)", binding=_LEAF)
 
 
 def _roots(s: Term, factor: tree.RootFactor) -> Term:

@@ -80,6 +80,9 @@ GROUP = 12
 BITS = 160
 """With which coefficients are summed: those of two doubles, and as many again for what cancels."""
 
+SLACK = 2.0**-40
+"""How far beyond the band's end a rounded frequency may be, relatively; further away values are NaN."""
+
 LUMPED_END = Fraction(10_000)
 """End of the band [Hz] of a function with finitely many roots where nothing says another one."""
 
@@ -150,6 +153,11 @@ class BandForm:
         return tau * float(self.end_hz)
 
     @property
+    def ends(self) -> bool:
+        """True where the form holds up to the band's end only: its roots are not all there are."""
+        return bool(self.even or self.odd)
+
+    @property
     def centers_hz(self) -> list[float]:
         """The frequencies of poles and zeros [Hz]: by their imaginary parts, and by their sizes."""
         found = [(r.im[0], sqrt(r.re[0] ** 2 + r.im[0] ** 2)) for r in (*self.zeros, *self.poles)]
@@ -173,10 +181,11 @@ class BandForm:
             if self.reason
             else "The poles and zeros in the band and around it are proved, and that there are no others."
         )
+        end = f"abs(s) up to {self.end:.5g} rad/s, {float(self.end_hz):.5g} Hz"
+        holds = f"it holds for {end}, and is NaN beyond" if self.ends else f"it was measured for {end}"
         return (
             formula,
-            f"Band form: it holds for abs(s) up to {self.end:.5g} rad/s, {float(self.end_hz):.5g} Hz, and "
-            f"not beyond. {proof} Numbers are those of the file: no parameter can be changed here.",
+            f"Band form: {holds}. {proof} Numbers are those of the file: no parameter can be changed here.",
         )
 
     def beside(self, part: float, error: str) -> str:
@@ -187,26 +196,25 @@ class BandForm:
     def program(self) -> Piecewise:
         """Return the program."""
         forge = Forge()
+        s = forge.within(self.end * (1 + SLACK)) if self.ends else forge.s
         factors = [forge.constant(Fraction(self.gain))]
-        base = forge.power(forge.s, abs(self.power))
+        base = forge.power(s, abs(self.power))
         factors += [base] if self.power > 0 else [forge.divide(forge.constant(1), base)] if self.power else []
         for first in range(0, max(len(self.zeros), len(self.poles)), GROUP):
             zeros, poles = (x[first : first + GROUP] for x in (self.zeros, self.poles))
             above, below = (
-                forge.multiply([forge.root_factor(r.re, r.im, is_mirrored=r.is_mirrored) for r in x])
+                forge.multiply([forge.root_factor(s, r.re, r.im, is_mirrored=r.is_mirrored) for r in x])
                 for x in (zeros, poles)
             )
             scale = prod((r.scale for r in poles), start=Fraction(1)) / prod(r.scale for r in zeros)
             factors.append(forge.multiply([forge.constant(scale), forge.divide(above, below)]))
-        if exponent := self._exponent(forge):
-            factors.append(forge.apply("complex_exp", exponent))
+        if self.ends:
+            factors.append(forge.apply("complex_exp", self._exponent(forge, s)))
         return schedule(forge, (), forge.multiply(factors), None, inf)
 
-    def _exponent(self, forge: Forge) -> int | None:
-        """Return q(s), nothing where it is zero."""
-        if not self.even and not self.odd:
-            return None
-        s, end = forge.s, Fraction(self.end)
+    def _exponent(self, forge: Forge, s: int) -> int:
+        """Return q(s)."""
+        end = Fraction(self.end)
         twice = forge.label(
             forge.add([forge.constant(2), forge.multiply([forge.constant(4 / end**2), s, s])]), "w"
         )

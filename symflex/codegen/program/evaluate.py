@@ -186,6 +186,9 @@ class _ProgramRun:
                 return (1 + 0j) * self.value(operand)
             case tree.LargerRoot() | tree.RootFactor():
                 return self.value(node.spelled)
+            case tree.Within(point, end):
+                z = self.value(point)
+                return np.where(np.abs(z) <= end, z, np.nan)
             case tree.ParameterValue(name):
                 return self._parameters[name]
             case tree.Assigned(name):

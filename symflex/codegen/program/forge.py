@@ -181,9 +181,15 @@ class Forge:
         """Return an elementary function."""
         return self._make(tree.Apply, function, argument)
 
-    def root_factor(self, re: tuple[float, float], im: tuple[float, float], *, is_mirrored: bool) -> int:
+    def within(self, end: float) -> int:
+        """Return s up to an absolute value; see :class:`nodes.Within`."""
+        return self.label(self._make(tree.Within, self.s, end), "z")
+
+    def root_factor(
+        self, point: int, re: tuple[float, float], im: tuple[float, float], *, is_mirrored: bool
+    ) -> int:
         """Return the factor of a root or a pair; see :class:`nodes.RootFactor`."""
-        return self._make(tree.RootFactor, self.s, re, im, is_mirrored)
+        return self._make(tree.RootFactor, point, re, im, is_mirrored)
 
     def solutions(self, coefficients: Sequence[int], terms: int) -> tuple[int, ...]:
         """Return a differential equation's solutions at 1; see :class:`nodes.Solutions`."""

@@ -209,6 +209,16 @@ class Apply(CodeNode):
 
 
 @dataclass(frozen=True, slots=True)
+class Within(CodeNode):
+    """The point itself where its absolute value is at most ``end``, elsewhere not a number."""
+
+    OPERANDS: ClassVar = ("point",)
+
+    point: CodeNode  # s
+    end: float
+
+
+@dataclass(frozen=True, slots=True)
 class RootFactor(CodeNode):
     """A factor of a product over roots: ``z - s``, of a pair of roots the product of two such.
 

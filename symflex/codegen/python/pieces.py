@@ -409,6 +409,11 @@ class PythonPrinter(InfixPrinter):
             return f"_complex_exp({self.print(argument)})"
         return f"{self.space}.{NUMPY_FUNCTIONS[function]}({self.print(argument)})"
 
+    def cut_off(self, point: tree.CodeNode, end: float) -> str:
+        """Return the text of a point that is not a number beyond an end."""
+        z, space = self.print(point), self.space
+        return f"{space}.where({space}.abs({z}) <= {end!r}, {z}, {space}.full_like({z}, {space}.nan))"
+
     def complex_number(self, real: float, imaginary: float) -> str:
         """Return a number as text that needs no parentheses."""
         if not real:

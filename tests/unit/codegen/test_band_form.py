@@ -77,7 +77,7 @@ def test_a_string_is_its_hyperbolic_cosine_also_beside_its_poles():
 def test_a_docstring_says_where_it_holds_and_that_parameters_are_fixed():
     text = re.sub(r"\s+", " ", string()[1].__doc__)
     assert "20 poles" in text
-    assert "Hz, and not beyond" in text
+    assert "Hz, and is NaN beyond" in text
     assert "Numbers are those of the file" in text
     assert "at abs(re(s)) = " in text
     with pytest.raises(TypeError):

@@ -172,11 +172,15 @@ def test_c_computes_what_numpy_computes(tmp_path):
     made = exported(text, "c")
     library, names = compiled(tmp_path, made)
     assert [n.removeprefix("plant_") for n in names] == ["X_over_F", "Y_over_F"]
-    omega = np.geomspace(1, 2 * np.pi * made.verified[0].band[1], 20)  # beyond its band it is not defined
-    for number, name in enumerate(("X_over_F", "Y_over_F")):
-        expected = functions(text)[name](1j * omega)
-        assert c_response(library, number, omega) == pytest.approx(expected, rel=1e-12)
-        assert value_at(library, number, POINTS) == pytest.approx(functions(text)[name](POINTS), rel=1e-12)
+    for number, (name, verified) in enumerate(zip(("X_over_F", "Y_over_F"), made.verified, strict=True)):
+        end = 2 * np.pi * float(verified.band[1])
+        omega, inside = np.geomspace(1, end, 20), POINTS[abs(POINTS) <= end]
+        exact = functions(text)[name]
+        assert c_response(library, number, omega) == pytest.approx(exact(1j * omega), rel=1e-12)
+        assert value_at(library, number, inside) == pytest.approx(exact(inside), rel=1e-12)
+        # Beyond its band the form holds nowhere, and C says so.
+        assert np.isnan(c_response(library, number, np.array([1.001 * end, 100 * end]))).all()
+        assert np.isnan(value_at(library, number, np.array([1.001 * end + 0j, 100j * end]))).all()
 
 
 # ------------------------------------------------------------------------------------------ text
