@@ -152,7 +152,7 @@ class Waiting:
 
 
 _waiting: Waiting | None = None
-"""Of the command that runs."""
+"""The one of the command that runs."""
 
 
 @contextmanager

@@ -153,13 +153,14 @@ def with_formulas_defined(
         table = entry.value if isinstance(entry.value, TableValue) else None
         inner = table.get("value") if table else entry
         value = inner.value if inner else None
-        used, starts = {""}, ""
+        used, starts = set[str](), ""
         if isinstance(value, StringValue) and not looks_like_quantity(value.text.value):
             used, starts = _formula_names(value.text), value.text.value.lstrip()[:1]
         may_be_units = starts.isdigit() and all(unit_named(name) for name in used)
         is_twice = bool(definitions and definitions.get(entry.key))
-        used = used - {"pi", *FUNCTIONS} or {""}
-        if not used <= declared - {entry.key} or may_be_units or is_twice or not NAME.match(entry.key):
+        given = used - {"pi", *FUNCTIONS}
+        is_formula = bool(given) and given <= declared - {entry.key} and not may_be_units
+        if not is_formula or is_twice or not NAME.match(entry.key):
             own.append(entry)
         elif table is None:
             moved.append(entry)
@@ -232,13 +233,13 @@ def _quantity(reader: Reader, entry: KeyValue, what: str) -> tuple[Quantity | No
 
 def _is_formula(text: Text) -> bool:
     """Tell whether a text is an expression with names in it."""
-    return _formula_names(text) != {""}
+    return bool(_formula_names(text))
 
 
 def _formula_names(text: Text) -> set[str]:
-    """Return the names in an expression, a nameless one where a text is none or has no names."""
+    """Return the names in an expression, none where a text is no expression."""
     expression = Reader().parsed(text)
-    return {n.name for n in names(expression)} if expression is not None and names(expression) else {""}
+    return set() if expression is None else {n.name for n in names(expression)}
 
 
 def _with_unit(

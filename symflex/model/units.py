@@ -40,31 +40,12 @@ def check_units(
     scope: ModelScope,
     unsound: Collection[Span | None],
     fields_placed: Collection[str],
+    laplace: Dimension = PER_SECOND,
 ) -> DimensionSystem:
     """Measure every expression; of one that is unsound, only what disagrees within it is noted.
 
     Fields that are not ``fields_placed`` have no sound domain, and x is measured in any unit there.
     """
-    given = (reader, draft, placed, scope, unsound, fields_placed)
-    system = _measured(*given)
-    quantities = declared_quantities(draft.declared, draft.inherited)
-    has_units = any((placed, draft.fields, _known_dimensions(draft, placed), *quantities.values()))
-    if not has_units and any(d.code in ("SF203", "SF205") for d in system.problems):
-        # A model of numbers alone, as forums have them: there s is a number, too.
-        plain = _measured(*given, laplace=DIMENSIONLESS)
-        return system if plain.problems else plain
-    return system
-
-
-def _measured(
-    reader: Reader,
-    draft: Draft,
-    placed: Sequence[PlacedElement],
-    scope: ModelScope,
-    unsound: Collection[Span | None],
-    fields_placed: Collection[str],
-    laplace: Dimension = PER_SECOND,
-) -> DimensionSystem:
     quantities = declared_quantities(draft.declared, draft.inherited)
     known = _known_dimensions(draft, placed)
     blocks = {b.name: _block_measure(b) for b in draft.blocks}
@@ -108,6 +89,12 @@ def _measured(
             system.equate(Variable("signal", signal.name), signal.expression)
     for output in draft.outputs:
         system.read(output.expression)
+    has_units = any((placed, draft.fields, known, *quantities.values()))
+    disagrees = any(d.code in ("SF203", "SF205") for d in system.problems)
+    if disagrees and not has_units and laplace != DIMENSIONLESS:
+        # A model of numbers alone, as forums have them: there s is a number, too.
+        plain = check_units(reader, draft, placed, scope, unsound, fields_placed, DIMENSIONLESS)
+        return system if plain.problems else plain
     return system
 
 

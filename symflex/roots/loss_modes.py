@@ -65,7 +65,7 @@ WIDER: Final = Fraction(5, 4)
 """How far beyond a band roots without losses are followed."""
 NEWTON: Final = 60
 DOUBLINGS: Final = 5
-"""Of digits, until a root is told from its mirror image."""
+"""How often digits are doubled until a root differs from its mirror image."""
 GUARD_BITS: Final = 40
 
 
