@@ -17,7 +17,7 @@ from symflex.model.spec import NumberValue, StringValue, TableValue
 from symflex.quantities import DIMENSIONLESS, Quantity, looks_like_quantity, parse_unit, unit_named, unit_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
     from symflex.errors import Span
     from symflex.model.spec import KeyValue
@@ -179,12 +179,15 @@ def with_formulas_defined(
     }
 
 
-def read_parameters(reader: Reader, section: TableValue | None) -> tuple[DeclaredParameter, ...]:
-    """Return the declared parameters in order."""
-    return read_entries(section, lambda entry: _read_parameter(reader, entry))
+def read_parameters(
+    reader: Reader, section: TableValue | None, definitions: TableValue | None
+) -> tuple[DeclaredParameter, ...]:
+    """Return the declared parameters in order; definitions are what a formula may name as well."""
+    named = {key for table in (section, definitions) if table for key in table.keys()}
+    return read_entries(section, lambda entry: _read_parameter(reader, entry, named))
 
 
-def _read_parameter(reader: Reader, entry: KeyValue) -> DeclaredParameter | None:
+def _read_parameter(reader: Reader, entry: KeyValue, named: Collection[str]) -> DeclaredParameter | None:
     what = f"parameter '{entry.key}'"
     if not reader.name(entry, "a parameter", RESERVED):
         return None
@@ -193,9 +196,9 @@ def _read_parameter(reader: Reader, entry: KeyValue) -> DeclaredParameter | None
         table = value
         reader.keys(table, PARAMETER_KEYS, what)
         inner = table.get("value")
-        quantity, literal = _quantity(reader, inner, what) if inner else (None, False)
+        quantity, literal = _quantity(reader, inner, what, named) if inner else (None, False)
     else:
-        quantity, literal = _quantity(reader, entry, what)
+        quantity, literal = _quantity(reader, entry, what, named)
     assume, unit_text = _assumption(reader, table, what), ""
     if table is not None and (unit := table.get("unit")):
         text = reader.string(unit, f"unit of {what}")
@@ -214,26 +217,27 @@ def _read_parameter(reader: Reader, entry: KeyValue) -> DeclaredParameter | None
     )
 
 
-def _quantity(reader: Reader, entry: KeyValue, what: str) -> tuple[Quantity | None, bool]:
+def _quantity(
+    reader: Reader, entry: KeyValue, what: str, named: Collection[str]
+) -> tuple[Quantity | None, bool]:
     """Return (quantity, whether a unit was written)."""
     if isinstance(entry.value, NumberValue):
         return Quantity(entry.value.value, 0, 0, DIMENSIONLESS, 0, ""), False
     own = Reader()
     quantity = own.quantity(entry.value, what)
-    formula = isinstance(entry.value, StringValue) and _is_formula(entry.value.text)
+    also = _formula_hint(entry.value.text, named) if isinstance(entry.value, StringValue) else None
     for problem in own.problems:
-        also = (
-            "a formula of parameters belongs in [definitions]"
-            if formula and problem.code == "SF202"
-            else None
-        )
-        reader.take((replace(problem, hint="; ".join(filter(None, (problem.hint, also))) or None),))
+        hints = (problem.hint, also if problem.code == "SF202" else None)
+        reader.take((replace(problem, hint="; ".join(filter(None, hints)) or None),))
     return quantity, bool(quantity and quantity.unit)
 
 
-def _is_formula(text: Text) -> bool:
-    """Tell whether a text is an expression with names in it."""
-    return bool(_formula_names(text))
+def _formula_hint(text: Text, named: Collection[str]) -> str | None:
+    """Return what a text lacks to be a formula of parameters, nothing where it holds no name."""
+    used = _formula_names(text) - {"pi", *FUNCTIONS}
+    if unknown := sorted(used.difference(named)):
+        return f"a formula names parameters, and '{unknown[0]}' is none"
+    return "a formula of parameters belongs in [definitions]" if used else None
 
 
 def _formula_names(text: Text) -> set[str]:

@@ -34,7 +34,7 @@ def read_equations(
     if section is None:
         return ()
     what = "[equations]"
-    reader.keys(section, KEYS, what)
+    reader.keys(section, KEYS, what, EXAMPLE)
     entries = {key: section.get(key) for key in KEYS[:2]}
     for key, entry in entries.items():
         if entry is None and all(e.key in KEYS for e in section.entries):

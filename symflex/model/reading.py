@@ -98,12 +98,14 @@ class Reader:
         self.misfit(f"{what} must be a table", entry.value, hint)
         return None
 
-    def keys(self, table: TableValue, allowed: Iterable[str], what: str) -> None:
-        """Note every key that is not allowed."""
+    def keys(self, table: TableValue, allowed: Iterable[str], what: str, example: str = "") -> None:
+        """Note every key that is not allowed; an example shows what they are for."""
         known = tuple(allowed)
         for entry in table.entries:
             if entry.key not in known:
-                hint = nearest(entry.key, known) or "known keys: " + ", ".join(known)
+                hint = nearest(entry.key, known) or "; ".join(
+                    filter(None, ("known keys: " + ", ".join(known), example))
+                )
                 if entry.key in LOSS_WORDS and "eta_s" in known:
                     hint = "a loss factor is 'eta_s'"
                 self.note("SF207", f"unknown key '{entry.key}' in {what}", entry.key_span, hint)

@@ -152,7 +152,7 @@ def resolve(spec: Spec, origin: Origin) -> Model:
     reader = Reader()
     check_header(reader, spec)
     sections = with_formulas_defined({name: read_section(reader, spec, name) for name in SECTIONS})
-    declared = read_parameters(reader, sections["parameters"])
+    declared = read_parameters(reader, sections["parameters"], sections["definitions"])
     declared = settled(reader, declared, origin.loads.settings)
     definitions = read_definitions(reader, sections["definitions"])
     elements = read_elements(reader, sections["elements"])

@@ -275,7 +275,7 @@ def chosen_order(
         if best.failure is not None:
             status = "failed"
         elif score.order and modes is None:
-            is_weak = _is_weak(best.refined, thin.band) or not _is_founded(scores, score, criterion)
+            is_weak = _is_weak(thin, best.refined) or not _is_founded(scores, score, criterion)
             status = "weak" if is_weak else status
         scores = [replace(s, status=status) if s.order == score.order else s for s in scores]
         if status == "usable":
@@ -338,13 +338,15 @@ def _is_founded(scores: Sequence[Score], score: Score, criterion: str) -> bool:
     return not fewer or _value(score, criterion) < min(fewer) - CLEAR
 
 
-def _is_weak(refined: Refined, band: tuple[float, float]) -> bool:
-    """Return whether the damping of a resonance is lost in its own error: such a resonance fits noise."""
+def _is_weak(problem: FitProblem, refined: Refined) -> bool:
+    """Return whether a gain, or the damping of a resonance, is lost in its own error: it fits noise."""
     covariance, found = refined.covariance, refined.resonances
     if covariance is None:
         return True
-    n = found.count
-    return bool(np.any(np.sqrt(np.diag(covariance)[n : 2 * n])[found.in_band(*band)] > WEAK))
+    n, variances = found.count, np.diag(covariance)
+    gains = [variances[found.places(r, problem.free)["gain"]] for r in range(found.responses)]
+    dampings = np.sqrt(variances[n : 2 * n])[found.in_band(*problem.band)]
+    return bool(np.any(dampings > WEAK) or not np.isfinite(gains).all())
 
 
 def _is_rivalled(problem: FitProblem, best: Candidate, tried: Sequence[Candidate]) -> bool:

@@ -38,6 +38,8 @@ LIMIT_DEGREES = 10.0
 """Phases part beyond this, or beyond the noise where that is larger."""
 SIGNIFICANT = 4.0
 """Standard deviations of the phase that noise alone is not taken to reach."""
+MOST_NOISE: Final = np.pi / 2
+"""Those beyond which a phase says nothing: what leads and what lags are the same."""
 SMOOTHED_LINES = 5
 """Width of the running median; single lines that are off do not count."""
 SHORTEST_RUN, LONGEST_GAP = 4, 10
@@ -108,7 +110,8 @@ def judge_phase(problem: FitProblem, response: int, fitted: Resonances) -> Phase
     bands = _parted(line.measured.frequency_hz, difference, search.noise)
     magnitude_db = float(20 / np.log(10) * np.sqrt(np.mean(search.level(model) ** 2)))
     if not bands:
-        return PhaseTest(alone, difference, bands, magnitude_db, "minimum")
+        is_lost = SIGNIFICANT * np.median(search.noise) > MOST_NOISE
+        return PhaseTest(alone, difference, bands, magnitude_db, "undetermined" if is_lost else "minimum")
     misfit = search.misfit(model)
     for kind in KINDS[1:]:
         for start in (mirrored, alone):

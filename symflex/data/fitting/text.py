@@ -351,7 +351,7 @@ def _phase_words(test: PhaseTest, fit: ResonanceFit, r: int) -> str:
     low, high = fit.measured[r].frequency_hz[[0, -1]]
     own = " (the base with its own phase)" if fit.bases[r].path else ""
     if not test.bands and not test.is_minimum_phase:
-        return "there was no time for it"
+        return "undetermined: noise hides the phase" if test.magnitude_db else "there was no time for it"
     if not test.bands:
         return (
             f"minimum phase: the measured phase is that of a minimum-phase fit to the magnitude alone{own}, "

@@ -71,6 +71,12 @@ MOST_RADIANS, MOST_DEGREES = 7.0, 1e4
 MOST_LISTED: Final = 6
 """Columns that are not used and are listed by name."""
 FILLED: Final = 0.95
+SAME_FREQUENCY: Final = 1e-3
+"""Relative distance up to which two columns, of two units perhaps, hold the same frequency."""
+SAME_PHASE: Final = 1e-2
+"""Median difference [rad] up to which columns in degrees and in radians hold the same phase."""
+UNLIKE, CLEARLY = 0.1, 4.0
+"""Mean of 1 - cos of a difference of phases up to which they are alike; how much closer one has to be."""
 FEWEST_TO_DECIDE: Final = 8
 LONGEST_NAME: Final = 200
 BEYOND: Final = 7.0
@@ -304,7 +310,7 @@ def _sections(columns: Sequence[DataColumn]) -> list[list[DataColumn]]:
     own = [first]
     for other in lines[1:]:
         a, b = _hertz(first, []), _hertz(other, [])
-        if a.shape != b.shape or not np.allclose(a, b, rtol=1e-3, equal_nan=True):
+        if a.shape != b.shape or not np.allclose(a, b, rtol=SAME_FREQUENCY, equal_nan=True):
             own.append(other)
     rest = [c for c in columns if c.meaning.kind != "frequency"]
     if len(own) == 1:
@@ -313,10 +319,19 @@ def _sections(columns: Sequence[DataColumn]) -> list[list[DataColumn]]:
     begins = sorted(map(order.index, own))
     cut = [*begins, len(order)]
     found = [[c for c in order[a:b] if c.meaning.kind != "frequency"] for a, b in pairwise(cut)]
+    if not any(found[:-1]) and all(_is_rounded(first, other) for other in own[1:]):
+        return [[first, *rest]]
     if not all(any(c.meaning.kind for c in one) for one in found):
         message = "a second column of frequency, which differs from the first"
         raise DataError(Diagnostic("SF602", message, own[1].span, ask(columns)))
     return [[order[a], *one] for a, one in zip(begins, found, strict=True)]
+
+
+def _is_rounded(first: DataColumn, other: DataColumn) -> bool:
+    """Return whether a column has the frequencies of another, but for digits that the smallest lost."""
+    a, b = _hertz(first, []), _hertz(other, [])
+    with np.errstate(all="ignore"):
+        return a.shape == b.shape and bool(np.nanmedian(np.abs(a / b - 1)) < SAME_FREQUENCY)
 
 
 def _hertz(column: DataColumn, guesses: list[str]) -> Real:
@@ -372,7 +387,7 @@ def _pairs(columns: Sequence[DataColumn]) -> list[dict[str, DataColumn]]:
         by_kind.setdefault(kind, []).append(c)
     if by_kind.get("complex"):
         return [{"complex": c} for c in by_kind["complex"]]
-    sizes, phases = by_kind.get("magnitude", []), by_kind.get("phase", [])
+    sizes, phases = by_kind.get("magnitude", []), _in_one_unit(by_kind.get("phase", []))
     if len(phases) == 1:  # a magnitude once as it is and once in dB, or besides an amplitude
         sizes = sorted(sizes, key=lambda c: (c.meaning.scale != "decibel", c.meaning.word.startswith("amp")))[
             :1
@@ -385,6 +400,19 @@ def _pairs(columns: Sequence[DataColumn]) -> list[dict[str, DataColumn]]:
         if one and len(one) == len(two):
             return [{a: c, b: d} for c, d in zip(one, two, strict=True)]
     return []
+
+
+def _in_one_unit(phases: list[DataColumn]) -> list[DataColumn]:
+    """Return the phases without those that stand there in another unit as well."""
+    kept: list[DataColumn] = []
+    for c in phases:
+        own = c.meaning.factor
+        turns = (c.numbers.real * (own or 1) - k.numbers.real * (k.meaning.factor or 1) for k in kept)
+        others = {k.meaning.factor for k in kept} - {None}
+        is_known = own is not None and bool(others - {own})
+        if not (is_known and any(np.nanmedian(np.abs(turn)) < SAME_PHASE for turn in turns)):
+            kept.append(c)
+    return kept
 
 
 def _values(group: dict[str, DataColumn], lines: Real, guesses: list[str]) -> Complex:
@@ -443,11 +471,33 @@ def _decided(magnitude: DataColumn, phase: DataColumn, lines: Real, guesses: lis
         unit = "radians" if factor == 1 else "degrees"
         guesses.append(f"'{phase.name[:30]}' has no unit and is read in {unit}, which fits the magnitude")
     elif phase.meaning.factor < 0:
-        guesses.append(f"'{phase.name[:30]}' is the phase times -1")
+        guesses.append(f"{_called(phase, 'a column')} is the phase times -1")
     if magnitude.meaning.scale == "unknown":
         said = "in dB" if scale == "decibel" else "as a ratio, not in dB"
         guesses.append(f"'{magnitude.name[:30]}' has no unit and is read {said}")
-    return _size(magnitude, scale), np.asarray(factor * phase.numbers.real)
+    size, turned = _size(magnitude, scale), np.asarray(factor * phase.numbers.real, np.float64)
+    if factor > 0 and _are_lags(lines, size, turned):
+        guesses.append(
+            f"{_called(phase, 'the phase')} rises where the magnitude falls: if lags are written as positive "
+            "numbers, say -phase_deg or -phase_rad in --columns"
+        )
+    return size, turned
+
+
+def _called(column: DataColumn, otherwise: str) -> str:
+    return f"'{column.name[:30]}'" if column.name else otherwise
+
+
+def _are_lags(lines: Real, size: Real, phase: Real) -> bool:
+    """Return whether phases are those of a minimum-phase function with this magnitude, times -1."""
+    kept = (lines > 0) & (size > 0) & np.isfinite(size) & np.isfinite(phase) & np.isfinite(lines)
+    order = np.argsort(lines[kept])
+    expected = _minimum_phase(lines[kept][order], size[kept][order], [])
+    turn = phase[kept][order]
+    if not np.any(expected):
+        return False
+    as_written, mirrored = (float(np.mean(1 - np.cos(sign * turn - expected))) for sign in (1, -1))
+    return mirrored < min(UNLIKE, as_written / CLEARLY)
 
 
 def _possible_units(turn: Real) -> list[float]:

@@ -150,6 +150,14 @@ def test_zeros_that_stand_for_a_power_of_s_are_said_and_turn_no_verdict():
 
 
 @pytest.mark.slow
+def test_a_gain_is_not_called_minimum_phase_by_data_that_turn_the_other_way():
+    data = MeasuredResponse("y/u", FREQUENCY, 1 / (1 - 1j * FREQUENCY / 5))
+    fit = fit_resonances([data], None, FitOptions(slope=0))
+    assert fit.poor
+    assert fit.phase_tests[0].verdict != "minimum"
+
+
+@pytest.mark.slow
 def test_where_no_resonances_describe_the_magnitude_its_phase_says_nothing():
     # A magnitude with ripples that no resonance has: 5 dB are left.
     data = noisy(lambda f: ONE(f) * (1 + 0.7 * np.cos(f / 2)))

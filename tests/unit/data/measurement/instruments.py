@@ -301,6 +301,16 @@ def text_files():  # noqa: PLR0915 - one statement a file
         "simulator.csv",
         ("Frequency (rad/s),Magnitude (abs),Phase (deg)\n" + rows(2 * np.pi * F, SIZE, DEG)).encode(),
     )
+    yield Saved(
+        "designer.csv",
+        (
+            "Frequency (Hz),Frequency (rad/sec),Gain (V/V),Gain (dB),Phase (Deg),Phase (Rad),Group Delay (uSec),\n"
+            + rows(F, [f"{w:.1f}" for w in 2 * np.pi * F], [f"{x:.3f}" for x in SIZE], DB, DEG,
+                   [f"{x:.3f}" for x in TURN], TEN, [""] * F.size)
+        ).encode(),
+    )  # fmt: skip
+    yield Saved("bench.dat", rows(F, SIZE, -DEG, sep="\t").encode(), (H,), "f,mag,-phase_deg")
+    yield Saved("lags.dat", rows(F, SIZE, -DEG, sep="\t").encode(), (H.conj(),), "f,mag,phase_deg")
     yield Saved("radians.csv", ("Frequency,Magnitude (dB),Phase\n" + rows(F, DB, np.angle(H))).encode())
     yield Saved("degrees.csv", ("Frequency,Magnitude,Phase\n" + rows(F, SIZE, DEG)).encode())
     yield Saved(
