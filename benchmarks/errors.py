@@ -73,7 +73,12 @@ class Case:
 
     def exported(self, target: str) -> Export:
         """Return the text in some language."""
-        return EXPORTERS[target].export(self.model, self.tfs, self.name, is_alone=False)
+        return _exported(self.name, target)
+
+    def end(self, target: str, name: str) -> float:
+        """Return the angular frequency [rad/s] at which the band form of a function ends, if it has one."""
+        verified = next((v for v in self.exported(target).verified if v.name == name), None)
+        return math.tau * float(verified.band[1]) if verified and verified.form == "band" else math.inf
 
     def points(self) -> Iterator[tuple[AnyTransferFunction, str, NDArray[np.float64]]]:
         """Yield transfer functions, what exports call them, and angular frequencies [rad/s]."""
@@ -88,6 +93,12 @@ def case_of(name: str) -> Case:
     tfs = tuple(pipeline.derive_all(model))
     band = model.analysis.band or DEFAULT_BAND
     return Case(name, model, tfs, {tf.name: References.over(bind_any(tf), band) for tf in tfs})
+
+
+@cache
+def _exported(name: str, target: str) -> Export:
+    case = case_of(name)
+    return EXPORTERS[target].export(case.model, case.tfs, name, is_alone=False)
 
 
 # --------------------------------------------------------------------------- values, language by language
@@ -237,7 +248,10 @@ def worst(name: str, target: str) -> float | None:
     """
     case = case_of(name)
     try:
-        found = [case.references[tf.name].worst_of(values) for tf, values in TARGETS[target](case)]
+        found = [
+            case.references[tf.name].worst_of(values, case.end(target, tf.name))
+            for tf, values in TARGETS[target](case)
+        ]
     except ModelError:
         return None
     if not found:

@@ -75,7 +75,7 @@ class JuliaPrinter(InfixPrinter):
     def cut_off(self, point: CodeNode, end: float) -> str:
         """Return the text of a number that is NaN beyond an end."""
         z = self.print(point)
-        return f"(abs({z}) <= {end!r} ? {z} : NaN * {z})"
+        return f"ifelse(abs({z}) <= {end!r}, {z}, NaN * {z})"
 
     def item(self, values: str, position: int) -> str:
         """Return one value of a vector, counted from 0."""

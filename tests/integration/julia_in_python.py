@@ -52,6 +52,8 @@ NAMES = {
     "abs": abs,
     "complex": complex,
     "pi": math.pi,
+    "NaN": math.nan,
+    "ifelse": lambda test, first, second: first if test else second,
     "real": lambda x: complex(x).real,
     "conj": lambda x: complex(x).conjugate(),
     "signbit": lambda x: math.copysign(1.0, x) < 0,

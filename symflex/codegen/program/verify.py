@@ -600,10 +600,10 @@ class References:
         """Return a bound of the error at all frequencies, for a program that gets the nearest doubles."""
         return max(self._errors(program), default=0.0)
 
-    def worst_of(self, values: Sequence[complex]) -> float:
-        """Return a bound of the error of values at all frequencies."""
-        pairs = zip(self._references, values, strict=True)
-        return max((r.error_of(complex(v)) for r, v in pairs), default=0.0)
+    def worst_of(self, values: Sequence[complex], end: float = inf) -> float:
+        """Return a bound of the error of values at all frequencies, up to ``abs(s) = end``."""
+        pairs = zip(self.s, self._references, values, strict=True)
+        return max((r.error_of(complex(v)) for s, r, v in pairs if abs(s) <= end), default=0.0)
 
     def reach(self, program: Piecewise, band_hz: tuple[Fraction, Fraction]) -> Reach:
         """Return up to which frequency every sample was measured and is accurate."""
