@@ -10,7 +10,9 @@ law.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from fractions import Fraction
 from itertools import count
+from math import prod
 from typing import TYPE_CHECKING
 
 from symflex.algebra import LAPLACE
@@ -256,9 +258,15 @@ class _Printer:
                 over, under = under, over
             above += over
             below += under
-        one = number(1)
-        above = sorted((f for f in above if f != one), key=self._place)
-        below = sorted((f for f in below if f != one), key=self._place)
+        ratio = prod((f.value for f in above if isinstance(f, Number)), start=Fraction(1))
+        ratio /= prod(f.value for f in below if isinstance(f, Number))
+        above = [f for f in above if not isinstance(f, Number)]
+        below = [f for f in below if not isinstance(f, Number)]
+        if below and ratio.numerator == 1 != ratio:
+            below.append(Number(1 / ratio))
+        elif ratio != 1:
+            above.append(Number(ratio))
+        above, below = sorted(above, key=self._place), sorted(below, key=self._place)
         self.split[i] = (tuple(above), tuple(below))
         top = _multiplied(above)
         return Quotient(top, _multiplied(below)) if below else top
