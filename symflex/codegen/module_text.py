@@ -46,12 +46,6 @@ FOLLOWED = (
 )
 """What is said of functions of members that vary along x."""
 
-COST = (
-    "Exponents without a formula are found numerically, which costs some hundred times a complex exponential."
-)
-"""What is said of functions that solve for their exponents."""
-
-
 def formula_of(tf: AnyTransferFunction) -> tuple[str, ...]:
     """Return the formula in paragraphs of inert text, or a sentence on it where nobody would read it."""
     if isinstance(tf, NestedTransferFunction) and tf.is_distributed:

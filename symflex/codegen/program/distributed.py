@@ -12,7 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cache, partial
-from math import gcd
+from math import gcd, pi, prod
 from operator import mul
 from typing import TYPE_CHECKING
 
@@ -29,7 +29,6 @@ from symflex.codegen.program.exponents import (
     in_other_lengths,
 )
 from symflex.codegen.program.forge import Forge, straight
-from symflex.codegen.program.modal import CIRCLE, MODAL_REACHES, build_modal, declared_length
 from symflex.codegen.program.nodes import CodePiece, Condition, Piecewise
 from symflex.codegen.program.series import (
     SERIES_ERROR,
@@ -82,6 +81,9 @@ LOWEST, HIGHEST, STEPS = 1e-9, 1e12, 4000
 CONFLUENT = 2.0
 """Twice the squared distance of a pair's arguments below which means over a circle are taken."""
 
+CIRCLE = 24
+"""Points of a circle over which means are taken."""
+
 LONE = 0.25
 """Part of the series' reach up to which the smaller of a pair's arguments has a series by itself."""
 
@@ -106,21 +108,11 @@ def series_uses(tf: TransferFunction, *, is_measured: bool = True) -> tuple[Seri
 
     What one of several lengths gains from a series by itself is much where it is far shorter than the others.
     """
-    if tf.is_nameless:
-        return tuple(map(SeriesUse, MODAL_REACHES))
     lengths = {(k.dispersion, k.length) for k in tf.kernels.kernels if k.wavenumber}
     shortest = (
         [SeriesUse(REACHES[0], TOGETHER)] if is_measured and TOGETHER < len(lengths) <= CHOOSING else []
     )
     return (*shortest, *map(SeriesUse, REACHES))
-
-
-def build_piecewise(tf: TransferFunction) -> Piecewise:
-    """Return the program for complex s that is used where nothing is measured.
-
-    Raises BudgetError: SF503 when the program would be too large.
-    """
-    return Pieces(tf).of_s(series_uses(tf, is_measured=False)[0])
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,7 +141,7 @@ class Pieces:
     def _made(self, use: SeriesUse) -> Piecewise:
         if any(law.matrix for law in self.tf.kernels.dispersions):
             return build_varying(self.tf)
-        return build_modal(self.tf, use.reach) if self.tf.is_nameless else self._maker(use).program()
+        return self._maker(use).program()
 
     def of_frequency(self, use: SeriesUse) -> Piecewise | None:
         """Return the program of the response at an angular frequency in real arithmetic.
@@ -785,6 +777,22 @@ class _PieceMaker:
             summand = forge.multiply([site.value(real), *map(solution, self.groups, orders)])
             summands.append(forge.negate(summand) if (turn - first) % 4 else summand)
         return forge.add(summands), first or 0, taken
+
+
+def declared_length(tf: TransferFunction, length: Factored) -> float:
+    """Return the declared value of a length; without values, of a model with every parameter 1."""
+    known = {p.name: p.value for p in tf.parameters}
+    point = []
+    for name in length.ring.names:
+        value = known.get(name)
+        point.append(1.0 if value is None else float(value.rational) * pi**value.pi_power)
+    result = float(length.unit)
+    for factor, exponent in length.factors:
+        total = 0.0
+        for monomial, number in factor.terms():
+            total += int(number) * prod(x ** int(e) for x, e in zip(point, monomial, strict=True))
+        result *= total**exponent
+    return result
 
 
 def _longer_and_shorter(

@@ -15,10 +15,8 @@ from functools import cache, partial
 from typing import TYPE_CHECKING
 
 from symflex.algebra import line_networks, varying_minors
-from symflex.algebra.modal_sum import modal_amplitudes, mode_values
 from symflex.codegen.export import Export, Language, called_parts, parts_of
 from symflex.codegen.module_text import (
-    COST,
     FOLLOWED,
     default_value,
     described,
@@ -45,10 +43,6 @@ if TYPE_CHECKING:
 COPIED = (
     evaluate.complex_exp,
     evaluate.series_solutions,
-    evaluate.propagated,
-    evaluate.characteristic_roots,
-    mode_values,
-    modal_amplitudes,
     varying_minors.fundamental_minors,
     varying_minors.minors_by_octaves,
     varying_minors.polynomials_along,
@@ -69,7 +63,6 @@ COPIED = (
     line_networks.solved_value,
     line_networks.eliminated,
     line_networks.substituted,
-    evaluate.modal_value,
     evaluate.scaled_sum,
     evaluate.mean_over_circle,
 )
@@ -225,7 +218,7 @@ def python_module(contents: Contents, dialect: Dialect) -> Export:
     names = identifiers({p.name: p.name for p in model.parameters}, dialect.reserved)
     functions, responses = public_names(members, dialect.reserved)
     values = {p.name: double_of(p.value) for p in model.parameters if p.value is not None}
-    blocks, code = [parameter_table(model, names)], ""
+    blocks, code, solving = [parameter_table(model, names)], "", None
     for member in members:
         public = (responses if member.program.is_real else functions)[member.tf.name]
         made = TracedText if dialect.is_traced else BlockText
@@ -234,9 +227,11 @@ def python_module(contents: Contents, dialect: Dialect) -> Export:
         own = "\n".join(private.functions())
         blocks.append(f"{function.head()}\n\n\n{own}\n")
         code += "\n".join([*function.body(), own, ""])
-    if isinstance(private, BlockText) and (solve := private.given.network) is not None:
+        if isinstance(private, BlockText) and private.given.network is not None:
+            solving = private.network(private.given.network)
+    if solving is not None:
         # Functions of one model solve the same network.
-        blocks.append("\n".join([*private.network(solve), ""]))
+        blocks.append("\n".join([*solving, ""]))
         code += blocks[-1]
     blocks += dialect.support(code)
     blocks.append(function_table("TRANSFER_FUNCTIONS", functions))
@@ -306,8 +301,6 @@ class _Function:
         notes = [self.sentence, *([MEASURED] if dialect.is_traced else [])]
         if program.minors:
             notes.append(FOLLOWED)
-        elif program.solves:
-            notes.append(COST)
         for note in notes:
             lines += wrapped(inert(note), WIDTH, "    ")
         return docstring(lines, "    ")

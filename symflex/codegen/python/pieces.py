@@ -127,7 +127,7 @@ class BlockText(PrivateText):
         elif program.is_real:
             parts = ", ".join(f"_{part}_of_{name}" for part in ("limits", "sizes", "pieces"))
             text = f"_in_real_pieces({parts}, arguments, {'1j' if program.turn else '1'})"
-        elif program.solves:
+        elif program.minors:
             text = f"_in_array(_tests_of_{name}, _pieces_of_{name}, arguments)"
         else:
             text = f"_in_pieces(_tests_of_{name}, _pieces_of_{name}, arguments, 1)"
@@ -427,7 +427,7 @@ class PythonPrinter(InfixPrinter):
 
 @dataclass(frozen=True)
 class NumpyPrinter(PythonPrinter):
-    """Prints expressions as Python of numpy, with what finds roots and follows matrices along x."""
+    """Prints expressions as Python of numpy, with what follows matrices along x."""
 
     # What calls the functions of x that members vary like.
     follows: Mapping[tree.Straight, str] = field(default_factory=dict, kw_only=True)
@@ -435,16 +435,6 @@ class NumpyPrinter(PythonPrinter):
     def with_lists(self, node: tree.CodeNode) -> str:
         """Return the text of what takes lists or gives them."""
         match node:
-            case tree.Solutions(coefficients, terms) if not terms:
-                return self.call("propagated", [self.list_of(coefficients)])
-            case tree.Roots(coefficients):
-                return self.call("characteristic_roots", [self.list_of(coefficients)])
-            case tree.ModeValues(roots, length):
-                # What finds the roots also gives the least distance of two.
-                return self.call("mode_values", [f"{self.print(roots)}[:-1]", self.print(length)])
-            case tree.ModalValue(modes, coefficients, frames):
-                lists = [self.list_of(modes), self.list_of(coefficients)]
-                return self.call("modal_value", [*lists, repr(frames)])
             case tree.ScaledSum(amplitudes, exponents):
                 return self.call("scaled_sum", [self.list_of(x) for x in (amplitudes, exponents)])
             case tree.FundamentalMinors(start, length, bases, along, places, wanted):

@@ -99,7 +99,7 @@ def _in_pieces(tests, pieces, arguments, unit):
 def _in_array(tests, pieces, arguments):
     """Return what _in_pieces does, a number as part of an array.
 
-    Matrix exponentials magnify the last bit, which numbers may round differently.
+    Minors magnify the last bit, which numbers may round differently.
     """
     shape = np.broadcast_shapes(*(np.shape(a) for a in arguments))
     given = (np.atleast_1d(arguments[0]), *arguments[1:])
