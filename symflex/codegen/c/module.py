@@ -98,8 +98,8 @@ class _Files:
         self.prefix = prefix_of(name)
         self.structure = f"{self.prefix}_parameters"
         self.members = identifiers({p.name: p.name for p in self.model.parameters}, RESERVED)
-        self.of_s = {m.tf.name: m for m in contents.members if not m.program.is_real}
-        self.on_axis = {m.tf.name: m for m in contents.members if m.program.is_real}
+        self.of_s = {m.tf.name: m for m in contents.members if not m.is_response}
+        self.on_axis = {m.tf.name: m for m in contents.members if m.is_response}
         names = _function_names({key: member.wanted for key, member in self.of_s.items()})
         self.functions = {key: self._functions(key, names[key]) for key in self.of_s}
 
@@ -268,4 +268,5 @@ C99 = Language(
     ".c",
     "C99 source and header, values at s and arrays of frequencies, verified likewise",
     c_files,
+    has_real=True,
 )

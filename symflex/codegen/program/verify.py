@@ -149,11 +149,16 @@ def frequency_text(hertz: Fraction) -> str:
 
 
 def choose_programs(
-    tf: AnyTransferFunction, band_hz: tuple[Fraction, Fraction] | None = None, samples: int = SAMPLES
+    tf: AnyTransferFunction,
+    band_hz: tuple[Fraction, Fraction] | None = None,
+    samples: int = SAMPLES,
+    *,
+    has_real: bool = True,
 ) -> tuple[tuple[Piecewise, Verification], tuple[Piecewise, Verification] | None]:
     """Return the program of the form with the smallest measured error, and the measurement; twice.
 
-    The second one computes the frequency response in real arithmetic, for lossless distributed systems only.
+    The second one is for the frequency response, of lossless distributed systems only: where the language
+    ``has_real`` arithmetic for it, it computes that of the angular frequency, else it is the first one.
     Without values for all parameters nothing can be measured; recurrences are taken unless another form is
     much shorter.
 
@@ -162,7 +167,10 @@ def choose_programs(
     would be too large, SF233 when a number does not fit in double precision.
     """
     gauge = _gauge(_solved(tf), band_hz, samples)
-    return _choose(gauge), _choose_real(gauge)
+    own = _choose(gauge)
+    if has_real:
+        return own, _choose_real(gauge)
+    return own, own if _is_lossless(gauge) else None
 
 
 def _solved(tf: AnyTransferFunction) -> AnyTransferFunction:
@@ -295,17 +303,30 @@ def _choose(gauge: _Gauge) -> tuple[Piecewise, Verification]:
     return program, gauge.verified(form, error)
 
 
-def _choose_real(gauge: _Gauge) -> tuple[Piecewise, Verification] | None:
-    """Return the program of the frequency response, in half-angle tangents where that serves as well."""
+def _is_lossless(gauge: _Gauge) -> bool:
+    """Tell whether a function is real or imaginary on the axis, as a program in real arithmetic needs it."""
+    return next(_real_programs(gauge), None) is not None
+
+
+def _real_programs(gauge: _Gauge) -> Iterator[Piecewise]:
+    """Yield the programs of the frequency response in real arithmetic, none where one is complex."""
     pieces, references = gauge.pieces, gauge.references
     if pieces is None or (references is not None and references.are_complex):
-        return None
+        return
     usual, *others = series_uses(pieces.tf, is_measured=references is not None)
     first = pieces.of_frequency(usual)
+    if first is not None:
+        yield first
+        yield from (made for use in others if (made := pieces.of_frequency(use)) is not None)
+
+
+def _choose_real(gauge: _Gauge) -> tuple[Piecewise, Verification] | None:
+    """Return the program of the frequency response, in half-angle tangents where that serves as well."""
+    programs, references = _real_programs(gauge), gauge.references
+    first = next(programs, None)
     if first is None:
         return None
-    rest = (made for use in others if (made := pieces.of_frequency(use)) is not None)
-    chosen, verification = _choose_pieces(chain([first], rest), gauge, "real")
+    chosen, verification = _choose_pieces(chain([first], programs), gauge, "real")
     program = for_positive(chosen)
     shorter = in_half_angles(program)
     if shorter is None or references is None or verification.error is None:

@@ -43,7 +43,7 @@ class PrivateText(ABC):
     """
 
     given: tree.Piecewise  # what they compute
-    name: str  # identifier of the public function
+    name: str  # identifier of the public function whose programs these are
     parameters: Mapping[str, str]  # identifiers of the parameters
     values: Mapping[str, float]  # values of the parameters that have one
     dialect: Dialect  # of Python
@@ -51,8 +51,11 @@ class PrivateText(ABC):
     @property
     def variable(self) -> str:
         """The first argument's name, ``s`` or ``omega``."""
-        if not self.given.is_real:
-            return "s"
+        return self.omega if self.given.is_real else "s"
+
+    @property
+    def omega(self) -> str:
+        """What an angular frequency is called."""
         return "omega_" if "omega" in self.parameters.values() else "omega"
 
     @property
@@ -291,8 +294,7 @@ class TracedText(PrivateText):
         """Return the statements that compute the value of ``arguments``."""
         text = f"_piece_0_of_{self.name}({self.leading}*arguments)"
         if self.program.conditions:
-            chooser = "_in_real_pieces" if self.program.is_real else "_in_pieces"
-            text = f"{chooser}({self.leading}_tests_of_{self.name}, _pieces_of_{self.name}, arguments)"
+            text = f"_in_pieces({self.leading}_tests_of_{self.name}, _pieces_of_{self.name}, arguments)"
         return statement("return", f"_shaped({self.leading}{text}, arguments)", "    ")
 
     def functions(self) -> list[str]:
@@ -306,9 +308,8 @@ class TracedText(PrivateText):
         lines.append(f"_pieces_of_{self.name} = (")
         places = places_of(program, self.values)
         for i, (cases, place) in enumerate(zip(cases_of(program), places, strict=True)):
-            at = repr(place.real if program.is_real else place)
             lines += [
-                f"    (_piece_{i}_of_{self.name}, {at}, (",
+                f"    (_piece_{i}_of_{self.name}, {place!r}, (",
                 *(f"        {case!r}," for case in cases),
                 "    )),",
             ]
@@ -323,9 +324,7 @@ class TracedText(PrivateText):
         for assignment in assignments:
             if (number := number_of(assignment.value, numbers)) is not None:
                 numbers[assignment.name] = number
-        has_fixed_sizes = (
-            self.dialect.has_fixed_sizes and bool(self.program.conditions) and not self.program.is_real
-        )
+        has_fixed_sizes = self.dialect.has_fixed_sizes and bool(self.program.conditions)
         printer = ArrayPrinter(
             self.parameters,
             names,
@@ -350,16 +349,12 @@ class TracedText(PrivateText):
                 tested = (
                     condition.quantity if is_one else tree.Multiply((condition.scale, condition.quantity))
                 )
-                text = printer.print(tested)
-                text = text if program.is_real else f"{self.dialect.space}.real({text})"
-                tests.append(f"{text} < 0.0")
+                tests.append(f"{self.dialect.space}.real({printer.print(tested)}) < 0.0")
                 continue
-            is_positive = program.is_real and isinstance(condition.quantity, tree.Laplace)
-            size = condition.quantity if is_positive else tree.Apply("abs", condition.quantity)
             limit = repr(condition.limit)
             if not is_one:
                 limit += f" / {_size(condition.scale, printer)}"
-            tests.append(f"{printer.print(size)} < {limit}")
+            tests.append(f"{printer.print(tree.Apply('abs', condition.quantity))} < {limit}")
         head = self._head(f"_tests_of_{self.name}")
         return [*head, *lines, *statement("return", f"[{', '.join(tests)}]", "    ")]
 
@@ -372,9 +367,7 @@ class TracedText(PrivateText):
         first = f"    {printer.inverse} = 1.0 / {printer.variable}"
         if den == tree.ONE and printer.inverse in value and first not in lines:
             lines = [first, *lines]
-        if self.program.is_real and not piece.is_complex:
-            value = f"{'1j' if self.program.turn else '(1+0j)'} * ({value})"
-        elif not any(isinstance(n, (tree.Laplace, tree.InverseLaplace)) for n in piece.code.nodes()):
+        if not any(isinstance(n, (tree.Laplace, tree.InverseLaplace)) for n in piece.code.nodes()):
             value = f"{value} + {self.dialect.space}.zeros_like({self.variable})"
         return [*lines, *statement("return", value, "    ")]
 
@@ -545,8 +538,7 @@ def places_of(program: Piecewise, values: Mapping[str, float]) -> tuple[complex,
     loss of all digits lie many orders of magnitude.
     """
     given = {name: values.get(name, 1.0) for name in program.parameters}
-    directions = np.array([1.0]) if program.is_real else DIRECTIONS
-    points = SIZES[:, None] * directions
+    points = SIZES[:, None] * DIRECTIONS
     with np.errstate(all="ignore"):
         numbers = np.broadcast_to(numbers_of_pieces(program, points, given), points.shape)
         served = np.array(program.pieces)[numbers]
@@ -577,6 +569,6 @@ def _place(
     distance = np.abs(logarithms - aim)[:, None] + np.where(serves.any(axis=0), 0.0, 1e3)
     for position in np.argsort(distance, axis=None, kind="stable"):
         point = points.flat[position] * BESIDE
-        if np.all(np.isfinite(value_of_piece(piece, 1j * point if piece.is_complex else point, given))):
+        if np.all(np.isfinite(value_of_piece(piece, point, given))):
             return complex(points.flat[position])
     return complex(points.flat[0])
