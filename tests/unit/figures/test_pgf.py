@@ -38,7 +38,7 @@ NUMBER = r"-?[0-9.]+"
 POINT = rf"pgfqpoint\{{{NUMBER}in\}}\{{{NUMBER}in\}}"
 OF_DRAWING = re.compile(
     rf"\\(?:(?:begin|end)\{{pgfscope\}}|pgfpath(?:moveto|lineto|close|curveto|quadraticcurveto|rectangle)|{POINT}"
-    r"|pgfusepath\{(?:stroke|fill|stroke,fill|clip)\}"
+    r"|pgfusepath\{(?:stroke|fill|stroke,fill|clip|)\}"
     rf"|pgfset(?:linewidth\{{{NUMBER}pt\}}|(?:butt|round|rect)cap|(?:miter|round|bevel)join)"
     rf"|pgfsetdash\{{(?:\{{{NUMBER}pt\}})*\}}\{{{NUMBER}pt\}}"
     rf"|definecolor\{{current(?:fill|stroke)\}}\{{rgb\}}\{{{NUMBER},{NUMBER},{NUMBER}\}}"
