@@ -8,7 +8,7 @@ own way is overridden: numbers, powers, a statement, a branch, a function.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from textwrap import TextWrapper
 from typing import TYPE_CHECKING, ClassVar
 

@@ -46,6 +46,7 @@ FOLLOWED = (
 )
 """What is said of functions of members that vary along x."""
 
+
 def formula_of(tf: AnyTransferFunction) -> tuple[str, ...]:
     """Return the formula in paragraphs of inert text, or a sentence on it where nobody would read it."""
     if isinstance(tf, NestedTransferFunction) and tf.is_distributed:

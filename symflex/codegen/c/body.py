@@ -41,7 +41,7 @@ REAL_FUNCTIONS = {
 """What C calls each of the elementary functions of a real number."""
 
 
-LANE_FUNCTIONS = ("tan", "exp", "tanh")
+LANE_FUNCTIONS = ("tan", "exp")
 """Functions of real numbers that there are without branches."""
 
 

@@ -185,9 +185,6 @@ class _ProgramRun:
                 return (1 + 0j) * self.value(operand)
             case tree.LargerRoot() | tree.RootFactor():
                 return self.value(node.spelled)
-            case tree.Within(point, end):
-                z = self.value(point)
-                return np.where(np.abs(z) <= end, z, np.nan)
             case tree.ParameterValue(name):
                 return self._parameters[name]
             case tree.Assigned(name):
@@ -218,8 +215,11 @@ class _ProgramRun:
         return total + self.value(term)
 
     def _lists(self, node: tree.CodeNode) -> Values:
-        """Return the value of what takes lists or gives them."""
+        """Return the value of what takes lists or gives them, and of a point that may lie outside."""
         match node:
+            case tree.Within(point, end):
+                z = self.value(point)
+                return np.where(np.abs(z) <= end, z, np.nan)
             case tree.Solutions(coefficients, terms):
                 given = [self.value(c) for c in coefficients]
                 return series_solutions(given, terms)

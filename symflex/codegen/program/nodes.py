@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
     from symflex.equations.line_network import Table
 
+
 @dataclass(frozen=True, slots=True)
 class CodeNode:
     """Base of all nodes.

@@ -6,7 +6,7 @@ Output: a :class:`Verification`, a bound that holds at every sample.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import chain
 from math import inf, isfinite, tau
@@ -20,7 +20,7 @@ from symflex.codegen.program.band import BandForm, band_form
 from symflex.codegen.program.build import available_forms, build_nested, build_program
 from symflex.codegen.program.distributed import Pieces, series_uses
 from symflex.codegen.program.evaluate import evaluate, nearest_double
-from symflex.codegen.program.positive_frequencies import for_positive, in_half_angles
+from symflex.codegen.program.positive_frequencies import for_positive
 from symflex.errors import BudgetError, Diagnostic, ModelError
 from symflex.transfer import BoundNested, NestedTransferFunction, bind, bind_nested
 from symflex.transfer.bind import EnclosedTransferFunction
@@ -321,20 +321,13 @@ def _real_programs(gauge: _Gauge) -> Iterator[Piecewise]:
 
 
 def _choose_real(gauge: _Gauge) -> tuple[Piecewise, Verification] | None:
-    """Return the program of the frequency response, in half-angle tangents where that serves as well."""
-    programs, references = _real_programs(gauge), gauge.references
+    """Return the program of the frequency response in real arithmetic, None where there is none."""
+    programs = _real_programs(gauge)
     first = next(programs, None)
     if first is None:
         return None
     chosen, verification = _choose_pieces(chain([first], programs), gauge, "real")
-    program = for_positive(chosen)
-    shorter = in_half_angles(program)
-    if shorter is None or references is None or verification.error is None:
-        return program, verification
-    error = references.worst_error(shorter)
-    if error > SIMILAR * verification.error or not keeps_its_value(shorter, references.bound):
-        return program, verification
-    return shorter, replace(verification, error=error)
+    return for_positive(chosen), verification
 
 
 def _choose_pieces(programs: Iterator[Piecewise], gauge: _Gauge, form: str) -> tuple[Piecewise, Verification]:
