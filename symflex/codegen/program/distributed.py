@@ -71,10 +71,6 @@ LOCAL_TERMS = 30_000
 REAL_TERMS = 1000
 """Terms of numerator and denominator up to which a program in real arithmetic is made besides."""
 
-SIGNING = 1
-"""Dispersions up to which a piece is made for every choice of signs of their wavenumbers; those of more are
-roots of squares, which costs half a rounding, and no second piece for each."""
-
 LOWEST, HIGHEST, STEPS = 1e-9, 1e12, 4000
 """Frequencies [rad/s] at which it is looked which arguments are small together."""
 
@@ -164,8 +160,8 @@ _Test = tuple[int, float, int]
 """Expression, limit and scale of a condition."""
 
 
-_Choice = tuple[tuple[bool, ...], tuple[bool, ...], tuple["Dispersion", ...], bool, tuple["Dispersion", ...]]
-"""What makes a piece: groups near zero, delays that grow, dispersions mirrored, meeting pairs, lone ones."""
+_Choice = tuple[tuple[bool, ...], tuple[bool, ...], bool, tuple["Dispersion", ...]]
+"""What makes a piece: groups near zero, delays that grow, meeting pairs, lone dispersions."""
 
 
 _LocalParts = dict[tuple[int, ...], dict["Key", Factored]]
@@ -363,10 +359,6 @@ class _PieceMaker:
             counts.append(len(own))
         return tests, counts
 
-    @property
-    def _is_signed(self) -> bool:
-        return len(self.table.dispersions) <= SIGNING
-
     def _near(self, bits: Sequence[bool], counts: Sequence[int]) -> tuple[bool, ...]:
         """Return which groups are taken to be small."""
         near, at = [], 0
@@ -396,13 +388,10 @@ class _PieceMaker:
     def program(self) -> Piecewise:
         """Return the program for complex s."""
         forge = Forge()
-        site = Site(forge, self.tf, self.families, is_signed=self._is_signed)
+        site = Site(forge, self.tf, self.families)
         tests, counts = self._sizes(site)
         first, one = len(tests), forge.constant(1)
         tests += [(site.exponent(self.families[i], 0), 0.0, one) for i in self.delays]
-        roots = [(d, parts) for d in self.table.dispersions if (parts := site.plain_parts(d)) is not None]
-        third = len(tests)
-        tests += [(s, 0.0, scale) for _, (scale, s) in roots]
         second = len(tests)
         pairs = [i for i, g in enumerate(self.groups) if g.dispersion.kind == "pair"]
         tests += [
@@ -421,13 +410,7 @@ class _PieceMaker:
             near = self._near(bits, counts)
             if not occurs(near):
                 near = (False,) * len(near)
-            grows = tuple(bits[first:third])
-            small = [g.dispersion for g, n in zip(self.groups, near, strict=True) if n]
-            mirrored = tuple(
-                d
-                for (d, _), b in zip(roots, bits[third:second], strict=True)
-                if b and small.count(d) < sum(g.dispersion is d for g in self.groups)
-            )
+            grows = tuple(bits[first:second])
             far = {self.groups[i].dispersion for i in pairs if not near[i]}
             lone = tuple(
                 d for d, b in zip(laws, bits[fourth:fifth], strict=True) if b and d in far and not all(near)
@@ -436,7 +419,7 @@ class _PieceMaker:
                 bits[second + j] and not near[i] and self.groups[i].dispersion not in lone
                 for j, i in enumerate(pairs)
             )
-            key = (near, grows, mirrored, meets, lone)
+            key = (near, grows, meets, lone)
             if key not in known:
                 known[key] = len(code)
                 code.append(self._piece(*key))
@@ -472,22 +455,14 @@ class _PieceMaker:
         self,
         near: tuple[bool, ...],
         grows: tuple[bool, ...] = (),
-        mirrored: tuple[Dispersion, ...] = (),
         meets: bool = False,
         lone: tuple[Dispersion, ...] = (),
         *,
         is_complex: bool = False,
     ) -> CodePiece:
         forge = Forge()
-        site = Site(
-            forge,
-            self.tf,
-            self.families,
-            dict(zip(self.delays, grows, strict=True)),
-            self._exponents(),
-            mirrored,
-            self._is_signed,
-        )
+        delays = dict(zip(self.delays, grows, strict=True))
+        site = Site(forge, self.tf, self.families, delays, self._exponents())
         groups: list[_Group] = [g for g, n in zip(self.groups, near, strict=True) if n]
         for group, is_near in zip(self.groups, near, strict=True):
             if not is_near and group.dispersion in lone and (own := self._lone(group)) is not None:

@@ -52,10 +52,6 @@ class Site:
     grows: Mapping[int, bool] = field(default_factory=dict)
     # Per family and length, the pairs ``(a, b)`` that occur.
     exponents: Mapping[tuple[int, int], Sequence[tuple[int, int]]] = field(default_factory=dict)
-    # Dispersions whose wavenumbers are even in s and here computed from ``-s``.
-    mirrored: Sequence[Dispersion] = ()
-    # True when ``mirrored`` tells the sign of roots of squares; otherwise these are computed as such.
-    is_signed: bool = True
     # Given for real arithmetic: the leaf of s is then the angular frequency, wavenumbers are magnitudes.
     axis: RealAxis | None = None
     # What lengths and coefficients of dispersion relations became, which every term asks for.
@@ -115,15 +111,9 @@ class Site:
             return first if name == law.wavenumbers[0] else second
         c0 = self.coefficient(law)
         negative = self.axis.sign(law) if self.axis is not None else None
-        if (parts := self.plain_parts(law)) is not None:
+        if self.axis is not None and (parts := self.plain_parts(law)) is not None:
             root = forge.multiply(parts)
-            if self.axis is None and law in self.mirrored:
-                root = forge.negate(root)
-            return (
-                self.forge.label(root, "gamma")
-                if law.kind == "wave"
-                else self.forge.label(self._root(root), "mu")
-            )
+            return forge.label(root, "gamma") if law.kind == "wave" else forge.label(self._root(root), "mu")
         if law.kind == "wave":
             square = c0 if negative is False else forge.negate(c0)
             return self.forge.label(self._root(square), "gamma")
@@ -136,7 +126,7 @@ class Site:
         A factor free of s, and s. In real arithmetic it is the root of the magnitude, without the factor 1/4
         for a negative ``c_0``, and the magnitude of s.
         """
-        if law.kind not in ("wave", "bending") or not (self.is_signed or self.axis is not None):
+        if law.kind not in ("wave", "bending"):
             return None
         c0, s = law.characteristic[0], self.ring.context.gen(0)
         power = c0.exponent_of(s)
