@@ -174,7 +174,7 @@ class _Renderer(RendererPgf):
 
     def __init__(self, figure: Figure) -> None:
         self.written = StringIO()
-        super().__init__(figure, self.written)
+        super().__init__(figure, self.written)  # type: ignore[no-untyped-call]
 
     def draw_text(
         self,

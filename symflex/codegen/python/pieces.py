@@ -128,8 +128,8 @@ class BlockText(PrivateText):
         if program.is_lumped:
             text = f"_in_blocks(_value_of_{name}, arguments)"
         elif program.is_real:
-            parts = ", ".join(f"_{part}_of_{name}" for part in ("limits", "sizes", "pieces"))
-            text = f"_in_real_pieces({parts}, arguments, {'1j' if program.turn else '1'})"
+            unit = "1j" if program.turn else "1"
+            text = f"_in_real_pieces(_tests_of_{name}, _pieces_of_{name}, arguments, {unit})"
         elif program.minors:
             text = f"_in_array(_tests_of_{name}, _pieces_of_{name}, arguments)"
         else:
@@ -145,7 +145,7 @@ class BlockText(PrivateText):
             return [f"def _value_of_{self.name}(*arguments):", *statement("return", value, "    ")]
         if program.is_lumped:
             return self._lumped(program)
-        lines = [*(self._real_tests(program) if program.is_real else self._tests(program)), "", ""]
+        lines = [*self._tests(program), "", ""]
         lines += self._along()
         for i, piece in enumerate(program.code):
             lines += [*self._piece(i, piece), "", ""]
@@ -236,49 +236,16 @@ class BlockText(PrivateText):
         head = self._head(f"_tests_of_{self.name}")
         return [*head, *lines, *statement("return", f"[{', '.join(tests)}]", "    ")]
 
-    def _real_tests(self, program: tree.Piecewise) -> list[str]:
-        """Return two functions: of the limits, made once per call, and of the sizes, made per block."""
-        _, printer = self._body(program.tests, self.variable)
-        limits: list[str] = []
-        sizes: list[tree.CodeNode] = []
-        for condition in program.conditions:
-            if not condition.limit:
-                limits.append("0.0")
-                sizes.append(tree.Multiply((condition.scale, condition.quantity)))
-                continue
-            scale = printer.print(condition.scale)
-            limits.append(repr(condition.limit) + (f" / np.abs({scale})" if scale != "1.0" else ""))
-            is_positive = isinstance(condition.quantity, tree.Laplace)
-            sizes.append(condition.quantity if is_positive else tree.Apply("abs", condition.quantity))
-        fixed = program.tests.needed([c.scale for c in program.conditions if c.limit])
-        lines: list[list[str]] = []
-        for code in (fixed, program.tests.needed(sizes)):
-            own = (*code.constants, *code.assignments)
-            lines.append([line for a in own for line in printer.assignment(a.name, a.value, "    ")])
-        return [
-            *self._head(f"_limits_of_{self.name}", self.arguments[1:]),
-            *lines[0],
-            *statement("return", f"[{', '.join(limits)}]", "    "),
-            "",
-            "",
-            *self._head(f"_sizes_of_{self.name}"),
-            *lines[1],
-            *statement("return", f"[{', '.join(printer.print(x) for x in sizes)}]", "    "),
-        ]
-
     def _mean(self, parts: str, points: int) -> str:
         given = ", ".join(["z", *self.arguments[1:]])
         return f"_mean_over_circle(lambda z: {parts}({given}), {self.variable}, {points})"
 
     def _value(self, piece: tree.CodePiece, lines: list[str], printer: PythonPrinter) -> list[str]:
-        num, den = piece.code.values
-        if not self.given.is_real:
-            return [*lines, *statement("return", printer.quotient(num, den), "    ")]
-        above, below = printer.print(num), printer.print(den)
-        if piece.is_complex:
+        value = printer.quotient(*piece.code.values)
+        if piece.is_complex and self.given.turn:
             # The factor that the real pieces leave out comes after.
-            above = f"{'-1j' if self.given.turn else '(1+0j)'} * ({above})"
-        return [*lines, *statement("return", f"{above}, {below}", "    ")]
+            value = f"-1j * ({value})"
+        return [*lines, *statement("return", value, "    ")]
 
 
 @dataclass(frozen=True)
@@ -538,7 +505,7 @@ def places_of(program: Piecewise, values: Mapping[str, float]) -> tuple[complex,
     loss of all digits lie many orders of magnitude.
     """
     given = {name: values.get(name, 1.0) for name in program.parameters}
-    points = SIZES[:, None] * DIRECTIONS
+    points: NDArray[np.complex128] = SIZES[:, None] * DIRECTIONS
     with np.errstate(all="ignore"):
         numbers = np.broadcast_to(numbers_of_pieces(program, points, given), points.shape)
         served = np.array(program.pieces)[numbers]
