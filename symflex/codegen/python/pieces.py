@@ -449,7 +449,7 @@ Cases = tuple[tuple[tuple[int, bool], ...], ...]
 SIZES = np.logspace(-12, 60, 145)
 """Frequencies [rad/s] among which places are sought."""
 
-DIRECTIONS = np.exp(1j * np.array([0.9, -0.9, 2.2, -2.2]))
+DIRECTIONS: NDArray[np.complex128] = np.exp(1j * np.array([0.9, -0.9, 2.2, -2.2]))
 """One in every quadrant, on no axis."""
 
 INWARDS = 1.5
@@ -505,7 +505,7 @@ def places_of(program: Piecewise, values: Mapping[str, float]) -> tuple[complex,
     loss of all digits lie many orders of magnitude.
     """
     given = {name: values.get(name, 1.0) for name in program.parameters}
-    points: NDArray[np.complex128] = SIZES[:, None] * DIRECTIONS
+    points = SIZES[:, None] * DIRECTIONS
     with np.errstate(all="ignore"):
         numbers = np.broadcast_to(numbers_of_pieces(program, points, given), points.shape)
         served = np.array(program.pieces)[numbers]
