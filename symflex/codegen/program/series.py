@@ -24,9 +24,6 @@ if TYPE_CHECKING:
 SERIES_ERROR = log(1e-19)
 """Logarithm of the first term left out, over the largest."""
 
-Polynomial = tuple[int, ...]
-"""Ascending integer coefficients."""
-
 
 @dataclass(frozen=True, slots=True)
 class LocalBasis:

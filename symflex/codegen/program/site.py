@@ -61,9 +61,7 @@ class Site:
     def __post_init__(self) -> None:
         self.ring = self.tf.ratio.ring
         self.waves = {w: d for d in self.tf.kernels.dispersions for w in d.wavenumbers}
-        self.kernels = {
-            k.generator: k for k in self.tf.kernels.kernels if k.function in ("fundamental", "exp")
-        }
+        self.kernels = {k.generator: k for k in self.tf.kernels.kernels if k.function == "exp"}
         self._generators = _KernelGenerators(self.forge, self.tf, False, site=self)
         self._varying = {0, *(self.ring.index[n] for n in (*self.waves, *self.kernels))}
 
@@ -217,15 +215,10 @@ class Site:
         quotient = forge.divide(forge.multiply([forge.constant(4), c0]), c2)
         return forge.multiply([forge.power(self.length(length), 2), forge.add([c2, forge.negate(quotient)])])
 
-    def fundamental(self, kernel: Kernel) -> int:
-        """Return the derivative of a fundamental function at its length, or a decay."""
-        forge, law = self.forge, kernel.dispersion
-        x, n = self.length(kernel.length), law.order
-        if kernel.function == "exp":
-            return forge.apply("complex_exp", forge.negate(forge.multiply([x, self.value(law.shift)])))
-        scaled = [forge.multiply([forge.power(x, n - i), self.coefficient(law, i)]) for i in range(n)]
-        values = forge.solutions(scaled, 0)
-        return forge.multiply([forge.power(x, n - 1 - kernel.order), values[kernel.order]])
+    def decay(self, kernel: Kernel) -> int:
+        """Return a decay."""
+        exponent = [self.length(kernel.length), self.value(kernel.dispersion.shift)]
+        return self.forge.apply("complex_exp", self.forge.negate(self.forge.multiply(exponent)))
 
     # ------------------------------------------------------------------------------------ local solutions
 
@@ -418,7 +411,7 @@ def _common_step(values: set[Fraction]) -> Fraction:
 
 @dataclass
 class _KernelGenerators(Generators):
-    """Generators with wavenumbers and fundamental functions among them."""
+    """Generators with wavenumbers and decays among them."""
 
     site: Site | None = None
 
@@ -431,5 +424,5 @@ class _KernelGenerators(Generators):
         if site is not None and name in site.waves:
             return site.wavenumber(name), 1
         if site is not None and name in site.kernels:
-            return site.fundamental(site.kernels[name]), 1
+            return site.decay(site.kernels[name]), 1
         return super()._make(name)
