@@ -76,8 +76,8 @@ end
 %: on_axis
 function value = on_axis(response, omega, given)
 %ON_AXIS  The values of a function of s at angular frequencies of any sign.
-  if ~((isnumeric(omega) || islogical(omega)) && isreal(omega))
-    error('symflex:argument', 'the angular frequency must be real');
+  if ~(isreal(omega) && all(cellfun(@(x) isstruct(x) || isreal(x), given)))
+    error('symflex:argument', 'angular frequency and parameters must be real');
   end
   value = response(1i .* double(omega), given{:});
 end

@@ -58,7 +58,8 @@ def _in_pieces(tests, pieces, arguments, unit):
         number = sum(2**i for i, holds in enumerate(tests(*arguments)) if holds)
         value = pieces[number](*arguments)
         if np.isfinite(value):
-            return complex(0.0, value) if unit == 1j and np.isrealobj(value) else complex(unit * value)
+            is_turned = unit == 1j and np.isrealobj(value)
+            return complex(0.0, value) if is_turned else complex(unit * value)
         # At a pole numbers are divided otherwise than arrays.
         given = (np.atleast_1d(arguments[0]), *arguments[1:])
         return complex(_in_pieces(tests, pieces, given, unit)[0])
@@ -89,7 +90,10 @@ def _in_pieces(tests, pieces, arguments, unit):
         for k in np.unique(numbers):
             where = np.broadcast_to(numbers == k, part.shape)
             found = pieces[k](*(a[where] if np.ndim(a) else a for a in given))
-            part[where] = unit * found
+            if np.iscomplexobj(found):
+                part[where] = unit * found
+            else:
+                line[start : start + BLOCK][where] = found
     return value
 
 
