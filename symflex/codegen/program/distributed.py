@@ -586,7 +586,7 @@ class _PieceMaker:
     # ----------------------------------------------------------------------------------- real arithmetic
 
     def real_program(self, axis: RealAxis) -> Piecewise | None:
-        """Return the program for angular frequencies, ``None`` unless they are real up to a power of j."""
+        """Return the program for positive frequencies, ``None`` unless it is real up to a power of j."""
         forge = Forge()
         site = Site(forge, self.tf, self.families, axis=axis)
         tests, counts = self._sizes(site)
@@ -623,7 +623,7 @@ class _PieceMaker:
     def _real_piece(
         self, axis: RealAxis, wanted: int | None, *, is_near: bool
     ) -> tuple[CodePiece, int] | None:
-        """Return a piece and the power of j it leaves out, which is the wanted one if there is one."""
+        """Return a piece and the power of j it leaves out, 0 or 1 and the wanted one if there is one."""
         forge = Forge()
         site = Site(forge, self.tf, self.families, axis=axis)
         gain, values, turn = self.plain, [], 0
@@ -649,11 +649,10 @@ class _PieceMaker:
         if found is None:
             return None
         real, own = found[0] * waves, found[1]
-        turn = (turn + own) % 4
-        if wanted is not None and (turn - wanted) % 2:
-            return None
+        is_negative, turn = divmod((turn + own) % 4, 2)
         if wanted is not None and turn != wanted:
-            real, turn = -real, wanted
+            return None
+        real = -real if is_negative else real
         num = forge.multiply([site.value(real.numerator()), values[0]])
         den = forge.multiply([site.value(real.denominator()), values[1]])
         return CodePiece(straight(forge, [num, den])), turn

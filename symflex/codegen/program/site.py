@@ -122,7 +122,7 @@ class Site:
         """Return the root of ``-c_0`` (waves) or ``c_0/4`` (bending) where that is proportional to ``s^2``.
 
         A factor free of s, and s. In real arithmetic it is the root of the magnitude, without the factor 1/4
-        for a negative ``c_0``, and the magnitude of s.
+        for a negative ``c_0``; frequencies are positive there.
         """
         if law.kind not in ("wave", "bending"):
             return None
@@ -139,7 +139,7 @@ class Site:
         square = rest if negative else -rest
         if law.kind == "bending" and not negative:
             square = square / 4
-        return self._root(self.value(square)), self.forge.apply("abs", self.forge.s)
+        return self._root(self.value(square)), self.forge.s
 
     def _pair(self, law: Dispersion) -> tuple[int, int]:
         """Return the square roots of the roots of ``x^2 + c_2 x + c_0``, without cancellation."""

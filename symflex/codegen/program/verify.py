@@ -20,7 +20,6 @@ from symflex.codegen.program.band import BandForm, band_form
 from symflex.codegen.program.build import available_forms, build_nested, build_program
 from symflex.codegen.program.distributed import Pieces, series_uses
 from symflex.codegen.program.evaluate import evaluate, nearest_double
-from symflex.codegen.program.positive_frequencies import for_positive
 from symflex.errors import BudgetError, Diagnostic, ModelError
 from symflex.transfer import BoundNested, NestedTransferFunction, bind, bind_nested
 from symflex.transfer.bind import EnclosedTransferFunction
@@ -326,8 +325,7 @@ def _choose_real(gauge: _Gauge) -> tuple[Piecewise, Verification] | None:
     first = next(programs, None)
     if first is None:
         return None
-    chosen, verification = _choose_pieces(chain([first], programs), gauge, "real")
-    return for_positive(chosen), verification
+    return _choose_pieces(chain([first], programs), gauge, "real")
 
 
 def _choose_pieces(programs: Iterator[Piecewise], gauge: _Gauge, form: str) -> tuple[Piecewise, Verification]:
