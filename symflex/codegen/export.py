@@ -6,8 +6,8 @@ arithmetic; what a language prints is made of these :class:`Contents` alone, and
 generated code calls. These stand in files of the language, ``codegen/sources``, cut into parts by lines
 that say what each defines; code gets the parts it calls and those that they call, in the order of the file::
 
-    #: _characteristic_roots _refined
-    function _characteristic_roots(c)
+    #: _mean_over_circle
+    function _mean_over_circle(parts, s, points)
     ...
 """
 
@@ -20,7 +20,7 @@ from importlib import resources
 from math import isfinite
 from typing import TYPE_CHECKING, Protocol
 
-from symflex.codegen.module_text import formula_of, identifiers, inert
+from symflex.codegen.module_text import formula_of, headline, identifiers, inert
 from symflex.codegen.program.band import is_closed
 from symflex.codegen.program.verify import SAMPLES, choose_band, choose_programs
 from symflex.model.loss_factors import check_causal
@@ -93,6 +93,13 @@ class Member:
     wanted: str  # the name it has where the language and the other names admit it
     verification: Verification  # how well it agrees with ball arithmetic
     formula: tuple[str, ...]  # in paragraphs, or a sentence on one that is long
+    is_response: bool = False  # true for the frequency response, at s = j omega
+
+    @property
+    def headline(self) -> str:
+        """What it computes, in one inert line."""
+        at = ", in real arithmetic" if self.program.is_real else ""
+        return headline(self.tf, f" at s = j omega{at}" if self.is_response else "")
 
     @property
     def parameters(self) -> tuple[ModelParameter, ...]:
@@ -102,7 +109,7 @@ class Member:
     @property
     def key(self) -> str:
         """Tells it from the other members."""
-        return f"{'at' if self.program.is_real else 'of'} {self.tf.name}"
+        return f"{'at' if self.is_response else 'of'} {self.tf.name}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +117,7 @@ class Contents:
     """What a file of numeric code consists of, in no language yet."""
 
     model: Model  # title, source and parameters
-    # One for each transfer function, each followed by its response in real arithmetic where there is one.
+    # One for each transfer function, each followed by its frequency response where there is one.
     members: tuple[Member, ...]
     stem: str  # the file's name without suffix; empty where that is not known
     is_alone: bool  # there can be no other files beside it
@@ -125,7 +132,7 @@ class Contents:
     @property
     def verified(self) -> tuple[Verification, ...]:
         """How well members agree with ball arithmetic: functions of s, then responses."""
-        ordered = sorted(self.members, key=lambda member: member.program.is_real)
+        ordered = sorted(self.members, key=lambda member: member.is_response)
         return tuple(member.verification for member in ordered)
 
 
@@ -134,7 +141,8 @@ class Language:
     """A language that numeric code is exported to: the exporter that prints verified programs.
 
     Every file has one function ``OUT_over_IN`` of s and the parameters for each transfer function. Lossless
-    distributed systems get a second one, ``OUT_over_IN_at``: the frequency response in real arithmetic.
+    distributed systems get a second one, ``OUT_over_IN_at``: the frequency response, in real arithmetic where
+    the language has it.
     """
 
     suffix: str  # of the file's name
@@ -144,6 +152,7 @@ class Language:
     # polynomials; elsewhere what has no short formula is written in band form, with numbers for parameters.
     is_open: bool = False
     is_complex: bool = False  # true where parameters may be complex, as the imaginary unit is
+    has_real: bool = False  # true where frequency responses are computed in real arithmetic
     form: str | None = None  # "band" to write all functions in band form
     up_to: Fraction | None = None  # where the band of band forms ends [Hz]
     solves: bool = True
@@ -205,11 +214,12 @@ class Language:
                 program, verification, formula = choose_band(tf, band_hz, self.up_to, samples)
                 found.append(Member(tf, program, wanted, verification, tuple(map(inert, formula))))
                 continue
-            (program, verification), real = choose_programs(tf, band_hz or tf.model.analysis.band, samples)
+            band = band_hz or tf.model.analysis.band
+            own, response = choose_programs(tf, band, samples, has_real=self.has_real)
             formula = formula_of(tf)
-            found.append(Member(tf, program, wanted, verification, formula))
-            if real is not None:
-                found.append(Member(tf, real[0], f"{wanted}_at", real[1], formula))
+            found.append(Member(tf, own[0], wanted, own[1], formula))
+            if response is not None:
+                found.append(Member(tf, response[0], f"{wanted}_at", response[1], formula, is_response=True))
         return tuple(found)
 
 

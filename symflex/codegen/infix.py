@@ -8,7 +8,7 @@ own way is overridden: numbers, powers, a statement, a branch, a function.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from textwrap import TextWrapper
 from typing import TYPE_CHECKING, ClassVar
 
@@ -68,17 +68,16 @@ class InfixPrinter(ABC):
         """Return the sum of ``2**i`` over the tests that hold; empty without tests."""
         terms = []
         for i, condition in enumerate(program.conditions):
-            test = self._holds(condition, is_real=program.is_real)
+            test = self._holds(condition)
             terms.append(f"{2**i} {self.times} ({test})" if i else f"({test})")
         return " + ".join(terms)
 
-    def _holds(self, condition: tree.Condition, *, is_real: bool) -> str:
+    def _holds(self, condition: tree.Condition) -> str:
         if not condition.limit:
             return f"real({self.print(tree.Multiply((condition.scale, condition.quantity)))}) < 0.0"
         quantity, scale = self.print(condition.quantity), self.print(condition.scale)
-        is_positive = is_real and isinstance(condition.quantity, tree.Laplace)
         below = "" if scale == "1.0" else f" {self.over} abs({scale})"
-        return f"{quantity if is_positive else f'abs({quantity})'} < {condition.limit!r}{below}"
+        return f"abs({quantity}) < {condition.limit!r}{below}"
 
     # --------------------------------------------------------------------- what languages write differently
 
@@ -204,11 +203,6 @@ class PrivateFunctions(ABC):
     parameters: Mapping[str, str]  # identifiers of the parameters
     reserved: Collection[str]  # identifiers that intermediate values cannot have
 
-    @property
-    def variable(self) -> str:
-        """The first argument's name."""
-        return "omega" if self.program.is_real else "s"
-
     @abstractmethod
     def statement(self, target: str, value: str, depth: int = 1) -> list[str]:
         """Return the lines of an assignment, indented by so many steps."""
@@ -263,7 +257,7 @@ class NumberFunctions(PrivateFunctions):
             return [self._lumped(self.program)]
         blocks = [self._choice(self.program)]
         for i, piece in enumerate(self.program.code):
-            blocks += self._piece(self.program, i, piece)
+            blocks += self._piece(i, piece)
         return blocks
 
     def _function(self, kind: str, variable: str, body: Sequence[str]) -> str:
@@ -290,44 +284,30 @@ class NumberFunctions(PrivateFunctions):
     def _choice(self, program: tree.Piecewise) -> str:
         """Return the function that finds the piece that serves."""
         assignments = (*program.tests.constants, *program.tests.assignments)
-        printer, (variable, number) = self.scope(assignments, self.variable, "number")
-        lines: list[str] = []
-        if program.is_real:
-            negative = self._call("value", f"-{variable}")
-            lines += self.branch(f"signbit({variable})", self.returned(f"conj({negative})", 2))
-        lines += self.assigned(assignments, printer)
+        printer, (s, number) = self.scope(assignments, "s", "number")
+        lines = self.assigned(assignments, printer)
         if program.conditions:
             lines += self.statement(number, printer.piece_number(program))
         served = {k: [n for n, own in enumerate(program.pieces) if own == k] for k in set(program.pieces)}
         *others, last = sorted(served)
         for k in others:
             test = " || ".join(f"{number} == {n}" for n in served[k])
-            lines += self.branch(test, self.returned(self._call(f"piece_{k}", variable), 2))
-        return self._function(
-            "value", variable, [*lines, *self.returned(self._call(f"piece_{last}", variable))]
-        )
+            lines += self.branch(test, self.returned(self._call(f"piece_{k}", s), 2))
+        return self._function("value", s, [*lines, *self.returned(self._call(f"piece_{last}", s))])
 
-    def _piece(self, program: tree.Piecewise, number: int, piece: tree.CodePiece) -> list[str]:
+    def _piece(self, number: int, piece: tree.CodePiece) -> list[str]:
         assignments = (*piece.code.constants, *piece.code.assignments)
+        printer, (s,) = self.scope(assignments, "s")
+        lines = self.assigned(assignments, printer)
         if piece.circle:
-            printer, (variable,) = self.scope(assignments, self.variable)
             values = ", ".join(printer.print(v) for v in piece.code.values).join(self.brackets)
-            lines = [*self.assigned(assignments, printer), *self.returned(values)]
-            return [self._function(f"parts_{number}", variable, lines), self._mean(number, piece.circle)]
-        words = (self.variable, *(["s"] if piece.is_complex else []))
-        printer, (variable, *place) = self.scope(assignments, *words)
-        lines = []
-        for s in place:
-            printer = replace(printer, variable=s)
-            lines += self.statement(s, f"complex(0.0, {variable})")
-        lines += self.assigned(assignments, printer)
-        whole = printer.quotient(*piece.code.values)
-        if program.is_real and not piece.is_complex:
-            whole = f"complex(0.0, {whole})" if program.turn else f"complex({whole}, 0.0)"
-        return [self._function(f"piece_{number}", variable, [*lines, *self.returned(whole)])]
+            parts = self._function(f"parts_{number}", s, [*lines, *self.returned(values)])
+            return [parts, self._mean(number, piece.circle)]
+        lines += self.returned(printer.quotient(*piece.code.values))
+        return [self._function(f"piece_{number}", s, lines)]
 
     def _mean(self, number: int, points: int) -> str:
-        _, (variable, z) = self.scope((), self.variable, "z")
+        _, (s, z) = self.scope((), "s", "z")
         parts = f"{z} {self.arrow} {self._call(f'parts_{number}', z)}"
-        whole = f"_mean_over_circle({parts}, {variable}, {points})"
-        return self._function(f"piece_{number}", variable, self.returned(whole))
+        whole = f"_mean_over_circle({parts}, {s}, {points})"
+        return self._function(f"piece_{number}", s, self.returned(whole))

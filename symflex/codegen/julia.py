@@ -16,7 +16,6 @@ from symflex.codegen.module_text import (
     default_value,
     described,
     formula_lines,
-    headline,
     identifiers,
     inert,
     origin_lines,
@@ -137,12 +136,13 @@ def julia_module(contents: Contents) -> Export:
     blocks, code = [_parameter_table(model, parameters)], ""
     for m in members:
         functions = JuliaFunctions(m.program, public[m.key], parameters, taken - {"s"})
-        private = functions.blocks()
-        blocks += [_public(m, functions, digits), *private]
+        of_s = public[f"of {m.tf.name}"]
+        private = [] if m.is_response else functions.blocks()
+        blocks += [_public(m, functions, digits, of_s), *private]
         code += "\n".join(private)
     blocks += called_parts(code, parts_of("julia.jl"))
-    for table, is_real in (("TRANSFER_FUNCTIONS", False), ("FREQUENCY_RESPONSES", True)):
-        blocks.append(_function_table(table, [m for m in members if m.program.is_real == is_real], public))
+    for table, is_response in (("TRANSFER_FUNCTIONS", False), ("FREQUENCY_RESPONSES", True)):
+        blocks.append(_function_table(table, [m for m in members if m.is_response == is_response], public))
     header = [*_docstring(_header(model, members, digits)), f"module {main}", ""]
     if public:
         header += [*_exported(list(public.values())), ""]
@@ -197,8 +197,7 @@ def _header(model: Model, members: Sequence[Member], digits: int) -> list[str]:
         "with a dot, as in OUT_over_IN.(s), it takes arrays.",
         WIDTH,
     )
-    own = [m for m in members if not m.program.is_real]
-    for m in own:
+    for m in (m for m in members if not m.is_response):
         text = _disarmed(inert(f"{m.tf.name}: {m.verification.text(digits)}"))
         lines += ["", *wrapped(text, WIDTH)]
     return lines
@@ -227,24 +226,21 @@ def _exported(names: Sequence[str]) -> list[str]:
     return [f"export {first}", *(f"    {line}" for line in others)]
 
 
-def _public(member: Member, functions: JuliaFunctions, digits: int) -> str:
-    """Return the function that a user calls."""
-    tf, variable = member.tf, functions.variable
-    kind = "Real" if member.program.is_real else "Number"
+def _public(member: Member, functions: JuliaFunctions, digits: int, of_s: str) -> str:
+    """Return the function that a user calls; a frequency response calls the function of s."""
     parameters = [(p, functions.parameters[p.name]) for p in member.parameters]
-    signature, arguments = (
-        [],
-        [f"float({variable})" if member.program.is_real else f"complex(float({variable}))"],
-    )
+    variable, kind = ("omega", "Real") if member.is_response else ("s", "Number")
+    variable += "_" * any(name == variable for _, name in parameters)
+    signature, arguments = [], ["complex(float(s))"]
     for p, name in parameters:
         default = default_value(p)
         signature.append(f"{name}::{kind}{f' = {default}' if default else ''}")
         arguments.append(f"float({name})")
     opening = f"{functions.name}({variable}::{kind}"
     lines = [f"    {functions.name}({variable}{'; ...' if parameters else ''})", ""]
-    lines += [_disarmed(headline(tf, is_real=member.program.is_real)), ""]
+    lines += [_disarmed(member.headline), ""]
     lines += [f"    {_disarmed(line)}" for line in formula_lines(member.formula, WIDTH - 4)]
-    what = "angular frequency" if member.program.is_real else "Laplace variable"
+    what = "angular frequency" if member.is_response else "Laplace variable"
     lines += ["", "# Arguments", f"- {variable}: {what} [rad/s]."]
     for p, name in parameters:
         value = default_value(p)
@@ -256,9 +252,11 @@ def _public(member: Member, functions: JuliaFunctions, digits: int) -> str:
     first = [f"function {whole}"]
     if len(first[0]) > WIDTH:
         first = [f"function {opening};", *(f"    {x}," for x in signature[:-1]), f"    {signature[-1]})"]
-    call = f"complex(_value_of_{functions.name}({', '.join(arguments)}))"
-    body = f"    return {call}"
-    if len(body) > WIDTH:
+    body = f"    return complex(_value_of_{functions.name}({', '.join(arguments)}))"
+    if member.is_response:
+        given = "; " * bool(parameters) + ", ".join(f"{name} = {name}" for _, name in parameters)
+        body = "\n".join(functions.statement("return", f"{of_s}(complex(0.0, float({variable})){given})"))
+    elif len(body) > WIDTH:
         inside = [f"        {a}," for a in arguments[:-1]] + [f"        {arguments[-1]}))"]
         body = "\n".join([f"    return complex(_value_of_{functions.name}(", *inside])
     return "\n".join([*_docstring(lines), *first, body, "end", ""])

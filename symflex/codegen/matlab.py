@@ -8,7 +8,7 @@ local functions that compute with columns, the file.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Final
 
 from symflex.algebra import LAPLACE, Factored
@@ -19,7 +19,6 @@ from symflex.codegen.module_text import (
     default_value,
     described,
     formula_lines,
-    headline,
     identifiers,
     inert,
     origin_lines,
@@ -172,16 +171,11 @@ class LocalFunctions(PrivateFunctions):
         return continued(f"{target} = {value};", "  " * depth)
 
     def call(self) -> list[str]:
-        """Return the statement that computes the value of ``s``, or ``omega``, and ``given``."""
+        """Return the statement that computes the value of ``s`` and ``given``."""
         if self.program.is_lumped:
             return self.statement("value", f"everywhere(@{self.names['value']}, s, given)")
         pieces = ", ".join(f"@{self.names[str(i)]}" for i in self.program.pieces)
-        arguments = f"@{self.names['number']}, {{{pieces}}}, {self.variable}, given"
-        if not self.program.is_real:
-            return self.statement("value", f"in_pieces({arguments})")
-        return self.statement(
-            "value", f"in_real_pieces({arguments}, {'true' if self.program.turn else 'false'})"
-        )
+        return self.statement("value", f"in_pieces(@{self.names['number']}, {{{pieces}}}, s, given)")
 
     def blocks(self) -> list[str]:
         """Return the functions, each as text that ends with a line end."""
@@ -225,46 +219,32 @@ class LocalFunctions(PrivateFunctions):
     def _number(self, program: Piecewise) -> str:
         """Return the function that tells which piece serves."""
         assignments = (*program.tests.constants, *program.tests.assignments)
-        printer, (variable, number) = self.scope(assignments, self.variable, "number")
+        printer, (s, number) = self.scope(assignments, "s", "number")
         lines = [
             *self.assigned(assignments, printer),
             *self.statement(number, printer.piece_number(program) or "0"),
         ]
-        return self._function(number, "number", variable, lines)
+        return self._function(number, "number", s, lines)
 
     def _piece(self, number: int, piece: CodePiece) -> list[str]:
         assignments = (*piece.code.constants, *piece.code.assignments)
         if piece.circle:
-            words = (self.variable, "num", "den", "growth", "radius")
-            printer, (variable, *results) = self.scope(assignments, *words)
+            printer, (s, *results) = self.scope(assignments, "s", "num", "den", "growth", "radius")
             lines = self.assigned(assignments, printer)
             for name, node in zip(results, piece.code.values, strict=True):
                 lines += self.statement(name, printer.print(node))
-            parts = self._function(f"[{', '.join(results)}]", f"{number}_parts", variable, lines)
+            parts = self._function(f"[{', '.join(results)}]", f"{number}_parts", s, lines)
             return [parts, self._mean(number, piece.circle)]
-        wanted = [self.variable, "value", "num", "den", *(["s"] if piece.is_complex else [])]
-        printer, (variable, value, num, den, *place) = self.scope(assignments, *wanted)
-        lines = []
-        for s in place:
-            printer = replace(printer, variable=s)
-            lines += self.statement(s, f"1i .* {variable}")
-        lines += self.assigned(assignments, printer)
-        above, below = piece.code.values
-        if not self.program.is_real:
-            lines += self.statement(value, printer.quotient(above, below))
-            return [self._function(value, str(number), variable, lines)]
-        text = printer.print(above)
-        if piece.is_complex and self.program.turn:
-            # The factor that the real pieces leave out comes after.
-            text = f"(-1.0i) .* ({text})"
-        lines += [*self.statement(num, text), *self.statement(den, printer.print(below))]
-        return [self._function(f"[{num}, {den}]", str(number), variable, lines)]
+        printer, (s, value) = self.scope(assignments, "s", "value")
+        lines = self.assigned(assignments, printer)
+        lines += self.statement(value, printer.quotient(*piece.code.values))
+        return [self._function(value, str(number), s, lines)]
 
     def _mean(self, number: int, points: int) -> str:
-        _, (variable, value, z) = self.scope((), self.variable, "value", "z")
+        _, (s, value, z) = self.scope((), "s", "value", "z")
         given = ", ".join(self.arguments(z))
-        whole = f"mean_over_circle(@({z}) {self.names[f'{number}_parts']}({given}), {variable}, {points})"
-        return self._function(value, str(number), variable, self.statement(value, whole))
+        whole = f"mean_over_circle(@({z}) {self.names[f'{number}_parts']}({given}), {s}, {points})"
+        return self._function(value, str(number), s, self.statement(value, whole))
 
 
 # -------------------------------------------------------------------------------------------------- text
@@ -335,7 +315,7 @@ class _File:
         self.fields = identifiers(wanted, RESERVED | OTHER_FIELDS, LONGEST)
         self.public = identifiers(self.fields, RESERVED | {self.main} | TOOLBOX, LONGEST)
         self.taken = {*RESERVED, self.main, *self.public.values()}
-        own = ((m, RationalSystem.of(m.tf)) for m in self.members if not m.program.is_real)
+        own = ((m, RationalSystem.of(m.tf)) for m in self.members if not m.is_response)
         self.systems = {m.key: system for m, system in own if system is not None}
         # Private functions, by member and role.
         roles = {
@@ -350,6 +330,8 @@ class _File:
     def _roles(self, member: Member) -> list[str]:
         """Return what the private functions of a member are for; their names end so."""
         program = member.program
+        if member.is_response:
+            return []
         roles = ["value"] if program.is_lumped else ["number"]
         for i, piece in enumerate(() if program.is_lumped else program.code):
             roles += [f"{i}_parts", str(i)] if piece.circle else [str(i)]
@@ -358,6 +340,10 @@ class _File:
     def made(self) -> Export:
         blocks, code = [self._main(), self._defaults()], ""
         for m in self.members:
+            if m.is_response:
+                blocks.append(self._response(m))
+                code += blocks[-1]
+                continue
             own = {role: self.private[m.key, role] for role in self._roles(m)}
             functions = LocalFunctions(
                 m.program, self.public[m.key], self.parameters, self.taken - WORDS, own
@@ -389,8 +375,8 @@ class _File:
         ):
             lines.append(f"  G.{field} = struct();")
             lines += [f"  G.{field}.{self.parameters[n]} = {_string(text)};" for n, text in texts.items()]
-        for field, is_real in (("transfer_functions", False), ("frequency_responses", True)):
-            rows = [m for m in self.members if m.program.is_real == is_real]
+        for field, is_response in (("transfer_functions", False), ("frequency_responses", True)):
+            rows = [m for m in self.members if m.is_response == is_response]
             lines.append(f"  G.{field} = cell({len(rows)}, 2);")
             for i, m in enumerate(rows, 1):
                 lines.append(f"  G.{field}({i}, :) = {{{_string(m.tf.name)}, '{self.fields[m.key]}'}};")
@@ -403,8 +389,7 @@ class _File:
             first = f"G = {self.main.upper()}() is a struct of functions and of the model's parameters."
             lines += [first, "", *self._examples(), "", *wrapped(EXPANSION, ROOM), "", "Functions"]
         for m in self.members:
-            said = _disarmed(headline(m.tf, is_real=m.program.is_real))
-            lines += wrapped(f"{self.fields[m.key]}: {said}", ROOM, "  ", "      ")
+            lines += wrapped(f"{self.fields[m.key]}: {_disarmed(m.headline)}", ROOM, "  ", "      ")
             lines += wrapped(_text(m.verification.text(self.digits)), ROOM, "      ")
         lines += ["", "Parameters"] if self.model.parameters else []
         for p in self.model.parameters:
@@ -427,8 +412,8 @@ class _File:
                 (f"p.{name} = {value};", ""),
                 (f"G.{field}(s, p)", "a struct of values, all or some"),
             ]
-        for m in [m for m in self.members if m.program.is_real][:1]:
-            rows.append((f"G.{self.fields[m.key]}(omega)", "at s = 1i*omega, in real arithmetic"))
+        for m in [m for m in self.members if m.is_response][:1]:
+            rows.append((f"G.{self.fields[m.key]}(omega)", "at s = 1i*omega"))
         rows += [
             ("w = 2*pi*logspace(0, 3, 1000);", "[rad/s]"),
             (f"H = frd(G.{field}(1i*w), w);", "for the Control System Toolbox"),
@@ -459,18 +444,24 @@ class _File:
 
     def _handle(self, member: Member, functions: LocalFunctions) -> str:
         """Return the function behind a handle."""
-        tf, name = member.tf, functions.name
+        given = _given(self.parameters[p] for p in member.program.parameters)
+        return _function(*self._head(member, "s"), *given, *functions.call())
+
+    def _response(self, member: Member) -> str:
+        """Return the function of the angular frequency, which calls that of s."""
+        of_s = next(m.key for m in self.members if m.tf is member.tf)
+        value = f"value = on_axis(@{self.public[of_s]}, omega, varargin);"
+        return _function(*self._head(member, "omega"), *continued(value, "  "))
+
+    def _head(self, member: Member, variable: str) -> list[str]:
+        """Return the first line of a function behind a handle, and its help text."""
+        name = self.public[member.key]
         help_text = ["", *(_disarmed(line) for line in formula_lines(member.formula, ROOM)), ""]
-        if origin := origin_lines(tf.model, ROOM):
+        if origin := origin_lines(member.tf.model, ROOM):
             help_text += [*(_disarmed(line) for line in origin), ""]
         help_text += wrapped(_text(member.verification.text(self.digits)), ROOM)
-        first = f"{name.upper()}  {_disarmed(headline(tf, is_real=member.program.is_real))}"
-        return _function(
-            f"function value = {name}({functions.variable}, varargin)",
-            *_helped(first, help_text),
-            *_given(self.parameters[p] for p in member.program.parameters),
-            *functions.call(),
-        )
+        first = f"{name.upper()}  {_disarmed(member.headline)}"
+        return [f"function value = {name}({variable}, varargin)", *_helped(first, help_text)]
 
     def _system_functions(self, system: RationalSystem, names: Mapping[str, str]) -> list[str]:
         """Return the function of the coefficients, and the one that makes a system of them."""

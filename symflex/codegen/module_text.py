@@ -46,11 +46,6 @@ FOLLOWED = (
 )
 """What is said of functions of members that vary along x."""
 
-COST = (
-    "Exponents without a formula are found numerically, which costs some hundred times a complex exponential."
-)
-"""What is said of functions that solve for their exponents."""
-
 
 def formula_of(tf: AnyTransferFunction) -> tuple[str, ...]:
     """Return the formula in paragraphs of inert text, or a sentence on it where nobody would read it."""
@@ -108,10 +103,9 @@ def origin_lines(model: Model, width: int) -> list[str]:
     return lines
 
 
-def headline(tf: AnyTransferFunction, *, is_real: bool = False) -> str:
-    """Return what a function, or its response in real arithmetic, computes, in one inert line."""
+def headline(tf: AnyTransferFunction, at: str = "") -> str:
+    """Return what a function computes, and where, in one inert line."""
     unit = f" [{tf.unit}]" if tf.unit else ""
-    at = " at s = j omega, in real arithmetic" if is_real else ""
     return inert(f"{tf.quantity[:1].upper()}{tf.quantity[1:]} {tf.name}{unit}{at}.")
 
 

@@ -12,14 +12,12 @@ import logging
 import re
 import warnings
 from contextlib import contextmanager
-from io import BytesIO
+from io import BytesIO, StringIO
 from typing import TYPE_CHECKING, Final
 
-import numpy as np
 from matplotlib import rc_context
 from matplotlib.backend_bases import RendererBase
-from matplotlib.colors import to_rgba
-from matplotlib.path import Path as Outline
+from matplotlib.backends.backend_pgf import RendererPgf
 
 from symflex.errors import Diagnostic, UsageError
 from symflex.errors.diagnostic import nearest
@@ -29,16 +27,13 @@ from symflex.print.label import read_label
 from symflex.print.latex.text import escape_text
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
     from pathlib import Path
 
     from matplotlib.backend_bases import GraphicsContextBase
     from matplotlib.figure import Figure
     from matplotlib.font_manager import FontProperties
     from matplotlib.text import Text
-    from matplotlib.transforms import Transform
-    from matplotlib.typing import ColorType
-    from numpy.typing import ArrayLike
 
 
 # What would differ from run to run, or from one version of matplotlib to the next, is left out.
@@ -94,12 +89,9 @@ def save(figure: Figure, path: Path, format: str | None = None, *, font: str = D
 MM_PER_INCH: Final = 25.4
 DOTS_PER_INCH: Final = 72.0
 TEX_POINTS: Final = 72.27 / DOTS_PER_INCH
-FARTHEST: Final = 5000.0
-"""TeX has no lengths beyond 16383 points."""
 _LINE_SPACING: Final = 1.2
 _DOLLAR: Final = re.compile(r"(?<!\\)\$")
 _DEFAULT_FONT: Final = re.compile(r"\\mathdefault\{([^{}]*)\}")
-_CAPS: Final = {"butt": "butt", "round": "round", "projecting": "rect"}
 _UPRIGHT: Final = 90.0
 _TURNED: Final = {"top": "right", "bottom": "left", "center": "center"}
 """A text that runs upwards begins at its bottom."""
@@ -128,13 +120,13 @@ def pgf_figure(figure: Figure) -> str:
 
     Equal figures give equal text, in ASCII. Colours and transparency are kept; images cannot be drawn.
     """
-    renderer = _Renderer(figure.get_figwidth(), figure.get_figheight())
     dpi = figure.dpi
     with warnings.catch_warnings():
         # Letters that matplotlib has no glyphs of are TeX's to set.
         warnings.filterwarnings("ignore", r"Glyph \d+", UserWarning)
         try:
             figure.dpi = DOTS_PER_INCH
+            renderer = _Renderer(figure)
             figure.draw(renderer)
         finally:
             figure.dpi = dpi
@@ -146,7 +138,7 @@ def pgf_figure(figure: Figure) -> str:
             r"\begin{pgfpicture}",
             rf"\pgfpathrectangle{{\pgfpointorigin}}{{\pgfqpoint{{{width}mm}}{{{height}mm}}}}",
             r"\pgfusepath{use as bounding box}",
-            *renderer.lines,
+            *renderer.written.getvalue().splitlines(),
             # No space comes of a line that ends in a command.
             r"\end{pgfpicture}\relax",
             "",
@@ -173,49 +165,16 @@ def _decimal(value: float, places: int) -> str:
     return "0" if text in ("-0", "") else text
 
 
-def _point(x: float, y: float) -> str:
-    return rf"\pgfqpoint{{{_decimal(TEX_POINTS * x, 2)}pt}}{{{_decimal(TEX_POINTS * y, 2)}pt}}"
+class _Renderer(RendererPgf):
+    """Writes what matplotlib draws, texts as :func:`pgf_text` and without asking TeX how large they are."""
 
+    get_text_width_height_descent = RendererBase.get_text_width_height_descent
+    # A mark is a path wherever it stands: no commands of PGF's inside.
+    draw_markers = RendererBase.draw_markers
 
-class _Renderer(RendererBase):
-    """Writes what matplotlib draws, at 72 dots per inch."""
-
-    def __init__(self, width: float, height: float) -> None:
-        super().__init__()
-        self._size = (width * DOTS_PER_INCH, height * DOTS_PER_INCH)
-        self.lines: list[str] = []
-
-    def flipy(self) -> bool:
-        """Say that y runs upwards."""
-        return False
-
-    def get_canvas_width_height(self) -> tuple[float, float]:
-        """Return the size in dots."""
-        return self._size
-
-    def points_to_pixels(self, points: ArrayLike) -> ArrayLike:
-        """Return a length in dots, which are points."""
-        return points
-
-    def draw_path(
-        self, gc: GraphicsContextBase, path: Outline, transform: Transform, rgbFace: ColorType | None = None
-    ) -> None:
-        """Stroke a path, and fill it where it has a colour inside."""
-        is_stroked = gc.get_linewidth() > 0
-        actions = [
-            name for name, is_done in (("stroke", is_stroked), ("fill", rgbFace is not None)) if is_done
-        ]
-        if not actions:
-            return
-        self.lines.append(r"\begin{pgfscope}")
-        self._clip(gc)
-        if is_stroked:
-            self._pen(gc)
-        if rgbFace is not None:
-            *colour, alpha = to_rgba(rgbFace)
-            self._colour("fill", colour, gc.get_alpha() if gc.get_forced_alpha() else alpha)
-        self._trace(path, transform, gc if rgbFace is None else None)
-        self.lines += [rf"\pgfusepath{{{','.join(actions)}}}", r"\end{pgfscope}"]
+    def __init__(self, figure: Figure) -> None:
+        self.written = StringIO()
+        super().__init__(figure, self.written)  # type: ignore[no-untyped-call]
 
     def draw_text(
         self,
@@ -247,64 +206,9 @@ class _Renderer(RendererBase):
         # Sizes that every family has.
         size = round(prop.get_size_in_points())
         font = rf"\fontsize{{{size}}}{{{_decimal(_LINE_SPACING * size, 1)}}}\selectfont"
-        red, green, blue = gc.get_rgb()[:3]
-        colour = rf"\color[rgb]{{{_triple((red, green, blue))}}}" if (red, green, blue) != (0, 0, 0) else ""
+        rgb = gc.get_rgb()[:3]
+        shade = ",".join(_decimal(part, 4) for part in rgb)
+        colour = rf"\color[rgb]{{{shade}}}" if any(rgb) else ""
         body = pgf_text(s, is_math=bool(ismath))
-        self.lines += [
-            r"\begin{pgfscope}",
-            rf"\pgftext[{','.join(options)}]{{{font}{colour}{{}}{body}}}",
-            r"\end{pgfscope}",
-        ]
-
-    def _clip(self, gc: GraphicsContextBase) -> None:
-        box = gc.get_clip_rectangle()
-        if box is not None:
-            corner, size = _point(box.x0, box.y0), _point(box.width, box.height)
-            self.lines.append(rf"\pgfpathrectangle{{{corner}}}{{{size}}}\pgfusepath{{clip}}")
-        path, transform = gc.get_clip_path()
-        if path is not None and transform is not None:
-            self._trace(path, transform, None)  # type: ignore[arg-type]  # a Path, unlike the stub says
-            self.lines.append(r"\pgfusepath{clip}")
-
-    def _pen(self, gc: GraphicsContextBase) -> None:
-        width = _decimal(TEX_POINTS * gc.get_linewidth(), 3)
-        cap, join = _CAPS[gc.get_capstyle()], gc.get_joinstyle()
-        self.lines.append(rf"\pgfsetlinewidth{{{width}pt}}\pgfset{cap}cap\pgfset{join}join")
-        offset, dashes = gc.get_dashes()
-        if dashes is not None:
-            pattern = "".join(
-                f"{{{_decimal(TEX_POINTS * dash, 3)}pt}}"
-                for dash in np.atleast_1d(np.asarray(dashes, dtype=float))
-            )
-            self.lines.append(
-                rf"\pgfsetdash{{{pattern}}}{{{_decimal(TEX_POINTS * float(offset or 0), 3)}pt}}"
-            )
-        *colour, alpha = to_rgba(gc.get_rgb())
-        self._colour("stroke", colour, gc.get_alpha() if gc.get_forced_alpha() else alpha)
-
-    def _colour(self, what: str, colour: Sequence[float], alpha: float) -> None:
-        self.lines.append(
-            rf"\definecolor{{figure{what}}}{{rgb}}{{{_triple(colour)}}}\pgfset{what}color{{figure{what}}}"
-        )
-        if alpha != 1.0:
-            self.lines.append(rf"\pgfset{what}opacity{{{_decimal(alpha, 3)}}}")
-
-    def _trace(self, path: Outline, transform: Transform, gc: GraphicsContextBase | None) -> None:
-        """Write a path; of a line that is only stroked, what is in sight."""
-        box = None if gc is None else gc.get_clip_rectangle()
-        seen = (-FARTHEST, -FARTHEST, FARTHEST, FARTHEST) if box is None else (box.x0, box.y0, box.x1, box.y1)
-        for points, code in path.iter_segments(transform, clip=seen, remove_nans=True):
-            pairs = [_point(float(x), float(y)) for x, y in np.reshape(points, (-1, 2))]
-            if code == Outline.MOVETO:
-                self.lines.append(rf"\pgfpathmoveto{{{pairs[0]}}}")
-            elif code == Outline.LINETO:
-                self.lines.append(rf"\pgfpathlineto{{{pairs[0]}}}")
-            elif code == Outline.CLOSEPOLY:
-                self.lines.append(r"\pgfpathclose")
-            else:
-                name = "quadraticcurveto" if code == Outline.CURVE3 else "curveto"
-                self.lines.append(rf"\pgfpath{name}{''.join(f'{{{pair}}}' for pair in pairs)}")
-
-
-def _triple(colour: Sequence[float]) -> str:
-    return ",".join(_decimal(part, 4) for part in colour)
+        text = rf"\pgftext[{','.join(options)}]{{{font}{colour}{{}}{body}}}"
+        self.written.write(f"\\begin{{pgfscope}}\n{text}\n\\end{{pgfscope}}\n")

@@ -41,7 +41,7 @@ REAL_FUNCTIONS = {
 """What C calls each of the elementary functions of a real number."""
 
 
-LANE_FUNCTIONS = ("tan", "exp", "tanh")
+LANE_FUNCTIONS = ("tan", "exp")
 """Functions of real numbers that there are without branches."""
 
 
@@ -396,10 +396,9 @@ STEP = "    "
 
 S = Term("s", Kind.COMPLEX, varies=True)
 AXIS = Term("w", Kind.IMAGINARY, varies=True)
-POSITIVE = Term("w", Kind.REAL, varies=True)
 LANE = Term("w[j]", Kind.REAL, varies=True)
 AXIS_LANE = Term("w[j]", Kind.IMAGINARY, varies=True)
-"""What s is: complex; j w; the frequency w of a response in real arithmetic; the last two, one of several."""
+"""What s is: complex; j w; the frequency w of a response in real arithmetic, one of several; j w likewise."""
 
 _NUMBERED = re.compile(r"[a-z]_\d{1,9}")
 
@@ -540,31 +539,23 @@ class Body:
         return given, any(t.varies for t in terms)
 
 
-def conditions_of(program: tree.Piecewise, scope: Body, varying: Body | None = None) -> list[str]:
-    """Print what conditions need, and return the conditions; limits go to the outer scope."""
-    inner = varying or scope
+def conditions_of(program: tree.Piecewise, scope: Body) -> list[str]:
+    """Print what conditions need, and return the conditions."""
     fixed = program.tests.needed([c.scale for c in program.conditions])
     scope.assign(fixed.constants)
     limits = [limit_text(c, scope) for c in program.conditions]
     varied = program.tests.needed([c.quantity for c in program.conditions])
-    scope.assign(varied.constants)
-    if varying is not None:
-        inner.known = dict(scope.known)
-    inner.assign(varied.assignments)
+    scope.assign((*varied.constants, *varied.assignments))
     conditions = []
     for condition, limit in zip(program.conditions, limits, strict=True):
-        quantity = inner.term(condition.quantity)
+        quantity = scope.term(condition.quantity)
         if not condition.limit:
-            left = product(inner.term(condition.scale), quantity)
+            left = product(scope.term(condition.scale), quantity)
             text = {Kind.COMPLEX: f"{left.text}.re", Kind.REAL: left.text, Kind.IMAGINARY: "0.0"}[left.kind]
             conditions.append(f"{text} < 0.0")
             continue
-        size = {
-            Kind.COMPLEX: f"cx_abs({quantity.text})",
-            Kind.REAL: quantity.text if quantity == POSITIVE else f"fabs({quantity.text})",
-            Kind.IMAGINARY: f"fabs({quantity.text})",
-        }[quantity.kind]
-        conditions.append(f"{size} < {limit}")
+        size = "cx_abs" if quantity.kind is Kind.COMPLEX else "fabs"
+        conditions.append(f"{size}({quantity.text}) < {limit}")
     return conditions
 
 
@@ -578,41 +569,19 @@ def limit_text(condition: tree.Condition, scope: Body) -> str:
 
 
 def choose(
-    program: tree.Piecewise, conditions: Sequence[str], scope: Body, body: Callable[[int, Body], None]
+    program: tree.Piecewise, conditions: Sequence[str], scope: Body, piece: Callable[[int], str]
 ) -> None:
-    """Print the choice among pieces: test i adds ``2**i`` to the number of the piece."""
-    indent = STEP * scope.depth
-    if len(set(program.pieces)) == 1:
-        body(program.pieces[0], scope)
-        return
-    if len(conditions) == 1:
-        near, far = scope.within(), scope.within()
-        body(program.pieces[1], near)
-        body(program.pieces[0], far)
-        scope.enclose(f"if ({conditions[0]}) {{", [*near.lines, f"{indent}}} else {{", *far.lines])
-        return
-    names = []
-    for i, test in enumerate(conditions):
-        name = scope.name(f"test_{i}")
-        scope.say(f"const int {name} =", test)
-        names.append(f"{2**i} * {name}" if i else name)
-    scope.lines.append(f"{indent}switch ({' + '.join(names)}) {{")
+    """Return the value of the piece that serves: test i adds ``2**i`` to its number."""
     default = program.pieces[0]
-    for k in sorted({*program.pieces} - {default}):
-        scope.lines += [f"{indent}case {n}:" for n, piece in enumerate(program.pieces) if piece == k]
-        _case(k, scope, body)
-    scope.lines.append(f"{indent}default:")
-    _case(default, scope, body)
-    scope.lines.append(f"{indent}}}")
-
-
-def _case(k: int, scope: Body, body: Callable[[int, Body], None]) -> None:
-    indent = STEP * scope.depth
-    block = scope.within()
-    body(k, block)
-    returns = block.lines and block.lines[-1].lstrip().startswith("return")
-    if returns and len(block.lines) == 1:
-        scope.lines += block.lines
-        return
-    scope.lines[-1] += " {"
-    scope.lines += [*block.lines, *([] if returns else [f"{indent}{STEP}break;"]), f"{indent}}}"]
+    if len(set(program.pieces)) > 1:
+        names = []
+        for i, test in enumerate(conditions):
+            name = scope.name(f"test_{i}")
+            scope.say(f"const int {name} =", test)
+            names.append(f"{2**i} * {name}" if i else name)
+        scope.add(f"switch ({' + '.join(names)}) {{")
+        for k in sorted({*program.pieces} - {default}):
+            scope.add(*(f"case {n}:" for n, own in enumerate(program.pieces) if own == k))
+            scope.lines += statement("return", piece(k), scope.depth + 1)
+        scope.add("}")
+    scope.say("return", piece(default))

@@ -8,7 +8,7 @@ compilers make it work on several values at once: in lanes.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -17,7 +17,6 @@ from symflex.codegen.c.body import (
     AXIS_LANE,
     LANE,
     LANE_FUNCTIONS,
-    POSITIVE,
     STEP,
     WIDTH,
     Body,
@@ -45,7 +44,7 @@ class Functions:
     structure: str  # name of the type that holds the parameters
     members: Mapping[str, str]  # the structure's members by the parameters' names
     program: tree.Piecewise  # the function of s
-    axis: tree.Piecewise | None = None  # the frequency response in real arithmetic, where there is one
+    axis: tree.Piecewise | None = None  # the frequency response in real arithmetic, where it fits lanes
 
     @property
     def value_prototype(self) -> str:
@@ -120,12 +119,7 @@ class Functions:
         for number, piece in enumerate(program.code):
             blocks += self._piece(f"piece_{number}_of_{self.name}", piece)
         scope = Body.of(self.members, S)
-        conditions = conditions_of(program, scope)
-
-        def call(k: int, inner: Body) -> None:
-            inner.say("return", f"piece_{k}_of_{self.name}(s, p)")
-
-        choose(program, conditions, scope, call)
+        choose(program, conditions_of(program, scope), scope, lambda k: f"piece_{k}_of_{self.name}(s, p)")
         blocks.append(self._wrapped_value(self._ends(scope, self._head(f"value_of_{self.name}"))))
         return blocks
 
@@ -147,28 +141,21 @@ class Functions:
     # -------------------------------------------------------------------------------- frequency response
 
     def _frequency_response(self) -> list[str]:
-        if self.axis is not None and fits_lanes(self.axis):
+        program = self.program
+        if self.axis is not None:
             return [*self.freq_prototype.split("\n"), "{", *lanes(self.axis, self.members), "}"]
-        program = self.axis or self.program
-        if has_losses(program):
+        if not program.is_lumped or has_losses(program):
             return self._called()
-        if program.is_lumped and is_rational_in_lanes(program):
+        if is_rational_in_lanes(program):
             return [*self.freq_prototype.split("\n"), "{", *rational_lanes(program, self.members), "}"]
-        is_axis = self.axis is not None
-        outer = Body.of(self.members, POSITIVE if is_axis else AXIS)
+        outer = Body.of(self.members, AXIS)
         # Names are unique in the whole function; the loop's statements come after all constants.
         inner = outer.within()
-        if program.is_lumped:
-            _lumped(program, outer, self._store, inner)
-        else:
-            self._axis_pieces(program, outer, inner)
-        w = "fabs(omega[i])" if is_axis else "omega[i]"
+        _lumped(program, outer, self._store, inner)
         varies = any(_mentions(line, "w") for line in inner.lines)
-        is_odd = any(_mentions(line, "sign") for line in inner.lines)
         loop = [f"{STEP}for (size_t i = 0; i < n; i++) {{"]
-        loop += [f"{STEP * 2}const double w = {w};"] if varies else []
-        loop += [f"{STEP * 2}const double sign = signbit(omega[i]) ? -1.0 : 1.0;"] if is_odd else []
-        unused = [] if varies or is_odd else [f"{STEP}(void)omega;"]
+        loop += [f"{STEP * 2}const double w = omega[i];"] if varies else []
+        unused = [] if varies else [f"{STEP}(void)omega;"]
         return [
             *self.freq_prototype.split("\n"),
             "{",
@@ -194,48 +181,18 @@ class Functions:
             "}",
         ]
 
-    def _axis_pieces(self, program: tree.Piecewise, outer: Body, inner: Body) -> None:
-        conditions = conditions_of(program, outer, inner)
-        codes = [piece.code.needed(piece.code.values) for piece in program.code]
-        fixed: list[dict[str, Term]] = []
-        for piece, code in zip(program.code, codes, strict=True):
-            outer.known = {}
-            if not piece.circle:
-                outer.assign(code.constants)
-            fixed.append(outer.known)
-
-        def body(k: int, block: Body) -> None:
-            piece, code = program.code[k], codes[k]
-            if piece.circle:
-                # Points on a circle are complex: the piece of the function of s serves.
-                call = f"piece_{k}_of_{self.name}(cx_of(0.0, w), p)"
-                self._store(block, Term(call, Kind.COMPLEX, varies=True))
-                return
-            block.known = dict(fixed[k])
-            if piece.is_complex:
-                block.s = AXIS
-            block.assign(code.assignments)
-            num, den = (block.term(v) for v in code.values)
-            value = quotient(num, den)
-            if program.turn and not piece.is_complex:
-                value = replace(value, kind=Kind.IMAGINARY)
-            self._store(block, value)
-
-        choose(program, conditions, inner, body)
-
     def _store(self, scope: Body, value: Term) -> None:
-        """Write a value into the arrays; it is that at a positive frequency in real arithmetic."""
-        sign = "sign * " if self.axis is not None else ""
+        """Write a value into the arrays."""
         if value.kind is Kind.COMPLEX:
             scope.say("const cx g =", value.text)
             scope.say("real[i] =", "g.re")
-            scope.say("imag[i] =", f"{sign}g.im")
+            scope.say("imag[i] =", "g.im")
         elif value.kind is Kind.REAL:
             scope.say("real[i] =", value.text)
             scope.say("imag[i] =", "0.0")
         else:
             scope.say("real[i] =", "0.0")
-            scope.say("imag[i] =", f"{sign}({value.text})" if sign else value.text)
+            scope.say("imag[i] =", value.text)
 
 
 def _mentions(line: str, name: str) -> bool:

@@ -10,7 +10,7 @@ import re
 from typing import TYPE_CHECKING
 
 from symflex.codegen.c.body import KEYWORDS, LANE_FUNCTIONS, PARTS, RESERVED, WIDTH
-from symflex.codegen.c.functions import Functions
+from symflex.codegen.c.functions import Functions, fits_lanes
 from symflex.codegen.export import Export, Language, called_parts
 from symflex.codegen.module_text import (
     default_value,
@@ -98,8 +98,9 @@ class _Files:
         self.prefix = prefix_of(name)
         self.structure = f"{self.prefix}_parameters"
         self.members = identifiers({p.name: p.name for p in self.model.parameters}, RESERVED)
-        self.of_s = {m.tf.name: m for m in contents.members if not m.program.is_real}
-        self.on_axis = {m.tf.name: m for m in contents.members if m.program.is_real}
+        self.of_s = {m.tf.name: m for m in contents.members if not m.is_response}
+        responses = (m for m in contents.members if m.is_response)
+        self.on_axis = {m.tf.name: m for m in responses if fits_lanes(m.program)}
         names = _function_names({key: member.wanted for key, member in self.of_s.items()})
         self.functions = {key: self._functions(key, names[key]) for key in self.of_s}
 
@@ -268,4 +269,5 @@ C99 = Language(
     ".c",
     "C99 source and header, values at s and arrays of frequencies, verified likewise",
     c_files,
+    has_real=True,
 )

@@ -12,7 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cache, partial
-from math import gcd
+from math import gcd, pi, prod
 from operator import mul
 from typing import TYPE_CHECKING
 
@@ -29,7 +29,6 @@ from symflex.codegen.program.exponents import (
     in_other_lengths,
 )
 from symflex.codegen.program.forge import Forge, straight
-from symflex.codegen.program.modal import CIRCLE, MODAL_REACHES, build_modal, declared_length
 from symflex.codegen.program.nodes import CodePiece, Condition, Piecewise
 from symflex.codegen.program.series import (
     SERIES_ERROR,
@@ -72,18 +71,14 @@ LOCAL_TERMS = 30_000
 REAL_TERMS = 1000
 """Terms of numerator and denominator up to which a program in real arithmetic is made besides."""
 
-SIGNING = 1
-"""Dispersions up to which a piece is made for every choice of signs of their wavenumbers; those of more are
-roots of squares, which costs half a rounding, and no second piece for each."""
-
 LOWEST, HIGHEST, STEPS = 1e-9, 1e12, 4000
 """Frequencies [rad/s] at which it is looked which arguments are small together."""
 
 CONFLUENT = 2.0
 """Twice the squared distance of a pair's arguments below which means over a circle are taken."""
 
-LONE = 0.25
-"""Part of the series' reach up to which the smaller of a pair's arguments has a series by itself."""
+CIRCLE = 24
+"""Points of a circle over which means are taken."""
 
 BASES: dict[str, Callable[[Iterable[Sequence[tuple[int, int]]]], LocalBasis]] = {
     "wave": wave_basis,
@@ -106,21 +101,11 @@ def series_uses(tf: TransferFunction, *, is_measured: bool = True) -> tuple[Seri
 
     What one of several lengths gains from a series by itself is much where it is far shorter than the others.
     """
-    if tf.is_nameless:
-        return tuple(map(SeriesUse, MODAL_REACHES))
     lengths = {(k.dispersion, k.length) for k in tf.kernels.kernels if k.wavenumber}
     shortest = (
         [SeriesUse(REACHES[0], TOGETHER)] if is_measured and TOGETHER < len(lengths) <= CHOOSING else []
     )
     return (*shortest, *map(SeriesUse, REACHES))
-
-
-def build_piecewise(tf: TransferFunction) -> Piecewise:
-    """Return the program for complex s that is used where nothing is measured.
-
-    Raises BudgetError: SF503 when the program would be too large.
-    """
-    return Pieces(tf).of_s(series_uses(tf, is_measured=False)[0])
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,7 +134,7 @@ class Pieces:
     def _made(self, use: SeriesUse) -> Piecewise:
         if any(law.matrix for law in self.tf.kernels.dispersions):
             return build_varying(self.tf)
-        return build_modal(self.tf, use.reach) if self.tf.is_nameless else self._maker(use).program()
+        return self._maker(use).program()
 
     def of_frequency(self, use: SeriesUse) -> Piecewise | None:
         """Return the program of the response at an angular frequency in real arithmetic.
@@ -172,8 +157,8 @@ _Test = tuple[int, float, int]
 """Expression, limit and scale of a condition."""
 
 
-_Choice = tuple[tuple[bool, ...], tuple[bool, ...], tuple["Dispersion", ...], bool, tuple["Dispersion", ...]]
-"""What makes a piece: groups near zero, delays that grow, dispersions mirrored, meeting pairs, lone ones."""
+_Choice = tuple[tuple[bool, ...], tuple[bool, ...], bool]
+"""What makes a piece: groups near zero, delays that grow, meeting pairs."""
 
 
 _LocalParts = dict[tuple[int, ...], dict["Key", Factored]]
@@ -190,10 +175,6 @@ class _Group:
     families: tuple[int, ...]
     basis: LocalBasis
     spread: int = 0
-
-
-class _Lone(_Group):
-    """The smaller wavenumber of a pair at one length, whose argument is small while the other's is not."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -348,16 +329,6 @@ class _PieceMaker:
                     basis = BASES[family.dispersion.kind](exponents)
                     yield _Group(family.dispersion, length, position, tuple(ids), basis, spread)
 
-    def _lone(self, group: _Group) -> _Lone | None:
-        """Return the smaller wavenumber of a pair at a length, ``None`` if no kernel has it there."""
-        smaller = group.dispersion.wavenumbers[1]
-        for i in group.families:
-            if self.families[i].wavenumber == smaller:
-                exponents = sorted({k[i][0][group.position][0] for h in self.halves for k in h.terms})
-                basis = wave_basis([((a, 0),) for a in exponents])
-                return _Lone(group.dispersion, group.length, group.position, (i,), basis)
-        return None
-
     # -------------------------------------------------------------------------------- complex arithmetic
 
     def _sizes(self, site: Site) -> tuple[list[_Test], list[int]]:
@@ -370,10 +341,6 @@ class _PieceMaker:
             tests += own
             counts.append(len(own))
         return tests, counts
-
-    @property
-    def _is_signed(self) -> bool:
-        return len(self.table.dispersions) <= SIGNING
 
     def _near(self, bits: Sequence[bool], counts: Sequence[int]) -> tuple[bool, ...]:
         """Return which groups are taken to be small."""
@@ -404,22 +371,15 @@ class _PieceMaker:
     def program(self) -> Piecewise:
         """Return the program for complex s."""
         forge = Forge()
-        site = Site(forge, self.tf, self.families, is_signed=self._is_signed)
+        site = Site(forge, self.tf, self.families)
         tests, counts = self._sizes(site)
         first, one = len(tests), forge.constant(1)
         tests += [(site.exponent(self.families[i], 0), 0.0, one) for i in self.delays]
-        roots = [(d, parts) for d in self.table.dispersions if (parts := site.plain_parts(d)) is not None]
-        third = len(tests)
-        tests += [(s, 0.0, scale) for _, (scale, s) in roots]
         second = len(tests)
         pairs = [i for i, g in enumerate(self.groups) if g.dispersion.kind == "pair"]
         tests += [
             (site.distance(self.groups[i].dispersion, self.groups[i].length), CONFLUENT, one) for i in pairs
         ]
-        fourth = len(tests)
-        laws = [d for d in self.table.dispersions if any(self.groups[i].dispersion is d for i in pairs)]
-        tests += [self._lone_test(site, d) for d in laws]
-        fifth = len(tests)
         occurs = self._together(forge, tests, counts, None)
         code: list[CodePiece] = []
         known: dict[_Choice, int] = {}
@@ -429,38 +389,14 @@ class _PieceMaker:
             near = self._near(bits, counts)
             if not occurs(near):
                 near = (False,) * len(near)
-            grows = tuple(bits[first:third])
-            small = [g.dispersion for g, n in zip(self.groups, near, strict=True) if n]
-            mirrored = tuple(
-                d
-                for (d, _), b in zip(roots, bits[third:second], strict=True)
-                if b and small.count(d) < sum(g.dispersion is d for g in self.groups)
-            )
-            far = {self.groups[i].dispersion for i in pairs if not near[i]}
-            lone = tuple(
-                d for d, b in zip(laws, bits[fourth:fifth], strict=True) if b and d in far and not all(near)
-            )
-            meets = any(
-                bits[second + j] and not near[i] and self.groups[i].dispersion not in lone
-                for j, i in enumerate(pairs)
-            )
-            key = (near, grows, mirrored, meets, lone)
+            grows = tuple(bits[first:second])
+            meets = any(bits[second + j] and not near[i] for j, i in enumerate(pairs))
+            key = (near, grows, meets)
             if key not in known:
                 known[key] = len(code)
                 code.append(self._piece(*key))
             numbers.append(known[key])
         return self._assembled(forge, tests, numbers, code, None)
-
-    def _lone_test(self, site: Site, dispersion: Dispersion) -> _Test:
-        """Return the test that the smaller of a pair's arguments is small at every length."""
-        forge = site.forge
-        reaches = [
-            forge.multiply([forge.constant(g.spread), site.value(g.length)])
-            for g in self.groups
-            if g.dispersion is dispersion
-        ]
-        scale = forge.multiply([forge.constant(2), forge.power(forge.add(reaches), 2)])
-        return site.quotient(dispersion), (LONE * self.reach) ** 2, scale
 
     def _assembled(
         self,
@@ -480,26 +416,14 @@ class _PieceMaker:
         self,
         near: tuple[bool, ...],
         grows: tuple[bool, ...] = (),
-        mirrored: tuple[Dispersion, ...] = (),
         meets: bool = False,
-        lone: tuple[Dispersion, ...] = (),
         *,
         is_complex: bool = False,
     ) -> CodePiece:
         forge = Forge()
-        site = Site(
-            forge,
-            self.tf,
-            self.families,
-            dict(zip(self.delays, grows, strict=True)),
-            self._exponents(),
-            mirrored,
-            self._is_signed,
-        )
-        groups: list[_Group] = [g for g, n in zip(self.groups, near, strict=True) if n]
-        for group, is_near in zip(self.groups, near, strict=True):
-            if not is_near and group.dispersion in lone and (own := self._lone(group)) is not None:
-                groups.append(own)
+        delays = dict(zip(self.delays, grows, strict=True))
+        site = Site(forge, self.tf, self.families, delays, self._exponents())
+        groups = [g for g, n in zip(self.groups, near, strict=True) if n]
         scales = self._scales(groups, site.grows)
         values, gain = [], self.plain
         for half, sign in zip(self.halves, (1, -1), strict=True):
@@ -545,7 +469,7 @@ class _PieceMaker:
             return total, half.waves * half.unit
         parts = self._local_parts(half, near)
         taken = Factored.number(self.ring, 1)
-        if len(near) == len(self.groups) or any(isinstance(g, _Lone) for g in near):
+        if len(near) == len(self.groups):
             taken = self._power_of_s(v for rest in parts.values() for v in rest.values())
         summands = []
         solution = cache(partial(self._solution, site))
@@ -556,9 +480,6 @@ class _PieceMaker:
         return forge.add(summands), taken
 
     def _solution(self, site: Site, group: _Group, k: int) -> int:
-        if isinstance(group, _Lone):
-            reach = LONE * self.reach
-            return site.local_of_smaller(group.basis, group.dispersion, group.length, k, reach)
         return site.local(group.basis, group.dispersion, group.length, k, self.reach)
 
     def _power_of_s(self, values: Iterable[Factored]) -> Factored:
@@ -576,13 +497,12 @@ class _PieceMaker:
 
     def _new_parts(self, half: _Half, near: Sequence[_Group]) -> _LocalParts:
         found: _LocalParts = {}
-        lone = [g.dispersion for g in near if isinstance(g, _Lone)]
         for orders, terms in self._derivatives(half.terms, near):
             spend()
             if len(near) == 1 and self._is_negligible(orders[0], found):
                 break
             values = {
-                k: self._reduced(Factored.polynomial(self.ring, p * 2 ** self._still(k)) * half.waves, lone)
+                k: self._reduced(Factored.polynomial(self.ring, p * 2 ** self._still(k)) * half.waves)
                 for k, p in terms.items()
             }
             if values := {k: v for k, v in values.items() if not v.is_zero}:
@@ -631,18 +551,12 @@ class _PieceMaker:
                 found[k] = found.get(k, self.ring.constant(0)) + polynomial * factor
         return {k: p for k, p in found.items() if len(p)}
 
-    def _reduced(self, value: Factored, lone: Sequence[Dispersion]) -> Factored:
-        """Return a value in normal form, free of wavenumbers where it is symmetric in them.
-
-        Values of pairs whose smaller wavenumber alone is expanded are made free of its negative powers.
-        """
+    def _reduced(self, value: Factored) -> Factored:
+        """Return a value in normal form, free of wavenumbers where it is symmetric in them."""
         for dispersion in self.table.dispersions:
             if dispersion.kind == "pair" and not value.is_zero:
-                is_lone = any(d is dispersion for d in lone)
-                reduce = self._without_smaller if is_lone else self._without_pair
-                value = reduce(value, dispersion)
-        # Powers of a lone wavenumber are small; the relations would make differences of large terms of them.
-        return value if lone else self.normal.reduce_factored(value)
+                value = self._without_pair(value, dispersion)
+        return self.normal.reduce_factored(value)
 
     def _normal_form(self, polynomial: fmpz_mpoly) -> Factored:
         self.work += len(polynomial)
@@ -651,27 +565,6 @@ class _PieceMaker:
             hint = "give some parameters numbers, or leave out losses, loads or lengths"
             raise BudgetError(Diagnostic("SF503", message, None, hint))
         return self.normal.reduce(polynomial)
-
-    def _without_smaller(self, value: Factored, dispersion: Dispersion) -> Factored:
-        """Return a value that is finite where the smaller wavenumber is zero without negative powers of it.
-
-        With ``lambda_1^2 lambda_2^2 = c_0``, such a power becomes one of c_0, and that divides what is in
-        normal form: 1 and lambda_2^2 generate what is finite at both roots of ``x^2 + c_2 x``.
-        """
-        large, small = (Factored.generator(self.ring, w) for w in dispersion.wavenumbers)
-        (first, _), (second, _) = large.factors[0], small.factors[0]
-        power = value.exponent_of(second)
-        if power >= 0:
-            return value
-        even = -power + power % 2
-        outside = value.exponent_of(first)
-        # Powers of the larger one stay outside, where they are harmless; even ones are all there is of it.
-        whole = value / large**outside * (large * small) ** even
-        numerator = self._normal_form(whole.numerator().expand()) / whole.denominator()
-        if numerator.is_zero:
-            return numerator
-        reduced, _ = cancel(numerator, dispersion.characteristic[0] ** (even // 2))
-        return reduced * large**outside
 
     def _without_pair(self, value: Factored, dispersion: Dispersion) -> Factored:
         """Return a value that is symmetric in two wavenumbers without them."""
@@ -693,7 +586,7 @@ class _PieceMaker:
     # ----------------------------------------------------------------------------------- real arithmetic
 
     def real_program(self, axis: RealAxis) -> Piecewise | None:
-        """Return the program for angular frequencies, ``None`` unless they are real up to a power of j."""
+        """Return the program for positive frequencies, ``None`` unless it is real up to a power of j."""
         forge = Forge()
         site = Site(forge, self.tf, self.families, axis=axis)
         tests, counts = self._sizes(site)
@@ -730,7 +623,7 @@ class _PieceMaker:
     def _real_piece(
         self, axis: RealAxis, wanted: int | None, *, is_near: bool
     ) -> tuple[CodePiece, int] | None:
-        """Return a piece and the power of j it leaves out, which is the wanted one if there is one."""
+        """Return a piece and the power of j it leaves out, 0 or 1 and the wanted one if there is one."""
         forge = Forge()
         site = Site(forge, self.tf, self.families, axis=axis)
         gain, values, turn = self.plain, [], 0
@@ -756,11 +649,10 @@ class _PieceMaker:
         if found is None:
             return None
         real, own = found[0] * waves, found[1]
-        turn = (turn + own) % 4
-        if wanted is not None and (turn - wanted) % 2:
-            return None
+        is_negative, turn = divmod((turn + own) % 4, 2)
         if wanted is not None and turn != wanted:
-            real, turn = -real, wanted
+            return None
+        real = -real if is_negative else real
         num = forge.multiply([site.value(real.numerator()), values[0]])
         den = forge.multiply([site.value(real.denominator()), values[1]])
         return CodePiece(straight(forge, [num, den])), turn
@@ -785,6 +677,22 @@ class _PieceMaker:
             summand = forge.multiply([site.value(real), *map(solution, self.groups, orders)])
             summands.append(forge.negate(summand) if (turn - first) % 4 else summand)
         return forge.add(summands), first or 0, taken
+
+
+def declared_length(tf: TransferFunction, length: Factored) -> float:
+    """Return the declared value of a length; without values, of a model with every parameter 1."""
+    known = {p.name: p.value for p in tf.parameters}
+    point = []
+    for name in length.ring.names:
+        value = known.get(name)
+        point.append(1.0 if value is None else float(value.rational) * pi**value.pi_power)
+    result = float(length.unit)
+    for factor, exponent in length.factors:
+        total = 0.0
+        for monomial, number in factor.terms():
+            total += int(number) * prod(x ** int(e) for x, e in zip(point, monomial, strict=True))
+        result *= total**exponent
+    return result
 
 
 def _longer_and_shorter(

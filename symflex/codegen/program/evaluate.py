@@ -1,7 +1,7 @@
 """Running a program in double precision, with the operations of generated code in the same order.
 
 What generated code of distributed systems needs besides arithmetic is copied into modules: functions that use
-numpy, each other and :func:`symflex.algebra.modal_sum.modal_amplitudes`, and nothing else.
+numpy and each other, and nothing else.
 """
 
 from __future__ import annotations
@@ -17,7 +17,6 @@ import numpy as np
 from flint import arb, ctx, fmpq
 
 from symflex.algebra.line_networks import network_value
-from symflex.algebra.modal_sum import modal_amplitudes, mode_values
 from symflex.algebra.varying_minors import fundamental_minors
 from symflex.codegen.program import nodes as tree
 from symflex.errors import Diagnostic, ModelError
@@ -186,9 +185,6 @@ class _ProgramRun:
                 return (1 + 0j) * self.value(operand)
             case tree.LargerRoot() | tree.RootFactor():
                 return self.value(node.spelled)
-            case tree.Within(point, end):
-                z = self.value(point)
-                return np.where(np.abs(z) <= end, z, np.nan)
             case tree.ParameterValue(name):
                 return self._parameters[name]
             case tree.Assigned(name):
@@ -219,19 +215,14 @@ class _ProgramRun:
         return total + self.value(term)
 
     def _lists(self, node: tree.CodeNode) -> Values:
-        """Return the value of what takes lists or gives them."""
+        """Return the value of what takes lists or gives them, and of a point that may lie outside."""
         match node:
+            case tree.Within(point, end):
+                z = self.value(point)
+                return np.where(np.abs(z) <= end, z, np.nan)
             case tree.Solutions(coefficients, terms):
                 given = [self.value(c) for c in coefficients]
-                return series_solutions(given, terms) if terms else propagated(given)
-            case tree.Roots(coefficients):
-                return characteristic_roots([self.value(c) for c in coefficients])
-            case tree.ModeValues(roots, length):
-                return mode_values(self.value(roots)[:-1], self.value(length))
-            case tree.ModalValue(modes, coefficients, frames):
-                return modal_value(
-                    [self.value(m) for m in modes], [self.value(c) for c in coefficients], frames
-                )
+                return series_solutions(given, terms)
             case tree.FundamentalMinors(start, length, bases, along, places, wanted):
                 ends = self.value(start), self.value(length)
                 given = [np.atleast_1d(self.value(b)) for b in bases]
@@ -301,77 +292,6 @@ def series_solutions(coefficients: list[Values], terms: int) -> list[Values]:
                 total = total + following / factorial
         found.append(total)
     return found
-
-
-def propagated(coefficients: list[Values]) -> list[Values]:
-    """Return h, h', ..., h^(n-1) at 1 for coefficients of any size.
-
-    h solves h^(n) + c_(n-1) h^(n-1) + ... + c_0 h = 0 and starts from h^(n-1)(0) = 1 and
-    zeros. The exponential of the companion matrix, by scaling and squaring: some
-    hundred times the cost of a complex exponential.
-    """
-    n = len(coefficients)
-    shape = np.broadcast_shapes(*(np.shape(c) for c in coefficients))
-    rows = [np.broadcast_to(np.asarray(c, dtype=complex), shape) for c in coefficients]
-    sizes = [np.abs(c) ** (1.0 / (n - i)) for i, c in enumerate(rows)]
-    size = np.maximum(np.max(sizes, axis=0), 1e-30)
-    companion = np.zeros((*shape, n, n), dtype=complex)
-    for i in range(n - 1):
-        companion[..., i, i + 1] = size
-    for i, c in enumerate(rows):
-        companion[..., n - 1, i] = -c / size ** (n - 1 - i)
-    # Each element has its own number of halvings: what others are must not matter.
-    largest = np.where(np.isfinite(size), np.maximum(size, 1.0), 1.0)
-    halvings = np.ceil(np.log2(largest)).astype(int) + 3
-    small = companion / (2.0**halvings)[..., None, None]
-    identity = np.eye(n, dtype=complex)
-    grown = identity
-    for m in range(18, 0, -1):
-        grown = identity + small @ grown / m
-    for k in range(int(np.max(halvings, initial=0))):
-        grown = np.where((k < halvings)[..., None, None], grown @ grown, grown)
-    return [(grown[..., k, n - 1] * size ** (k - n + 1.0))[()] for k in range(n)]
-
-
-def characteristic_roots(coefficients: list[Values]) -> list[Values]:
-    """Return the roots of x^n + c_(n-1) x^(n-1) + ... + c_0, and the least distance of two.
-
-    Eigenvalues of the companion matrix, then steps of Aberth and Ehrlich, which give
-    small roots besides large ones their digits.
-    """
-    n = len(coefficients)
-    shape = np.broadcast_shapes(*(np.shape(c) for c in coefficients))
-    rows = [np.broadcast_to(np.asarray(c, dtype=complex), shape) for c in coefficients]
-    sizes = [np.abs(c) ** (1.0 / (n - i)) for i, c in enumerate(rows)]
-    size = np.maximum(np.max(sizes, axis=0), 1e-30)
-    is_finite = np.isfinite(size)
-    scaled = [np.nan_to_num(c / size ** (n - i)) * is_finite for i, c in enumerate(rows)]
-    companion = np.zeros((*shape, n, n), dtype=complex)
-    for i in range(n - 1):
-        companion[..., i, i + 1] = 1.0
-    for i, c in enumerate(scaled):
-        companion[..., n - 1, i] = -c
-    x = np.linalg.eigvals(companion)
-    differences = x[..., :, None] - x[..., None, :]
-    for _ in range(8 if n > 1 else 0):
-        value, slope = np.ones_like(x), np.zeros_like(x)
-        for c in reversed(scaled):
-            slope = slope * x + value
-            value = value * x + c[..., None]
-        away = np.sum(np.where(differences == 0.0, 0.0, 1.0 / differences), axis=-1)
-        step = value / (slope - value * away)
-        x = x - np.where(np.isfinite(step) & (np.abs(step) < 1.0), step, 0.0)
-        differences = x[..., :, None] - x[..., None, :]
-    apart = np.abs(differences) + np.where(np.eye(n, dtype=bool), np.inf, 0.0)
-    found = np.where(is_finite, size, np.nan)
-    least = np.min(apart, axis=(-2, -1)) * found
-    return [*((x[..., i] * found)[()] for i in range(n)), least[()]]
-
-
-def modal_value(modes: list[Values], coefficients: list[Values], frames: Values) -> list[Values]:
-    """Return a sum of exponentials over the largest one, and the logarithm of that."""
-    found = modal_amplitudes(modes, coefficients, frames)
-    return scaled_sum([amplitude for amplitude, _ in found], [exponent for _, exponent in found])
 
 
 def scaled_sum(amplitudes: list[Values], exponents: list[Values]) -> list[Values]:

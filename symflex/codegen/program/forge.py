@@ -196,21 +196,6 @@ class Forge:
         row = self.label(self._make(tree.Solutions, tuple(coefficients), terms), "solutions")
         return tuple(self.item(row, k) for k in range(len(coefficients)))
 
-    def roots(self, coefficients: Sequence[int]) -> int:
-        """Return the list of a polynomial's roots; see :class:`nodes.Roots`."""
-        return self.label(self._make(tree.Roots, tuple(coefficients)), "x")
-
-    def mode_values(self, roots: int, length: int) -> int:
-        """Return what a sum needs of roots at a length; see :class:`nodes.ModeValues`."""
-        return self.label(self._make(tree.ModeValues, roots, length), "modes")
-
-    def modal_value(
-        self, modes: Sequence[int], coefficients: Sequence[int], frames: tree.Frames
-    ) -> tuple[int, int]:
-        """Return a sum over its largest exponential, and the logarithm of that."""
-        row = self.label(self._make(tree.ModalValue, tuple(modes), tuple(coefficients), frames), "total")
-        return self.item(row, 0), self.item(row, 1)
-
     def solve(self, entries: Sequence[int], network: Table, output: int, source: int) -> int:
         """Return what an output of a network is per unit of an input; see :class:`nodes.Solve`."""
         return self._make(tree.Solve, tuple(entries), network, output, source)

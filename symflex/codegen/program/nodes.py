@@ -23,12 +23,6 @@ if TYPE_CHECKING:
 
     from symflex.equations.line_network import Table
 
-Frames = tuple[
-    tuple[tuple[int, ...], tuple[tuple[tuple[int, ...], int], ...], tuple[tuple[tuple[int, ...], int], ...]],
-    ...,
-]
-"""Slots, terms and keys of the frames of a :class:`symflex.algebra.modal_sum.ModalSum`."""
-
 
 @dataclass(frozen=True, slots=True)
 class CodeNode:
@@ -286,37 +280,7 @@ class Solutions(CodeNode):
     OPERANDS: ClassVar = ("coefficients",)
 
     coefficients: tuple[CodeNode, ...]  # ``c_0, ..., c_(n-1)``
-    terms: int  # length of their Taylor series; 0 asks for a method that serves coefficients of any size
-
-
-@dataclass(frozen=True, slots=True)
-class Roots(CodeNode):
-    """The roots of ``x^n + c_(n-1) x^(n-1) + ... + c_0``, and last the least distance of two, as a list."""
-
-    OPERANDS: ClassVar = ("coefficients",)
-
-    coefficients: tuple[CodeNode, ...]  # ``c_0, ..., c_(n-1)``
-
-
-@dataclass(frozen=True, slots=True)
-class ModeValues(CodeNode):
-    """What a sum needs of all roots at one length; see :func:`symflex.algebra.modal_sum.mode_values`."""
-
-    OPERANDS: ClassVar = ("roots", "length")
-
-    roots: CodeNode  # a list as :class:`Roots` gives
-    length: CodeNode  # what they are multiplied by
-
-
-@dataclass(frozen=True, slots=True)
-class ModalValue(CodeNode):
-    """A sum of exponentials, over the largest one, and the logarithm of that, as a list."""
-
-    OPERANDS: ClassVar = ("modes", "coefficients")
-
-    modes: tuple[CodeNode, ...]  # one per mode
-    coefficients: tuple[CodeNode, ...]  # as in :class:`symflex.algebra.modal_sum.ModalSum`
-    frames: Frames  # slots, terms and keys of every frame
+    terms: int  # length of their Taylor series
 
 
 @dataclass(frozen=True, slots=True)
@@ -478,7 +442,6 @@ class Piecewise:
     # None for a function of complex s. For a function of angular frequency in real arithmetic, which the leaf
     # :class:`Laplace` then stands for: its value times ``1j**turn`` is the transfer function.
     turn: int | None = None
-    solves: bool = False  # true when fundamental functions of any size are computed from matrices
 
     @property
     def is_real(self) -> bool:

@@ -52,10 +52,6 @@ class Site:
     grows: Mapping[int, bool] = field(default_factory=dict)
     # Per family and length, the pairs ``(a, b)`` that occur.
     exponents: Mapping[tuple[int, int], Sequence[tuple[int, int]]] = field(default_factory=dict)
-    # Dispersions whose wavenumbers are even in s and here computed from ``-s``.
-    mirrored: Sequence[Dispersion] = ()
-    # True when ``mirrored`` tells the sign of roots of squares; otherwise these are computed as such.
-    is_signed: bool = True
     # Given for real arithmetic: the leaf of s is then the angular frequency, wavenumbers are magnitudes.
     axis: RealAxis | None = None
     # What lengths and coefficients of dispersion relations became, which every term asks for.
@@ -65,9 +61,7 @@ class Site:
     def __post_init__(self) -> None:
         self.ring = self.tf.ratio.ring
         self.waves = {w: d for d in self.tf.kernels.dispersions for w in d.wavenumbers}
-        self.kernels = {
-            k.generator: k for k in self.tf.kernels.kernels if k.function in ("fundamental", "exp")
-        }
+        self.kernels = {k.generator: k for k in self.tf.kernels.kernels if k.function == "exp"}
         self._generators = _KernelGenerators(self.forge, self.tf, False, site=self)
         self._varying = {0, *(self.ring.index[n] for n in (*self.waves, *self.kernels))}
 
@@ -115,15 +109,9 @@ class Site:
             return first if name == law.wavenumbers[0] else second
         c0 = self.coefficient(law)
         negative = self.axis.sign(law) if self.axis is not None else None
-        if (parts := self.plain_parts(law)) is not None:
+        if self.axis is not None and (parts := self.plain_parts(law)) is not None:
             root = forge.multiply(parts)
-            if self.axis is None and law in self.mirrored:
-                root = forge.negate(root)
-            return (
-                self.forge.label(root, "gamma")
-                if law.kind == "wave"
-                else self.forge.label(self._root(root), "mu")
-            )
+            return forge.label(root, "gamma") if law.kind == "wave" else forge.label(self._root(root), "mu")
         if law.kind == "wave":
             square = c0 if negative is False else forge.negate(c0)
             return self.forge.label(self._root(square), "gamma")
@@ -134,9 +122,9 @@ class Site:
         """Return the root of ``-c_0`` (waves) or ``c_0/4`` (bending) where that is proportional to ``s^2``.
 
         A factor free of s, and s. In real arithmetic it is the root of the magnitude, without the factor 1/4
-        for a negative ``c_0``, and the magnitude of s.
+        for a negative ``c_0``; frequencies are positive there.
         """
-        if law.kind not in ("wave", "bending") or not (self.is_signed or self.axis is not None):
+        if law.kind not in ("wave", "bending"):
             return None
         c0, s = law.characteristic[0], self.ring.context.gen(0)
         power = c0.exponent_of(s)
@@ -151,7 +139,7 @@ class Site:
         square = rest if negative else -rest
         if law.kind == "bending" and not negative:
             square = square / 4
-        return self._root(self.value(square)), self.forge.apply("abs", self.forge.s)
+        return self._root(self.value(square)), self.forge.s
 
     def _pair(self, law: Dispersion) -> tuple[int, int]:
         """Return the square roots of the roots of ``x^2 + c_2 x + c_0``, without cancellation."""
@@ -227,19 +215,10 @@ class Site:
         quotient = forge.divide(forge.multiply([forge.constant(4), c0]), c2)
         return forge.multiply([forge.power(self.length(length), 2), forge.add([c2, forge.negate(quotient)])])
 
-    def quotient(self, dispersion: Dispersion) -> int:
-        """Return ``c_0/c_2`` of a pair: at least half the square of the smaller wavenumber in size."""
-        return self.forge.divide(self.coefficient(dispersion), self.coefficient(dispersion, 2))
-
-    def fundamental(self, kernel: Kernel) -> int:
-        """Return the derivative of a fundamental function at its length, or a decay."""
-        forge, law = self.forge, kernel.dispersion
-        x, n = self.length(kernel.length), law.order
-        if kernel.function == "exp":
-            return forge.apply("complex_exp", forge.negate(forge.multiply([x, self.value(law.shift)])))
-        scaled = [forge.multiply([forge.power(x, n - i), self.coefficient(law, i)]) for i in range(n)]
-        values = forge.solutions(scaled, 0)
-        return forge.multiply([forge.power(x, n - 1 - kernel.order), values[kernel.order]])
+    def decay(self, kernel: Kernel) -> int:
+        """Return a decay."""
+        exponent = [self.length(kernel.length), self.value(kernel.dispersion.shift)]
+        return self.forge.apply("complex_exp", self.forge.negate(self.forge.multiply(exponent)))
 
     # ------------------------------------------------------------------------------------ local solutions
 
@@ -260,15 +239,6 @@ class Site:
             ]
             coefficients.append(forge.multiply([forge.power(x, basis.order - i), forge.add(terms)]))
         return forge.multiply([forge.power(x, k), forge.solutions(coefficients, series_length(size))[k]])
-
-    def local_of_smaller(
-        self, basis: LocalBasis, dispersion: Dispersion, length: Factored, k: int, size: float
-    ) -> int:
-        """Return what :meth:`local` does for the smaller wavenumber of a pair, on the basis of a wave."""
-        forge, x = self.forge, self.length(length)
-        wavenumber = self._generators.generator(dispersion.wavenumbers[1])
-        argument = forge.multiply([forge.power(x, 2), wavenumber, wavenumber])
-        return self._series(basis, argument, x, k, size)
 
     def _series(self, basis: LocalBasis, argument: int, x: int, k: int, size: float) -> int:
         forge = self.forge
@@ -441,7 +411,7 @@ def _common_step(values: set[Fraction]) -> Fraction:
 
 @dataclass
 class _KernelGenerators(Generators):
-    """Generators with wavenumbers and fundamental functions among them."""
+    """Generators with wavenumbers and decays among them."""
 
     site: Site | None = None
 
@@ -454,5 +424,5 @@ class _KernelGenerators(Generators):
         if site is not None and name in site.waves:
             return site.wavenumber(name), 1
         if site is not None and name in site.kernels:
-            return site.fundamental(site.kernels[name]), 1
+            return site.decay(site.kernels[name]), 1
         return super()._make(name)

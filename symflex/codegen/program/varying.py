@@ -89,9 +89,7 @@ class _Workshop:
         den = forge.multiply([self.site.value(plain.denominator()), den])
         parameters = tuple(p.name for p in self.tf.parameters)
         nothing = straight(forge, [forge.constant(1)])
-        return Piecewise(
-            parameters, nothing, (), (0,), (CodePiece(straight(forge, [num, den])),), solves=True
-        )
+        return Piecewise(parameters, nothing, (), (0,), (CodePiece(straight(forge, [num, den])),))
 
     def _follow(self, factors: Sequence[fmpz_mpoly]) -> None:
         """Make all minors that are in use."""

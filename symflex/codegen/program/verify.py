@@ -6,7 +6,7 @@ Output: a :class:`Verification`, a bound that holds at every sample.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import chain
 from math import inf, isfinite, tau
@@ -20,16 +20,15 @@ from symflex.codegen.program.band import BandForm, band_form
 from symflex.codegen.program.build import available_forms, build_nested, build_program
 from symflex.codegen.program.distributed import Pieces, series_uses
 from symflex.codegen.program.evaluate import evaluate, nearest_double
-from symflex.codegen.program.positive_frequencies import for_positive, in_half_angles
 from symflex.errors import BudgetError, Diagnostic, ModelError
 from symflex.transfer import BoundNested, NestedTransferFunction, bind, bind_nested
 from symflex.transfer.bind import EnclosedTransferFunction
 from symflex.transfer.enclosed_network import EnclosedNetwork
 from symflex.transfer.nested_form import EnclosedNested
-from symflex.transfer.of_model import derive_for_roots
+from symflex.transfer.of_model import derive_for_roots, derive_nested
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from numpy.typing import NDArray
 
@@ -82,18 +81,6 @@ LEAST = 0.05
 NAMED = 6
 """Parameters without value that are named."""
 
-LIGHT = 200
-"""Terms of a function with numeric exponents from which fewer frequencies are looked at: each is costly."""
-
-LOWEST, HIGHEST = Fraction("1e-10"), Fraction("1.6e11")
-"""Frequencies [Hz] between which a function with numeric exponents is looked at, 1e-9 to 1e12 rad/s."""
-
-ASIDE_SAMPLES = 30
-"""Frequencies below the band, and above it, at which such a function is measured."""
-
-PROMISED = 1e-12
-"""What such a function promises up to the frequency named."""
-
 BESIDE_ROOTS = (0.0, 1e-9, 1e-4)
 """Relative distances from a root's frequency at which a band form is measured: it has all digits of each."""
 
@@ -111,16 +98,6 @@ TINY = 1e-307
 
 
 @dataclass(frozen=True, slots=True)
-class Reach:
-    """How far a function is accurate that is not so everywhere."""
-
-    # Up to here [Hz] every sample was measured and accurate to 1e-12; ``None`` when the first was not.
-    highest: Fraction | None
-    error: float  # the worst one up to there
-    lowest: Fraction | None = None  # down to here [Hz] the same holds; the band's lower end when ``None``
-
-
-@dataclass(frozen=True, slots=True)
 class Verification:
     """How well a program agrees with its transfer function."""
 
@@ -134,8 +111,6 @@ class Verification:
     band: tuple[Fraction, Fraction]  # [Hz]
     samples: int  # number of frequencies
     reason: str = ""  # why it was not measured; empty when it was
-    # Only of functions whose exponents are found numerically; these may not be accurate everywhere.
-    reach: Reach | None = None
 
     def text(self, digits: int = 2) -> str:
         """Return the sentence that stands in the docstring.
@@ -147,31 +122,11 @@ class Verification:
         """
         if self.error is None:
             return f"not verified: {self.reason}"
-        if self.reach is not None:
-            return self._text_of_reach(self.reach, digits)
         error = _error_text(self.error, digits)
         low, high = (frequency_text(f) for f in self.band)
         if self.error == inf:
             return f"not accurate: some values overflow over {low} ... {high}"
         return f"verified: worst relative error {error} over {low} ... {high} against ball arithmetic"
-
-    def _text_of_reach(self, reach: Reach, digits: int) -> str:
-        low, high = (frequency_text(f) for f in self.band)
-        is_lost = self.error is None or self.error == inf
-        worst = (
-            "some values overflow" if is_lost else f"errors up to {_error_text(self.error or 0.0, digits)}"
-        )
-        if reach.highest is None:
-            return f"not accurate over {low} ... {high}, where rounding costs digits: {worst}"
-        start = low if reach.lowest is None else frequency_text(reach.lowest)
-        end = frequency_text(reach.highest)
-        error = _error_text(reach.error, digits)
-        inner = f"verified: worst relative error {error} over {start} ... {end} against ball arithmetic"
-        if reach.highest >= HIGHEST:
-            return inner
-        if reach.highest >= self.band[1]:
-            return f"{inner}; above, rounding costs digits"
-        return f"{inner}; above, up to {high}, rounding costs digits: {worst}"
 
 
 def _error_text(error: float, digits: int) -> str:
@@ -193,11 +148,16 @@ def frequency_text(hertz: Fraction) -> str:
 
 
 def choose_programs(
-    tf: AnyTransferFunction, band_hz: tuple[Fraction, Fraction] | None = None, samples: int = SAMPLES
+    tf: AnyTransferFunction,
+    band_hz: tuple[Fraction, Fraction] | None = None,
+    samples: int = SAMPLES,
+    *,
+    has_real: bool = True,
 ) -> tuple[tuple[Piecewise, Verification], tuple[Piecewise, Verification] | None]:
     """Return the program of the form with the smallest measured error, and the measurement; twice.
 
-    The second one computes the frequency response in real arithmetic, for lossless distributed systems only.
+    The second one is for the frequency response, of lossless distributed systems only: where the language
+    ``has_real`` arithmetic for it, it computes that of the angular frequency, else it is the first one.
     Without values for all parameters nothing can be measured; recurrences are taken unless another form is
     much shorter.
 
@@ -205,8 +165,21 @@ def choose_programs(
     spaced evenly on a logarithmic scale, and more are taken near poles and zeros. SF503 when every program
     would be too large, SF233 when a number does not fit in double precision.
     """
-    gauge = _gauge(tf, band_hz, samples)
-    return _choose(gauge), _choose_real(gauge)
+    gauge = _gauge(_solved(tf), band_hz, samples)
+    own = _choose(gauge)
+    if has_real:
+        return own, _choose_real(gauge)
+    return own, own if _is_lossless(gauge) else None
+
+
+def _solved(tf: AnyTransferFunction) -> AnyTransferFunction:
+    """Return a function in nested form where exponents have no formula: its members' equations are solved."""
+    if isinstance(tf, NestedTransferFunction) or not tf.is_nameless:
+        return tf
+    if any(law.matrix for law in tf.kernels.dispersions):
+        return tf
+    (solved,) = derive_nested(tf.model, [(tf.output.name, tf.input.name)])
+    return solved
 
 
 def choose_band(
@@ -273,11 +246,11 @@ class _Gauge:
     references: References | None
     reason: str = ""
 
-    def verified(self, form: str, error: float | None, reach: Reach | None = None) -> Verification:
+    def verified(self, form: str, error: float | None) -> Verification:
         samples = 0 if self.references is None else len(self.references.s)
         if error is not None and not samples and not self.tf.is_zero:
             return Verification(self.tf.name, form, None, self.band, 0, "no value could be enclosed")
-        return Verification(self.tf.name, form, error, self.band, samples, self.reason, reach)
+        return Verification(self.tf.name, form, error, self.band, samples, self.reason)
 
 
 def _gauge(tf: AnyTransferFunction, band_hz: tuple[Fraction, Fraction] | None, samples: int) -> _Gauge:
@@ -329,25 +302,30 @@ def _choose(gauge: _Gauge) -> tuple[Piecewise, Verification]:
     return program, gauge.verified(form, error)
 
 
-def _choose_real(gauge: _Gauge) -> tuple[Piecewise, Verification] | None:
-    """Return the program of the frequency response, in half-angle tangents where that serves as well."""
+def _is_lossless(gauge: _Gauge) -> bool:
+    """Tell whether a function is real or imaginary on the axis, as a program in real arithmetic needs it."""
+    return next(_real_programs(gauge), None) is not None
+
+
+def _real_programs(gauge: _Gauge) -> Iterator[Piecewise]:
+    """Yield the programs of the frequency response in real arithmetic, none where one is complex."""
     pieces, references = gauge.pieces, gauge.references
     if pieces is None or (references is not None and references.are_complex):
-        return None
+        return
     usual, *others = series_uses(pieces.tf, is_measured=references is not None)
     first = pieces.of_frequency(usual)
+    if first is not None:
+        yield first
+        yield from (made for use in others if (made := pieces.of_frequency(use)) is not None)
+
+
+def _choose_real(gauge: _Gauge) -> tuple[Piecewise, Verification] | None:
+    """Return the program of the frequency response in real arithmetic, None where there is none."""
+    programs = _real_programs(gauge)
+    first = next(programs, None)
     if first is None:
         return None
-    rest = (made for use in others if (made := pieces.of_frequency(use)) is not None)
-    chosen, verification = _choose_pieces(chain([first], rest), gauge, "real")
-    program = for_positive(chosen)
-    shorter = in_half_angles(program)
-    if shorter is None or references is None or verification.error is None:
-        return program, verification
-    error = references.worst_error(shorter)
-    if error > SIMILAR * verification.error or not keeps_its_value(shorter, references.bound):
-        return program, verification
-    return shorter, replace(verification, error=error)
+    return _choose_pieces(chain([first], programs), gauge, "real")
 
 
 def _choose_pieces(programs: Iterator[Piecewise], gauge: _Gauge, form: str) -> tuple[Piecewise, Verification]:
@@ -358,8 +336,6 @@ def _choose_pieces(programs: Iterator[Piecewise], gauge: _Gauge, form: str) -> t
     if first.minors:
         # There are no others, and none is accurate at all frequencies.
         return first, gauge.verified(form, references.worst_error(first))
-    if first.solves:
-        return _choose_general(chain([first], programs), gauge, references)
     candidates: list[tuple[bool, float, Piecewise]] = []
     for program in chain([first], programs):
         error, keeps = references.worst_error(program), keeps_its_value(program, references.bound)
@@ -368,23 +344,6 @@ def _choose_pieces(programs: Iterator[Piecewise], gauge: _Gauge, form: str) -> t
             break
     _, error, program = min(candidates, key=lambda c: c[:2])
     return program, gauge.verified(form, error)
-
-
-def _choose_general(
-    programs: Iterable[Piecewise], gauge: _Gauge, references: References
-) -> tuple[Piecewise, Verification]:
-    """Return the program whose accuracy reaches furthest; it ends somewhere, whatever the series do."""
-    band, aside = gauge.band, _Aside(references.bound, gauge.band)
-    found: list[tuple[tuple[float, ...], Piecewise, Reach]] = []
-    for program in programs:
-        measured = aside.extended(program, references.reach(program, band), band)
-        ends = [0.0 if x is None else float(x) for x in (measured.lowest, measured.highest)]
-        lacks = ends[0] > band[0] or ends[1] < band[1]
-        found.append(((lacks, -ends[1], ends[0], measured.error), program, measured))
-        if measured.highest is not None and measured.highest >= band[1] and measured.error < ACCURATE:
-            break
-    _, program, measured = min(found, key=lambda f: f[0])
-    return program, gauge.verified("pieces", references.worst_error(program), measured)
 
 
 def _program(tf: TransferFunction, form: str) -> Piecewise | None:
@@ -492,9 +451,7 @@ def _part(bound: BoundTransferFunction | BoundNested) -> float:
         return LEAST
     if isinstance(bound, BoundNested):
         return max(LEAST, min(1.0, LIGHT_NESTED / max(bound.source.size, 1)))
-    if not bound.source.is_nameless:
-        return 1.0
-    return min(1.0, LIGHT / sum(len(f) for f, _ in bound.ratio.factors))
+    return 1.0
 
 
 def _roots(coefficients: Sequence[acb], *, is_scaled: bool = False) -> NDArray[np.complex128]:
@@ -564,7 +521,6 @@ class References:
     def __init__(self, values: EnclosedValues, points: NDArray[Any]) -> None:
         self.bound = values.bound
         found = [(s, _reference(values, complex(s))) for s in points]
-        self._lost = [s.imag for s, reference in found if reference is None]
         self._references = [reference for _, reference in found if reference is not None]
         self.s = np.array([s for s, reference in found if reference is not None], dtype=complex)
 
@@ -575,20 +531,13 @@ class References:
         band_hz: tuple[Fraction, Fraction],
         samples: int = SAMPLES,
         *,
-        is_plain: bool = False,
         pieces: Pieces | None = None,
     ) -> References:
-        """Return those at so many frequencies over a band [Hz], besides those around poles and zeros.
-
-        There are none of the latter where it ``is_plain``.
-        """
+        """Return those at so many frequencies over a band [Hz], besides those around poles and zeros."""
         if not isinstance(bound, BoundNested):
             bound.expect(0, tau * float(band_hz[1]))
-        low, high = (float(f) for f in band_hz)
         count = max(1, int(samples * _part(bound)))
-        hertz = (
-            np.geomspace(low, high, count) if is_plain else sample_frequencies(bound, band_hz, count, pieces)
-        )
+        hertz = sample_frequencies(bound, band_hz, count, pieces)
         return cls(EnclosedValues(bound), 1j * (tau * hertz))
 
     @property
@@ -605,29 +554,6 @@ class References:
         pairs = zip(self.s, self._references, values, strict=True)
         return max((r.error_of(complex(v)) for s, r, v in pairs if abs(s) <= end), default=0.0)
 
-    def reach(self, program: Piecewise, band_hz: tuple[Fraction, Fraction]) -> Reach:
-        """Return up to which frequency every sample was measured and is accurate."""
-        worst, end = 0.0, min(self._lost, default=inf)
-        highest: complex | None = None
-        for s, error in zip(self.s, self._errors(program), strict=True):
-            if error > PROMISED or s.imag > end:
-                break
-            highest, worst = s, max(worst, error)
-        else:
-            if not self._lost:
-                return Reach(band_hz[1], worst)
-        hertz = None if highest is None else Fraction(f"{highest.imag / tau:.3g}")
-        return Reach(hertz, worst)
-
-    def down(self, program: Piecewise, start: Fraction) -> tuple[Fraction, float]:
-        """Return down to which frequency [Hz] every sample is accurate, and the worst error of these."""
-        lowest, worst, end = start, 0.0, max(self._lost, default=0.0)
-        for s, error in reversed(list(zip(self.s, self._errors(program), strict=True))):
-            if error > PROMISED or s.imag < end:
-                break
-            lowest, worst = Fraction(f"{s.imag / tau:.3g}"), max(worst, error)
-        return lowest, worst
-
     def _errors(self, program: Piecewise) -> list[float]:
         values = evaluate(program, _arguments(program, self.s), doubles(self.bound))
         return [r.error_of(complex(v)) for r, v in zip(self._references, values, strict=True)]
@@ -643,33 +569,6 @@ def _reference(values: EnclosedValues, s: complex) -> _Reference | None:
     with ctx.workprec(found.bits):
         size = found.value.abs_lower() * (1 + (acb(s.real, s.imag) * found.slope).abs_lower())
         return _Reference(found.value, found.bits, size)
-
-
-class _Aside:
-    """What a program with numeric exponents is worth below a band, and above it."""
-
-    def __init__(
-        self, bound: BoundTransferFunction | BoundNested, band_hz: tuple[Fraction, Fraction]
-    ) -> None:
-        low, high = band_hz
-        self._below = (
-            References.over(bound, (LOWEST, low), ASIDE_SAMPLES, is_plain=True) if low > LOWEST else None
-        )
-        self._above = (
-            References.over(bound, (high, HIGHEST), ASIDE_SAMPLES, is_plain=True) if high < HIGHEST else None
-        )
-
-    def extended(self, program: Piecewise, inner: Reach, band_hz: tuple[Fraction, Fraction]) -> Reach:
-        """Return how far a program is accurate, from its reach within the band."""
-        lowest, highest, error = band_hz[0], inner.highest, inner.error
-        if self._below is not None:
-            lowest, own = self._below.down(program, band_hz[0])
-            error = max(error, own)
-        if self._above is not None and inner.highest == band_hz[1]:
-            outer = self._above.reach(program, (band_hz[1], HIGHEST))
-            if outer.highest is not None and outer.highest > band_hz[1]:
-                highest, error = outer.highest, max(error, outer.error)
-        return Reach(highest, error, lowest)
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,15 +15,12 @@ from functools import cache, partial
 from typing import TYPE_CHECKING
 
 from symflex.algebra import line_networks, varying_minors
-from symflex.algebra.modal_sum import modal_amplitudes, mode_values
 from symflex.codegen.export import Export, Language, called_parts, parts_of
 from symflex.codegen.module_text import (
-    COST,
     FOLLOWED,
     default_value,
     described,
     formula_lines,
-    headline,
     identifiers,
     inert,
     origin_lines,
@@ -45,10 +42,6 @@ if TYPE_CHECKING:
 COPIED = (
     evaluate.complex_exp,
     evaluate.series_solutions,
-    evaluate.propagated,
-    evaluate.characteristic_roots,
-    mode_values,
-    modal_amplitudes,
     varying_minors.fundamental_minors,
     varying_minors.minors_by_octaves,
     varying_minors.polynomials_along,
@@ -69,7 +62,6 @@ COPIED = (
     line_networks.solved_value,
     line_networks.eliminated,
     line_networks.substituted,
-    evaluate.modal_value,
     evaluate.scaled_sum,
     evaluate.mean_over_circle,
 )
@@ -225,18 +217,22 @@ def python_module(contents: Contents, dialect: Dialect) -> Export:
     names = identifiers({p.name: p.name for p in model.parameters}, dialect.reserved)
     functions, responses = public_names(members, dialect.reserved)
     values = {p.name: double_of(p.value) for p in model.parameters if p.value is not None}
-    blocks, code = [parameter_table(model, names)], ""
+    blocks, code, solving = [parameter_table(model, names)], "", None
     for member in members:
-        public = (responses if member.program.is_real else functions)[member.tf.name]
+        public = (responses if member.is_response else functions)[member.tf.name]
         made = TracedText if dialect.is_traced else BlockText
-        private = made(member.program, public, names, values, dialect)
-        function = _Function(member, private, member.verification.text(contents.digits))
-        own = "\n".join(private.functions())
-        blocks.append(f"{function.head()}\n\n\n{own}\n")
+        owner = public if member.program.is_real else functions[member.tf.name]
+        private = made(member.program, owner, names, values, dialect)
+        function = _Function(member, public, private, member.verification.text(contents.digits))
+        # A response in complex arithmetic calls what the function of s calls.
+        own = "\n".join(private.functions() if owner == public else [])
+        blocks.append("\n\n\n".join(filter(None, (function.head(), own))) + "\n")
         code += "\n".join([*function.body(), own, ""])
-    if isinstance(private, BlockText) and (solve := private.given.network) is not None:
+        if isinstance(private, BlockText) and private.given.network is not None:
+            solving = private.network(private.given.network)
+    if solving is not None:
         # Functions of one model solve the same network.
-        blocks.append("\n".join([*private.network(solve), ""]))
+        blocks.append("\n".join([*solving, ""]))
         code += blocks[-1]
     blocks += dialect.support(code)
     blocks.append(function_table("TRANSFER_FUNCTIONS", functions))
@@ -255,14 +251,19 @@ class _Function:
     """Prints what a user calls for one transfer function."""
 
     member: Member
+    name: str
     private: PrivateText
     sentence: str
+
+    @property
+    def variable(self) -> str:
+        return self.private.omega if self.member.is_response else "s"
 
     def head(self) -> str:
         """Return the function."""
         dialect, names = self.private.dialect, self.private.parameters
         parameters = self.member.parameters
-        lines = [f"def {self.private.name}(", f"    {self.private.variable}: {dialect.argument},"]
+        lines = [f"def {self.name}(", f"    {self.variable}: {dialect.argument},"]
         lines += ["    *,"] if parameters or dialect.is_argument else []
         for parameter in parameters:
             value = default_value(parameter)
@@ -275,10 +276,13 @@ class _Function:
     def body(self) -> list[str]:
         """Return its statements."""
         private = self.private
-        given = [private.variable, *(private.parameters[p.name] for p in self.member.parameters)]
-        converter = "_real_numbers" if self.member.program.is_real else "_numbers"
+        given = [self.variable, *(private.parameters[p.name] for p in self.member.parameters)]
+        converter = "_real_numbers" if self.member.is_response else "_numbers"
         made = f"{converter}({private.leading}{', '.join(given)})"
-        return [*statement(f"{private.leading}arguments", made, "    "), *private.call()]
+        lines = statement(f"{private.leading}arguments", made, "    ")
+        if self.member.is_response and not self.member.program.is_real:
+            lines.append("    arguments = [1j * arguments[0], *arguments[1:]]")
+        return [*lines, *private.call()]
 
     def _docstring(self) -> str:
         dialect, program, tf, names = (
@@ -287,11 +291,11 @@ class _Function:
             self.member.tf,
             self.private.parameters,
         )
-        array, is_real = dialect.array, program.is_real
-        lines = [headline(tf, is_real=is_real), ""]
+        array, is_response = dialect.array, self.member.is_response
+        lines = [self.member.headline, ""]
         lines += [f"    {line}" if line else "" for line in formula_lines(self.member.formula, WIDTH - 4)]
-        kind, what = ("float", "Angular frequency") if is_real else ("complex", "Laplace variable")
-        lines += ["", "    Parameters", "    ----------", f"    {self.private.variable} : {array} of {kind}"]
+        kind, what = ("float", "Angular frequency") if is_response else ("complex", "Laplace variable")
+        lines += ["", "    Parameters", "    ----------", f"    {self.variable} : {array} of {kind}"]
         lines.append(f"        {what} [rad/s]; it and all parameters are broadcast together.")
         for parameter in self.member.parameters:
             name = names[parameter.name]
@@ -306,8 +310,6 @@ class _Function:
         notes = [self.sentence, *([MEASURED] if dialect.is_traced else [])]
         if program.minors:
             notes.append(FOLLOWED)
-        elif program.solves:
-            notes.append(COST)
         for note in notes:
             lines += wrapped(inert(note), WIDTH, "    ")
         return docstring(lines, "    ")
@@ -341,9 +343,9 @@ def public_names(
     members: Sequence[Member], reserved: Collection[str]
 ) -> tuple[Mapping[str, str], Mapping[str, str]]:
     """Return the names of the functions of s, and of the responses, by ``OUT/IN``."""
-    of_s = {m.tf.name: m.wanted for m in members if not m.program.is_real}
+    of_s = {m.tf.name: m.wanted for m in members if not m.is_response}
     functions = identifiers(of_s, reserved)
-    on_axis = {m.tf.name: f"{functions[m.tf.name]}_at" for m in members if m.program.is_real}
+    on_axis = {m.tf.name: f"{functions[m.tf.name]}_at" for m in members if m.is_response}
     return functions, identifiers(on_axis, {*reserved, *functions.values()})
 
 
@@ -392,6 +394,7 @@ NUMPY = Language(
     partial(python_module, dialect=NUMPY_DIALECT),
     is_open=True,
     is_complex=True,
+    has_real=True,
 )
 ARRAY_API = Language(
     ".py",

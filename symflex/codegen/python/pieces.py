@@ -43,7 +43,7 @@ class PrivateText(ABC):
     """
 
     given: tree.Piecewise  # what they compute
-    name: str  # identifier of the public function
+    name: str  # identifier of the public function whose programs these are
     parameters: Mapping[str, str]  # identifiers of the parameters
     values: Mapping[str, float]  # values of the parameters that have one
     dialect: Dialect  # of Python
@@ -51,8 +51,11 @@ class PrivateText(ABC):
     @property
     def variable(self) -> str:
         """The first argument's name, ``s`` or ``omega``."""
-        if not self.given.is_real:
-            return "s"
+        return self.omega if self.given.is_real else "s"
+
+    @property
+    def omega(self) -> str:
+        """What an angular frequency is called."""
         return "omega_" if "omega" in self.parameters.values() else "omega"
 
     @property
@@ -125,9 +128,9 @@ class BlockText(PrivateText):
         if program.is_lumped:
             text = f"_in_blocks(_value_of_{name}, arguments)"
         elif program.is_real:
-            parts = ", ".join(f"_{part}_of_{name}" for part in ("limits", "sizes", "pieces"))
-            text = f"_in_real_pieces({parts}, arguments, {'1j' if program.turn else '1'})"
-        elif program.solves:
+            unit = "1j" if program.turn else "1"
+            text = f"_in_real_pieces(_tests_of_{name}, _pieces_of_{name}, arguments, {unit})"
+        elif program.minors:
             text = f"_in_array(_tests_of_{name}, _pieces_of_{name}, arguments)"
         else:
             text = f"_in_pieces(_tests_of_{name}, _pieces_of_{name}, arguments, 1)"
@@ -142,7 +145,7 @@ class BlockText(PrivateText):
             return [f"def _value_of_{self.name}(*arguments):", *statement("return", value, "    ")]
         if program.is_lumped:
             return self._lumped(program)
-        lines = [*(self._real_tests(program) if program.is_real else self._tests(program)), "", ""]
+        lines = [*self._tests(program), "", ""]
         lines += self._along()
         for i, piece in enumerate(program.code):
             lines += [*self._piece(i, piece), "", ""]
@@ -233,49 +236,16 @@ class BlockText(PrivateText):
         head = self._head(f"_tests_of_{self.name}")
         return [*head, *lines, *statement("return", f"[{', '.join(tests)}]", "    ")]
 
-    def _real_tests(self, program: tree.Piecewise) -> list[str]:
-        """Return two functions: of the limits, made once per call, and of the sizes, made per block."""
-        _, printer = self._body(program.tests, self.variable)
-        limits: list[str] = []
-        sizes: list[tree.CodeNode] = []
-        for condition in program.conditions:
-            if not condition.limit:
-                limits.append("0.0")
-                sizes.append(tree.Multiply((condition.scale, condition.quantity)))
-                continue
-            scale = printer.print(condition.scale)
-            limits.append(repr(condition.limit) + (f" / np.abs({scale})" if scale != "1.0" else ""))
-            is_positive = isinstance(condition.quantity, tree.Laplace)
-            sizes.append(condition.quantity if is_positive else tree.Apply("abs", condition.quantity))
-        fixed = program.tests.needed([c.scale for c in program.conditions if c.limit])
-        lines: list[list[str]] = []
-        for code in (fixed, program.tests.needed(sizes)):
-            own = (*code.constants, *code.assignments)
-            lines.append([line for a in own for line in printer.assignment(a.name, a.value, "    ")])
-        return [
-            *self._head(f"_limits_of_{self.name}", self.arguments[1:]),
-            *lines[0],
-            *statement("return", f"[{', '.join(limits)}]", "    "),
-            "",
-            "",
-            *self._head(f"_sizes_of_{self.name}"),
-            *lines[1],
-            *statement("return", f"[{', '.join(printer.print(x) for x in sizes)}]", "    "),
-        ]
-
     def _mean(self, parts: str, points: int) -> str:
         given = ", ".join(["z", *self.arguments[1:]])
         return f"_mean_over_circle(lambda z: {parts}({given}), {self.variable}, {points})"
 
     def _value(self, piece: tree.CodePiece, lines: list[str], printer: PythonPrinter) -> list[str]:
-        num, den = piece.code.values
-        if not self.given.is_real:
-            return [*lines, *statement("return", printer.quotient(num, den), "    ")]
-        above, below = printer.print(num), printer.print(den)
-        if piece.is_complex:
+        value = printer.quotient(*piece.code.values)
+        if piece.is_complex and self.given.turn:
             # The factor that the real pieces leave out comes after.
-            above = f"{'-1j' if self.given.turn else '(1+0j)'} * ({above})"
-        return [*lines, *statement("return", f"{above}, {below}", "    ")]
+            value = f"-1j * ({value})"
+        return [*lines, *statement("return", value, "    ")]
 
 
 @dataclass(frozen=True)
@@ -291,8 +261,7 @@ class TracedText(PrivateText):
         """Return the statements that compute the value of ``arguments``."""
         text = f"_piece_0_of_{self.name}({self.leading}*arguments)"
         if self.program.conditions:
-            chooser = "_in_real_pieces" if self.program.is_real else "_in_pieces"
-            text = f"{chooser}({self.leading}_tests_of_{self.name}, _pieces_of_{self.name}, arguments)"
+            text = f"_in_pieces({self.leading}_tests_of_{self.name}, _pieces_of_{self.name}, arguments)"
         return statement("return", f"_shaped({self.leading}{text}, arguments)", "    ")
 
     def functions(self) -> list[str]:
@@ -306,9 +275,8 @@ class TracedText(PrivateText):
         lines.append(f"_pieces_of_{self.name} = (")
         places = places_of(program, self.values)
         for i, (cases, place) in enumerate(zip(cases_of(program), places, strict=True)):
-            at = repr(place.real if program.is_real else place)
             lines += [
-                f"    (_piece_{i}_of_{self.name}, {at}, (",
+                f"    (_piece_{i}_of_{self.name}, {place!r}, (",
                 *(f"        {case!r}," for case in cases),
                 "    )),",
             ]
@@ -323,9 +291,7 @@ class TracedText(PrivateText):
         for assignment in assignments:
             if (number := number_of(assignment.value, numbers)) is not None:
                 numbers[assignment.name] = number
-        has_fixed_sizes = (
-            self.dialect.has_fixed_sizes and bool(self.program.conditions) and not self.program.is_real
-        )
+        has_fixed_sizes = self.dialect.has_fixed_sizes and bool(self.program.conditions)
         printer = ArrayPrinter(
             self.parameters,
             names,
@@ -350,16 +316,12 @@ class TracedText(PrivateText):
                 tested = (
                     condition.quantity if is_one else tree.Multiply((condition.scale, condition.quantity))
                 )
-                text = printer.print(tested)
-                text = text if program.is_real else f"{self.dialect.space}.real({text})"
-                tests.append(f"{text} < 0.0")
+                tests.append(f"{self.dialect.space}.real({printer.print(tested)}) < 0.0")
                 continue
-            is_positive = program.is_real and isinstance(condition.quantity, tree.Laplace)
-            size = condition.quantity if is_positive else tree.Apply("abs", condition.quantity)
             limit = repr(condition.limit)
             if not is_one:
                 limit += f" / {_size(condition.scale, printer)}"
-            tests.append(f"{printer.print(size)} < {limit}")
+            tests.append(f"{printer.print(tree.Apply('abs', condition.quantity))} < {limit}")
         head = self._head(f"_tests_of_{self.name}")
         return [*head, *lines, *statement("return", f"[{', '.join(tests)}]", "    ")]
 
@@ -372,9 +334,7 @@ class TracedText(PrivateText):
         first = f"    {printer.inverse} = 1.0 / {printer.variable}"
         if den == tree.ONE and printer.inverse in value and first not in lines:
             lines = [first, *lines]
-        if self.program.is_real and not piece.is_complex:
-            value = f"{'1j' if self.program.turn else '(1+0j)'} * ({value})"
-        elif not any(isinstance(n, (tree.Laplace, tree.InverseLaplace)) for n in piece.code.nodes()):
+        if not any(isinstance(n, (tree.Laplace, tree.InverseLaplace)) for n in piece.code.nodes()):
             value = f"{value} + {self.dialect.space}.zeros_like({self.variable})"
         return [*lines, *statement("return", value, "    ")]
 
@@ -427,7 +387,7 @@ class PythonPrinter(InfixPrinter):
 
 @dataclass(frozen=True)
 class NumpyPrinter(PythonPrinter):
-    """Prints expressions as Python of numpy, with what finds roots and follows matrices along x."""
+    """Prints expressions as Python of numpy, with what follows matrices along x."""
 
     # What calls the functions of x that members vary like.
     follows: Mapping[tree.Straight, str] = field(default_factory=dict, kw_only=True)
@@ -435,16 +395,6 @@ class NumpyPrinter(PythonPrinter):
     def with_lists(self, node: tree.CodeNode) -> str:
         """Return the text of what takes lists or gives them."""
         match node:
-            case tree.Solutions(coefficients, terms) if not terms:
-                return self.call("propagated", [self.list_of(coefficients)])
-            case tree.Roots(coefficients):
-                return self.call("characteristic_roots", [self.list_of(coefficients)])
-            case tree.ModeValues(roots, length):
-                # What finds the roots also gives the least distance of two.
-                return self.call("mode_values", [f"{self.print(roots)}[:-1]", self.print(length)])
-            case tree.ModalValue(modes, coefficients, frames):
-                lists = [self.list_of(modes), self.list_of(coefficients)]
-                return self.call("modal_value", [*lists, repr(frames)])
             case tree.ScaledSum(amplitudes, exponents):
                 return self.call("scaled_sum", [self.list_of(x) for x in (amplitudes, exponents)])
             case tree.FundamentalMinors(start, length, bases, along, places, wanted):
@@ -499,7 +449,7 @@ Cases = tuple[tuple[tuple[int, bool], ...], ...]
 SIZES = np.logspace(-12, 60, 145)
 """Frequencies [rad/s] among which places are sought."""
 
-DIRECTIONS = np.exp(1j * np.array([0.9, -0.9, 2.2, -2.2]))
+DIRECTIONS: NDArray[np.complex128] = np.exp(1j * np.array([0.9, -0.9, 2.2, -2.2]))
 """One in every quadrant, on no axis."""
 
 INWARDS = 1.5
@@ -555,8 +505,7 @@ def places_of(program: Piecewise, values: Mapping[str, float]) -> tuple[complex,
     loss of all digits lie many orders of magnitude.
     """
     given = {name: values.get(name, 1.0) for name in program.parameters}
-    directions = np.array([1.0]) if program.is_real else DIRECTIONS
-    points = SIZES[:, None] * directions
+    points = SIZES[:, None] * DIRECTIONS
     with np.errstate(all="ignore"):
         numbers = np.broadcast_to(numbers_of_pieces(program, points, given), points.shape)
         served = np.array(program.pieces)[numbers]
@@ -587,6 +536,6 @@ def _place(
     distance = np.abs(logarithms - aim)[:, None] + np.where(serves.any(axis=0), 0.0, 1e3)
     for position in np.argsort(distance, axis=None, kind="stable"):
         point = points.flat[position] * BESIDE
-        if np.all(np.isfinite(value_of_piece(piece, 1j * point if piece.is_complex else point, given))):
+        if np.all(np.isfinite(value_of_piece(piece, point, given))):
             return complex(points.flat[position])
     return complex(points.flat[0])

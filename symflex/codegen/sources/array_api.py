@@ -93,16 +93,6 @@ def _real_numbers(xp, *arguments):
     return xp, arrays[1:]
 
 
-#: _in_real_pieces
-def _in_real_pieces(xp, tests, pieces, arguments):
-    """Return the response at angular frequencies of any sign: conjugate at negative ones."""
-    omega, *parameters = arguments
-    is_negative = omega < 0.0
-    positive = xp.where(is_negative, -omega, omega)
-    value = _in_pieces(xp, tests, pieces, [positive, *parameters])
-    return xp.where(is_negative, xp.conj(value), value)
-
-
 #: _in_pieces _serves
 def _in_pieces(xp, tests, pieces, arguments):
     """Return the value of the piece that serves, element by element.

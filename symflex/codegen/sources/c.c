@@ -279,9 +279,9 @@ static inline double lane_tan(double x)
     return lane_double(lane_bits(sine) ^ change) / lane_double(lane_bits(cosine) ^ change ^ sign);
 }
 
-//: lane_expm1
-/* exp(x) = *scale (1 + value); beyond |x| = 708 as at 708. */
-static inline double lane_expm1(double x, double *scale)
+//: lane_exp
+/* Beyond |x| = 708 as at 708. */
+static inline double lane_exp(double x)
 {
     const uint64_t bits = lane_bits(x), limit = lane_bits(708.0);
     const uint64_t size = bits & ~(UINT64_C(1) << 63);
@@ -291,28 +291,12 @@ static inline double lane_expm1(double x, double *scale)
     const double k = t - ROUNDER;
     const double r = (y - k * 0.6931471803691238) - k * 1.9082149292705877e-10;
     const double r_2 = r * r, r_4 = r_2 * r_2;
-    *scale = lane_double((lane_bits(t) + 1023) << 52);
-    return r + r_2 * ((0.5 + r * 0.16666666666666669)
+    const double scale = lane_double((lane_bits(t) + 1023) << 52);
+    return scale + scale * (r + r_2 * ((0.5 + r * 0.16666666666666669)
         + r_2 * (0.04166666666662348 + r * 0.008333333333330011)
         + r_4 * ((0.0013888888917538296 + r * 0.00019841269863303223)
         + r_2 * (2.4801520792572694e-05 + r * 2.75572680728901e-06)
-        + r_4 * (2.762032742826824e-07 + r * 2.5100569275813683e-08)));
-}
-
-//: lane_exp
-static inline double lane_exp(double x)
-{
-    double scale;
-    const double rest = lane_expm1(x, &scale);
-    return scale + scale * rest;
-}
-
-//: lane_tanh
-static inline double lane_tanh(double x)
-{
-    double scale;
-    const double rest = lane_expm1(-2.0 * x, &scale);
-    return ((1.0 - scale) - scale * rest) / ((1.0 + scale) + scale * rest);
+        + r_4 * (2.762032742826824e-07 + r * 2.5100569275813683e-08))));
 }
 
 //: OTHERWISE

@@ -73,34 +73,13 @@ function value = in_pieces(number_of, pieces, s, given)
   value = reshape(value, shape);
 end
 
-%: in_real_pieces
-function value = in_real_pieces(number_of, pieces, omega, given, is_turned)
-%IN_REAL_PIECES  The response at angular frequencies of any sign.
-%   Pieces give numerator and denominator at a positive frequency, without the
-%   factor 1i of a response that is_turned; at a negative one it is conjugate.
-  [omega, given, shape] = columns(omega, given);
-  if ~(isreal(omega) && all(cellfun(@isreal, given)))
+%: on_axis
+function value = on_axis(response, omega, given)
+%ON_AXIS  The values of a function of s at angular frequencies of any sign.
+  if ~(isreal(omega) && all(cellfun(@(x) isstruct(x) || isreal(x), given)))
     error('symflex:argument', 'angular frequency and parameters must be real');
   end
-  is_negative = omega < 0;
-  omega = abs(omega);
-  number = number_of(omega, given{:}) + zeros(size(omega));
-  value = complex(zeros(size(omega)));
-  for k = unique(number(:)).'
-    where = number == k;
-    own = chosen(given, where);
-    [num, den] = pieces{k + 1}(omega(where), own{:});
-    found = num ./ den;
-    if ~is_turned
-      value(where) = found;
-    elseif isreal(found)
-      value(where) = complex(zeros(size(found)), found);
-    else
-      value(where) = 1i .* found;
-    end
-  end
-  value(is_negative) = conj(value(is_negative));
-  value = reshape(value, shape);
+  value = response(1i .* double(omega), given{:});
 end
 
 %: chosen

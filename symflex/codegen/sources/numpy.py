@@ -56,9 +56,10 @@ def _in_pieces(tests, pieces, arguments, unit):
     shape = np.broadcast_shapes(*(np.shape(a) for a in arguments))
     if not shape:
         number = sum(2**i for i, holds in enumerate(tests(*arguments)) if holds)
-        value = complex(unit * pieces[number](*arguments))
+        value = pieces[number](*arguments)
         if np.isfinite(value):
-            return value
+            is_turned = unit == 1j and np.isrealobj(value)
+            return complex(0.0, value) if is_turned else complex(unit * value)
         # At a pole numbers are divided otherwise than arrays.
         given = (np.atleast_1d(arguments[0]), *arguments[1:])
         return complex(_in_pieces(tests, pieces, given, unit)[0])
@@ -67,7 +68,7 @@ def _in_pieces(tests, pieces, arguments, unit):
     ]
     value = np.zeros(shape, dtype=complex)
     flat = value.reshape(-1)
-    line = flat.imag if unit in (1j, -1j) else flat.real
+    line = flat.imag if unit == 1j else flat.real
     for start in range(0, flat.size, BLOCK):
         part = flat[start : start + BLOCK]
         given = [a[start : start + BLOCK] if np.ndim(a) else a for a in columns]
@@ -82,16 +83,17 @@ def _in_pieces(tests, pieces, arguments, unit):
             found = pieces[number](*given)
             if np.iscomplexobj(found):
                 part[:] = found if unit == 1 else unit * found
-            elif unit in (1, 1j):
-                line[start : start + BLOCK] = found
             else:
-                np.negative(found, out=line[start : start + BLOCK])
+                line[start : start + BLOCK] = found
             continue
         numbers = sum(2**i * holds for i, holds in enumerate(held))
         for k in np.unique(numbers):
             where = np.broadcast_to(numbers == k, part.shape)
             found = pieces[k](*(a[where] if np.ndim(a) else a for a in given))
-            part[where] = unit * found
+            if np.iscomplexobj(found):
+                part[where] = unit * found
+            else:
+                line[start : start + BLOCK][where] = found
     return value
 
 
@@ -99,7 +101,7 @@ def _in_pieces(tests, pieces, arguments, unit):
 def _in_array(tests, pieces, arguments):
     """Return what _in_pieces does, a number as part of an array.
 
-    Matrix exponentials magnify the last bit, which numbers may round differently.
+    Minors magnify the last bit, which numbers may round differently.
     """
     shape = np.broadcast_shapes(*(np.shape(a) for a in arguments))
     given = (np.atleast_1d(arguments[0]), *arguments[1:])
@@ -108,68 +110,19 @@ def _in_array(tests, pieces, arguments):
 
 
 #: _in_real_pieces _real_numbers
-def _in_real_pieces(limits, sizes, pieces, arguments, unit):
+def _in_real_pieces(tests, pieces, arguments, unit):
     """Return the response at angular frequencies of any sign.
 
-    Size i below limit i adds 2**i to the number of the piece where it is. Pieces return
-    numerator and denominator at a positive frequency, without the unit, 1 or 1j; at
-    a negative one the response is conjugate.
+    Pieces return values at a positive frequency, without the unit, 1 or 1j; at a
+    negative one the response is conjugate.
     """
-    shape = np.broadcast_shapes(*(np.shape(a) for a in arguments))
-    bounds = limits(*arguments[1:])
-    if not shape:
-        size = sizes(abs(arguments[0]), *arguments[1:])
-        number = sum(2**i for i, x in enumerate(size) if x < bounds[i])
-        num, den = pieces[number](abs(arguments[0]), *arguments[1:])
-        found = num / den
-        if np.iscomplexobj(num):
-            value = complex(unit * found)
-        else:
-            value = complex(found, 0.0) if unit == 1 else complex(0.0, found)
-        return value.conjugate() if np.signbit(arguments[0]) else value
-    columns, bounds = (
-        [np.broadcast_to(a, shape).reshape(-1) if np.ndim(a) else a for a in group]
-        for group in (arguments, bounds)
-    )
-    value = np.empty(shape, dtype=complex)
-    flat = value.reshape(-1)
-    line = flat.real if unit == 1 else flat.imag
-    block = 2 * BLOCK  # Real values take half the space.
-    for start in range(0, flat.size, block):
-        part, out = flat[start : start + block], line[start : start + block]
-        part[:] = 0.0
-        given, below = (
-            [a[start : start + block] if np.ndim(a) else a for a in group]
-            for group in (columns, bounds)
-        )
-        turned = np.fmin.reduce(np.ravel(given[0])) < 0.0
-        if turned:
-            is_negative = np.signbit(given[0])
-            given[0] = np.abs(given[0])
-        number, mixed = 0, False
-        held = [x < limit for x, limit in zip(sizes(*given), below, strict=True)]
-        for i, holds in enumerate(held):
-            if np.all(holds):
-                number += 2**i
-            elif np.any(holds):
-                mixed = True
-        if not mixed:
-            num, den = pieces[number](*given)
-            if np.iscomplexobj(num):
-                part[:] = unit * (num / den)
-            else:
-                np.divide(num, den, out=out)
-        else:
-            numbers = sum(2**i * holds for i, holds in enumerate(held))
-            for k in np.unique(numbers):
-                where = np.broadcast_to(numbers == k, part.shape)
-                num, den = pieces[k](*(a[where] if np.ndim(a) else a for a in given))
-                if np.iscomplexobj(num):
-                    part[where] = unit * (num / den)
-                else:
-                    out[where] = num / den
-        if turned:
-            np.negative(part.imag, out=part.imag, where=is_negative)
+    omega, *parameters = arguments
+    value = _in_pieces(tests, pieces, (np.abs(omega), *parameters), unit)
+    is_negative = np.signbit(omega)
+    if not np.shape(value):
+        return value.conjugate() if is_negative else value
+    if np.any(is_negative):
+        np.negative(value.imag, out=value.imag, where=is_negative)
     return value
 
 

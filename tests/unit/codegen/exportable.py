@@ -8,6 +8,8 @@ from importlib.util import module_from_spec, spec_from_loader
 from pathlib import Path
 
 from symflex import pipeline
+from symflex.codegen.program.build import build_nested
+from symflex.codegen.program.distributed import Pieces, series_uses
 from tests.house.repository import specifications
 
 DERIVATIONS = {p.stem: p for p in specifications(Path(__file__).parents[3] / "derivations", "**/*.toml")}
@@ -139,6 +141,14 @@ def derived(name):
     """Return a model and its transfer functions."""
     model = pipeline.load(DERIVATIONS[name]) if name in DERIVATIONS else pipeline.loads(SPECS[name])
     return model, pipeline.derive_all(model)
+
+
+def program_of(tf):
+    """Return the program of a function with kernels that is used where nothing is measured."""
+    if tf.is_nameless:
+        (solved,) = pipeline.derive_nested(tf.model, [(tf.output.name, tf.input.name)])
+        return build_nested(solved)
+    return Pieces(tf).of_s(series_uses(tf, is_measured=False)[0])
 
 
 def public_name(tf):

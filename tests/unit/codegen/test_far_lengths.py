@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from symflex import pipeline
-from symflex.codegen.program.distributed import build_piecewise
 from symflex.codegen.program.evaluate import evaluate
+from tests.unit.codegen.exportable import program_of
 
 SPANS = """
 symflex = 1
@@ -41,6 +41,6 @@ FAR = (1e8j, -5e7 + 1e8j, 1e10j, 1e12j)
 def test_spans_with_a_condition_inside_have_finite_values_at_any_frequency(model):
     (tf,) = pipeline.derive_all(pipeline.loads(model))
     values = {name: float(v.rational) for name, v in pipeline.bind(tf).values}
-    found = evaluate(build_piecewise(tf), np.array(FAR), values)
+    found = evaluate(program_of(tf), np.array(FAR), values)
     # The conditions inside keep all but decaying waves from the output: nothing of them is left there.
     assert np.abs(found).max() < 1e-200

@@ -42,10 +42,10 @@ MADE = {}
 def _chosen_once(monkeypatch):
     """Choose the program of a transfer function, and print its formula, once for all its copies."""
 
-    def choose(tf, *_):
-        key = id(tf.ratio)
+    def choose(tf, *_, has_real):
+        key = id(tf.ratio), has_real
         if key not in MADE:
-            MADE[key] = tf, choose_programs(tf, None, 3)
+            MADE[key] = tf, choose_programs(tf, None, 3, has_real=has_real)
         return MADE[key][1]
 
     def formula(tf):

@@ -46,7 +46,7 @@ def test_functions_come_first_and_then_responses_in_what_was_measured_and_is_sai
     for target in TARGETS:
         export = made(target, "rod_tip_mass")
         assert [v.name for v in export.verified] == ["X_tip/F", "F_wall/F"] * 2
-        assert [v.form for v in export.verified] == ["pieces", "pieces", "real", "real"]
+        assert [v.form for v in export.verified] == ["pieces"] * 4
         said = " ".join(export.text.replace("%", " ").split())
         assert all(said.count(v.text()) for v in export.verified)
 

@@ -12,13 +12,12 @@ import numpy as np
 import pytest
 
 from symflex import pipeline
-from symflex.codegen.program import modal
-from symflex.codegen.program.distributed import build_piecewise
 from symflex.codegen.program.evaluate import evaluate
 from symflex.codegen.program.verify import doubles
 from symflex.codegen.python.module import NUMPY
 from symflex.transfer import bind
 from tests.unit.codegen import exportable
+from tests.unit.codegen.exportable import program_of
 
 BEAM = f'{exportable.BEAM}, l = "l"'
 BEAMS = {
@@ -331,7 +330,7 @@ def test_the_interpreter_computes_what_the_module_does(name):
     s = 1j * np.logspace(-6, 6, 30)
     for tf in functions_of(specification(name)):
         module_values = module(specification(name)).TRANSFER_FUNCTIONS[tf.name](s)
-        own = evaluate(build_piecewise(tf), s, doubles(bind(tf)))
+        own = evaluate(program_of(tf), s, doubles(bind(tf)))
         assert np.max(np.abs(own - module_values) / np.abs(module_values)) < 1e-11
 
 
@@ -355,7 +354,7 @@ def test_a_pipe_with_flow_deflects_at_rest_as_a_compressed_column() -> None:
 
 
 @pytest.mark.slow
-def test_numbers_and_arrays_give_the_same_where_matrix_exponentials_serve() -> None:
+def test_numbers_and_arrays_give_the_same_where_equations_are_solved() -> None:
     pipe = module(PIPE).Y_over_p
     for s in (0.0, 1e-9j, 1j, 30j, 100j, 1e3j):
         assert pipe(s) == pytest.approx(pipe(np.array([s, 1j, 50j]))[0], rel=1e-12), s
@@ -386,16 +385,15 @@ def test_roots_that_nearly_meet_cost_no_digits() -> None:
     (tf,) = functions_of(COMPRESSED)
     bound = bind(tf)
     s = np.array([200.0, 200.0001, 199.9 + 0.05j, 201.0, 190 - 3j, 260.0])
-    found = evaluate(modal.build_modal(tf, 4.0), s, doubles(bound))
+    found = evaluate(program_of(tf), s, doubles(bound))
     assert np.max(np.abs(found / np.array([bound(complex(x)) for x in s]) - 1)) < 1e-11
 
 
-def test_matrix_exponentials_serve_where_series_would_be_too_long(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(modal, "SERIES_TERMS", 0)
+def test_a_column_with_a_drag_has_the_values_of_its_function() -> None:
     (tf,) = pipeline.derive_all(pipeline.loads(COMPRESSED.replace("400 N", "4 N")))
     bound = bind(tf)
     s = np.array([0.0, 1e-6j, 0.3j, -0.2 + 2j, 6j])
-    found = evaluate(modal.build_modal(tf, 10.0), s, doubles(bound))
+    found = evaluate(program_of(tf), s, doubles(bound))
     expected = np.array([bound(complex(x)) for x in s])
     assert np.max(np.abs(found / expected - 1)) < 1e-11
 
@@ -403,7 +401,7 @@ def test_matrix_exponentials_serve_where_series_would_be_too_long(monkeypatch: p
 def test_roots_that_are_equal_at_every_s_are_no_obstacle() -> None:
     (tf,) = pipeline.derive_all(pipeline.loads(exportable.MASSLESS))
     s = np.array([0.0, 1j, 10j, 40j, 100j, 3 - 2j])
-    program = build_piecewise(tf)
+    program = program_of(tf)
     # A beam without mass under tension is a spring: w(l)/F = (l - tanh(k l)/k)/N with k^2 = N/EI.
     k = math.sqrt(1.0 / 4e-3)
     compliance = 1.0 - math.tanh(k) / k
@@ -424,7 +422,7 @@ def test_lengths_given_at_run_time_need_not_be_like_the_declared_ones() -> None:
     s = np.array([0.5j, 2.1j, 30j, 5 + 9j])
     for length in (0.05, 1.0, 4.0):
         bound = bind(tf, {"l_2": length})
-        found = evaluate(build_piecewise(tf), s, doubles(bound))
+        found = evaluate(program_of(tf), s, doubles(bound))
         expected = np.array([bound(complex(x)) for x in s])
         assert np.max(np.abs(found / expected - 1)) < 1e-10, length
 
@@ -444,6 +442,6 @@ Y = "w(1)"
 
 def test_large_static_exponents_do_not_spoil_the_value_at_rest() -> None:
     (tf,) = pipeline.derive_all(pipeline.loads(STATIC))
-    found = evaluate(build_piecewise(tf), np.array([0.0, 1e-12j, -1e-11]), {})
+    found = evaluate(program_of(tf), np.array([0.0, 1e-12j, -1e-11]), {})
     # A beam under tension: w(1)/F = (1 - tanh(10)/10)/100.
     assert np.max(np.abs(found / ((1.0 - math.tanh(10.0) / 10.0) / 100.0) - 1)) < 1e-10

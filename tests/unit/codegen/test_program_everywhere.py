@@ -9,11 +9,10 @@ import pytest
 
 from symflex import pipeline
 from symflex.codegen.program.build import build_program
-from symflex.codegen.program.distributed import build_piecewise
 from symflex.codegen.program.evaluate import evaluate, numbers_of_pieces, value_of_piece
 from symflex.codegen.program.verify import doubles
 from symflex.codegen.python.pieces import cases_of, in_pieces, places_of
-from tests.unit.codegen.exportable import DELAY, free_chain
+from tests.unit.codegen.exportable import DELAY, free_chain, program_of
 from tests.unit.codegen.test_numpy_distributed import functions_of, specification
 
 TEXTS = [*map(specification, ("sliding_free", "rod_tip_mass", "two_beams", "tension")), DELAY]
@@ -22,7 +21,7 @@ TEXTS = [*map(specification, ("sliding_free", "rod_tip_mass", "two_beams", "tens
 @pytest.fixture(scope="module")
 def programs():
     """Return programs of distributed functions, and the values of their parameters."""
-    return [(build_piecewise(tf), doubles(pipeline.bind(tf))) for text in TEXTS for tf in functions_of(text)]
+    return [(program_of(tf), doubles(pipeline.bind(tf))) for text in TEXTS for tf in functions_of(text)]
 
 
 def test_for_every_result_of_tests_one_piece_serves_the_right_one(programs):

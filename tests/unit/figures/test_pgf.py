@@ -35,14 +35,14 @@ Y = "y"
 band = ["0.2 Hz", "5 Hz"]
 """
 NUMBER = r"-?[0-9.]+"
-POINT = rf"pgfqpoint\{{{NUMBER}pt\}}\{{{NUMBER}pt\}}"
+POINT = rf"pgfqpoint\{{{NUMBER}in\}}\{{{NUMBER}in\}}"
 OF_DRAWING = re.compile(
     rf"\\(?:(?:begin|end)\{{pgfscope\}}|pgfpath(?:moveto|lineto|close|curveto|quadraticcurveto|rectangle)|{POINT}"
-    r"|pgfusepath\{(?:stroke|fill|stroke,fill|clip)\}"
+    r"|pgfusepath\{(?:stroke|fill|stroke,fill|clip|)\}"
     rf"|pgfset(?:linewidth\{{{NUMBER}pt\}}|(?:butt|round|rect)cap|(?:miter|round|bevel)join)"
     rf"|pgfsetdash\{{(?:\{{{NUMBER}pt\}})*\}}\{{{NUMBER}pt\}}"
-    rf"|definecolor\{{figure(?:fill|stroke)\}}\{{rgb\}}\{{{NUMBER},{NUMBER},{NUMBER}\}}"
-    rf"|pgfset(?:fill|stroke)(?:color\{{figure(?:fill|stroke)\}}|opacity\{{{NUMBER}\}})"
+    rf"|definecolor\{{current(?:fill|stroke)\}}\{{rgb\}}\{{{NUMBER},{NUMBER},{NUMBER}\}}"
+    rf"|pgfset(?:fill|stroke)(?:color\{{current(?:fill|stroke)\}}|opacity\{{{NUMBER}\}})"
     rf"|pgftext\[x={NUMBER}pt,y={NUMBER}pt,base(?:,left|,right)?(?:,rotate=90)?\]\{{\\fontsize\{{\d\}}\{{[0-9.]+\}}"
     rf"\\selectfont(?:\\color\[rgb\]\{{{NUMBER},{NUMBER},{NUMBER}\}})?\{{\}})"
 )
@@ -83,7 +83,7 @@ def test_a_picture_is_as_wide_as_asked_for_and_holds_nothing_but_a_drawing(kind,
     assert commands_beside_drawing(text) == set()
     assert "Two" in text or kind == "modes"
     # What is drawn stays near the picture: 88.5 mm are 251.8 pt.
-    places = [float(x) for x in re.findall(r"\\pgfqpoint\{(-?[0-9.]+)pt\}", text)]
+    places = [72.27 * float(x) for x in re.findall(r"\\pgfqpoint\{(-?[0-9.]+)in\}", text)]
     assert -30 < min(places)
     assert max(places) < 280
 
@@ -131,7 +131,7 @@ def test_a_picture_is_written_where_no_tex_is_installed(bounds, monkeypatch):
 def test_colours_and_sizes_of_texts_are_kept(drawn):
     text = drawn("bode")
     assert r"\fontsize{8}{9.6}\selectfont{}Frequency [Hz]" in text
-    assert r"\definecolor{figurestroke}{rgb}{0,0.4471,0.698}" in text  # #0072B2
+    assert r"\definecolor{currentstroke}{rgb}{0.000000,0.447059,0.698039}" in text  # #0072B2
     assert "rotate=90" in text
 
 
