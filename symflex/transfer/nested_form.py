@@ -29,13 +29,23 @@ from symflex.algebra.straight_line import Operation, Step, StraightLine
 from symflex.budget import spend
 from symflex.expressions import Name, names
 from symflex.transfer.against_equations import Agreement, ModelSolve, compare
-from symflex.transfer.balls import FIRST_BITS, ball, double_value, enclosure, later, limit_at_zero
+from symflex.transfer.balls import (
+    FIRST_BITS,
+    at_centre,
+    ball,
+    double_value,
+    enclosure,
+    expansion,
+    later,
+    limit_at_zero,
+    raised,
+)
 from symflex.transfer.bind import BoundTransferFunction, Given, bind, values_for
 from symflex.transfer.derive import nested_transfer
 from symflex.transfer.transfer_function import TransferFunction, name_quantity, unit_of_quotient
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
     from fractions import Fraction
 
     import numpy as np
@@ -45,7 +55,7 @@ if TYPE_CHECKING:
     from symflex.equations.elimination.star_mesh import Waves
     from symflex.equations.line_network import LineNetwork
     from symflex.model import ExactValue, Input, Model, ModelParameter, Output
-    from symflex.transfer.balls import Value
+    from symflex.transfer.balls import Arithmetic, Value
     from symflex.transfer.direct_solve import Point
     from symflex.transfer.enclosed_network import EnclosedNetwork, NetworkResponses
     from symflex.transfer.probes import Probes
@@ -415,11 +425,13 @@ class EnclosedNested:
     def value_and_slope(self, s: acb) -> tuple[acb, acb]:
         """Return balls around the value and around ``G'(s)/G(s)``."""
         with ctx.workprec(self.bits):
-            num, den, above, below = _values_and_slopes(self.source, self.constants, s)
+            spend()
+            sides = _values(self.source, {**self.constants, LAPLACE: expansion(s)}, ball)
+            (num, above), (den, below) = ((at_centre(x), _slope(x)) for x in map(_complex, sides))
             return num / den, above / num - below / den
 
 
-_GENERATOR, _NUMBER, _ADD, _MULTIPLY, _DIVIDE, _NEGATE, _POWER = map(int, Step)
+_GENERATOR = int(Step.GENERATOR)
 
 
 def _values(
@@ -435,11 +447,20 @@ def _values(
             return known[names[position]]
         waves, place = wave_of[position]
         if waves not in found:
-            found[waves] = _functions(waves, [acb(values[i]) for i in waves.arguments])
+            found[waves] = _functions(waves, [_complex(values[i]) for i in waves.arguments])
         return found[waves][place]
 
-    tf.program.values(tf.operations, name=generator, number=number, known=values)
+    tf.program.values(tf.operations, name=generator, number=number, quotient=_quotient, known=values)
     return values[tf.num], values[tf.den]
+
+
+def _quotient(above: Arithmetic, below: Arithmetic) -> Arithmetic:
+    """Return a quotient, not finite where a series is divided by one that begins with zero."""
+    return above * raised(below, -1) if isinstance(below, acb_series) else above / below
+
+
+def _complex(value: Arithmetic) -> Value:
+    return value if isinstance(value, acb_series) else acb(value)
 
 
 def _functions(waves: Waves, arguments: Sequence[Value]) -> tuple[Value, ...]:
@@ -452,76 +473,8 @@ def _functions(waves: Waves, arguments: Sequence[Value]) -> tuple[Value, ...]:
     return tuple(plain[n] if n >= 0 else (-shift * length).exp() for n in orders)
 
 
-def _lines(
-    waves: Waves, values: Mapping[int, acb], slopes: Mapping[int, acb]
-) -> Iterator[tuple[int, tuple[acb, acb]]]:
-    """Yield the position of each fundamental function with its value and its derivative by s."""
-    lines = [acb_series([values[i], slopes.get(i, acb(0))], 2) for i in waves.arguments]
-    for (position, _), series in zip(waves.generators, _functions(waves, lines), strict=True):
-        if isinstance(series, acb_series):
-            yield position, (series[0], series[1])
-
-
-def _values_and_slopes(  # noqa: PLR0912, PLR0915  (one branch per kind of step, in one loop)
-    tf: NestedTransferFunction, known: Mapping[str, acb], s: acb
-) -> tuple[acb, acb, acb, acb]:
-    """Return numerator and denominator, and their derivatives by s; what is free of s has none on the way."""
-    program = tf.program
-    values: dict[int, acb] = {}
-    spend()
-    slopes: dict[int, acb] = {}
-    functions: dict[int, tuple[acb, acb]] = {}
-    for kind, i, args, gone in tf.operations:
-        if kind == _MULTIPLY:
-            value, slope = values[args[0]], slopes.get(args[0])
-            for x in args[1:]:
-                factor, own = values[x], slopes.get(x)
-                if slope is not None:
-                    slope = slope * factor
-                if own is not None:
-                    slope = value * own if slope is None else slope + value * own
-                value = value * factor
-        elif kind == _ADD:
-            value, slope = values[args[0]], slopes.get(args[0])
-            for x in args[1:]:
-                value = value + values[x]
-                own = slopes.get(x)
-                if own is not None:
-                    slope = own if slope is None else slope + own
-        elif kind == _DIVIDE:
-            above, below = args
-            value, slope = values[above] / values[below], slopes.get(above)
-            own = slopes.get(below)
-            if own is not None:
-                slope = (-value * own if slope is None else slope - value * own) / values[below]
-            elif slope is not None:
-                slope = slope / values[below]
-        elif kind == _GENERATOR:
-            name = program.names[args[0]]
-            if args[0] in tf.wave_of:
-                if args[0] not in functions:
-                    functions.update(_lines(tf.wave_of[args[0]][0], values, slopes))
-                value, slope = functions[args[0]]
-            else:
-                value, slope = (s, acb(1)) if name == LAPLACE else (known[name], None)
-        elif kind == _NEGATE:
-            value, slope = -values[args[0]], slopes.get(args[0])
-            slope = None if slope is None else -slope
-        elif kind == _POWER:
-            base, exponent = args
-            value, slope = values[base] ** exponent, slopes.get(base)
-            if slope is not None:
-                slope = exponent * values[base] ** (exponent - 1) * slope
-        else:
-            value, slope = acb(ball(program.fraction(i))), None
-        values[i] = value
-        if slope is not None:
-            slopes[i] = slope
-        for x in gone:
-            del values[x]
-            slopes.pop(x, None)
-    zero = acb(0)
-    return values[tf.num], values[tf.den], slopes.get(tf.num, zero), slopes.get(tf.den, zero)
+def _slope(value: Value) -> acb:
+    return value[1] if isinstance(value, acb_series) else acb(0)
 
 
 def _one() -> arb:
