@@ -22,7 +22,7 @@ from flint import acb, acb_mat, acb_poly, acb_series, arb, ctx
 
 from symflex.algebra.interval_newton import narrowed, stays_inside
 from symflex.algebra.modal_sum import ModalSums, modal_amplitudes, mode_values
-from symflex.transfer.balls import Value, at_centre, ball, expansion, raised
+from symflex.transfer.balls import Arithmetic, Value, at_centre, ball, expansion, raised
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -37,6 +37,8 @@ if TYPE_CHECKING:
 
 SIGNS = (1, -1)
 ZERO = acb(0)
+PAIR = 2
+"""Terms of a series to first order: those for which roots of dispersions are found."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +47,7 @@ class KernelValues:
 
     names: Sequence[str]  # generators of the ring: s, constants, wavenumbers, kernels
     table: KernelTable  # over the same ring
-    constants: Mapping[str, arb]  # enclosures of the constants
+    constants: Mapping[str, Arithmetic]  # enclosures of the constants, or how they vary
     sums: ModalSums  # over the same ring
     plans: PolynomialMemo[EvaluationPlan]  # shared by all precisions
     matrices: VaryingMatrices | None = None  # of laws whose coefficients vary along x
@@ -67,7 +69,8 @@ class KernelValues:
                 shifts[law] = self.value(law.shift, values)
             values.update(_wavenumbers(law, found, near))
         fundamental: dict[tuple[Dispersion, Factored], tuple[Value, ...]] = {}
-        roots = self._roots(coefficients, values)
+        is_long = isinstance(s, acb_series) and s.prec > PAIR
+        roots = {} if is_long else self._roots(coefficients, values)
         values.update(roots)
         for kernel in self.table.kernels:
             law = kernel.dispersion
@@ -96,7 +99,8 @@ class KernelValues:
 
     @cached_property
     def _numbers(self) -> dict[str, Value]:
-        return {name: acb(value) for name, value in self.constants.items()}
+        known = self.constants.items()
+        return {name: acb(value) if isinstance(value, arb) else value for name, value in known}
 
     @cached_property
     def _laws(self) -> tuple[tuple[int, Dispersion], ...]:
@@ -257,37 +261,34 @@ def _root_name(dispersion: int, i: int) -> str:
 
 
 def fundamental_functions(coefficients: Sequence[Value], length: Value) -> tuple[Value, ...]:
-    """Return ``h, h', ..., h^(n-1)`` at a length for ``lambda^n + ... + c_0``.
+    """Return ``h, h', ..., h^(n-1)`` at a length for ``lambda^n + ... + c_0``, numbers or series.
 
-    They are the last column of the exponential of the companion matrix times the length.
+    They are the last column of the exponential of the companion matrix times the length. That of a matrix of
+    series stands in the first row of blocks of the exponential of a block Toeplitz matrix (Mathias 1996, A
+    chain rule for matrix functions, theorem 4.1).
     """
-    n = len(coefficients)
-    numbers = [c for c in coefficients if isinstance(c, acb)]
-    if len(numbers) == n and isinstance(length, acb):
-        companion = acb_mat(n, n)
-        for i in range(n - 1):
-            companion[i, i + 1] = acb(1)
-        for j, number in enumerate(numbers):
-            companion[n - 1, j] = -number
-        grown = (companion * length).exp()
-        return tuple(grown[i, n - 1] for i in range(n))
-    if (found := _by_homogeneity(coefficients, length)) is not None:
+    n, given = len(coefficients), (*coefficients, length)
+    terms = min((x.prec for x in given if isinstance(x, acb_series)), default=1)
+    if terms == PAIR and (found := _by_homogeneity(coefficients, length)) is not None:
         return found
-    # First order about a point: the derivative of h with respect to c_k is minus h * h^(k), a convolution,
-    # and is the block above the diagonal of the exponential of a block matrix (Van Loan 1978).
-    base = [at_centre(c) for c in coefficients]
-    slope = [c[1] if isinstance(c, acb_series) else acb(0) for c in coefficients]
-    reach = at_centre(length)
-    block = acb_mat(2 * n, 2 * n)
-    for offset in (0, n):
-        for i in range(n - 1):
-            block[offset + i, offset + i + 1] = acb(1)
-        for j, c in enumerate(base):
-            block[offset + n - 1, offset + j] = -c
-    for j, c in enumerate(slope):
-        block[n - 1, n + j] = -c
-    grown = (block * reach).exp()
-    return tuple(acb_series([grown[i, n - 1], grown[i, 2 * n - 1]], 2) for i in range(n))
+    *rows, reach = (_parts(x, terms) for x in given)
+    block = acb_mat(n * terms, n * terms)
+    for k in range(terms):
+        known = range(max(0, k + 1 - len(reach)), k + 1)
+        steep = [sum((own[i] * reach[k - i] for i in known if i < len(own)), ZERO) for own in rows]
+        for start in range(terms - k):
+            row, column = n * start, n * (start + k)
+            for i in range(n - 1 if k < len(reach) else 0):
+                block[row + i, column + i + 1] = reach[k]
+            for j, c in enumerate(steep):
+                block[row + n - 1, column + j] = -c
+    grown = block.exp()
+    last = [[grown[i, n * k + n - 1] for k in range(terms)] for i in range(n)]
+    return tuple(x[0] if terms == 1 else acb_series(x, terms) for x in last)
+
+
+def _parts(value: Value, terms: int) -> list[acb]:
+    return [value[k] for k in range(terms)] if isinstance(value, acb_series) else [value]
 
 
 def _by_homogeneity(coefficients: Sequence[Value], length: Value) -> tuple[Value, ...] | None:
@@ -322,15 +323,24 @@ NARROW = 2.0**-30
 def square_root(x: Value) -> Value:
     """Return a square root that is analytic on the ball, tight where the ball is wide.
 
-    Whether the ball crosses the cut of the principal root does not matter then.
+    Whether the ball crosses the cut of the principal root does not matter then. Of a series that begins with
+    an even power the root is one, too, and of one with an odd power it is not a number.
 
     Examples
     --------
     >>> from flint import acb, arb
     >>> bool((square_root(acb(arb(-4, 1))) ** 2).contains(acb(-4)))
     True
+    >>> [complex(c) for c in square_root(acb_series([0, 0, -4, -8], 4)).coeffs()]
+    [0j, 2j, 2j]
     """
     base = at_centre(x)
+    if isinstance(x, acb_series) and base == 0:
+        first = next((i for i in range(x.prec) if x[i] != 0), x.prec)
+        if first % 2 or first == x.prec:
+            return acb_series([NOWHERE] * x.prec, x.prec)
+        half, rest = first // 2, acb_series(x.coeffs()[first:], x.prec - first)
+        return acb_series([*[ZERO] * half, *_parts(square_root(rest), rest.prec)], x.prec - half)
     middle = base.mid()
     if middle == 0:
         return x.sqrt()

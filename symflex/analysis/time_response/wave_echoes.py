@@ -28,7 +28,6 @@ from flint import acb, acb_series, arb, arb_poly, arb_series
 
 from symflex.algebra import Factored, degree_in
 from symflex.algebra.exponential_sum import ExponentialSum, arguments_of, exponential_sum
-from symflex.analysis.rational.laurent import series_length
 from symflex.analysis.time_response.delayed_terms import (
     NO_DELAY,
     Delay,
@@ -43,7 +42,7 @@ from symflex.budget import spend
 from symflex.roots.functions.exponential_values import ExponentialValues
 from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.problem import polynomial_in_s
-from symflex.transfer.balls import Value, at_centre, ball
+from symflex.transfer.balls import Value, at_centre, ball, series_terms
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -86,7 +85,7 @@ class WaveQuotient:
                     raise TooManyEchoesError
             missing = (2 * missing).upper()
             lost = int(1.5 * float((reach + largest.log() + abs(radius.log())).upper()))
-        with precision(bits + lost), series_length(count + max(0, 1 - shift) + 1):
+        with precision(bits + lost), series_terms(count + max(0, 1 - shift) + 1):
             return self._summed(shift, times, missing)
 
     @cached_property
