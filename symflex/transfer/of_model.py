@@ -268,14 +268,6 @@ def _expanded_terms(equations: Equations, pair: tuple[str, str]) -> float:
     return expanded_terms(equations, eliminate(equations, (pair,)))
 
 
-def derive_with_numbers(model: Model, pairs: Sequence[tuple[str, str]]) -> tuple[NestedTransferFunction, ...]:
-    """Return transfer functions in nested form, derived with the declared values in place.
-
-    Nothing is divided into symbols here: a frame of a hundred members takes half a second.
-    """
-    return derive_nested(with_numbers(model, in_kernels=True), pairs)
-
-
 def derive_bound(model: Model, pairs: Sequence[tuple[str, str]]) -> tuple[BoundTransferFunction, ...]:
     """Return transfer functions with the declared values, derived with numbers from the start.
 
