@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from cmath import isfinite
 from dataclasses import dataclass, field
-from functools import cached_property, partial
+from functools import cache, cached_property, partial
 from math import prod
 from operator import truediv
 from typing import TYPE_CHECKING, Any
@@ -30,7 +30,9 @@ from symflex.budget import spend
 from symflex.expressions import Name, names
 from symflex.transfer.against_equations import Agreement, ModelSolve, compare
 from symflex.transfer.balls import (
+    DOUBLE_BITS,
     FIRST_BITS,
+    LAST_BITS,
     at_centre,
     ball,
     double_value,
@@ -315,20 +317,20 @@ class BoundNested:
         return EnclosedNetwork(self.source.cut.responses(bits, dict(self.values)), *numbers)
 
     @cached_property
-    def _first(self) -> EnclosedNested:
-        return self.enclosed(FIRST_BITS)
+    def _known(self) -> Callable[[int], EnclosedNested]:
+        return cache(self.enclosed)
 
-    def __call__(self, s: complex) -> complex:
+    def __call__(self, s: complex, bits: int = FIRST_BITS) -> complex:
         """Return the value at one complex frequency [rad/s] to double precision.
 
-        The precision is raised until the ball's radius is below the last bit. Where the expression has no
-        value, at s = 0 mostly, it is the limit, found from two points close by; at a pole that is
-        ``inf + nan*1j``.
+        The precision is raised, from so many ``bits`` on, until the ball's radius is below the last bit.
+        Where the expression has no value, at s = 0 mostly, it is the limit, found from two points close by;
+        at a pole that is ``inf + nan*1j``.
         """
         if self.is_zero:
             return 0j
         # A wide ball may hold a zero divisor where the function has none: once more before a limit is sought.
-        value = double_value(self.enclosed, self._first, s, 1)
+        value = double_value(self._known, s, 1, bits)
         if isfinite(value) or self.solved(FIRST_BITS) is None:
             return value
 
@@ -337,7 +339,14 @@ class BoundNested:
             solved = self.solved(bits)
             return lambda at: acb("nan") if solved is None else solved.value_and_slope(at)[0]
 
-        return double_value(network, network(FIRST_BITS), s, 1)
+        return double_value(network, s, 1)
+
+    def bits_at(self, s: complex) -> int:
+        """Return with how many bits the value is known: at other points as many do, or nearly."""
+        bits, point = FIRST_BITS, acb(s.real, s.imag)
+        while bits < LAST_BITS and not self._known(bits)(point).rel_accuracy_bits() >= DOUBLE_BITS:
+            bits *= 2
+        return bits
 
     def limit_at_zero(self) -> float:
         """Return the limit for s -> 0 from the right, possibly infinite."""
