@@ -29,7 +29,7 @@ def accurate(value, bits):
 
 
 class Levels:
-    """A function that notes the precisions beyond the first at which it was asked for, and answers by them."""
+    """A function that notes at which precisions beyond the first it was asked for, and answers by them."""
 
     def __init__(self, answer):
         self.answer, self.asked = answer, []
