@@ -25,7 +25,7 @@ from symflex.algebra.modal_sum import ModalSums, modal_amplitudes, mode_values
 from symflex.transfer.balls import Arithmetic, Value, at_centre, ball, expansion, raised
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from flint import fmpz_mpoly
 
@@ -52,12 +52,14 @@ class KernelValues:
     plans: PolynomialMemo[EvaluationPlan]  # shared by all precisions
     matrices: VaryingMatrices | None = None  # of laws whose coefficients vary along x
 
-    def at(self, s: Value, near: Mapping[str, Value] | None = None) -> dict[str, Value]:
+    def at(
+        self, s: Value, near: Mapping[str, Value] | None = None, root: Callable[[Value], Value] | None = None
+    ) -> dict[str, Value]:
         """Return the values of all generators at ``s`` [rad/s], and characteristic roots without names.
 
         Where the roots of a dispersion can be told apart, they stand for its fundamental functions. It is a
         point, a ball, or a series about either; wavenumbers take the same branch as ``near``, values at a
-        ball that holds ``s``.
+        ball that holds ``s``. Their square roots are by default those of :func:`square_root`.
         """
         values: dict[str, Value] = {"s": s, **self._numbers}
         coefficients: dict[Dispersion, tuple[Value, ...]] = {}
@@ -67,7 +69,7 @@ class KernelValues:
             coefficients[law] = found
             if not law.shift.is_zero:
                 shifts[law] = self.value(law.shift, values)
-            values.update(_wavenumbers(law, found, near))
+            values.update(law.roots(found, root) if root else _wavenumbers(law, found, near))
         fundamental: dict[tuple[Dispersion, Factored], tuple[Value, ...]] = {}
         is_long = isinstance(s, acb_series) and s.prec > PAIR
         roots = {} if is_long else self._roots(coefficients, values)
@@ -323,24 +325,15 @@ NARROW = 2.0**-30
 def square_root(x: Value) -> Value:
     """Return a square root that is analytic on the ball, tight where the ball is wide.
 
-    Whether the ball crosses the cut of the principal root does not matter then. Of a series that begins with
-    an even power the root is one, too, and of one with an odd power it is not a number.
+    Whether the ball crosses the cut of the principal root does not matter then.
 
     Examples
     --------
     >>> from flint import acb, arb
     >>> bool((square_root(acb(arb(-4, 1))) ** 2).contains(acb(-4)))
     True
-    >>> [complex(c) for c in square_root(acb_series([0, 0, -4, -8], 4)).coeffs()]
-    [0j, 2j, 2j]
     """
     base = at_centre(x)
-    if isinstance(x, acb_series) and base == 0:
-        first = next((i for i in range(x.prec) if x[i] != 0), x.prec)
-        if first % 2 or first == x.prec:
-            return acb_series([NOWHERE] * x.prec, x.prec)
-        half, rest = first // 2, acb_series(x.coeffs()[first:], x.prec - first)
-        return acb_series([*[ZERO] * half, *_parts(square_root(rest), rest.prec)], x.prec - half)
     middle = base.mid()
     if middle == 0:
         return x.sqrt()

@@ -470,6 +470,30 @@ def local_values(
     """
     with series_terms(terms):
         moved = [centre, *[acb(0)] * (branches - 1), acb(1)]
-        values = evaluator.at(acb_series(moved[:terms], terms))
+        values = evaluator.at(acb_series(moved[:terms], terms), root=square_root)
     waves = (at_centre(values[name]) for name in evaluator.table.wavenumbers)
     return values if all(w.is_finite() for w in waves) else None
+
+
+def square_root(series: Value) -> Value:
+    """Return a square root of a series that begins with an even power; not a number for any other.
+
+    The branch is chosen by the leading coefficient's midpoint: a ball across a branch cut does no harm. A
+    ball that holds zero counts as zero before it.
+
+    Examples
+    --------
+    >>> root = square_root(acb_series([0, 0, -4, -8], 4))
+    >>> [complex(c) for c in root.coeffs()]
+    [0j, 2j, 2j]
+    """
+    if isinstance(series, acb):
+        return series.sqrt()
+    coefficients = series.coeffs()
+    first = next((i for i, c in enumerate(coefficients) if c != 0), 1)
+    lead = coefficients[first].mid() if first % 2 == 0 else acb(0)
+    if lead == 0:
+        return acb_series([acb("nan")] * series.prec, series.prec)
+    rest = acb_series([c / lead for c in coefficients[first:]], series.prec - first).sqrt() * lead.sqrt()
+    half = first // 2
+    return acb_series([*[acb(0)] * half, *rest.coeffs()], series.prec - half)
