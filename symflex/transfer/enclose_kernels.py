@@ -244,13 +244,18 @@ def _closest(candidates: Sequence[Value], goal: acb) -> Value:
 
 
 def _kernel(kernel: Kernel, argument: Value) -> Value:
-    match kernel.function:
-        case "cosh" | "sinh" if isinstance(argument, acb):
-            return argument.cosh() if kernel.function == "cosh" else argument.sinh()
-        case "cosh" | "sinh":
-            grown, decayed = argument.exp(), (-argument).exp()
-            return (grown + decayed) / 2 if kernel.function == "cosh" else (grown - decayed) / 2
-    return argument.cos() if kernel.function == "cos" else argument.sin()
+    """Return a kernel; to first order by its derivative, as sums of exponentials leave no exact zeros."""
+    if isinstance(argument, acb_series) and argument.prec > PAIR:
+        if kernel.function in ("cos", "sin"):
+            return argument.cos() if kernel.function == "cos" else argument.sin()
+        grown, decayed = argument.exp(), (-argument).exp()
+        return (grown + decayed) / 2 if kernel.function == "cosh" else (grown - decayed) / 2
+    x = at_centre(argument)
+    value: acb = getattr(x, kernel.function)()
+    if isinstance(argument, acb):
+        return value
+    slope = {"cosh": x.sinh, "sinh": x.cosh, "sin": x.cos}.get(kernel.function, lambda: -x.sin())
+    return acb_series([value, slope() * argument[1]], PAIR)
 
 
 def _is_even(law: Dispersion) -> bool:
@@ -339,13 +344,13 @@ def square_root(x: Value) -> Value:
         return x.sqrt()
     reach = (base / middle - 1).abs_upper()
     if reach < NARROW:
-        return (x / middle).sqrt() * middle.sqrt()
-    if not reach < 1:
-        # Of a ball that holds 0 no branch is analytic.
-        return NOWHERE if isinstance(x, acb) else acb_series([NOWHERE] * x.prec, x.prec)
-    # sqrt(m) sqrt(1 + e) with abs(e) <= d differs from sqrt(m) by at most (1 - sqrt(1 - d)) sqrt(m).
-    off = (1 - (1 - reach).sqrt()).upper()
-    root = middle.sqrt() * acb(arb(1, off), arb(0, off))
+        root = (base / middle).sqrt() * middle.sqrt()
+    elif reach < 1:
+        # sqrt(m) sqrt(1 + e) with abs(e) <= d differs from sqrt(m) by at most (1 - sqrt(1 - d)) sqrt(m).
+        off = (1 - (1 - reach).sqrt()).upper()
+        root = middle.sqrt() * acb(arb(1, off), arb(0, off))
+    else:
+        root = NOWHERE  # of a ball that holds 0 no branch is analytic
     if isinstance(x, acb):
         return root
     found = [root]
