@@ -7,9 +7,6 @@ products of different roots are linearly independent (Kummer; Lang, Algebra, cha
 polynomial of degree at most one in every root has one normal form; a root that depends on others is a product
 of them. Polynomials in s over that field have greatest common divisors by Euclid's algorithm, as the leading
 coefficient can be freed of roots: it is multiplied by its conjugates.
-
-Modulo a prime at which all radicands are squares roots are numbers. Polynomials that are coprime there, and
-keep their degrees, are coprime.
 """
 
 from __future__ import annotations
@@ -21,11 +18,11 @@ from math import gcd, isqrt
 from random import Random
 from typing import TYPE_CHECKING, TypeVar
 
-from flint import fmpz, nmod_poly
+from flint import fmpz
 from flint.utils.flint_exceptions import DomainError
 
 from symflex.algebra.factored import PRIME, Factored, residue
-from symflex.algebra.ring import PolynomialMemo, by_powers, coefficients_of, degree_in
+from symflex.algebra.ring import by_powers, coefficients_of, degree_in
 from symflex.budget import spend
 
 if TYPE_CHECKING:
@@ -328,7 +325,7 @@ class Radicals:
         Its leading coefficient in s is free of roots, and it has no content; it is one where there is none.
         """
         one = self.ring.constant(1)
-        if not degree_in(f, 0) or not degree_in(g, 0) or self._are_coprime_modulo(f, g):
+        if not degree_in(f, 0) or not degree_in(g, 0):
             return one
         if degree_in(f, 0) < degree_in(g, 0):
             f, g = g, f
@@ -514,26 +511,6 @@ class Radicals:
         except ZeroDivisionError:
             return False
         return True
-
-    def _are_coprime_modulo(self, f: fmpz_mpoly, g: fmpz_mpoly) -> bool:
-        """Tell whether two polynomials are proved coprime in s modulo a prime; False decides nothing."""
-        ours, theirs = self._image(f), self._image(g)
-        return ours is not None and theirs is not None and int(ours.gcd(theirs).degree()) == 0
-
-    @cached_property
-    def _image(self) -> PolynomialMemo[nmod_poly | None]:
-        return PolynomialMemo(self._made)
-
-    def _made(self, f: fmpz_mpoly) -> nmod_poly | None:
-        """Return a polynomial's image in s, ``None`` when its degree drops."""
-        point = self.point()
-        if point is None:
-            return None
-        prime, values = point
-        numbers = [0] * (degree_in(f, 0) + 1)
-        for power, part in by_powers(self.ring, f).items():
-            numbers[power] = residue(Factored.polynomial(self.ring, part), values, prime)
-        return nmod_poly(numbers, prime) if numbers[-1] else None
 
 
 def _size(value: Factored) -> tuple[int, int]:

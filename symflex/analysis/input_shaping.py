@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
-from symflex.analysis.joint_shaping import joint_impulses
+from symflex.analysis.joint_shaping import JOINT_ORDERS, joint_impulses
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.model.loss_factors import check_causal
@@ -86,6 +86,7 @@ class InputShaper:
     digits: int
     bits: int  # of the precision all this was computed at
     joint: bool = False  # one for all modes together, not the convolution of one for each
+    note: str = ""  # why it is not, where it was to be
 
     @property
     def title(self) -> str:
@@ -169,7 +170,8 @@ class InputShaper:
         rows = [("t [s]", "amplitude")]
         rows += [(decimals(t, zero, digits).re, decimals(a, zero, digits).re) for t, a in self.impulses]
         heading = f"{self.tf}   {self.title}, {len(self.impulses)} impulses"
-        return [Passage([heading]), Passage(lines), Passage([], rows)]
+        notes = [f"  {self.note}"] if self.note else []
+        return [Passage([heading, *notes]), Passage(lines), Passage([], rows)]
 
 
 def input_shaper(
@@ -188,15 +190,15 @@ def input_shaper(
     digits : int
         Of poles, times and amplitudes.
     joint : bool
-        One for all modes together: with several modes it is shorter than the convolution of one for each.
+        One for all modes together, of kind ``zv`` or ``zvd``: with several modes it is shorter than the
+        convolution of one for each, which is taken where none is found.
 
     Raises
     ------
     UsageError
         SF902 for an unknown kind, or more modes than there are.
     ModelError
-        SF814 where a mode cannot be told from another, or is damped too much for the kind, and where no joint
-        shaper that is worth it was found.
+        SF814 where a mode cannot be told from another, or is damped too much for the kind.
 
     Examples
     --------
@@ -226,9 +228,12 @@ def input_shaper(
         for root in chosen:
             impulses = _convolved(impulses, _of_mode(bound, root, kind))
         impulses.sort(key=lambda impulse: impulse[0].mid())
+        poles, longest, note = [root.enclosure() for root in chosen], float(impulses[-1][0].mid()), ""
         if joint and modes > 1:
-            impulses = _jointly(bound, chosen, kind, float(impulses[-1][0].mid()), bits)
-    return InputShaper(bound.name, kind, chosen, tuple(impulses), digits, bits, joint)
+            found = joint_impulses(poles, kind, longest, bits) if kind in JOINT_ORDERS else None
+            joint, impulses = found is not None, found or impulses
+            note = "" if joint else "no shorter one for all modes together was found: theirs in a row"
+    return InputShaper(bound.name, kind, chosen, tuple(impulses), digits, bits, joint, note)
 
 
 def _of_mode(bound: AnyBoundFunction, root: Root, kind: str) -> list[tuple[arb, arb]]:
@@ -238,20 +243,6 @@ def _of_mode(bound: AnyBoundFunction, root: Root, kind: str) -> list[tuple[arb, 
         message = f"the mode of {bound.name} at {root.frequency_hz():g} Hz is damped too much for '{kind}'"
         raise ModelError(Diagnostic("SF814", message, None, "take zv, or leave it as it is: it hardly rings"))
     return [(half * i, a) for i, a in enumerate(amplitudes)]
-
-
-def _jointly(
-    bound: AnyBoundFunction, chosen: Sequence[Root], kind: str, longest: float, bits: int
-) -> list[tuple[arb, arb]]:
-    poles = [root.enclosure() for root in chosen]
-    found = joint_impulses(poles, kind, longest, bits, arb(TOLERANCE))
-    if found is None:
-        message = (
-            f"no joint {kind} shaper for {len(chosen)} modes of {bound.name} is shorter than theirs in a row"
-        )
-        hint = "leave out --joint"
-        raise ModelError(Diagnostic("SF814", message, None, hint))
-    return found
 
 
 def _convolved(one: Sequence[tuple[arb, arb]], other: Sequence[tuple[arb, arb]]) -> list[tuple[arb, arb]]:

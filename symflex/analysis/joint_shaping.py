@@ -1,27 +1,22 @@
 """One input shaper for several modes at once: fewer impulses, and sooner over, than their shapers in a row.
 
-Input: proved poles p of m modes. Output: impulses a at times t, enclosed. With g(p) = sum a exp(-p t), and T
-the last of the times,
+Input: proved poles p of m modes. Output: impulses a at times t, enclosed. With g(p) = sum a exp(-p t),
 
-    sum a = 1  and  zv    g(p) = 0                          for every p
+    sum a = 1  and  zv    g(p) = 0              for every p
                     zvd   g(p) = 0, g'(p) = 0
-                    ei    g(p (1 - x)) = 0, g(p (1 + y)) = 0,
-                          abs(g(p (1 + z))) exp(Re p (1 + z) T) = V and stationary at z = 0
 
-with m + 1 impulses, 2 m + 1 for zvd and ei: as many unknowns as equations, as the first impulse stands at 0,
-and x and y of every mode are found as well. Where these are no shorter, with more of them: some unknowns are
-kept then. Two modes at 1 and 2.3 Hz take 3 impulses in 0.61 s where their own zv shapers in a row take 4 in
-0.72 s.
+with m + 1 impulses, 2 m + 1 for zvd: as many unknowns as equations, as the first impulse stands at 0. Where
+these are no shorter, with more of them: some unknowns are kept then. Two modes at 1 and 2.3 Hz take 3
+impulses in 0.61 s where their own zv shapers in a row take 4 in 0.72 s.
 
 Where the impulses stand is guessed on a fine grid: the shortest one that holds positive amplitudes with these
 sums, a linear program. An impulse takes two points of the grid, which are merged. Newton's method then finds
 the solution beside it, and Krawczyk's operator proves that there is one; that none is shorter is not proved.
-An ei shaper begins as a zvd shaper, whose double zeros are moved apart.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 from math import inf
 from typing import TYPE_CHECKING, TypeVar
@@ -30,7 +25,6 @@ import numpy as np
 from flint import acb, acb_series, arb, arb_mat
 
 from symflex.budget import spend
-from symflex.roots.precision import precision
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -47,40 +41,37 @@ NEXT = 2.5
 """Points of the grid between which an impulse may lie: two, or three where it is a little too long."""
 SMALL = 1e-9
 """Amplitude that a linear program means as zero: its tolerances are 1e-7 of rows that are of order 1."""
-START, PARTS = 0.01, 5
-"""Of a frequency, by which zeros of an ei shaper are first moved apart, and how often they are."""
-ROUGH = 128
-"""Bits of the guess."""
+JOINT_ORDERS = {"zv": 1, "zvd": 2}
+"""Derivatives that vanish at every pole, by the kinds that are made for all modes together."""
 STEPS = 12
 """Of Newton's method: the guess is off by a point of the grid, and digits double in the end."""
 
 
 def joint_impulses(
-    poles: Sequence[acb], kind: str, longest: float, bits: int, tolerance: arb
+    poles: Sequence[acb], kind: str, longest: float, bits: int
 ) -> list[tuple[arb, arb]] | None:
     """Return times [s] and amplitudes that are proved; None where none was found that is short enough.
 
-    ``longest`` [s] is a duration in which it is known to be possible, ``bits`` the precision at hand, and
-    ``tolerance`` the V of an ei shaper.
+    ``longest`` [s] is a duration in which it is known to be possible, and ``bits`` the precision at hand.
 
     Examples
     --------
-    >>> found = joint_impulses([acb(0, 3)], "zv", 2.0, 53, arb(0))
+    >>> found = joint_impulses([acb(0, 3)], "zv", 2.0, 53)
     >>> [(round(float(t), 6), round(float(a), 6)) for t, a in found]
     [(0.0, 0.5), (1.047198, 0.5)]
     """
     # In its own unit of time what is found does not depend on how quick the modes are.
     scaled = tuple(p * longest for p in poles)
-    orders = 1 if kind == "zv" else 2
+    orders = JOINT_ORDERS[kind]
     guess, step = _guess(np.array([complex(p.mid()) for p in scaled]), orders)
     if not guess:
         return None
     merged = (_merged(guess, orders * len(scaled) + 1, gap * step) for gap in (inf, NEXT))
     for impulses in dict.fromkeys(merged):
-        with precision(ROUGH):
-            begun = _begun(scaled, kind, tolerance, impulses)
-        solved = None if begun is None else _solved(*begun, bits)
-        found = None if begun is None or solved is None else _proved(begun[0], solved, bits)
+        conditions = _Conditions(scaled, orders, len(impulses))
+        begun = [arb(x) for x in (*(a for _, a in impulses), *(t for t, _ in impulses[1:]))]
+        solved = _solved(conditions, begun, bits)
+        found = None if solved is None else _proved(conditions, solved, bits)
         if found is not None and found[-1][0] < 1:
             return [(t * longest, a) for t, a in found]
     return None
@@ -88,11 +79,10 @@ def joint_impulses(
 
 @dataclass(frozen=True)
 class _Conditions:
-    """What a shaper has to fulfil, in as many unknowns: amplitudes, times but the first, and x, y of ei."""
+    """What a shaper has to fulfil, in as many unknowns: amplitudes, and times but the first."""
 
     poles: tuple[acb, ...]
-    kind: str
-    tolerance: arb
+    orders: int  # derivatives that vanish at each
     count: int  # of impulses
 
     def impulses(self, unknowns: Sequence[T], first: T) -> tuple[Sequence[T], Sequence[T]]:
@@ -102,26 +92,15 @@ class _Conditions:
     def lacks(self, unknowns: Sequence[acb_series]) -> list[acb_series]:
         """Return what has to vanish: a real one, and then both parts of complex ones."""
         times, sizes = self.impulses(unknowns, acb_series([acb(0)]))
-        nothing = acb_series([acb(0)])
 
-        def swing(pole: acb, order: int = 0, moved: acb_series = nothing) -> acb_series:
+        def swing(pole: acb, order: int) -> acb_series:
             # exp(w) is the motion that an impulse leaves at the time of the last one.
-            exponents = [pole.real * times[-1] - (1 + moved) * t * pole for t in times]
-            return sum((a * w.exp() * w**order for a, w in zip(sizes, exponents, strict=True)), nothing)
+            exponents = [pole.real * times[-1] - t * pole for t in times]
+            parts = (a * w.exp() * w**order for a, w in zip(sizes, exponents, strict=True))
+            return sum(parts, acb_series([acb(0)]))
 
-        found = [sum(sizes, acb_series([acb(-1)]))]
-        shifts = iter(unknowns[2 * self.count - 1 :])
-        for pole in self.poles:
-            if self.kind == "ei":
-                other = pole.conjugate()
-                one, mirrored = swing(pole), swing(other)
-                level = one * mirrored - self.tolerance**2
-                slope = (one * swing(other, 1) + mirrored * swing(pole, 1)) / 2
-                found += [swing(pole, 0, -next(shifts)), swing(pole, 0, next(shifts))]
-                found.append(level + slope * acb(0, 1))
-            else:
-                found += [swing(pole, order) for order in range(2 if self.kind == "zvd" else 1)]
-        return found
+        swings = [swing(pole, order) for pole in self.poles for order in range(self.orders)]
+        return [sum(sizes, acb_series([acb(-1)])), *swings]
 
     def evaluated(self, unknowns: Sequence[arb]) -> tuple[list[arb], list[list[arb]]]:
         """Return what has to vanish, and its derivatives."""
@@ -132,32 +111,6 @@ class _Conditions:
             parts = [[whole[i].real, *(p for c in rest for p in (c[i].real, c[i].imag))] for i in (0, 1)]
             columns.append(parts[1])
         return parts[0], [list(row) for row in zip(*columns, strict=True)]
-
-
-def _begun(
-    poles: tuple[acb, ...], kind: str, tolerance: arb, guess: Sequence[tuple[float, float]]
-) -> tuple[_Conditions, list[arb]] | None:
-    """Return conditions for the impulses of a guess, and unknowns near a solution; None without one."""
-    conditions = _Conditions(poles, kind, tolerance, len(guess))
-    begun = [arb(x) for x in (*(a for _, a in guess), *(t for t, _ in guess[1:]))]
-    if kind != "ei":
-        return conditions, begun
-    # Zeros that coincide in a zvd shaper part; what is left between grows with the square of their distance.
-    double = replace(conditions, kind="zvd")
-    found = _solved(double, begun, ROUGH)
-    shifts = [START] * len(conditions.poles)
-    for part in range(1, PARTS + 1):
-        pairs = list(zip(conditions.poles, shifts, strict=True))
-        beside = tuple(p * (1 + sign * x) for p, x in pairs for sign in (-1, 1))
-        found = None if found is None else _solved(replace(conditions, poles=beside, kind="zv"), found, ROUGH)
-        if found is None:
-            return None
-        times, sizes = double.impulses(found, arb(0))
-        for k, p in enumerate(conditions.poles):
-            swings = ((p.real * times[-1] - p * t).exp() * a for t, a in zip(times, sizes, strict=True))
-            wanted = conditions.tolerance * min(part / (PARTS - 1), 1) ** 2
-            shifts[k] *= float((wanted / abs(sum(swings, acb(0)))).sqrt().mid())
-    return None if found is None else (conditions, [*found, *(arb(x) for x in shifts for _ in range(2))])
 
 
 def _guess(poles: npt.NDArray[np.complex128], orders: int) -> tuple[list[tuple[float, float]], float]:
@@ -265,9 +218,5 @@ def _proved(conditions: _Conditions, middle: Sequence[arb], bits: int) -> list[t
         if not box[j].contains_interior(found[j]):
             return None
     times, sizes = conditions.impulses(found, arb(0))
-    are_beside = all(x > 0 for x in found[2 * conditions.count - 1 :])
-    return list(zip(times, sizes, strict=True)) if are_beside and _is_shaper(times, sizes) else None
-
-
-def _is_shaper(times: Sequence[arb], sizes: Sequence[arb]) -> bool:
-    return all(t < u for t, u in pairwise(times)) and all(a > 0 for a in sizes)
+    is_shaper = all(t < u for t, u in pairwise(times)) and all(a > 0 for a in sizes)
+    return list(zip(times, sizes, strict=True)) if is_shaper else None

@@ -23,12 +23,12 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 from itertools import pairwise
-from math import ceil, exp, inf, log, nan, pi
+from math import ceil, exp, inf, log, pi
 from typing import TYPE_CHECKING, NoReturn, cast
 
 import numpy as np
 import numpy.typing as npt
-from flint import acb, ctx
+from flint import acb
 
 from symflex.budget import entered_budget, spend
 from symflex.errors import Diagnostic, SymflexError, UncertifiedError, UsageError
@@ -40,8 +40,7 @@ from symflex.roots.functions.nested_function import NestedFunction
 from symflex.roots.functions.simplified import without_lengths_of_zero
 from symflex.roots.locate import locate
 from symflex.roots.root import exact_fraction
-from symflex.transfer.bind import EnclosedDistributed
-from symflex.transfer.nested_form import BoundNested, EnclosedNested
+from symflex.transfer.nested_form import BoundNested
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -49,7 +48,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from symflex.roots import Root
-    from symflex.transfer import AnyBoundFunction, EnclosedTransferFunction
+    from symflex.transfer import AnyBoundFunction
 
 
 def count_turns(
@@ -319,13 +318,6 @@ def _frozen(array: npt.NDArray[np.generic]) -> npt.NDArray[np.generic]:
     return array
 
 
-FIRST_BITS = 96
-LAST_BITS = 6144
-"""Precision of the first attempt, and where doubling it ends: six times."""
-DOUBLE_BITS = 54
-"""One more than a double has."""
-
-
 def respond(
     bound: AnyBoundFunction, omega: npt.ArrayLike, roots: PoleZeroMap | None = None
 ) -> SampledResponse:
@@ -446,50 +438,12 @@ def _turns_to(
 
 def evaluate(bound: AnyBoundFunction, omega: npt.NDArray[np.float64]) -> npt.NDArray[np.complex128]:
     """Return the values at angular frequencies, with more bits where cancellation asks for them."""
-    values = np.zeros(omega.shape, np.complex128)
-    pending, bits = list(enumerate(omega.tolist())), FIRST_BITS
-    if isinstance(bound, BoundNested) and pending:
-        bits = _bits_for(bound, pending[-1][1])
-    if bound.is_distributed:
-        # Where wavenumbers vanish, there is a limit but no value.
-        values[omega == 0] = bound(0j)
-        pending = [(i, value) for i, value in pending if value]
-    while pending:
-        balls = _enclose(bound.enclosed(bits), [value for _, value in pending])
-        unsettled = []
-        for point, ball in zip(pending, balls, strict=True):
-            if ball.is_finite() and ball.rel_accuracy_bits() >= DOUBLE_BITS:
-                values[point[0]] = complex(ball)
-            elif bits < LAST_BITS:
-                unsettled.append(point)
-            elif not ball.is_finite():
-                # Where wavenumbers vanish or meet, there is a limit.
-                values[point[0]] = bound(1j * point[1]) if bound.is_distributed else complex(inf, nan)
-        pending, bits = unsettled, 2 * bits
-    return values
-
-
-def _bits_for(bound: BoundNested, omega: float) -> int:
-    """Return the precision at which a point is settled: all ask for about as much, in long chains more."""
-    bits = FIRST_BITS
-    while bits < LAST_BITS and not bound.enclosed(bits)(acb(0, omega)).rel_accuracy_bits() >= DOUBLE_BITS:
-        bits *= 2
-    return bits
-
-
-def _enclose(
-    function: EnclosedTransferFunction | EnclosedDistributed | EnclosedNested, omega: Sequence[float]
-) -> list[acb]:
-    """Return balls around the values, one polynomial after the other, for all points at once."""
-    with ctx.workprec(function.bits):
-        points = [acb(0, value) for value in omega]
-        if isinstance(function, EnclosedDistributed | EnclosedNested):
-            return [function(point) for point in points]
-        values = [function.unit] * len(points)
-        for polynomial, exponent in function.factors:
-            factor = polynomial.evaluate(points, "iter")
-            values = [value * ball**exponent for value, ball in zip(values, factor, strict=True)]
-        return values
+    points = (1j * omega).tolist()
+    if isinstance(bound, BoundNested) and points:
+        # All ask for about as many bits, in long chains for more.
+        bits = bound.bits_at(points[-1])
+        return np.array([bound(s, bits) for s in points], np.complex128)
+    return np.array([bound(s) for s in points], np.complex128)
 
 
 REFINED_DAMPING = 0.3

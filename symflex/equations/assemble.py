@@ -81,7 +81,6 @@ def assemble(
     *,
     is_nameless: bool = False,
     is_sparse: bool = False,
-    is_joined: bool = False,
     is_cut: bool = False,
     is_followed: bool = False,
 ) -> Equations:
@@ -90,8 +89,7 @@ def assemble(
     ``nested`` returns the transfer function of a ``model`` block over a given ring. With ``is_nameless`` no
     wavenumber has a name: a quotient with named and nameless ones has no form in which what cancels is seen.
     With ``is_sparse`` the ring has any number of names, nothing is expanded, and rows are not cleared of
-    denominators; a distributed model has to be nameless, too. With ``is_joined`` line elements of one law
-    that meet are taken as one, see :mod:`symflex.equations.distributed`. With ``is_cut`` states at points
+    denominators; a distributed model has to be nameless, too. With ``is_cut`` states at points
     along x are unknowns, and what relates them, the laws of ``continua``, is not among the rows. With
     ``is_followed`` uniform line elements and fields beside others that taper are followed along x as those
     are, by fundamental matrices. Raises ModelError: SF224 division by zero, SF910 a function of s; with
@@ -116,7 +114,7 @@ def assemble(
         is_sparse,
     )
     distributed = _Assembly(model, ring, constants, nested).survey(
-        is_nameless=is_nameless, is_joined=is_joined, is_cut=is_cut, is_followed=is_followed
+        is_nameless=is_nameless, is_cut=is_cut, is_followed=is_followed
     )
     whole = ring if distributed is None else distributed.propagation.ring
     return _Assembly(model, whole, constants, nested, distributed, is_cut).run()
@@ -204,9 +202,7 @@ class _Assembly:
     # Per line element or field, the points within at which it is cut.
     cuts: dict[str, list[Cut]] = field(default_factory=dict)
 
-    def survey(
-        self, *, is_nameless: bool, is_joined: bool, is_cut: bool, is_followed: bool
-    ) -> Distributed | None:
+    def survey(self, *, is_nameless: bool, is_cut: bool, is_followed: bool) -> Distributed | None:
         """Return the model's distributed parts; this assembly is over the ring without kernels."""
         lines = any(isinstance(use.element, LineElement) for use in self.model.elements)
         delays = any(b.block is not None and b.block.kernel_time for b in self.model.blocks)
@@ -223,7 +219,6 @@ class _Assembly:
             evaluator,
             expressions,
             is_nameless=is_nameless,
-            is_joined=is_joined,
             is_cut=is_cut,
             is_followed=is_followed,
             functions=self._along,
@@ -312,7 +307,6 @@ class _Assembly:
             stamp = self._stamp(use, evaluator, nodes, values)
             if stamp is not None:
                 self._take(use, stamp)
-        self._join()
         self._take_inputs(nodes)
         for variable, expression in values:
             self._equal(variable, expression, evaluator)
@@ -341,7 +335,6 @@ class _Assembly:
             None if self.distributed is None else self.distributed.propagation,
             None if self.distributed is None or self.ring.is_sparse or self.is_cut else self._cleared(),
             tuple(self._pieces() if self.is_cut else self.continua),
-            self.distributed is not None and bool(self.distributed.links),
             self.distributed is not None and self.distributed.is_split,
         )
 
@@ -353,41 +346,6 @@ class _Assembly:
             if row.role == "condition" or (row.about.kind == "through" and row.about.owner in transmissions):
                 product = product * common_denominator(self.ring, row.form.coefficients)
         return product
-
-    def _join(self) -> None:
-        """Let the ends of a chain follow from its start and what enters on the way."""
-        if self.distributed is None or self.is_cut:
-            return
-        from symflex.equations.distributed import transfer_matrix  # loaded with what is joined
-
-        propagation = self.distributed.propagation
-        for link in self.distributed.links:
-            (element, use), (_, first) = self.lines[link.name], self.lines[link.first]
-            medium, _ = self.distributed.lines[link.name]
-            start = element.initial_state(first)
-            entering = []
-            for before, after, distance in link.entries:
-                jump = [
-                    ((v, use.one), (end, -factor))
-                    for v, (end, factor) in zip(
-                        element.initial_state(self.lines[after][1]),
-                        element.final_state(self.lines[before][1]),
-                        strict=True,
-                    )
-                ]
-                # What moves across is the same on both sides of a node.
-                entering.append((transfer_matrix(medium, distance, propagation), jump, len(element.ends)))
-            forms = []
-            for i, end in enumerate(element.final_state(use)):
-                terms = [end, *((v, -c) for v, c in zip(start, use.transmission[i], strict=True))]
-                for matrix, jump, across in entering:
-                    terms += [(v, -matrix[i][j] * c) for j in range(across, len(jump)) for v, c in jump[j]]
-                forms.append(LinearForm.of(*terms))
-            places = [
-                k for k, r in enumerate(self.rows) if r.about.kind == "through" and r.about.owner == link.name
-            ]
-            for place, form in zip(places, forms, strict=True):
-                self.rows[place] = replace(self.rows[place], form=form)
 
     def _solutions(self) -> Iterable[FieldSolution]:
         """Return the fields' solutions, each once."""

@@ -2,18 +2,12 @@
 
 Input: a model and an evaluator over the ring without kernels.
 Output: a :class:`Distributed`, with the ring that has generators for every fundamental function that occurs.
-
-In a chain of line elements of one law each state follows from that at the chain's start, not from the one
-before: ``z_2 = T(b) (T(a) z_0 + e)`` is ``T(a + b) z_0 + T(b) e``, with e what enters where the elements
-meet. Where nothing but inputs does, a chain has the determinant of one element, as if it had not been cut.
 """
 
 from __future__ import annotations
 
-from collections import Counter
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import chain
 from math import factorial, pi, prod
 from typing import TYPE_CHECKING
 
@@ -233,7 +227,6 @@ class Distributed:
     evaluator: ExactEvaluator  # over the ring without kernels, for points
     lines: Mapping[str, tuple[Medium, Factored]]  # per line element, its equations and its length
     along: Mapping[str, str]  # per quantity of a line element along x, the state of its field theory
-    links: tuple[ChainEnd, ...] = ()  # of elements that follow from the start of a chain
 
     @property
     def is_split(self) -> bool:
@@ -374,7 +367,6 @@ def survey(
     expressions: Iterable[Expression],
     *,
     is_nameless: bool = False,
-    is_joined: bool = False,
     is_cut: bool = False,
     is_followed: bool = False,
     functions: tuple[tuple[str, Call], ...] | None = None,
@@ -407,19 +399,8 @@ def survey(
                 read = (*medium.system.states, *(() if own is None else own.readings()))
                 for state, quantity in zip(read, use.element.along, strict=True):
                     along.update((f"{use.name}.{name}", state) for name in quantity)
-        known = {name: (medium.system, length) for name, medium, length in lines if medium.along is None}
-        links = find_links(model, known) if is_joined else ()
-        linked = {link.name: link for link in links}
-        media = {name: medium for name, medium, _ in lines}
-        wanted = [(media[link.name], (link.length, *(x for _, _, x in link.entries))) for link in links]
-        wanted += [
-            (medium, (-length if medium.is_turned else length,))
-            for name, medium, length in lines
-            if name not in linked
-        ]
-        for medium, lengths in () if is_cut else wanted:
-            for length in lengths:
-                demands.need(medium, length)
+        for _, medium, length in () if is_cut else lines:
+            demands.need(medium, -length if medium.is_turned else length)
         for block in model.blocks:
             if block.block is not None and block.block.kernel_time:
                 time = evaluator.constant(dict(block.values)[block.block.kernel_time])
@@ -447,11 +428,7 @@ def survey(
     return Distributed(
         propagation,
         {
-            name: transfer_matrix(
-                medium,
-                linked[name].length if name in linked else -length if medium.is_turned else length,
-                propagation,
-            )
+            name: transfer_matrix(medium, -length if medium.is_turned else length, propagation)
             for name, medium, length in lines
             if not is_cut
         },
@@ -463,7 +440,6 @@ def survey(
         evaluator,
         {name: (medium, length) for name, medium, length in lines},
         along,
-        links,
     )
 
 
@@ -634,79 +610,6 @@ def _driven(medium: Medium, length: Factored, propagation: Propagation) -> list[
                     weight = _dot([propagation.embed(x) for x in matrix[i]], b, zero)
                     column[row] = column[row] + integrals[k] * weight
     return columns
-
-
-@dataclass(frozen=True, eq=False)
-class ChainEnd:
-    """The end of an element in terms of its chain."""
-
-    name: str  # the element
-    first: str  # the first element of the chain
-    length: Factored  # from the chain's start to the element's end [m]
-    # Where inputs enter: the elements before and after, and the distance from there.
-    entries: tuple[tuple[str, str, Factored], ...]
-
-
-def find_links(model: Model, lines: Mapping[str, tuple[FieldSystem, Factored]]) -> tuple[ChainEnd, ...]:
-    """Return the links of all chains, those with the longest lengths first."""
-    touched = Counter(r.node for use in model.elements for _, references in use.nodes for r in references)
-    driven = {r.node for given in model.inputs for r in given.nodes}
-    ends = {use.name: _ends(use) for use in model.elements if isinstance(use.element, LineElement)}
-    starting = {a: name for name, (a, _) in ends.items()}
-    following = {
-        name: starting[b]
-        for name, (_, b) in ends.items()
-        if b in starting
-        and touched[b[0]] == 2  # noqa: PLR2004 (the two elements)
-        and b[0] != "ground"
-        and starting[b] != name
-        and name in lines
-        and starting[b] in lines
-        and _is_same(lines[name][0], lines[starting[b]][0])
-    }
-    found = []
-    for first in (name for name in ends if name in following and name not in following.values()):
-        path = [first]
-        while path[-1] in following:
-            path.append(following[path[-1]])
-        is_driven = [ends[name][0][0] in driven for name in path]
-        found += _links(path, [lines[name][1] for name in path], is_driven)
-    return tuple(found)
-
-
-def may_join(model: Model) -> bool:
-    """Tell whether anywhere two line elements meet, and nothing else does."""
-    touched = Counter(r.node for use in model.elements for _, references in use.nodes for r in references)
-    lines = [use for use in model.elements if isinstance(use.element, LineElement)]
-    met = Counter(end for use in lines for end, _ in _ends(use) if end != "ground")
-    return any(count == 2 == touched[end] for end, count in met.items())  # noqa: PLR2004 (the two elements)
-
-
-def _ends(use: PlacedElement) -> tuple[tuple[str, str], tuple[str, str]]:
-    a, b = dict(use.nodes)["between"]
-    return (a.node, a.component), (b.node, b.component)
-
-
-def _is_same(one: FieldSystem, other: FieldSystem) -> bool:
-    """Tell whether two elements have the same equations."""
-    pairs = zip(chain(*one.matrix), chain(*other.matrix), strict=False)
-    return one.states == other.states and all((a - b).is_zero for a, b in pairs)
-
-
-def _links(path: Sequence[str], lengths: Sequence[Factored], is_driven: Sequence[bool]) -> list[ChainEnd]:
-    """Return the links of one chain, the last first."""
-    starts = [lengths[0] * 0]
-    for length in lengths:
-        starts.append(starts[-1] + length)
-    return [
-        ChainEnd(
-            path[n],
-            path[0],
-            starts[n + 1],
-            tuple((path[k - 1], path[k], starts[n + 1] - starts[k]) for k in range(1, n + 1) if is_driven[k]),
-        )
-        for n in range(len(path) - 1, 0, -1)
-    ]
 
 
 Key = tuple[str, int] | Variable

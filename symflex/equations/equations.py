@@ -71,7 +71,6 @@ class Equations:
     propagation: Propagation | None = None
     cleared: Factored | None = None
     continua: tuple[Continuum, ...] = ()  # the distributed parts
-    is_joined: bool = False  # elements of one law that meet were taken as one
     is_split: bool = False  # what is coupled has several laws somewhere, or equal wavenumbers
 
     def __repr__(self) -> str:

@@ -42,17 +42,11 @@ class BoundState:
     unit: str  # SI unit, empty when unknown
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class BoundStateSpace:
-    """``w' = A w + B u``, ``y = C w + D u`` in doubles; every entry is the nearest to the exact one."""
+class Matrices:
+    """What has the matrices of state equations: A of shape (n, n), B (n, m), C (p, n), D (p, m)."""
 
-    name: str  # what programs for control design call it: letters, digits and underscores
-    arrays: Arrays  # the matrices
-    states: tuple[BoundState, ...]  # what the states are
-    # inputs and outputs: their names and units.
-    inputs: tuple[Channel, ...]
-    outputs: tuple[Channel, ...]
-    is_minimal: bool  # every state is controllable and observable
+    __slots__ = ()
+    arrays: Arrays
 
     @property
     def A(self) -> npt.NDArray[float64]:  # noqa: N802
@@ -73,6 +67,19 @@ class BoundStateSpace:
     def D(self) -> npt.NDArray[float64]:  # noqa: N802
         """Array of shape (outputs, inputs), read-only."""
         return self.arrays.d
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BoundStateSpace(Matrices):
+    """``w' = A w + B u``, ``y = C w + D u`` in doubles; every entry is the nearest to the exact one."""
+
+    name: str  # what programs for control design call it: letters, digits and underscores
+    arrays: Arrays  # the matrices
+    states: tuple[BoundState, ...]  # what the states are
+    # inputs and outputs: their names and units.
+    inputs: tuple[Channel, ...]
+    outputs: tuple[Channel, ...]
+    is_minimal: bool  # every state is controllable and observable
 
     @property
     def metadata(self) -> dict[str, object]:

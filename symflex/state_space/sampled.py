@@ -28,7 +28,7 @@ from symflex.errors.diagnostic import nearest
 from symflex.errors.optional import installed
 from symflex.model.model import PI_NEARLY
 from symflex.options import duration, exact, frequency
-from symflex.state_space.numeric import Arrays, rounding_of
+from symflex.state_space.numeric import Arrays, Matrices, rounding_of
 from symflex.transfer.balls import ball
 
 if TYPE_CHECKING:
@@ -137,7 +137,7 @@ def _finite(number: float | Fraction, flag: str) -> Fraction:
 
 
 @dataclass(frozen=True, eq=False)
-class SampledStateSpace:
+class SampledStateSpace(Matrices):
     """``w[k+1] = A w[k] + B u[k]``, ``y[k] = C w[k] + D u[k]`` in doubles, one step per sampling time.
 
     The input is held from one sample to the next; the states are those of the continuous system and then,
@@ -151,26 +151,6 @@ class SampledStateSpace:
     states: tuple[str, ...]
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
-
-    @property
-    def A(self) -> npt.NDArray[np.float64]:  # noqa: N802
-        """Array of shape (n, n), read-only."""
-        return self.arrays.a
-
-    @property
-    def B(self) -> npt.NDArray[np.float64]:  # noqa: N802
-        """Array of shape (n, inputs), read-only."""
-        return self.arrays.b
-
-    @property
-    def C(self) -> npt.NDArray[np.float64]:  # noqa: N802
-        """Array of shape (outputs, n), read-only."""
-        return self.arrays.c
-
-    @property
-    def D(self) -> npt.NDArray[np.float64]:  # noqa: N802
-        """Array of shape (outputs, inputs), read-only."""
-        return self.arrays.d
 
     @property
     def dt(self) -> float:

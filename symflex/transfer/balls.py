@@ -330,26 +330,27 @@ NEAR = (200, 220)
 """Negative powers of two between which the behaviour at a point is read off, where there is no number."""
 
 
-def double_value(enclosed: Callable[[int], Ball], first: Ball, s: complex, patience: int | None) -> complex:
+def double_value(
+    enclosed: Callable[[int], Ball], s: complex, patience: int | None, bits: int = FIRST_BITS
+) -> complex:
     """Return a function's value at one complex frequency [rad/s] to double precision.
 
-    ``first`` is what ``enclosed`` returns at ``FIRST_BITS``. After ``patience`` doublings of the precision a
-    value that is not a number is sought as a limit; never with None, where only a pole has none. The value is
-    nan where ``s`` is not finite, and ``inf + nan*1j`` at a pole.
+    ``enclosed`` is the function by the precision, which begins with so many ``bits``. After ``patience``
+    doublings a value that is not a number is sought as a limit; never with None, where only a pole has none.
+    The value is nan where ``s`` is not finite, and ``inf + nan*1j`` at a pole.
     """
     if not (isfinite(s.real) and isfinite(s.imag)):
         return complex(nan, nan)
-    point, function, bits = acb(s.real, s.imag), first, FIRST_BITS
+    point, last = acb(s.real, s.imag), None if patience is None else bits << patience
     while True:
-        value = function(point)
+        value = enclosed(bits)(point)
         if value.is_finite() and value.rel_accuracy_bits() >= DOUBLE_BITS:
             return complex(float(value.real.mid()), float(value.imag.mid()))
-        if patience is not None and not value.is_finite() and bits >= FIRST_BITS << patience:
+        if last is not None and not value.is_finite() and bits >= last:
             return _limit_at(enclosed, s)
         if bits >= LAST_BITS:
             return 0j if value.is_finite() else complex(inf, nan)
         bits *= 2
-        function = enclosed(bits)
 
 
 def _limit_at(enclosed: Callable[[int], Ball], s: complex) -> complex:

@@ -16,7 +16,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from decimal import Decimal
 from fractions import Fraction
-from functools import cached_property
+from functools import cache, cached_property
 from math import inf, isfinite, lcm
 from typing import TYPE_CHECKING
 
@@ -34,7 +34,6 @@ from symflex.model.declarations import assuming
 from symflex.quantities import parse_quantity, unit_of
 from symflex.transfer.against_equations import agreement, compare
 from symflex.transfer.balls import (
-    FIRST_BITS,
     EvaluationPlan,
     at_centre,
     ball,
@@ -285,8 +284,8 @@ class BoundTransferFunction:
         return Ring(self.ratio.ring.names[1:])
 
     @cached_property
-    def _first(self) -> Enclosed:
-        return self.enclosed(FIRST_BITS)
+    def _known(self) -> Callable[[int], Enclosed]:
+        return cache(self.enclosed)
 
     def __call__(self, s: complex) -> complex:
         """Return the value at one complex frequency [rad/s] to double precision.
@@ -296,7 +295,7 @@ class BoundTransferFunction:
         """
         if self.ratio.is_zero:
             return 0j
-        return double_value(self.enclosed, self._first, s, 0 if self.kernels else None)
+        return double_value(self._known, s, 0 if self.kernels else None)
 
     def limit_at_zero(self) -> float:
         """Return the limit for s -> 0 from the right: 0, a finite gain, or a signed infinity."""

@@ -73,7 +73,7 @@ def derive_all(
 
         # Common factors may be left; with names for coefficients others may be, once these are opened.
         named, kept = named_coefficients(equations)
-        again = assemble(named, nested_transfer, is_joined=equations.is_joined)
+        again = assemble(named, nested_transfer)
         other = _CramerQuotients(again, most, equations, kept)
         found = tuple(min(tf, other.finish(*pair), key=_terms) for tf, pair in zip(found, pairs, strict=True))
     compare(workshop.solve, [agreement(tf) for tf in found])

@@ -37,7 +37,6 @@ from symflex.algebra.vanishing import OriginSeries, Vanishing
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic
 from symflex.transfer.expansion import KERNEL_TERMS
-from symflex.transfer.kernel_images import KernelImages
 from symflex.transfer.lowest_terms import cancel
 
 if TYPE_CHECKING:
@@ -48,8 +47,6 @@ if TYPE_CHECKING:
     from symflex.algebra.exponentials import KernelPair
 
     Split = Callable[[fmpz_mpoly], tuple[fmpz_mpoly, fmpz_mpoly]]
-
-CIRCULAR_AND_HYPERBOLIC = frozenset({"cosh", "sinh", "cos", "sin"})
 
 WAYS = 12
 """Number of ways to solve the dispersion relations that are tried when orders of vanishing are looked for."""
@@ -136,13 +133,10 @@ class KernelReduction:
             one, modes = Factored.number(self.ring, 1), self.normal.reduce_factored(den * cancelled)
             return ReducedQuotient(one * 0, one, self._modes(modes), self.table)
         before = _solved_for(cancelled, self.solved)
-        if self._are_apart(above, below):
-            table, quotient, shared = self.table, *self._lowest(above, below, before, self._kernel_content)
-        else:
-            above, below, before = (self._in_exponentials(v) for v in (above, below, before))
-            quotient, shared = self._lowest(above, below, before, self.coordinates.split)
-            table, back = self._restorer([quotient, shared])
-            quotient, shared = back(quotient), back(shared)
+        above, below, before = (self._in_exponentials(v) for v in (above, below, before))
+        quotient, shared = self._lowest(above, below, before)
+        table, back = self._restorer([quotient, shared])
+        quotient, shared = back(quotient), back(shared)
         ratio = _split_contents(self._shortest(quotient), self._kernel_content)
         modes = self._modes(self._shortest(shared))
         if table is self.table:
@@ -150,23 +144,13 @@ class KernelReduction:
         num, den = self._entire(ratio, table)
         return ReducedQuotient(num, den, modes, table)
 
-    def _lowest(
-        self, above: Factored, below: Factored, before: Factored, contents: Split
-    ) -> tuple[Factored, Factored]:
+    def _lowest(self, above: Factored, below: Factored, before: Factored) -> tuple[Factored, Factored]:
         """Return a quotient with common factors cancelled, and these times what was cancelled before."""
         quotient, shared = cancel(above, below)
         shared, _ = cancel((shared * before).numerator(), before.denominator())
-        quotient, shared = _split_contents(quotient, contents), _split_contents(shared, contents)
+        quotient, shared = (_split_contents(v, self.coordinates.split) for v in (quotient, shared))
         # Powers of wavenumbers come of clearing denominators: as powers of s they would look like modes.
         return quotient, shared.filter(lambda f: not self._is_of_waves(f)).numerator()
-
-    def _are_apart(self, above: Factored, below: Factored) -> bool:
-        """Tell whether it is proved that no factor with a kernel is common."""
-        if any(k.function not in CIRCULAR_AND_HYPERBOLIC for k in self.table.kernels):
-            return False
-        images = KernelImages(self.ring, self.coordinates.angles)
-        pieces = [[f for f, _ in v.factors if self.has_kernels(f)] for v in (above, below)]
-        return all(images.prove_apart(f, g) for f in pieces[0] for g in pieces[1])
 
     def _kernel_content(self, polynomial: fmpz_mpoly) -> tuple[fmpz_mpoly, fmpz_mpoly]:
         """Return a polynomial as one free of kernels times the rest."""

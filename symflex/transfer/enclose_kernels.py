@@ -22,10 +22,10 @@ from flint import acb, acb_mat, acb_poly, acb_series, arb, ctx
 
 from symflex.algebra.interval_newton import narrowed, stays_inside
 from symflex.algebra.modal_sum import ModalSums, modal_amplitudes, mode_values
-from symflex.transfer.balls import Value, at_centre, ball, expansion, raised
+from symflex.transfer.balls import Arithmetic, Value, at_centre, ball, expansion, raised
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from flint import fmpz_mpoly
 
@@ -37,6 +37,8 @@ if TYPE_CHECKING:
 
 SIGNS = (1, -1)
 ZERO = acb(0)
+PAIR = 2
+"""Terms of a series to first order: those for which roots of dispersions are found."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,17 +47,19 @@ class KernelValues:
 
     names: Sequence[str]  # generators of the ring: s, constants, wavenumbers, kernels
     table: KernelTable  # over the same ring
-    constants: Mapping[str, arb]  # enclosures of the constants
+    constants: Mapping[str, Arithmetic]  # enclosures of the constants, or how they vary
     sums: ModalSums  # over the same ring
     plans: PolynomialMemo[EvaluationPlan]  # shared by all precisions
     matrices: VaryingMatrices | None = None  # of laws whose coefficients vary along x
 
-    def at(self, s: Value, near: Mapping[str, Value] | None = None) -> dict[str, Value]:
+    def at(
+        self, s: Value, near: Mapping[str, Value] | None = None, root: Callable[[Value], Value] | None = None
+    ) -> dict[str, Value]:
         """Return the values of all generators at ``s`` [rad/s], and characteristic roots without names.
 
         Where the roots of a dispersion can be told apart, they stand for its fundamental functions. It is a
         point, a ball, or a series about either; wavenumbers take the same branch as ``near``, values at a
-        ball that holds ``s``.
+        ball that holds ``s``. Their square roots are by default those of :func:`square_root`.
         """
         values: dict[str, Value] = {"s": s, **self._numbers}
         coefficients: dict[Dispersion, tuple[Value, ...]] = {}
@@ -65,9 +69,10 @@ class KernelValues:
             coefficients[law] = found
             if not law.shift.is_zero:
                 shifts[law] = self.value(law.shift, values)
-            values.update(_wavenumbers(law, found, near))
+            values.update(law.roots(found, root) if root else _wavenumbers(law, found, near))
         fundamental: dict[tuple[Dispersion, Factored], tuple[Value, ...]] = {}
-        roots = self._roots(coefficients, values)
+        is_long = isinstance(s, acb_series) and s.prec > PAIR
+        roots = {} if is_long else self._roots(coefficients, values)
         values.update(roots)
         for kernel in self.table.kernels:
             law = kernel.dispersion
@@ -96,7 +101,8 @@ class KernelValues:
 
     @cached_property
     def _numbers(self) -> dict[str, Value]:
-        return {name: acb(value) for name, value in self.constants.items()}
+        known = self.constants.items()
+        return {name: acb(value) if isinstance(value, arb) else value for name, value in known}
 
     @cached_property
     def _laws(self) -> tuple[tuple[int, Dispersion], ...]:
@@ -238,13 +244,18 @@ def _closest(candidates: Sequence[Value], goal: acb) -> Value:
 
 
 def _kernel(kernel: Kernel, argument: Value) -> Value:
-    match kernel.function:
-        case "cosh" | "sinh" if isinstance(argument, acb):
-            return argument.cosh() if kernel.function == "cosh" else argument.sinh()
-        case "cosh" | "sinh":
-            grown, decayed = argument.exp(), (-argument).exp()
-            return (grown + decayed) / 2 if kernel.function == "cosh" else (grown - decayed) / 2
-    return argument.cos() if kernel.function == "cos" else argument.sin()
+    """Return a kernel; to first order by its derivative, as sums of exponentials leave no exact zeros."""
+    if isinstance(argument, acb_series) and argument.prec > PAIR:
+        if kernel.function in ("cos", "sin"):
+            return argument.cos() if kernel.function == "cos" else argument.sin()
+        grown, decayed = argument.exp(), (-argument).exp()
+        return (grown + decayed) / 2 if kernel.function == "cosh" else (grown - decayed) / 2
+    x = at_centre(argument)
+    value: acb = getattr(x, kernel.function)()
+    if isinstance(argument, acb):
+        return value
+    slope = {"cosh": x.sinh, "sinh": x.cosh, "sin": x.cos}.get(kernel.function, lambda: -x.sin())
+    return acb_series([value, slope() * argument[1]], PAIR)
 
 
 def _is_even(law: Dispersion) -> bool:
@@ -257,37 +268,34 @@ def _root_name(dispersion: int, i: int) -> str:
 
 
 def fundamental_functions(coefficients: Sequence[Value], length: Value) -> tuple[Value, ...]:
-    """Return ``h, h', ..., h^(n-1)`` at a length for ``lambda^n + ... + c_0``.
+    """Return ``h, h', ..., h^(n-1)`` at a length for ``lambda^n + ... + c_0``, numbers or series.
 
-    They are the last column of the exponential of the companion matrix times the length.
+    They are the last column of the exponential of the companion matrix times the length. That of a matrix of
+    series stands in the first row of blocks of the exponential of a block Toeplitz matrix (Mathias 1996, A
+    chain rule for matrix functions, theorem 4.1).
     """
-    n = len(coefficients)
-    numbers = [c for c in coefficients if isinstance(c, acb)]
-    if len(numbers) == n and isinstance(length, acb):
-        companion = acb_mat(n, n)
-        for i in range(n - 1):
-            companion[i, i + 1] = acb(1)
-        for j, number in enumerate(numbers):
-            companion[n - 1, j] = -number
-        grown = (companion * length).exp()
-        return tuple(grown[i, n - 1] for i in range(n))
-    if (found := _by_homogeneity(coefficients, length)) is not None:
+    n, given = len(coefficients), (*coefficients, length)
+    terms = min((x.prec for x in given if isinstance(x, acb_series)), default=1)
+    if terms == PAIR and (found := _by_homogeneity(coefficients, length)) is not None:
         return found
-    # First order about a point: the derivative of h with respect to c_k is minus h * h^(k), a convolution,
-    # and is the block above the diagonal of the exponential of a block matrix (Van Loan 1978).
-    base = [at_centre(c) for c in coefficients]
-    slope = [c[1] if isinstance(c, acb_series) else acb(0) for c in coefficients]
-    reach = at_centre(length)
-    block = acb_mat(2 * n, 2 * n)
-    for offset in (0, n):
-        for i in range(n - 1):
-            block[offset + i, offset + i + 1] = acb(1)
-        for j, c in enumerate(base):
-            block[offset + n - 1, offset + j] = -c
-    for j, c in enumerate(slope):
-        block[n - 1, n + j] = -c
-    grown = (block * reach).exp()
-    return tuple(acb_series([grown[i, n - 1], grown[i, 2 * n - 1]], 2) for i in range(n))
+    *rows, reach = (_parts(x, terms) for x in given)
+    block = acb_mat(n * terms, n * terms)
+    for k in range(terms):
+        known = range(max(0, k + 1 - len(reach)), k + 1)
+        steep = [sum((own[i] * reach[k - i] for i in known if i < len(own)), ZERO) for own in rows]
+        for start in range(terms - k):
+            row, column = n * start, n * (start + k)
+            for i in range(n - 1 if k < len(reach) else 0):
+                block[row + i, column + i + 1] = reach[k]
+            for j, c in enumerate(steep):
+                block[row + n - 1, column + j] = -c
+    grown = block.exp()
+    last = [[grown[i, n * k + n - 1] for k in range(terms)] for i in range(n)]
+    return tuple(x[0] if terms == 1 else acb_series(x, terms) for x in last)
+
+
+def _parts(value: Value, terms: int) -> list[acb]:
+    return [value[k] for k in range(terms)] if isinstance(value, acb_series) else [value]
 
 
 def _by_homogeneity(coefficients: Sequence[Value], length: Value) -> tuple[Value, ...] | None:
@@ -336,13 +344,13 @@ def square_root(x: Value) -> Value:
         return x.sqrt()
     reach = (base / middle - 1).abs_upper()
     if reach < NARROW:
-        return (x / middle).sqrt() * middle.sqrt()
-    if not reach < 1:
-        # Of a ball that holds 0 no branch is analytic.
-        return NOWHERE if isinstance(x, acb) else acb_series([NOWHERE] * x.prec, x.prec)
-    # sqrt(m) sqrt(1 + e) with abs(e) <= d differs from sqrt(m) by at most (1 - sqrt(1 - d)) sqrt(m).
-    off = (1 - (1 - reach).sqrt()).upper()
-    root = middle.sqrt() * acb(arb(1, off), arb(0, off))
+        root = (base / middle).sqrt() * middle.sqrt()
+    elif reach < 1:
+        # sqrt(m) sqrt(1 + e) with abs(e) <= d differs from sqrt(m) by at most (1 - sqrt(1 - d)) sqrt(m).
+        off = (1 - (1 - reach).sqrt()).upper()
+        root = middle.sqrt() * acb(arb(1, off), arb(0, off))
+    else:
+        root = NOWHERE  # of a ball that holds 0 no branch is analytic
     if isinstance(x, acb):
         return root
     found = [root]

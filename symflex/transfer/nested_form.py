@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from cmath import isfinite
 from dataclasses import dataclass, field
-from functools import cached_property, partial
+from functools import cache, cached_property, partial
 from math import prod
 from operator import truediv
 from typing import TYPE_CHECKING, Any
@@ -29,13 +29,25 @@ from symflex.algebra.straight_line import Operation, Step, StraightLine
 from symflex.budget import spend
 from symflex.expressions import Name, names
 from symflex.transfer.against_equations import Agreement, ModelSolve, compare
-from symflex.transfer.balls import FIRST_BITS, ball, double_value, enclosure, later, limit_at_zero
+from symflex.transfer.balls import (
+    DOUBLE_BITS,
+    FIRST_BITS,
+    LAST_BITS,
+    at_centre,
+    ball,
+    double_value,
+    enclosure,
+    expansion,
+    later,
+    limit_at_zero,
+    raised,
+)
 from symflex.transfer.bind import BoundTransferFunction, Given, bind, values_for
 from symflex.transfer.derive import nested_transfer
 from symflex.transfer.transfer_function import TransferFunction, name_quantity, unit_of_quotient
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
     from fractions import Fraction
 
     import numpy as np
@@ -45,7 +57,7 @@ if TYPE_CHECKING:
     from symflex.equations.elimination.star_mesh import Waves
     from symflex.equations.line_network import LineNetwork
     from symflex.model import ExactValue, Input, Model, ModelParameter, Output
-    from symflex.transfer.balls import Value
+    from symflex.transfer.balls import Arithmetic, Value
     from symflex.transfer.direct_solve import Point
     from symflex.transfer.enclosed_network import EnclosedNetwork, NetworkResponses
     from symflex.transfer.probes import Probes
@@ -305,20 +317,20 @@ class BoundNested:
         return EnclosedNetwork(self.source.cut.responses(bits, dict(self.values)), *numbers)
 
     @cached_property
-    def _first(self) -> EnclosedNested:
-        return self.enclosed(FIRST_BITS)
+    def _known(self) -> Callable[[int], EnclosedNested]:
+        return cache(self.enclosed)
 
-    def __call__(self, s: complex) -> complex:
+    def __call__(self, s: complex, bits: int = FIRST_BITS) -> complex:
         """Return the value at one complex frequency [rad/s] to double precision.
 
-        The precision is raised until the ball's radius is below the last bit. Where the expression has no
-        value, at s = 0 mostly, it is the limit, found from two points close by; at a pole that is
-        ``inf + nan*1j``.
+        The precision is raised, from so many ``bits`` on, until the ball's radius is below the last bit.
+        Where the expression has no value, at s = 0 mostly, it is the limit, found from two points close by;
+        at a pole that is ``inf + nan*1j``.
         """
         if self.is_zero:
             return 0j
         # A wide ball may hold a zero divisor where the function has none: once more before a limit is sought.
-        value = double_value(self.enclosed, self._first, s, 1)
+        value = double_value(self._known, s, 1, bits)
         if isfinite(value) or self.solved(FIRST_BITS) is None:
             return value
 
@@ -327,7 +339,14 @@ class BoundNested:
             solved = self.solved(bits)
             return lambda at: acb("nan") if solved is None else solved.value_and_slope(at)[0]
 
-        return double_value(network, network(FIRST_BITS), s, 1)
+        return double_value(network, s, 1)
+
+    def bits_at(self, s: complex) -> int:
+        """Return with how many bits the value is known: at other points as many do, or nearly."""
+        bits, point = FIRST_BITS, acb(s.real, s.imag)
+        while bits < LAST_BITS and not self._known(bits)(point).rel_accuracy_bits() >= DOUBLE_BITS:
+            bits *= 2
+        return bits
 
     def limit_at_zero(self) -> float:
         """Return the limit for s -> 0 from the right, possibly infinite."""
@@ -415,11 +434,13 @@ class EnclosedNested:
     def value_and_slope(self, s: acb) -> tuple[acb, acb]:
         """Return balls around the value and around ``G'(s)/G(s)``."""
         with ctx.workprec(self.bits):
-            num, den, above, below = _values_and_slopes(self.source, self.constants, s)
+            spend()
+            sides = _values(self.source, {**self.constants, LAPLACE: expansion(s)}, ball)
+            (num, above), (den, below) = ((at_centre(x), _slope(x)) for x in map(_complex, sides))
             return num / den, above / num - below / den
 
 
-_GENERATOR, _NUMBER, _ADD, _MULTIPLY, _DIVIDE, _NEGATE, _POWER = map(int, Step)
+_GENERATOR = int(Step.GENERATOR)
 
 
 def _values(
@@ -435,11 +456,20 @@ def _values(
             return known[names[position]]
         waves, place = wave_of[position]
         if waves not in found:
-            found[waves] = _functions(waves, [acb(values[i]) for i in waves.arguments])
+            found[waves] = _functions(waves, [_complex(values[i]) for i in waves.arguments])
         return found[waves][place]
 
-    tf.program.values(tf.operations, name=generator, number=number, known=values)
+    tf.program.values(tf.operations, name=generator, number=number, quotient=_quotient, known=values)
     return values[tf.num], values[tf.den]
+
+
+def _quotient(above: Arithmetic, below: Arithmetic) -> Arithmetic:
+    """Return a quotient, not finite where a series is divided by one that begins with zero."""
+    return above * raised(below, -1) if isinstance(below, acb_series) else above / below
+
+
+def _complex(value: Arithmetic) -> Value:
+    return value if isinstance(value, acb_series) else acb(value)
 
 
 def _functions(waves: Waves, arguments: Sequence[Value]) -> tuple[Value, ...]:
@@ -452,76 +482,8 @@ def _functions(waves: Waves, arguments: Sequence[Value]) -> tuple[Value, ...]:
     return tuple(plain[n] if n >= 0 else (-shift * length).exp() for n in orders)
 
 
-def _lines(
-    waves: Waves, values: Mapping[int, acb], slopes: Mapping[int, acb]
-) -> Iterator[tuple[int, tuple[acb, acb]]]:
-    """Yield the position of each fundamental function with its value and its derivative by s."""
-    lines = [acb_series([values[i], slopes.get(i, acb(0))], 2) for i in waves.arguments]
-    for (position, _), series in zip(waves.generators, _functions(waves, lines), strict=True):
-        if isinstance(series, acb_series):
-            yield position, (series[0], series[1])
-
-
-def _values_and_slopes(  # noqa: PLR0912, PLR0915  (one branch per kind of step, in one loop)
-    tf: NestedTransferFunction, known: Mapping[str, acb], s: acb
-) -> tuple[acb, acb, acb, acb]:
-    """Return numerator and denominator, and their derivatives by s; what is free of s has none on the way."""
-    program = tf.program
-    values: dict[int, acb] = {}
-    spend()
-    slopes: dict[int, acb] = {}
-    functions: dict[int, tuple[acb, acb]] = {}
-    for kind, i, args, gone in tf.operations:
-        if kind == _MULTIPLY:
-            value, slope = values[args[0]], slopes.get(args[0])
-            for x in args[1:]:
-                factor, own = values[x], slopes.get(x)
-                if slope is not None:
-                    slope = slope * factor
-                if own is not None:
-                    slope = value * own if slope is None else slope + value * own
-                value = value * factor
-        elif kind == _ADD:
-            value, slope = values[args[0]], slopes.get(args[0])
-            for x in args[1:]:
-                value = value + values[x]
-                own = slopes.get(x)
-                if own is not None:
-                    slope = own if slope is None else slope + own
-        elif kind == _DIVIDE:
-            above, below = args
-            value, slope = values[above] / values[below], slopes.get(above)
-            own = slopes.get(below)
-            if own is not None:
-                slope = (-value * own if slope is None else slope - value * own) / values[below]
-            elif slope is not None:
-                slope = slope / values[below]
-        elif kind == _GENERATOR:
-            name = program.names[args[0]]
-            if args[0] in tf.wave_of:
-                if args[0] not in functions:
-                    functions.update(_lines(tf.wave_of[args[0]][0], values, slopes))
-                value, slope = functions[args[0]]
-            else:
-                value, slope = (s, acb(1)) if name == LAPLACE else (known[name], None)
-        elif kind == _NEGATE:
-            value, slope = -values[args[0]], slopes.get(args[0])
-            slope = None if slope is None else -slope
-        elif kind == _POWER:
-            base, exponent = args
-            value, slope = values[base] ** exponent, slopes.get(base)
-            if slope is not None:
-                slope = exponent * values[base] ** (exponent - 1) * slope
-        else:
-            value, slope = acb(ball(program.fraction(i))), None
-        values[i] = value
-        if slope is not None:
-            slopes[i] = slope
-        for x in gone:
-            del values[x]
-            slopes.pop(x, None)
-    zero = acb(0)
-    return values[tf.num], values[tf.den], slopes.get(tf.num, zero), slopes.get(tf.den, zero)
+def _slope(value: Value) -> acb:
+    return value[1] if isinstance(value, acb_series) else acb(0)
 
 
 def _one() -> arb:

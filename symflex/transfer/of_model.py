@@ -122,7 +122,7 @@ def derive_all(model: Model, pairs: Sequence[tuple[str, str]] | None = None) -> 
     """
     wanted = model.transfer_functions if pairs is None else tuple(pairs)
     if model.is_distributed and _may_be_large(model):
-        terms = _expanded_terms(model, assemble_sparse(model), wanted[0])
+        terms = _expanded_terms(assemble_sparse(model), wanted[0])
         if terms > MOST_PRODUCTS:
             message = f"the closed form is too large: its determinant would have {_some(terms)} terms"
             hint = "roots, plots, sweeps, stability and exports do without it; or split the model"
@@ -134,16 +134,7 @@ def _derive_expanded(
     model: Model, wanted: Sequence[tuple[str, str]], most: Terms | None = None
 ) -> tuple[TransferFunction, ...]:
     """Return what :func:`derive_all` does, of a model known not to be too large."""
-    try:
-        found = derive_from(assemble(model), wanted, most)
-    except BudgetError as error:
-        if error.diagnostics[0].code not in ("SF501", "SF502") or not model.is_distributed:
-            raise
-        # A chain of elements of one law is far smaller as one, though its print has other lengths.
-        joined = equations_room.assemble(model, nested_transfer, is_joined=True)
-        if not joined.is_joined:
-            raise
-        found = derive_from(joined, wanted, most)
+    found = derive_from(assemble(model), wanted, most)
     if model.imaginary:
         found[0].kernels.without_tapers(*LOSSY_TAPER)
     mixed = [i for i, tf in enumerate(found) if tf.is_mixed or is_degenerate(tf)]
@@ -161,11 +152,11 @@ def followed_along_x(tf: TransferFunction) -> TransferFunction:
     return found
 
 
-def assemble_sparse(model: Model, *, is_joined: bool = False) -> Equations:
+def assemble_sparse(model: Model) -> Equations:
     """Return the equations over a ring of any number of names, for the nested form.
 
-    A model inside a block is expanded first, and needs the ordinary ring. With ``is_joined`` line elements
-    of one law that meet are taken as one. Raises ModelError: SF910 where coefficients vary along x.
+    A model inside a block is expanded first, and needs the ordinary ring. Raises ModelError: SF910 where
+    coefficients vary along x.
     """
     if is_tapered(model):
         message = "the nested form of networks is not available yet where coefficients vary along x"
@@ -173,7 +164,7 @@ def assemble_sparse(model: Model, *, is_joined: bool = False) -> Equations:
     is_sparse = not any(block.submodel is not None for block in model.blocks)
     with uncollected():
         return equations_room.assemble(
-            model, nested_transfer, is_sparse=is_sparse, is_nameless=model.is_distributed, is_joined=is_joined
+            model, nested_transfer, is_sparse=is_sparse, is_nameless=model.is_distributed
         )
 
 
@@ -212,7 +203,7 @@ def derive_as(
     if _may_be_large(model, 1 if solves else FEW_MEMBERS):
         equations = assemble_sparse(model)
         most = EXPANDED_PRODUCTS if model.is_distributed else EXPANDED_TERMS
-        terms = _expanded_terms(model, equations, pairs[0], CODE_PRODUCTS if solves else most)
+        terms = _expanded_terms(equations, pairs[0])
         if solves and terms <= most and (terms > CODE_PRODUCTS or _may_be_large(model, CODE_MEMBERS)):
             return nested_form.derive_nested(equations, pairs), SOLVED
         if terms > most:
@@ -253,7 +244,7 @@ def is_large_network(model: Model) -> bool:
     """Tell whether a distributed model's expanded form is larger than anyone reads."""
     if not model.is_distributed or not _may_be_large(model):
         return False
-    return _expanded_terms(model, assemble_sparse(model), model.transfer_functions[0]) > EXPANDED_PRODUCTS
+    return _expanded_terms(assemble_sparse(model), model.transfer_functions[0]) > EXPANDED_PRODUCTS
 
 
 def _some(terms: float) -> str:
@@ -270,31 +261,11 @@ def _may_be_large(model: Model, few: int = FEW_MEMBERS) -> bool:
     return lines + len(model.fields) > few
 
 
-def _expanded_terms(
-    model: Model, equations: Equations, pair: tuple[str, str], most: float = EXPANDED_PRODUCTS
-) -> float:
-    """Return about how many terms the expanded determinant has.
-
-    Where these are too many, chains of one law are taken as one.
-    """
+def _expanded_terms(equations: Equations, pair: tuple[str, str]) -> float:
+    """Return about how many terms the expanded determinant has."""
     from symflex.equations.elimination.star_mesh import eliminate  # few models are so large
 
-    terms = expanded_terms(equations, eliminate(equations, (pair,)))
-    if equations.propagation is not None and terms > most:
-        from symflex.equations.distributed import may_join  # only with beams
-
-        joined = assemble_sparse(model, is_joined=True) if may_join(model) else equations
-        if joined.is_joined:
-            return min(terms, expanded_terms(joined, eliminate(joined, (pair,))))
-    return terms
-
-
-def derive_with_numbers(model: Model, pairs: Sequence[tuple[str, str]]) -> tuple[NestedTransferFunction, ...]:
-    """Return transfer functions in nested form, derived with the declared values in place.
-
-    Nothing is divided into symbols here: a frame of a hundred members takes half a second.
-    """
-    return derive_nested(with_numbers(model, in_kernels=True), pairs)
+    return expanded_terms(equations, eliminate(equations, (pair,)))
 
 
 def derive_bound(model: Model, pairs: Sequence[tuple[str, str]]) -> tuple[BoundTransferFunction, ...]:
@@ -324,7 +295,7 @@ def _accumulates(equations: Equations) -> bool:
 
 def may_be_expanded(model: Model, pair: tuple[str, str]) -> bool:
     """Tell whether roots of a model with numbers may be sought in its expanded form: it is not too large."""
-    return _expanded_terms(model, assemble_sparse(model), pair) <= EXPANDED_PRODUCTS
+    return _expanded_terms(assemble_sparse(model), pair) <= EXPANDED_PRODUCTS
 
 
 def derive_for_roots(
@@ -344,7 +315,7 @@ def derive_for_roots(
     is_quick = not is_explained and not model.imaginary and not _accumulates(equations)
     is_counted = is_quick and _may_be_large(model) and is_passive(model)
     most = QUICK_PRODUCTS if is_quick else EXPANDED_PRODUCTS
-    if not is_counted and _expanded_terms(numbered, equations, pairs[0]) <= most:
+    if not is_counted and _expanded_terms(equations, pairs[0]) <= most:
         try:
             return tuple(bind(tf) for tf in _derive_expanded(model, pairs, UNASKED))
         except BudgetError as error:

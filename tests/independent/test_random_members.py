@@ -5,8 +5,9 @@ from __future__ import annotations
 import pytest
 
 from symflex import pipeline
+from symflex.model import with_numbers
 from symflex.transfer import bind, bind_nested
-from symflex.transfer.of_model import derive_with_numbers
+from symflex.transfer.of_model import derive_nested
 from tests.independent.members import random_members, response, specification
 
 QUICK = 4
@@ -20,7 +21,7 @@ def test_the_nested_form_has_the_response_of_the_boundary_value_problem(seed):
     network = random_members(seed, 5 if seed < QUICK else 12)
     model = pipeline.loads(specification(network))
     (tf,) = pipeline.derive_nested(model)
-    (numeric,) = derive_with_numbers(model, model.transfer_functions)
+    (numeric,) = derive_nested(with_numbers(model, in_kernels=True), model.transfer_functions)
     for s in POINTS:
         expected = response(network, s)
         assert abs(bind_nested(tf)(s) - expected) <= 1e-14 * abs(expected)

@@ -5,7 +5,7 @@ unknown, so that the system's poles are those of the parts together.
 
 Input: the determinants of a system, and of the same with a constraint.
 Output: a :class:`Relation`, ``num = factor * transmission / apart * constrained determinant``, proved in the
-ring of the equations; and where that is out of reach, whether certified roots agree.
+ring of the equations.
 """
 
 from __future__ import annotations
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
 
     from symflex.equations import Equations
     from symflex.model import Model, PlacedElement
-    from symflex.roots import Root
 
 
 SUPPORTS = (Fixed, Pin, Slider)
@@ -303,21 +302,3 @@ def exponentials(equations: Equations) -> list[fmpz_mpoly]:
     waves = equations.propagation
     found = () if waves is None else waves.propagators
     return [equations.ring.generator(p.generator) for p in found if p.order == EXPONENTIAL]
-
-
-def agree(zeros: Sequence[Root], poles: Sequence[Root]) -> bool:
-    """Tell whether two lists of enclosed roots agree: every one overlaps one of the other list.
-
-    Roots at 0 are left out: there the two may differ by a power of s. This proves nothing; it would show
-    that two sets differ.
-    """
-    left, right = (
-        [root for root in roots if not root.is_zero for _ in range(root.multiplicity)]
-        for roots in (zeros, poles)
-    )
-    for root in left:
-        partner = next((other for other in right if other.enclosure().overlaps(root.enclosure())), None)
-        if partner is None:
-            return False
-        right.remove(partner)
-    return not right

@@ -141,7 +141,6 @@ def _statement(explained: ZeroExplanation) -> str:
         where = f"{source} acts elsewhere than {output} measures, but has the same effect but for a factor."
     verb = {
         "proved": f"{zeros} are",
-        "compared": f"{zeros} in the region shown agree with",
         "not shown": f"{zeros} should be",
     }[explained.status]
     return f"{where} {verb} the poles of {system}."
@@ -149,10 +148,7 @@ def _statement(explained: ZeroExplanation) -> str:
 
 def _proof(explained: ZeroExplanation) -> str:
     if explained.status != "proved":
-        return (
-            "Not proved: the exact forms could not be compared. Zeros and hidden modes stand against the "
-            "poles of the constrained system, root by root."
-        )
+        return "Not proved: the exact forms could not be compared."
     own = _own(explained)
     more = f"*({explained.transmission})" if explained.transmission else ""
     if explained.kind == "partly":

@@ -35,7 +35,6 @@ from symflex.analysis.explanation.parts import (
     ConstrainedPart,
     Relation,
     Separation,
-    agree,
     relate,
     separate,
     varying,
@@ -48,8 +47,7 @@ from symflex.expressions import format_expression, power, product_of
 from symflex.model import Input, Model, Output, with_numbers
 from symflex.model.loss_factors import check_causal
 from symflex.print.forms.arrange import Arranger
-from symflex.roots.locate import locate
-from symflex.transfer import BoundTransferFunction, bind, derive_all
+from symflex.transfer import BoundTransferFunction
 from symflex.transfer.lowest_terms import cancel
 from symflex.transfer.of_model import assemble
 
@@ -57,7 +55,7 @@ if TYPE_CHECKING:
     from symflex.roots import PoleZeroMap, Root
 
 Kind = Literal["colocated", "beyond", "partly", "noncolocated", "open circuit", "free", "zero"]
-Status = Literal["proved", "compared", "not shown"]
+Status = Literal["proved", "not shown"]
 
 SYMBOLIC_ELEMENTS = 12
 """Lumped models up to this size keep their symbols, so that factors print in them."""
@@ -98,8 +96,7 @@ class ZeroExplanation:
         open. ``free``: of the system in which nothing imposes the motion. ``zero``: the function is
         identically zero.
     status : str
-        ``proved`` in the exact ring of the equations; ``compared``: certified or located roots agree in the
-        region shown; ``not shown``.
+        ``proved`` in the exact ring of the equations; ``not shown`` where the two forms cannot be compared.
     output, input : str
         Their names.
     is_direct : bool
@@ -234,7 +231,7 @@ def explain_zeros(model: Model, bound: BoundTransferFunction, found: PoleZeroMap
         return ZeroExplanation(bound.name, "zero", "proved", *pair)
     equations = assemble(given)
     case = _Case(given, pair, equations, Determinants.of(equations))
-    explained = _by_coordinate(case, found) or _by_condition(case, found) or _by_terminals(case)
+    explained = _by_coordinate(case) or _by_condition(case) or _by_terminals(case)
     plain = ZeroExplanation(bound.name, "noncolocated", "proved", *pair)
     complete = replace(explained or plain, has_zeros=_has_zeros(bound), has_hidden=bool(bound.hidden))
     return _with_roots(case, complete, found)
@@ -247,7 +244,7 @@ def _has_zeros(bound: BoundTransferFunction) -> bool:
 # ------------------------------------------------------------------------------ what the zeros are poles of
 
 
-def _by_coordinate(case: _Case, found: PoleZeroMap) -> ZeroExplanation | None:
+def _by_coordinate(case: _Case) -> ZeroExplanation | None:
     """Hold the coordinate that the output shows."""
     motion = measured(case.equations, case.pair[0])
     if motion is None:
@@ -259,7 +256,7 @@ def _by_coordinate(case: _Case, found: PoleZeroMap) -> ZeroExplanation | None:
     is_direct = acting(case.model, case.input) == motion.coordinates
     relation = relate(case.whole, case.pair, motion.factor, held)
     if relation is None:
-        return _compared(case, constraint, found) if is_direct else None
+        return case.explained("colocated", "not shown", constraint, is_direct=True) if is_direct else None
     separation = separate(held.equations, case.pair[1], case.model)
     kind, rest = _kind(case, relation, separation)
     plain = replace(
@@ -299,17 +296,7 @@ def _kind(case: _Case, relation: Relation, separation: Separation) -> tuple[Kind
     return ("partly", rest) if undriven else ("noncolocated", one)
 
 
-def _compared(case: _Case, constraint: Constraint, found: PoleZeroMap) -> ZeroExplanation:
-    """Compare the zeros with the poles of the held system, root by root, in the region shown."""
-    (zero,) = derive_all(assemble(constraint.model), [case.pair])
-    # Its output is at rest, so that every mode is hidden: the list of hidden modes is that of the poles.
-    poles = [h.root for h in locate(bind(zero), found.region, found.digits).hidden]
-    zeros = [*found.zeros, *(h.root for h in found.hidden)]
-    status: Status = "compared" if agree(zeros, poles) else "not shown"
-    return case.explained("colocated", status, constraint, is_direct=True)
-
-
-def _by_condition(case: _Case, found: PoleZeroMap) -> ZeroExplanation | None:
+def _by_condition(case: _Case) -> ZeroExplanation | None:
     """Let a field's condition that holds the input give way to one that keeps the output at zero."""
     replaced = replace_condition(case.model, case.input, case.output.expression)
     if replaced is None:
@@ -322,7 +309,7 @@ def _by_condition(case: _Case, found: PoleZeroMap) -> ZeroExplanation | None:
     scale = _coefficient(case.equations, case.pair[1])
     relation = relate(case.whole, case.pair, scale, held)
     if relation is None and replaced.is_dual:
-        return _compared(case, constraint, found)
+        return case.explained("colocated", "not shown", constraint, is_direct=True)
     if relation is None or not relation.apart.is_constant:
         return None
     # What the output does to the value it shows is all that is left of the numerator.

@@ -15,17 +15,16 @@ Residues, how much of each mode a transfer function holds, are the first coeffic
 from __future__ import annotations
 
 from collections.abc import Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 from math import pi
 from typing import TYPE_CHECKING
 
-import flint
-from flint import acb, acb_mat, acb_series, arb, ctx
+from flint import acb, acb_series, arb, ctx
 
 from symflex.algebra import Factored
+from symflex.algebra.interval_newton import narrowed
 from symflex.algebra.vanishing import OriginSeries
 from symflex.analysis.rational.networks import NetworkSides, Taylor
 from symflex.budget import spend
@@ -47,12 +46,11 @@ from symflex.roots.locate import locate
 from symflex.roots.precision import bits_for_digits
 from symflex.roots.root import GUARD_BITS
 from symflex.transfer import BoundNested
-from symflex.transfer.balls import Value, at_centre
+from symflex.transfer.balls import Value, at_centre, series_terms
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from symflex.algebra import Dispersion, Kernel
     from symflex.transfer import AnyBoundFunction, BoundTransferFunction
     from symflex.transfer.enclose_kernels import KernelValues
 
@@ -110,7 +108,7 @@ def expand_at_zero(bound: AnyBoundFunction, last: int, digits: int) -> LaurentSe
     bits = max(FIRST_BITS, 2 * bits_for_digits(digits))
     terms = max((o for o in orders if o is not None), default=0) + branches * (max(last, 0) + 4) + SLACK
     while bits <= LAST_BITS:
-        with precision(bits), series_length(terms):
+        with precision(bits), series_terms(terms):
             evaluator = bound.kernel_values()
             values = local_values(evaluator, acb(0), terms, branches)
             found = None
@@ -136,7 +134,7 @@ def _network_at_zero(sides: NetworkSides, last: int, digits: int) -> LaurentSeri
         count = max(last - order, 0) + 1
         above, below = sides.taylor(finer * digits)
         series = [part(acb(0), side.at_zero + count) for part, side in ((above, num), (below, den))]
-        with precision(num.series.bits), series_length(count):
+        with precision(num.series.bits), series_terms(count):
             first, second = (
                 acb_series((known or [])[side.at_zero :], count)
                 for known, side in zip(series, (num, den), strict=True)
@@ -181,7 +179,7 @@ def _quotient(
     order = total_order // branches
     count = max(last - order, 0) + 1
     wanted = branches * (count - 1) + 1
-    with series_length(terms):
+    with series_terms(terms):
         total = acb_series([acb(_fraction(ratio))], terms)
         for coefficients, first, (_, exponent) in zip(series, firsts, ratio.factors, strict=True):
             rest = acb_series(coefficients[first:], len(coefficients) - first)
@@ -257,30 +255,26 @@ def _expanded(above: Taylor, below: Taylor, root: Root) -> tuple[acb, list[acb],
     """Return a refined pole, its principal part, and how many zeros lie on top of it."""
     for extra in range(COINCIDENT + 1):
         pole = _refined(below, root, root.multiplicity + extra)
-        found = None if pole is None else _principal(above, below, pole, root.multiplicity, extra)
-        if pole is not None and found is not None:
+        found = _principal(above, below, pole, root.multiplicity, extra)
+        if found is not None:
             return pole, found, extra
     return None
 
 
-def _refined(below: Taylor, root: Root, order: int) -> acb | None:
+def _refined(below: Taylor, root: Root, order: int) -> acb:
     """Return a smaller ball around a root of the denominator, by interval Newton steps (Moore 1966).
 
     At a root of order k the Taylor coefficient number k - 1, as a function of s, has a simple one.
     """
-    ball = _on_axis(root, root.enclosure())
-    for _ in range(NEWTON_STEPS):
-        if ball.rad() == 0:
-            break
+
+    def newton(ball: acb) -> acb:
         middle = ball.mid()
         value, slope = below(middle, order + 1), below(ball, order + 1)
         if value is None or slope is None or slope[order].contains(0):
-            return None
-        step = _on_axis(root, middle - value[order - 1] / (order * slope[order]))
-        if not step.is_finite() or not step.rad() < ball.rad() / 2:
-            break
-        ball = step
-    return ball
+            return acb("nan")
+        return _on_axis(root, middle - value[order - 1] / (order * slope[order]))
+
+    return narrowed(_on_axis(root, root.enclosure()), newton, NEWTON_STEPS, 1 / 2)
 
 
 def _on_axis(root: Root, ball: acb) -> acb:
@@ -298,7 +292,7 @@ def _principal(above: Taylor, below: Taylor, pole: acb, multiplicity: int, extra
     first = multiplicity + extra
     if den[first].contains(0) or not all(c.contains(0) for c in (*den[:first], *num[:extra])):
         return None
-    with series_length(multiplicity):
+    with series_terms(multiplicity):
         rest = acb_series(den[first:], multiplicity)
         quotient = acb_series(num[extra : extra + multiplicity], multiplicity) / rest
     found = [quotient[i] for i in range(multiplicity)]
@@ -310,7 +304,7 @@ def _part(evaluator: KernelValues, part: Factored, centre: acb, terms: int) -> l
     values = local_values(evaluator, centre, terms)
     if values is None:
         return None
-    with series_length(terms):
+    with series_terms(terms):
         total = acb_series([acb(_fraction(part))], terms)
         for factor, exponent in part.factors:
             series = acb_series(_coefficients(evaluator.polynomial(factor, values)), terms)
@@ -466,17 +460,6 @@ BRANCHES = 4
 """Of a wavenumber about a point where it vanishes."""
 
 
-@contextmanager
-def series_length(terms: int) -> Iterator[None]:
-    """Keep that many terms of power series inside the block; restore the former number on every exit."""
-    former = flint.ctx.cap
-    flint.ctx.cap = terms
-    try:
-        yield
-    finally:
-        flint.ctx.cap = former
-
-
 def local_values(
     evaluator: KernelValues, centre: acb, terms: int, branches: int = 1
 ) -> dict[str, Value] | None:
@@ -485,56 +468,18 @@ def local_values(
     So many ``terms`` in e are computed with; roots of what vanishes lose some. ``branches`` is n: 1 where
     wavenumbers neither vanish nor meet, else :data:`BRANCHES`.
     """
-    with series_length(terms):
-        plain: dict[str, Value] = {name: acb(value) for name, value in evaluator.constants.items()}
-        plain["s"] = acb_series([centre, acb(1)], terms)
-        values = dict(plain)
-        values["s"] = _inflated(plain["s"], branches, terms)
-        laws: dict[Dispersion, tuple[tuple[Value, ...], Value]] = {}
-        for law in evaluator.table.dispersions:
-            found = tuple(evaluator.value(c, plain) for c in law.characteristic)
-            laws[law] = (found, evaluator.value(law.shift, plain))
-            try:
-                roots: dict[str, acb_series] = law.roots(
-                    [_inflated(c, branches, terms) for c in found], square_root
-                )
-            except ArithmeticError:
-                return None
-            values.update(roots)
-        fundamental: dict[tuple[Dispersion, Factored], tuple[acb_series, ...]] = {}
-        for kernel in evaluator.table.kernels:
-            length = at_centre(evaluator.value(kernel.length, plain))
-            coefficients, shift = laws[kernel.dispersion]
-            if kernel.function == "entry":
-                continue  # evaluated where it stands, with others of its matrix
-            if kernel.function == "exp":
-                values[kernel.generator] = _inflated((-shift * length).exp(), branches, terms)
-            elif kernel.function == "fundamental":
-                key = (kernel.dispersion, kernel.length)
-                if key not in fundamental:
-                    short = 1 + (terms - 1) // branches
-                    fundamental[key] = fundamental_series(coefficients, length, short)
-                values[kernel.generator] = _inflated(fundamental[key][kernel.order], branches, terms)
-            else:
-                values[kernel.generator] = _kernel(kernel, values[kernel.wavenumber] * length)
-        return values
+    with series_terms(terms):
+        moved = [centre, *[acb(0)] * (branches - 1), acb(1)]
+        values = evaluator.at(acb_series(moved[:terms], terms), root=square_root)
+    waves = (at_centre(values[name]) for name in evaluator.table.wavenumbers)
+    return values if all(w.is_finite() for w in waves) else None
 
 
-def _inflated(value: Value, branches: int, terms: int) -> acb_series:
-    """Return the series with ``e^branches`` in place of its variable."""
-    if not isinstance(value, acb_series):
-        return acb_series([value], terms)
-    spread = [acb(0)] * terms
-    for i, coefficient in enumerate(value.coeffs()):
-        if i * branches < terms:
-            spread[i * branches] = coefficient
-    return acb_series(spread, min(terms, value.prec * branches))
+def square_root(series: Value) -> Value:
+    """Return a square root of a series that begins with an even power; not a number for any other.
 
-
-def square_root(series: acb_series) -> acb_series:
-    """Return a square root of a series that begins with an even power; ArithmeticError for any other.
-
-    The branch is chosen by the leading coefficient's midpoint: a ball across a branch cut does no harm.
+    The branch is chosen by the leading coefficient's midpoint: a ball across a branch cut does no harm. A
+    ball that holds zero counts as zero before it.
 
     Examples
     --------
@@ -542,39 +487,13 @@ def square_root(series: acb_series) -> acb_series:
     >>> [complex(c) for c in root.coeffs()]
     [0j, 2j, 2j]
     """
+    if isinstance(series, acb):
+        return series.sqrt()
     coefficients = series.coeffs()
-    first = next((i for i, c in enumerate(coefficients) if c != 0), None)
-    lead = acb(0) if first is None else coefficients[first].mid()
-    if first is None or first % 2 or lead == 0:
-        message = "the series has no square root that is one"
-        raise ArithmeticError(message)
+    first = next((i for i, c in enumerate(coefficients) if c != 0), 1)
+    lead = coefficients[first].mid() if first % 2 == 0 else acb(0)
+    if lead == 0:
+        return acb_series([acb("nan")] * series.prec, series.prec)
     rest = acb_series([c / lead for c in coefficients[first:]], series.prec - first).sqrt() * lead.sqrt()
     half = first // 2
     return acb_series([*[acb(0)] * half, *rest.coeffs()], series.prec - half)
-
-
-def _kernel(kernel: Kernel, argument: Value) -> Value:
-    match kernel.function:
-        case "cosh" | "sinh":
-            grown, decayed = argument.exp(), (-argument).exp()
-            return (grown + decayed) / 2 if kernel.function == "cosh" else (grown - decayed) / 2
-    return argument.cos() if kernel.function == "cos" else argument.sin()
-
-
-def fundamental_series(coefficients: Sequence[Value], length: acb, terms: int) -> tuple[acb_series, ...]:
-    """Return ``h, h', ..., h^(n-1)`` at a length for ``lambda^n + ... + c_0``, with series as coefficients.
-
-    The series of a matrix exponential stands in the first row of blocks of the exponential of a block
-    Toeplitz matrix (Mathias 1996, A chain rule for matrix functions, theorem 4.1).
-    """
-    n = len(coefficients)
-    block = acb_mat(n * terms, n * terms)
-    for k in range(terms):
-        for i in range(n - 1):
-            block[n * k + i, n * k + i + 1] = acb(1)
-        for j, c in enumerate(coefficients):
-            parts = c.coeffs() if isinstance(c, acb_series) else [c]
-            for later, part in enumerate(parts[: terms - k]):
-                block[n * k + n - 1, n * (k + later) + j] = -part
-    grown = (block * length).exp()
-    return tuple(acb_series([grown[i, n * k + n - 1] for k in range(terms)], terms) for i in range(n))

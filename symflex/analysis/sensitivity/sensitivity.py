@@ -17,8 +17,17 @@ from typing import TYPE_CHECKING, Literal
 
 from flint import acb, acb_mat, acb_series, arb, arb_series, fmpz_mpoly
 
-from symflex.algebra import FUNCTIONS, LAPLACE, Factored, Kernel, PolynomialMemo, Ring, square_free_factors
+from symflex.algebra import (
+    FUNCTIONS,
+    LAPLACE,
+    NO_KERNELS,
+    Factored,
+    PolynomialMemo,
+    Ring,
+    square_free_factors,
+)
 from symflex.algebra.minors import MinorSums
+from symflex.algebra.modal_sum import ModalSums
 from symflex.algebra.vanishing import OriginSeries
 from symflex.budget import spend
 from symflex.expressions import Call, Expression, fold
@@ -30,8 +39,8 @@ from symflex.model.brackets import slope_along_x
 from symflex.model.loss_factors import check_causal
 from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.root import GUARD_BITS, decimals, exact_fraction
-from symflex.transfer.balls import EvaluationPlan, ball, enclosure, later, plan
-from symflex.transfer.enclose_kernels import fundamental_functions
+from symflex.transfer.balls import Arithmetic, EvaluationPlan, Value, ball, enclosure, later, plan
+from symflex.transfer.enclose_kernels import KernelValues
 from symflex.transfer.enclose_varying import VaryingMatrices
 from symflex.transfer.of_model import derive_all
 from symflex.transfer.varying_law import BoundLaw
@@ -353,8 +362,12 @@ def sensitivities(
     return tuple(sorted(moved, key=lambda m: (m.kind, m.index)))
 
 
-Point = dict[str, acb_series]
-"""The generators of a ring to first order."""
+@dataclass(frozen=True, eq=False, slots=True)
+class Point:
+    """The generators of a ring to first order, and what evaluates polynomials in them."""
+
+    kernels: KernelValues
+    values: dict[str, Value]
 
 
 @dataclass(frozen=True, eq=False)
@@ -386,44 +399,33 @@ class Tangents:
         zero, or two are equal, values are not finite.
         """
         real = {name: first_order(enclosure(v)(), int(name == direction)) for name, v in self.values.items()}
-        point = {LAPLACE: _series(s, acb(int(direction == LAPLACE))), "pi": _complex(first_order(arb.pi()))}
-        point.update((name, _complex(value)) for name, value in real.items())
+        known = {"pi": first_order(arb.pi()), **real}
         for constant in self.tf.constants:
             if constant.generator in self._used and constant.generator not in self._functions:
-                point[constant.generator] = _complex(constant_tangent(constant.expression, real))
-        for law in self.tf.kernels.dispersions:
+                known[constant.generator] = constant_tangent(constant.expression, real)
+        ring, table = self.tf.ratio.ring, self.tf.kernels
+        numbers: dict[str, Arithmetic] = {name: _series(acb(x[0]), acb(x[1])) for name, x in known.items()}
+        kernels = KernelValues(ring.names, table, numbers, ModalSums(ring, NO_KERNELS), self._plans)
+        point = Point(kernels, kernels.at(_series(s, acb(int(direction == LAPLACE)))))
+        for law in table.dispersions:
             if law.matrix:
-                point.update(self._entries(law, direction, point))
-                continue
-            coefficients = [self.product(c, point) for c in law.characteristic]
-            shift = self.product(law.shift, point)
-            point.update(law.roots(coefficients, _root))
-            solutions: dict[Factored, tuple[acb_series, ...]] = {}
-            for kernel in self.tf.kernels.kernels_of(law):
-                length = self.product(kernel.length, point)
-                if kernel.function == "fundamental":
-                    if kernel.length not in solutions:
-                        solutions[kernel.length] = _fundamental(coefficients, length)
-                    point[kernel.generator] = solutions[kernel.length][kernel.order]
-                else:
-                    rate = point[kernel.wavenumber] if kernel.wavenumber else -shift
-                    point[kernel.generator] = _kernel(kernel, rate * length)
+                point.values.update(self._entries(law, direction, point))
         return point
 
-    def _entries(self, law: Dispersion, direction: str, point: Point) -> Point:
+    def _entries(self, law: Dispersion, direction: str, point: Point) -> dict[str, Value]:
         """Return the entries of the fundamental matrices of a law that varies along x.
 
         In s their series are known. In a parameter ``Z' = A Z`` is differentiated: what takes z and
         dz/dp along has A on its diagonal and dA/dp below; and where x begins and ends may move. From a tip
         the way is differentiated at, not x: solutions are power series in it.
         """
-        s, kernels = point[LAPLACE], self.tf.kernels.kernels_of(law)
+        s, kernels = _lifted(point.values[LAPLACE]), self.tf.kernels.kernels_of(law)
         if direction == LAPLACE:
             minors = self._varying.minors.entries
             places = [minors[self.tf.ratio.ring.index[k.generator]] for k in kernels]
             values = (self._varying.value(place, s) for place in places)
             return {k.generator: _lifted(x) for k, x in zip(kernels, values, strict=True)}
-        n, found = law.order, Point()
+        n, found = law.order, dict[str, Value]()
         own, start = self._tangent_law(law, direction), self.product(law.start[0], point)
         known: dict[Factored, tuple[list[list[acb]], acb_mat]] = {}
         for kernel in kernels:
@@ -530,20 +532,12 @@ class Tangents:
 
     def polynomial(self, polynomial: fmpz_mpoly, point: Point) -> tuple[acb, acb]:
         """Return the value of a polynomial of the ring, and its derivative."""
-        value = self._sum(polynomial, point)
+        value = _lifted(point.kernels.polynomial(polynomial, point.values))
         return value[0], value[1]
 
     def product(self, value: Factored, point: Point) -> acb_series:
         """Return a product of powers of polynomials to first order."""
-        total = _series(acb(ball(value.unit)), acb(0))
-        for factor, exponent in value.factors:
-            total = total * _power(self._sum(factor, point), exponent)
-        return total
-
-    def _sum(self, polynomial: fmpz_mpoly, point: Point) -> acb_series:
-        prepared = self._plans(polynomial)
-        names = self.tf.ratio.ring.names
-        return _lifted(prepared.value([_power(point[names[i]], e) for i, e in prepared.powers]))
+        return _lifted(point.kernels.value(value, point.values))
 
     @cached_property
     def _plans(self) -> PolynomialMemo[EvaluationPlan]:
@@ -566,49 +560,8 @@ def _series(value: acb, slope: acb) -> acb_series:
     return acb_series([value, slope], 2)
 
 
-def _complex(value: arb_series) -> acb_series:
-    return _series(acb(value[0]), acb(value[1]))
-
-
 def _lifted(value: acb | acb_series) -> acb_series:
     return _series(value, acb(0)) if isinstance(value, acb) else value
-
-
-def _power(base: acb_series, exponent: int) -> acb_series:
-    value, slope = base[0], base[1]
-    return _series(value**exponent, exponent * value ** (exponent - 1) * slope)
-
-
-def _root(value: acb_series) -> acb_series:
-    """Return a square root that is one analytic branch on the whole ball, wherever the ball lies."""
-    middle = value[0].mid()
-    root = (value[0] / middle).sqrt() * middle.sqrt()
-    return _series(root, value[1] / (2 * root))
-
-
-def _kernel(kernel: Kernel, argument: acb_series) -> acb_series:
-    x = argument[0]
-    match kernel.function:
-        case "exp":
-            value = slope = x.exp()
-        case "cosh":
-            value, slope = x.cosh(), x.sinh()
-        case "sinh":
-            value, slope = x.sinh(), x.cosh()
-        case "cos":
-            value, slope = x.cos(), -x.sin()
-        case _:
-            value, slope = x.sin(), x.cos()
-    return _series(value, slope * argument[1])
-
-
-def _fundamental(coefficients: Sequence[acb_series], length: acb_series) -> tuple[acb_series, ...]:
-    """Return ``h, h', ..., h^(n-1)`` at a length that may vary as the coefficients do."""
-    found = [_lifted(h) for h in fundamental_functions(coefficients, length[0])]
-    # One derivative more follows from the equation h^(n) + ... + c_0 h = 0.
-    highest = -sum((c[0] * h[0] for c, h in zip(coefficients, found, strict=True)), acb(0))
-    following = [*(h[0] for h in found[1:]), highest]
-    return tuple(_series(h[0], h[1] + f * length[1]) for h, f in zip(found, following, strict=True))
 
 
 def first_order(value: arb, slope: arb | int = 0) -> arb_series:

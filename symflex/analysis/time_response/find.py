@@ -242,7 +242,7 @@ def _by_wave_echoes(asked: Asked) -> Plan | Refused:
         return Refused()
     waves = wave_quotient(asked.bound)
     if waves is None:
-        return Refused("some waves have no front")
+        return Refused("some waves have no front, or two speeds")
     return partial(_closely, asked, partial(waves.echoed, asked.integrations))
 
 

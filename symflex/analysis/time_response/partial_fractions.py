@@ -14,14 +14,14 @@ large coefficients of opposite sign; the digits that these lose are made up for 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import zip_longest
 from math import factorial
 from typing import TYPE_CHECKING
 
 from flint import acb, acb_poly, acb_series, arb, arb_mat
 
-from symflex.analysis.rational.laurent import series_length
+from symflex.transfer.balls import series_terms
 from symflex.transfer.bind import EnclosedTransferFunction
 
 if TYPE_CHECKING:
@@ -130,47 +130,37 @@ def partial_fractions(
     """
     if not all(root.certified for root in poles):
         return None
+    divided = replace(quotient, below=(*quotient.below, (acb_poly([0, 1]), integrations)))
+    at_zero = sum(root.multiplicity for root in poles if root.is_zero) + integrations
+    places = [(acb(0), at_zero, 1)] if at_zero else []
+    places += [
+        (root.enclosure(), root.multiplicity, 1 if root.is_real else 2)
+        for root in poles
+        if not (root.im < 0 or root.is_zero)
+    ]
     found = []
-    if integrations and not any(root.is_zero for root in poles):
-        origin = _principal(quotient, acb(0), 0, integrations)
-        if origin is None:
-            return None
-        found.append(ExponentialTerm(acb(0), origin))
-    for root in poles:
-        if root.im < 0:
-            continue
-        pole = root.enclosure()
-        coefficients = _principal(quotient, pole, root.multiplicity, integrations, is_origin=root.is_zero)
+    for pole, order, share in places:
+        coefficients = _principal(divided, pole, order)
         if coefficients is None:
             return None
-        share = 1 if root.is_real else 2
         found.append(ExponentialTerm(pole, tuple(c * share for c in coefficients)))
     return found
 
 
-def _principal(
-    quotient: EnclosedQuotient, pole: acb, order: int, integrations: int, *, is_origin: bool | None = None
-) -> tuple[acb, ...] | None:
-    """Return the coefficients of ``1/(s - p)``, ... of a quotient over ``s^integrations``."""
-    at_zero = order == 0 if is_origin is None else is_origin
-    count = order + integrations if at_zero else order
-    above = _taylor(quotient.above, pole, count)
-    below = _taylor(quotient.below, pole, order + count)
-    rest = below[order:]
-    if rest[0].contains(0):
+def _principal(quotient: EnclosedQuotient, pole: acb, order: int) -> tuple[acb, ...] | None:
+    """Return the coefficients of ``1/(s - p)``, ``1/(s - p)^2``, ... at a pole of a quotient."""
+    above, below = _taylor(quotient.above, pole, order), _taylor(quotient.below, pole, 2 * order)
+    if below[order].contains(0):
         return None
-    with series_length(count):
-        series = acb_series(above, count) / acb_series(rest, count) * quotient.unit
-        if not at_zero:
-            for _ in range(integrations):
-                series = series / acb_series([pole, acb(1)], count)
-    found = tuple(series[count - 1 - j] for j in range(count))
+    with series_terms(order):
+        series = acb_series(above, order) / acb_series(below[order:], order) * quotient.unit
+    found = tuple(series[order - 1 - j] for j in range(order))
     return found if all(c.is_finite() for c in found) else None
 
 
 def _taylor(factors: Sequence[tuple[acb_poly, int]], centre: acb, count: int) -> list[acb]:
     """Return so many Taylor coefficients of a product of powers at a point."""
-    with series_length(count):
+    with series_terms(count):
         total = acb_series([1], count)
         for factor, exponent in factors:
             moved = factor(acb_poly([centre, acb(1)]))
@@ -190,6 +180,6 @@ def at_infinity(quotient: EnclosedQuotient, integrations: int) -> tuple[tuple[ar
     surplus = int(num.degree()) - int(den.degree()) - integrations
     if surplus < -1:
         return (), arb(0)
-    with series_length(surplus + 2):
+    with series_terms(surplus + 2):
         series = acb_series(num.coeffs()[::-1], surplus + 2) / acb_series(den.coeffs()[::-1], surplus + 2)
         return tuple(series[surplus - k].real for k in range(surplus + 1)), series[surplus + 1].real

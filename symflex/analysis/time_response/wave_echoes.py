@@ -19,16 +19,13 @@ place of series. Nothing is known or asked of poles, and loops need not be stabl
 from __future__ import annotations
 
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cached_property
-from math import isqrt
 from typing import TYPE_CHECKING, TypeVar
 
 from flint import acb, acb_series, arb, arb_poly, arb_series
 
 from symflex.algebra import Factored, degree_in
 from symflex.algebra.exponential_sum import ExponentialSum, arguments_of, exponential_sum
-from symflex.analysis.rational.laurent import series_length
 from symflex.analysis.time_response.delayed_terms import (
     NO_DELAY,
     Delay,
@@ -43,7 +40,7 @@ from symflex.budget import spend
 from symflex.roots.functions.exponential_values import ExponentialValues
 from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.problem import polynomial_in_s
-from symflex.transfer.balls import Value, at_centre, ball
+from symflex.transfer.balls import Value, at_centre, ball, series_terms
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -86,7 +83,7 @@ class WaveQuotient:
                     raise TooManyEchoesError
             missing = (2 * missing).upper()
             lost = int(1.5 * float((reach + largest.log() + abs(radius.log())).upper()))
-        with precision(bits + lost), series_length(count + max(0, 1 - shift) + 1):
+        with precision(bits + lost), series_terms(count + max(0, 1 - shift) + 1):
             return self._summed(shift, times, missing)
 
     @cached_property
@@ -347,10 +344,10 @@ def wave_quotient(bound: BoundTransferFunction) -> WaveQuotient | None:
         return None
     slowness: dict[str, Factored] = {}
     for law in bound.kernels.dispersions:
-        squares = _squared_slownesses(bound, law)
-        if squares is None:
+        square = _squared_slowness(bound, law)
+        if square is None and law.kind != "exponential":
             return None
-        slowness.update(zip(law.wavenumbers, squares, strict=True))
+        slowness |= dict.fromkeys(law.wavenumbers, square) if square is not None else {}
     reader = DelayReader.of(bound, arguments, slowness)
     if reader is None:
         return None
@@ -363,31 +360,12 @@ def wave_quotient(bound: BoundTransferFunction) -> WaveQuotient | None:
     return WaveQuotient(bound, reader, tuple(sums))
 
 
-def _squared_slownesses(bound: BoundTransferFunction, law: Dispersion) -> list[Factored] | None:
-    """Return 1/c^2 of the fronts of all waves of a law, None if there is none."""
-    if law.kind == "exponential":
-        return []
-    if law.kind not in ("wave", "pair") or not law.shift.is_zero:
+def _squared_slowness(bound: BoundTransferFunction, law: Dispersion) -> Factored | None:
+    """Return 1/c^2 of the fronts of a law of one wave, None of any other, or if there is none."""
+    if law.kind != "wave" or not law.shift.is_zero:
         return None
-    leads = []
-    for i, value in enumerate(law.characteristic):
-        lead = _at_fronts(bound, value, law.order - i)
-        if lead is None:
-            return None
-        leads.append(lead)
-    if law.kind == "wave":
-        return None if leads[0].is_zero else [-leads[0]]
-    if not (leads[0].is_constant and leads[2].is_constant) or leads[0].is_zero:
-        return None
-    middle, square = -leads[2].unit / 2, leads[0].unit
-    spread = middle * middle - square
-    if spread <= 0:
-        return None
-    root = Fraction(isqrt(spread.numerator), isqrt(spread.denominator))
-    if root * root != spread:
-        return None
-    ring = bound.ratio.ring
-    return [Factored.number(ring, middle + root), Factored.number(ring, middle - root)]
+    lead = _at_fronts(bound, law.characteristic[0], law.order)
+    return None if lead is None or lead.is_zero else -lead
 
 
 def _at_fronts(bound: BoundTransferFunction, value: Factored, power: int) -> Factored | None:

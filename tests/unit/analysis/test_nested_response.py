@@ -6,9 +6,10 @@ import pytest
 from symflex import pipeline
 from symflex.analysis.modes import mode_shape
 from symflex.analysis.response import follow_phase, respond
+from symflex.model import with_numbers
 from symflex.roots.functions.nested_function import NestedFunction
 from symflex.transfer import bind_nested
-from symflex.transfer.of_model import derive_with_numbers
+from symflex.transfer.of_model import derive_nested
 
 BEAM = 'type = "beam", E = "200 GPa", rho = "7800 kg/m^3", A = "100 mm^2", I = "1000 mm^4"'
 
@@ -29,7 +30,7 @@ def two_beams(loss: str = "") -> str:
 
 def both(text: str):
     model = pipeline.loads(text)
-    (nested,) = derive_with_numbers(model, model.transfer_functions)
+    (nested,) = derive_nested(with_numbers(model, in_kernels=True), model.transfer_functions)
     (expanded,) = pipeline.derive_bound(model, model.transfer_functions)
     return bind_nested(nested), expanded
 

@@ -306,7 +306,6 @@ def test_a_delay_of_no_time_is_one():
 def test_equations_of_a_lumped_model_have_no_kernels_and_nothing_along_x():
     equations = assemble(PENDULUM)
     assert (equations.propagation, equations.cleared, equations.continua) == (None, None, ())
-    assert not equations.is_joined
 
 
 ALONG = """symflex = 1

@@ -29,17 +29,17 @@ def accurate(value, bits):
 
 
 class Levels:
-    """A function that notes the precisions at which it was asked for, and answers by them."""
+    """A function that notes at which precisions beyond the first it was asked for, and answers by them."""
 
     def __init__(self, answer):
         self.answer, self.asked = answer, []
 
     def enclosed(self, bits):
-        self.asked.append(bits)
+        self.asked += [bits] if bits > FIRST_BITS else []
         return lambda s: self.answer(bits, s)
 
     def __call__(self, s, patience=None):
-        return double_value(self.enclosed, lambda s: self.answer(FIRST_BITS, s), s, patience)
+        return double_value(self.enclosed, s, patience)
 
 
 def test_a_value_that_is_right_at_first_is_not_asked_for_again():

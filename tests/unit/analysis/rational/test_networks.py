@@ -9,10 +9,11 @@ import pytest
 from symflex import pipeline
 from symflex.analysis.rational import approximate, find_residues
 from symflex.analysis.time_response import SampleTimes, time_response
+from symflex.model import with_numbers
 from symflex.roots import Modes
 from symflex.transfer import BoundNested
 from symflex.transfer.nested_form import bind_any
-from symflex.transfer.of_model import derive_with_numbers
+from symflex.transfer.of_model import derive_nested
 from tests.unit.loops.test_networks import chain
 
 LAW = "K*r"
@@ -22,7 +23,7 @@ LAW = "K*r"
 def bound_of(count, representation):
     model = pipeline.loads(chain(count, law=LAW))
     if representation == "nested":
-        (nested,) = derive_with_numbers(model, [("Y", "r")])
+        (nested,) = derive_nested(with_numbers(model, in_kernels=True), [("Y", "r")])
         return bind_any(nested)
     (bound,) = pipeline.derive_bound(model, [("Y", "r")])
     return bound

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from itertools import pairwise
 
-import mpmath
 import numpy as np
 import pytest
 from scipy.integrate import quad
@@ -95,48 +94,6 @@ def test_a_loop_with_a_delay_around_a_rod_with_losses_is_its_first_turns():
 
     # K D P/(1 + K D P) = K D P - (K D P)^2 + ..., the next of which begins at 2.1 s.
     expected = [0.8 * step(max(t - 0.7, 0)) - 0.64 * twice(max(t - 1.4, 0)) for t in times]
-    assert_holds(found, expected, off=1e-12)
-
-
-def end_of_long_beam(s, shear, bend, turn):
-    """Return the deflection under a force 1 at the end of Timoshenko's beam without another end, rho A = 1.
-
-    Of w = a exp(-q x), with shear (w' - p)' = s^2 w and bend p'' + shear (w' - p) = turn s^2 p.
-    """
-    # Roots of what tends to a number, so that they go on analytically left of the axis.
-    middle = (1 / shear + turn / bend) / 2
-    root = mpmath.sqrt(middle**2 - (turn / shear + 1 / s**2) / bend)
-    rates = [s * mpmath.sqrt(middle + root), s * mpmath.sqrt(middle - root)]
-    slopes = [(s**2 - shear * q**2) / (shear * q) for q in rates]
-    rows = mpmath.matrix(
-        [
-            [-q * p for q, p in zip(rates, slopes, strict=True)],  # no moment
-            [shear * (-q - p) for q, p in zip(rates, slopes, strict=True)],
-        ]
-    )
-    return sum(mpmath.lu_solve(rows, mpmath.matrix([0, -1])))
-
-
-@pytest.mark.slow
-def test_timoshenkos_beam_moves_as_one_without_another_end_until_its_first_echo():
-    kind = 'theory = "timoshenko", G = "0.4 Pa", kappa = "5/6"'
-    text = f'elements.arm = {{ type = "beam", between = ["ground", "x"], {ROD}, I = "0.01 m^4", {kind} }}\n'
-    times = [0.2, 0.9, 1.9]
-    bound = of(f'{text}inputs.F = {{ force = "x" }}\noutputs.X = "x"')
-    found = time_response(bound, "step", SampleTimes.of(times))
-    with mpmath.workdps(60):
-        shear = mpmath.mpf("0.4") * 5 / 6
-        expected = [
-            float(
-                mpmath.invertlaplace(
-                    lambda s: end_of_long_beam(s, shear, mpmath.mpf("0.01"), mpmath.mpf("0.01")) / s,
-                    t,
-                    method="talbot",
-                    degree=150,
-                )
-            )
-            for t in times
-        ]
     assert_holds(found, expected, off=1e-12)
 
 
