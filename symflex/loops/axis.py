@@ -8,13 +8,13 @@ its sign; else it is halved. Near 0, where wavenumbers vanish, power series with
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from math import exp, inf, pi
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
 from symflex.algebra import Factored
+from symflex.algebra.interval_newton import narrowed
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic, SymflexError
 from symflex.roots import Budget, precision
@@ -40,13 +40,8 @@ MOST_INTERVALS = 40_000
 """Of one search, before it is given up."""
 NEWTON_STEPS = 60
 """Each nearly doubles the digits, so that few are ever taken."""
-
-
-class OnAxis(Protocol):
-    """A and B of a characteristic function ``A + K B``, enclosed along the imaginary axis."""
-
-    def on(self, omega: arb, bits: int, order: int = 1) -> tuple[LoopValue, LoopValue]:
-        """Return the values on a ball of frequencies, and those in its middle, with so many derivatives."""
+STALLED = 0.99
+"""Share of an enclosure that the last step leaves."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +53,7 @@ class AxisRoots:
 
 
 def find_on_axis(
-    function: OnAxis,
+    function: LoopFunction,
     equation: Callable[[LoopValue], tuple[arb, arb]],
     is_excluded: Callable[[LoopValue], bool],
     limits: tuple[float, float],
@@ -118,7 +113,7 @@ def _between(start: float, end: float) -> arb:
 
 
 def _refined(
-    function: OnAxis,
+    function: LoopFunction,
     equation: Callable[[LoopValue], tuple[arb, arb]],
     ball: arb,
     digits: int,
@@ -126,26 +121,19 @@ def _refined(
 ) -> arb:
     """Return a narrower enclosure of the only root in an interval on which the function is monotonous.
 
-    Steps as in :mod:`symflex.algebra.interval_newton`, at a precision that rises with what is known.
+    The precision rises with what is known.
     """
     wanted = bits_for_digits(digits) + 16
-    for step in range(NEWTON_STEPS):
+
+    def newton(ball: arb) -> arb:
         bits = min(max(BITS, 2 * ball.rel_accuracy_bits() + 64), 2 * wanted + BITS)
         around, centre = function.on(ball, bits, order)
         with precision(bits):
-            _, slope = equation(around)
-            value, _ = equation(centre)
-            if slope.contains(0):
-                return ball
-            candidate = ball.mid() - value / slope
-            if not candidate.overlaps(ball):
-                return ball
-            narrower = ball.intersection(candidate)
-            stalled = narrower.rad() > ball.rad() * 0.9
-            ball = narrower
-        if ball.rel_accuracy_bits() >= wanted or (stalled and step):
-            return ball
-    return ball
+            candidate = ball.mid() - equation(centre)[0] / equation(around)[1]
+            is_near = candidate.is_finite() and candidate.overlaps(ball)
+            return ball.intersection(candidate) if is_near else ball
+
+    return narrowed(ball, newton, NEWTON_STEPS, STALLED)
 
 
 def _joined(intervals: list[arb]) -> tuple[arb, ...]:
@@ -168,7 +156,6 @@ class LoopAtOrigin:
 
     orders: tuple[int, int]  # of the roots of A and B at 0, exact
     series: tuple[LocalSeries, LocalSeries]  # of A and B
-    ratio: Fraction | None = None  # A/B at 0 where that is known to be a number, neither zero nor infinite
 
     def gain(self) -> arb | None:
         """Return the gain at which a pole passes through 0; ``None`` when that is infinite."""
@@ -184,18 +171,8 @@ class LoopAtOrigin:
         """Return balls around ``A/s^order`` and ``B/s^order`` on the piece of the axis within a radius."""
         with precision(ORIGIN_BITS):
             omega = arb(0).union(radius)
-            first, second = (self._reduced(i, omega) for i in (0, 1))
-            return first, second
-
-    def _reduced(self, which: int, omega: arb) -> acb:
-        series, order = self.series[which], self.orders[which]
-        s, total = acb(0, omega), acb(0)
-        for coefficient in reversed(series.coefficients[order:]):
-            total = total * s + coefficient.real
-        share = omega.upper() / series.reach
-        count = len(series.coefficients)
-        rest = (series.bound * share ** (count - order) / (1 - share) / series.reach**order).upper()
-        return total + acb(arb(0, rest), arb(0, rest))
+            (a, a_side), (b, b_side) = (self._parts(i, omega) for i in (0, 1))
+            return acb(a, omega * a_side), acb(b, omega * b_side)
 
     def turns_away(self, radius: arb) -> bool:
         """Tell whether ``Im(A conj(B))`` differs from 0 on the axis within a radius, but for 0 itself."""
@@ -207,30 +184,6 @@ class LoopAtOrigin:
             else:
                 value = first[1] * second[0] - first[0] * second[1]
             return bool(value != 0)
-
-    def leaves_one(self, gain: Fraction, radius: arb) -> bool:
-        """Tell whether the loop gain is exactly one at 0, and nowhere else on the axis within a radius.
-
-        There ``abs(A)^2 - K^2 abs(B)^2`` is omega squared times what differs from 0.
-        """
-        if self.ratio is None or self.ratio**2 != gain**2:
-            return False
-        with precision(ORIGIN_BITS):
-            omega = arb(0).union(radius)
-            first, second = (self._rise(i, omega) for i in (0, 1))
-            return bool(first - ball(gain**2) * second != 0)
-
-    def _rise(self, which: int, omega: arb) -> arb:
-        """Return ``(u^2 + omega^2 v^2 - u(0)^2)/omega^2``, of order 0."""
-        u, v = self._parts(which, omega)
-        series = self.series[which]
-        start, *others = (c.real for c in series.coefficients[::2])
-        change = arb(0)
-        for coefficient in reversed(others):
-            change = -coefficient - omega * omega * change
-        share = omega.upper() / series.reach
-        rest = series.bound * share ** (len(series.coefficients) - 2) / (1 - share) / series.reach**2
-        return (change + arb(0, rest.upper())) * (u + start) + v * v
 
     def moves_away(self, radius: arb) -> bool:
         """Tell, if A/B is real on the axis, whether it changes monotonously within a radius of 0.
@@ -311,19 +264,4 @@ def loop_at_origin(function: LoopFunction, budget: Budget) -> LoopAtOrigin | Non
             scale = ball(unit)
             scaled = tuple(scale * coefficient for coefficient in own.coefficients)
             series.append(replace(own, coefficients=scaled, bound=own.bound * abs(scale)))
-    return LoopAtOrigin((orders[0], orders[1]), (series[0], series[1]), _ratio_at_zero(function))
-
-
-def _ratio_at_zero(function: LoopFunction) -> Fraction | None:
-    """Return A/B at s = 0 of a loop with dead time and no waves, None where it is not told."""
-    bound = function.bound
-    ring, kernels = bound.ratio.ring, bound.kernels.kernels
-    if any(k.function != "exp" or not k.dispersion.shift.exponent_of(ring.context.gen(0)) for k in kernels):
-        return None
-    images = [ring.context.gen(i) for i in range(len(ring.names))]
-    images[0] = ring.constant(0)
-    for kernel in kernels:
-        images[ring.index[kernel.generator]] = ring.constant(1)
-    a, b = (Factored.polynomial(ring, ring.compose(f, images)) for f in (function.a, function.b))
-    ratio = None if a.is_zero or b.is_zero else a / b
-    return ratio.unit if ratio is not None and ratio.is_constant else None
+    return LoopAtOrigin((orders[0], orders[1]), (series[0], series[1]))

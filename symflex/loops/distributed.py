@@ -1,7 +1,8 @@
 """Stability boundaries of characteristic functions with kernels: beams, rods, delays.
 
 Crossings of the imaginary axis are isolated in one dimension: along the axis ``A + K B`` vanishes for a real
-K only where ``Im(A conj(B))`` does. Between them poles in the right half plane are counted by the argument
+K only where ``Im(A conj(B))`` does. Next to s = 0, where both may vanish, power series say what poles do.
+Between them poles in the right half plane are counted by the argument
 principle about a half disc, beyond which, where this can be proved, there are none.
 """
 
@@ -16,11 +17,10 @@ from flint import acb, arb
 
 from symflex.algebra import Factored
 from symflex.errors import Diagnostic, UncertifiedError
-from symflex.loops.axis import LoopAtOrigin, loop_at_origin
-from symflex.loops.axis_factors import AxisFactors
-from symflex.loops.loop import GainPolynomial, LoopFunction
-from symflex.loops.stability_map import PoleCount
-from symflex.roots import Band, Budget
+from symflex.loops.axis import AxisRoots, LoopAtOrigin, find_on_axis, loop_at_origin
+from symflex.loops.loop import GainPolynomial, LoopFunction, LoopValue
+from symflex.loops.stability_map import Crossing, PoleCount
+from symflex.roots import Band, Budget, precision
 from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.winding import Cell, RootOnPathError, Winding
 from symflex.roots.distributed.far_out import Tail, right_tail
@@ -32,10 +32,17 @@ from symflex.roots.root import exact_fraction
 from symflex.transfer.balls import ball
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from fractions import Fraction
 
     from symflex.transfer import BoundTransferFunction
 
+BITS = 128
+"""Of gains and their limits."""
+SHRINKINGS = 30
+"""Halvings of a disc about 0."""
+NEXT_TO_ZERO = 1e-6
+"""Of the frequency of one wave: from there on crossings are sought where nothing is known of 0."""
 WAVES = 30.0
 """Largest argument of a kernel up to which poles are counted where no end is known."""
 DEPTHS = (0.0, 2.0, 5.0, 9.0, 14.0, 20.0)
@@ -45,7 +52,7 @@ NUDGES = (0.0, 0.0137, 0.0291, 0.0531)
 
 
 @dataclass
-class DistributedFactors(AxisFactors[LoopFunction]):
+class DistributedFactors:
     """The factors of a characteristic function that hold kernels, together.
 
     ``reasons`` say why something is not certified.
@@ -153,14 +160,6 @@ class DistributedFactors(AxisFactors[LoopFunction]):
         powers = [{int(m[0]) % 2 for m in f.monoms()} for f in (function.a, function.b)]
         return powers[0] == powers[1]
 
-    def tells_meetings(self, function: LoopFunction) -> bool:
-        """Tell whether it is a sum of exponentials."""
-        return function.sums is not None
-
-    def origin(self, function: LoopFunction) -> LoopAtOrigin | None:
-        """Return A and B near 0, ``None`` where their orders or series cannot be told."""
-        return loop_at_origin(function, self.budget)
-
     def last_crossover(self, function: LoopFunction, gain: arb) -> float:
         """Return the frequency [rad/s] beyond which the loop gain is not one, as far as it is searched."""
         last, is_proved = self.radius
@@ -238,3 +237,103 @@ class DistributedFactors(AxisFactors[LoopFunction]):
         right = sum(r.multiplicity for r in roots if not r.on_imaginary_axis and r.re > 0)
         axis = sum(r.multiplicity for r in roots if r.on_imaginary_axis and not r.is_zero)
         return PoleCount(right, axis + zeros)
+
+    def crossings(self, digits: int) -> list[Crossing]:
+        """Return where poles cross the axis for gains in the range; the search's gaps go to ``reasons``."""
+        found: list[Crossing] = []
+        for function in self.with_gain:
+            found += self._crossings(function, digits)
+        return found
+
+    def _crossings(self, function: LoopFunction, digits: int) -> list[Crossing]:
+        found: list[Crossing] = []
+        is_mirrored = self.is_mirrored(function)
+        if is_mirrored and function.sums is None:
+            self.reasons.append("where poles that mirror each other meet on the axis is not searched")
+            return []
+        first, origin = self.next_to_zero(function, is_mirrored=is_mirrored)
+        if origin is not None:
+            gain = origin.gain()
+            if gain is not None and self._may_be_in_range(gain):
+                found.append(Crossing(gain, (arb(0),)))
+        equation = LoopValue.meeting if is_mirrored else LoopValue.crossing
+        order = 2 if is_mirrored else 1
+        result = self.on_axis(function, equation, self._is_far, (first, self.axis_end), digits, order)
+        for omega in result.roots:
+            bits = max(BITS, 2 * omega.bits())
+            around, _ = function.on(omega, bits)
+            with precision(bits):
+                if self._is_far(around):
+                    continue
+                if around.b.contains(0):
+                    place = float((omega.mid() / (2 * arb.pi())).mid())
+                    self.reasons.append(f"poles near {place:.6g} Hz may stay on the axis for every gain")
+                    continue
+                gain = around.gain()
+            if self._may_be_in_range(gain):
+                found.append(Crossing(gain, (omega,), is_symmetric=is_mirrored))
+        return found
+
+    def on_axis(
+        self,
+        function: LoopFunction,
+        equation: Callable[[LoopValue], tuple[arb, arb]],
+        is_excluded: Callable[[LoopValue], bool],
+        limits: tuple[float, float],
+        digits: int,
+        order: int = 1,
+    ) -> AxisRoots:
+        """Return the roots of a real function along the axis between two frequencies."""
+        low, high = limits
+        result = find_on_axis(function, equation, is_excluded, (low, high * 1.01), digits, self.budget, order)
+        for gap in result.undecided:
+            place = float((gap.mid() / (2 * arb.pi())).mid())
+            self.reasons.append(f"whether poles cross the axis near {place:.6g} Hz is not decided")
+        return result
+
+    def next_to_zero(
+        self, function: LoopFunction, *, is_mirrored: bool = False
+    ) -> tuple[float, LoopAtOrigin | None]:
+        """Return a frequency [rad/s] within which no pole crosses the axis but at 0, as far as proved."""
+        origin = loop_at_origin(function, self.budget)
+        if origin is None:
+            self.reasons.append("what poles do next to s = 0 is not proved")
+            return self.scale * NEXT_TO_ZERO, None
+        radius = origin.series[0].reach / 4
+        for _ in range(SHRINKINGS):
+            is_proved = origin.moves_away(radius) if is_mirrored else origin.turns_away(radius)
+            if is_proved or self._beyond_all_gains(origin, radius):
+                break
+            radius = radius / 2
+        else:
+            # Several crossings meet at 0: nothing is gained by going closer.
+            self.reasons.append("what poles do next to s = 0 is not proved")
+            radius = origin.series[0].reach / 4
+        return float(radius.lower()), origin
+
+    def _beyond_all_gains(self, origin: LoopAtOrigin, radius: arb) -> bool:
+        first, second = origin.orders
+        if first > second:
+            return False
+        a, b = origin.sizes(radius)
+        most = max(abs(x) for x in self.limits)
+        bound = ball(most) * b.abs_upper() * radius ** (second - first)
+        return bool(a.abs_lower() > bound)
+
+    def _is_far(self, value: LoopValue) -> bool:
+        """Tell whether the gain of a pole at these values is out of the range."""
+        low, high = (ball(x) for x in self.limits)
+        most = abs(low).max(abs(high))
+        size = value.a.abs_lower()
+        if size > most * value.b.abs_upper():
+            return True
+        if low > 0 and value.a.abs_upper() < low * value.b.abs_lower():
+            return True
+        if value.b.contains(0):
+            return False
+        gain = value.gain()
+        return bool(gain < low) or bool(gain > high)
+
+    def _may_be_in_range(self, gain: arb) -> bool:
+        low, high = (ball(x) for x in self.limits)
+        return not (gain < low or gain > high)

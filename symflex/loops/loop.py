@@ -22,6 +22,7 @@ from symflex.algebra.exponential_sum import Argument, ExponentialSum, arguments_
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.roots import precision
 from symflex.roots.functions.exponential_values import ExponentialValues
+from symflex.roots.functions.kernel_function import KernelFactors
 from symflex.transfer import BoundTransferFunction, Given, TransferFunction, bind, bind_polynomials
 from symflex.transfer.balls import Value, expansion
 
@@ -29,7 +30,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from symflex.model import Model, ModelParameter
-    from symflex.transfer.enclose_kernels import KernelValues
 
 
 TRIALS = ("1", "2", "0.37")
@@ -233,18 +233,19 @@ class LoopFunction:
         return None if a is None or b is None else (a, b)
 
     @cached_property
-    def _evaluators(self) -> dict[int, tuple[KernelValues, ExponentialValues | None]]:
+    def _evaluators(self) -> dict[int, ExponentialValues | KernelFactors]:
         return {}
 
-    def evaluator(self, bits: int) -> tuple[KernelValues, ExponentialValues | None]:
-        """Return what evaluates kernels and sums of exponentials at one precision."""
+    def evaluator(self, bits: int) -> ExponentialValues | KernelFactors:
+        """Return what evaluates A and B at one precision."""
         if bits not in self._evaluators:
             with precision(bits):
                 kernels = self.bound.kernel_values()
-            sums = None
-            if self.sums is not None:
-                sums = ExponentialValues(kernels, self.arguments, tuple((f, 1) for f in self.sums))
-            self._evaluators[bits] = (kernels, sums)
+            self._evaluators[bits] = (
+                KernelFactors(kernels, (self.a, self.b))
+                if self.sums is None
+                else ExponentialValues(kernels, self.arguments, tuple((f, 1) for f in self.sums))
+            )
         return self._evaluators[bits]
 
     def on(self, omega: arb, bits: int, order: int = 1) -> tuple[LoopValue, LoopValue]:
@@ -258,18 +259,11 @@ class LoopFunction:
         with precision(bits):
             middle = omega.mid()
             wide = acb(0, omega)
-            kernels, sums = self.evaluator(bits)
-            if sums is None:
-                around = kernels.at(expansion(wide))
-                centre = kernels.at(expansion(acb(0, middle)), around)
-                values = [[kernels.polynomial(f, v) for f in (self.a, self.b)] for v in (around, centre)]
-            else:
-                around_place = sums.at(_series(wide, order))
-                centre_place = sums.at(_series(acb(0, middle), order), around_place)
-                less = sums.largest((0, 1), centre_place)
-                values = [
-                    [sums.value(i, place, less) for i in (0, 1)] for place in (around_place, centre_place)
-                ]
+            sums = self.evaluator(bits)
+            around = sums.at(_series(wide, order))
+            centre = sums.at(_series(acb(0, middle), order), around)
+            less = sums.largest((0, 1), centre)
+            values = [[sums.value(i, place, less) for i in (0, 1)] for place in (around, centre)]
             (a, b), (a_mid, b_mid) = ([_derivatives(v) for v in pair] for pair in values)
             off = acb(0, omega - middle)
             narrow = [_narrower(value[0], mid[0] + value[1] * off) for value, mid in ((a, a_mid), (b, b_mid))]
@@ -281,15 +275,10 @@ class LoopFunction:
     def near(self, s: complex, bits: int = 96) -> tuple[complex, complex, complex, complex]:
         """Return A, A', B and B' at a point, divided alike, in doubles and without proof."""
         with precision(bits):
-            kernels, sums = self.evaluator(bits)
-            point = expansion(acb(s.real, s.imag))
-            if sums is None:
-                place = kernels.at(point)
-                values = [kernels.polynomial(f, place) for f in (self.a, self.b)]
-            else:
-                at = sums.at(point)
-                less = sums.largest((0, 1), at)
-                values = [sums.value(i, at, less) for i in (0, 1)]
+            sums = self.evaluator(bits)
+            at = sums.at(expansion(acb(s.real, s.imag)))
+            less = sums.largest((0, 1), at)
+            values = [sums.value(i, at, less) for i in (0, 1)]
             (a, a_slope, _), (b, b_slope, _) = (_derivatives(value) for value in values)
             return complex(a.mid()), complex(a_slope.mid()), complex(b.mid()), complex(b_slope.mid())
 

@@ -27,6 +27,7 @@ from symflex.roots import (
     find_polynomial_roots,
     precision,
 )
+from symflex.transfer.balls import value_at
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -162,14 +163,7 @@ class LumpedFactor:
     def _value(self, polynomial: fmpz_mpoly, square: arb, gain: arb) -> arb:
         """Return a polynomial of the ring at w and K, at the current precision."""
         values = [square, gain, *(constant.evaluate() for constant in self.constants)]
-        total = arb(0)
-        for monomial, integer in polynomial.terms():
-            term = arb(int(integer))
-            for value, exponent in zip(values, monomial, strict=True):
-                if exponent:
-                    term *= value ** int(exponent)
-            total += term
-        return total
+        return value_at(polynomial, values.__getitem__, arb)
 
     def _leading(self, parts: tuple[fmpz_mpoly, fmpz_mpoly]) -> fmpz_mpoly:
         """Return the coefficient of the highest power of s in ``E + s O``, a polynomial in K."""
