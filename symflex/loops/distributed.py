@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from math import exp, log, pi
+from math import exp, log
 from typing import TYPE_CHECKING
 
 from flint import acb, arb
@@ -21,13 +21,13 @@ from symflex.loops.axis import AxisRoots, LoopAtOrigin, find_on_axis, loop_at_or
 from symflex.loops.loop import GainPolynomial, LoopFunction, LoopValue
 from symflex.loops.stability_map import Crossing, PoleCount
 from symflex.roots import Band, Budget, precision
-from symflex.roots.counting.argument_principle import CertifiedWinding
-from symflex.roots.counting.winding import Cell, RootOnPathError, Winding
+from symflex.roots.counting.winding import RootOnPathError
 from symflex.roots.distributed.far_out import Tail, right_tail
 from symflex.roots.distributed.side import Side
 from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.functions.simplified import without_squares
 from symflex.roots.passive import PassiveLoop, passive_loop
+from symflex.roots.pole_zero_map import count_right
 from symflex.roots.root import exact_fraction
 from symflex.transfer.balls import ball
 
@@ -45,8 +45,8 @@ NEXT_TO_ZERO = 1e-6
 """Of the frequency of one wave: from there on crossings are sought where nothing is known of 0."""
 WAVES = 30.0
 """Largest argument of a kernel up to which poles are counted where no end is known."""
-DEPTHS = (0.0, 2.0, 5.0, 9.0, 14.0, 20.0)
-"""How far below the lowest root, in ln, circles about 0 are counted."""
+COUNT_DIGITS = 12
+"""Of poles of which only the side of the axis is asked for."""
 NUDGES = (0.0, 0.0137, 0.0291, 0.0531)
 """By which the outer circle is moved when it meets a pole [in ln]."""
 
@@ -177,54 +177,27 @@ class DistributedFactors:
 
         SF802 when a pole lies on the path of the count.
         """
-        function = self._function(gain)
-        zeros = self._order_at_zero(gain, function)
-        if function.is_even and function.power == 1:
-            return self._count_mirrored(gain, zeros)
-        winding = CertifiedWinding(function, self.budget, tries_series=True)
-        inner = self._inner_radius(winding, function)
+        side = Side(self.bound, self._product(gain), COUNT_DIGITS, self.budget)
+        zeros = sum(root.multiplicity for root in side.roots)
+        if not all(root.certified for root in side.roots):
+            self.reasons.append("poles next to s = 0 are counted as poles at 0")
+        if side.is_finite:
+            return PoleCount(
+                count_right(side.roots), sum(r.multiplicity for r in side.roots if r.on_imaginary_axis)
+            )
+        if side.function.is_even and side.function.power == 1:
+            return self._count_mirrored(gain, side, zeros)
         for nudge in NUDGES:
-            high = log(self.radius[0] * 1.01) + nudge
             try:
-                right = winding.count(Cell(inner, high, -pi / 2, pi / 2))
+                return PoleCount(side.count_right(log(self.radius[0] * 1.01) + nudge), zeros)
             except RootOnPathError:
                 continue
-            if right % function.power == 0:
-                return PoleCount(right // function.power, zeros)
         message = f"poles right of the axis cannot be counted for a gain of {float(gain):.6g}"
         hint = "one may lie on the imaginary axis whatever the gain is"
         raise UncertifiedError(Diagnostic("SF802", message, None, hint))
 
-    def _order_at_zero(self, gain: Fraction, function: KernelFunction) -> int:
-        whole = self._product(gain)
-        powers = whole.exponent_of(whole.ring.context.gen(0))
-        order = function.order()
-        if order is None or order % function.power:
-            self.reasons.append("poles next to s = 0 are counted as poles at 0")
-            return powers + self._turns(function)
-        return powers + order // function.power
-
-    def _turns(self, function: KernelFunction) -> int:
-        winding = CertifiedWinding(function, self.budget)
-        return winding.count_within(Winding(function, self.budget).smallest(pi), pi) // function.power
-
-    def _inner_radius(self, winding: CertifiedWinding, function: KernelFunction) -> float:
-        """Return ln of a radius within which there is no pole but at s = 0, proved."""
-        order, lowest = function.order(), Winding(function, self.budget).smallest(pi)
-        for depth in DEPTHS:
-            try:
-                turns = winding.count_within(lowest - depth, pi)
-            except RootOnPathError:
-                continue
-            if order is None or turns == order:
-                return lowest - depth
-        message = "the poles next to s = 0 cannot be counted"
-        raise UncertifiedError(Diagnostic("SF802", message))
-
-    def _count_mirrored(self, gain: Fraction, zeros: int) -> PoleCount:
+    def _count_mirrored(self, gain: Fraction, side: Side, zeros: int) -> PoleCount:
         """Return the counts of a function whose roots mirror each other in the axis, from all its roots."""
-        whole = self._product(gain)
-        side = Side(self.bound, whole, 12, self.budget)
         high = exact_fraction(arb(self.radius[0])) / 6
         region = Band(high * 0, high)
         side.search(region)
@@ -234,9 +207,8 @@ class DistributedFactors:
             raise UncertifiedError(Diagnostic("SF802", message))
         self.method = f"roots, {side.engine}"
         roots = [r for r in side.roots if float(r.natural_frequency().mid()) <= self.radius[0]]
-        right = sum(r.multiplicity for r in roots if not r.on_imaginary_axis and r.re > 0)
         axis = sum(r.multiplicity for r in roots if r.on_imaginary_axis and not r.is_zero)
-        return PoleCount(right, axis + zeros)
+        return PoleCount(count_right(roots), axis + zeros)
 
     def crossings(self, digits: int) -> list[Crossing]:
         """Return where poles cross the axis for gains in the range; the search's gaps go to ``reasons``."""

@@ -22,7 +22,7 @@ from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
 from symflex.loops.apart import PolesApart, poles_apart
 from symflex.loops.distributed import SHRINKINGS, DistributedFactors
 from symflex.loops.locus import closed_loop_roots
-from symflex.loops.loop import Loop
+from symflex.loops.loop import Loop, LoopFunction
 from symflex.loops.lumped import LumpedFactor
 from symflex.loops.networks import AnyLoop, NetworkLoop
 from symflex.loops.stability_map import (
@@ -411,10 +411,11 @@ class LoopGain:
 
     def ratio(self, omega: arb) -> acb:
         """Return an enclosure of B/A at a frequency [rad/s]."""
-        if not isinstance(self.source, DistributedFactors):
-            with precision(BITS):
-                return _ratio(*self.source, omega)
-        (function,) = self.source.with_gain
+        if isinstance(self.source, DistributedFactors):
+            (function,) = self.source.with_gain
+        else:
+            bound, factor = self.source
+            function = LoopFunction.of(bound, *factor.coefficients)
         around, _ = function.on(omega, BITS)
         with precision(BITS):
             ratio: acb = around.b / around.a
@@ -439,18 +440,14 @@ def lumped_crossovers(
             if e > 0 and (polynomial := polynomial_in_s(bound, f)).degree
         )
     )
-    found = []
+    function, found = LoopFunction.of(bound, a, b), []
     for root in find_polynomial_roots(problem, digits, budget=budget):
         if root.on_imaginary_axis and root.im > 0:
-            with precision(2 * root.working_bits()):
-                omega = root.im
-                found.append((omega, _ratio(bound, factor, omega)))
+            bits = 2 * root.working_bits()
+            around, _ = function.on(root.im, bits)
+            with precision(bits):
+                found.append((root.im, around.b / around.a))
     return found
-
-
-def _ratio(bound: BoundTransferFunction, factor: GainPolynomial, omega: arb) -> acb:
-    a, b = (_value(bound, part, acb(0, omega)) for part in factor.coefficients)
-    return b / a
 
 
 def _mirrored(value: Factored) -> Factored:
@@ -459,13 +456,6 @@ def _mirrored(value: Factored) -> Factored:
     images = [ring.context.gen(i) for i in range(len(ring.names))]
     images[0] = -images[0]
     return value.map_factors(ring, lambda f: Factored.polynomial(ring, f.compose(*images, ctx=ring.context)))
-
-
-def _value(bound: BoundTransferFunction, part: Factored, s: acb) -> acb:
-    total = acb(ball(part.unit))
-    for factor, exponent in part.factors:
-        total = total * polynomial_in_s(bound, factor).enclosure()(s) ** exponent
-    return total
 
 
 def distributed_crossovers(
@@ -488,6 +478,8 @@ def distributed_crossovers(
             if a.abs_lower() > share * b.abs_upper() and orders[1] >= orders[0]:
                 break
             if a.abs_upper() < share * b.abs_lower() and orders[1] <= orders[0]:
+                break
+            if origin.leaves_one(nominal, arb(first)):
                 break
             first /= 2
         else:
