@@ -38,7 +38,6 @@ from symflex.transfer.balls import Value, at_centre, expansion
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
-    from symflex.roots.functions.double_minors import DoubleMinors
     from symflex.transfer import BoundTransferFunction
     from symflex.transfer.enclose_kernels import KernelValues
 
@@ -277,20 +276,10 @@ class KernelFunction:
         return tuple(found)
 
     @cached_property
-    def in_doubles(self) -> DoubleSums | DoubleMinors | None:
-        """The factors for guesses at many points; ``None`` where kernels are no exponentials nor entries."""
+    def in_doubles(self) -> DoubleSums | None:
+        """The factors for guesses at many points; ``None`` where they are no sums of exponentials."""
         with precision(FIRST_BITS):
-            if self.exponentials is not None:
-                return DoubleSums(self._sums(FIRST_BITS))
-            evaluator, factors = self._values(FIRST_BITS), [f for f, _ in self.part.factors]
-            if evaluator.matrices is None or self.bound.kernels.wavenumbers:
-                return None
-            kernels = self.bound.kernels.kernels
-            if any(k.function != "entry" or k.dispersion.singular for k in kernels):
-                return None
-            from symflex.roots.functions.double_minors import DoubleMinors  # few beams are tapered
-
-            return DoubleMinors(evaluator, evaluator.matrices, factors, self.reach)
+            return None if self.exponentials is None else DoubleSums(self._sums(FIRST_BITS))
 
     def _anywhere(self) -> tuple[int, dict[str, Value], acb]:
         """Return a precision, the generators' values at a frequency like any other, and the product's."""
