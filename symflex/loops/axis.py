@@ -60,13 +60,12 @@ def find_on_axis(
     limits: tuple[float, float],
     digits: int,
     budget: Budget,
-    order: int = 1,
 ) -> AxisRoots:
     """Return the roots of a real function of A and B at ``s = j omega``, 0 < omega [rad/s] within limits.
 
-    ``equation`` returns its value and its derivative in omega, from ``order`` derivatives of A and B;
-    ``is_excluded`` tells that roots among these values are not asked for. The budget is spent by every
-    interval: SF505, SF506 when there are too many, or the time is over.
+    ``equation`` returns its value and its derivative in omega; ``is_excluded`` tells that roots among these
+    values are not asked for. The budget is spent by every interval: SF505, SF506 when there are too many, or
+    the time is over.
     """
     low, high = limits
     pending: list[tuple[float, float]] = []
@@ -83,7 +82,7 @@ def find_on_axis(
         budget.spend()
         start, end = pending.pop()
         ball = _between(start, end)
-        around, centre = function.on(ball, BITS, order)
+        around, centre = function.on(ball, BITS)
         with precision(BITS):
             if is_excluded(around):
                 continue
@@ -93,10 +92,10 @@ def find_on_axis(
             if value != 0 or mean != 0:
                 continue
             if slope != 0:
-                ends = [equation(function.on(arb(x), BITS, order)[1])[0] for x in (start, end)]
+                ends = [equation(function.on(arb(x), BITS)[1])[0] for x in (start, end)]
                 if all(x != 0 for x in ends):
                     if bool(ends[0] > 0) != bool(ends[1] > 0):
-                        roots.append(_refined(function, equation, ball, digits, order))
+                        roots.append(_refined(function, equation, ball, digits))
                     continue
         if end - start < NARROWEST * end:
             undecided.append(ball)
@@ -118,7 +117,6 @@ def _refined(
     equation: Callable[[LoopValue], tuple[arb, arb]],
     ball: arb,
     digits: int,
-    order: int,
 ) -> arb:
     """Return a narrower enclosure of the only root in an interval on which the function is monotonous.
 
@@ -128,7 +126,7 @@ def _refined(
 
     def newton(ball: arb) -> arb:
         bits = min(max(BITS, 2 * ball.rel_accuracy_bits() + 64), 2 * wanted + BITS)
-        around, centre = function.on(ball, bits, order)
+        around, centre = function.on(ball, bits)
         with precision(bits):
             candidate = ball.mid() - equation(centre)[0] / equation(around)[1]
             is_near = candidate.is_finite() and candidate.overlaps(ball)
@@ -210,34 +208,6 @@ class LoopAtOrigin:
         share = omega.upper() / series.reach
         rest = series.bound * share ** (len(series.coefficients) - 2) / (1 - share) / series.reach**2
         return (change + arb(0, rest.upper())) * (u + start) + v * v
-
-    def moves_away(self, radius: arb) -> bool:
-        """Tell, if A/B is real on the axis, whether it changes monotonously within a radius of 0.
-
-        Its derivative is then that of a power of omega times a quotient of functions of omega squared.
-        """
-        with precision(ORIGIN_BITS):
-            omega = arb(0).union(radius)
-            square = omega * omega
-            (a, _), (b, _) = (self._parts(i, omega) for i in (0, 1))
-            a_slope, b_slope = (self._slope(i, omega) for i in (0, 1))
-            turning = a_slope * b - a * b_slope
-            difference = self.orders[0] - self.orders[1]
-            value = turning if not difference else difference * a * b + 2 * square * turning
-            return bool(value != 0)
-
-    def _slope(self, which: int, omega: arb) -> arb:
-        """Return the derivative of u in omega squared."""
-        series, order = self.series[which], self.orders[which]
-        coefficients = [c.real for c in series.coefficients[order::2]]
-        square, total = omega * omega, arb(0)
-        for k in range(len(coefficients) - 1, 0, -1):
-            total = total * square + (-1) ** k * k * coefficients[k]
-        # The sum of k q^(k - 1) from the first missing power on.
-        q, first = (omega.upper() / series.reach) ** 2, len(coefficients)
-        rest = q ** (first - 1) * (first - (first - 1) * q) / (1 - q) ** 2
-        error = (series.bound / series.reach ** (order + 2) * rest).upper()
-        return total + arb(0, error)
 
     def _parts(self, which: int, omega: arb) -> tuple[arb, arb]:
         """Return u and v, functions of omega squared, of ``u + j omega v``."""

@@ -20,7 +20,7 @@ from symflex.errors import Diagnostic, UncertifiedError
 from symflex.loops.axis import AxisRoots, LoopAtOrigin, find_on_axis, loop_at_origin
 from symflex.loops.loop import GainPolynomial, LoopFunction, LoopValue
 from symflex.loops.stability_map import Crossing, PoleCount
-from symflex.roots import Band, Budget, precision
+from symflex.roots import Budget, precision
 from symflex.roots.counting.winding import RootOnPathError
 from symflex.roots.distributed.far_out import Tail, right_tail
 from symflex.roots.distributed.side import Side
@@ -28,7 +28,6 @@ from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.functions.simplified import without_squares
 from symflex.roots.passive import PassiveLoop, passive_loop
 from symflex.roots.pole_zero_map import count_right
-from symflex.roots.root import exact_fraction
 from symflex.transfer.balls import ball
 
 if TYPE_CHECKING:
@@ -185,8 +184,6 @@ class DistributedFactors:
             return PoleCount(
                 count_right(side.roots), sum(r.multiplicity for r in side.roots if r.on_imaginary_axis)
             )
-        if side.function.is_even and side.function.power == 1:
-            return self._count_mirrored(gain, side, zeros)
         for nudge in NUDGES:
             try:
                 return PoleCount(side.count_right(log(self.radius[0] * 1.01) + nudge), zeros)
@@ -195,20 +192,6 @@ class DistributedFactors:
         message = f"poles right of the axis cannot be counted for a gain of {float(gain):.6g}"
         hint = "one may lie on the imaginary axis whatever the gain is"
         raise UncertifiedError(Diagnostic("SF802", message, None, hint))
-
-    def _count_mirrored(self, gain: Fraction, side: Side, zeros: int) -> PoleCount:
-        """Return the counts of a function whose roots mirror each other in the axis, from all its roots."""
-        high = exact_fraction(arb(self.radius[0])) / 6
-        region = Band(high * 0, high)
-        side.search(region)
-        proof = side.prove(region)
-        if not proof.is_complete:
-            message = f"poles cannot be told apart for a gain of {float(gain):.6g}"
-            raise UncertifiedError(Diagnostic("SF802", message))
-        self.method = f"roots, {side.engine}"
-        roots = [r for r in side.roots if float(r.natural_frequency().mid()) <= self.radius[0]]
-        axis = sum(r.multiplicity for r in roots if r.on_imaginary_axis and not r.is_zero)
-        return PoleCount(count_right(roots), axis + zeros)
 
     def crossings(self, digits: int) -> list[Crossing]:
         """Return where poles cross the axis for gains in the range; the search's gaps go to ``reasons``."""
@@ -219,18 +202,12 @@ class DistributedFactors:
 
     def _crossings(self, function: LoopFunction, digits: int) -> list[Crossing]:
         found: list[Crossing] = []
-        is_mirrored = self.is_mirrored(function)
-        if is_mirrored and function.sums is None:
-            self.reasons.append("where poles that mirror each other meet on the axis is not searched")
-            return []
-        first, origin = self.next_to_zero(function, is_mirrored=is_mirrored)
+        first, origin = self.next_to_zero(function)
         if origin is not None:
             gain = origin.gain()
             if gain is not None and self._may_be_in_range(gain):
                 found.append(Crossing(gain, (arb(0),)))
-        equation = LoopValue.meeting if is_mirrored else LoopValue.crossing
-        order = 2 if is_mirrored else 1
-        result = self.on_axis(function, equation, self._is_far, (first, self.axis_end), digits, order)
+        result = self.on_axis(function, LoopValue.crossing, self._is_far, (first, self.axis_end), digits)
         for omega in result.roots:
             bits = max(BITS, 2 * omega.bits())
             around, _ = function.on(omega, bits)
@@ -243,7 +220,7 @@ class DistributedFactors:
                     continue
                 gain = around.gain()
             if self._may_be_in_range(gain):
-                found.append(Crossing(gain, (omega,), is_symmetric=is_mirrored))
+                found.append(Crossing(gain, (omega,)))
         return found
 
     def on_axis(
@@ -253,19 +230,16 @@ class DistributedFactors:
         is_excluded: Callable[[LoopValue], bool],
         limits: tuple[float, float],
         digits: int,
-        order: int = 1,
     ) -> AxisRoots:
         """Return the roots of a real function along the axis between two frequencies."""
         low, high = limits
-        result = find_on_axis(function, equation, is_excluded, (low, high * 1.01), digits, self.budget, order)
+        result = find_on_axis(function, equation, is_excluded, (low, high * 1.01), digits, self.budget)
         for gap in result.undecided:
             place = float((gap.mid() / (2 * arb.pi())).mid())
             self.reasons.append(f"whether poles cross the axis near {place:.6g} Hz is not decided")
         return result
 
-    def next_to_zero(
-        self, function: LoopFunction, *, is_mirrored: bool = False
-    ) -> tuple[float, LoopAtOrigin | None]:
+    def next_to_zero(self, function: LoopFunction) -> tuple[float, LoopAtOrigin | None]:
         """Return a frequency [rad/s] within which no pole crosses the axis but at 0, as far as proved."""
         origin = loop_at_origin(function, self.budget)
         if origin is None:
@@ -273,8 +247,7 @@ class DistributedFactors:
             return self.scale * NEXT_TO_ZERO, None
         radius = origin.series[0].reach / 4
         for _ in range(SHRINKINGS):
-            is_proved = origin.moves_away(radius) if is_mirrored else origin.turns_away(radius)
-            if is_proved or self._beyond_all_gains(origin, radius):
+            if origin.turns_away(radius) or self._beyond_all_gains(origin, radius):
                 break
             radius = radius / 2
         else:

@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from symflex.transfer import BoundTransferFunction
 
 
+MIRRORED = "where poles that mirror each other meet on the imaginary axis is not searched"
 NETWORK = "for which gains a network too large to be written out is stable is not searched"
 RANGE_OF_NOMINAL = 100
 """How many times the nominal gain is examined of a loop with kernels: it may have boundaries without end."""
@@ -78,8 +79,10 @@ def find_stable_gains(
     """
     budget = budget or entered_budget()
     if isinstance(loop, NetworkLoop):
-        return _of_network(loop, limits, digits, budget)
+        return _at_nominal(loop, limits or (None, None), digits, budget, NETWORK)
     lumped, along, (low, high) = _factors(loop, limits, up_to, budget)
+    if along is not None and any(along.is_mirrored(function) for function in along.with_gain):
+        return _at_nominal(loop, (low, high), digits, budget, MIRRORED)
     apart = _apart(loop, budget)
     crossings = [c for factor in lumped for c in factor.crossings(digits + GUARD_DIGITS, budget)]
     if along is not None:
@@ -133,15 +136,15 @@ def find_stable_gains(
     )
 
 
-def _of_network(loop: NetworkLoop, limits: Limits | None, digits: int, budget: Budget) -> StabilityMap:
-    """Return what is known of a network too large to be written out: its poles at the nominal gain."""
+def _at_nominal(loop: AnyLoop, limits: Limits, digits: int, budget: Budget, reason: str) -> StabilityMap:
+    """Return what is known where the range of the gain is not searched: whether its own value is stable."""
     verdict = None
     if loop.nominal is not None:
         verdict = closed_loop_roots(loop, loop.nominal, budget=budget).verdict
     return StabilityMap(
         loop.gain.name,
         loop.gain.unit,
-        limits or (None, None),
+        limits,
         (),
         (),
         loop.nominal,
@@ -149,11 +152,12 @@ def _of_network(loop: NetworkLoop, limits: Limits | None, digits: int, budget: B
         (),
         None,
         False,
-        (NETWORK,),
+        (reason,),
         digits,
         None,
-        method="network",
+        method="roots",
         at_nominal=verdict,
+        tf=loop.bound.name if isinstance(loop, Loop) else "",
     )
 
 

@@ -152,17 +152,12 @@ NOTHING = acb(0)
 
 @dataclass(frozen=True, slots=True)
 class LoopValue:
-    """Enclosures of A and B at ``s = j omega``, divided by a common function, and of their derivatives in s.
-
-    ``bend`` is a second derivative, where these were asked for.
-    """
+    """Enclosures of A and B at ``s = j omega``, divided alike, and of their derivatives in s."""
 
     a: acb
     a_slope: acb
     b: acb
     b_slope: acb
-    a_bend: acb
-    b_bend: acb
 
     def crossing(self) -> tuple[arb, arb]:
         """``Im(A conj(B))``, which vanishes where the gain is real, and its derivative in omega."""
@@ -179,17 +174,6 @@ class LoopValue:
         j = acb(0, 1)
         slope = 2 * (j * self.a_slope * a).real - 2 * square * (j * self.b_slope * b).real
         return value, slope
-
-    def meeting(self) -> tuple[arb, arb]:
-        """Return what vanishes where poles meet on the axis if A/B is real there, and its derivative.
-
-        It is ``-Im((A' B - A B') conj(B)^2)``, the derivative of A/B in omega but for a positive factor.
-        """
-        j, conjugate = acb(0, 1), self.b.conjugate()
-        wronskian = self.a_slope * self.b - self.a * self.b_slope
-        change = self.a_bend * self.b - self.a * self.b_bend
-        slope = j * change * conjugate + 2 * wronskian * (j * self.b_slope).conjugate()
-        return (j * wronskian * conjugate * conjugate).real, (j * slope * conjugate).real
 
     def gain(self) -> arb:
         """``-Re(A/B)``: the gain of a pole here, where that is real."""
@@ -248,28 +232,25 @@ class LoopFunction:
             )
         return self._evaluators[bits]
 
-    def on(self, omega: arb, bits: int, order: int = 1) -> tuple[LoopValue, LoopValue]:
-        """Return the values on a ball of frequencies, and those in its middle, with so many derivatives.
+    def on(self, omega: arb, bits: int) -> tuple[LoopValue, LoopValue]:
+        """Return the values on a ball of frequencies, and those in its middle.
 
         The first are enclosures by the mean value theorem where these are narrower.
         """
-        if order > 1 and self.sums is None:
-            message = "second derivatives need exponentials"
-            raise ValueError(message)
         with precision(bits):
             middle = omega.mid()
             wide = acb(0, omega)
             sums = self.evaluator(bits)
-            around = sums.at(_series(wide, order))
-            centre = sums.at(_series(acb(0, middle), order), around)
+            around = sums.at(expansion(wide))
+            centre = sums.at(expansion(acb(0, middle)), around)
             less = sums.largest((0, 1), centre)
             values = [[sums.value(i, place, less) for i in (0, 1)] for place in (around, centre)]
             (a, b), (a_mid, b_mid) = ([_derivatives(v) for v in pair] for pair in values)
             off = acb(0, omega - middle)
             narrow = [_narrower(value[0], mid[0] + value[1] * off) for value, mid in ((a, a_mid), (b, b_mid))]
             return (
-                LoopValue(narrow[0], a[1], narrow[1], b[1], a[2], b[2]),
-                LoopValue(a_mid[0], a_mid[1], b_mid[0], b_mid[1], a_mid[2], b_mid[2]),
+                LoopValue(narrow[0], a[1], narrow[1], b[1]),
+                LoopValue(a_mid[0], a_mid[1], b_mid[0], b_mid[1]),
             )
 
     def near(self, s: complex, bits: int = 96) -> tuple[complex, complex, complex, complex]:
@@ -279,13 +260,8 @@ class LoopFunction:
             at = sums.at(expansion(acb(s.real, s.imag)))
             less = sums.largest((0, 1), at)
             values = [sums.value(i, at, less) for i in (0, 1)]
-            (a, a_slope, _), (b, b_slope, _) = (_derivatives(value) for value in values)
+            (a, a_slope), (b, b_slope) = (_derivatives(value) for value in values)
             return complex(a.mid()), complex(a_slope.mid()), complex(b.mid()), complex(b_slope.mid())
-
-
-def _series(s: acb, order: int) -> acb_series:
-    """Return ``s + x`` up to a power of x."""
-    return expansion(s) if order == 1 else acb_series([s, acb(1)], order + 1)
 
 
 def _narrower(one: acb, other: acb) -> acb:
@@ -296,7 +272,5 @@ def _narrower(one: acb, other: acb) -> acb:
     return other if other.rad() < one.rad() else one
 
 
-def _derivatives(value: Value) -> tuple[acb, acb, acb]:
-    if not isinstance(value, acb_series):
-        return value, NOTHING, NOTHING
-    return value[0], value[1], 2 * value[2]
+def _derivatives(value: Value) -> tuple[acb, acb]:
+    return (value[0], value[1]) if isinstance(value, acb_series) else (value, NOTHING)
