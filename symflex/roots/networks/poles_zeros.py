@@ -76,20 +76,7 @@ def locate_in_network(
     ``equations`` have numbers in place of all parameters. Of a function that is zero, nothing is searched.
     """
     if is_zero(equations, *pair):
-        nothing = Certificate(CRAMER, False, 0, 0, ZERO)
-        unknown = judge([], ZERO)
-        return PoleZeroMap(
-            name,
-            region,
-            (),
-            (),
-            (),
-            nothing,
-            digits,
-            is_default_region=is_default,
-            is_infinite=True,
-            verdict=unknown,
-        )
+        return _with_certificate(_nothing(ZERO, ""), name, region, digits, is_default=is_default)
     network: Network | None
     try:
         network = network_of(equations, *pair)
@@ -168,43 +155,33 @@ class LocatedRoots:
 
 
 def _without_losses(search: _NetworkSearch, in_disc: Callable[[], LocatedRoots]) -> LocatedRoots:
-    """Count the poles, and the zeros where the output is what the input drives; else find these in a disc."""
+    """Count the poles, and the zeros where the output is what the input drives.
+
+    Else all are found in a disc, and where that comes to nothing the poles are counted nevertheless.
+    """
+    found = None if search.network.is_colocated else in_disc()
+    if found is not None and not found.reasons:
+        return found
     reasons: list[str] = []
     code: str | None = None
-    engine = WITTRICK_WILLIAMS
-    found: LocatedRoots | None = None
     try:
         search.find()
-        if not search.network.is_colocated:
-            found = in_disc()
-            engine = f"{WITTRICK_WILLIAMS}, {CRAMER}"
-            reasons += found.reasons
     except BudgetError as error:
         reasons.append("; ".join(d.message for d in error.diagnostics))
         code = error.diagnostics[0].code
     except UndecidedError:
         reasons.append(NOT_COUNTED)
     poles, zeros, hidden = search.roots()
-    if found is not None and not found.reasons:
-        # What is at 0 is known from there, too, and how much of it is hidden.
-        zeros = found.zeros
-        poles = (*(r for r in found.poles if _is_at_zero(r)), *(r for r in poles if not _is_at_zero(r)))
-        hidden = (
-            *(h for h in found.hidden if _is_at_zero(h.root)),
-            *(h for h in hidden if not _is_at_zero(h.root)),
-        )
-    elif found is not None:
-        zeros = (*(r for r in zeros if not found.zeros), *found.zeros)
+    engine = WITTRICK_WILLIAMS
+    if found is not None:
+        engine, zeros = f"{WITTRICK_WILLIAMS}, {CRAMER}", found.zeros or zeros
+        reasons += found.reasons
     known = [*poles, *(h.root for h in hidden if not h.is_proved)]
     proof = PASSIVE if search.network.passive else ""
     unseen = [h.root for h in hidden if h.is_proved]
     verdict = judge(known, NONE_ON_AXIS if proof else NOT_PASSIVE, proof, unseen)
     reasons += search.reasons
     return LocatedRoots(engine, poles, zeros, hidden, verdict, tuple(reasons), (), code)
-
-
-def _is_at_zero(root: Root) -> bool:
-    return bool(root.re.contains(0) and root.im.contains(0))
 
 
 def _in_disc(
@@ -227,12 +204,6 @@ def _in_disc(
     except UndecidedError:
         return _nothing(NOT_COUNTED, proof)
     poles, zeros = (chosen(roots, region) for roots in (found.poles, found.zeros))
-    shared = found.shared
-    if isinstance(region, Modes):
-        highest = max((root.natural_frequency() for root in poles), default=arb(0))
-        shared = tuple(r for r in shared if r.is_zero or not r.natural_frequency() > highest)
-    elif not isinstance(region, Mode):
-        shared = chosen(shared, region)
     reasons = []
     if isinstance(region, Modes | Mode):
         wanted = region.count if isinstance(region, Modes) else region.number
@@ -242,9 +213,19 @@ def _in_disc(
     beyond = REACHED.format(found.radius / (2 * pi))
     at_rest = [r for r in found.shared if r.is_zero]
     verdict = judge(known, NONE_ON_AXIS if proof else beyond, proof, at_rest)
-    hidden = tuple(HiddenRoot(r, "cancelled" if r.is_zero else "coincident") for r in shared)
+    hidden = _hidden(found.shared, poles, region)
     unstable = right_beyond(found.poles, poles)
     return LocatedRoots(CRAMER, poles, zeros, hidden, verdict, tuple(reasons), unstable)
+
+
+def _hidden(shared: Sequence[Root], poles: Sequence[Root], region: Region) -> tuple[HiddenRoot, ...]:
+    """Return the hidden modes that are shown: of a number of modes those up to the highest pole shown."""
+    if isinstance(region, Modes):
+        highest = max((root.natural_frequency() for root in poles), default=arb(0))
+        shared = in_order([r for r in shared if r.is_zero or not r.natural_frequency() > highest])
+    elif not isinstance(region, Mode):
+        shared = chosen(shared, region)
+    return tuple(HiddenRoot(r, "cancelled" if r.is_zero else "coincident") for r in shared)
 
 
 def _nothing(reason: str, proof: str, code: str | None = None) -> LocatedRoots:
@@ -393,12 +374,7 @@ class _NetworkSearch:
     def roots(self) -> tuple[tuple[Root, ...], tuple[Root, ...], tuple[HiddenRoot, ...]]:
         """Return poles, zeros and hidden modes in the region."""
         poles, zeros = (self._chosen(roots) for roots in (self.visible, self.held))
-        shared = self._chosen(self.shared)
-        if isinstance(self.region, Modes):
-            highest = max((root.natural_frequency() for root in poles), default=arb(0))
-            shared = in_order([r for r in self.shared if r.is_zero or not r.natural_frequency() > highest])
-        hidden = tuple(HiddenRoot(r, "cancelled" if r.is_zero else "coincident") for r in shared)
-        return poles, zeros, hidden
+        return poles, zeros, _hidden(self.shared, poles, self.region)
 
     def _chosen(self, roots: Sequence[Root]) -> tuple[Root, ...]:
         if isinstance(self.region, Mode):  # no other was sought

@@ -133,7 +133,8 @@ def test_of_a_spring_at_the_damped_end_all_poles_are_counted_and_margins_are_not
 
 @pytest.mark.slow
 def test_where_poles_mirror_each_other_the_gain_itself_is_examined(lossless_beam):
-    for where, word in (("act", "marginal"), ("tip", "unstable")):
+    # At the tip poles leave the axis for larger gains, and whether some have no one knows.
+    for where, word in (("act", "marginal"), ("tip", "unknown")):
         found = lossless_beam(where).stability("K", up_to_hz=100)
         assert found.proved.verdict.word == word
         assert not found.certified and counts(found) == []
