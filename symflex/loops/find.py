@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Final
 
 from flint import acb, arb
 
-from symflex.algebra import Factored, degree_in
+from symflex.algebra import degree_in
 from symflex.budget import Budget, entered_budget
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
 from symflex.loops.apart import PolesApart, poles_apart
@@ -35,8 +35,8 @@ from symflex.loops.stability_map import (
     PoleCount,
     StabilityMap,
 )
-from symflex.roots import RootProblem, find_polynomial_roots, precision
-from symflex.roots.problem import polynomial_in_s
+from symflex.roots import find_polynomial_roots, precision
+from symflex.roots.problem import problem_of
 from symflex.roots.root import exact_fraction
 from symflex.transfer.balls import ball
 
@@ -44,7 +44,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symflex.loops.loop import GainPolynomial, LoopValue
-    from symflex.transfer import BoundTransferFunction
 
 
 MIRRORED = "where poles that mirror each other meet on the imaginary axis is not searched"
@@ -381,8 +380,9 @@ def _loop_gain(loop: Loop, along: DistributedFactors | None, digits: int, budget
     if len(with_gain) != 1 or with_gain[0].degree != 1 or with_gain[0].multiplicity != 1:
         return None
     (factor,) = with_gain
-    is_along = along is not None and factor in along.factors
-    return LoopGain(along if along is not None and is_along else (loop.bound, factor), digits, budget)
+    if along is not None and factor in along.factors:
+        return LoopGain(along.with_gain[0], along, digits, budget)
+    return LoopGain(LoopFunction.of(loop.bound, *factor.coefficients), None, digits, budget)
 
 
 def _phase_margins(loop_gain: LoopGain, nominal: Fraction) -> tuple[PhaseMargin, ...]:
@@ -400,51 +400,41 @@ def _phase_margins(loop_gain: LoopGain, nominal: Fraction) -> tuple[PhaseMargin,
 class LoopGain:
     """The loop gain ``K B/A`` of a loop closed once, on the imaginary axis."""
 
-    # A polynomial factor A + K B with what carries its ring and constants, or one that is known on the axis.
-    source: tuple[BoundTransferFunction, GainPolynomial] | DistributedFactors
+    function: LoopFunction  # A and B
+    along: DistributedFactors | None  # whose factor this is; None of polynomials
     digits: int  # of frequencies
     budget: Budget  # limits the search
 
     def crossovers(self, gain: Fraction) -> list[tuple[arb, acb]]:
         """Return the frequencies [rad/s] at which it is one in magnitude, ascending, and B/A there."""
-        if isinstance(self.source, DistributedFactors):
-            found = distributed_crossovers(self.source, gain, self.digits)
+        if self.along is not None:
+            found = distributed_crossovers(self.along, gain, self.digits)
         else:
-            found = lumped_crossovers(*self.source, gain, self.digits, self.budget)
+            found = lumped_crossovers(self.function, gain, self.digits, self.budget)
         return sorted(found, key=lambda pair: float(pair[0].mid()))
 
     def ratio(self, omega: arb) -> acb:
         """Return an enclosure of B/A at a frequency [rad/s]."""
-        if isinstance(self.source, DistributedFactors):
-            (function,) = self.source.with_gain
-        else:
-            bound, factor = self.source
-            function = LoopFunction.of(bound, *factor.coefficients)
-        around, _ = function.on(omega, BITS)
+        around, _ = self.function.on(omega, BITS)
         with precision(BITS):
             ratio: acb = around.b / around.a
             return ratio
 
 
 def lumped_crossovers(
-    bound: BoundTransferFunction, factor: GainPolynomial, nominal: Fraction, digits: int, budget: Budget
+    function: LoopFunction, nominal: Fraction, digits: int, budget: Budget
 ) -> list[tuple[arb, acb]]:
     """Return the frequencies [rad/s] at which ``abs(A) = abs(K B)``, and B/A there.
 
     ``A(s) A(-s) - K^2 B(s) B(-s)`` is even in s; its roots on the imaginary axis are these frequencies.
     """
-    a, b = factor.coefficients
-    squared = a * _mirrored(a) - b * _mirrored(b) * nominal**2
-    if squared.is_zero:
+    context = function.bound.ratio.ring.context
+    mirrored = [-context.gen(0), *context.gens()[1:]]
+    a, b = (f * f.compose(*mirrored, ctx=context) for f in (function.a, function.b))
+    squared = a * nominal.denominator**2 - b * nominal.numerator**2
+    if squared.is_zero():
         return []
-    problem = RootProblem(
-        tuple(
-            (polynomial, e)
-            for f, e in squared.factors
-            if e > 0 and (polynomial := polynomial_in_s(bound, f)).degree
-        )
-    )
-    function, found = LoopFunction.of(bound, a, b), []
+    problem, found = problem_of(function.bound, [(squared, 1)]), []
     for root in find_polynomial_roots(problem, digits, budget=budget):
         if root.on_imaginary_axis and root.im > 0:
             bits = 2 * root.working_bits()
@@ -452,14 +442,6 @@ def lumped_crossovers(
             with precision(bits):
                 found.append((root.im, around.b / around.a))
     return found
-
-
-def _mirrored(value: Factored) -> Factored:
-    """Return a function of s at -s."""
-    ring = value.ring
-    images = [ring.context.gen(i) for i in range(len(ring.names))]
-    images[0] = -images[0]
-    return value.map_factors(ring, lambda f: Factored.polynomial(ring, f.compose(*images, ctx=ring.context)))
 
 
 def distributed_crossovers(
