@@ -16,7 +16,7 @@ from flint import acb
 from symflex.errors import BudgetError, Diagnostic
 from symflex.roots.axes.axis_scan import sign_changes
 from symflex.roots.counting.winding import RING, Cell, RootOnPathError, Winding
-from symflex.roots.plane.local_roots import is_branched, prove_simple, prove_together
+from symflex.roots.plane.local_roots import is_branched, prove_simple, prove_together, resolve
 from symflex.roots.precision import precision
 from symflex.roots.root import Root, count_modes, overlap
 
@@ -42,7 +42,9 @@ FIRST_BITS = 128
 NEAR = 0.1
 """Size of cells in which a root without a box is enclosed by a disc."""
 NEIGHBOURS = 1e-4
-"""Relative radius of the disc within which roots at one place are enclosed together."""
+"""Relative radius of the circle about one of several roots in a cell within which the others are sought."""
+CLUSTER_BITS = 256
+"""Of moments that tell roots apart."""
 FEW = 8
 """Modes from which on a search goes on in smaller rings."""
 UNCHECKED = 12
@@ -266,16 +268,20 @@ class RootSearch:
         root = prove_simple(self.function, s, self.digits, even=self.is_even)
         if root is not None and root.multiplicity * self.function.power == count and _is_in(cell, root):
             return [root]
-        # No box about it: perhaps a wavenumber vanishes there, which has two branches.
-        is_several = count > self.function.power
-        if is_several or (root is None and cell.size <= NEAR):
-            if is_several and not is_branched(self.function, s, radius):
-                return None
-            root = prove_together(
-                self.function, s, radius, self.digits, count, even=self.is_even, is_close=is_several
-            )
-            return [root] if root is not None and (not is_several or _is_in(cell, root)) else None
-        return None
+        if count <= self.function.power:
+            # No box about it: perhaps a wavenumber vanishes there, which has two branches.
+            together = root is None and cell.size <= NEAR
+        else:
+            # Several roots, perhaps too close to each other to be parted by cuts.
+            found = resolve(self.function, s, radius, self.digits, CLUSTER_BITS, even=self.is_even)
+            if found is not None and sum(r.multiplicity for r in found) * self.function.power == count:
+                return found if all(_is_in(cell, each) for each in found) else None
+            together = is_branched(self.function, s, radius)
+        if not together:
+            return None
+        is_close, even = count > self.function.power, self.is_even
+        root = prove_together(self.function, s, radius, self.digits, count, even=even, is_close=is_close)
+        return [root] if root is not None and (not is_close or _is_in(cell, root)) else None
 
 
 def _is_in(cell: Cell, root: Root) -> bool:

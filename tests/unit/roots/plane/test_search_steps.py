@@ -56,7 +56,7 @@ def search(**options):
 @pytest.fixture
 def known(monkeypatch):
     """Let proofs say what a test sets, and keep what they are asked."""
-    answers = SimpleNamespace(simple=None, branched=False, together=None, asked={})
+    answers = SimpleNamespace(simple=None, resolved=None, branched=False, together=None, asked={})
 
     def say(name, answer):
         def called(*given, **more):
@@ -66,6 +66,7 @@ def known(monkeypatch):
         monkeypatch.setattr(transcendental, name, called)
 
     say("prove_simple", "simple")
+    say("resolve", "resolved")
     say("is_branched", "branched")
     say("prove_together", "together")
     return answers
@@ -127,6 +128,19 @@ def test_newtons_method_that_leaves_the_cell_finds_nothing(known):
 
 
 NEIGHBOUR = exp(PLACE + 1e-3j)
+
+
+def test_several_roots_are_told_apart_if_all_lie_within_the_cell(known):
+    known.resolved = [root(HERE), root(NEIGHBOUR)]
+    one = search(is_even=True)
+    assert together(one, 0.3, 2) == known.resolved
+    (function, s, radius, digits, bits), options = known.asked["resolve"]
+    assert function is one.function
+    assert is_here(s)
+    assert float(radius) == pytest.approx(abs(HERE) * 1e-4, rel=1e-6)
+    assert (digits, bits, options) == (DIGITS, 256, {"even": True})
+    known.resolved = [root(HERE), root(exp(PLACE + 1))]
+    assert together(search(), 0.3, 2) is None
 
 
 def test_several_roots_are_enclosed_together_only_next_to_a_branch(known):
