@@ -10,11 +10,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import exp, inf, pi
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
 from symflex.algebra import Factored
+from symflex.algebra.interval_newton import narrowed
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic, SymflexError
 from symflex.roots import Budget, precision
@@ -40,13 +41,8 @@ MOST_INTERVALS = 40_000
 """Of one search, before it is given up."""
 NEWTON_STEPS = 60
 """Each nearly doubles the digits, so that few are ever taken."""
-
-
-class OnAxis(Protocol):
-    """A and B of a characteristic function ``A + K B``, enclosed along the imaginary axis."""
-
-    def on(self, omega: arb, bits: int, order: int = 1) -> tuple[LoopValue, LoopValue]:
-        """Return the values on a ball of frequencies, and those in its middle, with so many derivatives."""
+STALLED = 0.99
+"""Share of an enclosure that the last step leaves."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,19 +54,18 @@ class AxisRoots:
 
 
 def find_on_axis(
-    function: OnAxis,
+    function: LoopFunction,
     equation: Callable[[LoopValue], tuple[arb, arb]],
     is_excluded: Callable[[LoopValue], bool],
     limits: tuple[float, float],
     digits: int,
     budget: Budget,
-    order: int = 1,
 ) -> AxisRoots:
     """Return the roots of a real function of A and B at ``s = j omega``, 0 < omega [rad/s] within limits.
 
-    ``equation`` returns its value and its derivative in omega, from ``order`` derivatives of A and B;
-    ``is_excluded`` tells that roots among these values are not asked for. The budget is spent by every
-    interval: SF505, SF506 when there are too many, or the time is over.
+    ``equation`` returns its value and its derivative in omega; ``is_excluded`` tells that roots among these
+    values are not asked for. The budget is spent by every interval: SF505, SF506 when there are too many, or
+    the time is over.
     """
     low, high = limits
     pending: list[tuple[float, float]] = []
@@ -87,7 +82,7 @@ def find_on_axis(
         budget.spend()
         start, end = pending.pop()
         ball = _between(start, end)
-        around, centre = function.on(ball, BITS, order)
+        around, centre = function.on(ball, BITS)
         with precision(BITS):
             if is_excluded(around):
                 continue
@@ -97,10 +92,10 @@ def find_on_axis(
             if value != 0 or mean != 0:
                 continue
             if slope != 0:
-                ends = [equation(function.on(arb(x), BITS, order)[1])[0] for x in (start, end)]
+                ends = [equation(function.on(arb(x), BITS)[1])[0] for x in (start, end)]
                 if all(x != 0 for x in ends):
                     if bool(ends[0] > 0) != bool(ends[1] > 0):
-                        roots.append(_refined(function, equation, ball, digits, order))
+                        roots.append(_refined(function, equation, ball, digits))
                     continue
         if end - start < NARROWEST * end:
             undecided.append(ball)
@@ -118,34 +113,26 @@ def _between(start: float, end: float) -> arb:
 
 
 def _refined(
-    function: OnAxis,
+    function: LoopFunction,
     equation: Callable[[LoopValue], tuple[arb, arb]],
     ball: arb,
     digits: int,
-    order: int,
 ) -> arb:
     """Return a narrower enclosure of the only root in an interval on which the function is monotonous.
 
-    Steps as in :mod:`symflex.algebra.interval_newton`, at a precision that rises with what is known.
+    The precision rises with what is known.
     """
     wanted = bits_for_digits(digits) + 16
-    for step in range(NEWTON_STEPS):
+
+    def newton(ball: arb) -> arb:
         bits = min(max(BITS, 2 * ball.rel_accuracy_bits() + 64), 2 * wanted + BITS)
-        around, centre = function.on(ball, bits, order)
+        around, centre = function.on(ball, bits)
         with precision(bits):
-            _, slope = equation(around)
-            value, _ = equation(centre)
-            if slope.contains(0):
-                return ball
-            candidate = ball.mid() - value / slope
-            if not candidate.overlaps(ball):
-                return ball
-            narrower = ball.intersection(candidate)
-            stalled = narrower.rad() > ball.rad() * 0.9
-            ball = narrower
-        if ball.rel_accuracy_bits() >= wanted or (stalled and step):
-            return ball
-    return ball
+            candidate = ball.mid() - equation(centre)[0] / equation(around)[1]
+            is_near = candidate.is_finite() and candidate.overlaps(ball)
+            return ball.intersection(candidate) if is_near else ball
+
+    return narrowed(ball, newton, NEWTON_STEPS, STALLED)
 
 
 def _joined(intervals: list[arb]) -> tuple[arb, ...]:
@@ -184,18 +171,8 @@ class LoopAtOrigin:
         """Return balls around ``A/s^order`` and ``B/s^order`` on the piece of the axis within a radius."""
         with precision(ORIGIN_BITS):
             omega = arb(0).union(radius)
-            first, second = (self._reduced(i, omega) for i in (0, 1))
-            return first, second
-
-    def _reduced(self, which: int, omega: arb) -> acb:
-        series, order = self.series[which], self.orders[which]
-        s, total = acb(0, omega), acb(0)
-        for coefficient in reversed(series.coefficients[order:]):
-            total = total * s + coefficient.real
-        share = omega.upper() / series.reach
-        count = len(series.coefficients)
-        rest = (series.bound * share ** (count - order) / (1 - share) / series.reach**order).upper()
-        return total + acb(arb(0, rest), arb(0, rest))
+            (a, a_side), (b, b_side) = (self._parts(i, omega) for i in (0, 1))
+            return acb(a, omega * a_side), acb(b, omega * b_side)
 
     def turns_away(self, radius: arb) -> bool:
         """Tell whether ``Im(A conj(B))`` differs from 0 on the axis within a radius, but for 0 itself."""
@@ -231,34 +208,6 @@ class LoopAtOrigin:
         share = omega.upper() / series.reach
         rest = series.bound * share ** (len(series.coefficients) - 2) / (1 - share) / series.reach**2
         return (change + arb(0, rest.upper())) * (u + start) + v * v
-
-    def moves_away(self, radius: arb) -> bool:
-        """Tell, if A/B is real on the axis, whether it changes monotonously within a radius of 0.
-
-        Its derivative is then that of a power of omega times a quotient of functions of omega squared.
-        """
-        with precision(ORIGIN_BITS):
-            omega = arb(0).union(radius)
-            square = omega * omega
-            (a, _), (b, _) = (self._parts(i, omega) for i in (0, 1))
-            a_slope, b_slope = (self._slope(i, omega) for i in (0, 1))
-            turning = a_slope * b - a * b_slope
-            difference = self.orders[0] - self.orders[1]
-            value = turning if not difference else difference * a * b + 2 * square * turning
-            return bool(value != 0)
-
-    def _slope(self, which: int, omega: arb) -> arb:
-        """Return the derivative of u in omega squared."""
-        series, order = self.series[which], self.orders[which]
-        coefficients = [c.real for c in series.coefficients[order::2]]
-        square, total = omega * omega, arb(0)
-        for k in range(len(coefficients) - 1, 0, -1):
-            total = total * square + (-1) ** k * k * coefficients[k]
-        # The sum of k q^(k - 1) from the first missing power on.
-        q, first = (omega.upper() / series.reach) ** 2, len(coefficients)
-        rest = q ** (first - 1) * (first - (first - 1) * q) / (1 - q) ** 2
-        error = (series.bound / series.reach ** (order + 2) * rest).upper()
-        return total + arb(0, error)
 
     def _parts(self, which: int, omega: arb) -> tuple[arb, arb]:
         """Return u and v, functions of omega squared, of ``u + j omega v``."""

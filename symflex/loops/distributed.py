@@ -1,7 +1,8 @@
 """Stability boundaries of characteristic functions with kernels: beams, rods, delays.
 
 Crossings of the imaginary axis are isolated in one dimension: along the axis ``A + K B`` vanishes for a real
-K only where ``Im(A conj(B))`` does. Between them poles in the right half plane are counted by the argument
+K only where ``Im(A conj(B))`` does. Next to s = 0, where both may vanish, power series say what poles do.
+Between them poles in the right half plane are counted by the argument
 principle about a half disc, beyond which, where this can be proved, there are none.
 """
 
@@ -9,43 +10,48 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from math import exp, log, pi
+from math import exp, log
 from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
 from symflex.algebra import Factored
 from symflex.errors import Diagnostic, UncertifiedError
-from symflex.loops.axis import LoopAtOrigin, loop_at_origin
-from symflex.loops.axis_factors import AxisFactors
-from symflex.loops.loop import GainPolynomial, LoopFunction
-from symflex.loops.stability_map import PoleCount
-from symflex.roots import Band, Budget
-from symflex.roots.counting.argument_principle import CertifiedWinding
-from symflex.roots.counting.winding import Cell, RootOnPathError, Winding
+from symflex.loops.axis import AxisRoots, LoopAtOrigin, find_on_axis, loop_at_origin
+from symflex.loops.loop import GainPolynomial, LoopFunction, LoopValue
+from symflex.loops.stability_map import Crossing, PoleCount
+from symflex.roots import Budget, precision
+from symflex.roots.counting.winding import RootOnPathError
 from symflex.roots.distributed.far_out import Tail, right_tail
 from symflex.roots.distributed.side import Side
 from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.functions.simplified import without_squares
 from symflex.roots.passive import PassiveLoop, passive_loop
-from symflex.roots.root import exact_fraction
+from symflex.roots.pole_zero_map import count_right
 from symflex.transfer.balls import ball
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from fractions import Fraction
 
     from symflex.transfer import BoundTransferFunction
 
+BITS = 128
+"""Of gains and their limits."""
+SHRINKINGS = 30
+"""Halvings of a disc about 0."""
+NEXT_TO_ZERO = 1e-6
+"""Of the frequency of one wave: from there on crossings are sought where nothing is known of 0."""
 WAVES = 30.0
 """Largest argument of a kernel up to which poles are counted where no end is known."""
-DEPTHS = (0.0, 2.0, 5.0, 9.0, 14.0, 20.0)
-"""How far below the lowest root, in ln, circles about 0 are counted."""
+COUNT_DIGITS = 12
+"""Of poles of which only the side of the axis is asked for."""
 NUDGES = (0.0, 0.0137, 0.0291, 0.0531)
 """By which the outer circle is moved when it meets a pole [in ln]."""
 
 
 @dataclass
-class DistributedFactors(AxisFactors[LoopFunction]):
+class DistributedFactors:
     """The factors of a characteristic function that hold kernels, together.
 
     ``reasons`` say why something is not certified.
@@ -153,14 +159,6 @@ class DistributedFactors(AxisFactors[LoopFunction]):
         powers = [{int(m[0]) % 2 for m in f.monoms()} for f in (function.a, function.b)]
         return powers[0] == powers[1]
 
-    def tells_meetings(self, function: LoopFunction) -> bool:
-        """Tell whether it is a sum of exponentials."""
-        return function.sums is not None
-
-    def origin(self, function: LoopFunction) -> LoopAtOrigin | None:
-        """Return A and B near 0, ``None`` where their orders or series cannot be told."""
-        return loop_at_origin(function, self.budget)
-
     def last_crossover(self, function: LoopFunction, gain: arb) -> float:
         """Return the frequency [rad/s] beyond which the loop gain is not one, as far as it is searched."""
         last, is_proved = self.radius
@@ -178,63 +176,109 @@ class DistributedFactors(AxisFactors[LoopFunction]):
 
         SF802 when a pole lies on the path of the count.
         """
-        function = self._function(gain)
-        zeros = self._order_at_zero(gain, function)
-        if function.is_even and function.power == 1:
-            return self._count_mirrored(gain, zeros)
-        winding = CertifiedWinding(function, self.budget, tries_series=True)
-        inner = self._inner_radius(winding, function)
+        side = Side(self.bound, self._product(gain), COUNT_DIGITS, self.budget)
+        zeros = sum(root.multiplicity for root in side.roots)
+        if not all(root.certified for root in side.roots):
+            self.reasons.append("poles next to s = 0 are counted as poles at 0")
+        if side.is_finite:
+            return PoleCount(
+                count_right(side.roots), sum(r.multiplicity for r in side.roots if r.on_imaginary_axis)
+            )
         for nudge in NUDGES:
-            high = log(self.radius[0] * 1.01) + nudge
             try:
-                right = winding.count(Cell(inner, high, -pi / 2, pi / 2))
+                return PoleCount(side.count_right(log(self.radius[0] * 1.01) + nudge), zeros)
             except RootOnPathError:
                 continue
-            if right % function.power == 0:
-                return PoleCount(right // function.power, zeros)
         message = f"poles right of the axis cannot be counted for a gain of {float(gain):.6g}"
         hint = "one may lie on the imaginary axis whatever the gain is"
         raise UncertifiedError(Diagnostic("SF802", message, None, hint))
 
-    def _order_at_zero(self, gain: Fraction, function: KernelFunction) -> int:
-        whole = self._product(gain)
-        powers = whole.exponent_of(whole.ring.context.gen(0))
-        order = function.order()
-        if order is None or order % function.power:
-            self.reasons.append("poles next to s = 0 are counted as poles at 0")
-            return powers + self._turns(function)
-        return powers + order // function.power
+    def crossings(self, digits: int) -> list[Crossing]:
+        """Return where poles cross the axis for gains in the range; the search's gaps go to ``reasons``."""
+        found: list[Crossing] = []
+        for function in self.with_gain:
+            found += self._crossings(function, digits)
+        return found
 
-    def _turns(self, function: KernelFunction) -> int:
-        winding = CertifiedWinding(function, self.budget)
-        return winding.count_within(Winding(function, self.budget).smallest(pi), pi) // function.power
+    def _crossings(self, function: LoopFunction, digits: int) -> list[Crossing]:
+        found: list[Crossing] = []
+        first, origin = self.next_to_zero(function)
+        if origin is not None:
+            gain = origin.gain()
+            if gain is not None and self._may_be_in_range(gain):
+                found.append(Crossing(gain, (arb(0),)))
+        result = self.on_axis(function, LoopValue.crossing, self._is_far, (first, self.axis_end), digits)
+        for omega in result.roots:
+            bits = max(BITS, 2 * omega.bits())
+            around, _ = function.on(omega, bits)
+            with precision(bits):
+                if self._is_far(around):
+                    continue
+                if around.b.contains(0):
+                    place = float((omega.mid() / (2 * arb.pi())).mid())
+                    self.reasons.append(f"poles near {place:.6g} Hz may stay on the axis for every gain")
+                    continue
+                gain = around.gain()
+            if self._may_be_in_range(gain):
+                found.append(Crossing(gain, (omega,)))
+        return found
 
-    def _inner_radius(self, winding: CertifiedWinding, function: KernelFunction) -> float:
-        """Return ln of a radius within which there is no pole but at s = 0, proved."""
-        order, lowest = function.order(), Winding(function, self.budget).smallest(pi)
-        for depth in DEPTHS:
-            try:
-                turns = winding.count_within(lowest - depth, pi)
-            except RootOnPathError:
-                continue
-            if order is None or turns == order:
-                return lowest - depth
-        message = "the poles next to s = 0 cannot be counted"
-        raise UncertifiedError(Diagnostic("SF802", message))
+    def on_axis(
+        self,
+        function: LoopFunction,
+        equation: Callable[[LoopValue], tuple[arb, arb]],
+        is_excluded: Callable[[LoopValue], bool],
+        limits: tuple[float, float],
+        digits: int,
+    ) -> AxisRoots:
+        """Return the roots of a real function along the axis between two frequencies."""
+        low, high = limits
+        result = find_on_axis(function, equation, is_excluded, (low, high * 1.01), digits, self.budget)
+        for gap in result.undecided:
+            place = float((gap.mid() / (2 * arb.pi())).mid())
+            self.reasons.append(f"whether poles cross the axis near {place:.6g} Hz is not decided")
+        return result
 
-    def _count_mirrored(self, gain: Fraction, zeros: int) -> PoleCount:
-        """Return the counts of a function whose roots mirror each other in the axis, from all its roots."""
-        whole = self._product(gain)
-        side = Side(self.bound, whole, 12, self.budget)
-        high = exact_fraction(arb(self.radius[0])) / 6
-        region = Band(high * 0, high)
-        side.search(region)
-        proof = side.prove(region)
-        if not proof.is_complete:
-            message = f"poles cannot be told apart for a gain of {float(gain):.6g}"
-            raise UncertifiedError(Diagnostic("SF802", message))
-        self.method = f"roots, {side.engine}"
-        roots = [r for r in side.roots if float(r.natural_frequency().mid()) <= self.radius[0]]
-        right = sum(r.multiplicity for r in roots if not r.on_imaginary_axis and r.re > 0)
-        axis = sum(r.multiplicity for r in roots if r.on_imaginary_axis and not r.is_zero)
-        return PoleCount(right, axis + zeros)
+    def next_to_zero(self, function: LoopFunction) -> tuple[float, LoopAtOrigin | None]:
+        """Return a frequency [rad/s] within which no pole crosses the axis but at 0, as far as proved."""
+        origin = loop_at_origin(function, self.budget)
+        if origin is None:
+            self.reasons.append("what poles do next to s = 0 is not proved")
+            return self.scale * NEXT_TO_ZERO, None
+        radius = origin.series[0].reach / 4
+        for _ in range(SHRINKINGS):
+            if origin.turns_away(radius) or self._beyond_all_gains(origin, radius):
+                break
+            radius = radius / 2
+        else:
+            # Several crossings meet at 0: nothing is gained by going closer.
+            self.reasons.append("what poles do next to s = 0 is not proved")
+            radius = origin.series[0].reach / 4
+        return float(radius.lower()), origin
+
+    def _beyond_all_gains(self, origin: LoopAtOrigin, radius: arb) -> bool:
+        first, second = origin.orders
+        if first > second:
+            return False
+        a, b = origin.sizes(radius)
+        most = max(abs(x) for x in self.limits)
+        bound = ball(most) * b.abs_upper() * radius ** (second - first)
+        return bool(a.abs_lower() > bound)
+
+    def _is_far(self, value: LoopValue) -> bool:
+        """Tell whether the gain of a pole at these values is out of the range."""
+        low, high = (ball(x) for x in self.limits)
+        most = abs(low).max(abs(high))
+        size = value.a.abs_lower()
+        if size > most * value.b.abs_upper():
+            return True
+        if low > 0 and value.a.abs_upper() < low * value.b.abs_lower():
+            return True
+        if value.b.contains(0):
+            return False
+        gain = value.gain()
+        return bool(gain < low) or bool(gain > high)
+
+    def _may_be_in_range(self, gain: arb) -> bool:
+        low, high = (ball(x) for x in self.limits)
+        return not (gain < low or gain > high)

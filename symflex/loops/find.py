@@ -12,20 +12,19 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
 from math import pi
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from flint import acb, arb
 
-from symflex.algebra import Factored, degree_in
+from symflex.algebra import degree_in
 from symflex.budget import Budget, entered_budget
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
 from symflex.loops.apart import PolesApart, poles_apart
-from symflex.loops.axis_factors import SHRINKINGS, AxisFactors
-from symflex.loops.distributed import DistributedFactors
+from symflex.loops.distributed import SHRINKINGS, DistributedFactors
 from symflex.loops.locus import closed_loop_roots
-from symflex.loops.loop import Loop
+from symflex.loops.loop import Loop, LoopFunction
 from symflex.loops.lumped import LumpedFactor
-from symflex.loops.networks import AnyLoop, NetworkFactors, NetworkLoop
+from symflex.loops.networks import AnyLoop, NetworkLoop
 from symflex.loops.stability_map import (
     AllowedBandwidth,
     Boundary,
@@ -36,8 +35,8 @@ from symflex.loops.stability_map import (
     PoleCount,
     StabilityMap,
 )
-from symflex.roots import RootProblem, find_polynomial_roots, precision
-from symflex.roots.problem import polynomial_in_s
+from symflex.roots import find_polynomial_roots, precision
+from symflex.roots.problem import problem_of
 from symflex.roots.root import exact_fraction
 from symflex.transfer.balls import ball
 
@@ -45,9 +44,10 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symflex.loops.loop import GainPolynomial, LoopValue
-    from symflex.transfer import BoundTransferFunction
 
 
+MIRRORED = "where poles that mirror each other meet on the imaginary axis is not searched"
+NETWORK = "for which gains a network too large to be written out is stable is not searched"
 RANGE_OF_NOMINAL = 100
 """How many times the nominal gain is examined of a loop with kernels: it may have boundaries without end."""
 GUARD_DIGITS = 6
@@ -77,7 +77,11 @@ def find_stable_gains(
     SF505, SF506.
     """
     budget = budget or entered_budget()
-    lumped, along, (low, high) = _factors(loop, limits, digits, up_to, budget)
+    if isinstance(loop, NetworkLoop):
+        return _at_nominal(loop, limits or (None, None), digits, budget, NETWORK)
+    lumped, along, (low, high) = _factors(loop, limits, up_to, budget)
+    if along is not None and any(along.is_mirrored(function) for function in along.with_gain):
+        return _at_nominal(loop, (low, high), digits, budget, MIRRORED)
     apart = _apart(loop, budget)
     crossings = [c for factor in lumped for c in factor.crossings(digits + GUARD_DIGITS, budget)]
     if along is not None:
@@ -104,8 +108,8 @@ def find_stable_gains(
         None,
         method="polynomials" if along is None else along.method,
         apart=apart,
-        tf=loop.bound.name if isinstance(loop, Loop) else "",
-        is_passive=isinstance(along, DistributedFactors) and along.passive is not None,
+        tf=loop.bound.name,
+        is_passive=along is not None and along.passive is not None,
     )
     if nominal is not None and found.nominal_interval is None and along is None:
         found = replace(found, at_nominal=closed_loop_roots(loop, nominal, budget=budget).verdict)
@@ -117,7 +121,7 @@ def find_stable_gains(
         if nominal and interval is not None and interval.poles.is_stable:
             phase_margins = _phase_margins(loop_gain, nominal)
         bandwidth = allowed_bandwidth(intervals, high, loop_gain)
-        if is_complete and isinstance(along, DistributedFactors) and along.is_endless and along.passive:
+        if is_complete and along is not None and along.is_endless and along.passive:
             beyond = along.passive.least_phase_margin(along.radius[0])
             if not _holds_smallest(phase_margins, bandwidth, beyond):
                 reasons.append(f"phase margins above {along.radius[0] / (2 * pi):.4g} Hz are not known")
@@ -128,6 +132,31 @@ def find_stable_gains(
         bandwidth=bandwidth,
         margin_beyond=beyond or None,  # an angle of 0 bounds nothing
         reasons=tuple(dict.fromkeys((*search.reasons, *reasons))),
+    )
+
+
+def _at_nominal(loop: AnyLoop, limits: Limits, digits: int, budget: Budget, reason: str) -> StabilityMap:
+    """Return what is known where the range of the gain is not searched: whether its own value is stable."""
+    verdict = None
+    if loop.nominal is not None:
+        verdict = closed_loop_roots(loop, loop.nominal, budget=budget).verdict
+    return StabilityMap(
+        loop.gain.name,
+        loop.gain.unit,
+        limits,
+        (),
+        (),
+        loop.nominal,
+        (),
+        (),
+        None,
+        False,
+        (reason,),
+        digits,
+        None,
+        method="roots",
+        at_nominal=verdict,
+        tf=loop.bound.name if isinstance(loop, Loop) else "",
     )
 
 
@@ -142,13 +171,13 @@ def _holds_smallest(
 
 
 def _factors(
-    loop: AnyLoop, limits: Limits | None, digits: int, up_to: float | None, budget: Budget
-) -> tuple[list[LumpedFactor], AxisFactors[Any] | None, Limits]:
+    loop: Loop, limits: Limits | None, up_to: float | None, budget: Budget
+) -> tuple[list[LumpedFactor], DistributedFactors | None, Limits]:
     """Return the factors of polynomials, those of all else, and the range of the gain."""
-    plain, mixed = _split(loop) if isinstance(loop, Loop) else ((), ())
-    low, high = _limits(loop, limits, is_distributed=bool(mixed) or isinstance(loop, NetworkLoop))
+    plain, mixed = _split(loop)
+    low, high = _limits(loop, limits, is_distributed=bool(mixed))
     plain = tuple(factor for factor in plain if factor.degree)
-    if isinstance(loop, Loop) and not mixed:
+    if not mixed:
         return [LumpedFactor.of(loop.bound, factor) for factor in plain], None, (low, high)
     if any(factor.degree > 1 for factor in mixed):
         message = f"a loop with beams, rods or delays must be a straight line in '{loop.gain.name}'"
@@ -156,8 +185,6 @@ def _factors(
         raise ModelError(Diagnostic("SF803", message, loop.gain.span, hint))
     if low is None or high is None:
         raise _range_needed(loop)
-    if isinstance(loop, NetworkLoop):
-        return [], NetworkFactors(loop, (low, high), up_to, digits + GUARD_DIGITS, budget), (low, high)
     lumped = [LumpedFactor.of(loop.bound, factor) for factor in plain]
     return (
         lumped,
@@ -166,9 +193,9 @@ def _factors(
     )
 
 
-def _apart(loop: AnyLoop, budget: Budget) -> PolesApart:
+def _apart(loop: Loop, budget: Budget) -> PolesApart:
     """Return the poles that no gain moves, as far as they are roots of polynomials."""
-    return poles_apart(loop.bound, _split(loop)[0], budget) if isinstance(loop, Loop) else PolesApart()
+    return poles_apart(loop.bound, _split(loop)[0], budget)
 
 
 def _split(loop: Loop) -> tuple[tuple[GainPolynomial, ...], tuple[GainPolynomial, ...]]:
@@ -187,7 +214,7 @@ def _split(loop: Loop) -> tuple[tuple[GainPolynomial, ...], tuple[GainPolynomial
     return tuple(plain), tuple(mixed)
 
 
-def _limits(loop: AnyLoop, given: Limits | None, *, is_distributed: bool) -> Limits:
+def _limits(loop: Loop, given: Limits | None, *, is_distributed: bool) -> Limits:
     if given is not None:
         low, high = given
         if low is not None and high is not None and not low < high:
@@ -203,7 +230,7 @@ def _limits(loop: AnyLoop, given: Limits | None, *, is_distributed: bool) -> Lim
     return (-reach if low is None else low), reach
 
 
-def _range_needed(loop: AnyLoop) -> UsageError:
+def _range_needed(loop: Loop) -> UsageError:
     message = f"a loop with kernels needs a bounded range of '{loop.gain.name}'"
     return UsageError(Diagnostic("SF804", message, None, "give the parameter a value, or say --range LO HI"))
 
@@ -213,7 +240,7 @@ class _GainSearch:
     """Puts crossings in order, and counts poles between them."""
 
     lumped: Sequence[LumpedFactor]
-    along: AxisFactors[Any] | None
+    along: DistributedFactors | None
     limits: Limits
     budget: Budget
     apart: PoleCount  # of poles that no gain moves
@@ -347,16 +374,15 @@ def _gain_margins(found: StabilityMap) -> tuple[GainMargin, ...]:
     return tuple(margins)
 
 
-def _loop_gain(loop: AnyLoop, along: AxisFactors[Any] | None, digits: int, budget: Budget) -> LoopGain | None:
+def _loop_gain(loop: Loop, along: DistributedFactors | None, digits: int, budget: Budget) -> LoopGain | None:
     """Return the loop gain of a loop that is a straight line in its gain, and closed once."""
-    if isinstance(loop, NetworkLoop):
-        return None if along is None else LoopGain(along, digits, budget)
     with_gain = loop.with_gain
     if len(with_gain) != 1 or with_gain[0].degree != 1 or with_gain[0].multiplicity != 1:
         return None
     (factor,) = with_gain
-    is_along = isinstance(along, DistributedFactors) and factor in along.factors
-    return LoopGain(along if along is not None and is_along else (loop.bound, factor), digits, budget)
+    if along is not None and factor in along.factors:
+        return LoopGain(along.with_gain[0], along, digits, budget)
+    return LoopGain(LoopFunction.of(loop.bound, *factor.coefficients), None, digits, budget)
 
 
 def _phase_margins(loop_gain: LoopGain, nominal: Fraction) -> tuple[PhaseMargin, ...]:
@@ -374,79 +400,53 @@ def _phase_margins(loop_gain: LoopGain, nominal: Fraction) -> tuple[PhaseMargin,
 class LoopGain:
     """The loop gain ``K B/A`` of a loop closed once, on the imaginary axis."""
 
-    # A polynomial factor A + K B with what carries its ring and constants, or one that is known on the axis.
-    source: tuple[BoundTransferFunction, GainPolynomial] | AxisFactors[Any]
+    function: LoopFunction  # A and B
+    along: DistributedFactors | None  # whose factor this is; None of polynomials
     digits: int  # of frequencies
     budget: Budget  # limits the search
 
     def crossovers(self, gain: Fraction) -> list[tuple[arb, acb]]:
         """Return the frequencies [rad/s] at which it is one in magnitude, ascending, and B/A there."""
-        if isinstance(self.source, AxisFactors):
-            found = distributed_crossovers(self.source, gain, self.digits)
+        if self.along is not None:
+            found = distributed_crossovers(self.along, gain, self.digits)
         else:
-            found = lumped_crossovers(*self.source, gain, self.digits, self.budget)
+            found = lumped_crossovers(self.function, gain, self.digits, self.budget)
         return sorted(found, key=lambda pair: float(pair[0].mid()))
 
     def ratio(self, omega: arb) -> acb:
         """Return an enclosure of B/A at a frequency [rad/s]."""
-        if not isinstance(self.source, AxisFactors):
-            with precision(BITS):
-                return _ratio(*self.source, omega)
-        (function,) = self.source.with_gain
-        around, _ = function.on(omega, BITS)
+        around, _ = self.function.on(omega, BITS)
         with precision(BITS):
             ratio: acb = around.b / around.a
             return ratio
 
 
 def lumped_crossovers(
-    bound: BoundTransferFunction, factor: GainPolynomial, nominal: Fraction, digits: int, budget: Budget
+    function: LoopFunction, nominal: Fraction, digits: int, budget: Budget
 ) -> list[tuple[arb, acb]]:
     """Return the frequencies [rad/s] at which ``abs(A) = abs(K B)``, and B/A there.
 
     ``A(s) A(-s) - K^2 B(s) B(-s)`` is even in s; its roots on the imaginary axis are these frequencies.
     """
-    a, b = factor.coefficients
-    squared = a * _mirrored(a) - b * _mirrored(b) * nominal**2
-    if squared.is_zero:
+    context = function.bound.ratio.ring.context
+    mirrored = [-context.gen(0), *context.gens()[1:]]
+    a, b = (f * f.compose(*mirrored, ctx=context) for f in (function.a, function.b))
+    squared = a * nominal.denominator**2 - b * nominal.numerator**2
+    if squared.is_zero():
         return []
-    problem = RootProblem(
-        tuple(
-            (polynomial, e)
-            for f, e in squared.factors
-            if e > 0 and (polynomial := polynomial_in_s(bound, f)).degree
-        )
-    )
-    found = []
+    problem, found = problem_of(function.bound, [(squared, 1)]), []
     for root in find_polynomial_roots(problem, digits, budget=budget):
         if root.on_imaginary_axis and root.im > 0:
-            with precision(2 * root.working_bits()):
-                omega = root.im
-                found.append((omega, _ratio(bound, factor, omega)))
+            bits = 2 * root.working_bits()
+            around, _ = function.on(root.im, bits)
+            with precision(bits):
+                found.append((root.im, around.b / around.a))
     return found
 
 
-def _ratio(bound: BoundTransferFunction, factor: GainPolynomial, omega: arb) -> acb:
-    a, b = (_value(bound, part, acb(0, omega)) for part in factor.coefficients)
-    return b / a
-
-
-def _mirrored(value: Factored) -> Factored:
-    """Return a function of s at -s."""
-    ring = value.ring
-    images = [ring.context.gen(i) for i in range(len(ring.names))]
-    images[0] = -images[0]
-    return value.map_factors(ring, lambda f: Factored.polynomial(ring, f.compose(*images, ctx=ring.context)))
-
-
-def _value(bound: BoundTransferFunction, part: Factored, s: acb) -> acb:
-    total = acb(ball(part.unit))
-    for factor, exponent in part.factors:
-        total = total * polynomial_in_s(bound, factor).enclosure()(s) ** exponent
-    return total
-
-
-def distributed_crossovers(along: AxisFactors[Any], nominal: Fraction, digits: int) -> list[tuple[arb, acb]]:
+def distributed_crossovers(
+    along: DistributedFactors, nominal: Fraction, digits: int
+) -> list[tuple[arb, acb]]:
     """Return the same for a loop with kernels; where it is not proved is added to its reasons."""
     (function,) = along.with_gain
     gain = ball(nominal)

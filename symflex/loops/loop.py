@@ -22,6 +22,7 @@ from symflex.algebra.exponential_sum import Argument, ExponentialSum, arguments_
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.roots import precision
 from symflex.roots.functions.exponential_values import ExponentialValues
+from symflex.roots.functions.kernel_function import KernelFactors
 from symflex.transfer import BoundTransferFunction, Given, TransferFunction, bind, bind_polynomials
 from symflex.transfer.balls import Value, expansion
 
@@ -29,7 +30,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from symflex.model import Model, ModelParameter
-    from symflex.transfer.enclose_kernels import KernelValues
 
 
 TRIALS = ("1", "2", "0.37")
@@ -152,17 +152,12 @@ NOTHING = acb(0)
 
 @dataclass(frozen=True, slots=True)
 class LoopValue:
-    """Enclosures of A and B at ``s = j omega``, divided by a common function, and of their derivatives in s.
-
-    ``bend`` is a second derivative, where these were asked for.
-    """
+    """Enclosures of A and B at ``s = j omega``, divided alike, and of their derivatives in s."""
 
     a: acb
     a_slope: acb
     b: acb
     b_slope: acb
-    a_bend: acb
-    b_bend: acb
 
     def crossing(self) -> tuple[arb, arb]:
         """``Im(A conj(B))``, which vanishes where the gain is real, and its derivative in omega."""
@@ -179,17 +174,6 @@ class LoopValue:
         j = acb(0, 1)
         slope = 2 * (j * self.a_slope * a).real - 2 * square * (j * self.b_slope * b).real
         return value, slope
-
-    def meeting(self) -> tuple[arb, arb]:
-        """Return what vanishes where poles meet on the axis if A/B is real there, and its derivative.
-
-        It is ``-Im((A' B - A B') conj(B)^2)``, the derivative of A/B in omega but for a positive factor.
-        """
-        j, conjugate = acb(0, 1), self.b.conjugate()
-        wronskian = self.a_slope * self.b - self.a * self.b_slope
-        change = self.a_bend * self.b - self.a * self.b_bend
-        slope = j * change * conjugate + 2 * wronskian * (j * self.b_slope).conjugate()
-        return (j * wronskian * conjugate * conjugate).real, (j * slope * conjugate).real
 
     def gain(self) -> arb:
         """``-Re(A/B)``: the gain of a pole here, where that is real."""
@@ -233,70 +217,51 @@ class LoopFunction:
         return None if a is None or b is None else (a, b)
 
     @cached_property
-    def _evaluators(self) -> dict[int, tuple[KernelValues, ExponentialValues | None]]:
+    def _evaluators(self) -> dict[int, ExponentialValues | KernelFactors]:
         return {}
 
-    def evaluator(self, bits: int) -> tuple[KernelValues, ExponentialValues | None]:
-        """Return what evaluates kernels and sums of exponentials at one precision."""
+    def evaluator(self, bits: int) -> ExponentialValues | KernelFactors:
+        """Return what evaluates A and B at one precision."""
         if bits not in self._evaluators:
             with precision(bits):
                 kernels = self.bound.kernel_values()
-            sums = None
-            if self.sums is not None:
-                sums = ExponentialValues(kernels, self.arguments, tuple((f, 1) for f in self.sums))
-            self._evaluators[bits] = (kernels, sums)
+            self._evaluators[bits] = (
+                KernelFactors(kernels, (self.a, self.b))
+                if self.sums is None
+                else ExponentialValues(kernels, self.arguments, tuple((f, 1) for f in self.sums))
+            )
         return self._evaluators[bits]
 
-    def on(self, omega: arb, bits: int, order: int = 1) -> tuple[LoopValue, LoopValue]:
-        """Return the values on a ball of frequencies, and those in its middle, with so many derivatives.
+    def on(self, omega: arb, bits: int) -> tuple[LoopValue, LoopValue]:
+        """Return the values on a ball of frequencies, and those in its middle.
 
         The first are enclosures by the mean value theorem where these are narrower.
         """
-        if order > 1 and self.sums is None:
-            message = "second derivatives need exponentials"
-            raise ValueError(message)
         with precision(bits):
             middle = omega.mid()
             wide = acb(0, omega)
-            kernels, sums = self.evaluator(bits)
-            if sums is None:
-                around = kernels.at(expansion(wide))
-                centre = kernels.at(expansion(acb(0, middle)), around)
-                values = [[kernels.polynomial(f, v) for f in (self.a, self.b)] for v in (around, centre)]
-            else:
-                around_place = sums.at(_series(wide, order))
-                centre_place = sums.at(_series(acb(0, middle), order), around_place)
-                less = sums.largest((0, 1), centre_place)
-                values = [
-                    [sums.value(i, place, less) for i in (0, 1)] for place in (around_place, centre_place)
-                ]
+            sums = self.evaluator(bits)
+            around = sums.at(expansion(wide))
+            centre = sums.at(expansion(acb(0, middle)), around)
+            less = sums.largest((0, 1), centre)
+            values = [[sums.value(i, place, less) for i in (0, 1)] for place in (around, centre)]
             (a, b), (a_mid, b_mid) = ([_derivatives(v) for v in pair] for pair in values)
             off = acb(0, omega - middle)
             narrow = [_narrower(value[0], mid[0] + value[1] * off) for value, mid in ((a, a_mid), (b, b_mid))]
             return (
-                LoopValue(narrow[0], a[1], narrow[1], b[1], a[2], b[2]),
-                LoopValue(a_mid[0], a_mid[1], b_mid[0], b_mid[1], a_mid[2], b_mid[2]),
+                LoopValue(narrow[0], a[1], narrow[1], b[1]),
+                LoopValue(a_mid[0], a_mid[1], b_mid[0], b_mid[1]),
             )
 
     def near(self, s: complex, bits: int = 96) -> tuple[complex, complex, complex, complex]:
         """Return A, A', B and B' at a point, divided alike, in doubles and without proof."""
         with precision(bits):
-            kernels, sums = self.evaluator(bits)
-            point = expansion(acb(s.real, s.imag))
-            if sums is None:
-                place = kernels.at(point)
-                values = [kernels.polynomial(f, place) for f in (self.a, self.b)]
-            else:
-                at = sums.at(point)
-                less = sums.largest((0, 1), at)
-                values = [sums.value(i, at, less) for i in (0, 1)]
-            (a, a_slope, _), (b, b_slope, _) = (_derivatives(value) for value in values)
+            sums = self.evaluator(bits)
+            at = sums.at(expansion(acb(s.real, s.imag)))
+            less = sums.largest((0, 1), at)
+            values = [sums.value(i, at, less) for i in (0, 1)]
+            (a, a_slope), (b, b_slope) = (_derivatives(value) for value in values)
             return complex(a.mid()), complex(a_slope.mid()), complex(b.mid()), complex(b_slope.mid())
-
-
-def _series(s: acb, order: int) -> acb_series:
-    """Return ``s + x`` up to a power of x."""
-    return expansion(s) if order == 1 else acb_series([s, acb(1)], order + 1)
 
 
 def _narrower(one: acb, other: acb) -> acb:
@@ -307,7 +272,5 @@ def _narrower(one: acb, other: acb) -> acb:
     return other if other.rad() < one.rad() else one
 
 
-def _derivatives(value: Value) -> tuple[acb, acb, acb]:
-    if not isinstance(value, acb_series):
-        return value, NOTHING, NOTHING
-    return value[0], value[1], 2 * value[2]
+def _derivatives(value: Value) -> tuple[acb, acb]:
+    return (value[0], value[1]) if isinstance(value, acb_series) else (value, NOTHING)

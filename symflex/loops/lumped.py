@@ -27,6 +27,9 @@ from symflex.roots import (
     find_polynomial_roots,
     precision,
 )
+from symflex.roots.pole_zero_map import count_right
+from symflex.roots.problem import problem_of
+from symflex.transfer.balls import value_at
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -39,21 +42,25 @@ W, K = 0, 1
 SPARE_DIGITS = 10
 COUNT_DIGITS = 15
 """Of squares whose sign alone matters."""
-DOUBLINGS = 8
 
 
 @dataclass(frozen=True)
 class LumpedFactor:
     """One polynomial factor of a characteristic function."""
 
+    bound: BoundTransferFunction  # carries the ring of the factor
+    factor: GainPolynomial
     constants: tuple[RealConstant, ...]  # real numbers the coefficients hold as symbols
     ring: Ring  # w, K and the constants
     # even and odd: E and O without their common factor.
     even: fmpz_mpoly
     odd: fmpz_mpoly
     common: fmpz_mpoly  # the greatest common factor of E and O
-    zeros: int  # roots at s = 0 whatever the gain, which are not part of E and O
-    multiplicity: int  # how often the factor occurs
+
+    @property
+    def multiplicity(self) -> int:
+        """How often the factor occurs."""
+        return self.factor.multiplicity
 
     @classmethod
     def of(cls, bound: BoundTransferFunction, factor: GainPolynomial) -> LumpedFactor:
@@ -72,13 +79,13 @@ class LumpedFactor:
         even, odd = (ring.context.from_dict(part) for part in parts)
         common = even.gcd(odd) if len(odd) else even
         return cls(
+            bound,
+            factor,
             tuple(constants[i] for i in used),
             ring,
             even / common,
             odd / common if len(odd) else odd,
             common,
-            zeros,
-            factor.multiplicity,
         )
 
     def crossings(self, digits: int, budget: Budget) -> list[Crossing]:
@@ -162,14 +169,7 @@ class LumpedFactor:
     def _value(self, polynomial: fmpz_mpoly, square: arb, gain: arb) -> arb:
         """Return a polynomial of the ring at w and K, at the current precision."""
         values = [square, gain, *(constant.evaluate() for constant in self.constants)]
-        total = arb(0)
-        for monomial, integer in polynomial.terms():
-            term = arb(int(integer))
-            for value, exponent in zip(values, monomial, strict=True):
-                if exponent:
-                    term *= value ** int(exponent)
-            total += term
-        return total
+        return value_at(polynomial, values.__getitem__, arb)
 
     def _leading(self, parts: tuple[fmpz_mpoly, fmpz_mpoly]) -> fmpz_mpoly:
         """Return the coefficient of the highest power of s in ``E + s O``, a polynomial in K."""
@@ -193,24 +193,13 @@ class LumpedFactor:
 
         SF802 when a root cannot be told from one on the axis.
         """
-        right, axis = 0, self.zeros
-        degree = max(degree_in(f, K) for f in (self.even, self.odd, self.common))
-        even, odd, common = (_at(self.ring, f, gain, degree) for f in (self.even, self.odd, self.common))
-        coefficients: list[fmpz_mpoly] = []
-        for f, is_odd in ((even, 0), (odd, 1)):
-            for i, coefficient in enumerate(self.ring.coefficients(f, W) if len(f) else ()):
-                place = 2 * i + is_odd
-                coefficients += [self.ring.constant(0)] * (place + 1 - len(coefficients))
-                coefficients[place] = coefficient * (-1) ** i
-        polynomial = self._polynomial(coefficients)
-        if polynomial.degree:
-            right += self._right_of_axis(polynomial, budget)
-        if degree_in(common, W):
-            squares = self._real_roots(common, W, COUNT_DIGITS, budget)
-            on_axis = sum(root.multiplicity for root in squares if root.re > 0)
-            axis += 2 * on_axis
-            right += degree_in(common, W) - on_axis
-        return PoleCount(right * self.multiplicity, axis * self.multiplicity)
+        factors = [(f, e) for f, e in self.factor.at(gain).factors if e > 0]
+        roots = find_polynomial_roots(problem_of(self.bound, factors), COUNT_DIGITS, budget=budget)
+        if any(root.re.contains(0) and not root.on_imaginary_axis for root in roots):
+            message = "it cannot be told on which side of the imaginary axis a pole lies"
+            raise UncertifiedError(Diagnostic("SF802", message))
+        axis = sum(root.multiplicity for root in roots if root.on_imaginary_axis)
+        return PoleCount(count_right(roots) * self.multiplicity, axis * self.multiplicity)
 
     def _polynomial(self, coefficients: Sequence[fmpz_mpoly]) -> PolynomialInS:
         small = Ring(self.ring.names[2:])
@@ -219,24 +208,6 @@ class LumpedFactor:
             terms = {tuple(int(e) for e in m[2:]): int(n) for m, n in coefficient.terms()}
             moved.append(small.context.from_dict(terms))
         return PolynomialInS(tuple(moved), small.context, self.constants)
-
-    def _right_of_axis(self, polynomial: PolynomialInS, budget: Budget) -> int:
-        digits = 8
-        for _ in range(DOUBLINGS):
-            roots = find_polynomial_roots(RootProblem(((polynomial, 1),)), digits, budget=budget)
-            if all(root.re != 0 for root in roots):
-                return sum(root.multiplicity for root in roots if root.re > 0)
-            digits *= 2
-        message = "it cannot be told on which side of the imaginary axis a pole lies"
-        raise UncertifiedError(Diagnostic("SF802", message))
-
-
-def _at(ring: Ring, polynomial: fmpz_mpoly, gain: Fraction, degree: int) -> fmpz_mpoly:
-    """Return a polynomial at a rational gain, times the gain's denominator to the power of a degree."""
-    total = ring.constant(0)
-    for i, coefficient in enumerate(ring.coefficients(polynomial, K)):
-        total = total + coefficient * (gain.numerator**i * gain.denominator ** (degree - i))
-    return total
 
 
 def _integer_terms(factor: GainPolynomial) -> dict[tuple[int, int, tuple[int, ...]], int]:

@@ -6,34 +6,27 @@ parts are determinants themselves, which :mod:`symflex.roots.networks` makes ser
     [M, e; r, 0], row i of the model being (M_i + K r) x = 0 and e the i-th unit vector:
     det (M + K e r) = A + K B with A = det M, B = -det [M, e; r, 0]
 
-On the imaginary axis and right of it, the series say all that other loops learn from their formula, as far as
-the disc reaches.
+Poles at one gain are counted and enclosed in a disc, and followed from gain to gain there; for which gains
+the loop is stable is not searched.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
-from math import nan, pi
+from math import nan
 from typing import TYPE_CHECKING
 
-from flint import acb, acb_poly, arb, ctx
+from flint import acb, ctx
 
 from symflex.algebra import Factored, degree_in, terms_of
-from symflex.errors import Diagnostic, ModelError, UncertifiedError
+from symflex.errors import Diagnostic, ModelError
 from symflex.expressions import names_among
-from symflex.loops.axis import LoopAtOrigin
-from symflex.loops.axis_factors import AxisFactors
-from symflex.loops.loop import NOTHING, Loop, LoopValue, no_loop
-from symflex.loops.stability_map import PoleCount
-from symflex.roots.counting.local_series import LocalSeries
-from symflex.roots.networks.cramer import CramerEquations, EssentialSingularityError
-from symflex.roots.networks.disc_search import DiscSearch, enclosed_roots, images
-from symflex.roots.networks.disc_series import DiscSeries, RootNearCircleError, ball_about_zero
-from symflex.roots.networks.members import UndecidedError
+from symflex.loops.loop import Loop, no_loop
+from symflex.roots.networks.cramer import CramerEquations
+from symflex.roots.networks.disc_search import DiscSearch
+from symflex.roots.networks.disc_series import DiscSeries
 from symflex.roots.networks.poles_zeros import locate_quotient
-from symflex.roots.precision import bits_for_digits
 from symflex.transfer.balls import ball
 
 if TYPE_CHECKING:
@@ -50,18 +43,6 @@ DIGITS = 15
 """Of poles that are marked in figures."""
 LOOP_GAIN_BITS = 64
 """Of values that are drawn."""
-SPARE_BITS = 64
-"""Of a series, beyond the digits of gains."""
-SHRUNK = (0.99, 0.975, 0.957, 0.94, 0.92)
-"""Of the disc, circles on which poles are counted: the first on which none lies at that gain."""
-SAMPLES = 64
-"""Frequencies at which a series is examined."""
-FEW = 20
-"""Of so many values one may be less accurate: next to a zero."""
-MOST_BITS = 4000
-LOWER = "lower --up-to"
-BEYOND = "whether poles of a network lie right of the axis beyond the frequency counted up to"
-NOT_COUNTED = "the poles of the network cannot be counted"
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +90,7 @@ class NetworkLoop:
 
         UndecidedError, EssentialSingularityError where they are not enclosed there.
         """
-        return LoopInDisc.of(DiscSearch(self.cramer, DIGITS, budget, (False, False)), radius)
+        return LoopInDisc(*DiscSearch(self.cramer, DIGITS, budget, (False, False)).series(radius))
 
 
 AnyLoop = Loop | NetworkLoop
@@ -193,200 +174,22 @@ def _straight(value: Factored, place: int) -> tuple[Factored, Factored] | None:
 
 @dataclass(frozen=True, eq=False)
 class LoopInDisc:
-    """A and B as series in one disc, with what is known of them at 0."""
+    """A and B as series in one disc."""
 
     a: DiscSeries
-    b: DiscSeries
-    orders: tuple[int, int] | None  # of their roots at 0; ``None`` where these are not proved
-
-    @classmethod
-    def of(cls, search: DiscSearch, radius: float) -> LoopInDisc:
-        """Return denominator and numerator of a search, which are A and -B; it raises where they are not."""
-        a, b = search.sides(radius)
-        orders = (a.at_zero, b.at_zero) if not a.zero_reach and not b.zero_reach else None
-        return cls(a.series, replace(b.series, polynomial=-b.series.polynomial), orders)
-
-    @property
-    def radius(self) -> arb:
-        """Of the disc [rad/s]."""
-        return self.a.radius
+    minus_b: DiscSeries
 
     def near(self, s: complex) -> tuple[complex, complex, complex, complex]:
         """Return A, A', B and B' at a point, divided alike, without proof; beyond the disc nothing."""
-        if not abs(s) < self.radius:
+        radius = self.a.radius
+        if not abs(s) < radius:
             return (complex(nan),) * 4
         with ctx.workprec(self.a.bits):
-            x = acb(s.real, s.imag) / self.radius
+            x = acb(s.real, s.imag) / radius
             (a, b), (a_slope, b_slope) = (
-                [one.polynomial(x) for one in (self.a, self.b)],
-                [one.polynomial.derivative()(x) / self.radius for one in (self.a, self.b)],
+                [one.polynomial(x) for one in (self.a, self.minus_b)],
+                [one.polynomial.derivative()(x) / radius for one in (self.a, self.minus_b)],
             )
             size = (abs(a) + abs(b)).mid()
-            scaled = [complex((value / size).mid()) for value in (a, a_slope, b, b_slope)]
+            scaled = [complex((value / size).mid()) for value in (a, a_slope, -b, -b_slope)]
         return scaled[0], scaled[1], scaled[2], scaled[3]
-
-    def on(self, omega: arb, bits: int, order: int = 1) -> tuple[LoopValue, LoopValue]:
-        """Return the values on a ball of frequencies, and those in its middle; derivatives are first ones."""
-        del bits, order  # those of the series
-        with ctx.workprec(self.a.bits):
-            x, middle = acb(0, omega) / self.radius, (acb(0, omega.mid()) / self.radius).mid()
-            wide: list[acb] = []
-            narrow: list[acb] = []
-            for series in (self.a, self.b):
-                # Terms about the middle: on a ball those about 0 would take each other out.
-                local = series.about(middle)
-                slope_off = ball_about_zero(series.slope_off)
-                spread = acb_poly(local).derivative()(x - middle) + slope_off
-                centre = local[0] + ball_about_zero(series.off)
-                wide += [centre + spread * (x - middle), spread / self.radius]
-                narrow += [centre, (local[1] + slope_off) / self.radius]
-        (a, a_slope, b, b_slope), (a_mid, a_mid_slope, b_mid, b_mid_slope) = wide, narrow
-        return (
-            LoopValue(a, a_slope, b, b_slope, NOTHING, NOTHING),
-            LoopValue(a_mid, a_mid_slope, b_mid, b_mid_slope, NOTHING, NOTHING),
-        )
-
-    def accuracy(self) -> int:
-        """Return to how many bits values along the axis are known, but for a few next to their zeros."""
-        omegas = (self.radius * SHRUNK[-1] * (k + 1) / SAMPLES for k in range(SAMPLES))
-        values = [self.on(omega.mid(), 0)[1] for omega in omegas]
-        known = sorted(x.rel_accuracy_bits() for v in values for x in (v.a, v.b))
-        return known[len(known) // FEW]
-
-    @property
-    def is_mirrored(self) -> bool:
-        """Both are even or odd, as far as their series tell: roots mirror each other in the axis."""
-        return all(
-            any(all(c.contains(0) for c in series.polynomial.coeffs()[k::2]) for k in (0, 1))
-            for series in (self.a, self.b)
-        )
-
-    def at(self, gain: Fraction) -> DiscSeries:
-        """Return ``A + K B``."""
-        with ctx.workprec(self.a.bits):
-            k = ball(gain)
-            polynomial = self.a.polynomial + acb(k) * self.b.polynomial
-            off, slope = (
-                one + abs(k) * other
-                for one, other in ((self.a.off, self.b.off), (self.a.slope_off, self.b.slope_off))
-            )
-        return replace(self.a, polynomial=polynomial, off=off, slope_off=slope)
-
-    def local(self) -> tuple[LocalSeries, LocalSeries]:
-        """Return both as series about 0 in s."""
-        found = []
-        for series in (self.a, self.b):
-            with ctx.workprec(series.bits):
-                coefficients, power, bound = [], arb(1), series.off
-                for c in series.polynomial.coeffs():
-                    coefficients.append(c * power)
-                    power /= self.radius
-                    bound += abs(c)
-                found.append(LocalSeries(acb(0), tuple(coefficients), self.radius, arb(bound.upper())))
-        return found[0], found[1]
-
-
-@dataclass
-class NetworkFactors(AxisFactors[LoopInDisc]):
-    """A network's characteristic function on the imaginary axis and in half a disc right of it."""
-
-    loop: NetworkLoop
-    limits: tuple[Fraction, Fraction]  # range of the gain
-    up_to: float | None  # a frequency up to which to search [rad/s]
-    digits: int  # of gains
-    budget: Budget
-    reasons: list[str] = field(default_factory=list)
-    method: str = "network"
-    _wanted: float | None = None  # radius [rad/s] in which poles are counted
-
-    @cached_property
-    def function(self) -> LoopInDisc:
-        """A and B; SF802 where their roots in the disc are not all proved."""
-        self.reasons.append(BEYOND)
-        wanted = bits_for_digits(self.digits)
-        extra = wanted + SPARE_BITS
-        while True:
-            function = self._to_bits(extra)
-            known = function.accuracy()
-            if known >= wanted:
-                return function
-            extra += wanted - known + SPARE_BITS
-            if extra > MOST_BITS:
-                raise UncertifiedError(Diagnostic("SF802", NOT_COUNTED, None, LOWER))
-
-    def _to_bits(self, extra: int) -> LoopInDisc:
-        search = DiscSearch(self.loop.cramer, self.digits, self.budget, (False, False), extra)
-        try:
-            if self._wanted is None:
-                self._wanted = self.up_to or search.radius_of(2 * self.loop.modes + 1)
-            return LoopInDisc.of(search, self._wanted / SHRUNK[-1])
-        except (EssentialSingularityError, UndecidedError) as error:
-            raise UncertifiedError(Diagnostic("SF802", NOT_COUNTED, None, LOWER)) from error
-
-    @property
-    def with_gain(self) -> tuple[LoopInDisc, ...]:
-        """Return A and B: the determinant is one factor."""
-        return (self.function,)
-
-    @property
-    def radius(self) -> tuple[float, bool]:
-        """How far poles are searched [rad/s]; beyond that nothing is proved."""
-        return float(self.function.radius) * SHRUNK[-1], False
-
-    @property
-    def axis_end(self) -> float:
-        """Where the largest of the circles meets the axis [rad/s]: what is counted crosses below."""
-        return float(self.function.radius) * SHRUNK[0]
-
-    @property
-    def scale(self) -> float:
-        """A frequency of the order of the lowest mode's [rad/s]."""
-        return float(self.function.radius) / self.loop.modes**2
-
-    def is_mirrored(self, function: LoopInDisc) -> bool:
-        """Tell whether A and B are even or odd alike."""
-        return function.is_mirrored
-
-    def tells_meetings(self, function: LoopInDisc) -> bool:
-        """Return False: second derivatives are not enclosed."""
-        del function
-        return False
-
-    def origin(self, function: LoopInDisc) -> LoopAtOrigin | None:
-        """Return A and B near 0, ``None`` where their orders cannot be told."""
-        return None if function.orders is None else LoopAtOrigin(function.orders, function.local())
-
-    def last_crossover(self, function: LoopInDisc, gain: arb) -> float:
-        """Return how far poles are searched."""
-        del function, gain
-        return self.axis_end
-
-    def count(self, gain: Fraction) -> PoleCount:
-        """Return how many poles lie right of the axis and on it; SF802 where that is not proved."""
-        orders = self.function.orders
-        series = self.function.at(gain)
-        if orders is None:
-            at_zero = series.order_at_zero()
-            self.reasons.append("poles next to s = 0 are counted as poles at 0")
-        else:
-            at_zero = min(orders) if gain else orders[0]
-        for share in SHRUNK:
-            self.budget.spend()
-            try:
-                total = series.count_about(acb(0), share)
-                found = [(box, n) for box, n in enclosed_roots(series, at_zero) if abs(box) < share]
-            except RootNearCircleError:
-                continue
-            if at_zero + sum(n * images(box, is_even=False) for box, n in found) != total:
-                continue
-            on_axis = [(box, n) for box, n in found if box.real.contains(0)]
-            if on_axis and not self.function.is_mirrored:
-                break
-            right = sum(n * images(box, is_even=False) for box, n in found if box.real > 0)
-            axis = sum(n * images(box, is_even=False) for box, n in on_axis)
-            if on_axis:
-                self.reasons.append("poles next to the axis are counted as poles on it")
-            return PoleCount(right, axis + at_zero)
-        message = f"poles right of the axis cannot be counted for a gain of {float(gain):.6g}"
-        hint = f"ask for another frequency than --up-to {self.radius[0] / (2 * pi):.4g} Hz, or another range"
-        raise UncertifiedError(Diagnostic("SF802", message, None, hint))

@@ -393,6 +393,8 @@ def _passages(found: StabilityMap) -> Iterator[Passage]:
         said = f"{found.tf}: {found.verdict.hidden_motion}"
         lines += wrap(said, WIDTH, initial_indent=INDENT, subsequent_indent=2 * INDENT)
     yield Passage(lines)
+    if not found.intervals:
+        return
     scope = "" if found.is_complete else ", as far as poles were counted"
     stable = [2 * INDENT + _between(interval, found) for interval in found.stable]
     yield Passage([f"{INDENT}stable for{scope}" + (":" if stable else ": no gain"), *stable])
@@ -434,6 +436,8 @@ def _status(found: StabilityMap) -> str:
 def _examined(found: StabilityMap) -> str:
     low, high = found.limits
     name = found.gain
+    if not found.intervals:
+        return "no range" if found.nominal is None else f"{name} = {_number(found.nominal)} alone"
     if low is None and high is None:
         return f"every {name}"
     if high is None:

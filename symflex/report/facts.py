@@ -368,7 +368,7 @@ def _loop(found: StabilityMap) -> LoopFacts:
         gain=found.gain,
         unit=found.unit,
         stable=tuple((_end(i.low), _end(i.high)) for i in found.stable),
-        unstable_at_last=found.intervals[-1].poles.right,
+        unstable_at_last=found.intervals[-1].poles.right if found.intervals else found.verdict.found,
         crossings_hz=tuple(float(w.mid()) / tau for b in found.boundaries for w in b.frequencies),
         is_bounded=found.limits[1] is not None,
         certified=found.certified,

@@ -9,8 +9,6 @@ from itertools import chain
 from math import exp, inf, isfinite, pi
 from typing import TYPE_CHECKING
 
-from flint import arb
-
 from symflex.algebra import Factored
 from symflex.budget import Budget, entered_budget
 from symflex.equations import assemble
@@ -42,15 +40,17 @@ from symflex.roots.pole_zero_map import (
     HiddenRoot,
     PoleZeroMap,
     StabilityVerdict,
+    chosen,
     find_pole_zero_map,
     is_right,
     judge,
     right_beyond,
+    take_out_shared,
 )
 from symflex.roots.polynomial_roots import in_order
 from symflex.roots.problem import problem_of
-from symflex.roots.region import Band, Everything, Mode, Modes, Position, Rectangle, Region
-from symflex.roots.root import ROUNDING, Root, groups, overlap
+from symflex.roots.region import Band, Everything, Mode, Modes, Rectangle, Region
+from symflex.roots.root import ROUNDING, Root, overlap, root_at_zero
 from symflex.transfer import BoundNested, bind
 from symflex.transfer.of_model import assemble_sparse, derive_all, derive_bound, may_be_expanded
 
@@ -461,9 +461,8 @@ class _Searched:
     def _at_rest(self) -> list[Root]:
         """Return the hidden pole at 0, where there is one."""
         ring = self.bound.ratio.ring
-        times = sum(h.multiplicity for h in self.bound.hidden if h.polynomial == ring.context.gen(0))
-        zero = Root(arb(0), arb(0), times, on_imaginary_axis=True, is_real=True)
-        return [zero] if times else []
+        gen = ring.context.gen(0)
+        return root_at_zero(sum(h.multiplicity for h in self.bound.hidden if h.polynomial == gen))
 
     def _reached(self, side: Side) -> float:
         """Return up to which abs(s) all roots of a side are known [rad/s]."""
@@ -519,60 +518,19 @@ def _find(sides: Sequence[Side], region: Region) -> list[Root]:
 
 
 def _match(poles: Side, zeros: Side) -> list[Root]:
-    """Take out and return what poles and zeros share: modes that cancel without a visible common factor."""
-    left: list[Root] = list(zeros.roots)
-    kept: list[Root] = []
-    shared: list[Root] = []
-    for pole in poles.roots:
-        i = next((i for i, zero in enumerate(left) if _coincide(poles, pole, zeros, zero)), None)
-        if i is None:
-            kept.append(pole)
-            continue
-        zero = left.pop(i)
-        multiplicity = min(pole.multiplicity, zero.multiplicity)
-        certified = pole.certified and zero.certified
-        shared.append(replace(pole, multiplicity=multiplicity, certified=certified))
-        if pole.multiplicity > multiplicity:
-            kept.append(replace(pole, multiplicity=pole.multiplicity - multiplicity))
-        if zero.multiplicity > multiplicity:
-            left.insert(i, replace(zero, multiplicity=zero.multiplicity - multiplicity))
-    poles.roots, zeros.roots = kept, left
+    """Take out and return what poles and zeros share to more than twice the digits asked for."""
+
+    def coincide(pole: Root, zero: Root) -> bool:
+        closer = poles.refined(pole)
+        return overlap(closer, zero) and overlap(closer, zeros.refined(zero))
+
+    poles.roots, zeros.roots, shared = take_out_shared(poles.roots, zeros.roots, coincide)
     return shared
 
 
-def _coincide(poles: Side, pole: Root, zeros: Side, zero: Root) -> bool:
-    """Tell whether a pole and a zero agree in more than twice the digits asked for."""
-    if not overlap(pole, zero):
-        return False
-    closer = poles.refined(pole)
-    return overlap(closer, zero) and overlap(closer, zeros.refined(zero))
-
-
 def _chosen(roots: Sequence[Root], region: Region) -> list[Root]:
-    """Return the roots in a region in order of natural frequency."""
-    ordered = in_order(roots)
-    if isinstance(region, Mode):
-        return list(ordered)
-    if isinstance(region, Modes):
-        return _lowest(ordered, region.count)
-    positions = region.classify(ordered)
-    return [
-        root if position is Position.INSIDE else replace(root, on_boundary=True)
-        for root, position in zip(ordered, positions, strict=True)
-        if position is not Position.OUTSIDE
-    ]
-
-
-def _lowest(ordered: Sequence[Root], count: int) -> list[Root]:
-    """Return the roots at 0 and the lowest modes, mirror images with them."""
-    result = [root for root in ordered if root.is_zero]
-    modes = 0
-    for group in groups(ordered):
-        if modes >= count:
-            break
-        result.extend(group)
-        modes += group[0].multiplicity
-    return result
+    # Of a mode asked for by its number, no other was sought.
+    return list(in_order(roots) if isinstance(region, Mode) else chosen(roots, region))
 
 
 def _passivity(bound: BoundTransferFunction) -> tuple[str, bool]:

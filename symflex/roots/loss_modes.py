@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Final
 
 from flint import acb, acb_series, arb
 
-from symflex.algebra import Factored, by_powers, degree_in
+from symflex.algebra import Factored, by_powers, degree_in, terms_of
 from symflex.algebra.interval_newton import stays_inside
 from symflex.budget import entered_budget, spend
 from symflex.errors import BudgetError, Diagnostic, UncertifiedError
@@ -40,7 +40,7 @@ from symflex.roots.problem import problem_of
 from symflex.roots.region import Band, Mode, Modes, Position, Rectangle
 from symflex.roots.root import FLOAT_BITS, ROUNDING, Root, overlap
 from symflex.transfer import bind
-from symflex.transfer.balls import expansion
+from symflex.transfer.balls import expansion, summed
 from symflex.transfer.of_model import derive_all
 
 if TYPE_CHECKING:
@@ -178,18 +178,8 @@ def _vanishes(bound: BoundTransferFunction, g: fmpz_mpoly, h: fmpz_mpoly, root: 
     with precision(root.working_bits()):
         values = {name: acb(evaluate()) for name, evaluate in bound.constants} | {"s": root.enclosure()}
 
-        def value(polynomial: fmpz_mpoly) -> acb:
-            total = acb(0)
-            for monomial, coefficient in polynomial.terms():
-                term = acb(int(coefficient))
-                for name, exponent in zip(ring.names, monomial, strict=True):
-                    if exponent:
-                        term = term * values[name] ** int(exponent)
-                total = total + term
-            return total
-
-        real, imaginary = value(g), acb(0, 1) * value(h)
-        ours, theirs = (bool((real + sign * imaginary).contains(0)) for sign in (1, -1))
+        real, imaginary = (summed(terms_of(f), ring.names, values.__getitem__, acb(1)) for f in (g, h))
+        ours, theirs = (bool((real + acb(0, sign) * imaginary).contains(0)) for sign in (1, -1))
         return None if ours == theirs else ours
 
 

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Literal, Self
 
 from symflex.errors import BudgetError, Diagnostic
 from symflex.roots.engines import POLYNOMIAL
-from symflex.roots.polynomial_roots import find_polynomial_roots
+from symflex.roots.polynomial_roots import find_polynomial_roots, in_order
 from symflex.roots.region import Everything, Mode, Modes, Position, Region
-from symflex.roots.root import Root, overlap
+from symflex.roots.root import Root, groups, overlap
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from symflex.budget import Budget
     from symflex.roots.problem import RootProblem
@@ -480,6 +480,50 @@ def right_beyond(roots: Sequence[Root], shown: Sequence[Root]) -> tuple[Root, ..
     )
 
 
+def chosen(roots: Sequence[Root], region: Region) -> tuple[Root, ...]:
+    """Return the roots in a region in order of natural frequency, mirror images with the modes asked for."""
+    ordered = in_order(roots)
+    if not isinstance(region, Modes | Mode):
+        return _inside(ordered, region.classify(ordered))
+    first, last = (1, region.count) if isinstance(region, Modes) else (region.number, region.number)
+    taken = [root for root in ordered if root.is_zero] if isinstance(region, Modes) else []
+    reached = 0
+    for group in groups(ordered):
+        before, reached = reached, reached + group[0].multiplicity
+        if before < last and reached >= first:
+            taken += group
+    return tuple(taken)
+
+
+def take_out_shared(
+    poles: Sequence[Root], zeros: Sequence[Root], coincide: Callable[[Root, Root], bool]
+) -> tuple[list[Root], list[Root], list[Root]]:
+    """Return poles and zeros without what both share, and that: modes without a visible common factor."""
+    left, kept, shared = list(zeros), list[Root](), list[Root]()
+    for pole in poles:
+        i = next((i for i, zero in enumerate(left) if overlap(pole, zero) and coincide(pole, zero)), None)
+        if i is None:
+            kept.append(pole)
+            continue
+        zero = left.pop(i)
+        multiplicity = min(pole.multiplicity, zero.multiplicity)
+        certified = pole.certified and zero.certified
+        shared.append(replace(pole, multiplicity=multiplicity, certified=certified))
+        if pole.multiplicity > multiplicity:
+            kept.append(replace(pole, multiplicity=pole.multiplicity - multiplicity))
+        if zero.multiplicity > multiplicity:
+            left.insert(i, replace(zero, multiplicity=zero.multiplicity - multiplicity))
+    return kept, left, shared
+
+
+def _inside(roots: Sequence[Root], positions: Sequence[Position]) -> tuple[Root, ...]:
+    return tuple(
+        root if position is Position.INSIDE else replace(root, on_boundary=True)
+        for root, position in zip(roots, positions, strict=True)
+        if position is not Position.OUTSIDE
+    )
+
+
 def _locate(
     problem: RootProblem, region: Region, digits: int, budget: Budget | None
 ) -> tuple[tuple[Root, ...], tuple[Root, ...], Diagnostic | None]:
@@ -503,12 +547,7 @@ def _locate(
         positions = region.classify(roots)
         if Position.UNDECIDED not in positions:
             break
-    inside = tuple(
-        root if position is Position.INSIDE else replace(root, on_boundary=True)
-        for root, position in zip(roots, positions, strict=True)
-        if position is not Position.OUTSIDE
-    )
-    return inside, roots, exceeded
+    return _inside(roots, positions), roots, exceeded
 
 
 def _root_to_json(root: Root, digits: int) -> dict[str, object]:

@@ -12,10 +12,10 @@ from symflex.budget import Budget, entered_budget
 from symflex.errors import BudgetError
 from symflex.roots.engines import proposers_for
 from symflex.roots.polynomials.discs import Disc, Proposer, connected
-from symflex.roots.polynomials.isolation import differs_from_zero, first_bits, isolations, prove_singly
+from symflex.roots.polynomials.isolation import isolations
 from symflex.roots.precision import bits_for_digits, precision
 from symflex.roots.problem import Splitting, SquareFreePart, split
-from symflex.roots.root import GUARD_BITS, Root
+from symflex.roots.root import GUARD_BITS, Root, root_at_zero
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,10 +24,6 @@ if TYPE_CHECKING:
 
 DISTINCTION_ROUNDS = 5
 """Doublings of the digits until roots of different factors are told apart."""
-SEARCH_SHARE = 0.8
-"""Of the time given; the rest is for proving one by one what a search that takes longer leaves."""
-SINGLE_DIGITS = 50
-"""Most digits of a root proved on its own: more roots say more than more digits do."""
 ROUNDING = 1e-12
 """Relative difference of two doubles below which their order is asked of the balls."""
 
@@ -76,75 +72,40 @@ class _PolynomialSearch:
 
     def run(self) -> tuple[Root, ...]:
         """Return all roots."""
-        limited = self.budget.share(SEARCH_SHARE)
         wanted = self.digits
         try:
-            self.splitting = split(self.problem, limited)
+            self.splitting = split(self.problem, self.budget)
             for _ in range(DISTINCTION_ROUNDS):
                 for i in range(len(self.splitting.parts)):
-                    self._solve(i, wanted, limited)
+                    self._solve(i, wanted)
                 merged = self._merged()
                 if len(merged) == len(self._all()):
                     break
                 wanted *= 2
         except BudgetError as error:
-            self._prove_singly()
-            raise BudgetError(*error.diagnostics, found=in_order(self._merged())) from None
+            # Where constants satisfy a relation, parts that are not solved may have the same roots.
+            is_exact = all(part.polynomial.is_exact for part in self.splitting.parts)
+            found = in_order(self._merged()) if is_exact else ()
+            raise BudgetError(*error.diagnostics, found=found) from None
         return in_order(merged)
 
-    def _solve(self, i: int, digits: int, budget: Budget) -> None:
+    def _solve(self, i: int, digits: int) -> None:
         part = self.splitting.parts[i]
         proposers = self.proposers or proposers_for(part.polynomial.degree)
-        with budget.entered():
+        with self.budget.entered():
             for discs in isolations(
-                part.polynomial, digits, in_square=part.in_square, proposers=proposers, budget=budget
+                part.polynomial, digits, in_square=part.in_square, proposers=proposers, budget=self.budget
             ):
                 self.solved[i] = _roots_of(part, discs, digits)
 
-    def _prove_singly(self) -> None:
-        """Prove roots of the parts that are not solved, as long as there is time."""
-        unsolved = [i for i in range(len(self.splitting.parts)) if i not in self.solved]
-        for i, part in enumerate(self.splitting.parts):
-            roots = self.solved[i] if i in self.solved else self._singles(part)
-            others = [self.splitting.parts[j] for j in unsolved if j != i]
-            self.solved[i] = [root for root in roots if _is_apart(root, others, self.digits)]
-
-    def _singles(self, part: SquareFreePart) -> list[Root]:
-        found: list[Root] = []
-        digits = min(self.digits, SINGLE_DIGITS)
-        singles = prove_singly(part.polynomial, digits, self.budget, in_square=part.in_square)
-        while True:
-            try:
-                disc = next(singles, None)
-            except BudgetError:
-                return found
-            if disc is None:
-                return found
-            found += _roots_of(part, [disc], self.digits)
-
     def _all(self) -> list[Root]:
         roots = [root for part in self.solved.values() for root in part]
-        if self.splitting.zeros:
-            zero = Root(arb(0), arb(0), self.splitting.zeros, on_imaginary_axis=True, is_real=True)
-            roots.insert(0, zero)
-        return roots
+        return [*root_at_zero(self.splitting.zeros), *roots]
 
     def _merged(self) -> list[Root]:
         """Return the roots, those that may be the same as one."""
         roots = self._all()
         return [_merge([roots[i] for i in cluster]) for cluster in _touching(roots)]
-
-
-def _is_apart(root: Root, others: Sequence[SquareFreePart], digits: int) -> bool:
-    """Tell whether polynomials whose roots are not known have none where a root is: its multiplicity is."""
-    for part in others:
-        bits = max(first_bits(part.polynomial, digits), root.working_bits())
-        with precision(bits):
-            box = root.enclosure()
-            place = box * box if part.in_square else box
-        if not differs_from_zero(part.polynomial, place, bits):
-            return False
-    return True
 
 
 def _roots_of(part: SquareFreePart, discs: Sequence[Disc], digits: int) -> list[Root]:

@@ -21,6 +21,7 @@ from symflex.budget import Budget, entered_budget
 from symflex.errors import Diagnostic, ModelError, UncertifiedError
 from symflex.roots.precision import precision
 from symflex.transfer import BoundTransferFunction, coefficients_in_s
+from symflex.transfer.balls import value_at
 
 ZERO_TEST_BITS = (64, 256, 1024, 4096)
 """At which a coefficient is compared with zero, one after the other."""
@@ -97,7 +98,7 @@ class PolynomialInS:
         if self.is_exact:
             return arb_poly([arb(c) for c in self.integers()])
         values = tuple(constant.evaluate() for constant in self.constants)
-        return arb_poly([_evaluate(c, values) for c in self.coefficients])
+        return arb_poly([value_at(c, values.__getitem__, arb) for c in self.coefficients])
 
     def require_leading_coefficient(self) -> None:
         """Prove that the leading coefficient is not zero.
@@ -110,22 +111,11 @@ class PolynomialInS:
         for bits in ZERO_TEST_BITS:
             with precision(bits):
                 values = tuple(constant.evaluate() for constant in self.constants)
-                if _evaluate(self.coefficients[-1], values) != 0:
+                if value_at(self.coefficients[-1], values.__getitem__, arb) != 0:
                     return
         message = f"cannot tell whether the coefficient {self.coefficients[-1]} of s^{self.degree} is zero"
         hint = "its constants seem to satisfy a relation; write the coefficient without it"
         raise UncertifiedError(Diagnostic("SF401", message, hint=hint))
-
-
-def _evaluate(coefficient: fmpz_mpoly, values: tuple[arb, ...]) -> arb:
-    total = arb(0)
-    for exponents, integer in coefficient.to_dict().items():
-        term = arb(integer)
-        for value, exponent in zip(values, exponents, strict=True):
-            if exponent:
-                term *= value ** int(exponent)
-        total += term
-    return total
 
 
 @dataclass(frozen=True, slots=True)

@@ -213,6 +213,25 @@ def groups(roots: Sequence[Root]) -> list[list[Root]]:
     return [[roots[i] for i in sorted(group)] for group in sorted(found, key=min)]
 
 
+def count_modes(roots: Sequence[Root]) -> int:
+    """Return how many modes there are among roots, those that mirror each other being one."""
+    return sum(group[0].multiplicity for group in groups(roots))
+
+
+def root_at_zero(order: int, reach: arb | float = 0) -> list[Root]:
+    """Return a root of an order at 0, or as one all that lie so close to it; none of order 0.
+
+    Examples
+    --------
+    >>> [root.multiplicity for root in root_at_zero(2)], root_at_zero(0)
+    ([2], [])
+    """
+    is_zero, box = bool(reach == 0), arb(0, reach)
+    certified = is_zero or order == 1
+    root = Root(box, box, order, on_imaginary_axis=is_zero, is_real=is_zero, certified=certified)
+    return [root] if order >= 1 else []
+
+
 def _mirrored(a: Root, b: Root) -> bool:
     # A sign changes without rounding.
     return all(bool(x.overlaps(y)) or bool(x.overlaps(-y)) for x, y in ((a.re, b.re), (a.im, b.im)))

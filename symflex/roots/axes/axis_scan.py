@@ -19,7 +19,6 @@ from symflex.roots.counting.winding import RootOnPathError, Winding
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from symflex.roots.functions.double_minors import DoubleMinors
     from symflex.roots.functions.exponential_values import Doubles, DoubleSums
     from symflex.roots.functions.kernel_function import Sample
 
@@ -61,7 +60,7 @@ def sign_changes(winding: Winding, low: float, high: float, angle: float) -> lis
 
 
 def _on_grid(
-    winding: Winding, sums: DoubleSums | DoubleMinors, low: float, high: float, turned: float
+    winding: Winding, sums: DoubleSums, low: float, high: float, turned: float
 ) -> list[float] | None:
     """Return where factors in the numerator change their signs, ``None`` where doubles do not tell."""
     numbers = [i for i, (_, exponent) in enumerate(winding.function.part.factors) if exponent > 0]
@@ -100,7 +99,7 @@ def _dips(size: Doubles, changes: npt.NDArray[np.bool_]) -> list[int]:
 
 
 def _secants(
-    sums: DoubleSums | DoubleMinors, number: int, ends: list[tuple[Doubles, Doubles, Doubles]], turned: float
+    sums: DoubleSums, number: int, ends: list[tuple[Doubles, Doubles, Doubles]], turned: float
 ) -> list[float]:
     """Return where a real function is zero between pairs of points, to a few digits more."""
     (low, below, phase), (high, above, _) = ends

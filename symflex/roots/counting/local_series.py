@@ -183,8 +183,6 @@ BITS = 160
 """Least precision: sums that cancel lose about half of them."""
 WIDER = 4
 """Radius to which a series is bounded, over that of the step it is made for."""
-NEAR = 3
-"""The same where values are wanted and no turn."""
 BEYOND = 3
 """Radius on which what is cut off a product of series is bounded, over that of the step."""
 SHARP = 2.0**-20
@@ -222,16 +220,6 @@ class SeriesSteps:
                     return bound, turn
             self._last, self._bits = self._made(centre, (radius * WIDER).mid(), bits), bits
             return NOTHING if self._last is None else _followed(self._last, centre, radius, start, end)
-
-    def near(self, centre: acb, radius: arb, bits: int) -> tuple[tuple[acb, ...], arb] | None:
-        """Return a polynomial's coefficients about an exact point, and what it may miss closer than a radius.
-
-        The radius [rad/s] is exact. ``None`` where nothing is proved.
-        """
-        with precision(bits):
-            if self._last is None or not _covers(self._last, centre, radius):
-                self._last = self._made(centre, (radius * NEAR).mid(), bits)
-            return None if self._last is None else self._last.around(centre, radius)
 
     def _made(self, centre: acb, reach: arb, bits: int) -> LocalSeries | None:
         bound = bound_on_circle(self.function, centre, reach, FIRST_ARCS)

@@ -18,16 +18,16 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb, fmpz_mpoly
 
-from symflex.algebra import LAPLACE, Dispersion, Factored, Ring, degree_in
+from symflex.algebra import LAPLACE, Dispersion, Factored, Ring, degree_in, terms_of
 from symflex.algebra.exponential_sum import REAL, Exponent, arguments_of, exponential_sum
 from symflex.budget import spend
 from symflex.roots.functions.exponential_values import ExponentialValues
 from symflex.roots.precision import precision
 from symflex.transfer import BoundTransferFunction, coefficients_in_s
-from symflex.transfer.balls import ball
+from symflex.transfer.balls import ball, summed
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Sequence
 
     from symflex.transfer.enclose_kernels import KernelValues
 
@@ -384,23 +384,14 @@ def _at_infinity(kernels: KernelValues, value: Factored, radius: float) -> tuple
             return None
         found = acb(0)
         for coefficient in coefficients_in_s(factor, constants):
-            found = found * small + _constant(coefficient, names[1:], kernels.constants)
+            found = found * small + summed(
+                terms_of(coefficient), names[1:], lambda name: acb(kernels.constants[name]), acb(1)
+            )
         if found.contains(0):
             return None
         power += degree_in(factor, 0) * exponent
         total = total * found**exponent
     return power, total
-
-
-def _constant(polynomial: fmpz_mpoly, names: Sequence[str], values: Mapping[str, arb]) -> acb:
-    total = acb(0)
-    for monomial, integer in polynomial.terms():
-        term = acb(int(integer))
-        for name, exponent in zip(names, monomial, strict=True):
-            if exponent:
-                term = term * acb(values[name]) ** int(exponent)
-        total = total + term
-    return total
 
 
 @dataclass(frozen=True, slots=True)

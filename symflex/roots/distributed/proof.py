@@ -26,7 +26,7 @@ from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.winding import Cell, RootOnPathError
 from symflex.roots.precision import precision
 from symflex.roots.region import Band, Rectangle, Region
-from symflex.roots.root import FLOAT_BITS, Root, are_apart
+from symflex.roots.root import FLOAT_BITS, Root, are_apart, root_at_zero
 
 if TYPE_CHECKING:
     from symflex.algebra import Factored
@@ -302,7 +302,7 @@ def roots_at_zero(
     counted.
     """
     function = winding.function
-    power, zero = function.power, arb(0)
+    power = function.power
     s = part.ring.context.gen(0)
     powers, exact = part.exponent_of(s), function.order()
     coefficients = [c for law in function.bound.kernels.dispersions for c in law.characteristic]
@@ -310,20 +310,12 @@ def roots_at_zero(
     if has_length and not is_hidden and exact is not None and abs(function.order_at_zero() - exact) > SAME:
         exact = None  # waves with a length at s = 0 may fit: a column at its buckling load
     if exact is not None and (is_hidden or exact % power == 0):
-        total = powers if is_hidden else powers + exact // power
-        root = Root(zero, zero, total, on_imaginary_axis=True, is_real=True)
-        return [root for _ in range(total >= 1)], exact
+        return root_at_zero(powers if is_hidden else powers + exact // power), exact
     z, turns = turns_about_zero(winding, left, holes)
     # So many roots lie this close to 0, and nothing says that they are 0.
     with precision(FLOAT_BITS):
-        box = arb(0, arb(z).exp().upper())
-    total = powers if is_hidden else powers + turns
-    if not turns or is_hidden:
-        box = zero
-    is_zero = bool(box == 0)
-    certified = is_zero or total == 1
-    root = Root(box, box, total, on_imaginary_axis=is_zero, is_real=is_zero, certified=certified)
-    return [root for _ in range(total >= 1)], turns * power
+        reach = arb(z).exp().upper() if turns and not is_hidden else 0
+    return root_at_zero(powers if is_hidden else powers + turns, reach), turns * power
 
 
 def turns_about_zero(winding: CertifiedWinding, left: float, holes: Sequence[Cell]) -> tuple[float, int]:

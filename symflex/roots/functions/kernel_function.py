@@ -22,6 +22,7 @@ from symflex.algebra import Dispersion, Factored, KernelTable, degree_in
 from symflex.algebra.exponential_sum import (
     REAL,
     Argument,
+    Exponent,
     ExponentialSum,
     arguments_of,
     combination,
@@ -35,9 +36,8 @@ from symflex.roots.precision import precision
 from symflex.transfer.balls import Value, at_centre, expansion
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
-    from symflex.roots.functions.double_minors import DoubleMinors
     from symflex.transfer import BoundTransferFunction
     from symflex.transfer.enclose_kernels import KernelValues
 
@@ -276,20 +276,10 @@ class KernelFunction:
         return tuple(found)
 
     @cached_property
-    def in_doubles(self) -> DoubleSums | DoubleMinors | None:
-        """The factors for guesses at many points; ``None`` where kernels are no exponentials nor entries."""
+    def in_doubles(self) -> DoubleSums | None:
+        """The factors for guesses at many points; ``None`` where they are no sums of exponentials."""
         with precision(FIRST_BITS):
-            if self.exponentials is not None:
-                return DoubleSums(self._sums(FIRST_BITS))
-            evaluator, factors = self._values(FIRST_BITS), [f for f, _ in self.part.factors]
-            if evaluator.matrices is None or self.bound.kernels.wavenumbers:
-                return None
-            kernels = self.bound.kernels.kernels
-            if any(k.function != "entry" or k.dispersion.singular for k in kernels):
-                return None
-            from symflex.roots.functions.double_minors import DoubleMinors  # few beams are tapered
-
-            return DoubleMinors(evaluator, evaluator.matrices, factors, self.reach)
+            return None if self.exponentials is None else DoubleSums(self._sums(FIRST_BITS))
 
     def _anywhere(self) -> tuple[int, dict[str, Value], acb]:
         """Return a precision, the generators' values at a frequency like any other, and the product's."""
@@ -397,11 +387,11 @@ class KernelFunction:
             if isinstance(series := values.value(i, place), acb_series)
         ]
 
-    def _evaluator(self, bits: int) -> ExponentialValues | _KernelFactors:
+    def _evaluator(self, bits: int) -> ExponentialValues | KernelFactors:
         """Return what evaluates the factors: as sums of exponentials where they are."""
         if self.exponentials is not None:
             return self._sums(bits)
-        return _KernelFactors(self._values(bits), [factor for factor, _ in self.part.factors])
+        return KernelFactors(self._values(bits), [factor for factor, _ in self.part.factors])
 
     def _kernel_values(self, bits: int) -> KernelValues:
         with precision(bits):
@@ -409,8 +399,8 @@ class KernelFunction:
 
 
 @dataclass(frozen=True, slots=True)
-class _KernelFactors:
-    """Polynomials in kernels, evaluated as they stand."""
+class KernelFactors:
+    """Polynomials in kernels, evaluated as they stand, as :class:`ExponentialValues` does sums."""
 
     evaluator: KernelValues
     factors: Sequence[fmpz_mpoly]
@@ -419,9 +409,15 @@ class _KernelFactors:
         """Return the values of the generators, of the branch that others have."""
         return Place(self.evaluator.at(s, None if near is None else near.values), ())
 
-    def value(self, number: int, place: Place) -> Value:
-        """Return the value of one polynomial."""
+    def value(self, number: int, place: Place, less: Exponent = REAL) -> Value:
+        """Return the value of one polynomial; no exponential is taken out."""
+        del less
         return self.evaluator.polynomial(self.factors[number], place.values)
+
+    def largest(self, numbers: Iterable[int], place: Place) -> Exponent:
+        """Return that there is no exponential."""
+        del numbers, place
+        return REAL
 
 
 def other_branches(

@@ -1,101 +1,33 @@
-"""How often s = 0 is a root, such as of motions as a rigid body: ranks and power series modulo a prime.
+"""How often s = 0 is a root, such as of motions as a rigid body: power series modulo a prime.
 
-Every stiffness is a number modulo a prime, pi and functions of constants stand for random ones: cosine and
-sine of an angle for a point of the circle, roots of numbers for roots modulo the prime. A matrix that has
-full rank there has it; one that has not lost it by chance with odds of about 1 in 2^61.
+Every coefficient is a number modulo a prime, pi and functions of constants stand for random ones: cosine and
+sine of an angle for a point of the circle, roots of numbers for roots modulo the prime. A determinant that
+vanishes to some order there does not vanish to a lower one by chance but with odds of about 1 in 2^61.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from flint import nmod, nmod_mat
-
-from symflex.algebra import LAPLACE, PRIME, random_point, residue
+from symflex.algebra import LAPLACE, PRIME, random_point
 from symflex.algebra.propagators import EXPONENTIAL
 from symflex.algebra.vanishing import TaylorField
-from symflex.roots.networks.counting import add_member
-from symflex.roots.networks.inertia import pivots
-from symflex.roots.networks.members import UndecidedError
 from symflex.transfer.balls import rational_value
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from flint import nmod_poly
 
     from symflex.equations import Equations
     from symflex.expressions import Expression
-    from symflex.roots.networks.counting import Counter
     from symflex.roots.networks.cramer import CramerEquations
-    from symflex.roots.networks.network import NetworkMember
 
 
 SPARE_TERMS = 8
 """Of a series, beyond those that vanish; each pivot of an order takes as many terms."""
 FEWEST = 4
 """Columns with fewest entries that are looked at for a pivot."""
-
-
-class Residues:
-    """Numbers modulo a prime, which have no signs."""
-
-    def is_usable(self, value: nmod) -> bool:
-        """Tell whether it may be divided by."""
-        return int(value) != 0
-
-    def negative(self, value: nmod) -> int:
-        """Return 0: nothing is below zero."""
-        del value
-        return 0
-
-    def negative_of_pair(self, determinant: nmod, corner: nmod | None) -> int:
-        """Return 0."""
-        del determinant, corner
-        return 0
-
-
-def nullity_at_rest(counter: Counter, border: int | None) -> int | None:
-    """Return how often 0 is an eigenvalue, with one of the motions held; ``None`` where it cannot be told.
-
-    That is where waves that run along a member at rest have a wavenumber, as on an elastic foundation, and
-    where a root of a number is none modulo the prime.
-    """
-    network = counter.network
-    equations = network.numbers.equations
-    point = random_point(equations.ring.names) | {LAPLACE: 0}
-    if not _place_constants(equations, point):
-        return None
-    for name, value in equations.definitions:
-        point[name] = residue(value, point)
-    size = network.size
-    rows: list[dict[int, nmod]] = [{} for _ in range(size + 1)]
-    for (i, j), value in network.entries.items():
-        number = nmod(residue(value, point), PRIME)
-        if int(number):
-            rows[i][j] = rows[j][i] = number
-    for member in network.members:
-        blocks = _stiffness(member, point)
-        if blocks is None:
-            return None
-        if member.direction:
-            cos, sin = (residue(x, point) for x in member.direction)
-            turn = nmod_mat([[cos, sin, 0], [-sin % PRIME, cos, 0], [0, 0, 1]], PRIME)
-            blocks = tuple(turn.transpose() * block * turn for block in blocks)
-        add_member(rows, member.ends, [block.tolist() for block in blocks])
-    order = list(counter.order)
-    if border is not None:
-        order.append(size)
-        for i, value in counter.borders[border].items():
-            rows[i][size] = rows[size][i] = nmod(residue(value, point), PRIME)
-    for row in rows:
-        for j in [j for j, x in row.items() if not int(x)]:
-            del row[j]
-    try:
-        pivots(rows, order, Residues())
-    except UndecidedError as error:
-        return error.left
-    return 0
 
 
 def _place_constants(equations: Equations, point: dict[str, int]) -> bool:
@@ -114,27 +46,6 @@ def _place_constants(equations: Equations, point: dict[str, int]) -> bool:
             if root * root % PRIME != value:
                 return False
     return True
-
-
-def _stiffness(member: NetworkMember, point: Mapping[str, int]) -> tuple[nmod_mat, ...] | None:
-    n = len(member.system)
-    k = n // 2
-    length = residue(member.length, point)
-    entries = [[residue(x, point) * length % PRIME for x in row] for row in member.system]
-    matrix = nmod_mat(entries, PRIME)
-    transfer = term = nmod_mat([[int(i == j) for j in range(n)] for i in range(n)], PRIME)
-    for i in range(1, n + 1):
-        term = term * matrix * nmod(pow(i, -1, PRIME), PRIME)
-        transfer = transfer + term
-    if term != nmod_mat(n, n, PRIME):
-        return None
-    table = transfer.tolist()
-    block = [[nmod_mat([row[b : b + k] for row in table[a : a + k]], PRIME) for b in (0, k)] for a in (0, k)]
-    try:
-        flexible = block[0][1].inv()
-    except ZeroDivisionError:
-        return None
-    return flexible * block[0][0], -flexible, block[1][1] * flexible
 
 
 def order_at_zero(cramer: CramerEquations, size: int, least: int) -> int | None:

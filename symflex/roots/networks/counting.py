@@ -14,17 +14,15 @@ from typing import TYPE_CHECKING
 from flint import arb, arb_mat, ctx
 
 from symflex.budget import spend
-from symflex.roots.networks.inertia import Balls, Number, Rows, elimination_order, pivots
-from symflex.roots.networks.members import MemberBalls, Stiffness, UndecidedError
+from symflex.roots.networks.inertia import elimination_order, pivots
+from symflex.roots.networks.members import MemberBalls, Stiffness, settled
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from symflex.algebra import Factored
+    from symflex.roots.networks.inertia import Rows
     from symflex.roots.networks.network import Network, NetworkMember
-
-MOST_BITS = 20_000
-"""No sign asked for so far needed a tenth of it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,13 +58,7 @@ class Counter:
 
         UndecidedError at an eigenvalue, or too close to one.
         """
-        while True:
-            try:
-                return self.level(bits).sample(value)
-            except UndecidedError:
-                bits *= 2
-                if bits > MOST_BITS:
-                    raise
+        return settled(lambda: self.level(ctx.prec).sample(value), bits)
 
     def level(self, bits: int) -> Level:
         """Return the network's numbers at a precision."""
@@ -133,12 +125,7 @@ class Level:
                 held += stiffness.held
                 seen = stiffness if turn is None else stiffness.turned(turn)
                 add_member(rows, member.ends, seen.blocks)
-            found = pivots(
-                rows,
-                self.counter.order,
-                Balls(),
-                range(size, size + len(self.borders)),
-            )
+            found = pivots(rows, self.counter.order, range(size, size + len(self.borders)))
             receptances = tuple(arb(0) if x is None else -x for x in found.borders)
             return NetworkSample(
                 value,
@@ -156,9 +143,7 @@ def _turn(direction: Sequence[arb]) -> arb_mat | None:
     return arb_mat([[cos, sin, 0], [-sin, cos, 0], [0, 0, 1]])
 
 
-def add_member(
-    rows: Rows[Number], ends: Sequence[int | None], blocks: Sequence[Sequence[Sequence[Number]]]
-) -> None:
+def add_member(rows: Rows, ends: Sequence[int | None], blocks: Sequence[Sequence[Sequence[arb]]]) -> None:
     """Add the stiffness of a member to the rows of what moves its ends.
 
     ``blocks`` are those at the start, across and at the end.

@@ -23,23 +23,20 @@ from symflex.algebra.factored import least_common_multiple
 from symflex.algebra.propagators import EXPONENTIAL
 from symflex.budget import spend
 from symflex.library.elements import LinearForm
-from symflex.roots.networks.members import UndecidedError
-from symflex.transfer.balls import Value, at_centre, later
+from symflex.roots.networks.members import MOST_BITS, UndecidedError, settled
+from symflex.transfer.balls import Value, at_centre, balancing, binary_exponent, later, summed
 from symflex.transfer.enclose_kernels import fundamental_functions
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Mapping, Sequence
-
-    from flint import fmpz_mpoly
+    from collections.abc import Collection, Mapping, Sequence
 
     from symflex.algebra import Factored
     from symflex.equations import Equations
     from symflex.library.elements import Variable
 
-MOST_BITS = 20_000
 MOST_LOST = 16
 """Bits that elimination may lose per equation; chains of beams lose about one."""
-ZERO = acb(0)
+ZERO, ONE = acb(0), acb(1)
 BALANCING = 40
 """Rounds that make rows and columns alike; each about halves what is left to gain."""
 ROUNDING = 1e-9
@@ -117,7 +114,7 @@ class CramerEquations:
         values = self._values(s)
         factors: dict[int, acb] = {}
         rows = self._rows(values, factors)
-        den, last = self._eliminated(rows)
+        den, last = self._eliminated(rows, len(rows) - 1)
         return CramerValue(den * self._value(self.divisor, values, factors), den * last)
 
     def _rows(self, values: Mapping[str, acb], factors: dict[int, acb]) -> list[dict[int, acb]]:
@@ -196,45 +193,33 @@ class CramerEquations:
         for factor, exponent in value.factors:
             known = factors.get(id(factor))
             if known is None:
-                known = factors[id(factor)] = _polynomial(factor, value.ring.names, values)
+                known = factors[id(factor)] = summed(
+                    terms_of(factor), value.ring.names, values.__getitem__, ONE
+                )
             result = result * known**exponent if exponent > 0 else result / known**-exponent
         return result
 
-    def _eliminated(self, rows: list[dict[int, acb]]) -> tuple[acb, acb]:
-        """Return the determinant of A, and what is left of d."""
-        size = len(rows) - 1
-        return self._by_order(rows, size, lambda work, order: _eliminate(work, order, size))
+    def _eliminated(self, rows: list[dict[int, acb]], size: int) -> tuple[acb, acb]:
+        """Return the determinant of so many rows and columns, and what is left of the entry after the last.
 
-    def _by_order(
-        self,
-        rows: list[dict[int, acb]],
-        size: int,
-        eliminate: Callable[[list[dict[int, acb]], list[tuple[int, int]]], tuple[acb, acb]],
-    ) -> tuple[acb, acb]:
-        """Eliminate by the pivots that served last, else by others."""
+        It goes by the pivots that served last, else by others.
+        """
         if size in self._orders:
             order, bits = self._orders[size]
             try:
-                return eliminate([dict(row) for row in rows], order)
+                return _eliminate([dict(row) for row in rows], order)
             except UndecidedError:
                 # Mostly nothing is wanting but bits.
                 if ctx.prec < 2 * bits:
                     raise
         order = pivot_order(rows, size)
-        found = eliminate(rows, order)
+        found = _eliminate(rows, order)
         self._orders[size] = order, ctx.prec
         return found
 
     def alone(self, s: acb, bits: int, *, is_num: bool) -> acb:
         """Return numerator or denominator at an exact s, also where it vanishes."""
-        while True:
-            try:
-                with ctx.workprec(bits):
-                    return self._alone(s, is_num=is_num)
-            except UndecidedError:
-                bits *= 2
-                if bits > MOST_BITS:
-                    raise
+        return settled(lambda: self._alone(s, is_num=is_num), bits)
 
     def _alone(self, s: acb, *, is_num: bool) -> acb:
         spend()
@@ -242,8 +227,7 @@ class CramerEquations:
         factors: dict[int, acb] = {}
         size = len(self.entries) - (not is_num)
         rows = [{j: x for j, x in row.items() if j < size} for row in self._rows(values, factors)[:size]]
-        # The last pivot alone may vanish.
-        value, _ = self._by_order(rows, size, lambda work, order: (_determinant(work, order), ZERO))
+        value, _ = self._eliminated(rows, size)
         return value if is_num else value * self._value(self.divisor, values, factors)
 
     # -------------------------------------------------------------------------------- bounds in discs
@@ -336,17 +320,6 @@ def _denominator(form: LinearForm) -> Factored:
     return least_common_multiple(one, parts)
 
 
-def _polynomial(polynomial: fmpz_mpoly, names: Sequence[str], values: Mapping[str, acb]) -> acb:
-    total = acb(0)
-    for monomial, coefficient in terms_of(polynomial):
-        term = acb(coefficient)
-        for i, exponent in monomial:
-            value = values[names[i]]
-            term = term * (value if exponent == 1 else value**exponent)
-        total = total + term
-    return total
-
-
 def _bound(value: Factored, values: Mapping[str, tuple[arb, bool]]) -> arb:
     """Return a bound on abs(value) where abs(s) is at most what ``values`` were made for."""
     result = arb(abs(fmpq(value.unit.numerator, value.unit.denominator)))
@@ -408,8 +381,8 @@ def _lengths(
     return np.asarray(largest + 0.5 * np.log(np.bincount(i, np.exp(2 * (logs - largest[i])), size)))
 
 
-THRESHOLD = -3.0
-"""ln of what a pivot must have of its column's largest entry: as large as the fewest neighbours allow."""
+THRESHOLD = -4
+"""log2 of what a pivot must have of its column's largest entry: as large as the fewest neighbours allow."""
 CANDIDATES = 4
 """Columns with fewest entries that are looked at for a pivot."""
 
@@ -420,7 +393,7 @@ def pivot_order(rows: Sequence[Mapping[int, acb]], size: int) -> list[tuple[int,
     Rows and columns from ``size`` on are no pivots. UndecidedError where none but the last is told from 0.
     """
     work = [{j: x for j, x in row.items() if j < size} for row in rows[:size]]
-    scale = _scales(work, size)
+    scale, _ = balancing([{j: _size(x) for j, x in row.items()} for row in work], size, 4)
     columns: list[set[int]] = [set() for _ in range(size)]
     for i, row in enumerate(work):
         for j in row:
@@ -428,10 +401,10 @@ def pivot_order(rows: Sequence[Mapping[int, acb]], size: int) -> list[tuple[int,
     left = set(range(size))
     order: list[tuple[int, int]] = []
     while left:
-        best: tuple[int, float, int, int] | None = None
+        best: tuple[int, int, int, int] | None = None
         for j in nsmallest(CANDIDATES, left, key=lambda j: len(columns[j])):
             sizes = {i: _size(work[i][j]) + scale[i] for i in columns[j] if not work[i][j].contains(0)}
-            largest = max(sizes.values(), default=0.0)
+            largest = max(sizes.values(), default=0)
             for i, x in sizes.items():
                 if x >= largest + THRESHOLD:
                     cost = (len(work[i]) - 1) * (len(columns[j]) - 1)
@@ -439,7 +412,7 @@ def pivot_order(rows: Sequence[Mapping[int, acb]], size: int) -> list[tuple[int,
                         best = (cost, -x, i, j)
         if best is None:
             if len(left) > 1:
-                raise UndecidedError(len(left))
+                raise UndecidedError
             (j,) = left
             (i,) = set(range(size)) - {i for i, _ in order}
             order.append((i, j))
@@ -449,21 +422,6 @@ def pivot_order(rows: Sequence[Mapping[int, acb]], size: int) -> list[tuple[int,
         left.discard(j)
         _take_out(work, columns, i, j)
     return order
-
-
-def _scales(rows: Sequence[Mapping[int, acb]], size: int) -> list[float]:
-    """Return ln of what rows are multiplied by to be of like size: units differ by powers of ten."""
-    sizes = [{j: _size(x) for j, x in row.items()} for row in rows]
-    by_row, by_column = [0.0] * size, [0.0] * size
-    for _ in range(4):  # one after the other, until neither changes much
-        for i, row in enumerate(sizes):
-            by_row[i] = -max((x + by_column[j] for j, x in row.items()), default=0.0)
-        tops = [-inf] * size
-        for i, row in enumerate(sizes):
-            for j, x in row.items():
-                tops[j] = max(tops[j], x + by_row[i])
-        by_column = [0.0 if t == -inf else -t for t in tops]
-    return by_row
 
 
 def _take_out(rows: list[dict[int, acb]], columns: list[set[int]], i: int, j: int) -> acb:
@@ -489,32 +447,28 @@ def _take_out(rows: list[dict[int, acb]], columns: list[set[int]], i: int, j: in
     return pivot
 
 
-def _size(value: acb) -> float:
-    middle = abs(value).mid()
-    return float(middle.log().mid()) if middle > 0 else -700.0
+def _size(value: acb) -> int:
+    """Return about the binary logarithm; of zero less than any other."""
+    size = binary_exponent(value.mid())
+    return -1000 if size is None else size
 
 
-def _eliminate(rows: list[dict[int, acb]], order: Sequence[tuple[int, int]], size: int) -> tuple[acb, acb]:
-    """Return the determinant by pivots in this order, and what is left of the last entry."""
+def _eliminate(rows: list[dict[int, acb]], order: Sequence[tuple[int, int]]) -> tuple[acb, acb]:
+    """Return the determinant by pivots in this order, and what is left of the entry after the last.
+
+    Where there is none, the last pivot may vanish.
+    """
     columns = _columns(rows)
     determinant = acb(sign_of(order))
-    for i, j in order:
-        if rows[i].get(j, ZERO).contains(0):
+    size = len(order)
+    for number, (i, j) in enumerate(order, 1):
+        pivot = rows[i].get(j, ZERO)
+        if number == size == len(rows):
+            return determinant * pivot, ZERO
+        if pivot.contains(0):
             raise UndecidedError
         determinant = determinant * _take_out(rows, columns, i, j)
     return determinant, rows[size].get(size, ZERO)
-
-
-def _determinant(rows: list[dict[int, acb]], order: Sequence[tuple[int, int]]) -> acb:
-    """Return the determinant of a square matrix, whose last pivot may vanish."""
-    columns = _columns(rows)
-    determinant = acb(sign_of(order))
-    for i, j in order[:-1]:
-        if rows[i].get(j, ZERO).contains(0):
-            raise UndecidedError
-        determinant = determinant * _take_out(rows, columns, i, j)
-    i, j = order[-1]
-    return determinant * rows[i].get(j, ZERO)
 
 
 def _columns(rows: Sequence[Mapping[int, acb]]) -> list[set[int]]:

@@ -11,7 +11,6 @@ narrowed by values at points.
 
 from __future__ import annotations
 
-from contextlib import contextmanager
 from dataclasses import dataclass
 from math import ceil, exp, log, pi
 from typing import TYPE_CHECKING
@@ -20,9 +19,10 @@ from flint import acb, acb_poly, acb_series, arb, ctx
 
 from symflex.algebra.interval_newton import stays_inside
 from symflex.budget import spend
+from symflex.transfer.balls import series_terms
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Sequence
 
 GUARD_BITS = 64
 MOST_TIMES_BITS = 8
@@ -146,7 +146,7 @@ class DiscSeries:
             raise RootNearCircleError
         plain = [float((abs(c) / least).abs_upper()) for c in local]
         slope = float(abs(rate).abs_upper())
-        with _series_terms(SERIES_TERMS):
+        with series_terms(SERIES_TERMS):
             decay = acb_series([0, -rate]).exp()
             turned = [float((abs(c) / least).abs_upper()) for c in (acb_series(local) * decay).coeffs()[1:]]
         off = float((self.off / least).abs_upper())
@@ -213,17 +213,6 @@ class DiscSeries:
 def _end(unit: arb) -> acb:
     """Return where a path round half a circle, or a whole one, ends."""
     return acb(-1) if unit < 4 else acb(1)  # noqa: PLR2004  (between pi and 2 pi)
-
-
-@contextmanager
-def _series_terms(count: int) -> Iterator[None]:
-    """Compute power series to so many terms inside the block."""
-    before = ctx.cap
-    ctx.cap = count
-    try:
-        yield
-    finally:
-        ctx.cap = before
 
 
 def _polynomial_at(sizes: Sequence[float], x: float) -> float:

@@ -1,4 +1,4 @@
-"""Pivots of sparse symmetric matrices: how many are negative, in balls; which vanish, modulo a prime.
+"""Pivots of sparse symmetric matrices in balls: how many are negative.
 
     [ 2  1  0 ]    pivots 2, 5/2, and -2/5 from the last row: the matrix has one negative eigenvalue, as many
     [ 1  3  1 ]    as there are negative pivots (Sylvester)
@@ -11,72 +11,31 @@ unknowns it ties is gone, or goes together with one.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
-
-from flint import arb, nmod
+from typing import TYPE_CHECKING
 
 from symflex.roots.networks.members import UndecidedError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    import numpy as np
-    import numpy.typing as npt
+    from flint import arb
 
-Number = TypeVar("Number", arb, nmod, "npt.NDArray[np.float64]")
-Operand_contra = TypeVar("Operand_contra", arb, nmod, "npt.NDArray[np.float64]", contravariant=True)
-Rows = list[dict[int, Number]]
+Rows = list[dict[int, "arb"]]
 """A symmetric matrix, every entry off the diagonal in both of its rows."""
-Count = Any
-"""A number, or an array of numbers."""
 
 
-class PivotArithmetic(Protocol[Operand_contra]):
-    """What a kind of numbers knows of its signs."""
-
-    def is_usable(self, value: Operand_contra) -> bool:
-        """Tell whether it may be divided by, and its sign is decided."""
-        ...
-
-    def negative(self, value: Operand_contra) -> Count:
-        """Return 1 for a usable number below zero, else 0."""
-        ...
-
-    def negative_of_pair(self, determinant: Operand_contra, corner: Operand_contra | None) -> Count:
-        """Return how many eigenvalues of two rows and columns are negative; ``corner`` is of their diagonal.
-
-        UndecidedError where that cannot be told.
-        """
-        ...
-
-
-class Balls:
-    """Real balls."""
-
-    def is_usable(self, value: arb) -> bool:
-        """Tell whether the sign is decided."""
-        return bool(value > 0) or bool(value < 0)
-
-    def negative(self, value: arb) -> int:
-        """Return 1 for a number below zero, else 0."""
-        return int(value < 0)
-
-    def negative_of_pair(self, determinant: arb, corner: arb | None) -> int:
-        """Return how many eigenvalues of two rows and columns are negative."""
-        if determinant < 0:
-            return 1
-        if corner is None or not self.is_usable(corner):
-            raise UndecidedError
-        return 2 * self.negative(corner)
+def _is_usable(value: arb | None) -> bool:
+    """Tell whether the sign is decided."""
+    return value is not None and (bool(value > 0) or bool(value < 0))
 
 
 @dataclass(frozen=True, slots=True)
-class Pivots(Generic[Number]):
+class Pivots:
     """What is left of a matrix when all unknowns but the borders are gone."""
 
-    negative: Count  # how many pivots are; of arrays, each
-    determinant: Number | None  # their product; None where there is none
-    borders: tuple[Number | None, ...]  # what became of the borders' diagonals
+    negative: int  # how many pivots are
+    determinant: arb | None  # their product; None where there is none
+    borders: tuple[arb | None, ...]  # what became of the borders' diagonals
 
 
 def elimination_order(size: int, pairs: Iterable[tuple[int, int]]) -> tuple[int, ...]:
@@ -97,56 +56,35 @@ def elimination_order(size: int, pairs: Iterable[tuple[int, int]]) -> tuple[int,
         else:
             beside[i].add(j)
             beside[j].add(i)
-    buckets: dict[int, dict[int, None]] = {}
-    left = set(range(size))
-
-    def rank(i: int) -> int:
-        return len(beside[i]) if i in firm else size + len(beside[i])
-
-    ranks = [rank(i) for i in range(size)]
-    for i, r in enumerate(ranks):
-        buckets.setdefault(r, {})[i] = None
-    order = []
+    left, order = dict.fromkeys(range(size)), []
     while left:
-        lowest = min(r for r, members in buckets.items() if members)
-        i = next(iter(buckets[lowest]))
-        del buckets[lowest][i]
-        left.discard(i)
+        i = min(left, key=lambda i: len(beside[i]) + (0 if i in firm else size))
+        del left[i]
         order.append(i)
-        around = beside[i]
-        for j in around:
-            beside[j].discard(i)
-            beside[j] |= around - {j}
-            firm.add(j)
-        for j in around:
-            del buckets[ranks[j]][j]
-            ranks[j] = rank(j)
-            buckets.setdefault(ranks[j], {})[j] = None
+        for j in beside[i]:
+            beside[j] = (beside[j] | beside[i]) - {i, j}
+        firm |= beside[i]
     return tuple(order)
 
 
-def pivots(
-    rows: Rows[Number], order: Sequence[int], arithmetic: PivotArithmetic[Number], borders: Sequence[int] = ()
-) -> Pivots[Number]:
+def pivots(rows: Rows, order: Sequence[int], borders: Sequence[int] = ()) -> Pivots:
     """Eliminate the unknowns in about this order; ``rows`` is used up.
 
     UndecidedError where no usable pivot is left, as at an eigenvalue.
     """
-    negative: Count = 0
-    determinant: Number | None = None
+    negative = 0
+    determinant: arb | None = None
     waiting: list[int] = []
     pending = list(reversed(order))
     while pending or waiting:
         if not pending:
-            pair = _pair(rows, waiting, arithmetic)
+            pair = _pair(rows, waiting)
             if pair is None:
-                raise UndecidedError(len(waiting))
+                raise UndecidedError
             i, j, block = pair
             waiting.remove(i)
             waiting.remove(j)
-            a, b = rows[i].get(i), rows[j].get(j)
-            corner = a if a is not None and arithmetic.is_usable(a) else b
-            negative = negative + arithmetic.negative_of_pair(block, corner)
+            negative += _negative_of_pair(block, rows[i].get(i), rows[j].get(j))
             determinant = block if determinant is None else determinant * block
             _eliminate_pair(rows, i, j, block)
             pending, waiting = waiting, []
@@ -154,10 +92,10 @@ def pivots(
         i = pending.pop()
         row = rows[i]
         pivot = row.get(i)
-        if pivot is None or not arithmetic.is_usable(pivot):
+        if pivot is None or not _is_usable(pivot):
             waiting.append(i)
             continue
-        negative = negative + arithmetic.negative(pivot)
+        negative += bool(pivot < 0)
         determinant = pivot if determinant is None else determinant * pivot
         del row[i]
         for j in row:
@@ -178,9 +116,17 @@ def pivots(
     return Pivots(negative, determinant, tuple(rows[i].get(i) for i in borders))
 
 
-def _pair(
-    rows: Rows[Number], waiting: Sequence[int], arithmetic: PivotArithmetic[Number]
-) -> tuple[int, int, Number] | None:
+def _negative_of_pair(determinant: arb, *diagonal: arb | None) -> int:
+    """Return how many eigenvalues of two rows and columns are negative; UndecidedError if it is not told."""
+    if determinant < 0:
+        return 1
+    corner = next((x for x in diagonal if x is not None and _is_usable(x)), None)
+    if corner is None:
+        raise UndecidedError
+    return 2 * bool(corner < 0)
+
+
+def _pair(rows: Rows, waiting: Sequence[int]) -> tuple[int, int, arb] | None:
     """Return two unknowns that go together, with their determinant."""
     among = set(waiting)
     for i in waiting:
@@ -189,12 +135,12 @@ def _pair(
                 continue
             a, b = rows[i].get(i), rows[j].get(j)
             block = -(c * c) if a is None or b is None else a * b - c * c
-            if arithmetic.is_usable(block):
+            if _is_usable(block):
                 return i, j, block
     return None
 
 
-def _eliminate_pair(rows: Rows[Number], i: int, j: int, block: Number) -> None:
+def _eliminate_pair(rows: Rows, i: int, j: int, block: arb) -> None:
     """Eliminate two unknowns at once; ``block`` is the determinant of their rows and columns."""
     first, second = rows[i], rows[j]
     a, c, b = first.pop(i, None), first.pop(j), second.pop(j, None)
@@ -216,9 +162,9 @@ def _eliminate_pair(rows: Rows[Number], i: int, j: int, block: Number) -> None:
                 rows[k][m] = rows[m][k] = -change / block if known is None else known - change / block
 
 
-def _times(a: Number | None, b: Number | None) -> Number | None:
+def _times(a: arb | None, b: arb | None) -> arb | None:
     return None if a is None or b is None else a * b
 
 
-def _sum(a: Number | None, b: Number | None) -> Number | None:
+def _sum(a: arb | None, b: arb | None) -> arb | None:
     return b if a is None else a if b is None else a + b

@@ -12,14 +12,14 @@ from __future__ import annotations
 
 from collections import deque
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
-from flint import arb, arb_poly, ctx, fmpq
+from flint import arb, arb_poly, ctx
 
 from symflex.algebra import LAPLACE, Factored, terms_of
 from symflex.library.elements import LinearForm, put_in
 from symflex.model.signs import is_passive
-from symflex.transfer.balls import ball, later
+from symflex.transfer.balls import ball, later, summed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -91,23 +91,19 @@ class PlacedNumbers:
 
     def polynomial(self, value: Factored, known: Mapping[str, arb_poly]) -> arb_poly:
         """Return a value as a polynomial in s at the current precision; OtherNetworkError if it is none."""
+
+        def number(name: str) -> arb_poly:
+            if name not in known:
+                _refuse(f"{name} is not a polynomial in s")
+            return known[name]
+
         result = arb_poly([ball(value.unit)])
-        names = value.ring.names
         for factor, exponent in value.factors:
-            total = arb_poly([0])
-            for monomial, coefficient in terms_of(factor):
-                term = arb_poly([coefficient])
-                for i, power in monomial:
-                    if names[i] not in known:
-                        message = f"{names[i]} is not a polynomial in s"
-                        raise OtherNetworkError(message)
-                    term = term * known[names[i]] ** power
-                total = total + term
+            total = summed(terms_of(factor), value.ring.names, number, arb_poly([1]))
             if exponent > 0:
                 result = result * total**exponent
             elif total.degree() > 0:
-                message = "a law is not a polynomial in s"
-                raise OtherNetworkError(message)
+                _refuse("a law is not a polynomial in s")
             else:
                 result = result * arb_poly([total[0] ** exponent])
         return result
@@ -195,12 +191,12 @@ class _NetworkReading:
             for v, c in row.items():
                 if i <= position[v]:
                     entries[i, position[v]] = c * scale[i]
-        self._check(entries, members)
+        passive = is_passive(equations.model)
+        self._check(entries, members, is_passive=passive)
         symmetric = (
             self._is_symmetric([read.divisor]),
             self._is_symmetric(driven.values()) and self._is_symmetric(form.values()),
         )
-        passive = is_passive(equations.model)
         network = Network(
             self.numbers, len(order), entries, members, {}, {}, below, below, passive, symmetric
         )
@@ -354,7 +350,13 @@ class _NetworkReading:
                     pending.append(j)
         return [one if d is None else d for d in scale]
 
-    def _check(self, entries: Mapping[tuple[int, int], Factored], members: Sequence[NetworkMember]) -> None:
+    def _check(
+        self,
+        entries: Mapping[tuple[int, int], Factored],
+        members: Sequence[NetworkMember],
+        *,
+        is_passive: bool,
+    ) -> None:
         """Prove that the equations are real in lambda, and their inertia not negative."""
         with ctx.workprec(MASS_BITS):
             known = self._known
@@ -364,8 +366,7 @@ class _NetworkReading:
                 if not slope.is_zero():
                     mass.setdefault(i, {})[j] = -slope
                     mass.setdefault(j, {})[i] = -slope
-            exact = {place: x for place, v in entries.items() if (x := _rational_slope(v)) is not None}
-            if not _is_nonnegative(mass, exact):
+            if not is_passive and not _is_positive(mass):
                 _refuse("an inertia is negative")
             for member in {m.key: m for m in members}.values():
                 self._check_member(member, known)
@@ -402,42 +403,19 @@ def _refuse(message: str) -> NoReturn:
     raise OtherNetworkError(message)
 
 
-def _rational_slope(value: Factored) -> fmpq | None:
-    """Return the coefficient of s^2 where all of a value's numbers are rational."""
-    s = value.ring.index[LAPLACE]
-    if any(i != s for f, _ in value.factors for m, _ in terms_of(f) for i, _ in m):
-        return None
-    total = {0: fmpq(value.unit.numerator, value.unit.denominator)}
-    for factor, exponent in value.factors:
-        if exponent < 0:
-            return None
-        for _ in range(exponent):
-            product: dict[int, fmpq] = {}
-            for power, number in total.items():
-                for monomial, coefficient in terms_of(factor):
-                    key = power + sum(e for _, e in monomial)
-                    product[key] = product.get(key, fmpq(0)) + number * coefficient
-            total = product
-    return total.get(2, fmpq(0))
-
-
-def _is_nonnegative(mass: Mapping[int, Mapping[int, arb]], exact: Mapping[tuple[int, int], fmpq]) -> bool:
+def _is_positive(mass: Mapping[int, Mapping[int, arb]]) -> bool:
     """Tell whether it is proved that a symmetric matrix has no negative eigenvalue, by its pivots."""
-    rational = all((min(i, j), max(i, j)) in exact for i, row in mass.items() for j in row)
-    rows: dict[int, dict[int, Any]] = {
-        i: {j: exact[min(i, j), max(i, j)] if rational else x for j, x in row.items()}
-        for i, row in mass.items()
-    }
+    rows = {i: dict(row) for i, row in mass.items()}
     for i in sorted(rows, key=lambda i: len(rows[i])):
         row = rows.pop(i)
-        pivot = row.pop(i, fmpq(0))
+        pivot = row.pop(i, arb(0))
         for j in row:
             rows[j].pop(i)
-        if pivot == 0 and all(x == 0 for x in row.values()):
+        if not row and pivot == 0:
             continue
         if not pivot > 0:
             return False
         for j, x in row.items():
             for k, y in row.items():
-                rows[j][k] = rows[j].get(k, fmpq(0)) - x * y / pivot
+                rows[j][k] = rows[j].get(k, arb(0)) - x * y / pivot
     return True

@@ -7,7 +7,8 @@ receptance at the input are the eigenvalues of the network held there.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import partial
 from math import pi
 from typing import TYPE_CHECKING
 
@@ -15,30 +16,28 @@ from flint import arb, ctx
 
 from symflex.errors import BudgetError
 from symflex.model.signs import is_passive
-from symflex.roots.networks.anywhere import CRAMER, mirrored, roots_in_disc
-from symflex.roots.networks.at_rest import nullity_at_rest
+from symflex.roots.networks.anywhere import CRAMER, roots_in_disc
+from symflex.roots.networks.at_rest import order_at_zero
 from symflex.roots.networks.counting import Counter
 from symflex.roots.networks.cramer import CramerEquations, EssentialSingularityError, is_zero
-from symflex.roots.networks.estimates import estimates
 from symflex.roots.networks.members import UndecidedError
 from symflex.roots.networks.network import OtherNetworkError, network_of
-from symflex.roots.networks.repeated import repeated_parts
 from symflex.roots.networks.search import Eigenvalue, EigenvalueSearch
-from symflex.roots.networks.single_path import BEYOND_ALL, beside_path
 from symflex.roots.pole_zero_map import (
     Certificate,
     HiddenRoot,
     PoleZeroMap,
     StabilityVerdict,
+    chosen,
     judge,
     right_beyond,
 )
 from symflex.roots.polynomial_roots import in_order
-from symflex.roots.region import Band, Mode, Modes, Position, Rectangle, Region
-from symflex.roots.root import Root
+from symflex.roots.region import Band, Mode, Modes, Rectangle, Region
+from symflex.roots.root import Root, count_modes, root_at_zero
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from symflex.budget import Budget
     from symflex.equations import Equations
@@ -60,33 +59,6 @@ ZERO = "the transfer function is zero: its modes, which are all hidden, were not
 TOO_FEW = "fewer modes than asked for lie where could be searched"
 UNTOLD = "some roots could not be told apart"
 UNDECIDED_AT_REST = "how often 0 is a root could not be told"
-SHRINKING = 2.0**-30
-ROUNDS_AT_REST = 4
-
-
-Held = tuple[Counter, int | None]
-"""What counts a network's eigenvalues, and which of its borders is held."""
-
-
-@dataclass(frozen=True, slots=True)
-class _Spectrum:
-    """Eigenvalues of a network, or of the network with a motion held."""
-
-    at_zero: int  # how often 0 is one
-    is_exact: bool  # that is proved; else so many lie about 0
-    near_zero: arb  # lambdas of those about 0
-    eigenvalues: tuple[Eigenvalue, ...]
-
-    @property
-    def reached(self) -> arb:
-        """Up to where all eigenvalues are known."""
-        return self.eigenvalues[-1].high.value if self.eigenvalues else arb(0)
-
-    @property
-    def count(self) -> int:
-        """How many of them are known."""
-        last = self.eigenvalues[-1:]
-        return sum(each.number + each.multiplicity - 1 for each in last)
 
 
 def locate_in_network(
@@ -104,36 +76,26 @@ def locate_in_network(
     ``equations`` have numbers in place of all parameters. Of a function that is zero, nothing is searched.
     """
     if is_zero(equations, *pair):
-        nothing = Certificate(CRAMER, False, 0, 0, ZERO)
-        unknown = judge([], ZERO)
-        return PoleZeroMap(
-            name,
-            region,
-            (),
-            (),
-            (),
-            nothing,
-            digits,
-            is_default_region=is_default,
-            is_infinite=True,
-            verdict=unknown,
-        )
+        return _with_certificate(_nothing(ZERO, ""), name, region, digits, is_default=is_default)
     network: Network | None
     try:
         network = network_of(equations, *pair)
     except OtherNetworkError:
         network = None
+    cramer = CramerEquations.of(equations, *pair)
+    in_disc = partial(
+        _in_disc,
+        cramer,
+        region,
+        digits,
+        budget,
+        symmetric=(False, False) if network is None else network.symmetric,
+        proof=PASSIVE if is_passive(equations.model) else "",
+    )
     if network is None or not (network.driven and network.read):
-        found = _anywhere(
-            equations,
-            pair,
-            region,
-            digits,
-            budget,
-            symmetric=(False, False) if network is None else network.symmetric,
-        )
+        found = in_disc()
     else:
-        found = _without_losses(network, equations, pair, region, digits, budget)
+        found = _without_losses(_NetworkSearch(network, cramer, region, digits, budget), in_disc)
     return _with_certificate(found, name, region, digits, is_default=is_default)
 
 
@@ -192,61 +154,34 @@ class LocatedRoots:
     code: str | None = None  # of what was exceeded
 
 
-def _without_losses(
-    network: Network, equations: Equations, pair: tuple[str, str], region: Region, digits: int, budget: Budget
-) -> LocatedRoots:
-    """Count the poles, and the zeros where the output is what the input drives; else find these in a disc."""
-    search = _NetworkSearch(network, region, digits, budget)
+def _without_losses(search: _NetworkSearch, in_disc: Callable[[], LocatedRoots]) -> LocatedRoots:
+    """Count the poles, and the zeros where the output is what the input drives.
+
+    Else all are found in a disc, and where that comes to nothing the poles are counted nevertheless.
+    """
+    found = None if search.network.is_colocated else in_disc()
+    if found is not None and not found.reasons:
+        return found
     reasons: list[str] = []
     code: str | None = None
-    engine = WITTRICK_WILLIAMS
-    found: LocatedRoots | None = None
     try:
         search.find()
-        if search.zeros_of is None:
-            found = _anywhere(equations, pair, region, digits, budget, symmetric=network.symmetric)
-            engine = f"{WITTRICK_WILLIAMS}, {CRAMER}"
-            reasons += found.reasons
     except BudgetError as error:
         reasons.append("; ".join(d.message for d in error.diagnostics))
         code = error.diagnostics[0].code
     except UndecidedError:
         reasons.append(NOT_COUNTED)
     poles, zeros, hidden = search.roots()
-    if found is not None and not found.reasons:
-        # What is at 0 is known from there, too, and how much of it is hidden.
-        zeros = found.zeros
-        poles = (*(r for r in found.poles if _is_at_zero(r)), *(r for r in poles if not _is_at_zero(r)))
-        hidden = (
-            *(h for h in found.hidden if _is_at_zero(h.root)),
-            *(h for h in hidden if not _is_at_zero(h.root)),
-        )
-    elif found is not None:
-        zeros = (*(r for r in zeros if not found.zeros), *found.zeros)
+    engine = WITTRICK_WILLIAMS
+    if found is not None:
+        engine, zeros = f"{WITTRICK_WILLIAMS}, {CRAMER}", found.zeros or zeros
+        reasons += found.reasons
     known = [*poles, *(h.root for h in hidden if not h.is_proved)]
-    proof = PASSIVE if network.passive else ""
+    proof = PASSIVE if search.network.passive else ""
     unseen = [h.root for h in hidden if h.is_proved]
     verdict = judge(known, NONE_ON_AXIS if proof else NOT_PASSIVE, proof, unseen)
     reasons += search.reasons
     return LocatedRoots(engine, poles, zeros, hidden, verdict, tuple(reasons), (), code)
-
-
-def _is_at_zero(root: Root) -> bool:
-    return bool(root.re.contains(0) and root.im.contains(0))
-
-
-def _anywhere(
-    equations: Equations,
-    pair: tuple[str, str],
-    region: Region,
-    digits: int,
-    budget: Budget,
-    *,
-    symmetric: tuple[bool, bool],
-) -> LocatedRoots:
-    proof = PASSIVE if is_passive(equations.model) else ""
-    cramer = CramerEquations.of(equations, *pair)
-    return _in_disc(cramer, region, digits, budget, symmetric=symmetric, proof=proof)
 
 
 def _in_disc(
@@ -268,13 +203,7 @@ def _in_disc(
         return _nothing(ACCUMULATE, proof)
     except UndecidedError:
         return _nothing(NOT_COUNTED, proof)
-    poles, zeros = (_lowest(roots, region) for roots in (found.poles, found.zeros))
-    shared = found.shared
-    if isinstance(region, Modes):
-        highest = max((root.natural_frequency() for root in poles), default=arb(0))
-        shared = tuple(r for r in shared if r.is_zero or not r.natural_frequency() > highest)
-    elif not isinstance(region, Mode):
-        shared = _chosen(shared, region)
+    poles, zeros = (chosen(roots, region) for roots in (found.poles, found.zeros))
     reasons = []
     if isinstance(region, Modes | Mode):
         wanted = region.count if isinstance(region, Modes) else region.number
@@ -284,9 +213,19 @@ def _in_disc(
     beyond = REACHED.format(found.radius / (2 * pi))
     at_rest = [r for r in found.shared if r.is_zero]
     verdict = judge(known, NONE_ON_AXIS if proof else beyond, proof, at_rest)
-    hidden = tuple(HiddenRoot(r, "cancelled" if r.is_zero else "coincident") for r in shared)
+    hidden = _hidden(found.shared, poles, region)
     unstable = right_beyond(found.poles, poles)
     return LocatedRoots(CRAMER, poles, zeros, hidden, verdict, tuple(reasons), unstable)
+
+
+def _hidden(shared: Sequence[Root], poles: Sequence[Root], region: Region) -> tuple[HiddenRoot, ...]:
+    """Return the hidden modes that are shown: of a number of modes those up to the highest pole shown."""
+    if isinstance(region, Modes):
+        highest = max((root.natural_frequency() for root in poles), default=arb(0))
+        shared = in_order([r for r in shared if r.is_zero or not r.natural_frequency() > highest])
+    elif not isinstance(region, Mode):
+        shared = chosen(shared, region)
+    return tuple(HiddenRoot(r, "cancelled" if r.is_zero else "coincident") for r in shared)
 
 
 def _nothing(reason: str, proof: str, code: str | None = None) -> LocatedRoots:
@@ -295,53 +234,31 @@ def _nothing(reason: str, proof: str, code: str | None = None) -> LocatedRoots:
     return LocatedRoots(CRAMER, (), (), (), verdict, (reason,), (), code)
 
 
-def _lowest(roots: Sequence[Root], region: Region) -> tuple[Root, ...]:
-    """Return the roots of a disc that the region asks for; of modes, those that mirror each other are one."""
-    if not isinstance(region, Modes | Mode):
-        return _chosen(roots, region)
-    taken = [root for root in roots if root.is_zero] if isinstance(region, Modes) else []
-    reached = 0
-    for group in mirrored(in_order(roots)):
-        before, reached = reached, reached + group[0].multiplicity
-        if isinstance(region, Modes) and before < region.count:
-            taken += group
-        elif isinstance(region, Mode) and before < region.number <= reached:
-            taken += group
-    return tuple(taken)
-
-
 class _NetworkSearch:
-    """Eigenvalues of a network, and of what is held at input and output."""
+    """Eigenvalues of a network, and of what is held at input and output: borders 0 and 1, poles' is None."""
 
-    def __init__(self, network: Network, region: Region, digits: int, budget: Budget) -> None:
-        self.network, self.region, self.digits, self.budget = network, region, digits, budget
+    def __init__(
+        self, network: Network, cramer: CramerEquations, region: Region, digits: int, budget: Budget
+    ) -> None:
+        self.network, self.cramer = network, cramer
+        self.region, self.digits, self.budget = region, digits, budget
         borders = (network.driven,) if network.is_colocated else (network.driven, network.read)
         self.counter = Counter(network, borders)
-        self.poles_of: Held = self.counter, None
-        # ``None`` where zeros are no eigenvalues of anything.
-        self.zeros_of: Held | None = (self.counter, 0) if network.is_colocated else None
-        if not network.is_colocated and (beside := beside_path(network)) is not None:
-            self.zeros_of = Counter(beside, ()), None
-        self.are_all_zeros_known = False
         self.reasons: list[str] = []
         self.visible: list[Root] = []
         self.held: list[Root] = []
         self.shared: list[Root] = []
         self.unseen: dict[int, int] = {}  # per number of an eigenvalue
-        # Per motion that is held: parts that make eigenvalues coincide, and how many.
-        self.repeated: dict[Held, tuple[tuple[Counter, int], ...]] = {}
-        self.searched: dict[Held, tuple[EigenvalueSearch, _Spectrum]] = {}
+        self.searched: dict[int | None, EigenvalueSearch] = {}  # per border
 
     def find(self) -> None:
-        """Find the roots the region asks for, and perhaps more."""
+        """Find the roots the region asks for, and perhaps more; zeros where they are eigenvalues."""
         if isinstance(self.region, Modes):
             wanted = self.region.count
             for _ in range(MATCHING_ROUNDS):
                 self._find(1, wanted, None)
-                sides = [self.visible]
-                if self.zeros_of is not None and not self.are_all_zeros_known:
-                    sides.append(self.held)
-                lacking = max(self.region.count - _modes(roots) for roots in sides)
+                sides = [self.visible, self.held] if self.network.is_colocated else [self.visible]
+                lacking = max(self.region.count - count_modes(roots) for roots in sides)
                 if lacking <= 0:
                     return
                 wanted += lacking
@@ -349,7 +266,7 @@ class _NetworkSearch:
         elif isinstance(self.region, Mode):
             self._find(self.region.number, self.region.number, None)
         else:
-            self._find(1, 0, self._limits())
+            self._find(1, None, self._limits())
 
     def _limits(self) -> tuple[float, float]:
         """Return between which omega [rad/s] the region reaches along the imaginary axis."""
@@ -363,117 +280,65 @@ class _NetworkSearch:
         message = f"no limits of {type(self.region).__name__}"
         raise TypeError(message)
 
-    def _find(self, first: int, last: int, limits: tuple[float, float] | None) -> None:
-        budget = self.budget
-        budget.progress.report(0.0, "counting poles")
+    def _find(self, first: int, last: int | None, limits: tuple[float, float] | None) -> None:
+        self.budget.progress.report(0.0, "counting poles")
         self.visible, self.held, self.shared = [], [], []
-        poles = self._spectrum(self.poles_of, first, last, limits)
-        zeros: _Spectrum | None = None
-        if self.zeros_of is not None:
-            budget.progress.report(0.5, "counting zeros")
-            zeros = self._spectrum(self.zeros_of, first, last, limits)
-            self.are_all_zeros_known = limits is None and zeros.count < last
-        for each in poles.eigenvalues:
+        poles = self._spectrum(None, first, last, limits)
+        for each in poles.ordered():
             unseen = self._unseen(each)
-            is_one = self._is_one(each, self.poles_of)
-            self.shared += _pair(each, unseen, is_one=is_one)
-            self.visible += _pair(each, each.multiplicity - unseen, is_one=is_one)
-        if zeros is not None:
-            self.held = [root for each in zeros.eigenvalues for root in self._apart(each)]
+            self.shared += _pair(each, unseen)
+            self.visible += _pair(each, each.multiplicity - unseen)
+        zeros: EigenvalueSearch | None = None
+        if self.network.is_colocated:
+            self.budget.progress.report(0.5, "counting zeros")
+            zeros = self._spectrum(0, first, last, limits)
+            self.held = [root for each in zeros.ordered() for root in self._apart(each)]
         self._at_zero(poles, zeros)
 
-    def _is_one(self, each: Eigenvalue, held: Held) -> bool:
-        """Tell whether the eigenvalues of an interval are proved to be one, by equal parts of the network."""
-        if each.multiplicity == 1:
-            return True
-        if held not in self.repeated:
-            counter, border = held
-            unknowns = () if border is None else counter.borders[border]
-            parts = () if len(unknowns) > 1 else repeated_parts(counter.network, unknowns)
-            self.repeated[held] = tuple((Counter(p.part, ()), p.multiplicity) for p in parts)
-        return any(
-            multiplicity == each.multiplicity and self._between(counter, each) == 1
-            for counter, multiplicity in self.repeated[held]
-        )
-
-    def _between(self, counter: Counter, each: Eigenvalue) -> int:
-        """Return how many eigenvalues of a part lie in an interval."""
-        search = EigenvalueSearch(counter, None, self.digits, self.budget)
-        high, low = (counter.sample(x.value, search.bits) for x in (each.high, each.low))
-        return high.below - low.below
-
-    def _at_zero(self, poles: _Spectrum, zeros: _Spectrum | None) -> None:
+    def _at_zero(self, poles: EigenvalueSearch, zeros: EigenvalueSearch | None) -> None:
         network = self.network
         below = 2 * poles.at_zero + network.below
         # Where the output is elsewhere, one of the motions at rest is seen, or none.
-        above = network.above + (2 * zeros.at_zero if zeros is not None else 2 * max(0, poles.at_zero - 1))
-        exact = poles.is_exact and (zeros is None or zeros.is_exact)
-        if not exact:
+        above = network.above + 2 * (zeros.at_zero if zeros is not None else max(0, poles.at_zero - 1))
+        if not all(side.is_exact for side in (poles, zeros) if side is not None):
             self.reasons.append(UNDECIDED_AT_REST)
         hidden = min(below, above)
         self.visible += _zero(below - hidden, poles)
         self.shared += _zero(hidden, poles)
-        self.held += _zero(above - hidden, poles if zeros is None else zeros)
+        self.held += _zero(above - hidden, zeros or poles)
 
-    def _spectrum(self, held: Held, first: int, last: int, limits: tuple[float, float] | None) -> _Spectrum:
-        """Return eigenvalues by number, or between two frequencies."""
-        known_before = self.searched.get(held)
-        if known_before is not None:
-            return self._further(held, *known_before, last)
-        counter, border = held
-        search = EigenvalueSearch(counter, border, self.digits, self.budget)
-        low, high = (None, None) if limits is None else (limits[0] ** 2, limits[1] ** 2)
-        guesses = estimates(counter.level(search.bits), last, low, high, border)
-        lowest = guesses[0] if guesses else (high or 1.0)
-        count, exact = 0, True
-        above = None
-        for _ in range(ROUNDS_AT_REST):
-            count, above = search.start(lowest)
-            if not count:
-                break
-            known = nullity_at_rest(counter, border)
-            exact = known == count
-            if exact or known is None:
-                break
-            lowest *= SHRINKING
-        if above is None:
-            raise UndecidedError
-        last = self._at_most(search, last)
-        start = above if low is None or low <= float(above.value) else search.at(arb(low), arb(low))
-        top = search.reach(last, None if high is None else arb(high), guesses, start)
-        numbers = (first, last) if limits is None else (1, None)
-        search.isolate(start, top, guesses, *numbers)
-        spectrum = _Spectrum(count, exact, above.value.union(-above.value), search.ordered())
-        self.searched[held] = search, spectrum
-        return spectrum
+    def _spectrum(
+        self, border: int | None, first: int, last: int | None, limits: tuple[float, float] | None
+    ) -> EigenvalueSearch:
+        """Return a search that has found eigenvalues by number, or between two omega [rad/s]."""
+        search = self.searched.get(border)
+        if search is None:
+            search = EigenvalueSearch(self.counter, border, self.digits, self.budget)
+            self.searched[border] = search
+            start = search.start(partial(self._nullity, border))
+        else:
+            start = search.ordered()[-1].high
+        if limits is None:
+            search.isolate(start, search.reach(last or first, start), first, last)
+            return search
+        low, high = (arb(x * x) for x in limits)
+        start = start if low <= start.value else search.at(low, low)
+        search.isolate(start, search.at(high, high), 1, None)
+        return search
 
-    def _at_most(self, search: EigenvalueSearch, last: int) -> int:
-        """Return the number of an eigenvalue, or of the last: without members there are finitely many."""
-        if search.counter.network.members:
-            return last
-        return min(last, search.counter.sample(arb(BEYOND_ALL), search.bits).below - (search.base or 0))
-
-    def _further(self, held: Held, search: EigenvalueSearch, before: _Spectrum, last: int) -> _Spectrum:
-        """Return a spectrum with eigenvalues beyond those found before."""
-        last = self._at_most(search, last)
-        if before.count >= last:
-            return before
-        counter, border = held
-        reached = before.eigenvalues[-1]
-        guesses = estimates(counter.level(search.bits), last, None, None, border)
-        top = search.reach(last, None, guesses, reached.high)
-        beyond = [g for g in guesses if g > float(reached.high.value)]
-        search.isolate(reached.high, top, beyond, before.count + 1, last)
-        spectrum = replace(before, eigenvalues=search.ordered())
-        self.searched[held] = search, spectrum
-        return spectrum
+    def _nullity(self, border: int | None, about: int) -> int | None:
+        """Return how often 0 is an eigenvalue, if it is about so often; ``None`` where that is not told."""
+        powers = self.network.below if border is None else self.network.above
+        size = len(self.cramer.entries) - (border is None)
+        order = order_at_zero(self.cramer, size, 2 * about + powers)
+        return None if order is None or (order - powers) % 2 else (order - powers) // 2
 
     def _unseen(self, each: Eigenvalue) -> int:
         """Return how many of the modes of an eigenvalue input or output do not see."""
         if each.number not in self.unseen:
             unseen = self._most_held(each)
             self.unseen[each.number] = min(
-                each.multiplicity, unseen and self._most_held(self._closer(each, self.poles_of))
+                each.multiplicity, unseen and self._most_held(self._closer(each, None))
             )
         return self.unseen[each.number]
 
@@ -485,80 +350,50 @@ class _NetworkSearch:
         search = EigenvalueSearch(self.counter, border, self.digits, self.budget)
         return search.count(each.high) - search.count(each.low)
 
-    def _closer(self, each: Eigenvalue, held: Held) -> Eigenvalue:
+    def _closer(self, each: Eigenvalue, border: int | None) -> Eigenvalue:
         """Return an eigenvalue to twice the digits."""
-        search = EigenvalueSearch(*held, 2 * self.digits, self.budget)
+        search = EigenvalueSearch(self.counter, border, 2 * self.digits, self.budget)
         search.base = search.count(each.low) - each.number + 1
-        search.isolate(each.low, each.high, (), each.number, None)
+        search.isolate(each.low, each.high, each.number, None)
         return search.found[min(search.found)]
 
     def _apart(self, zero: Eigenvalue) -> list[Root]:
         """Return a zero but for what is hidden in it: poles at the same place that are not seen."""
-        if self.zeros_of is None:
-            return []
         within = self._poles_within(zero)
         if within is not None:
-            within = self._poles_within(self._closer(zero, self.zeros_of))
+            within = self._poles_within(self._closer(zero, 0))
         unseen = 0 if within is None else min(within.multiplicity, self._most_held(within))
-        return _pair(zero, zero.multiplicity - unseen, is_one=self._is_one(zero, self.zeros_of))
+        return _pair(zero, zero.multiplicity - unseen)
 
     def _poles_within(self, zero: Eigenvalue) -> Eigenvalue | None:
         """Return the poles in the interval of a zero as one; ``None`` where there are none."""
-        search = EigenvalueSearch(*self.poles_of, self.digits, self.budget)
-        low, high = zero.low, zero.high
-        if not self.network.is_colocated:  # these are samples of another network
-            low, high = (search.at(x.value, arb(0)) for x in (low, high))
-        found = search.count(high) - search.count(low)
-        return Eigenvalue(low, high, 0, found) if found else None
+        search = EigenvalueSearch(self.counter, None, self.digits, self.budget)
+        found = search.count(zero.high) - search.count(zero.low)
+        return Eigenvalue(zero.low, zero.high, 0, found) if found else None
 
     def roots(self) -> tuple[tuple[Root, ...], tuple[Root, ...], tuple[HiddenRoot, ...]]:
         """Return poles, zeros and hidden modes in the region."""
-        poles, zeros = (_chosen(roots, self.region) for roots in (self.visible, self.held))
-        within = self.region
-        if isinstance(within, Modes):
-            highest = max((root.natural_frequency() for root in poles), default=arb(0))
-            shared = [r for r in in_order(self.shared) if r.is_zero or not r.natural_frequency() > highest]
-        else:
-            shared = list(_chosen(self.shared, within))
-        hidden = tuple(HiddenRoot(r, "cancelled" if r.is_zero else "coincident") for r in shared)
-        return poles, zeros, hidden
+        poles, zeros = (self._chosen(roots) for roots in (self.visible, self.held))
+        return poles, zeros, _hidden(self.shared, poles, self.region)
+
+    def _chosen(self, roots: Sequence[Root]) -> tuple[Root, ...]:
+        if isinstance(self.region, Mode):  # no other was sought
+            return tuple(root for root in in_order(roots) if not root.is_zero)
+        return chosen(roots, self.region)
 
 
-def _chosen(roots: Sequence[Root], region: Region) -> tuple[Root, ...]:
-    ordered = in_order(roots)
-    if isinstance(region, Mode):
-        return tuple(root for root in ordered if not root.is_zero)
-    positions = region.classify(ordered)
-    return tuple(
-        r if position is Position.INSIDE else replace(r, on_boundary=True)
-        for r, position in zip(ordered, positions, strict=True)
-        if position is not Position.OUTSIDE
-    )
-
-
-def _pair(each: Eigenvalue, multiplicity: int, *, is_one: bool) -> list[Root]:
-    """Return s and its conjugate of so many eigenvalues, which are one where that is proved."""
+def _pair(each: Eigenvalue, multiplicity: int) -> list[Root]:
+    """Return s and its conjugate of so many eigenvalues."""
     if multiplicity <= 0:
         return []
     with ctx.workprec(max(each.low.value.bits(), each.high.value.bits()) + 32):
         omega = each.low.value.sqrt().union(each.high.value.sqrt())
-    is_one = is_one or multiplicity == 1
+    is_one = multiplicity == 1
     return [
         Root(arb(0), im, multiplicity, on_imaginary_axis=True, is_real=False, certified=is_one)
         for im in (omega, -omega)
     ]
 
 
-def _modes(roots: Sequence[Root]) -> int:
-    """Return how many modes there are among roots on the imaginary axis."""
-    return sum(root.multiplicity for root in roots if root.im > 0)
-
-
-def _zero(order: int, spectrum: _Spectrum) -> list[Root]:
-    if order <= 0:
-        return []
-    if spectrum.is_exact:
-        return [Root(arb(0), arb(0), order, on_imaginary_axis=True, is_real=True)]
-    size = spectrum.near_zero.abs_upper().sqrt()
-    box = arb(0, size.upper())
-    return [Root(box, box, order, on_imaginary_axis=False, is_real=False, certified=False)]
+def _zero(order: int, search: EigenvalueSearch) -> list[Root]:
+    return root_at_zero(order, 0 if search.is_exact else search.near_zero.sqrt().upper())

@@ -1,16 +1,15 @@
 """Eigenvalues of a network without losses, isolated by counts and enclosed to any number of digits.
 
-    guesses in doubles     59.402, 71.609, ... rad/s
-    counts beside each     0 below 59.4024127, 1 below 59.4024129: one eigenvalue between
-    secants                of the determinant, or of the receptance where a motion is held
-    counts again           at both ends of an interval as narrow as the digits asked for
+    counts        0 below 50 rad/s, 2 below 100, 1 below 70.7: one eigenvalue on either side
+    halving       until an interval with one eigenvalue is a thousandth of it
+    secants       of the determinant, or of the receptance where a motion is held
+    counts again  at both ends of an interval as narrow as the digits asked for
 
-What is proved is the counts alone: whatever guesses are, no eigenvalue is missed and none found twice.
+What is proved is the counts alone: whatever secants do, no eigenvalue is missed and none found twice.
 """
 
 from __future__ import annotations
 
-from bisect import insort
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -20,21 +19,26 @@ from symflex.roots.networks.members import UndecidedError
 from symflex.roots.precision import bits_for_digits
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable
 
     from symflex.budget import Budget
     from symflex.roots.networks.counting import Counter, NetworkSample
 
-BESIDE = 2.0**-28
-"""How far to both sides of an estimate its eigenvalue is expected, relative to it."""
 GUARD_BITS = 64
 """What the elimination of a network loses mostly; where it loses more, more are taken."""
 PATIENCE = 3
 """Secants that may leave most of an interval before it is halved."""
+NEAR = 1e-3
+"""Relative width of an interval in which secants begin."""
 NUDGE = 2.0**-20
 """Parts of an interval by which a point moves that is an eigenvalue itself, of the network or of a member."""
-LOWEST = 2.0**-14
-"""Fraction of the lowest estimate [of lambda] below which no eigenvalue but 0 is expected."""
+LOWEST = 2.0**-40
+"""Lambda [rad^2/s^2] below which no eigenvalue but 0 is expected, 1e-6 rad/s."""
+SHRINKING = 2.0**-30
+"""Of that where one lies below."""
+ROUNDS_AT_REST = 3
+RISE = 2**10
+"""Steps up in lambda until there are enough eigenvalues below."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,9 +63,11 @@ class EigenvalueSearch:
     border: int | None  # which motion is held
     digits: int
     budget: Budget
-    samples: list[tuple[float, int, NetworkSample]] = field(default_factory=list)  # by lambda
     found: dict[int, Eigenvalue] = field(default_factory=dict)
-    base: int | None = None  # count just above 0
+    base: int = 0  # count just above 0
+    at_zero: int = 0  # how many eigenvalues lie between the samples about 0
+    is_exact: bool = True  # it is proved that these are 0
+    near_zero: arb = field(default_factory=arb)  # lambda below which these lie
 
     def count(self, sample: NetworkSample) -> int:
         """Return the number of eigenvalues below, but for a constant; UndecidedError at one.
@@ -87,10 +93,10 @@ class EigenvalueSearch:
         """The precision of samples."""
         return bits_for_digits(self.digits) + GUARD_BITS
 
-    def at(self, value: arb, room: arb, bits: int | None = None) -> NetworkSample:
+    def at(self, value: arb, room: arb) -> NetworkSample:
         """Return the network at a lambda, or within some room of it where that is an eigenvalue."""
         self.budget.spend()
-        bits = bits or self.bits
+        bits = self.bits
         for _ in range(3):
             try:
                 sample = self.counter.sample(value, bits)
@@ -99,71 +105,58 @@ class EigenvalueSearch:
                 with ctx.workprec(2 * bits):
                     value = (value + room * NUDGE).mid()
                     bits *= 2
-                    continue
-            insort(self.samples, (float(value), len(self.samples), sample))
-            return sample
+            else:
+                return sample
         raise UndecidedError
 
-    def reach(
-        self, count: int, highest: arb | None, guesses: Sequence[float], low: NetworkSample
-    ) -> NetworkSample:
-        """Return a sample above so many eigenvalues, or at the highest lambda asked for."""
-        if highest is not None:
-            return self.at(highest, highest)
-        with ctx.workprec(self.bits):
-            value = arb(guesses[-1] * (1 + 2 * BESIDE)) if guesses else 4 * low.value
-            sample = self.at(value, value)
-            while self._number(sample) < count:
-                value = 4 * value
-                sample = self.at(value.mid(), value)
+    def reach(self, count: int, low: NetworkSample) -> NetworkSample:
+        """Return a sample above so many eigenvalues."""
+        sample = low
+        while self._number(sample) < count:
+            with ctx.workprec(self.bits):
+                value = (RISE * sample.value).mid()
+                sample = self.at(value, value)
         return sample
 
-    def start(self, lowest: float) -> tuple[int, NetworkSample]:
-        """Count the eigenvalues at 0 and about it; return how many, and a sample just above."""
-        with ctx.workprec(self.bits):
-            small = arb(lowest) * LOWEST
-            above, below = self.at(small, small), self.at(-small, small)
-        self.base = self.count(above)
-        return self.base - self.count(below), above
+    def start(self, known: Callable[[int], int | None]) -> NetworkSample:
+        """Count the eigenvalues at 0 and about it; return a sample just above.
 
-    def isolate(
-        self, low: NetworkSample, high: NetworkSample, guesses: Sequence[float], first: int, last: int | None
-    ) -> None:
+        ``known`` returns how many are 0, given how many are about it; ``None`` where that is not told.
+        """
+        small = arb(LOWEST)
+        for _ in range(ROUNDS_AT_REST):
+            above, below = self.at(small, small), self.at(-small, small)
+            self.base, self.near_zero = self.count(above), above.value
+            self.at_zero = self.base - self.count(below)
+            exact = known(self.at_zero) if self.at_zero else 0
+            self.is_exact = exact == self.at_zero
+            if self.is_exact or exact is None:
+                break
+            small = (small * SHRINKING).mid()
+        return above
+
+    def isolate(self, low: NetworkSample, high: NetworkSample, first: int, last: int | None) -> None:
         """Isolate and enclose the eigenvalues between two samples that have numbers from first to last."""
         pending = [(low, high)]
-        points = sorted(guesses)
         while pending:
             a, b = pending.pop()
             before, behind = self._number(a), self._number(b)
             if before == behind or behind < first or (last is not None and before >= last):
                 continue
-            inside = [
-                g for g in points if float(a.value) < g * (1 - BESIDE) and g * (1 + BESIDE) < float(b.value)
-            ]
-            if behind - before == 1 and not inside:
+            if behind - before == 1 and b.value - a.value < NEAR * b.value:
                 self._enclose(a, b)
-                continue
-            if inside:
-                guess = inside[len(inside) // 2]
-                points.remove(guess)
-                with ctx.workprec(self.bits):
-                    room = arb(guess) * BESIDE
-                    left = self.at((guess - room).mid(), room)
-                    right = self.at((guess + room).mid(), room)
-                pending += [(right, b), (left, right), (a, left)]
-                continue
-            if self._is_close(a, b):
+            elif self._is_close(a, b):
                 self.found[before + 1] = Eigenvalue(a, b, before + 1, behind - before)
-                continue
-            middle = self._between(a, b)
-            pending += [(middle, b), (a, middle)]
+            else:
+                middle = self._between(a, b)
+                pending += [(middle, b), (a, middle)]
 
     def ordered(self) -> tuple[Eigenvalue, ...]:
         """Return what was found, in order."""
         return tuple(self.found[n] for n in sorted(self.found))
 
     def _number(self, sample: NetworkSample) -> int:
-        return self.count(sample) - (self.base or 0)
+        return self.count(sample) - self.base
 
     def _between(self, a: NetworkSample, b: NetworkSample) -> NetworkSample:
         with ctx.workprec(self.bits):

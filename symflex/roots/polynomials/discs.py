@@ -118,30 +118,6 @@ class LevelPolynomial:
             centre, shifted, last = moved, self.shifted(moved), size
         return centre, shifted
 
-    def separate(
-        self, centre: acb, count: int, goal: Callable[[acb], arb], proposers: Sequence[Proposer]
-    ) -> tuple[Disc, ...] | None:
-        """Tell apart ``count`` roots close to a centre by the roots of the local Taylor polynomial.
-
-        The centre is exact, and on the real axis when the cluster is its own mirror image; then discs are in
-        the closed upper half plane. ``goal`` is that of :meth:`polish`. None when no proposer, which guess
-        the roots of a local polynomial with real coefficients, tells the roots apart.
-        """
-        is_real = centre.imag == 0
-        centred = self._centred(centre, count)
-        if centred is None:
-            return None
-        centre, shifted = centred
-        size = (shifted[0] / shifted[count]).abs_upper().root(count).mid()
-        if not (size.is_finite() and size > 0):
-            return None
-        local = acb_poly([(shifted[i] * size**i).mid() for i in range(count + 1)])
-        answers = (propose(local) for propose in proposers) if is_real else iter([all_roots(local)])
-        guesses = next((answer for answer in answers if answer is not None), None)
-        if guesses is None:
-            return None
-        return tuple(self.polish((centre + size * guess).mid(), goal) for guess in guesses)
-
     def surround(self, centre: acb, count: int) -> Disc | None:
         """Return a disc proved by Pellet's test to hold exactly ``count`` roots about a centre.
 
@@ -165,30 +141,6 @@ class LevelPolynomial:
                 return Disc(centre, radius, count)
             radius = (2 * radius).upper()
         return None
-
-
-def all_roots(polynomial: acb_poly) -> tuple[acb, ...] | None:
-    """Return the roots' midpoints at the current precision, None when they do not separate."""
-    try:
-        return tuple(root.mid() for root in polynomial.roots())
-    except ValueError:
-        return None
-
-
-def real_symmetric_roots(polynomial: acb_poly) -> tuple[acb, ...] | None:
-    """Return the roots of a real polynomial in the closed upper half plane, as midpoints.
-
-    None when the current precision does not separate the roots.
-    """
-    try:
-        roots = polynomial.roots()
-    except ValueError:
-        return None
-    real = [acb(root.real.mid()) for root in roots if root.imag.contains(0)]
-    upper = [root.mid() for root in roots if root.imag > 0]
-    if len(real) + 2 * len(upper) != polynomial.degree():
-        return None
-    return (*real, *upper)
 
 
 def with_mirrors(discs: Sequence[Disc]) -> list[Disc]:
@@ -231,7 +183,7 @@ def groups(discs: Sequence[Disc]) -> list[tuple[Disc, ...]]:
     """Return the discs in groups that touch each other, ordered by their first member.
 
     A disc without a finite radius, as a multiple root has, is grouped by closeness alone; that is a
-    proposal, which :meth:`LevelPolynomial.separate` and :meth:`LevelPolynomial.surround` prove or refuse.
+    proposal, which :meth:`LevelPolynomial.surround` proves or refuses.
     """
     bounded = [
         d if d.radius.is_finite() else Disc(d.centre, (d.centre.abs_upper() * GROUPING).mid()) for d in discs
@@ -442,4 +394,10 @@ def propose_by_durand_kerner(polynomial: acb_poly) -> tuple[acb, ...] | None:
     >>> [int(g.imag.unique_fmpz()) for g in propose_by_durand_kerner(acb_poly([4, 0, 1]))]
     [2]
     """
-    return real_symmetric_roots(acb_poly([polynomial[i].mid() for i in range(len(polynomial))]))
+    try:
+        roots = acb_poly([polynomial[i].mid() for i in range(len(polynomial))]).roots()
+    except ValueError:
+        return None
+    real = [acb(root.real.mid()) for root in roots if root.imag.contains(0)]
+    upper = [root.mid() for root in roots if root.imag > 0]
+    return (*real, *upper) if len(real) + 2 * len(upper) == polynomial.degree() else None

@@ -28,7 +28,7 @@ def factor(*by_gain, multiplicity=1, constants=()):
             total = total + Factored.number(RING, number) * s**power * c ** (of_c[0] if of_c else 0)
         return total
 
-    bound = SimpleNamespace(constants=constants, ratio=SimpleNamespace(ring=RING))
+    bound = SimpleNamespace(radicals=None, constants=constants, ratio=SimpleNamespace(ring=RING))
     return LumpedFactor.of(bound, GainPolynomial(tuple(read(t) for t in by_gain), multiplicity))
 
 

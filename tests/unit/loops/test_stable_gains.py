@@ -132,12 +132,13 @@ def test_of_a_spring_at_the_damped_end_all_poles_are_counted_and_margins_are_not
 
 
 @pytest.mark.slow
-def test_mirrored_poles_of_a_lossless_beam(lossless_beam):
-    colocated = lossless_beam("act").stability("K", up_to_hz=100)
-    tip = lossless_beam("tip").stability("K", up_to_hz=100)
-    assert [right for right, _ in counts(colocated)] == [0]
-    assert [right for right, _ in counts(tip)] == [0, 2]
-    assert all(c.is_symmetric for b in tip.proved.boundaries for c in b.crossings)
+def test_where_poles_mirror_each_other_the_gain_itself_is_examined(lossless_beam):
+    # At the tip poles leave the axis for larger gains, and whether some have no one knows.
+    for where, word in (("act", "marginal"), ("tip", "unknown")):
+        found = lossless_beam(where).stability("K", up_to_hz=100)
+        assert found.proved.verdict.word == word
+        assert not found.certified and counts(found) == []
+        assert "mirror each other" in str(found)
 
 
 def test_a_real_pole_through_zero_beside_a_delay(loop):

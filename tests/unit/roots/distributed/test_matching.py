@@ -20,7 +20,6 @@ from symflex.roots.locate import (
     _degenerate_points,
     _exclusion,
     _find,
-    _lowest,
     _match,
     default_region,
 )
@@ -137,8 +136,7 @@ FIVE = [root(0, 0, 2), root(0, 4), root(0, -4), root(-7, 0, 2), root(0, 9), root
 
 def test_the_lowest_modes_come_with_their_mirror_images_and_a_numbered_one_with_all_that_was_found():
     for count, upto in [(0, 1), (1, 3), (2, 4), (3, 4), (4, 6), (9, 6)]:
-        assert places(_lowest(FIVE, count)) == places(FIVE[:upto])
-        assert places(_chosen(FIVE[::-1], Modes(count))) == places(_lowest(FIVE, count))
+        assert places(_chosen(FIVE[::-1], Modes(count))) == places(FIVE[:upto])
     assert sorted(places(_chosen(FIVE, Mode(3)))) == sorted(places(FIVE))
 
 

@@ -14,8 +14,8 @@ from mpmath import mp, mpc
 from symflex.algebra import Factored
 from symflex.errors import ModelError, UncertifiedError
 from symflex.roots.functions.kernel_function import (
+    KernelFactors,
     KernelFunction,
-    _KernelFactors,
     _parity,
     _spectral_size,
     has_kernels,
@@ -246,7 +246,7 @@ def test_polynomials_in_kernels_are_evaluated_as_they_stand_on_the_branch_of_a_p
         function = function_of(ROD)
         with precision(BITS):
             factors = [factor for factor, _ in function.part.factors]
-            plain = _KernelFactors(function._kernel_values(BITS), factors)
+            plain = KernelFactors(function._kernel_values(BITS), factors)
             place = plain.at(acb(s))
             for i, (value, _, _) in enumerate(function.enclosed(acb(s), BITS)):
                 assert (abs(plain.value(i, place)) - abs(value)).contains(0), s
@@ -255,7 +255,7 @@ def test_polynomials_in_kernels_are_evaluated_as_they_stand_on_the_branch_of_a_p
     function = function_of(ROD)
     (name,) = function.bound.kernels.wavenumbers
     with precision(BITS):
-        plain = _KernelFactors(function._kernel_values(BITS), [])
+        plain = KernelFactors(function._kernel_values(BITS), [])
         around = plain.at(acb(arb(0, 0.1), 3))
         right, left = (plain.at(acb(re, 3), around).values[name] for re in (0.05, -0.05))
         assert abs(abs(right - left) - 0.1) < 1e-15

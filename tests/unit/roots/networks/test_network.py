@@ -10,7 +10,6 @@ import pytest
 from symflex.roots.networks.blocks import most_zeros
 from symflex.roots.networks.cramer import CramerEquations
 from symflex.roots.networks.network import OtherNetworkError
-from symflex.roots.networks.single_path import beside_path
 from symflex.roots.region import Band, Modes
 from tests.unit.roots.networks.network_models import (
     BEAM,
@@ -166,7 +165,7 @@ TRAIN = (
 def test_a_train_read_at_its_other_end_has_no_zeros():
     found = located(driven_at_a(*TRAIN), Modes(5))
     assert found.certificate.certified
-    assert found.certificate.engine == "wittrick-williams"
+    assert found.certificate.engine == "cramer"
     assert (len(omegas(found.poles)), found.zeros) == (5, ())
 
 
@@ -184,22 +183,6 @@ def test_zeros_are_frequencies_of_what_lies_behind_drive_and_sensor():
     expected = sorted(k * pi * SPEED / length for length in (0.5, 0.6) for k in range(1, 9))
     assert found.certificate.certified
     assert omegas(found.zeros) == pytest.approx([x for x in expected if x < 60000], rel=1e-11)
-
-
-def test_finitely_many_zeros_are_all_of_them():
-    found = located(driven_at_a(*TRAIN, spring("b", "e"), mass("e", "4")), Modes(5))
-    assert found.certificate.certified
-    assert omegas(found.zeros) == pytest.approx([5.0])
-
-
-def test_what_a_sensor_does_not_see_of_two_equal_branches_is_hidden():
-    branches = rod("branch_1", "c", "e", "0.9"), rod("branch_2", "c", "f", "0.9")
-    found = located(driven_at_a(*TRAIN, *branches), Modes(3))
-    first = 0.5 * pi * SPEED / 0.9
-    assert found.certificate.certified
-    assert omegas(h.root for h in found.hidden)[:1] == pytest.approx([first], rel=1e-11)
-    assert omegas(found.zeros)[:2] == pytest.approx([first, 3 * first], rel=1e-11)
-    assert {z.multiplicity for z in found.zeros} == {1}
 
 
 def test_a_spring_between_a_beam_and_what_is_read_is_a_path():
@@ -222,9 +205,3 @@ def test_a_rate_has_one_zero_at_rest_wherever_it_is_read():
     ]
     text = driven_at_a('clamp = { type = "fixed", at = "z" }', *beams, output="s*d")
     assert [r.multiplicity for r in located(text, Modes(2)).zeros if r.is_zero] == [1]
-
-
-def test_where_there_is_more_than_one_way_zeros_are_sought_otherwise():
-    for more in [rod("other", "b", "c", "0.8"), rod("round", "a", "d", "3"), spring("b", "c")]:
-        assert beside_path(network(driven_at_a(*TRAIN))) is not None, more
-        assert beside_path(network(driven_at_a(*TRAIN, more))) is None

@@ -16,14 +16,13 @@ from symflex.roots.polynomials.discs import (
     NEWTON_STEPS,
     Disc,
     LevelPolynomial,
-    all_roots,
     complete,
     connected,
     groups,
     is_symmetric,
     middle_of,
     overlapping_pairs,
-    real_symmetric_roots,
+    propose_by_durand_kerner,
     with_mirrors,
 )
 
@@ -208,42 +207,13 @@ def test_pellets_disc_leaves_the_third_of_three_close_roots_out_or_gives_up():
         assert monic(1, 0, -1).surround(acb(0), 2) is None
 
 
-def test_roots_of_a_cluster_are_told_apart_by_the_polynomial_next_to_it():
-    with precision(400):
-        offsets = [arb(10) ** -30 * k for k in (-1, 2, 5)]
-        exact = [acb(1 + offset) for offset in offsets]
-        level = monic(*exact, acb(7), acb(-4))
-        discs = level.separate(acb(1), 3, lambda centre: arb(10) ** -60, [lambda p: None, all_roots])
-        assert len(discs) == 3
-        for root in exact:
-            assert sum(bool(abs(root - d.centre) <= d.radius) for d in discs) == 1
-        assert all(d.radius < arb(10) ** -40 for d in discs)
-        assert level.separate(acb(1), 3, nothing, [lambda p: None]) is None
-        assert level.separate(acb(1), 3, nothing, []) is None
-
-
-def test_a_cluster_off_the_real_axis_needs_no_engine_for_real_polynomials():
-    with precision(400):
-        small = arb(10) ** -30
-        exact = [acb(1, 2), acb(1 + small, 2), acb(1, -2), acb(1 + small, -2)]
-        discs = monic(*exact).separate(acb(1, 2), 2, lambda centre: arb(10) ** -60, [])
-        assert [sum(bool(abs(root - d.centre) <= d.radius) for d in discs) for root in exact] == [1, 1, 0, 0]
-
-
-def test_an_exactly_multiple_root_is_not_separated():
-    with precision(200):
-        assert monic(1, 1, -4).separate(acb(1), 2, nothing, [all_roots]) is None
-
-
 def test_roots_are_listed_in_the_closed_upper_half_plane_if_they_separate():
-    found = real_symmetric_roots(acb_poly([-25, 19, 5, 1]))
+    found = propose_by_durand_kerner(acb_poly([-25, 19, 5, 1]))
     assert sorted((round(float(r.real), 6), round(float(r.imag), 6)) for r in found) == [(-3, 4), (1, 0)]
     assert found[0].imag == 0
-    double = acb_poly([arb(1, 1e-3), -2, 1])
-    assert real_symmetric_roots(double) is None
-    assert all_roots(double) is None
+    assert propose_by_durand_kerner(acb_poly([1, -2, 1])) is None
     # No real polynomial: i and 2i have no mirror images.
-    assert real_symmetric_roots(acb_poly([-2, acb(0, -3), 1])) is None
+    assert propose_by_durand_kerner(acb_poly([-2, acb(0, -3), 1])) is None
 
 
 def test_the_middle_of_a_group_is_real_where_the_group_mirrors_itself():

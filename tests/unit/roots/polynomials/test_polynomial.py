@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import replace
 from fractions import Fraction
 from itertools import permutations, product
@@ -10,15 +9,12 @@ from itertools import permutations, product
 import pytest
 from flint import acb, arb, fmpq
 
-from symflex.budget import Budget
 from symflex.roots import PolynomialInS, Root, RootProblem, precision
 from symflex.roots.engines import proposers_for
 from symflex.roots.polynomial_roots import (
     _conjugates,
     _hull,
-    _is_apart,
     _merge,
-    _PolynomialSearch,
     _roots_of,
     _square_roots,
     _touching,
@@ -26,7 +22,7 @@ from symflex.roots.polynomial_roots import (
     in_order,
 )
 from symflex.roots.polynomials.discs import Disc, propose_by_durand_kerner
-from symflex.roots.problem import Splitting, SquareFreePart
+from symflex.roots.problem import SquareFreePart
 
 CORNERS = [(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)]
 
@@ -68,23 +64,6 @@ def points_of(disc):
             point = disc.centre + acb(x, y) / size * disc.radius * arb("0.999999")
             found += [point.mid(), point.mid().conjugate()]
         return found
-
-
-def test_a_root_is_apart_only_from_a_polynomial_that_has_no_root_in_its_box():
-    for others in [[9], [9, -25], [-9, 0.75]]:
-        assert _is_apart(root(2, 0, 1e-9), [part(*others)], 10)
-    for off in [0, 0.5e-9, -0.5e-9]:
-        assert not _is_apart(root(2, 0, 1e-9), [part(9), part(2 + Fraction(off), 7)], 10)
-    for off in [5e-9, -5e-9]:
-        assert _is_apart(root(2, 0, 1e-9), [part(2 + Fraction(off), 7)], 10)
-
-
-def test_a_polynomial_in_s_squared_is_asked_at_the_square_of_the_box_which_may_be_negative():
-    for square, apart in [(9, False), (6, True), (3, True), (9.00001, True)]:
-        # A root s = 3 is one of p(s^2) where p(9) = 0; p(6), its double, has nothing to do with it.
-        assert _is_apart(root(3, 0, 1e-9), [part(square, in_square=True)], 10) is apart
-    assert not _is_apart(root(0, 3, 1e-9), [part(-9, in_square=True)], 10)
-    assert _is_apart(root(0, 3, 1e-9), [part(9, in_square=True)], 10)
 
 
 def test_a_hull_holds_every_ball_and_little_else():
@@ -285,13 +264,3 @@ def test_an_engine_given_is_the_one_that_is_asked():
     found = find_polynomial_roots(product_of(((1, -7, 30), 1)), 10, (propose,))
     assert len(asked) >= 1
     assert [round(float(r.re.mid()), 6) for r in found] == [1, -7, 30]
-
-
-def test_a_root_that_a_part_not_solved_may_share_is_left_out_of_a_search_broken_off():
-    for off, kept in [(Fraction(1, 2 * 10**9), 0), (1, 1)]:
-        solved, other = part(2), part(2 + off, 7)
-        search = _PolynomialSearch(RootProblem(()), 10, (), Budget(0.0, clock=itertools.count().__next__))
-        search.splitting = Splitting(0, (solved, other))
-        search.solved[0] = [root(2, 0, 1e-9)]
-        search._prove_singly()
-        assert (len(search.solved[0]), search.solved[1]) == (kept, []), off

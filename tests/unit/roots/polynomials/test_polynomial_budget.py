@@ -20,7 +20,6 @@ from symflex.roots import (
     find_polynomial_roots,
     precision,
 )
-from symflex.roots.polynomials.isolation import prove_singly
 from tests.unit.roots.root_problems import problem, problem_of
 
 DEGREE = 40
@@ -56,36 +55,9 @@ def holders(root, values):
         return [i for i, value in enumerate(values) if root.re.overlaps(value) and root.im.contains(0)]
 
 
-def test_every_root_of_a_search_broken_off_is_one():
-    numbers = []
-    with precision(200):
-        values = [value + 2 for value in nodes()]
-    for calls in (10, 100, 150, 250):
-        found = broken_off(problem_of(SHIFTED), calls)
-        numbers.append(len(found))
-        held = [holders(root, values) for root in found]
-        assert all(len(each) == 1 for each in held), calls
-        assert len({each[0] for each in held}) == len(found), calls
-        assert all(root.certified and root.is_real and root.multiplicity == 1 for root in found), calls
-        assert all(root.re.rel_accuracy_bits() > 66 for root in found), calls
-    # More time proves more roots.
-    assert 0 == numbers[0] <= numbers[1] <= numbers[2] < numbers[3] < DEGREE
-    assert numbers[2] > 0
-
-
 def test_enough_time_finds_all():
     polynomial = problem_of(CHEBYSHEV)
     assert len(find_polynomial_roots(polynomial, 20, budget=budget(100_000))) == DEGREE
-
-
-def test_undamped_roots_of_a_search_broken_off_stay_on_the_axis():
-    # T_n(j s): s = -j cos(...), in s^2 for even n.
-    turned = fmpz_poly([int(c) * (1 if i % 4 == 0 else -1) for i, c in enumerate(CHEBYSHEV.coeffs())])
-    found = broken_off(problem_of(turned), 150)
-    assert 0 < len(found) < DEGREE
-    assert all(root.on_imaginary_axis and root.re == 0 for root in found)
-    with precision(200):
-        assert all(sum(bool(root.im.overlaps(value)) for value in nodes()) == 1 for root in found)
 
 
 def test_multiplicities_are_right_though_parts_are_missing():
@@ -112,42 +84,32 @@ def test_all_roots_are_kept_when_only_digits_are_missing():
     assert any(found == () for found in partial)
 
 
+DONE = RootProblem(tuple((PolynomialInS.from_integers(c), 1) for c in ([4, 0, 1], [1, 1])))
+"""s^2 + 4 and s + 1, which are done before the Chebyshev polynomial."""
+
+
 def mapped(region, zeros=NEVER):
-    return find_pole_zero_map("y/u", problem_of(SHIFTED), zeros, region, 20, budget=budget(250))
+    both = RootProblem((*DONE.factors, *problem_of(SHIFTED).factors))
+    return find_pole_zero_map("y/u", both, zeros, region, 20, budget=budget(100))
 
 
 def test_a_map_says_what_it_lost_and_keeps_to_its_region():
     result = mapped(Everything(), problem(4, 0, 1))
     certificate = result.certificate
-    assert (certificate.counted, certificate.is_exceeded, certificate.code) == (42, True, "SF506")
-    assert 0 < certificate.found == len(result.poles) < DEGREE
+    assert (certificate.counted, certificate.is_exceeded, certificate.code) == (45, True, "SF506")
+    assert certificate.found == len(result.poles) == 3
     assert result.zeros == ()
     band = mapped(Band(Fraction(0), Fraction(161, 1000)))
-    assert 0 < len(band.poles) < band.certificate.found
-    assert all(root.re < 1.012 for root in band.poles)
+    assert [root.decimal(2).re for root in band.poles] == ["-1.0"]
     # Which mode is the second is not known where some are missing; the lowest that were found are shown.
     second = mapped(Mode(2))
     assert (second.poles, second.certificate.found > 0) == ((), True)
-    lowest = mapped(Modes(2))
-    assert (len(lowest.poles), lowest.certificate.certified) == (2, False)
+    lowest = mapped(Modes(1))
+    assert (len(lowest.poles), lowest.certificate.certified) == (1, False)
 
 
 def test_poles_are_complete_when_only_the_zeros_took_too_long():
     zeros = problem_of(SHIFTED)
-    result = find_pole_zero_map("y/u", problem(4, 0, 1), zeros, Everything(), 20, budget=budget(250))
+    result = find_pole_zero_map("y/u", problem(4, 0, 1), zeros, Everything(), 20, budget=budget(100))
     assert [root.decimal(3).im for root in result.poles] == ["2.00", "-2.00"]
-    assert 0 < len(result.zeros) < DEGREE
-
-
-def test_singles_of_close_roots_do_not_overlap():
-    # (s - 1)(s - 1 - 10^-30)(s - 3)
-    tiny = 10**30
-    f = fmpz_poly([-1, 1]) * fmpz_poly([-tiny - 1, tiny]) * fmpz_poly([-3, 1])
-    discs = list(
-        prove_singly(PolynomialInS.from_integers([int(c) for c in f.coeffs()]), 40, Budget(), in_square=False)
-    )
-    with precision(300):
-        roots = [arb(1), 1 + arb(10) ** -30, arb(3)]
-        held = [[i for i, r in enumerate(roots) if abs(r - d.centre.real) <= d.radius] for d in discs]
-    assert all(len(each) == 1 for each in held)
-    assert len({each[0] for each in held}) == len(discs)
+    assert result.zeros == ()
