@@ -363,7 +363,7 @@ def sensitivities(
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Point:
+class TangentPoint:
     """The generators of a ring to first order, and what evaluates polynomials in them."""
 
     kernels: KernelValues
@@ -392,7 +392,7 @@ class Tangents:
     tf: TransferFunction  # with symbols
     values: Mapping[str, ExactValue]  # of all parameters that occur
 
-    def along(self, direction: str, s: acb) -> Point:
+    def along(self, direction: str, s: acb) -> TangentPoint:
         """Return all generators at ``s`` [rad/s], with their derivatives at the current precision.
 
         ``direction`` is ``"s"``, or a parameter. On a ball wavenumbers take one branch each; where one is
@@ -406,13 +406,13 @@ class Tangents:
         ring, table = self.tf.ratio.ring, self.tf.kernels
         numbers: dict[str, Arithmetic] = {name: _series(acb(x[0]), acb(x[1])) for name, x in known.items()}
         kernels = KernelValues(ring.names, table, numbers, ModalSums(ring, NO_KERNELS), self._plans)
-        point = Point(kernels, kernels.at(_series(s, acb(int(direction == LAPLACE)))))
+        point = TangentPoint(kernels, kernels.at(_series(s, acb(int(direction == LAPLACE)))))
         for law in table.dispersions:
             if law.matrix:
                 point.values.update(self._entries(law, direction, point))
         return point
 
-    def _entries(self, law: Dispersion, direction: str, point: Point) -> dict[str, Value]:
+    def _entries(self, law: Dispersion, direction: str, point: TangentPoint) -> dict[str, Value]:
         """Return the entries of the fundamental matrices of a law that varies along x.
 
         In s their series are known. In a parameter ``Z' = A Z`` is differentiated: what takes z and
@@ -530,12 +530,12 @@ class Tangents:
     def _laws(self) -> dict[tuple[Dispersion, str], BoundLaw]:
         return {}
 
-    def polynomial(self, polynomial: fmpz_mpoly, point: Point) -> tuple[acb, acb]:
+    def polynomial(self, polynomial: fmpz_mpoly, point: TangentPoint) -> tuple[acb, acb]:
         """Return the value of a polynomial of the ring, and its derivative."""
         value = _lifted(point.kernels.polynomial(polynomial, point.values))
         return value[0], value[1]
 
-    def product(self, value: Factored, point: Point) -> acb_series:
+    def product(self, value: Factored, point: TangentPoint) -> acb_series:
         """Return a product of powers of polynomials to first order."""
         return _lifted(point.kernels.value(value, point.values))
 
