@@ -140,6 +140,7 @@ def _at_nominal(loop: AnyLoop, limits: Limits, digits: int, budget: Budget, reas
     verdict = None
     if loop.nominal is not None:
         verdict = closed_loop_roots(loop, loop.nominal, budget=budget).verdict
+        budget.spend()  # a search that ends with its time returns what it proved, perhaps nothing
     return StabilityMap(
         loop.gain.name,
         loop.gain.unit,

@@ -262,6 +262,21 @@ def resolve(
     return found if are_apart(found) else None
 
 
+def middle_of(function: KernelFunction, centre: acb, radius: arb, bits: int) -> acb | None:
+    """Return about the mean of the roots inside a circle, ``None`` where it cannot be told."""
+    with precision(bits):
+        total, count = acb(0), acb(0)
+        for k in range(POINTS):
+            direction = (acb(0, 2) * arb.pi() * k / POINTS).exp()
+            s = (centre + radius * direction).mid()
+            for value, slope, exponent in function.enclosed(s, bits):
+                weight = exponent * direction * slope / value
+                count += weight
+                total += weight * direction
+        mean = centre + radius * total / count
+        return mean.mid() if mean.is_finite() else None
+
+
 def _guesses(weights: Sequence[acb], directions: Sequence[acb]) -> list[acb] | None:
     """Return the roots of one factor inside the circle, in its radius from its centre."""
     if not all(w.is_finite() for w in weights):

@@ -63,7 +63,7 @@ def test_a_stable_range_is_printed_and_is_in_the_json(files):
 def test_what_is_not_certified_has_exit_code_4(files):
     done = files("stability", "lossless.toml", "--gain", "K", "--up-to", "1 Hz")
     assert done.code == 4
-    assert "NOT CERTIFIED beyond 1 Hz" in done.out
+    assert "NOT CERTIFIED" in done.out
 
 
 def test_errors(files):

@@ -6,7 +6,7 @@ from itertools import product
 
 from flint import acb, arb
 
-from symflex.roots.plane.local_roots import MOST, resolve
+from symflex.roots.plane.local_roots import MOST, middle_of, resolve
 from symflex.roots.precision import precision
 from tests.unit.roots.known_functions import KnownFunction
 
@@ -84,3 +84,23 @@ def test_a_root_next_to_an_axis_lies_on_it_where_roots_mirror_each_other():
         (root,) = resolve(function, acb(2.0**-20, 3), arb(1), DIGITS, BITS, even=even)
         assert root.on_imaginary_axis is on_axis, even
         assert root.multiplicity == 1, even
+
+
+def test_the_middle_of_roots_is_their_mean_if_there_are_any():
+    for (factors, mean), radius in product(
+        [
+            ([((0, 0.25), 1)], 0.125),
+            ([((0.25,), 1), ((-0.25j,), 3)], (0.25 - 0.75j) / 4),
+            ([((0.25, 0.125j, 5), 1)], (0.25 + 0.125j) / 2),
+            # a pole takes away what it adds
+            ([((0.25, 0.125), 2), ((0.25,), -1)], (0.25 + 2 * 0.125) / 3),
+        ],
+        [0.5, 2],
+    ):
+        function = KnownFunction(tuple((beside(*roots, scale=1.0), e) for roots, e in factors))
+        found = middle_of(function, CENTRE, arb(radius), BITS)
+        assert abs(complex(found) - (2 + 3j) - mean) < 1e-15, radius
+        assert found.is_exact(), (factors, radius)
+    # The pole makes up for the root: their number is 0.
+    function = KnownFunction(((beside(0), 1), (beside(0), -1)))
+    assert middle_of(function, CENTRE, arb(1), BITS) is None

@@ -8,7 +8,7 @@ from math import log, pi
 from types import SimpleNamespace
 
 import pytest
-from flint import arb
+from flint import acb, arb
 
 from symflex.roots.counting.winding import Cell, RootOnPathError
 from symflex.roots.plane import search as transcendental
@@ -50,7 +50,7 @@ class Counting:
 
 
 def search(**options):
-    return RootSearch(Counting(**options), (), DIGITS)
+    return RootSearch(Counting(**options), None, (), DIGITS)
 
 
 @pytest.fixture
@@ -105,11 +105,12 @@ def test_a_root_has_the_multiplicity_counted_by_the_power_and_lies_in_the_cell(k
     assert together(search(), NEAR / 2, 1) is None
 
 
-def test_about_a_place_without_a_box_a_disc_is_drawn_if_the_cell_is_small(known):
+def test_about_a_place_without_a_box_a_circle_is_drawn_if_the_cell_is_small(known):
     for (size, asked), power in product([(NEAR * 0.99, True), (NEAR * 1.01, False)], [1, 2]):
-        known.together, known.asked = root(HERE), {}
-        assert together(search(power=power), size, power) == ([known.together] if asked else None)
-        assert ("prove_together" in known.asked) is asked
+        one, given = search(power=power), []
+        one._about = lambda s, count, given=given: given.append((is_here(s), count)) or ["found"]
+        assert together(one, size, power) == (["found"] if asked else None)
+        assert given == [(True, power)] * asked
 
 
 def test_newtons_method_that_leaves_the_cell_finds_nothing(known):
@@ -143,23 +144,33 @@ def test_several_roots_are_told_apart_if_all_lie_within_the_cell(known):
     assert together(search(), 0.3, 2) is None
 
 
-def test_several_roots_are_enclosed_together_only_next_to_a_branch(known):
-    known.together, known.branched = root(HERE, 2), False
-    one = search(is_even=True)
-    assert together(one, 0.3, 2) is None
-    (function, s, radius), _ = known.asked["is_branched"]
-    assert function is one.function
-    assert is_here(s)
-    assert float(radius) == pytest.approx(abs(HERE) * 1e-4, rel=1e-6)
-    known.branched = True
-    assert together(one, 0.3, 2) == [known.together]
-    given, options = known.asked["prove_together"]
-    assert given[0] is one.function
-    assert is_here(given[1])
-    assert (float(given[2]), *given[3:]) == (float(radius), DIGITS, 2)
-    assert options == {"even": True, "is_close": True}
-    known.together = None
-    assert together(one, 0.3, 2) is None
+def test_several_roots_that_are_not_all_told_apart_are_together_only_next_to_a_branch(known):
+    for resolved in [None, [root(HERE)]]:
+        known.resolved, known.together, known.branched = resolved, root(HERE, 2), False
+        one = search(is_even=True)
+        one._apart = lambda given: None
+        assert together(one, 0.3, 2) is None, resolved
+        (function, s, radius), _ = known.asked["is_branched"]
+        assert function is one.function, resolved
+        assert is_here(s), resolved
+        assert float(radius) == pytest.approx(abs(HERE) * 1e-4, rel=1e-6), resolved
+        known.branched = True
+        assert together(one, 0.3, 2) == [known.together], resolved
+        given, options = known.asked["prove_together"]
+        assert given[0] is one.function, resolved
+        assert is_here(given[1]), resolved
+        assert (float(given[2]), *given[3:]) == (float(radius), DIGITS, 2), resolved
+        assert options == {"even": True, "is_close": True}, resolved
+        known.together = None
+        assert together(one, 0.3, 2) is None, resolved
+
+
+def test_next_to_a_branch_more_digits_may_tell_them_apart(known):
+    known.branched, known.together = True, root(HERE, 2)
+    one, given = search(), []
+    one._apart = lambda both: given.append(both) or [root(HERE), root(NEIGHBOUR)]
+    assert len(together(one, 0.3, 2)) == 2
+    assert given == [known.together]
 
 
 # ------------------------------------------------------------------------------------------------- cells
@@ -231,6 +242,18 @@ def test_a_cell_without_roots_is_not_looked_at_and_one_that_is_too_small_not_cut
     assert len(given) == 1
 
 
+def test_a_cell_that_cannot_be_cut_is_looked_at_closer():
+    one, given = search(), []
+    one._together = lambda cell, count: None
+    one._split = lambda cell, count: None
+    one._cluster = lambda cell, count: given.append((cell, count)) or [root(HERE, 2)]
+    cell = cell_about(PLACE, 1)
+    assert one._separate(cell, 2) == ([root(HERE, 2)], 0)
+    assert given == [(cell, 2)]
+    one._cluster = lambda cell, count: None
+    assert one._separate(cell, 2) == ([], 2)
+
+
 def test_on_the_axes_a_root_met_twice_in_a_row_is_one(monkeypatch):
     one, asked = search(is_even=True), []
     places = {0.0: [log(3), log(3.001), log(9)], pi / 2: [log(3) + 0.5j * pi, log(7) + 0.5j * pi]}
@@ -265,3 +288,32 @@ def test_a_root_is_in_a_cell_by_its_logarithm_whatever_the_turn_and_a_hair_outsi
         assert _is_in(Cell(0.9, 1.1, -pi - 0.2, -pi + 0.2), root(s)) is inside
     for beside, inside in ((0.5e-11, True), (1e-10, False)):
         assert _is_in(Cell(0.5, 1.0, -0.1, 0.1), root(exp(1.0 + beside + 0j))) is inside
+
+
+def test_a_cluster_keeps_to_what_is_counted(known):
+    known.resolved = [root(HERE), root(NEIGHBOUR)]
+    one = search(power=2, is_even=True)
+    assert one._cluster(cell_about(PLACE, 1e-10), 4) == known.resolved
+    given, options = known.asked["resolve"]
+    assert abs(complex(given[1]) - HERE) < 1e-12
+    assert float(given[2]) == pytest.approx(abs(HERE) * 2e-10, rel=1e-6)
+    assert (given[3:], options) == ((DIGITS, 256), {"even": True})
+    # Others than are counted, fewer or more, are left together.
+    for count in (2, 6):
+        known.together = root(HERE, count // 2)
+        assert one._cluster(cell_about(PLACE, 1e-10), count) == [known.together]
+    # Precision was doubled before.
+    assert known.asked["resolve"][0][4] == 256 * 2**3
+    given, options = known.asked["prove_together"]
+    assert (given[0], given[3:], options) == (one.function, (DIGITS, 6), {"even": True})
+
+
+def test_roots_are_told_apart_within_a_few_radii_of_their_disc(known):
+    known.resolved = [root(HERE), root(NEIGHBOUR)]
+    both = Root(arb(2, 1e-20), arb(1, 3e-20), 2, on_imaginary_axis=False, is_real=False, certified=False)
+    assert search(is_even=True)._apart(both) == known.resolved
+    given, options = known.asked["resolve"]
+    assert given[1] == acb(2, 1)
+    assert float(given[2]) == pytest.approx(8 * 4e-20, rel=1e-3)
+    assert given[4] >= 512
+    assert options == {"even": True}
