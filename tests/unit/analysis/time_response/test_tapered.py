@@ -7,12 +7,9 @@ from functools import cache
 import numpy as np
 import pytest
 import scipy.linalg
-from flint import acb, arb
 
 from symflex import loads
 from symflex.analysis.time_response import SampleTimes, time_response
-from symflex.roots.counting.local_series import SeriesSteps
-from symflex.roots.functions.kernel_function import KernelFunction
 
 BEAM = """
 symflex = 1
@@ -83,19 +80,3 @@ def test_a_step_of_a_tapered_beam_is_what_finite_elements_give():
     assert not found.certified
     assert np.all(np.abs(found.values - expected) <= found.radius + 1e-7 * largest)
     assert np.all(found.radius < 3e-4 * largest)
-
-
-@pytest.fixture(scope="module")
-def lossless():
-    return bound()
-
-
-def test_a_polynomial_about_a_point_holds_the_function_on_the_disc(lossless):
-    function = KernelFunction(lossless, lossless.den)
-    centre, radius = acb(100, 900), arb(50)
-    coefficients, missed = SeriesSteps(function).near(centre, radius, 96)
-    for direction in (1, -1, 0.6 - 0.8j):
-        value = function.value(centre + radius * acb(direction), 128)
-        told = sum((c * (radius * acb(direction)) ** k for k, c in enumerate(coefficients)), acb(0))
-        assert abs(value - told) < missed + abs(told) * 1e-20
-        assert missed < 1e-3 * abs(value)
