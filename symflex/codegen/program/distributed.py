@@ -80,6 +80,9 @@ CONFLUENT = 2.0
 CIRCLE = 24
 """Points of a circle over which means are taken."""
 
+LONE = 0.25
+"""Part of the series' reach up to which the smaller of a pair's arguments has a series by itself."""
+
 BASES: dict[str, Callable[[Iterable[Sequence[tuple[int, int]]]], LocalBasis]] = {
     "wave": wave_basis,
     "bending": bending_basis,
@@ -157,8 +160,8 @@ _Test = tuple[int, float, int]
 """Expression, limit and scale of a condition."""
 
 
-_Choice = tuple[tuple[bool, ...], tuple[bool, ...], bool]
-"""What makes a piece: groups near zero, delays that grow, meeting pairs."""
+_Choice = tuple[tuple[bool, ...], tuple[bool, ...], bool, tuple["Dispersion", ...]]
+"""What makes a piece: groups near zero, delays that grow, meeting pairs, lone dispersions."""
 
 
 _LocalParts = dict[tuple[int, ...], dict["Key", Factored]]
@@ -175,6 +178,10 @@ class _Group:
     families: tuple[int, ...]
     basis: LocalBasis
     spread: int = 0
+
+
+class _Lone(_Group):
+    """The smaller wavenumber of a pair at one length, whose argument is small while the other's is not."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -329,6 +336,16 @@ class _PieceMaker:
                     basis = BASES[family.dispersion.kind](exponents)
                     yield _Group(family.dispersion, length, position, tuple(ids), basis, spread)
 
+    def _lone(self, group: _Group) -> _Lone | None:
+        """Return the smaller wavenumber of a pair at a length, ``None`` if no kernel has it there."""
+        smaller = group.dispersion.wavenumbers[1]
+        for i in group.families:
+            if self.families[i].wavenumber == smaller:
+                exponents = sorted({k[i][0][group.position][0] for h in self.halves for k in h.terms})
+                basis = wave_basis([((a, 0),) for a in exponents])
+                return _Lone(group.dispersion, group.length, group.position, (i,), basis)
+        return None
+
     # -------------------------------------------------------------------------------- complex arithmetic
 
     def _sizes(self, site: Site) -> tuple[list[_Test], list[int]]:
@@ -380,6 +397,10 @@ class _PieceMaker:
         tests += [
             (site.distance(self.groups[i].dispersion, self.groups[i].length), CONFLUENT, one) for i in pairs
         ]
+        fourth = len(tests)
+        laws = [d for d in self.table.dispersions if any(self.groups[i].dispersion is d for i in pairs)]
+        tests += [self._lone_test(site, d) for d in laws]
+        fifth = len(tests)
         occurs = self._together(forge, tests, counts, None)
         code: list[CodePiece] = []
         known: dict[_Choice, int] = {}
@@ -390,13 +411,31 @@ class _PieceMaker:
             if not occurs(near):
                 near = (False,) * len(near)
             grows = tuple(bits[first:second])
-            meets = any(bits[second + j] and not near[i] for j, i in enumerate(pairs))
-            key = (near, grows, meets)
+            far = {self.groups[i].dispersion for i in pairs if not near[i]}
+            lone = tuple(
+                d for d, b in zip(laws, bits[fourth:fifth], strict=True) if b and d in far and not all(near)
+            )
+            meets = any(
+                bits[second + j] and not near[i] and self.groups[i].dispersion not in lone
+                for j, i in enumerate(pairs)
+            )
+            key = (near, grows, meets, lone)
             if key not in known:
                 known[key] = len(code)
                 code.append(self._piece(*key))
             numbers.append(known[key])
         return self._assembled(forge, tests, numbers, code, None)
+
+    def _lone_test(self, site: Site, dispersion: Dispersion) -> _Test:
+        """Return the test that the smaller of a pair's arguments is small at every length."""
+        forge = site.forge
+        reaches = [
+            forge.multiply([forge.constant(g.spread), site.value(g.length)])
+            for g in self.groups
+            if g.dispersion is dispersion
+        ]
+        scale = forge.multiply([forge.constant(2), forge.power(forge.add(reaches), 2)])
+        return site.quotient(dispersion), (LONE * self.reach) ** 2, scale
 
     def _assembled(
         self,
@@ -417,13 +456,17 @@ class _PieceMaker:
         near: tuple[bool, ...],
         grows: tuple[bool, ...] = (),
         meets: bool = False,
+        lone: tuple[Dispersion, ...] = (),
         *,
         is_complex: bool = False,
     ) -> CodePiece:
         forge = Forge()
         delays = dict(zip(self.delays, grows, strict=True))
         site = Site(forge, self.tf, self.families, delays, self._exponents())
-        groups = [g for g, n in zip(self.groups, near, strict=True) if n]
+        groups: list[_Group] = [g for g, n in zip(self.groups, near, strict=True) if n]
+        for group, is_near in zip(self.groups, near, strict=True):
+            if not is_near and group.dispersion in lone and (own := self._lone(group)) is not None:
+                groups.append(own)
         scales = self._scales(groups, site.grows)
         values, gain = [], self.plain
         for half, sign in zip(self.halves, (1, -1), strict=True):
@@ -469,7 +512,7 @@ class _PieceMaker:
             return total, half.waves * half.unit
         parts = self._local_parts(half, near)
         taken = Factored.number(self.ring, 1)
-        if len(near) == len(self.groups):
+        if len(near) == len(self.groups) or any(isinstance(g, _Lone) for g in near):
             taken = self._power_of_s(v for rest in parts.values() for v in rest.values())
         summands = []
         solution = cache(partial(self._solution, site))
@@ -480,6 +523,9 @@ class _PieceMaker:
         return forge.add(summands), taken
 
     def _solution(self, site: Site, group: _Group, k: int) -> int:
+        if isinstance(group, _Lone):
+            reach = LONE * self.reach
+            return site.local_of_smaller(group.basis, group.dispersion, group.length, k, reach)
         return site.local(group.basis, group.dispersion, group.length, k, self.reach)
 
     def _power_of_s(self, values: Iterable[Factored]) -> Factored:
@@ -497,12 +543,13 @@ class _PieceMaker:
 
     def _new_parts(self, half: _Half, near: Sequence[_Group]) -> _LocalParts:
         found: _LocalParts = {}
+        lone = [g.dispersion for g in near if isinstance(g, _Lone)]
         for orders, terms in self._derivatives(half.terms, near):
             spend()
             if len(near) == 1 and self._is_negligible(orders[0], found):
                 break
             values = {
-                k: self._reduced(Factored.polynomial(self.ring, p * 2 ** self._still(k)) * half.waves)
+                k: self._reduced(Factored.polynomial(self.ring, p * 2 ** self._still(k)) * half.waves, lone)
                 for k, p in terms.items()
             }
             if values := {k: v for k, v in values.items() if not v.is_zero}:
@@ -551,12 +598,18 @@ class _PieceMaker:
                 found[k] = found.get(k, self.ring.constant(0)) + polynomial * factor
         return {k: p for k, p in found.items() if len(p)}
 
-    def _reduced(self, value: Factored) -> Factored:
-        """Return a value in normal form, free of wavenumbers where it is symmetric in them."""
+    def _reduced(self, value: Factored, lone: Sequence[Dispersion]) -> Factored:
+        """Return a value in normal form, free of wavenumbers where it is symmetric in them.
+
+        Values of pairs whose smaller wavenumber alone is expanded are made free of its negative powers.
+        """
         for dispersion in self.table.dispersions:
             if dispersion.kind == "pair" and not value.is_zero:
-                value = self._without_pair(value, dispersion)
-        return self.normal.reduce_factored(value)
+                is_lone = any(d is dispersion for d in lone)
+                reduce = self._without_smaller if is_lone else self._without_pair
+                value = reduce(value, dispersion)
+        # Powers of a lone wavenumber are small; the relations would make differences of large terms of them.
+        return value if lone else self.normal.reduce_factored(value)
 
     def _normal_form(self, polynomial: fmpz_mpoly) -> Factored:
         self.work += len(polynomial)
@@ -565,6 +618,27 @@ class _PieceMaker:
             hint = "give some parameters numbers, or leave out losses, loads or lengths"
             raise BudgetError(Diagnostic("SF503", message, None, hint))
         return self.normal.reduce(polynomial)
+
+    def _without_smaller(self, value: Factored, dispersion: Dispersion) -> Factored:
+        """Return a value that is finite where the smaller wavenumber is zero without negative powers of it.
+
+        With ``lambda_1^2 lambda_2^2 = c_0``, such a power becomes one of c_0, and that divides what is in
+        normal form: 1 and lambda_2^2 generate what is finite at both roots of ``x^2 + c_2 x``.
+        """
+        large, small = (Factored.generator(self.ring, w) for w in dispersion.wavenumbers)
+        (first, _), (second, _) = large.factors[0], small.factors[0]
+        power = value.exponent_of(second)
+        if power >= 0:
+            return value
+        even = -power + power % 2
+        outside = value.exponent_of(first)
+        # Powers of the larger one stay outside, where they are harmless; even ones are all there is of it.
+        whole = value / large**outside * (large * small) ** even
+        numerator = self._normal_form(whole.numerator().expand()) / whole.denominator()
+        if numerator.is_zero:
+            return numerator
+        reduced, _ = cancel(numerator, dispersion.characteristic[0] ** (even // 2))
+        return reduced * large**outside
 
     def _without_pair(self, value: Factored, dispersion: Dispersion) -> Factored:
         """Return a value that is symmetric in two wavenumbers without them."""

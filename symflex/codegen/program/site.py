@@ -220,6 +220,10 @@ class Site:
         exponent = [self.length(kernel.length), self.value(kernel.dispersion.shift)]
         return self.forge.apply("complex_exp", self.forge.negate(self.forge.multiply(exponent)))
 
+    def quotient(self, dispersion: Dispersion) -> int:
+        """Return ``c_0/c_2`` of a pair: at least half the square of the smaller wavenumber in size."""
+        return self.forge.divide(self.coefficient(dispersion), self.coefficient(dispersion, 2))
+
     # ------------------------------------------------------------------------------------ local solutions
 
     def local(self, basis: LocalBasis, dispersion: Dispersion, length: Factored, k: int, size: float) -> int:
@@ -239,6 +243,15 @@ class Site:
             ]
             coefficients.append(forge.multiply([forge.power(x, basis.order - i), forge.add(terms)]))
         return forge.multiply([forge.power(x, k), forge.solutions(coefficients, series_length(size))[k]])
+
+    def local_of_smaller(
+        self, basis: LocalBasis, dispersion: Dispersion, length: Factored, k: int, size: float
+    ) -> int:
+        """Return what :meth:`local` does for the smaller wavenumber of a pair, on the basis of a wave."""
+        forge, x = self.forge, self.length(length)
+        wavenumber = self._generators.generator(dispersion.wavenumbers[1])
+        argument = forge.multiply([forge.power(x, 2), wavenumber, wavenumber])
+        return self._series(basis, argument, x, k, size)
 
     def _series(self, basis: LocalBasis, argument: int, x: int, k: int, size: float) -> int:
         forge = self.forge
