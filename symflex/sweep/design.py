@@ -160,6 +160,23 @@ def between(limits: Range, count: int) -> tuple[ExactValue, ...]:
     return tuple(limits.at(Fraction(i, count - 1)) for i in range(count))
 
 
+def points_between(start: Point, end: Point, pieces: int) -> list[Point] | None:
+    """Return the points that divide the way from one point to another into equal pieces.
+
+    ``None`` where their values differ by a power of pi.
+    """
+    if any(a.pi_power != b.pi_power for a, b in zip(start, end, strict=True)):
+        return None
+    shares = (Fraction(i, pieces) for i in range(1, pieces))
+    return [
+        tuple(
+            ExactValue(a.rational + (b.rational - a.rational) * share, a.pi_power)
+            for a, b in zip(start, end, strict=True)
+        )
+        for share in shares
+    ]
+
+
 def number(value: ExactValue) -> float:
     """Return the nearest double in SI units, to the last bit where no power of pi stands in it."""
     return float(value.rational) * pi**value.pi_power

@@ -10,13 +10,14 @@ functions at both are similar, roots correspond one to one, exactly. Elsewhere i
 goes: along the line through the last two points, by one factor with all others, or nowhere. Distances are
 measured in ln(s), so that all frequencies count alike; the assignment whose distances add up to the least
 gives the names. Where the paths of two roots cross, or come closer to each other than what was foretold is
-right, the result says so. Roots are points of the closed upper
+right, the step is divided, and where doubt remains the result says so. Roots are points of the closed upper
 half plane: a pair that meets on the real axis becomes two real roots, of which one keeps the name.
 """
 
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from math import log
@@ -30,6 +31,8 @@ from symflex.sweep.design import Axis, Design, number
 
 Doubles = npt.NDArray[np.float64]
 Complexes = npt.NDArray[np.complex128]
+Between = Callable[[int, int, int], Sequence[Complexes] | None]
+"""From two points and a number of pieces to the roots where pieces meet; ``None`` if they cannot be found."""
 Integers = npt.NDArray[np.int64]
 
 CLEAR = 2.0
@@ -42,6 +45,8 @@ MEETING = 1e-9
 """Closer than this in ln(s), paths meet."""
 NEIGHBOURS = 32
 """Nearest draws that are looked through for one closer to the middle, before all are."""
+PIECES = (4, 16)
+"""Into how many a step is divided on which names are in doubt."""
 
 
 class NameOrigin(IntEnum):
@@ -160,12 +165,13 @@ def _outwards(design: Design) -> tuple[tuple[int, ...], tuple[int, ...]]:
     return tuple(order.tolist()), tuple(nearest.tolist())
 
 
-def follow(s: Complexes, family: Integers, steps: Predecessors) -> Names:
+def follow(s: Complexes, family: Integers, steps: Predecessors, between: Between | None = None) -> Names:
     """Name the roots of all points.
 
     ``s`` (points, roots) lie in the closed upper half plane and not at 0, by natural frequency; NaN stands
     behind the last of a point. ``family`` is equal and not 0 for points whose roots are the same but for one
-    factor, in the same order. ``steps`` is the way through the design.
+    factor, in the same order. ``steps`` is the way through the design; ``between`` is asked where names are
+    in doubt.
 
     Examples
     --------
@@ -196,6 +202,8 @@ def follow(s: Complexes, family: Integers, steps: Predecessors) -> Names:
                 step = _steps_before(seen, steps, i, old)
                 here = logarithms[parent, : len(old)]
                 names, links = _continued(here, old, last, own, step, modes)
+                if between is not None and NameOrigin.DOUBTFUL in links:
+                    names, links = _divided(between, (parent, i), here, old, own) or (names, links)
         modes = max(modes, int(names.max(initial=-1)) + 1)
         mode[i, :n], link[i, :n] = names, links
         places = np.full(modes, complex(np.nan, np.nan))
@@ -217,6 +225,37 @@ def _steps_before(seen: dict[int, Complexes], steps: Predecessors, i: int, old: 
     change = np.zeros(len(here), np.complex128)
     change[: len(there)] = here[: len(there)] - there
     return np.asarray(np.nan_to_num(change[old], nan=0.0) * steps.ratio[i], np.complex128)
+
+
+def _divided(
+    between: Between, ends: tuple[int, int], before: Complexes, old: Integers, own: Complexes
+) -> tuple[Integers, npt.NDArray[np.int8]] | None:
+    """Return names and links by way of points in between, ``None`` where roots come or go on the way."""
+    result = None
+    for pieces in PIECES:
+        found = between(*ends, pieces)
+        if found is None:
+            return result
+        here, names = before, old
+        doubtful: set[int] = set()
+        step: Complexes | None = None
+        for there in (*(np.log(s) for s in found), own):
+            if len(there) != len(here):
+                break
+            # All roots go on: none is missing, and none is new.
+            now, links = _continued(here, names, here[:0], there, step, 0)
+            if not np.isin(links, (NameOrigin.CLEAR, NameOrigin.DOUBTFUL)).all():
+                break
+            doubtful.update(now[links == NameOrigin.DOUBTFUL].tolist())
+            places = {int(name): j for j, name in enumerate(names)}
+            step = there - here[[places[int(name)] for name in now]]
+            here, names = there, now
+        else:
+            sure = [NameOrigin.DOUBTFUL if name in doubtful else NameOrigin.CLEAR for name in names.tolist()]
+            result = names, np.array(sure, np.int8)
+            if not doubtful:
+                break
+    return result
 
 
 def _continued(

@@ -40,11 +40,12 @@ from symflex.sweep.design import (
     check_design,
     design_of,
     fingerprint,
+    points_between,
     read_design,
     written,
 )
 from symflex.sweep.files import check_writable, open_journal, sweep_bytes
-from symflex.sweep.points import logarithmic, solve_chunk
+from symflex.sweep.points import PointStatus, logarithmic, solve_chunk
 from symflex.sweep.sweep import Sweep, assembled
 from symflex.transfer.of_model import derive_for_values, pick_pairs
 
@@ -53,6 +54,7 @@ if TYPE_CHECKING:
 
     from symflex.model import Model
     from symflex.roots import Progress, Region
+    from symflex.sweep.follow import Between, Complexes
 
 
 CONNECT_SECONDS = 10
@@ -131,6 +133,8 @@ CHUNKS = 200
 LARGEST_CHUNK = 1000
 AHEAD = 4
 """Chunks per worker that are handed out before any is back."""
+MOST_BETWEEN = (40, 400)
+"""Points solved between others, where names are in doubt: a tenth of all, at least and at most these."""
 MINUTE = 60.0
 HOUR = 3600.0
 
@@ -210,7 +214,7 @@ def run_sweep(
         message = f"a worker ended before its work: {error}"
         raise BudgetError(Diagnostic("SF508", message, None, hint)) from None
     rows = {name: _stacked([done[i][name] for i in chunks]) for name in done[0]}
-    return assembled(task, design, rows, attributes or {})
+    return assembled(task, design, rows, attributes or {}, _between(pickled, design))
 
 
 def _solved(
@@ -238,6 +242,25 @@ def _solved(
         finished, _ = wait(running, return_when=FIRST_COMPLETED)
         for future in finished:
             yield running.pop(future), future.result()
+
+
+def _between(pickled: bytes, design: Design) -> Between:
+    """Return what solves points between two of a design, in this process, until there were many."""
+    left = max(MOST_BETWEEN[0], min(design.count // 10, MOST_BETWEEN[1]))
+
+    def solve(start: int, end: int, pieces: int) -> list[Complexes] | None:
+        nonlocal left
+        places = points_between(design.points[start], design.points[end], pieces)
+        if places is None or left < len(places):
+            return None
+        left -= len(places)
+        rows = solve_chunk(pickled, places)
+        if np.any(rows["point_status"] > PointStatus.EXCEPT_ACCUMULATION):
+            return None
+        every = rows["re"] + 1j * rows["im"]
+        return [s[rows["status"][i] > 0] for i, s in enumerate(every)]
+
+    return solve
 
 
 def _stacked(arrays: Sequence[Array]) -> Array:

@@ -10,7 +10,7 @@ import numpy as np
 from symflex.errors.optional import installed
 from symflex.print.text import Passage, passages_text
 from symflex.sweep.design import Array, Design, Rows, Task, number
-from symflex.sweep.follow import NameOrigin, follow, predecessors
+from symflex.sweep.follow import Between, NameOrigin, follow, predecessors
 from symflex.sweep.points import MARGINS, VERDICTS, PointStatus, RootStatus
 
 SCHEMA = "symflex.sweep/1"
@@ -129,17 +129,20 @@ def _described(each: Labelled) -> dict[str, str]:
     return {k: v for k, v in (("units", each.unit), ("long_name", each.doc)) if v}
 
 
-def assembled(task: Task, design: Design, rows: Rows, attributes: Mapping[str, str]) -> Sweep:
+def assembled(
+    task: Task, design: Design, rows: Rows, attributes: Mapping[str, str], between: Between | None = None
+) -> Sweep:
     """Return the sweep that the rows of all points, in order, make.
 
-    ``attributes`` are added to what the task says.
+    ``attributes`` are added to what the task says; ``between`` solves points between others where names are
+    in doubt, see :func:`symflex.sweep.follow.follow`.
     """
     dims = tuple(label(axis.name) for axis in design.axes) + ((DRAW,) if design.draws else ())
     coordinates = list(_parameters(task, design))
     if design.draws:
         coordinates.append(Labelled(DRAW, (DRAW,), np.arange(design.draws, dtype=np.int32), "", "number"))
     if task.of in ("poles", "zeros"):
-        found, more = _roots(design, rows)
+        found, more = _roots(design, rows, between)
         coordinates.append(Labelled(MODE, (MODE,), np.arange(1, more + 1, dtype=np.int32), "", "name"))
     elif task.of == "response":
         values = np.array(task.frequencies)
@@ -197,10 +200,10 @@ def _parameters(task: Task, design: Design) -> list[Labelled]:
 Named = tuple[str, tuple[str, ...], "Array", str, str]
 
 
-def _roots(design: Design, rows: Rows) -> tuple[list[Named], int]:
+def _roots(design: Design, rows: Rows, between: Between | None) -> tuple[list[Named], int]:
     """Return the arrays of roots, sorted by the names of modes, and how many modes there are."""
     s = rows["re"] + 1j * rows["im"]
-    names = follow(s, rows["family"].astype(np.int64), predecessors(design))
+    names = follow(s, rows["family"].astype(np.int64), predecessors(design), between)
     modes_kept = max(
         names.modes, 1
     )  # one at least, absent everywhere: not all formats and readers take an empty axis

@@ -22,6 +22,24 @@ def test_a_long_step_is_in_doubt():
     assert follow(s, NO_FAMILY, ONE_STEP).link[1].tolist() == [NameOrigin.DOUBTFUL, NameOrigin.DOUBTFUL]
 
 
+def test_a_long_step_is_divided():
+    asked = []
+
+    def between(start, end, pieces):
+        asked.append((start, end, pieces))
+        return [rising(i / pieces) for i in range(1, pieces)]
+
+    names = follow(np.array([rising(0), rising(1)]), NO_FAMILY, ONE_STEP, between)
+    assert names.mode.tolist() == [[0, 1], [0, 1]]
+    assert names.link[1].tolist() == [NameOrigin.CLEAR, NameOrigin.CLEAR]
+    assert asked and all(each[:2] == (0, 1) for each in asked)
+
+
+def test_where_nothing_can_be_asked_doubt_remains():
+    names = follow(np.array([rising(0), rising(1)]), NO_FAMILY, ONE_STEP, lambda *step: None)
+    assert names.link[1].tolist() == [NameOrigin.DOUBTFUL, NameOrigin.DOUBTFUL]
+
+
 def test_a_root_that_is_nowhere_near_has_a_name_of_its_own():
     s = np.array([[1j, 2j], [1j, 400j]])
     names = follow(s, NO_FAMILY, ONE_STEP)
@@ -29,8 +47,10 @@ def test_a_root_that_is_nowhere_near_has_a_name_of_its_own():
     assert names.link[1].tolist()[1] == NameOrigin.APPEARS
 
 
-def test_modes_that_swap_places_within_one_step_are_in_doubt():
+def test_modes_that_swap_places_within_one_step():
     sweep = symflex.loads(TWO_RESONANCES).sweep({"k_1": "1:30:lin:4"})
+    assert np.allclose(sweep["im"][:, 0], np.sqrt(np.linspace(1, 30, 4)))
+    assert (sweep["im"][:, 1] == 2).all()
     assert sweep["link"][1].tolist() == [NameOrigin.DOUBTFUL, NameOrigin.DOUBTFUL]
 
 
