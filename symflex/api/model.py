@@ -122,8 +122,8 @@ class Model:
         values : bool
             Write numbers with units at the symbols.
         width : float, optional
-            Of the figure [mm]; by default a column (88.5), a page (170), or what the model needs. Lengths in
-            the figure are what they are in print.
+            Width of the figure [mm]; by default a column (88.5), a page (170), or what the model needs.
+            Lengths in the figure are what they are in print.
         font : str
             ``times``, ``latex`` or ``sans``.
 

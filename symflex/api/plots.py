@@ -77,7 +77,7 @@ class Plotted:
         ylim, phase : (float, float), optional
             Ends of the axes of magnitudes [dB] and phases [deg].
         width : float or str, optional
-            Of the figure [mm], or ``"ieee"`` or ``"a4"``.
+            Width of the figure [mm], or ``"ieee"`` or ``"a4"``.
         font : str, optional
             ``times``, ``latex`` or ``sans``.
         ax : two matplotlib axes, optional

@@ -37,15 +37,15 @@ if TYPE_CHECKING:
     from symflex.transfer import BoundTransferFunction
 
 BITS = 128
-"""Of gains and their limits."""
+"""Precision of gains and their limits."""
 SHRINKINGS = 30
 """Halvings of a disc about 0."""
 NEXT_TO_ZERO = 1e-6
-"""Of the frequency of one wave: from there on crossings are sought where nothing is known of 0."""
+"""Share of the frequency of one wave at which the search for crossings begins, if 0 stays open."""
 WAVES = 30.0
 """Largest argument of a kernel up to which poles are counted where no end is known."""
 COUNT_DIGITS = 12
-"""Of poles of which only the side of the axis is asked for."""
+"""Digits of poles of which only the side of the axis is asked for."""
 NUDGES = (0.0, 0.0137, 0.0291, 0.0531)
 """By which the outer circle is moved when it meets a pole [in ln]."""
 

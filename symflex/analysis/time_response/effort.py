@@ -41,14 +41,14 @@ class Effort:
     # Modes
     mode_digits: int = 9  # of the largest value, where modes have no end: 10^-9 takes 500 of a displacement
     pole_digits: int = 24  # those of a double, and what the phase loses after some million turns
-    first_modes: tuple[int, int] = (16, 32)  # from whose bounds it is told how many it takes
+    first_modes: tuple[int, int] = (16, 32)  # modes whose bounds decide how many more are needed
     axis_modes: int = 2000  # on the axis: velocities fall off so slowly that no number is enough
     plane_modes: int = 100  # where each is searched in the plane: that takes some seconds
-    continued_modes: int = 5000  # where each is told by those before: a millisecond or two
+    continued_modes: int = 5000  # where those before point to the next: a millisecond or two each
     slow_modes: int = 1000  # where even these would not do
     long: int = 100  # exponentials of a function of which no more are searched than at first: a frame has 274
     enough: float = 0.8  # of the radius allowed: the rest is for what values are known to
-    rounds: int = 3  # of telling how many it takes
+    rounds: int = 3  # rounds of that decision
     next_to: float = 0.05  # how far a mode may be from where those before point to, over the last step
 
     # Beams without loss

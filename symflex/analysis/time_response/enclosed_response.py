@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 SCHEMA = "symflex.respond/1"
 INTEGRATIONS = {"impulse": 0, "step": 1, "ramp": 2}
-"""Of the unit impulse, until it is the input."""
+"""How often the unit impulse is integrated to become the input."""
 UP = 1 + 2.0**-40
 """Makes up for rounding when the radius of a ball becomes a double."""
 LARGEST_POWER = 100_000
@@ -30,7 +30,7 @@ LARGEST = arb(10) ** LARGEST_POWER
 """Values beyond it are refused: their decimals take minutes, and nobody reads them."""
 SHORTER = "ask for a shorter time"
 ROWS = 21
-"""Of the table; all points are in the JSON and in files."""
+"""Rows of the table; all points are in the JSON and in files."""
 SHOWN_DIGITS = 17
 SHORT_DIGITS = 6
 IMPULSES = ("an impulse", "the derivative of an impulse")

@@ -49,7 +49,7 @@ if TYPE_CHECKING:
 SEARCHED_TOO_LONG = "SF505"
 """The code of a search that ends by itself, next to roots that accumulate; the user's own budgets end all."""
 BITS = bits_for_digits(2 * EFFORT.pole_digits)
-"""Of sums."""
+"""Precision of sums."""
 CONTINUATION = (-1, 4, -6, 4)
 """By what the last four of a smooth sequence are multiplied to give the next."""
 

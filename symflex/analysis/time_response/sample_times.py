@@ -39,7 +39,7 @@ FEWEST = 9
 TIME_CONSTANTS = 5.0
 """After which 1 % of a motion is left."""
 PERIODS, UNDAMPED_PERIODS = 12, 4
-"""Of the slowest oscillation: more show nothing new."""
+"""Periods of the slowest oscillation that are shown: more show nothing new."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -153,7 +153,7 @@ class BandForm:
         return tau * float(self.end_hz)
 
     @property
-    def ends(self) -> bool:
+    def is_limited(self) -> bool:
         """True where the form holds up to the band's end only: its roots are not all there are."""
         return bool(self.even or self.odd)
 
@@ -182,7 +182,7 @@ class BandForm:
             else "The poles and zeros in the band and around it are proved, and that there are no others."
         )
         end = f"abs(s) up to {self.end:.5g} rad/s, {float(self.end_hz):.5g} Hz"
-        holds = f"it holds for {end}, and is NaN beyond" if self.ends else f"it was measured for {end}"
+        holds = f"it holds for {end}, and is NaN beyond" if self.is_limited else f"it was measured for {end}"
         return (
             formula,
             f"Band form: {holds}. {proof} Numbers are those of the file: no parameter can be changed here.",
@@ -196,7 +196,7 @@ class BandForm:
     def program(self) -> Piecewise:
         """Return the program."""
         forge = Forge()
-        s = forge.within(self.end * (1 + SLACK)) if self.ends else forge.s
+        s = forge.within(self.end * (1 + SLACK)) if self.is_limited else forge.s
         factors = [forge.constant(Fraction(self.gain))]
         base = forge.power(s, abs(self.power))
         factors += [base] if self.power > 0 else [forge.divide(forge.constant(1), base)] if self.power else []
@@ -208,7 +208,7 @@ class BandForm:
             )
             scale = prod((r.scale for r in poles), start=Fraction(1)) / prod(r.scale for r in zeros)
             factors.append(forge.multiply([forge.constant(scale), forge.divide(above, below)]))
-        if self.ends:
+        if self.is_limited:
             factors.append(forge.apply("complex_exp", self._exponent(forge, s)))
         return schedule(forge, (), forge.multiply(factors), None, inf)
 

@@ -406,11 +406,10 @@ def _in_one_unit(phases: list[DataColumn]) -> list[DataColumn]:
     """Return the phases without those that stand there in another unit as well."""
     kept: list[DataColumn] = []
     for c in phases:
-        own = c.meaning.factor
-        turns = (c.numbers.real * (own or 1) - k.numbers.real * (k.meaning.factor or 1) for k in kept)
-        others = {k.meaning.factor for k in kept} - {None}
-        is_known = own is not None and bool(others - {own})
-        if not (is_known and any(np.nanmedian(np.abs(turn)) < SAME_PHASE for turn in turns)):
+        factor = c.meaning.factor
+        others = [k for k in kept if factor and k.meaning.factor not in (None, factor)]
+        turns = (c.numbers.real * factor - k.numbers.real * k.meaning.factor for k in others)
+        if not any(np.nanmedian(np.abs(turn)) < SAME_PHASE for turn in turns):
             kept.append(c)
     return kept
 
@@ -427,13 +426,15 @@ def _values(group: dict[str, DataColumn], lines: Real, guesses: list[str]) -> Co
             return np.asarray(parts[0] + 1j * parts[1], np.complex128)
         if "phase" in group:
             size, phase = _decided(group["magnitude"], group["phase"], lines, guesses)
-        elif "power" in group:
-            size = np.sqrt(group["power"].numbers.real)
-            phase = _minimum_phase(lines, size, guesses)
         else:
-            one = group["magnitude"]
-            size = _size(one, one.meaning.scale)
-            phase = _minimum_phase(lines, size, guesses)
+            if "power" in group:
+                size = np.sqrt(group["power"].numbers.real)
+            else:
+                size = _size(group["magnitude"], group["magnitude"].meaning.scale)
+            guesses.append(
+                "there is no phase: that of a minimum-phase response with this magnitude is computed"
+            )
+            phase = _minimum_phase(lines, size)
         return np.asarray(size * np.exp(1j * phase), np.complex128)
 
 
@@ -490,13 +491,13 @@ def _called(column: DataColumn, otherwise: str) -> str:
 
 def _are_lags(lines: Real, size: Real, phase: Real) -> bool:
     """Return whether phases are those of a minimum-phase function with this magnitude, times -1."""
-    kept = (lines > 0) & (size > 0) & np.isfinite(size) & np.isfinite(phase) & np.isfinite(lines)
-    order = np.argsort(lines[kept])
-    expected = _minimum_phase(lines[kept][order], size[kept][order], [])
-    turn = phase[kept][order]
-    if not np.any(expected):
+    expected = _minimum_phase(lines, size)
+    used = (expected != 0) & np.isfinite(phase)
+    if not np.any(used):
         return False
-    as_written, mirrored = (float(np.mean(1 - np.cos(sign * turn - expected))) for sign in (1, -1))
+    as_written, mirrored = (
+        float(np.mean(1 - np.cos(sign * phase[used] - expected[used]))) for sign in (1, -1)
+    )
     return mirrored < min(UNLIKE, as_written / CLEARLY)
 
 
@@ -532,14 +533,14 @@ def _unlikeness(lines: Real, size: Real, phase: Real) -> float:
     return abs(float(np.log((energies[1] + 1e-12) / (energies[0] + 1e-12))))
 
 
-def _minimum_phase(lines: Real, size: Real, guesses: list[str]) -> Real:
+def _minimum_phase(lines: Real, size: Real) -> Real:
     """Return the phase [rad] that the magnitude of a function without zeros on the right has.
 
     2 w/pi times the integral of (ln|H(v)| - ln|H(w)|)/(v^2 - w^2) over v (Bode 1945, chapter 14); beyond
-    its ends the magnitude goes on with the power of frequency that it has there, rounded.
+    its ends the magnitude goes on with the power of frequency that it has there, rounded. Lines may go down.
     """
-    guesses.append("there is no phase: that of a minimum-phase response with this magnitude is computed")
-    kept = (lines > 0) & (size > 0) & np.isfinite(size) & np.isfinite(lines)
+    kept = np.flatnonzero((lines > 0) & (size > 0) & np.isfinite(size) & np.isfinite(lines))
+    kept = kept[np.argsort(lines[kept])]
     x, y = np.log(lines[kept]), np.log(size[kept])
     phase = np.zeros(lines.size)
     if x.size < FEWEST_TO_DECIDE or np.any(np.diff(x) <= 0):

@@ -274,6 +274,7 @@ def text_files():  # noqa: PLR0915 - one statement a file
         ).encode(),
         tolerance=0.1,
     )
+    yield Saved("level.csv", rows(F[::-1], DB[::-1]).encode(), (H,), "f,mag_db", tolerance=0.1)
     yield Saved("matrix.csv", ("f_Hz,H\n" + rows(F, [f"{z.real:.12g}{z.imag:+.12g}i" for z in H])).encode())
     yield Saved("numpy.dat", ("# f [Hz] re im\n" + rows(F, RE, IM, sep=" ", form="{:.18e}")).encode())
     yield Saved(
