@@ -230,7 +230,9 @@ def test_a_template_says_at_its_head_what_it_is_and_what_to_try_next():
         assert len(commands) >= 2, template
 
 
-@pytest.mark.parametrize("template", TEMPLATES)
+@pytest.mark.parametrize(
+    "template", [pytest.param(t, marks=pytest.mark.slow) if t == "servo" else t for t in TEMPLATES]
+)
 def test_a_template_derives_and_what_it_proposes_works(shell, template):
     done = shell("new", template, "-o", f"{template}.toml")
     assert (done.code, done.out) == (0, "")

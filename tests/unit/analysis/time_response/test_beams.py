@@ -205,7 +205,10 @@ LOSSES = {
 }
 
 
-@pytest.mark.parametrize("name", LOSSES)
+@pytest.mark.parametrize(
+    "name",
+    [n if n == "to both, on a foundation" else pytest.param(n, marks=pytest.mark.slow) for n in LOSSES],
+)
 def test_a_step_of_a_beam_that_loses_energy_along_its_length_is_a_sum_of_damped_modes(name):
     text, loss = LOSSES[name]
     found = time_response(beam(kind=f"{UNIT}, {text}"), "step", SampleTimes.of(TIMES))
@@ -217,7 +220,9 @@ def test_a_step_of_a_beam_that_loses_energy_along_its_length_is_a_sum_of_damped_
     assert found.radius.max() <= 1e-9 * np.max(np.abs(expected))
 
 
-@pytest.mark.parametrize(("output", "eta"), [("x", 0.0003), ("s*x", 0.004)])
+@pytest.mark.parametrize(
+    ("output", "eta"), [pytest.param("x", 0.0003, marks=pytest.mark.slow), ("s*x", 0.004)]
+)
 def test_an_impulse_of_a_displacement_is_a_step_of_a_velocity_and_known_as_soon_as_high_modes_have_faded(
     output, eta
 ):

@@ -176,12 +176,14 @@ def test_data_without_a_resonance_are_fitted_without_one():
     assert not fit.poor
 
 
+@pytest.mark.slow
 def test_more_resonances_than_there_are_give_a_poor_fit():
     rough = noisy(ONE, noise=0.01)
     fit = fit_resonances([rough], UNIT, FitOptions(modes=3))
     assert fit.poor
 
 
+@pytest.mark.slow
 def test_a_mode_above_the_band_is_a_residual_term():
     above = System(np.array([30.0, 130.0]), np.full(2, 0.02), np.array([70.0, 1e6]), np.full(2, 0.02))
     fit = fit_resonances([replace(noisy(above, noise=0.001), coherence=None)])

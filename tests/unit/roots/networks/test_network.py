@@ -169,6 +169,7 @@ def test_a_train_read_at_its_other_end_has_no_zeros():
     assert (len(omegas(found.poles)), found.zeros) == (5, ())
 
 
+@pytest.mark.slow
 def test_zeros_are_frequencies_of_a_branch_clamped_at_the_path():
     found = located(driven_at_a(*TRAIN, rod("branch", "c", "e", "0.9")), Modes(4))
     assert found.certificate.certified
