@@ -303,22 +303,36 @@ def derive_for_roots(
 ) -> tuple[AnyBoundFunction, ...]:
     """Return transfer functions with the declared values, in the form in which roots are found.
 
-    In nested form where a network of beams, rods, shafts or strings is too large for the expanded one, or its
-    roots are found faster without it. With ``is_explained`` the expanded form is wanted for more than roots.
+    In nested form where beams, rods, shafts or strings are too large for the expanded one, or roots are found
+    faster without it. With ``is_explained`` the expanded form is wanted for more than roots.
     Raises what :func:`derive_bound` raises otherwise.
     """
-    if not model.is_distributed or not _may_be_large(model, 1):
+    if not model.is_distributed or is_tapered(model):
         return derive_bound(model, pairs)
-    numbered = with_numbers(model, in_kernels=True)
-    equations = assemble_sparse(numbered)
+    is_small = not _may_be_large(model, 1)
+    if is_small:
+        found = _expanded_unless_large(model, pairs, None)
+        if found is not None:
+            return found
+    equations = assemble_sparse(with_numbers(model, in_kernels=True))
     # Modes with loss factors are found in the expanded form alone.
     is_quick = not is_explained and not model.imaginary and not _accumulates(equations)
     is_counted = is_quick and _may_be_large(model) and is_passive(model)
     most = QUICK_PRODUCTS if is_quick else EXPANDED_PRODUCTS
-    if not is_counted and _expanded_terms(equations, pairs[0]) <= most:
-        try:
-            return tuple(bind(tf) for tf in _derive_expanded(model, pairs, UNASKED))
-        except BudgetError as error:
-            if error.diagnostics[0].code not in ("SF501", "SF502"):
-                raise
+    if not (is_small or is_counted) and _expanded_terms(equations, pairs[0]) <= most:
+        found = _expanded_unless_large(model, pairs, UNASKED)
+        if found is not None:
+            return found
     return tuple(bind_nested(tf) for tf in nested_form.derive_nested(equations, pairs))
+
+
+def _expanded_unless_large(
+    model: Model, pairs: Sequence[tuple[str, str]], most: Terms | None
+) -> tuple[BoundTransferFunction, ...] | None:
+    """Return expanded transfer functions with the declared values, None where they are too large."""
+    try:
+        return tuple(bind(tf) for tf in _derive_expanded(model, pairs, most))
+    except BudgetError as error:
+        if error.diagnostics[0].code not in ("SF501", "SF502"):
+            raise
+        return None
