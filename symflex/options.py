@@ -236,7 +236,11 @@ class RespondOptions:
         help="What the input does from t = 0 on; a file has two columns, time_s and the value.",
     )
     until: str | None = option(
-        None, "--until", metavar="TIME", help="Last time: 0.5s, '20 ms', 0.5.  [default of a file: its last]"
+        None,
+        "--until",
+        metavar="TIME",
+        help="Last time: 0.5s, '20 ms', 0.5.  [default: when the slowest motion has died away,"
+        " a file's last]",
     )
     points: int | None = option(
         None,

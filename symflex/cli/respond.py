@@ -41,6 +41,7 @@ def respond(spec: Specification, given: RespondOptions) -> int:
     from symflex import pipeline
     from symflex.analysis.time_response import (
         SampleTimes,
+        default_until,
         evenly,
         find_step_info,
         forced_response,
@@ -55,8 +56,6 @@ def respond(spec: Specification, given: RespondOptions) -> int:
         raise UsageError(Diagnostic("SF902", "--modes and --joint are of --shaped zv, zvd or ei"))
     until = None if given.until is None else duration(given.until, "--until")
     signal = read_signal(given.to) if given.to.lower().endswith(TABLE) else None
-    if signal is None and until is None:
-        raise UsageError(Diagnostic("SF902", "--until is missing: how long?", None, "as in --until 0.5s"))
     model = spec.load()
     pair = first_pair(model, given.tf, "showing")
     (bound,) = pipeline.derive_for_roots(model, [pair], is_explained=True)
@@ -66,7 +65,8 @@ def respond(spec: Specification, given: RespondOptions) -> int:
 
         shaper = input_shaper(bound, given.modes, given.shaped, given.digits, joint=given.joint)
     if signal is None:
-        times = SampleTimes.evenly(until or Fraction(1), given.points or POINTS)
+        last = until or Fraction(f"{default_until(bound):.2g}")
+        times = SampleTimes.evenly(last, given.points or POINTS)
         found = time_response(bound, given.to, times, given.digits, shaper)
     else:
         wanted = signal.times

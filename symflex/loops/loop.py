@@ -142,7 +142,11 @@ def pick_gain(parameters: Sequence[ModelParameter], name: str) -> ModelParameter
 
     known = {p.name: p for p in parameters}
     if name not in known:
-        hint = nearest(name, known) or "parameters: " + ", ".join(list(known)[:8])
+        hint = nearest(name, known) or (
+            "parameters: " + ", ".join(list(known)[:8])
+            if known
+            else "the gain is a parameter of a loop in [signals] or [blocks]; 'symflex new servo' writes one"
+        )
         raise UsageError(Diagnostic("SF902", f"there is no parameter '{name[:64]}'", None, hint))
     return known[name]
 

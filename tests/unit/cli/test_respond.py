@@ -47,6 +47,13 @@ def test_json_has_the_schema_and_holds_the_closed_form(oscillator):
         assert abs(float(value) - step_of_oscillator(t)) <= float(radius) + 1e-17
 
 
+def test_without_an_end_a_step_is_followed_until_it_has_died_away(oscillator):
+    found = oscillator("respond", "osc.toml", "--tf", "X/F", "--json").json
+    left = math.exp(-found["time"][-1])  # the poles are -1 +- 20j
+    assert 0.001 < left < 0.05
+    assert float(found["value"][-1]) * 800 == pytest.approx(1, abs=1.01 * left)
+
+
 def test_a_value_that_is_set_is_used(oscillator):
     arguments = ["--tf", "X/F", "--until", "0.5", "--points", "2", "--json", "--set", "k=400 N/m"]
     document = oscillator("respond", "osc.toml", *arguments).json
@@ -80,7 +87,6 @@ def test_what_makes_no_sense_is_refused_with_a_sentence(oscillator):
         ["--until", "1", "--tf", "Y/F"],
         ["--until", "1", "-o", "x.docx"],
         ["--until", "1", "-o", "x.csv", "--json"],
-        [],
     ):
         done = oscillator("respond", "osc.toml", *arguments)
         assert done.code == 2, arguments
