@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING
 
 from symflex.algebra import Factored
 from symflex.budget import Budget, entered_budget, spend
-from symflex.errors import Diagnostic, UncertifiedError, UsageError
+from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
 from symflex.loops.apart import poles_apart
-from symflex.loops.loop import Loop, LoopFunction
+from symflex.loops.loop import NO_LOOP, Loop, LoopFunction
 from symflex.loops.networks import AnyLoop, LoopInDisc, NetworkLoop
 from symflex.model import ExactValue
 from symflex.roots import Band, Modes, PoleZeroMap, Position, Region, Root
@@ -125,6 +125,9 @@ def _parts(loop: Loop) -> tuple[Factored, Factored]:
         elif factor.multiplicity < 0:
             divisor = factor.coefficients[0] ** factor.multiplicity
             above, below = above * divisor, below * divisor
+    if below.is_zero:
+        message = f"'{loop.gain.name}' divides the characteristic function, and moves no pole"
+        raise ModelError(Diagnostic("SF801", message, loop.gain.span, NO_LOOP))
     return above, below
 
 

@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 
 TRIALS = ("1", "2", "0.37")
 """Values of a gain without one, for which the other parameters are bound; one is not a singular case."""
+NO_LOOP = "a loop is closed in [signals], as in e = 'r - y', u = 'K*e'"
+"""Hint where a parameter moves no pole."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,8 +100,7 @@ def characteristic_loop(
         raise no_loop("SF801", message, gain)
     if position is None or not _depends(tf, position):
         message = f"no pole of the model depends on '{gain.name}'"
-        hint = "a loop is closed in [signals], as in e = 'r - y', u = 'K*e'"
-        raise ModelError(Diagnostic("SF801", message, gain.span, hint))
+        raise ModelError(Diagnostic("SF801", message, gain.span, NO_LOOP))
     bound = _bound(tf, gain, dict(values or {}))
     nominal = dict(bound.values)[gain.name] if gain.value is not None or gain.name in (values or {}) else None
     factors = [(f, e, False) for f, e in tf.den.factors]

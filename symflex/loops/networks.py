@@ -22,7 +22,7 @@ from flint import acb, ctx
 from symflex.algebra import Factored, degree_in, terms_of
 from symflex.errors import Diagnostic, ModelError
 from symflex.expressions import names_among
-from symflex.loops.loop import Loop, no_loop
+from symflex.loops.loop import NO_LOOP, Loop, no_loop
 from symflex.roots.networks.cramer import CramerEquations
 from symflex.roots.networks.disc_search import DiscSearch
 from symflex.roots.networks.disc_series import DiscSeries
@@ -134,8 +134,7 @@ def network_loop(equations: Equations, gain: ModelParameter, nominal: Fraction |
         rows.append(kept)
     if acts is None:
         message = f"no pole of the model depends on '{gain.name}'"
-        hint = "a loop is closed in [signals], as in e = 'r - y', u = 'K*e'"
-        raise ModelError(Diagnostic("SF801", message, gain.span, hint))
+        raise ModelError(Diagnostic("SF801", message, gain.span, NO_LOOP))
     one = Factored.number(ring, 1)
     rows[acts][size] = one
     return NetworkLoop(gain, nominal, CramerEquations(equations, [*rows, border], one), acts)

@@ -55,6 +55,17 @@ def test_the_loop_gain_is_minus_one_at_a_boundary(loop):
     assert abs(loop_gain(characteristic(model))(1j * 2**0.5) + 1) < 1e-12
 
 
+def test_a_mass_alone_is_no_gain():
+    cart = """
+symflex = 1
+parameters.m = "2 kg"
+inputs.F   = { force = "x" }
+outputs.X  = "x"
+elements.cart = { type = "mass", at = "x", m = "m" }
+"""
+    assert refusal(trace_locus, characteristic(symflex.loads(cart), "m")) == "ModelError SF801"
+
+
 def test_errors(loop):
     squared, unset = (characteristic(loop(*each)) for each in (("K^2/(s + 1)",), ("K/(s + 1)", {})))
     assert refusal(trace_locus, squared) == "UsageError SF806"
