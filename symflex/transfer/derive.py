@@ -89,7 +89,7 @@ class ClosedDefinitions:
     def of(self, tf: TransferFunction) -> TransferFunction | None:
         """Return the same function in the names of definitions, None where there are none to be kept."""
         equations = None if tf.solve is None else tf.solve.plain
-        if equations is None or equations.propagation is None or not tf.has_formula:
+        if equations is None or not tf.has_formula:
             return None
         free = {"pi", *(p.name for p in tf.model.parameters), *(c.generator for c in tf.constants)}
         kept: list[str] = []

@@ -6,6 +6,7 @@ from dataclasses import replace
 from importlib import import_module
 from typing import TYPE_CHECKING
 
+from symflex.algebra import degree_in
 from symflex.errors import Diagnostic, InternalError, UsageError
 from symflex.errors.diagnostic import nearest
 from symflex.expressions import format_expression
@@ -87,6 +88,8 @@ LONG = 200
 """Characters of a form from which sums of blocks are left as they are written, where that is much shorter."""
 SHORTER = 1.5
 """How many times as long a form of one fraction has to be."""
+CLOSED = 1.1
+"""How many times shorter a lumped form has to read with its definitions closed."""
 FEW = 60
 """Terms up to which every form is arranged: that takes some hundredths of a second."""
 MORE = 1.25
@@ -128,7 +131,7 @@ def _arranged(
     if tf.is_distributed:
         made = _distributed(tf, form, digits, arranged or Arranged())
     else:
-        made = min((_made(tf, name, digits) for name in ([form] if form else _candidates(tf))), key=_length)
+        made = _lumped(tf, form, digits, arranged or Arranged())
     if form is None and _length(made) > LONG and (written := _written(tf)) is not None:
         return min((made, written), key=lambda f: _length(f) * (1 if f is made else SHORTER))
     return made
@@ -148,6 +151,31 @@ def _distributed(tf: TransferFunction, form: str | None, digits: int, arranged: 
         return opened
     kept = shortest(closed)
     return opened if MORE * _length(opened) < _length(kept) else kept
+
+
+def _lumped(tf: TransferFunction, form: str | None, digits: int, arranged: Arranged) -> PrintedForm:
+    """Return a form, definitions closed where that is shorter and no form was asked for."""
+
+    def shortest(own: TransferFunction) -> PrintedForm:
+        return min((_made(own, name, digits) for name in ([form] if form else _candidates(own))), key=_length)
+
+    opened = shortest(tf)
+    closed = arranged.definitions.of(tf) if form is None and tf.definitions else None
+    # What cancels only where definitions are opened would stand in both sides.
+    if closed is None or _order(closed) > _order(tf):
+        return opened
+    kept = replace(shortest(closed), source=closed)
+    return kept if CLOSED * _read(kept) < _read(opened) else opened
+
+
+def _read(form: PrintedForm) -> float:
+    """Return the length of a form and half of that of its definitions, which a reader looks up."""
+    looked_up = (e for name, e in form.where if name in form.definitions)
+    return _length(form) + sum(len(format_expression(e)) for e in looked_up) / 2
+
+
+def _order(tf: TransferFunction) -> int:
+    return sum(degree_in(f, 0) * e for f, e in tf.num.factors)
 
 
 def _written(tf: TransferFunction) -> PrintedForm | None:

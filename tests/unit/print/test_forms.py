@@ -130,6 +130,40 @@ def test_definitions_stay_closed_in_every_form_of_two_masses():
         assert {"M", "mu"} <= {n for n, _ in form.where}
 
 
+ABSORBER = """
+symflex = 1
+parameters  = { M = {}, K = {}, mu = {}, zeta = {} }
+definitions = { m = "mu*M", w = "sqrt(K/M)/(1 + mu)", k = "m*w^2", c = "2*zeta*m*w" }
+inputs.F    = { force = "x" }
+outputs.X   = "x"
+[elements]
+house    = { type = "mass", at = "x", m = "M" }
+absorber = { type = "mass", at = "y", m = "m" }
+ground   = { type = "spring", between = ["x", "ground"], k = "K" }
+spring   = { type = "spring", between = ["x", "y"], k = "k" }
+damper   = { type = "damper", between = ["x", "y"], b = "c" }
+"""
+
+
+def test_a_tuned_absorber_prints_in_its_own_mass_spring_and_damper():
+    # Den Hartog 1934, section 3.3: opened, it is a page of mu and roots of K and M.
+    assert printed(tf_of(ABSORBER, "X", "F")) == (
+        "m*s^2 + c*s + k",
+        "(M*s^2 + K)*(m*s^2 + c*s + k) + m*s^2*(c*s + k)",
+    )
+
+
+def test_what_cancels_only_where_definitions_are_opened_is_cancelled():
+    text = """
+symflex = 1
+parameters  = { R = {}, C = {} }
+definitions = { T_1 = "R*C", T_2 = "C*R" }
+inputs.u    = {}
+outputs.y   = "u*(T_1*s + 1)/((T_2*s + 1)*(T_1*s + 2))"
+"""
+    assert printed(tf_of(text, "y", "u")) == ("1", "T_1*s + 2")
+
+
 def test_a_factor_that_is_a_definition_with_s_bears_its_name():
     form = print_form(tf_of(with_definitions('Z = "b*s + k"'), "Y", "F"), "factored")
     assert format_expression(form.num) == "Z"
