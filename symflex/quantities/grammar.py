@@ -137,6 +137,7 @@ _Result = tuple[Constant, PlacedUnit]
 
 NOT_IN_PARAMETERS = f"a parameter is real; {IMAGINARY_UNIT}"
 _ONE_NUMBER: Final = "the number stands before the unit and the unit holds no other, except 1 in '1/s'"
+_NO_GROUPS: Final = "digits are not grouped, as in '12000 m'"
 NEARER: Final = "choose a unit in which the number lies nearer to 1"
 _NO_UNIT: Final = Unit(Fraction(1))
 # Stands at no place, so that a unit alone never seems to touch it.
@@ -218,6 +219,16 @@ def _syntax_hint(before: str, after: str, found: str) -> str | None:
             return f"a space parts number and unit: '{constant} {'1/' if before[-1] == '/' else ''}{after}'"
     if re.match(NUMBER, found):
         return _ONE_NUMBER
+    after = after[len(found) :]
+    if found in {".", "-"} and UNIT_START.match(before[-1:]):
+        if UNIT_START.match(after):
+            return "units are multiplied by '*' or a space, as in 'kg*m^2'"
+        power = re.match("[0-9]+", after)
+        return f"write '^-{power[0]}'" if power and found == "-" else None
+    if before[-1:].isdigit() and (
+        (found in {"'", "_"} and after[:1].isdigit()) or re.search("[0-9] [0-9]+$", before)
+    ):
+        return _NO_GROUPS
     return None
 
 

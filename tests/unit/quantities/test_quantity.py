@@ -218,6 +218,11 @@ def test_an_error_in_a_decoded_string_underlines_the_whole_string():
 
 def test_a_refusal_says_what_to_write():
     for written, hint in [
+        ("0.006 kg.m^2", "kg*m^2"),
+        ("3 lb-ft", "kg*m^2"),
+        ("1 kg m-1", "write '^-1'"),
+        ("1 000 m", "digits are not grouped"),
+        ("1'000 m", "digits are not grouped"),
         ("5/s", "'5 1/s'"),
         ("5*mm", "'5 mm'"),
         ("kg", "'1 kg'"),
