@@ -61,7 +61,14 @@ def explain_singular(equations: Equations) -> ModelError:
             else f"the constraint of {names} repeats what is already imposed"
         )
         last = next(r.about for r in constraints if r.about.owner == owners[-1])
-        problems.append(Diagnostic("SF302", message, _place(equations, last), "remove one of them"))
+        held = any(
+            use.name in owners and use.element.type_name == "fixed" for use in equations.model.elements
+        )
+        is_moved = held and any(x.name in owners for x in equations.model.inputs)
+        hint = 'hold only what no input moves, as in at = "base.theta"'
+        problems.append(
+            Diagnostic("SF302", message, _place(equations, last), hint if is_moved else "remove one of them")
+        )
     elif conditions := [r for r in rows if r.role == "condition"]:
         problems += _dependent_conditions(equations, conditions)
     elif written := [r for r in rows if r.role == "equation"]:

@@ -27,6 +27,14 @@ SINGULAR = {
         "SF302",
         ("'one'", "'two'"),
     ),
+    "a clamp that an input moves": (
+        'EI = {}\nl = {}\n[elements]\n'
+        'arm = { type = "beam", between = ["x", "tip"], EI = "EI", rhoA = 1, l = "l" }\n'
+        'held = { type = "fixed", at = "x" }\n',
+        '[inputs]\nz = { displacement = "x" }\n[outputs]\nX = "tip"\n',
+        "SF302",
+        ("'held'", "'z'"),
+    ),
     "two voltage sources at one node": (
         'R = {}\n[elements]\nr = { type = "resistor", between = ["a", "ground"], R = "R" }\n'
         'one = { type = "voltage_source", at = "a", v = "U" }\n'
@@ -84,6 +92,11 @@ SAID = {
         "the constraints of 'one' and 'two' repeat or contradict each other",
         "remove one of them",
         "two",
+    ),
+    "a clamp that an input moves": (
+        "the constraints of 'held' and 'z' repeat or contradict each other",
+        'hold only what no input moves, as in at = "base.theta"',
+        "z",
     ),
     "an algebraic loop of gain one": (
         LOOP.format("'e'"),
