@@ -50,6 +50,10 @@ if TYPE_CHECKING:
 
 RESTS = {"electrical": "a terminal at earth", "acoustic": "an open end"}
 """What is at ground, where that is no end that does not move."""
+PORTS = {name for element in ELEMENTS.values() for p in element.ports for name in (p.name, p.pair)} | {
+    *("node", "nodes", "pins", "ends")
+}
+"""Where elements have their nodes, and what else people call it."""
 TYPES_HINT = "'symflex elements' lists the types"
 
 
@@ -255,7 +259,7 @@ def _references(
             "SF217",
             f"{element.type_name} '{entry.key}' lacks its port '{port.name}' ({port.doc})",
             entry.key_span,
-            f"ports of {element.type_name}: {ports}",
+            _as_ports(table, element) or f"ports of {element.type_name}: {ports}",
         )
         return None
     kind = "the name of a node" if wanted == 1 else f"an array of {wanted} nodes"
@@ -291,6 +295,30 @@ def _references(
             reader.note("SF218", message, found.value.span)
             return None
     return kept
+
+
+def _as_ports(table: TableValue, element: Element) -> str | None:
+    """Return how nodes given under another element's port are written, None where that is not told."""
+    own = {name for p in element.ports for name in (p.name, p.pair)}
+    missing = [p for p in element.ports if table.get(p.name) is None and p.default is None]
+    for entry in table.entries:
+        value = entry.value
+        if entry.key not in PORTS - own or not isinstance(value, StringValue | ArrayValue):
+            continue
+        items = (value,) if isinstance(value, StringValue) else value.items
+        nodes = [f'"{i.text.value[:60]}"' for i in items if isinstance(i, StringValue)]
+        if len(nodes) == 1 and [p.terminals for p in missing] == [2]:
+            nodes = ['"ground"', *nodes]
+        if len(nodes) > (wanted := sum(p.terminals for p in missing)):
+            nodes = [node for node in nodes if node != '"ground"']
+        if len(nodes) == wanted:
+            pieces = []
+            for p in missing:
+                taken, nodes = nodes[: p.terminals], nodes[p.terminals :]
+                listed = ", ".join(taken)
+                pieces.append(f"{p.name} = {listed if p.terminals == 1 else f'[{listed}]'}")
+            return "write " + ", ".join(pieces)
+    return None
 
 
 def _reference(reader: Reader, text: Text, domain: PortDomain, what: str) -> NodeReference | None:
