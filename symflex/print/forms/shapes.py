@@ -170,7 +170,7 @@ class _Signs:
         may_turn = below > len(terms) if has_s else below == len(terms) and (self.turns or has_number)
         sign = self._sign(whole) if may_turn else 0
         is_negative = sign < 0 if sign else below == 2 * len(terms)
-        return negative(sum_of(_led(turned))) if is_negative else sum_of(_led(terms))
+        return negative(sum_of(_led(_gathered(turned)))) if is_negative else sum_of(_led(_gathered(terms)))
 
     def absorbed(self, num: Expression) -> Expression:
         """Return minus a numerator, the sign within a sum that ends with a negative term if there is one."""
@@ -193,6 +193,24 @@ class _Signs:
 
 def _texts(terms: Iterable[Expression]) -> frozenset[str]:
     return frozenset(map(format_expression, terms))
+
+
+def _gathered(terms: Sequence[Expression]) -> Sequence[Expression]:
+    """Return terms with powers of s side by side: ``s^2 + 6*s + 5 + K*(s + 1)``.
+
+    What holds s within a sum or a function follows the powers that it stood between.
+    """
+    powers = [i for i, t in enumerate(terms) if not any(map(_holds_s, nodes(t)))]
+    if not any(S in names(terms[i]) for i in powers):
+        return terms
+    held = [t for i, t in enumerate(terms[: powers[-1]]) if i not in powers and i > powers[0]]
+    return [*terms[: powers[0]], *(terms[i] for i in powers), *held, *terms[powers[-1] + 1 :]]
+
+
+def _holds_s(part: Expression) -> bool:
+    """Tell whether a part is a sum or a root with s, or a function, whose argument a where line may name."""
+    is_free = isinstance(part, Sum) or (isinstance(part, Call) and part.name == "sqrt")
+    return S in names(part) if is_free else isinstance(part, Call)
 
 
 def _led(terms: Sequence[Expression]) -> list[Expression]:

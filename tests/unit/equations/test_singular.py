@@ -28,7 +28,7 @@ SINGULAR = {
         ("'one'", "'two'"),
     ),
     "a clamp that an input moves": (
-        'EI = {}\nl = {}\n[elements]\n'
+        "EI = {}\nl = {}\n[elements]\n"
         'arm = { type = "beam", between = ["x", "tip"], EI = "EI", rhoA = 1, l = "l" }\n'
         'held = { type = "fixed", at = "x" }\n',
         '[inputs]\nz = { displacement = "x" }\n[outputs]\nX = "tip"\n',

@@ -376,6 +376,10 @@ SHAPES = {
     "decimals as typed": ("", "u/(s^2 + 0.9*s + 1)", "1/(s^2 + 0.9*s + 1)"),
     "a time constant beside a decimal gain": ("", "0.1*5*u/(5*s + 1)", "0.5/(5*s + 1)"),
     "no decimals where none are typed": ("K = {}", "K*u/(10*s^2 + 9*s + 10)", "K/(10*s^2 + 9*s + 10)"),
+    # Ogata, Modern Control Engineering, a conditionally stable loop; and a lag with dead time.
+    "what a gain multiplies follows the plant": (
+        "K = {}", "K*(s^2 + 2*s + 4)*u/(s^4 + 11*s^3 + 24*s + K*(s^2 + 2*s + 4))",
+        "K*(s^2 + 2*s + 4)/(s^4 + 11*s^3 + 24*s + K*(s^2 + 2*s + 4))"),
     "a square": ("a = {}, b = {}, J = {}, m = {}", "u/((J + m*(a + b)^2)*s^2 + 1)",
                  "1/((J + m*(a + b)^2)*s^2 + 1)"),
 }  # fmt: skip
