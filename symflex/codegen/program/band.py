@@ -299,9 +299,13 @@ def _located(bound: AnyBoundFunction, up_to: Fraction | None) -> tuple[PoleZeroM
 
 
 def _split(roots: Sequence[Root]) -> tuple[int, tuple[SplitRoot, ...]]:
-    """Return how many roots are zero, and the others, each as often as it occurs, images once."""
+    """Return how many roots are zero, and the others, each as often as it occurs, images once.
+
+    What cannot be told from zero is taken for it: values measured show whether it is.
+    """
     found = []
-    for group in groups(roots):
+    at_zero = [root for root in roots if root.is_zero or root.enclosure().contains(0)]
+    for group in groups([root for root in roots if root not in at_zero]):
         upper = [root for root in group if not root.im < 0]
         left, right = ([r for r in upper if bool(r.re < 0) == is_left] for is_left in (True, False))
         is_mirrored = len(left) == len(right) == 1 and left[0].multiplicity == right[0].multiplicity
@@ -309,7 +313,7 @@ def _split(roots: Sequence[Root]) -> tuple[int, tuple[SplitRoot, ...]]:
             re = (0.0, 0.0) if root.on_imaginary_axis else _two_doubles(root.re)
             im = (0.0, 0.0) if root.is_real else _two_doubles(root.im)
             found += [SplitRoot(re, im, is_mirrored)] * root.multiplicity
-    return sum(root.multiplicity for root in roots if root.is_zero), tuple(found)
+    return sum(root.multiplicity for root in at_zero), tuple(found)
 
 
 def _two_doubles(x: arb) -> tuple[float, float]:

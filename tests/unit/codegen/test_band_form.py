@@ -127,6 +127,23 @@ def test_a_function_that_is_zero_stays_so():
     assert not program.conditions
 
 
+def test_a_column_at_its_buckling_load_has_a_pole_at_rest():
+    column = """
+symflex = 1
+parameters = { EI = "168 N*m^2", rhoA = "0.785 kg/m", l = "1 m", P = "pi^2*EI/l^2" }
+inputs.M = { torque = "a.theta" }
+outputs.turn = "a.theta"
+[elements]
+left   = { type = "pin", at = "a" }
+right  = { type = "pin", at = "b" }
+column = { type = "beam", between = ["a", "b"], EI = "EI", rhoA = "rhoA", l = "l", N = "-P" }
+"""
+    turn = executed(exported(column, "numpy").text)["turn_over_M"]
+    omega = 0.01  # rad/s; the next mode is at 500 rad/s
+    first_mode = -2 * np.pi**2 / (0.785 * omega**2)  # sqrt(2) sin(pi x/l), which nothing holds
+    assert turn(1j * omega) == pytest.approx(first_mode, rel=1e-7)
+
+
 def test_it_needs_values():
     model = pipeline.loads(STRING.replace('T = "10 N"', 'T = { unit = "N" }'))
     with pytest.raises(ModelError, match=r"SF229.*T has no value"):
