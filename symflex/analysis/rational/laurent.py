@@ -214,15 +214,17 @@ def expand_at_pole(
     sides = _network_sides(bound, digits) if isinstance(bound, NetworkSides) else _sides(bound, root, digits)
     for bits, (above, below) in sides:
         with precision(bits):
-            known = _expanded(above, below, root)
-            if known is None:
-                continue
-            pole, found, extra = known
-            if root.is_real:
-                found = [acb(c.real) for c in found]
-            if _is_accurate(found, digits, bits):
-                found = [acb(about_zero(c.real), about_zero(c.imag)) for c in found]
-                return pole, LaurentSeries(-root.multiplicity, tuple(found), is_estimate=extra > 0)
+            # Most roots are known well enough as they are found.
+            for is_refined in (False, True):
+                known = _expanded(above, below, root, is_refined=is_refined)
+                if known is None:
+                    continue
+                pole, found, extra = known
+                if root.is_real:
+                    found = [acb(c.real) for c in found]
+                if _is_accurate(found, digits, bits):
+                    found = [acb(about_zero(c.real), about_zero(c.imag)) for c in found]
+                    return pole, LaurentSeries(-root.multiplicity, tuple(found), is_estimate=extra > 0)
     re, im = float(root.re.mid()), float(root.im.mid())
     message = f"the residue of {name} at {re:g} {im:+g} j rad/s cannot be told"
     raise UncertifiedError(Diagnostic("SF405", message))
@@ -251,10 +253,13 @@ def _network_sides(sides: NetworkSides, digits: int) -> Iterator[tuple[int, tupl
         yield 2 * bits_for_digits(finer * digits), sides.taylor(finer * digits)
 
 
-def _expanded(above: Taylor, below: Taylor, root: Root) -> tuple[acb, list[acb], int] | None:
-    """Return a refined pole, its principal part, and how many zeros lie on top of it."""
+def _expanded(
+    above: Taylor, below: Taylor, root: Root, *, is_refined: bool
+) -> tuple[acb, list[acb], int] | None:
+    """Return a pole, refined or as it is, its principal part, and how many zeros lie on top of it."""
     for extra in range(COINCIDENT + 1):
-        pole = _refined(below, root, root.multiplicity + extra)
+        order = root.multiplicity + extra
+        pole = _refined(below, root, order) if is_refined else _on_axis(root, root.enclosure())
         found = _principal(above, below, pole, root.multiplicity, extra)
         if found is not None:
             return pole, found, extra
