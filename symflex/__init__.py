@@ -55,7 +55,7 @@ if TYPE_CHECKING:
     from symflex.data.measurement import MeasuredResponse, read_measurement
     from symflex.errors import SymflexError
 
-__version__ = "0.1.0"
+__version__ = "1.0.0"
 
 __all__ = [
     "BoundNestedTransferFunction",

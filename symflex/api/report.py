@@ -50,6 +50,7 @@ def write_report(
     ----------
     specs : str, Path or a sequence of them
         Specifications; a folder stands for all in it and below, with the measured responses there.
+        Where no file has the name, the example of that name is taken, such as ``eppinger1988``.
     folder : str or Path
         Where to write; what stands there stays, but for files of the same names.
     pdf : bool, optional
@@ -65,7 +66,7 @@ def write_report(
     SpecError, ModelError
         With every problem of all files that are not solvable models, before anything is computed.
     UsageError
-        SF902 no specification; SF903 a file cannot be written.
+        SF901 neither a file nor an example; SF902 no specification; SF903 a file cannot be written.
 
     Examples
     --------

@@ -37,6 +37,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "measure": ("measured", "Write a synthetic measurement of a model."),
     "report": ("report", "Write a report: a page, a PDF, figures, code, data."),
     "new": ("library", "Write a specification to start from."),
+    "examples": ("examples", "List the example models that come with symflex, or copy one."),
     "elements": ("library", "List the element and block library."),
     "units": ("library", "List the units and prefixes that quantities may have."),
 }

@@ -25,7 +25,8 @@ def report(given: ReportOptions) -> int:
     .mat, .npz) that stand there are drawn with the transfer functions of their names. DIR/index.html is one
     page that opens without a network and holds everything; beside it are report.tex and report.pdf, and the
     folders figures, code and data. What a specification publishes is audited, models are compared, and the
-    claims of a publication that is known are judged.
+    claims of a publication that is known are judged. Where no file has the name, the example of that name is
+    taken: 'symflex report eppinger1988' needs no file, and 'symflex examples' lists the names.
 
     All specifications are checked before anything is computed: where one is invalid the exit code is 3, and
     nothing is written. A model that cannot be computed afterwards costs its own chapter only, which says why.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import secrets
 import stat
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
 from symflex.errors import Diagnostic, UsageError
@@ -106,6 +106,40 @@ def write_folder(folder: Path, files: Mapping[str, str]) -> None:
         write_atomically(Path(folder) / name, text.encode())
 
 
+def write_tree(folder: Path, files: Mapping[str, bytes]) -> None:
+    """Write files into a folder and its subfolders, which are made when they are missing.
+
+    ``folder`` may be a symbolic link, its subfolders not; ``files`` are contents by relative path, ``/``
+    between names. Raises ValueError for a path that leads elsewhere; UsageError: SF903 when something cannot
+    be written, or a subfolder is a symbolic link.
+    """
+    for name in files:
+        path = PurePosixPath(name)
+        if path.is_absolute() or not path.parts or "\\" in name or "\0" in name or ".." in path.parts:
+            message = f"{name!r} leads out of the folder"
+            raise ValueError(message)
+    made: set[Path] = set()
+    for name, content in files.items():
+        target = Path(folder, *PurePosixPath(name).parts)
+        for parent in (folder, *(p for p in reversed(target.parents) if folder in p.parents)):
+            if parent not in made:
+                _make(parent, is_root=parent == folder)
+                made.add(parent)
+        write_atomically(target, content)
+
+
+def _make(folder: Path, *, is_root: bool) -> None:
+    name = str(folder)
+    try:
+        if not is_root and folder.is_symlink():
+            raise _unwritable(name, "it is a symbolic link, and links are not written through", into=True)
+        folder.mkdir(parents=is_root, exist_ok=True)
+    except OSError as error:
+        raise _unwritable(name, error.strerror or "input/output error", into=True) from None
+    except ValueError:
+        raise _unwritable(name, "the name holds a character no folder can have", into=True) from None
+
+
 def _write(path: Path, data: bytes) -> None:
     mode = _mode_of_regular_file(path)
     temporary = path.parent / f".symflex-{secrets.token_hex(8)}.tmp"
@@ -151,5 +185,5 @@ def _sync_folder(folder: Path) -> None:
         os.close(descriptor)
 
 
-def _unwritable(name: str, reason: str) -> UsageError:
-    return UsageError(Diagnostic("SF903", f"cannot write '{name}': {reason}"))
+def _unwritable(name: str, reason: str, *, into: bool = False) -> UsageError:
+    return UsageError(Diagnostic("SF903", f"cannot write {'into ' * into}'{name}': {reason}"))

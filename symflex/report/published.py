@@ -8,11 +8,12 @@ import subprocess
 import tempfile
 from dataclasses import dataclass, replace
 from datetime import UTC, date, datetime
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from symflex.errors import Diagnostic, SymflexError, UsageError
-from symflex.files.write import check_folder, write_atomically
+from symflex.errors import Diagnostic, SymflexError
+from symflex.files.examples import file_or_example
+from symflex.files.write import check_folder, write_tree
 from symflex.report.article import report_article
 from symflex.report.document import counted
 from symflex.report.page import report_page
@@ -53,7 +54,7 @@ def written(
     With every problem of all files that are not solvable models, before anything is computed; UsageError:
     SF902 no specification; SF903 a file cannot be written.
     """
-    folder, paths = Path(given.output), [Path(spec) for spec in given.specs]
+    folder, paths = Path(given.output), [file_or_example(spec) for spec in given.specs]
     check_folder(folder)
     outside = tuple(map(Path, given.allow_outside))
     named = name_specifications(find_specifications(paths, folder, outside))
@@ -95,44 +96,6 @@ def publish(report: Report, folder: Path, progress: Progress, *, pdf: bool | Non
         return PublishedReport(page, None, str(error), error.exit_code)
     write_tree(folder, {"report.pdf": made})
     return PublishedReport(page, folder / "report.pdf", "", 0)
-
-
-def write_tree(folder: Path, files: Mapping[str, bytes]) -> None:
-    """Write files into a folder and its subfolders, which are made when they are missing.
-
-    ``folder`` may be a symbolic link, its subfolders not; ``files`` are contents by relative path, ``/``
-    between names. Raises ValueError for a path that leads elsewhere; UsageError: SF903 when something cannot
-    be written, or a subfolder is a symbolic link.
-    """
-    for name in files:
-        path = PurePosixPath(name)
-        if path.is_absolute() or not path.parts or "\\" in name or "\0" in name or ".." in path.parts:
-            message = f"{name!r} leads out of the folder"
-            raise ValueError(message)
-    made: set[Path] = set()
-    for name, content in files.items():
-        target = Path(folder, *PurePosixPath(name).parts)
-        for parent in (folder, *(p for p in reversed(target.parents) if folder in p.parents)):
-            if parent not in made:
-                _make(parent, is_root=parent == folder)
-                made.add(parent)
-        write_atomically(target, content)
-
-
-def _make(folder: Path, *, is_root: bool) -> None:
-    name = str(folder)
-    try:
-        if not is_root and folder.is_symlink():
-            raise _unwritable(name, "it is a symbolic link, and links are not written through")
-        folder.mkdir(parents=is_root, exist_ok=True)
-    except OSError as error:
-        raise _unwritable(name, error.strerror or "input/output error") from None
-    except ValueError:
-        raise _unwritable(name, "the name holds a character no folder can have") from None
-
-
-def _unwritable(name: str, reason: str) -> UsageError:
-    return UsageError(Diagnostic("SF903", f"cannot write into '{name}': {reason}"))
 
 
 COMPILER: Final = "pdflatex"

@@ -131,7 +131,9 @@ def _command(name: str, command: click.Command, parent: click.Context) -> str:
     command.format_epilog(context, formatter)
     options = textwrap.dedent(formatter.getvalue().partition("\n")[2])
     about = inspect.cleandoc(command.help or "").replace("\b\n", "")
-    return "\n\n".join([f"## `symflex {name}`", _text(usage), about, _text(options)])
+    inside = command.commands.items() if isinstance(command, click.Group) else ()
+    parts = [_command(f"{name} {inner}", one, parent) for inner, one in inside]
+    return "\n\n".join([f"## `symflex {name}`", _text(usage), about, _text(options), *parts])
 
 
 def _text(content: str) -> str:

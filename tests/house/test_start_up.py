@@ -27,6 +27,7 @@ ALLOWED = [
     (("--help",), {"click"}),
     (("derive", "--help"), {"click"}),
     (("new",), {"click"}),
+    (("examples",), {"click"}),
     (("elements",), {"click"}),
     (("check", LUMPED), READING),
     (("check", BEAM, "--json"), READING),

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from symflex.errors import UsageError
-from symflex.report.published import write_tree
+from symflex.files.write import write_tree
 from tests.unit.refusals import refusal
 
 

@@ -1,0 +1,97 @@
+"""The examples that come with symflex: the models of the folder ``derivations``.
+
+Input: the name of an example, ``eppinger1988`` or ``classics/quarter_car``, or the last part of one.
+Output: its path. An installed package holds the folder; in a clone it stands beside the package.
+
+Names are looked up in what the folder holds, and never joined to a path: ``../x`` is no example.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+from typing import Final
+
+from symflex.errors import Diagnostic, UsageError
+from symflex.errors.diagnostic import nearest
+
+FOLDERS: Final[dict[str, str]] = {
+    "classics": "Beams, rods, shafts and a car of the textbooks",
+    "eppinger1988": "Models of a paper on robot flexibility, and its claims",
+    "eppinger1988/loops": "Position and force loops around these models",
+    "frames": "Plane frames, whose members bend and stretch",
+    "tapers": "Sections, tensions and coefficients that vary along x",
+}
+"""What each folder holds; ``claims.toml`` is no model, see ``symflex.report.claims``."""
+CLAIMS: Final = "claims.toml"
+LISTED: Final = "'symflex examples' lists them"
+_TITLE: Final = re.compile(r'^title\s*=\s*"(.*)"\s*$', re.MULTILINE)
+_PACKAGE: Final = Path(__file__).parents[1]
+
+
+def examples_folder() -> Path:
+    """Return the folder of the examples."""
+    return next(p / "derivations" for p in (_PACKAGE, _PACKAGE.parent) if (p / "derivations").is_dir())
+
+
+def examples() -> dict[str, Path]:
+    """Return the paths of all examples by their names, each folder before the models in it.
+
+    Examples
+    --------
+    >>> [name for name in examples() if name.startswith("frames")][:3]
+    ['frames', 'frames/l_frame', 'frames/pin_ended_cross']
+    """
+    top = examples_folder()
+    found: dict[str, Path] = {}
+    for name in FOLDERS:
+        models = sorted(p for p in (top / name).glob("*.toml") if p.name != CLAIMS)
+        found |= {name: top / name, **{f"{name}/{p.stem}": p for p in models}}
+    return found
+
+
+def title_of(name: str, path: Path) -> str:
+    """Return what an example is, in one line."""
+    if name in FOLDERS:
+        return FOLDERS[name]
+    match = _TITLE.search(path.read_text(encoding="utf-8"))
+    return match[1] if match else path.stem
+
+
+def find_example(name: str) -> Path:
+    """Return the path of an example by its name, or by the last part of it.
+
+    Raises UsageError: SF902 when there is none.
+
+    Examples
+    --------
+    >>> find_example("classics/quarter_car") == find_example("quarter_car")
+    True
+    >>> find_example("quarter_cart")
+    Traceback (most recent call last):
+    symflex.errors.exceptions.UsageError: error[SF902]: there is no example 'quarter_cart'
+      hint: did you mean 'quarter_car'?
+    """
+    known = examples()
+    known |= {name.rpartition("/")[2]: path for name, path in known.items()}
+    try:
+        return known[name.rstrip("/")]
+    except KeyError:
+        hint = nearest(name, known) or LISTED
+        raise UsageError(Diagnostic("SF902", f"there is no example '{name[:64]}'", None, hint)) from None
+
+
+def file_or_example(given: str | Path) -> Path:
+    """Return the path that is given, or the example of that name where no such path exists.
+
+    Raises UsageError: SF901 when a name without suffix is neither.
+    """
+    path = Path(given)
+    if os.path.lexists(path) or path.suffix:
+        return path
+    try:
+        return find_example(str(given))
+    except UsageError as problem:
+        message = f"there is no file, folder or example '{str(given)[:64]}'"
+        raise UsageError(Diagnostic("SF901", message, None, problem.diagnostics[0].hint)) from None
