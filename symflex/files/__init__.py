@@ -1,1 +1,1 @@
-"""Writing files whole or not at all, one process at a time."""
+"""Files written whole or not at all, one process at a time; and the examples that come with symflex."""
