@@ -53,7 +53,7 @@ def drawing_section(study: Study) -> ChapterPart:
     """Return the model as a picture of itself."""
     files: dict[str, bytes] = {}
     drawn = picture(f"{study.stem}_drawing", draw_model(study.model), "The model.", files)
-    return ChapterPart("Drawing", (drawn,), files)
+    return ChapterPart("", (drawn,), files)
 
 
 def figure_section(study: Study) -> ChapterPart | None:
