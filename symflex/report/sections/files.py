@@ -217,9 +217,9 @@ def export_section(study: Study) -> ChapterPart:
         for k, what in data
     ]
     head = text(
-        "The code is verified against ball arithmetic; the worst error stands in its documentation. Reading ",
+        "The code is verified against ball arithmetic; its documentation states the worst error. ",
         Code("symflex export --help"),
-        " shows the other targets.",
+        " lists the other targets.",
     )
     table = Table(columns(("File", "plain"), "Content"), tuple(rows))
     return ChapterPart("Code and data", (head, *blocks, table), files, tuple(warnings), code)

@@ -69,7 +69,7 @@ def specification_section(study: Study) -> ChapterPart:
     name = f"data/{study.stem}.toml"
     return ChapterPart(
         "",
-        (Listing(f"Specification {study.stem}.toml", study.text), text("SHA-256 of it: ", Code(checksum))),
+        (Listing(f"Specification {study.stem}.toml", study.text), text("SHA-256: ", Code(checksum))),
         {name: content},
     )
 
