@@ -39,6 +39,8 @@ DEEPEST_HEADING: Final = 6
 CONTENTS_DEPTH: Final = 2
 WIDE: Final = 6
 """Columns from which a table with text may be wider than the column of text."""
+LONG_INLINE: Final = 600
+"""Characters of mathematics in a sentence from which it may be wider than a telephone."""
 MATH_FONT: Final = "fonts/symflex-math.woff2"
 _FONT_FACE: Final = (
     '@font-face{{font-family:"symflex math";src:url(data:font/woff2;base64,{}) format("woff2")}}'
@@ -161,7 +163,9 @@ def _block(block: Block, level: int, anchor: str) -> str:
         case Section():
             return _section(block, level)
         case Paragraph(runs=runs):
-            return f"<p>{_runs(runs)}</p>"
+            is_long = any(isinstance(run, Mathematics) and len(run.mathml) > LONG_INLINE for run in runs)
+            attributes = ' class="scroll" tabindex="0"' if is_long else ""
+            return f"<p{attributes}>{_runs(runs)}</p>"
         case DisplayedFormula():
             return "\n".join(_formula(block))
         case Table():

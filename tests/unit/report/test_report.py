@@ -19,6 +19,7 @@ from symflex.budget import Silent
 from symflex.errors import SpecError, UsageError
 from symflex.report.article import report_article
 from symflex.report.comparison import COLUMNS, LOOP_COLUMNS, comparison_section
+from symflex.report.document import Mathematics, Paragraph, Section
 from symflex.report.page import inline_svg, report_page
 from symflex.report.report import (
     Report,
@@ -320,3 +321,11 @@ def test_identifiers_of_figures_get_a_prefix():
         ("f-a", "", ""), ("", "f-a", ""), ("", "", "f-a")
     ]  # fmt: skip
     assert 'onload="' not in shown
+
+
+def test_a_sentence_with_long_mathematics_scrolls_and_the_page_does_not():
+    long = Mathematics("<mi>x</mi><mo>+</mo>" * 100 + "<mi>x</mi>", "x")
+    sections = (Section("A", (Paragraph(("The factor ", long, " cancels.")), Paragraph(("Short.",))), "a"),)
+    page = report_page(Report("", "", "", sections, {}, (), 0))
+    assert '<p class="scroll" tabindex="0">The factor <math>' in page
+    assert "<p>Short.</p>" in page
