@@ -113,7 +113,7 @@ def test_the_font_of_formulas_has_every_sign_and_what_signs_grow_into():
     font = TTFont(FONTS / "symflex-math.woff2")
     signs = font.getBestCmap()
     # What is on no key: letters of MathML Core's italic mapping, Greek, and the operators of formulas.
-    for sign in "𝐴𝑧ℎ𝛼𝜔𝛺ΔΩωϕ𝒩𝒟−⋅×±√′˙^~→ˇ˘´`¯ℓℏ∞⋆∗∘∥⊥†∓…0189()[]{}=+/.,|":
+    for sign in "𝐴𝑧ℎ𝛼𝜔𝛺ΔΩωϕ𝒩𝒟−⋅×±√′˙^~→ˇ˘´`¯‾ℓℏ∞⋆∗∘∥⊥†∓…0189()[]{}=+/.,|":
         assert ord(sign) in signs, sign
     variants = font["MATH"].table.MathVariants
     for coverage in (variants.VertGlyphCoverage, variants.HorizGlyphCoverage):
