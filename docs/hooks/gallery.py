@@ -42,6 +42,7 @@ if TYPE_CHECKING:
 
 ROOT: Final = Path(__file__).parents[2]
 MODELS: Final = ROOT / "derivations"
+FONTS: Final = ROOT / "symflex" / "report" / "fonts"
 FOLDERS: Final = {
     "eppinger1988": "One axis of a robot, and what bends in it",
     "eppinger1988/loops": "Loops around it, of position and of force",
@@ -88,7 +89,9 @@ class Entry:
 
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
-    """Add the figures and specifications of the gallery to the site."""
+    """Add the font of formulas, and the figures and specifications of the gallery, to the site."""
+    for font in sorted(FONTS.iterdir()):
+        files.append(File.generated(config, f"stylesheets/{font.name}", content=font.read_bytes()))
     for entry in entries():
         text = (MODELS / entry.path).read_bytes()
         files.append(File.generated(config, f"gallery/{entry.stem}.toml", content=text))

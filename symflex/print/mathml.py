@@ -28,7 +28,7 @@ from symflex.expressions import (
     is_number,
     names,
 )
-from symflex.print.label import identifier, numeral, operator, row, symbol, words
+from symflex.print.label import LABEL_SIGNS, identifier, numeral, operator, row, symbol, words
 from symflex.print.latex.equation import form_labels, free_names, laws_and_starts, split_sign, varying_names
 from symflex.print.latex.expression import Writer
 from symflex.print.width import NOTHING, Width
@@ -94,6 +94,23 @@ def label_mathml(name: str, labels: Mapping[str, str]) -> str:
     '<msub><mi>m</mi><mi>eff</mi></msub>'
     """
     return symbol(name, labels).mathml or words(name, "tt")
+
+
+def page_signs() -> str:
+    """Return every sign that formulas on a page can need, for a font that has them all.
+
+    Browsers set a letter that stands alone in the italic alphabet of Unicode.
+
+    Examples
+    --------
+    >>> [sign in page_signs() for sign in "x𝑥ℎω𝜔√′⋅𝒩"]
+    [True, True, True, True, True, True, True, True, True]
+    """
+    ascii_signs = map(chr, range(0x20, 0x7F))
+    italic = (chr(code) if code != 0x1D455 else "ℎ" for code in range(0x1D434, 0x1D468))  # noqa: PLR2004
+    italic_greek = map(chr, range(0x1D6E2, 0x1D71C))
+    named = (*LABEL_SIGNS, *_CALLIGRAPHIC.values())
+    return "".join(sorted({*ascii_signs, *italic, *italic_greek, *named, *"−⋅√′″‴\u2061\u2062"}))
 
 
 PIECE_EM: Final = 17.0

@@ -89,6 +89,8 @@ def report_article(report: Report) -> str:
 
 
 def _section(section: Section, level: int) -> str:
+    if not section.title:
+        return "\n\n".join(_block(block, level) for block in section.blocks)
     heading = HEADINGS[min(level, len(HEADINGS) - 1)]
     title = escape_text(section.title)
     shown = f"${section.mathematics.latex}$" if section.mathematics else title

@@ -67,7 +67,7 @@ def chapter_of(
     model = study.model
     blocks: list[Block] = []
     if model.source:
-        blocks.append(text(f"{model.source}."))
+        blocks.append(text(f"{model.source[:1].upper()}{model.source[1:]}."))
     files: dict[str, bytes] = {}
     doubts = pipeline.warnings(model)
     blocks += [Notice(f"Warning: {w.message}.") for w in doubts]

@@ -220,15 +220,15 @@ def phase_runs(function: TransferFacts) -> tuple[Run, ...]:
     """Return whether a function is minimum phase, and the condition where one is known."""
     shown = ", as far as listed" if function.is_infinite else ""
     if function.condition == "always":
-        return (Badge("yes", "good"), ", for all values")
+        return (Badge("yes", "good"), " for all values")
     if function.condition == "if positive" and function.bracket_mathematics is not None:
         verdict = Badge("yes", "good") if function.is_minimum_phase else Badge("no", "bad")
-        return (verdict, "; exactly when ", function.bracket_mathematics, " ≥ 0")
+        return (verdict, " exactly when ", function.bracket_mathematics, " ≥ 0")
     if not function.is_minimum_phase:
-        count = f": {counted(function.right_half_plane_zeros, 'zero')} in the right half plane{shown}"
-        for_all = ", for all values" if function.condition in ("never", "as given") else ", for these values"
+        count = f", with {counted(function.right_half_plane_zeros, 'zero')} in the right half plane{shown}"
+        for_all = " for all values" if function.condition in ("never", "as given") else " for these values"
         return (Badge("no", "bad"), for_all + count)
-    return (Badge("yes", "good"), f", for these values{shown}")
+    return (Badge("yes", "good"), f" for these values{shown}")
 
 
 def _per_mode(poles: int, zeros: int, function: TransferFacts) -> str:

@@ -20,7 +20,7 @@ from symflex.print.latex import latex_expression, model_labels
 from symflex.print.mathml import mathml_expression
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from matplotlib.figure import Figure
 
@@ -145,15 +145,39 @@ Block: TypeAlias = "Paragraph | DisplayedFormula | Table | PageFigure | Listing 
 class Section:
     """A heading and what follows it."""
 
-    title: str  # plain text
+    title: str  # plain text; empty for blocks without a heading
     blocks: tuple[Block, ...]  # in order
     anchor: str  # of letters, digits and hyphens; unique in its report
     mathematics: Mathematics | None = field(default=None)  # stands in place of the title
+    folded: str = ""  # what a page shows until a reader opens the section; empty where all of it is shown
 
 
 def text(*runs: Run) -> Paragraph:
     """Return a paragraph."""
     return Paragraph(runs)
+
+
+def sentence(words: str) -> str:
+    """Return words with a capital letter at the beginning and a full stop at the end.
+
+    Examples
+    --------
+    >>> sentence(": 2 of 2 roots enclosed."), sentence(", not stable"), sentence(".")
+    ('2 of 2 roots enclosed.', 'Not stable.', '')
+    """
+    bare = words.strip(" .,:;")
+    return f"{bare[:1].upper()}{bare[1:]}." if bare else ""
+
+
+def marked(badge: Badge, words: str) -> Paragraph:
+    """Return a verdict, and behind it what it rests on as a sentence of its own."""
+    said = sentence(words)
+    return text(badge, f" {said}") if said else text(badge)
+
+
+def parted(sections: Sequence[Section]) -> tuple[Block, ...]:
+    """Return sections below each other; of a single one its blocks, since a heading would say nothing new."""
+    return sections[0].blocks if len(sections) == 1 else tuple(sections)
 
 
 def columns(*heads: str | tuple[str, Side]) -> tuple[PageColumn, ...]:
@@ -225,7 +249,7 @@ def counted(count: int, noun: str, plural: str = "") -> str:
 class ChapterPart:
     """One section of the chapter about a model."""
 
-    title: str  # plain text
+    title: str  # plain text; empty for blocks without a heading
     blocks: tuple[Block, ...]  # what it says
     files: Mapping[str, bytes] = field(default_factory=dict)  # content by path inside the report's folder
     warnings: tuple[str, ...] = ()  # what the user should be told on the terminal as well

@@ -1,4 +1,4 @@
-"""A report as one HTML page that needs nothing else: no script, no network, no font.
+"""A report as one HTML page that needs nothing else: no script, no network, no font of the machine.
 
 Everything that comes from a specification is plain text here and is escaped; mathematics and figures are
 markup that symflex itself wrote.
@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import html
 import re
+from base64 import b64encode
 from importlib import resources
+from itertools import takewhile
 from typing import TYPE_CHECKING, Final, assert_never
 
 from symflex.print.mathml import EQUALS, math_element
@@ -35,6 +37,14 @@ if TYPE_CHECKING:
 
 DEEPEST_HEADING: Final = 6
 CONTENTS_DEPTH: Final = 2
+WIDE: Final = 6
+"""Columns from which a table with text may be wider than the column of text."""
+LONG_INLINE: Final = 600
+"""Characters of mathematics in a sentence from which it may be wider than a telephone."""
+MATH_FONT: Final = "fonts/symflex-math.woff2"
+_FONT_FACE: Final = (
+    '@font-face{{font-family:"symflex math";src:url(data:font/woff2;base64,{}) format("woff2")}}'
+)
 
 # Colours that figures draw with, and the variables of the style sheet that stand for them on a page.
 _COLOURS: Final = {
@@ -52,7 +62,9 @@ _NAMESPACES: Final = re.compile(r'\sxmlns(?::\w+)?="[^"]*"')
 
 def report_page(report: Report) -> str:
     """Return a report as HTML."""
-    style = resources.files("symflex.report").joinpath("page.css").read_text(encoding="utf-8")
+    room = resources.files("symflex.report")
+    style = room.joinpath("page.css").read_text(encoding="utf-8")
+    font = b64encode(room.joinpath(MATH_FONT).read_bytes()).decode("ascii")
     byline = " · ".join(filter(None, (report.subtitle, report.date)))
     parts = [
         "<!DOCTYPE html>",
@@ -62,10 +74,10 @@ def report_page(report: Report) -> str:
         '<meta name="viewport" content="width=device-width, initial-scale=1">',
         '<meta name="color-scheme" content="light dark">',
         # Whatever slipped through could still load nothing.
-        '<meta http-equiv="Content-Security-Policy" content="default-src \'none\'; style-src '
+        '<meta http-equiv="Content-Security-Policy" content="default-src \'none\'; font-src data:; style-src '
         "'unsafe-inline'\">",
         f"<title>{_escape(report.title)}</title>",
-        f"<style>\n{style}</style>",
+        f"<style>\n{_FONT_FACE.format(font)}\n{style}</style>",
         "</head>",
         '<body id="top">',
         '<a class="skip" href="#models">To the results</a>',
@@ -74,7 +86,7 @@ def report_page(report: Report) -> str:
         f"<p>{_escape(byline)}</p>" if byline else "",
         "</header>",
         '<nav id="contents" aria-label="Contents">',
-        "<details open><summary>Contents</summary>",
+        "<details><summary>Contents</summary>",
         _contents(report.sections, 1),
         "</details></nav>",
         "<main>",
@@ -115,7 +127,7 @@ def _escape(text: str) -> str:
 def _contents(sections: Iterable[Section], depth: int) -> str:
     items = []
     for section in sections:
-        inner = [b for b in section.blocks if isinstance(b, Section)]
+        inner = [b for b in section.blocks if isinstance(b, Section) and b.title]
         below = _contents(inner, depth + 1) if inner and depth < CONTENTS_DEPTH else ""
         items.append(f'<li><a href="#{_escape(section.anchor)}">{_heading(section)}</a>{below}</li>')
     return f"<ol>{''.join(items)}</ol>" if depth == 1 else f"<ul>{''.join(items)}</ul>"
@@ -130,7 +142,16 @@ def _heading(section: Section) -> str:
 def _section(section: Section, level: int) -> str:
     anchor = _escape(section.anchor)
     tag = f"h{min(level, DEEPEST_HEADING)}"
-    body = "\n".join(_block(block, level + 1, anchor) for block in section.blocks)
+    if not section.title:
+        body = "\n".join(_block(block, level, anchor) for block in section.blocks)
+        return f'<div id="{anchor}">\n{body}\n</div>'
+    blocks = [_block(block, level + 1, anchor) for block in section.blocks]
+    if section.folded:
+        # A chapter's first sentences, and what it warns of, stay in sight.
+        shown = sum(1 for _ in takewhile(lambda b: isinstance(b, Paragraph | Notice), section.blocks))
+        summary = f'<details class="folded"><summary>{_escape(section.folded)}</summary>'
+        blocks[shown:] = [summary, *blocks[shown:], "</details>"]
+    body = "\n".join(blocks)
     return (
         f'<section id="{anchor}" aria-labelledby="{anchor}-h">\n'
         f'<{tag} id="{anchor}-h">{_heading(section)}</{tag}>\n{body}\n</section>'
@@ -142,7 +163,9 @@ def _block(block: Block, level: int, anchor: str) -> str:
         case Section():
             return _section(block, level)
         case Paragraph(runs=runs):
-            return f"<p>{_runs(runs)}</p>"
+            is_long = any(isinstance(run, Mathematics) and len(run.mathml) > LONG_INLINE for run in runs)
+            attributes = ' class="scroll" tabindex="0"' if is_long else ""
+            return f"<p{attributes}>{_runs(runs)}</p>"
         case DisplayedFormula():
             return "\n".join(_formula(block))
         case Table():
@@ -182,13 +205,17 @@ def _formula(formula: DisplayedFormula) -> Iterator[str]:
 
 def _table(table: Table) -> str:
     # On a narrow screen the cells of a row stand below each other, each with its head.
-    is_stacked = len(table.columns) > 2 and any(c.side == "text" for c in table.columns)  # noqa: PLR2004
+    has_text = any(c.side == "text" for c in table.columns)
+    is_stacked = len(table.columns) > 2 and has_text  # noqa: PLR2004
+    is_wide = len(table.columns) >= WIDE and has_text
     kind = ' class="stack"' if is_stacked else ""
+    place = "scroll wide" if is_wide else "scroll"
+    label = _escape(table.caption or "Table")
     head = "".join(f'<th scope="col" class="{c.side}">{_runs(c.head)}</th>' for c in table.columns)
     body = "\n".join(_row(row, table.columns) for row in table.rows)
     caption = f"<caption>{_escape(table.caption)}</caption>" if table.caption else ""
     return (
-        f'<div class="scroll" tabindex="0" role="region" aria-label="{_escape(table.caption or "Table")}">'
+        f'<div class="{place}" tabindex="0" role="region" aria-label="{label}">'
         f"<table{kind}>{caption}<thead><tr>{head}</tr></thead>\n<tbody>\n{body}\n</tbody></table></div>"
     )
 

@@ -7,7 +7,7 @@ import platform
 import re
 from collections.abc import Mapping
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, ProcessPoolExecutor, wait
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from importlib import metadata
 from multiprocessing import get_context
@@ -46,6 +46,8 @@ WAITING: Final = 0.9
 DATA_SUFFIXES: Final = frozenset((".csv", ".tsv", ".npz", ".mat", ".uff", ".unv"))
 """Of data files that are looked for in folders."""
 LIBRARIES: Final = ("python-flint", "numpy", "scipy", "sympy", "mpmath", "matplotlib")
+TABLES: Final = {"claims": "Every claim with its verdict", "comparison": "All models in a table"}
+"""What stands for the tables of a report until a reader opens them, by their anchors."""
 RESERVED: Final = frozenset(("comparison", "claims", "contents", "models", "provenance", "top"))
 
 
@@ -331,10 +333,21 @@ def compose(chapters: Sequence[Chapter], date: str, publications: Sequence[Publi
     if comparison:
         sections.append(comparison)
     sections += [c.section for c in ordered]
+    if len(ordered) > 1:
+        # The overview is what a reader sees first; the rest opens where it is asked for.
+        sections[1:] = [replace(s, folded=_folded(s)) for s in sections[1:]]
     sections.append(_provenance(date))
     title, subtitle = _titles(ordered, publication)
     warnings = tuple(w for c in ordered for w in c.warnings)
     return Report(title, subtitle, date, tuple(sections), files, warnings, max(c.code for c in ordered))
+
+
+def _folded(section: Section) -> str:
+    """Return what a section holds, as a line that stands for it; empty where it holds little."""
+    if section.anchor in TABLES:
+        return TABLES[section.anchor]
+    titles = [b.title for b in section.blocks if isinstance(b, Section) and b.title]
+    return ", ".join(title if not i else title[:1].lower() + title[1:] for i, title in enumerate(titles))
 
 
 def _ordered(chapters: Sequence[Chapter], publication: Publication | None) -> list[Chapter]:
@@ -361,8 +374,8 @@ def _overview(
         open_ = len(findings) - held - failed
         blocks.append(
             text(
-                f"Of {counted(len(findings), 'claim')} of the publication {held} hold, {failed} do not, "
-                f"and {open_} are not examined here: ",
+                f"The publication makes {counted(len(findings), 'claim')}: {held} hold, {failed} do not, "
+                f"and {open_} are not examined here. See ",
                 PageLink("the claims", "#claims"),
                 ".",
             )

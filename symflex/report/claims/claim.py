@@ -70,11 +70,11 @@ class Claim:
         needs = dict.fromkeys(model_of(name) for check in self.checks for name in check.of)
         missing = [name for name in needs if name not in models]
         if missing:
-            return Finding("not examined", (f"the report does not hold {', '.join(missing)}",))
+            return Finding("not examined", (f"The report does not hold {', '.join(missing)}.",))
         try:
             found = [check.judge(models) for check in self.checks]
         except KeyError as lacking:
-            return Finding("not examined", (f"the models have no {lacking.args[0]} with numbers",))
+            return Finding("not examined", (f"The models have no {lacking.args[0]} with numbers.",))
         lines: list[Run] = []
         for one in found:
             lines += ["\n", *one.evidence]

@@ -7,7 +7,7 @@ the model itself. What the models lack is raised as a ``KeyError``, in words.
 >>> from symflex.report.facts import ModelFacts, TransferFacts
 >>> facts = TransferFacts("X/F", "", (), (), True, False, (0, 2), None, None, True, "", "always", "")
 >>> counts({"car": ModelFacts("car", functions=(facts,))}, ("car: X/F",), zeros=0, poles=2)
-Finding(verdict='holds', evidence=('X/F: no zeros and 2 poles.',))
+Finding(verdict='holds', evidence=('X/F has no zeros and 2 poles.',))
 """
 
 from __future__ import annotations
@@ -39,8 +39,8 @@ def modes_at(
         found = found[: len(hertz)] if lowest else found
         near = all(abs(a - b) < within for a, b in zip(found, hertz, strict=False))
         is_true = is_true and near and len(found) == len(hertz)
-        begins = f"{counted(len(found), 'mode')}, the lowest," if lowest else "modes"
-        lines.append(f"{stem}: {begins} at {', '.join(f'{f:.2f}' for f in found)} Hz")
+        which = f"{counted(len(found), 'mode')}, {'the lowest' if lowest else 'all that it has'}"
+        lines.append(f"{stem} has {which}, at {', '.join(f'{f:.2f}' for f in found)} Hz.")
     return judged(is_true, "\n".join(lines))
 
 
@@ -48,7 +48,7 @@ def counts(models: Models, of: tuple[str, ...], *, zeros: int, poles: int) -> Fi
     """Tell whether rational functions have so many zeros and poles."""
     found = [f for _, f in functions(models, of)]
     is_true = all(f.counts == (zeros, poles) for f in found)
-    return judged(is_true, " ".join(f"{f.tf}: {_counts(f)}." for f in found))
+    return judged(is_true, " ".join(f"{f.tf} has {_counts(f)}." for f in found))
 
 
 def arrangement(
@@ -72,7 +72,7 @@ def arrangement(
         wanted = (pole_pairs, zero_pairs, zeros_at_origin, other_poles)
         is_true = is_true and (pairs, zeros, at_origin, others) == wanted
         lines.append(
-            f"{function.tf}: {_counts(function)}: {counted(pairs, 'pair')} of poles, "
+            f"{function.tf} has {_counts(function)}: {counted(pairs, 'pair')} of poles, "
             f"{counted(zeros, 'pair')} of zeros, {counted(others, 'other pole')}, "
             f"{counted(at_origin, 'zero')} at 0."
         )
@@ -100,10 +100,10 @@ def added_per_mode(
         is_true = is_true and (more_zeros, more_poles) == wanted and (are_real or not zeros_are_real)
         is_true = is_true and function.modes > 0
         more = f"{counted(more_poles, 'pole')} and {counted(more_zeros, 'zero')} more"
-        line = f"{stem}, {function.tf}: {more} with {counted(function.modes, 'mode')}"
-        line += ", the zeros real" if zeros_are_real and are_real else ""
+        line = f"In {stem}, {function.tf} has {more} with {counted(function.modes, 'mode')}"
+        line += ", and its zeros are real" if zeros_are_real and are_real else ""
         if needs_dampers and function.undamped is not None:
-            line += f"; without dampers {counted(function.undamped[0], 'zero')}"
+            line += f"; without dampers it has {counted(function.undamped[0], 'zero')}"
             is_true = is_true and function.undamped[0] != more_zeros
         lines.append(f"{line}.")
     return judged(is_true, "\n".join(lines), condition=needs_dampers)
@@ -124,14 +124,15 @@ def colocated(models: Models, of: tuple[str, ...]) -> Finding:
     """Tell whether outputs are taken where the input acts, or rigidly joined to it."""
     found = [f for _, f in functions(models, of)]
     are, are_not = ([f.tf for f in found if bool(f.colocated) is truth] for truth in (True, False))
-    said = [f"{', '.join(tfs)}: {word}." for tfs, word in ((are, "colocated"), (are_not, "not")) if tfs]
+    kinds = ((are, "colocated"), (are_not, "not colocated"))
+    said = [f"{' and '.join(tfs)} {'is' if len(tfs) == 1 else 'are'} {kind}." for tfs, kind in kinds if tfs]
     return judged(not are_not, " ".join(said))
 
 
 def infinitely_many(models: Models, of: tuple[str, ...]) -> Finding:
     """Tell whether functions are transcendental, with infinitely many poles and zeros."""
     finite = [f.tf for _, f in functions(models, of) if not f.is_infinite]
-    return judged(not finite, f"{', '.join(finite)}: rational." if finite else "All are transcendental.")
+    return judged(not finite, f"Rational: {', '.join(finite)}." if finite else "All are transcendental.")
 
 
 def modes_suffice(models: Models, of: tuple[str, ...]) -> Finding:
@@ -143,7 +144,7 @@ def modes_suffice(models: Models, of: tuple[str, ...]) -> Finding:
             raise KeyError(f"rational approximation of {function.tf}")
         is_true = is_true and kept.five_percent_hz >= kept.last_hz
         lines.append(
-            f"{function.tf}: the product of {kept.modes} modes, exact at s = 0, is within 1 % up to "
+            f"For {function.tf} the product of {kept.modes} modes, exact at s = 0, is within 1 % up to "
             f"{kept.one_percent_hz:.0f} Hz and within 5 % up to {kept.five_percent_hz:.0f} Hz "
             f"(sampled); mode {kept.modes} is at {kept.last_hz:.0f} Hz."
         )
@@ -182,7 +183,7 @@ def mirrored_real_zeros(models: Models, of: tuple[str, ...], *, count: int = 0) 
     for stem, function in found:
         right = [f"{z.re:.4g}" for z in function.zeros if z.is_in_right_half_plane]
         listed = f"±{', ±'.join(right)}" if function.has_mirrored_real_zeros else _listed(function.zeros)
-        lines += ["\n", f"{stem}, {function.tf}: zeros at {listed} rad/s."]
+        lines += ["\n", f"In {stem}, {function.tf} has zeros at {listed} rad/s."]
         lines += _bracket(function) if function.bracket else ()
     is_true = all(f.has_mirrored_real_zeros for _, f in found)
     is_true = is_true and (not count or all(len(f.zeros) == count for _, f in found))
@@ -195,7 +196,7 @@ def minimum_phase(models: Models, of: tuple[str, ...]) -> Finding:
     found = functions(models, of)
     for stem, function in found:
         word = "minimum phase" if function.is_minimum_phase else "nonminimum phase"
-        lines.append(f"{stem}, {function.tf}: {word}, {function.condition}: {function.reason}.")
+        lines.append(f"In {stem}, {function.tf} is {word}, {function.condition}: {function.reason}.")
     is_true = all(f.is_minimum_phase and f.condition == "always" for _, f in found)
     return judged(is_true, "\n".join(lines))
 
@@ -209,7 +210,7 @@ def nonminimum_phase(models: Models, of: tuple[str, ...], *, for_these_values: b
     found = functions(models, of)
     for stem, function in found:
         zeros = counted(function.right_half_plane_zeros, "zero")
-        lines += ["\n", f"{stem}, {function.tf}: {zeros} in the right half plane."]
+        lines += ["\n", f"In {stem}, {function.tf} has {zeros} in the right half plane."]
         lines += () if for_these_values else _bracket(function)
     is_true = all(not f.is_minimum_phase for _, f in found)
     has_condition = not for_these_values and any(f.bracket for _, f in found)
@@ -232,8 +233,8 @@ def _of_one(models: Models, name: str) -> Finding:
     if verdict not in ("equal", "differs"):
         return _unexamined("The comparison was not decided.")
     if verdict == "equal":
-        return judged(True, "Proved equal to the derived function.")
-    return judged(False, f"Proved not to be the derived function. {changes}.")
+        return judged(True, "The formula is proved equal to the derived function.")
+    return judged(False, f"The formula is proved not to be the derived function. {changes}.")
 
 
 def best_fit(
@@ -269,14 +270,14 @@ def unstable_at_high_gain(models: Models, of: tuple[str, ...]) -> Finding:
         is_true = is_true and loop.unstable_at_last > 0
         crossing = f", where poles cross at {loop.crossings_hz[0]:.4g} Hz" if loop.crossings_hz else ""
         words = f"unstable for {loop.gain} > {end or 0:.4g}{crossing}"
-        lines.append(f"{stem}: {words if loop.unstable_at_last else 'stable'}")
+        lines.append(f"{stem} is {words if loop.unstable_at_last else 'stable'}.")
     return judged(is_true, "\n".join(lines))
 
 
 def always_stable(models: Models, of: tuple[str, ...]) -> Finding:
     """Tell whether loops are stable for all gains examined."""
     found = [(stem, _loop(models, stem).is_always_stable) for stem in of]
-    lines = [f"{stem}: {'' if is_so else 'not '}stable for all gains examined" for stem, is_so in found]
+    lines = [f"{stem} is {'' if is_so else 'not '}stable for all gains examined." for stem, is_so in found]
     return judged(all(is_so for _, is_so in found), "\n".join(lines))
 
 
@@ -284,8 +285,8 @@ def together(models: Models, of: tuple[str, ...]) -> Finding:
     """Tell whether outputs move with one where the input acts, from the lowest frequency examined."""
     found = [(_colocation(models, name), models[model_of(name)]) for name in of]
     lines = [
-        f"{facts.stem}: {one.tf} and {one.reference} are together {_up_to(one)}; "
-        f"mode at {_first_mode(facts.of(one.tf)):.4g} Hz."
+        f"In {facts.stem}, {one.tf} and {one.reference} are together {_up_to(one)}; "
+        f"its first mode is at {_first_mode(facts.of(one.tf)):.4g} Hz."
         for one, facts in found
     ]
     is_limited = any(one.bandwidth_hz is not None for one, _ in found)
@@ -301,7 +302,8 @@ def together_farthest(models: Models, of: tuple[str, ...]) -> Finding:
         found = _colocation(models, name)
         end = (found.bandwidth_hz or found.examined_hz) if found.is_together else 0.0
         shares.append(end / _first_mode(models[model_of(name)].of(found.tf)))
-        lines.append(f"{model_of(name)}: together {_up_to(found)}, {shares[-1]:.2g} times its first mode")
+        moves = f"In {model_of(name)}, outputs are together {_up_to(found)}"
+        lines.append(f"{moves}, {shares[-1]:.2g} times its first mode.")
     return judged(all(shares[0] > share for share in shares[1:]), "\n".join(lines))
 
 

@@ -53,7 +53,7 @@ def drawing_section(study: Study) -> ChapterPart:
     """Return the model as a picture of itself."""
     files: dict[str, bytes] = {}
     drawn = picture(f"{study.stem}_drawing", draw_model(study.model), "The model.", files)
-    return ChapterPart("Drawing", (drawn,), files)
+    return ChapterPart("", (drawn,), files)
 
 
 def figure_section(study: Study) -> ChapterPart | None:
@@ -217,9 +217,9 @@ def export_section(study: Study) -> ChapterPart:
         for k, what in data
     ]
     head = text(
-        "The code is verified against ball arithmetic; the worst error stands in its documentation. Reading ",
+        "The code is verified against ball arithmetic; its documentation states the worst error. ",
         Code("symflex export --help"),
-        " shows the other targets.",
+        " lists the other targets.",
     )
     table = Table(columns(("File", "plain"), "Content"), tuple(rows))
     return ChapterPart("Code and data", (head, *blocks, table), files, tuple(warnings), code)

@@ -42,7 +42,9 @@ from symflex.report.document import (
     counted,
     exponents,
     labelled,
+    marked,
     mathematics,
+    parted,
     text,
     unit_text,
 )
@@ -66,8 +68,8 @@ def specification_section(study: Study) -> ChapterPart:
     checksum = hashlib.sha256(content).hexdigest()
     name = f"data/{study.stem}.toml"
     return ChapterPart(
-        "Specification",
-        (text("SHA-256 ", Code(checksum)), Listing(f"{study.stem}.toml", study.text)),
+        "",
+        (Listing(f"Specification {study.stem}.toml", study.text), text("SHA-256: ", Code(checksum))),
         {name: content},
     )
 
@@ -105,9 +107,11 @@ def equation_section(study: Study) -> ChapterPart:
         )
     if study.why_nested:
         blocks.append(text(f"Shown {study.why_nested}."))
-    for i, (tf, form) in enumerate(zip(study.tfs, study.forms, strict=True)):
-        shown = _of(tf, form, f"eq:{study.stem}:{i + 1}")
-        blocks.append(Section(tf.name, shown, f"{study.stem}-tf-{i + 1}", ratio(tf)))
+    sections = [
+        Section(tf.name, _of(tf, form, f"eq:{study.stem}:{i}"), f"{study.stem}-tf-{i}", ratio(tf))
+        for i, (tf, form) in enumerate(zip(study.tfs, study.forms, strict=True), start=1)
+    ]
+    blocks += parted(sections)
     document = derive_document(list(zip(study.tfs, study.forms, strict=True)))
     data = json.dumps(document, indent=1, ensure_ascii=True).encode()
     return ChapterPart("Transfer functions", tuple(blocks), {f"data/{study.stem}_derive.json": data})
@@ -165,18 +169,18 @@ def audit_section(study: Study) -> ChapterPart | None:
     """Return every printed formula with its verdict, and the smallest change that makes a wrong one right."""
     if not study.audits:
         return None
-    blocks = tuple(
+    sections = [
         Section(audit.tf.name, _audited(audit), f"{study.stem}-printed-{i + 1}", ratio(audit.tf))
         for i, audit in enumerate(study.audits)
-    )
+    ]
     data = json.dumps(audit_document(study.audits), indent=1, ensure_ascii=True).encode()
-    return ChapterPart("Printed formulas", blocks, {f"data/{study.stem}_audit.json": data})
+    return ChapterPart("Printed formulas", parted(sections), {f"data/{study.stem}_audit.json": data})
 
 
 def _audited(audit: Audit) -> tuple[Block, ...]:
     word, tone = JUDGED[audit.verdict]
-    source = f", printed in {audit.published.source}" if audit.published.source else ""
-    blocks: list[Block] = [text(Badge(word, tone), f"{source}:")]
+    source = f"Printed in {audit.published.source}" if audit.published.source else ""
+    blocks: list[Block] = [marked(Badge(word, tone), source)]
     where = audit.formula.lines
     scale = audit.published.scale
     blocks.append(_formula(audit, audit.published.expression, where, f"{audit.tf.name} as printed"))

@@ -22,6 +22,9 @@ from symflex.report.document import (
     code_of,
     columns,
     exponents,
+    marked,
+    parted,
+    sentence,
     text,
 )
 from symflex.report.sections.formulas import ratio
@@ -60,22 +63,25 @@ def root_section(study: Study) -> ChapterPart:
     if study.model.imaginary:
         blocks.append(text(LEFT_OUT))
     warnings = []
+    sections: list[Section] = []
     for i, found in enumerate(study.maps):
         tf = tfs.get(found.tf)
         content = _of(found, explained.get(found.tf))
         if found.tf in reasons:
             content = (*content, text(f"What the zeros mean is not examined: {reasons[found.tf]}."))
-        blocks.append(Section(found.tf, content, f"{study.stem}-roots-{i + 1}", ratio(tf) if tf else None))
+        sections.append(Section(found.tf, content, f"{study.stem}-roots-{i + 1}", ratio(tf) if tf else None))
         if not found.certificate.certified:
             warnings.append(f"{study.stem}: poles and zeros of {found.tf} are not certified")
     code = 0
     for name, error in study.without_map:
-        blocks.append(Section(name, (Notice(said(error)),), f"{study.stem}-roots-{len(blocks) + 1}"))
+        sections.append(Section(name, (Notice(said(error)),), f"{study.stem}-roots-{len(sections) + 1}"))
         warnings.append(f"{study.stem}: no poles and zeros of {name}: {said(error)}")
         code = max(code, code_of(error))
+    blocks += parted(sections)
     document = {"schema": "symflex.report-roots/1", "roots": [found.to_json_dict() for found in study.maps]}
     data = {f"data/{study.stem}_roots.json": json.dumps(document, indent=1).encode()}
-    return ChapterPart("Poles and zeros", tuple(blocks), data, tuple(warnings), code)
+    title = "Poles and zeros" if blocks else ""
+    return ChapterPart(title, tuple(blocks), data, tuple(warnings), code)
 
 
 def _of(found: PoleZeroMap, told: ZeroExplanation | None) -> tuple[Block, ...]:
@@ -83,14 +89,12 @@ def _of(found: PoleZeroMap, told: ZeroExplanation | None) -> tuple[Block, ...]:
     blocks: list[Block] = []
     if certificate.certified:
         mark = Badge("certified", "good")
-        said = (
-            f": {certificate.found} of {certificate.counted} roots enclosed, each within its radius [rad/s]."
-        )
+        said = f"{certificate.found} of {certificate.counted} roots enclosed, each within its radius [rad/s]."
     else:
-        mark, said = Badge("not certified", "bad"), f": {certificate.reason or 'no reason given'}."
-    shown = f" Listed: {region_text(found.region)}." if region_text(found.region) else ""
+        mark, said = Badge("not certified", "bad"), f"{certificate.reason or 'no reason given'}."
+    shown = f" Listed: {region_text(found.region)}" if region_text(found.region) else ""
     blocks.append(_stability(found.verdict))
-    blocks.append(text(mark, said + shown))
+    blocks.append(marked(mark, said + shown))
     for part in found.excluded:
         blocks.append(
             text(
@@ -119,7 +123,7 @@ def _stability(verdict: StabilityVerdict, more: str = "") -> Block:
     """Return what is said of stability, with its badge, and the motion that nothing sees."""
     said = f"{verdict.sentence.removeprefix(verdict.brief)}{more}."
     motion = verdict.hidden_motion
-    return text(stability_mark(verdict.word), f"{said} {motion[:1].upper()}{motion[1:]}." if motion else said)
+    return marked(stability_mark(verdict.word), f"{said} {sentence(motion)}" if motion else said)
 
 
 def stability_mark(word: str) -> Badge:
@@ -186,9 +190,9 @@ def loop_section(study: Study) -> ChapterPart | None:
 
 def _gains(found: StabilityMap) -> tuple[Block, ...]:
     if found.certified:
-        opening = text(Badge("certified", "good"), ": all poles right of the imaginary axis are counted.")
+        opening = marked(Badge("certified", "good"), "All poles right of the imaginary axis are counted.")
     else:
-        opening = text(Badge("not certified", "bad"), f": {'; '.join(found.reasons)}.")
+        opening = marked(Badge("not certified", "bad"), "; ".join(found.reasons))
     blocks: list[Block] = []
     if found.nominal is not None:
         blocks.append(_stability(found.verdict, f", with {found.gain} = {float(found.nominal):g}"))

@@ -129,7 +129,7 @@ def test_claims_behind_a_link_that_leads_out_are_not_read(tmp_path):
 
 def test_a_claim_about_a_model_or_a_function_that_is_not_there_is_not_examined(tmp_path):
     verdict, evidence = judged(tmp_path, '{ is = "colocated", of = "cart: X/F" }')
-    assert (verdict, evidence) == ("not examined", "the report does not hold cart")
+    assert (verdict, evidence) == ("not examined", "The report does not hold cart.")
     verdict, evidence = judged(tmp_path, '{ is = "colocated", of = "cart: Y/F" }', cart=function())
     assert verdict == "not examined"
     assert "Y/F" in evidence
@@ -207,7 +207,7 @@ def test_what_dampers_bring_is_a_condition(tmp_path):
     check = '{ is = "added-per-mode", of = "cart: X/F", zeros = 1, poles = 2, needs_dampers = true }'
     verdict, evidence = judged(tmp_path, check, cart=SPRUNG)
     assert verdict == "holds with a condition"
-    assert "without dampers no zeros" in evidence
+    assert "without dampers it has no zeros" in evidence
     assert judged(tmp_path, check, cart=replace(SPRUNG, undamped=(1, 4)))[0] == "does not hold"
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import csv
 import html
 import io
@@ -13,10 +14,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import symflex
 from symflex.budget import Silent
 from symflex.errors import SpecError, UsageError
 from symflex.report.article import report_article
 from symflex.report.comparison import COLUMNS, LOOP_COLUMNS, comparison_section
+from symflex.report.document import Mathematics, Paragraph, Section
 from symflex.report.page import inline_svg, report_page
 from symflex.report.report import (
     Report,
@@ -30,6 +33,8 @@ from symflex.report.sections import SECTIONS
 from symflex.report.study import Study
 from tests.unit.report.models import HOSTILE, SMALL, SYMBOLIC
 from tests.unit.report.pages import Page
+
+FONTS = Path(symflex.__file__).parent / "report" / "fonts"
 
 
 def chapters_on(folder, **texts):
@@ -74,6 +79,49 @@ def test_every_linked_file_is_written_and_every_column_of_the_registry_is_in_the
     # What a section could not compute is not linked from another.
     assert {a for a in linked if "symbolic_roots" not in a} <= set(small.files)
     assert all(f">{head}</th>" in page for head in COLUMNS)
+
+
+def test_a_report_of_several_models_is_folded_behind_its_overview_and_one_of_a_single_model_is_not(
+    small, hostile
+):
+    many, one = (report_page(report) for report in (small, hostile))
+    assert many.count('<details class="folded">') == 3  # the comparison and two chapters
+    assert many.index('id="models"') < many.index('class="folded"')
+    assert 'class="folded"' not in one
+    # A folded chapter says what is in it.
+    (small_model,) = re.findall("<summary>(Parameters.*poles and zeros.*)</summary>", many)
+    assert small_model == (
+        "Parameters, transfer functions, figures, poles and zeros, dynamic colocation, code and data"
+    )
+    printed = many.partition("@media print")[2].partition("</style>")[0]
+    assert ".folded::details-content{content-visibility:visible" in printed
+
+
+def test_a_page_carries_the_font_of_its_formulas_once(small):
+    page = report_page(small)
+    (font,) = re.findall(r"url\(data:font/woff2;base64,([^)]*)\)", page)
+    content = base64.b64decode(font, validate=True)
+    assert content.startswith(b"wOF2")
+    assert len(content) <= 60_000
+    assert "font-src data:" in page
+
+
+@pytest.mark.needs_module("brotli")
+def test_the_font_of_formulas_has_every_sign_and_what_signs_grow_into():
+    from fontTools.ttLib import TTFont
+
+    font = TTFont(FONTS / "symflex-math.woff2")
+    signs = font.getBestCmap()
+    # What is on no key: letters of MathML Core's italic mapping, Greek, and the operators of formulas.
+    for sign in "𝐴𝑧ℎ𝛼𝜔𝛺ΔΩωϕ𝒩𝒟−⋅×±√′˙^~→ˇ˘´`¯‾ℓℏ∞⋆∗∘∥⊥†∓…0189()[]{}=+/.,|":
+        assert ord(sign) in signs, sign
+    variants = font["MATH"].table.MathVariants
+    for coverage in (variants.VertGlyphCoverage, variants.HorizGlyphCoverage):
+        assert set(coverage.glyphs) <= set(font.getGlyphOrder())
+    growing = set(variants.VertGlyphCoverage.glyphs)
+    assert {signs[ord(sign)] for sign in "()[]{}√|"} <= growing
+    assert "SIL Open Font License" in font["name"].getDebugName(13)
+    assert "SIL OPEN FONT LICENSE" in (FONTS / "OFL.txt").read_text(encoding="utf-8")
 
 
 def test_hostile_text_is_shown_as_text(hostile):
@@ -273,3 +321,11 @@ def test_identifiers_of_figures_get_a_prefix():
         ("f-a", "", ""), ("", "f-a", ""), ("", "", "f-a")
     ]  # fmt: skip
     assert 'onload="' not in shown
+
+
+def test_a_sentence_with_long_mathematics_scrolls_and_the_page_does_not():
+    long = Mathematics("<mi>x</mi><mo>+</mo>" * 100 + "<mi>x</mi>", "x")
+    sections = (Section("A", (Paragraph(("The factor ", long, " cancels.")), Paragraph(("Short.",))), "a"),)
+    page = report_page(Report("", "", "", sections, {}, (), 0))
+    assert '<p class="scroll" tabindex="0">The factor <math>' in page
+    assert "<p>Short.</p>" in page
