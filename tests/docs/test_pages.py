@@ -30,7 +30,7 @@ def takes_long(block):
     """Tell whether a session fits every order, sweeps models or proves what beams do in loops or in time."""
     chooses_an_order = block.text.startswith("$ symflex fit") and "BIC" in block.text
     proves = block.text.startswith(("$ symflex stability derivations", "$ symflex respond"))
-    is_long_page = block.page.name in ("published-formula.md", "force-loop.md")
+    is_long_page = block.page.name in ("published-formula.md", "force-loop.md", "flexible-arm.md")
     return chooses_an_order or proves or is_long_page or block.text.startswith("$ symflex sweep")
 
 
