@@ -4,7 +4,7 @@ A page asks with a comment on a line of its own: ``<!-- gallery -->``; or for on
 in LaTeX for those who read it in a clone, ``<!-- formula: FILE OUT/IN -->`` to ``<!-- end of formula -->``.
 An equation as specifications write it, ``<!-- equation: y = x^2 -->``, is typeset likewise, and within a
 sentence what stands between backticks after ``<!-- math -->``. On a page with ``<!-- drawings -->`` every
-specification is followed by its drawing.
+specification is followed by its drawing. ``<!-- elements -->`` is the catalogue of all elements.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import html
 import re
 import tomllib
 from base64 import b64encode
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from math import inf
 from pathlib import Path
@@ -27,6 +27,7 @@ from symflex.drawing import draw_model
 from symflex.errors import SymflexError, Text
 from symflex.expressions import parse, parse_equation
 from symflex.figures import draw, draw_loop, render
+from symflex.library.elements import ELEMENTS
 from symflex.loops.of_model import characteristic_loop
 from symflex.print.forms import print_form, with_hidden
 from symflex.print.mathml import EQUALS, math_element, mathml_expression, transfer_function_mathml
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from mkdocs.config.defaults import MkDocsConfig
 
+    from symflex.library.elements import Element
     from symflex.model import Model
     from symflex.transfer import AnyBoundFunction, AnyTransferFunction
 
@@ -56,6 +58,8 @@ LONGEST: Final = 12_000
 """Characters of MathML: some eight lines."""
 LONG_NUMBER: Final = re.compile(r"\d{12}")
 """Of models whose parameters are numbers of many digits."""
+SHORTHANDS: Final = {"EI", "EA", "GJ", "rhoA", "rhoI", "rhoJ", "kappaGA"}
+"""Parameters that replace a product of two others."""
 GAIN: Final = "K"
 """Closes the loops in ``derivations/``."""
 FORMULA: Final = re.compile(
@@ -104,6 +108,8 @@ def on_page_markdown(markdown: str, **_: object) -> str:
     """Put the gallery and the formulas where a page asks for them."""
     if "<!-- gallery -->" in markdown:
         markdown = markdown.replace("<!-- gallery -->", "\n".join(_sections()))
+    if "<!-- elements -->" in markdown:
+        markdown = markdown.replace("<!-- elements -->", catalogue())
     if "<!-- drawings -->" in markdown:
         markdown = SPECIFICATION.sub(
             lambda match: f"{match[0]}\n\n{drawing_html(match[1], match[2])}\n", markdown
@@ -114,10 +120,48 @@ def on_page_markdown(markdown: str, **_: object) -> str:
 
 def drawing_html(name: str, text: str) -> str:
     """Return the drawing of a specification as a picture."""
-    model = pipeline.loads(text)
+    return picture(pipeline.loads(text), name)
+
+
+def picture(model: Model, name: str) -> str:
+    """Return the drawing of a model, to be written into a page."""
     content = b64encode(render(draw_model(model), "svg")).decode("ascii")
     alt = html.escape(f"{model.title or name}, drawn", quote=True)
     return f'<img class="drawing" src="data:image/svg+xml;base64,{content}" alt="{alt}">'
+
+
+def catalogue() -> str:
+    """Return all elements as cards: the drawing of each alone, its name and what it is."""
+    cards = []
+    for name, element in ELEMENTS.items():
+        model = pipeline.loads(alone(element))
+        drawing = picture(replace(model, inputs=model.inputs if element.is_source else (), outputs=()), name)
+        link = f'<a href="../spec-language/#{name}"><code>{name}</code></a>'
+        cards.append(f"<figure>{drawing}<figcaption>{link} {element.summary}</figcaption></figure>")
+    return "\n".join(('<div class="elements">', *cards, "</div>"))
+
+
+def alone(element: Element) -> str:
+    """Return a specification that holds one element and nothing else."""
+    nodes = iter("abcdefgh")
+    keys = [f'type = "{element.type_name}"']
+    for port in element.ports:
+        if port.default is None:
+            listed = ", ".join(f'"{next(nodes)}"' for _ in range(port.terminals))
+            keys.append(f"{port.name} = [{listed}]" if port.terminals > 1 else f"{port.name} = {listed}")
+    needed = [p.name for p in element.parameters if p.default is None and not p.only]
+    names = [name for name in needed if name not in SHORTHANDS or "rho" not in needed]
+    keys += [f'{name} = "{name}"' for name in names]
+    declared = "inputs" if element.is_source else "parameters"
+    values = ", ".join(f"{name} = {{}}" for name in names)
+    rest = "parameters = {}" if element.is_source else "inputs = { u = {} }"
+    output = names[0] if element.is_source else "u"
+    return f"""symflex = 1
+{declared} = {{ {values} }}
+{rest}
+outputs = {{ y = "{output}" }}
+elements = {{ {element.type_name} = {{ {", ".join(keys)} }} }}
+"""
 
 
 def typeset(text: str, *, is_display: bool) -> str:

@@ -64,7 +64,7 @@ SLIDING = {
     ),
     "sliding_free_beam_position": LoopFacts("K", "N/m", ((0.0, 1e5),), 0, (), True, True, 6.59133, False),
 }
-"""Loops about the beam, as docs/tutorial-force-loop.md prints them: its sessions are run by tests/docs/."""
+"""Loops about the beam, as docs/force-loop.md prints them: its sessions are run by tests/docs/."""
 
 pytestmark = pytest.mark.slow
 
