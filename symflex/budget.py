@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 GB: Final = 10**9
 LOOK: Final = 0.02
 """Seconds between two looks at the memory, in which a process can take 40 MB: each asks the system."""
-TIME_OVER: Final = Diagnostic("SF506", "the time given is over", None, "allow more time, or ask for less")
+TIME_OVER: Final = Diagnostic("SF506", "the time budget is used up", None, "allow more time, or ask for less")
 
 
 class Progress(Protocol):
@@ -183,7 +183,7 @@ def spend() -> None:
 def memory_used_up(memory: int) -> Diagnostic:
     """Return what is said when a process holds more than it may."""
     amount = f"{memory / GB:.6f}".rstrip("0").rstrip(".")
-    message = f"the memory given is used up: {amount} GB"
+    message = f"the memory budget is used up: {amount} GB"
     return Diagnostic("SF504", message, None, "allow more memory, or ask for less")
 
 

@@ -283,7 +283,7 @@ class TransferFunction(_Derived):
             raise UsageError(Diagnostic("SF902", f"there is no {what}", None, nearest(parameter, symbols)))
         form = self.form("hyperbolic") if self.is_distributed else self._shortest
         if form.printed.laws:
-            message = f"the waves of {self.name} have no formula, and so neither have its sensitivities"
+            message = f"the waves of {self.name} have no formula, so its sensitivities have none either"
             raise UsageError(Diagnostic("SF902", message, None, "use sensitivities() of the bound function"))
         part = form.den if of == "pole" else form.num
         return sensitivity_formula(part, form.where, to_sympy(Name("s"), symbols), symbols[parameter])

@@ -178,14 +178,14 @@ def sweep(spec: Specification, given: SweepOptions) -> int:
     if given.workers and given.scheduler:
         raise UsageError(Diagnostic("SF902", "give only one of --workers and --scheduler"))
     if given.fresh and not given.output:
-        raise UsageError(Diagnostic("SF902", "--fresh is for a file: give -o FILE"))
+        raise UsageError(Diagnostic("SF902", "--fresh needs a file: give -o FILE"))
     if given.output:
         check_writable(Path(given.output))
     model = spec.load()
     _check(given)
     task, design = run.plan_sweep(model, given)
     if doubled := [name for name in design.names if name in spec.settings]:
-        raise UsageError(Diagnostic("SF902", f"'{doubled[0]}' is swept and set"))
+        raise UsageError(Diagnostic("SF902", f"'{doubled[0]}' is both swept and set"))
     if given.of != "margins":
         first_pair(model, given.tf, "sweeping")
     with ProgressBar() as bar, run.open_executor(given.workers, given.scheduler) as (executor, size):
@@ -207,6 +207,6 @@ def _check(given: SweepOptions) -> None:
     if given.modes is not None and given.band is not None:
         raise UsageError(Diagnostic("SF902", "give only one of --modes and --band"))
     if given.of == "margins" and not given.gain:
-        raise UsageError(Diagnostic("SF902", "margins are those of a loop", None, "name its gain: --gain K"))
+        raise UsageError(Diagnostic("SF902", "margins need a loop", None, "name its gain: --gain K"))
     if given.of != "margins" and given.gain:
         raise UsageError(Diagnostic("SF902", "--gain is for --of margins"))

@@ -102,7 +102,7 @@ def chosen_representation(representation: str, form: str | None) -> str:
         return representation
     wanted = "nested" if form == "nested" else "expanded"
     if representation not in ("auto", wanted):
-        message = f"--form {form[:64]} is of the {wanted} representation, not the {representation} one"
+        message = f"--form {form[:64]} belongs to the {wanted} representation, not the {representation} one"
         raise UsageError(Diagnostic("SF902", message))
     return wanted
 
@@ -223,7 +223,7 @@ def export(spec: Specification, given: ExportOptions) -> int:
         path = Path(given.output)
         files = {path: made.text} | {path.with_suffix(s): text for s, text in made.companions.items()}
         if len(files) <= len(made.companions):
-            message = f"'{given.output}' is the name of a file that belongs beside it"
+            message = f"'{given.output}' would overwrite a file that the export writes next to it"
             hint = f"end its name with {EXPORTERS[given.target].suffix}"
             raise UsageError(Diagnostic("SF902", message, None, hint))
         for file, text in files.items():
@@ -248,8 +248,8 @@ def _chosen(exporter: Exporter, given: ExportOptions) -> Exporter:
         raise UsageError(Diagnostic("SF902", "--width and --no-figures are for --to latex"))
     elif isinstance(exporter, Language):
         if given.form not in (None, BAND):
-            message = f"code has the form {BAND} besides its own, not '{given.form[:64]}'"
-            raise UsageError(Diagnostic("SF902", message, None, "other forms are for --to latex"))
+            message = f"the only --form for code is {BAND}, not '{given.form[:64]}'"
+            raise UsageError(Diagnostic("SF902", message, None, "use other forms with --to latex"))
         end = None if given.up_to is None else Fraction(highest_frequency(given.up_to))
         exporter = replace(exporter, form=given.form, up_to=end)
     elif given.form is not None:
@@ -257,7 +257,7 @@ def _chosen(exporter: Exporter, given: ExportOptions) -> Exporter:
     if given.up_to is not None and not isinstance(exporter, Language):
         raise UsageError(Diagnostic("SF902", "--up-to is for code"))
     if given.sample is None and (given.method or given.prewarp or given.is_direct):
-        raise UsageError(Diagnostic("SF902", "--method, --prewarp and --direct are of --sample"))
+        raise UsageError(Diagnostic("SF902", "--method, --prewarp and --direct need --sample"))
     sampling = None
     if given.sample is not None:
         from symflex.state_space.sampled import sampling_of

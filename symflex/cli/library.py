@@ -39,7 +39,7 @@ TEMPLATES: dict[str, str] = {
     "new", epilog="\b\n" + "\n".join(("Templates:", *(f"  {n}: {s}" for n, s in TEMPLATES.items())))
 )
 @click.argument("template", required=False)
-@click.option("--list", "is_list", is_flag=True, help="List the templates, as without TEMPLATE.")
+@click.option("--list", "is_list", is_flag=True, help="List the templates.")
 @click.option("-o", "--output", type=click.Path(), help="File to write; standard output by default.")
 @reporting
 def new(template: str | None, *, output: str | None, is_list: bool) -> int:

@@ -68,7 +68,9 @@ def fit(given: FitOptions) -> int:
         if len(measured) != 1:
             hint = "responses: " + ", ".join(response.name for response in every)
             raise UsageError(
-                Diagnostic("SF902", f"no single response is called '{given.driving[:64]}'", None, hint)
+                Diagnostic(
+                    "SF902", f"no response, or more than one, is called '{given.driving[:64]}'", None, hint
+                )
             )
         if given.base is not None:
             raise UsageError(Diagnostic("SF902", "--driving is for fits without --base"))
@@ -77,7 +79,7 @@ def fit(given: FitOptions) -> int:
         found = fitted(measured, given)
     shapes = mode_shapes(found, every) if given.driving else None
     if given.strict and found.poor:
-        hint = "without --strict it is printed all the same"
+        hint = "leave out --strict to print it anyway"
         raise FitError(Diagnostic("SF618", f"the fit is poor: {found.poor[0]}", None, hint))
     if given.output:
         text = fit_specification(found, Path(given.output).parent, given.loop)
@@ -87,7 +89,7 @@ def fit(given: FitOptions) -> int:
             pipeline.loads(text, given.output)
         except SymflexError:
             folders = " ".join(f"--allow-outside {folder}" for folder in given.allow_outside)
-            note(f"its base reads other folders: give {folders} where it is read")
+            note(f"its base reads other folders: give {folders} to the commands that read it")
     answer(given.as_json, lambda: fit_json(found, shapes), lambda: fit_text(found, terminal_width(), shapes))
     _draw(found, given)
     return 0

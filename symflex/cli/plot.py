@@ -98,7 +98,7 @@ def plot(spec: Specification, given: PlotOptions) -> int:
             raise UsageError(Diagnostic("SF902", message))
         frame = replace(frame, x=(0.0, float(duration(given.until, "--until"))))
     if drawn == "locus" and not gain:
-        message = "a locus is drawn of a loop"
+        message = "a locus needs a loop"
         raise UsageError(Diagnostic("SF902", message, None, "name its gain: --gain K, or gain in [figures]"))
     title = figure.title or None if figure else None
     if gain:
@@ -134,7 +134,7 @@ def _plot_sweep(spec: Specification, given: PlotOptions) -> int:
     """Draw what 'symflex sweep -o' wrote."""
     others = (given.tfs, given.gain, given.limits, given.band, given.xlim, given.ylim, given.phase)
     if spec.settings or any(others):
-        message = "--set, --tf, --gain, --range, --band and ends of axes are not for a sweep"
+        message = "--set, --tf, --gain, --range, --band and ends of axes do not apply to a sweep"
         raise UsageError(Diagnostic("SF902", message))
     from symflex.figures import draw_sweep, save
     from symflex.print.latex import width_of

@@ -53,7 +53,7 @@ def respond(spec: Specification, given: RespondOptions) -> int:
 
     _check_place(given)
     if given.shaped is None and (given.joint or given.modes != 1):
-        raise UsageError(Diagnostic("SF902", "--modes and --joint are of --shaped zv, zvd or ei"))
+        raise UsageError(Diagnostic("SF902", "--modes and --joint need --shaped zv, zvd or ei"))
     until = None if given.until is None else duration(given.until, "--until")
     signal = read_signal(given.to) if given.to.lower().endswith(TABLE) else None
     model = spec.load()
@@ -104,7 +104,7 @@ def _check_place(given: RespondOptions) -> None:
             raise UsageError(Diagnostic("SF902", "give only one of --json and -o"))
     is_figure = Path(given.output or "").suffix in PICTURES
     if not is_figure and any((given.xlim, given.ylim, given.width, given.font)):
-        message = "--xlim, --ylim, --width and --font are of a figure"
+        message = "--xlim, --ylim, --width and --font apply only to a figure"
         raise UsageError(Diagnostic("SF902", message, None, "name one, as in -o step.svg"))
 
 

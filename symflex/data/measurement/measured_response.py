@@ -182,12 +182,12 @@ def checked_response(
         note("SF603", wrong, "value", say, hint)
 
     wrong = ~np.isfinite(frequency) | (frequency < 0)
-    hint = "frequencies are positive numbers [Hz]"
+    hint = "frequencies must be positive [Hz]"
     note("SF603", wrong, "frequency", lambda i: f"frequency {frequency[i]:g} Hz", hint)
     is_finite = np.isfinite(values)
     note_value(~is_finite, lambda i: "the value is not a finite number", "leave the line out")
     wrong = is_finite & (values == 0)
-    note_value(wrong, lambda i: "the value is zero, which no measurement is", "leave the line out")
+    note_value(wrong, lambda i: "the value is zero, which a measured value never is", "leave the line out")
     with np.errstate(over="ignore"):
         size = np.abs(values)
     note_value(
@@ -237,7 +237,7 @@ def averages_of(text: str, file: str, span: Span | None = None) -> float:
     if not 1 <= number <= MOST_AVERAGES:
         place = "" if span else f"'{file}': "
         message = f"{place}the number of averages is '{text[:40]}'"
-        raise DataError(Diagnostic("SF603", message, span, "a number from 1 on"))
+        raise DataError(Diagnostic("SF603", message, span, "write a number of at least 1"))
     return number
 
 
@@ -253,7 +253,8 @@ def unit_of(text: str, file: str, span: Span | None = None) -> str:
         place = "" if span else f"'{file}': "
         message = f"{place}the unit of the values: {reason.message}"
         hint = (
-            reason.hint or "such as m/N, m/(N*s^2), rad/V; 1 for a pure number; without a unit leave it out"
+            reason.hint
+            or "such as m/N, m/(N*s^2), rad/V; 1 for a pure number; leave it out if there is no unit"
         )
         raise DataError(Diagnostic("SF602", message, span, hint)) from None
     return unit

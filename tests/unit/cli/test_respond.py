@@ -62,7 +62,7 @@ def test_a_value_that_is_set_is_used(oscillator):
 
 def test_text_says_what_is_an_impulse(oscillator):
     out = oscillator("respond", "osc.toml", "--tf", "A/F", "--to", "impulse", "--until", "1 s").out
-    assert "besides, at 0 s, an impulse of weight 0.5" in out
+    assert "also, at 0 s, an impulse of weight 0.5" in out
     assert max(map(len, out.splitlines())) <= 80
 
 
@@ -167,7 +167,7 @@ def test_a_dead_time_of_the_specification_becomes_states(shell, tmp_path):
     assert float((names["C"] @ w)[0]) == pytest.approx(step_of_oscillator(0.487), rel=1e-12)
     done = shell("export", "late.toml", *asked)
     assert done.code == 3
-    assert "choose functions with one dead time with --tf" in done.err
+    assert "use --tf to choose functions with the same dead time" in done.err
 
 
 def test_a_controller_is_exported_with_its_poles_and_what_rounding_costs(oscillator, tmp_path):
@@ -201,7 +201,7 @@ def test_inputs_that_were_broken_by_hand_get_a_sentence(oscillator, tmp_path):
     for asked, code, said in (
         (["--until", "1e300"], 2, "error[SF103]: --until '1e300': a decimal exponent beyond 60"),
         (["--until", "1", "--modes", "2"], 2, "--modes and --joint are of --shaped"),
-        (["--until", "1", "--width", "a4"], 2, "--xlim, --ylim, --width and --font are of a figure"),
+        (["--until", "1", "--width", "a4"], 2, "--xlim, --ylim, --width and --font apply only to a figure"),
         (
             ["--until", "1", "-o", "osc.svg", "--width", "a4", "--font", "sans", "--ylim", "0", "1"],
             0,
@@ -228,7 +228,7 @@ def test_what_grows_beyond_doubles_is_printed_in_decimals_and_not_drawn(shell, t
         assert abs(mpmath.mpf(document["value"][1]) / expected - 1) < mpmath.mpf("1e-11")
     drawn = shell("respond", "up.toml", "--until", "1000", "--points", "3", "-o", "up.svg")
     assert drawn.code == 2
-    assert "error[SF812]: the response of y/u is beyond the range of doubles from 500 s on" in drawn.err
+    assert "error[SF812]: the response of y/u exceeds the range of doubles from 500 s on" in drawn.err
     beyond = shell("respond", "up.toml", "--until", "1e10s")
     assert (beyond.code, "error[SF812]: the response of y/u is beyond 10^100000 from" in beyond.err) == (
         2,
