@@ -113,12 +113,12 @@ BROKEN = {
     "tip_with_a_fractional_power": (
         member('E = "E", I = "I_0*(1 - x/l)*sqrt(1 - x/l)", A = "A_0"'),
         "SF250",
-        "a stiffness of 'arm' vanishes at x = l: a function of x vanishes there besides",
+        "a stiffness of 'arm' vanishes at x = l: a function of x also vanishes there",
     ),
     "tip_with_a_sine": (
         stiffened("x/l*sin(a*x)"),
         "SF250",
-        "a stiffness of 'w' vanishes at x = 0: a function of x vanishes there besides",
+        "a stiffness of 'w' vanishes at x = 0: a function of x also vanishes there",
     ),
     "tips_at_both_ends": (stiffened("x/l*(1 - x/l)"), "SF910", "stiffnesses vanish at both ends of 'w'"),
     "stiffness_zero_everywhere": (

@@ -184,7 +184,7 @@ def test_a_controller_is_exported_with_its_poles_and_what_rounding_costs(oscilla
 def test_options_of_sampling_that_do_not_go_together_are_refused(oscillator):
     for asked, said in (
         (["--to", "julia", "--sample", "1ms"], "--sample is for"),
-        (["--to", "c", "--method", "zoh"], "are of --sample"),
+        (["--to", "c", "--method", "zoh"], "need --sample"),
         (["--to", "state-space", "--sample", "1ms", "--direct"], "--direct is for"),
         (["--to", "state-space", "--sample", "1ms", "--method", "matched"], "of one transfer function"),
         (["--to", "c", "--sample", "1ms", "--minimal"], "--minimal is for"),
@@ -200,7 +200,7 @@ def test_options_of_sampling_that_do_not_go_together_are_refused(oscillator):
 def test_inputs_that_were_broken_by_hand_get_a_sentence(oscillator, tmp_path):
     for asked, code, said in (
         (["--until", "1e300"], 2, "error[SF103]: --until '1e300': a decimal exponent beyond 60"),
-        (["--until", "1", "--modes", "2"], 2, "--modes and --joint are of --shaped"),
+        (["--until", "1", "--modes", "2"], 2, "--modes and --joint need --shaped"),
         (["--until", "1", "--width", "a4"], 2, "--xlim, --ylim, --width and --font apply only to a figure"),
         (
             ["--until", "1", "-o", "osc.svg", "--width", "a4", "--font", "sans", "--ylim", "0", "1"],
@@ -209,7 +209,7 @@ def test_inputs_that_were_broken_by_hand_get_a_sentence(oscillator, tmp_path):
         ),
         (["--until", "1", "--shaped", "zv", "--modes", "7"], 2, "has 1 modes that oscillate, not 7"),
         (["--to", "gap.csv"], 3, "gap.csv:3:1: error[SF603]: a number is missing"),
-        (["--to", "odd.csv"], 2, "times have too little in common"),
+        (["--to", "odd.csv"], 2, "the times have no usable common step"),
         (["--to", "same.csv"], 3, "same.csv:3:1: error[SF604]: times do not increase"),
     ):
         (tmp_path / "gap.csv").write_text("time_s,u\n0,0\n1,\n2,1\n", encoding="utf-8")
@@ -230,7 +230,7 @@ def test_what_grows_beyond_doubles_is_printed_in_decimals_and_not_drawn(shell, t
     assert drawn.code == 2
     assert "error[SF812]: the response of y/u exceeds the range of doubles from 500 s on" in drawn.err
     beyond = shell("respond", "up.toml", "--until", "1e10s")
-    assert (beyond.code, "error[SF812]: the response of y/u is beyond 10^100000 from" in beyond.err) == (
+    assert (beyond.code, "error[SF812]: the response of y/u exceeds 10^100000 from" in beyond.err) == (
         2,
         True,
     )
