@@ -62,7 +62,7 @@ class Budget:
     >>> Budget(seconds=0, clock=iter([0, 1]).__next__).spend()
     Traceback (most recent call last):
     ...
-    symflex.errors.exceptions.BudgetError: error[SF506]: the time given is over
+    symflex.errors.exceptions.BudgetError: error[SF506]: the time budget is used up
       hint: allow more time, or ask for less
 
     Numbers of bytes are those of the whole process, Python and its libraries included:
@@ -71,7 +71,7 @@ class Budget:
     ...     spend()
     Traceback (most recent call last):
     ...
-    symflex.errors.exceptions.BudgetError: error[SF504]: the memory given is used up: 0.000001 GB
+    symflex.errors.exceptions.BudgetError: error[SF504]: the memory budget is used up: 0.000001 GB
       hint: allow more memory, or ask for less
     """
 

@@ -1,4 +1,4 @@
-"""What each command is asked: one frozen dataclass a command, made by the command line and by Python alike.
+"""Options of each command: one frozen dataclass a command, made by the command line and by Python alike.
 
         symflex roots beam.toml --modes 3 --digits 20      RootsOptions(modes=3, digits=20)
     bound.poles(3, digits=20)                          RootsOptions(modes=3, digits=20)
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 FREQUENCIES: Final = 200
-"""Of a swept response, where nothing else is said."""
+"""Default number of frequencies of a swept response."""
 UNBOUNDED: Final = ("inf", "-inf", "+inf")
 
 
@@ -80,7 +80,7 @@ FONT: Final = {"metavar": "FONT", "help": "Font: times, latex or sans.  [default
 
 @dataclass(frozen=True, eq=False, repr=False)
 class CheckOptions:
-    """Of ``symflex check``."""
+    """Options of ``symflex check``."""
 
     as_json: bool = option(False, "--json", **JSON)
     strict: bool = option(False, "--strict", help="Exit with code 3 if there is a warning.")
@@ -88,7 +88,7 @@ class CheckOptions:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class DeriveOptions:
-    """Of ``symflex derive``."""
+    """Options of ``symflex derive``."""
 
     tfs: Sequence[str] = option((), "--tf", **SOME_TFS)
     form: str | None = option(
@@ -120,7 +120,7 @@ class DeriveOptions:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ExportOptions:
-    """Of ``symflex export``."""
+    """Options of ``symflex export``."""
 
     target: str = option("", "--to", required=True, metavar="TARGET", help="One of the targets below.")
     tfs: Sequence[str] = option((), "--tf", **SOME_TFS)
@@ -181,7 +181,7 @@ class ExportOptions:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class RootsOptions:
-    """Of ``symflex roots``, and of what Python finds at poles and zeros.
+    """Options of ``symflex roots``, and of what Python finds at poles and zeros.
 
     Python gives ``band`` in Hz and ``region`` in rad/s.
     """
@@ -220,7 +220,7 @@ class RootsOptions:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class RationalOptions:
-    """Of ``symflex rational``."""
+    """Options of ``symflex rational``."""
 
     tf: str | None = option(None, "--tf", **ONE_TF)
     modes: int | None = option(
@@ -238,7 +238,7 @@ class RationalOptions:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class RespondOptions:
-    """Of ``symflex respond``."""
+    """Options of ``symflex respond``."""
 
     tf: str | None = option(None, "--tf", **ONE_TF)
     to: str = option(
@@ -283,7 +283,7 @@ class RespondOptions:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ShapeOptions:
-    """Of ``symflex shape``."""
+    """Options of ``symflex shape``."""
 
     tf: str | None = option(None, "--tf", **ONE_TF)
     modes: int = option(1, "--modes", **SHAPED_MODES)
@@ -307,7 +307,7 @@ class ShapeOptions:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SweepOptions:
-    """Of ``symflex sweep``. Python gives the values of each parameter as a mapping, and the frequencies."""
+    """Options of ``symflex sweep``. Python gives the values of each parameter as a mapping, and the frequencies."""
 
     over: Sequence[str] | Mapping[str, str | Sequence[Stated | Decimal]] = option(
         (),
@@ -353,14 +353,14 @@ class SweepOptions:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class StabilityOptions:
-    """Of ``symflex stability``. Python gives ``limits`` in SI units, None for none, and ``up_to`` in Hz."""
+    """Options of ``symflex stability``. Python gives ``limits`` in SI units, None for none, and ``up_to`` in Hz."""
 
     gain: str = option("", "--gain", required=True, metavar="K", help="Parameter that is the loop's gain.")
     limits: tuple[Stated | None, Stated | None] | None = option(
         None,
         "--range",
         **TWO,
-        help='Only gains between two values: 0 1e4, "1 kN/m" inf.  [default: all of the sign assumed of it; '
+        help='Only gains between two values: 0 1e4, "1 kN/m" inf.  [default: every gain of its assumed sign; '
         "with beams, rods or delays up to 100 times its value]",
     )
     up_to: Stated | None = option(
@@ -377,7 +377,7 @@ class StabilityOptions:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ColocationOptions:
-    """Of ``symflex colocation``. Python gives degrees, decibels and Hz."""
+    """Options of ``symflex colocation``. Python gives degrees, decibels and Hz."""
 
     tf: str = option("", "--tf", required=True, metavar="OUT/IN", help="Output away from the actuator.")
     reference: str = option("", "--with", required=True, metavar="OUT2/IN", help="Colocated output.")
@@ -391,7 +391,7 @@ class ColocationOptions:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PlotOptions:
-    """Of ``symflex plot``."""
+    """Options of ``symflex plot``."""
 
     kind: str = option("")
     tfs: Sequence[str] = option(
@@ -422,7 +422,7 @@ class PlotOptions:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class DrawOptions:
-    """Of ``symflex draw``."""
+    """Options of ``symflex draw``."""
 
     values: bool = option(False, "--values", help="Label symbols with values and units.")
     output: str | None = option(
@@ -436,7 +436,7 @@ class DrawOptions:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class AuditOptions:
-    """Of ``symflex audit``."""
+    """Options of ``symflex audit``."""
 
     tfs: Sequence[str] = option(
         (),
@@ -451,7 +451,7 @@ class AuditOptions:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class FitOptions:
-    """Of ``symflex fit``. Python gives data in place of their paths, too."""
+    """Options of ``symflex fit``. Python gives data in place of their paths, too."""
 
     data: Sequence[object] = option((), nargs=-1, required=True, is_path=True)
     base: str | Path | None = option(
@@ -548,7 +548,7 @@ class FitOptions:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class MeasureOptions:
-    """Of ``symflex measure``."""
+    """Options of ``symflex measure``."""
 
     tf: str | None = option(None, "--tf", **ONE_TF)
     output: str = option(
@@ -577,7 +577,7 @@ class MeasureOptions:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ReportOptions:
-    """Of ``symflex report``."""
+    """Options of ``symflex report``."""
 
     specs: Places = option((), nargs=-1, required=True, is_path=True, metavar="SPEC...")
     allow_outside: Places = option((), "--allow-outside", **OUTSIDE)

@@ -120,7 +120,7 @@ class Model:
         Parameters
         ----------
         values : bool
-            Write numbers with units at the symbols.
+            Label symbols with values and units.
         width : float, optional
             Width of the figure [mm]; by default a column (88.5), a page (170), or what the model needs.
             Lengths in the figure are what they are in print.
@@ -470,7 +470,7 @@ class Model:
         rolloff : float, optional
             Corner of the accelerometer [Hz]; ``None`` for none.
         seed : int
-            Of the random numbers.
+            Seed of the random numbers.
 
         Raises
         ------

@@ -40,7 +40,7 @@ TEMPLATES: dict[str, str] = {
 )
 @click.argument("template", required=False)
 @click.option("--list", "is_list", is_flag=True, help="List the templates.")
-@click.option("-o", "--output", type=click.Path(), help="File to write; standard output by default.")
+@click.option("-o", "--output", type=click.Path(), help="File to write.  [default: standard output]")
 @reporting
 def new(template: str | None, *, output: str | None, is_list: bool) -> int:
     """Write a specification to start from; without TEMPLATE, list the templates.

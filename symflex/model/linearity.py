@@ -223,7 +223,7 @@ class _Degrees:
             self.note("SF212", message, call.span)
             return "unknown"
         if call.order > ORDER_LIMIT:
-            message = f"a derivative of order {call.order}; at most {ORDER_LIMIT} is allowed"
+            message = f"this derivative is of order {call.order}; at most {ORDER_LIMIT} is allowed"
             self.note(
                 "SF103", message, call.span, "the field's equation gives higher derivatives by lower ones"
             )

@@ -123,12 +123,12 @@ def _make(folder: Path, *, is_root: bool) -> None:
     name = str(folder)
     try:
         if not is_root and folder.is_symlink():
-            raise _unwritable(name, "it is a symbolic link, and links are not written through")
+            raise _unwritable(name, "it is a symbolic link, and symflex does not write through links")
         folder.mkdir(parents=is_root, exist_ok=True)
     except OSError as error:
         raise _unwritable(name, error.strerror or "input/output error") from None
     except ValueError:
-        raise _unwritable(name, "the name holds a character no folder can have") from None
+        raise _unwritable(name, "the name contains a character that folders cannot have") from None
 
 
 def _unwritable(name: str, reason: str) -> UsageError:

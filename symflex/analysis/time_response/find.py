@@ -6,7 +6,7 @@ Ways are asked in the order of :data:`WAYS`, and the first that answers is taken
 told of a response that is only estimated:
 
     a servo about a beam without loss    lossless modes: waves lose energy
-                                         lossy modes: some waves lose nothing in their material
+                                         lossy modes: some waves have no material loss
                                          passive modes: something in the model may supply energy
                                          estimated modes answer
 """
