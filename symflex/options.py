@@ -307,7 +307,10 @@ class ShapeOptions:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SweepOptions:
-    """Options of ``symflex sweep``. Python gives the values of each parameter as a mapping, and the frequencies."""
+    """Options of ``symflex sweep``.
+
+    Python gives the values of each parameter as a mapping, and the frequencies.
+    """
 
     over: Sequence[str] | Mapping[str, str | Sequence[Stated | Decimal]] = option(
         (),
@@ -353,7 +356,10 @@ class SweepOptions:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class StabilityOptions:
-    """Options of ``symflex stability``. Python gives ``limits`` in SI units, None for none, and ``up_to`` in Hz."""
+    """Options of ``symflex stability``.
+
+    Python gives ``limits`` in SI units, None for none, and ``up_to`` in Hz.
+    """
 
     gain: str = option("", "--gain", required=True, metavar="K", help="Parameter that is the loop's gain.")
     limits: tuple[Stated | None, Stated | None] | None = option(

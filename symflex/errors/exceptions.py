@@ -8,7 +8,7 @@ from symflex.errors.diagnostic import Diagnostic
 
 
 class SymflexError(Exception):
-    """Base of every error symflex raises on purpose.
+    """Base class of all errors that symflex raises on purpose.
 
     Parameters
     ----------

@@ -67,7 +67,7 @@ def check_header(reader: Reader, spec: Spec) -> None:
 
 
 def read_section(reader: Reader, spec: Spec, name: str) -> TableValue | None:
-    """Return a section's table, ``None`` where there is none."""
+    """Return a section's table, ``None`` if there is none."""
     entry = spec.root.get(name)
     if entry is None:
         return None

@@ -89,7 +89,7 @@ class MeasuredResponse:
 
     @property
     def spacing_hz(self) -> float | None:
-        """The distance between neighbouring lines [Hz] where it is the same throughout, else None."""
+        """The spacing of lines [Hz] if it is uniform, else None."""
         steps = np.diff(self.frequency_hz)
         if not steps.size or np.ptp(steps) > 1e-3 * float(steps.mean()):
             return None
@@ -109,7 +109,7 @@ class MeasuredResponse:
         return np.sqrt(share / (2 * (self.averages or 1.0)))
 
     def misfit_db(self, model: npt.NDArray[np.complex128]) -> float:
-        """Return the root mean square of the model over the data on the lines [dB], magnitude alone."""
+        """Return the root mean square of the model's magnitude over that of the data on the lines [dB]."""
         with np.errstate(divide="ignore"):
             level = 20 * np.log10(np.abs(model / self.values))
         return float(np.sqrt(np.mean(level**2)))
@@ -119,11 +119,11 @@ class MeasuredResponse:
         return float(np.degrees(np.sqrt(np.mean(np.angle(model / self.values) ** 2))))
 
     def between(self, low_hz: float, high_hz: float) -> MeasuredResponse:
-        """Return the lines within a band [Hz], its ends included."""
+        """Return the lines within a band [Hz], including its ends."""
         return self.taken(np.flatnonzero((self.frequency_hz >= low_hz) & (self.frequency_hz <= high_hz)))
 
     def taken(self, lines: npt.NDArray[np.intp]) -> MeasuredResponse:
-        """Return some lines, in the order of their numbers."""
+        """Return the lines with these numbers, in their order."""
         coherence = None if self.coherence is None else self.coherence[lines]
         return replace(
             self, frequency_hz=self.frequency_hz[lines], values=self.values[lines], coherence=coherence
