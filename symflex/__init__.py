@@ -105,5 +105,5 @@ def __getattr__(name: str) -> object:
         return getattr(import_module(_ELSEWHERE.get(name, "symflex.api")), name)
     message = f"module 'symflex' has no attribute '{name}'"
     if name == "derivation_cache":
-        message += ": derivations are quick and no longer kept on disk, leave it out"
+        message += ": symflex no longer caches derivations on disk; leave it out"
     raise AttributeError(message)

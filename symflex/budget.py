@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 GB: Final = 10**9
 LOOK: Final = 0.02
 """Seconds between two looks at the memory, in which a process can take 40 MB: each asks the system."""
-TIME_OVER: Final = Diagnostic("SF506", "the time given is over", None, "allow more time, or ask for less")
+TIME_OVER: Final = Diagnostic("SF506", "the time budget is used up", None, "allow more time, or ask for less")
 
 
 class Progress(Protocol):
@@ -48,9 +48,9 @@ class Budget:
     Parameters
     ----------
     seconds : float, optional
-        From now on; no limit by default.
+        Time from now on [s]; no limit by default.
     progress : Progress
-        Told how far the work is.
+        Receives the progress of the work.
     clock : callable
         Returns the time [s].
     memory : int, optional
@@ -62,7 +62,7 @@ class Budget:
     >>> Budget(seconds=0, clock=iter([0, 1]).__next__).spend()
     Traceback (most recent call last):
     ...
-    symflex.errors.exceptions.BudgetError: error[SF506]: the time given is over
+    symflex.errors.exceptions.BudgetError: error[SF506]: the time budget is used up
       hint: allow more time, or ask for less
 
     Numbers of bytes are those of the whole process, Python and its libraries included:
@@ -71,7 +71,7 @@ class Budget:
     ...     spend()
     Traceback (most recent call last):
     ...
-    symflex.errors.exceptions.BudgetError: error[SF504]: the memory given is used up: 0.000001 GB
+    symflex.errors.exceptions.BudgetError: error[SF504]: the memory budget is used up: 0.000001 GB
       hint: allow more memory, or ask for less
     """
 
@@ -87,7 +87,7 @@ class Budget:
         object.__setattr__(self, "_look", self._start)
 
     def share(self, fraction: float) -> Budget:
-        """Return a budget that began when this one did and ends after a fraction of its time.
+        """Return a budget with the same start that ends after a fraction of the time.
 
         Examples
         --------
@@ -98,13 +98,13 @@ class Budget:
         return self._changed(replace(self, seconds=shorter))
 
     def at_least(self, seconds: float) -> Budget:
-        """Return a budget that began when this one did and lasts so long in any case."""
+        """Return a budget with the same start that lasts at least this long."""
         return self._changed(
             replace(self, seconds=None if self.seconds is None else max(self.seconds, seconds))
         )
 
     def told(self, progress: Progress) -> Budget:
-        """Return this budget, with somebody to tell how far the work is."""
+        """Return this budget with another receiver of its progress."""
         return self._changed(replace(self, progress=progress))
 
     def _changed(self, part: Budget) -> Budget:
@@ -113,7 +113,7 @@ class Budget:
 
     @property
     def deadline(self) -> float | None:
-        """The time by the clock at which it is over; ``None`` without a limit."""
+        """The time on the clock at which it ends; ``None`` without a limit."""
         return None if self.seconds is None else self._start + self.seconds
 
     @property
@@ -123,11 +123,11 @@ class Budget:
 
     @property
     def is_timed(self) -> bool:
-        """There is a limit on time, here or in the budget that is entered."""
+        """Whether time is limited, here or in the entered budget."""
         return self.seconds is not None or entered_budget().seconds is not None
 
     def spend(self) -> None:
-        """Go on if there is time and memory left, also in the budget that is entered.
+        """Raise an error if time or memory is used up, here or in the entered budget.
 
         Raises
         ------
@@ -150,7 +150,7 @@ class Budget:
 
     @contextmanager
     def entered(self) -> Iterator[Budget]:
-        """Let :func:`spend` ask this budget while the context lasts, in this thread."""
+        """Apply this budget to the current thread inside the ``with`` block."""
         token = _ENTERED.set(self)
         try:
             yield self
@@ -183,7 +183,7 @@ def spend() -> None:
 def memory_used_up(memory: int) -> Diagnostic:
     """Return what is said when a process holds more than it may."""
     amount = f"{memory / GB:.6f}".rstrip("0").rstrip(".")
-    message = f"the memory given is used up: {amount} GB"
+    message = f"the memory budget is used up: {amount} GB"
     return Diagnostic("SF504", message, None, "allow more memory, or ask for less")
 
 

@@ -1,4 +1,4 @@
-"""What each command is asked: one frozen dataclass a command, made by the command line and by Python alike.
+"""Options of each command: one frozen dataclass a command, made by the command line and by Python alike.
 
         symflex roots beam.toml --modes 3 --digits 20      RootsOptions(modes=3, digits=20)
     bound.poles(3, digits=20)                          RootsOptions(modes=3, digits=20)
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 FREQUENCIES: Final = 200
-"""Of a swept response, where nothing else is said."""
+"""Default number of frequencies of a swept response."""
 UNBOUNDED: Final = ("inf", "-inf", "+inf")
 
 
@@ -49,14 +49,18 @@ def option(default: T, *flags: str, **said: object) -> T:
     return found  # type: ignore[no-any-return]
 
 
-ONE_TF: Final = {"metavar": "OUT/IN", "help": "The transfer function; the first one by default."}
-SOME_TFS: Final = {"metavar": "OUT/IN", "multiple": True, "help": "Only this transfer function; repeatable."}
+ONE_TF: Final = {"metavar": "OUT/IN", "help": "Transfer function.  [default: the first one]"}
+SOME_TFS: Final = {
+    "metavar": "OUT/IN",
+    "multiple": True,
+    "help": "Only this transfer function; may be repeated.",
+}
 JSON: Final = {"help": "Print the result as JSON."}
 OUTSIDE: Final = {
     "multiple": True,
     "is_folder": True,
     "metavar": "FOLDER",
-    "help": "Let model blocks read this folder too, besides that of SPEC; repeatable.",
+    "help": "Let model blocks read this folder too; may be repeated.",
 }
 TWO: Final = {"nargs": 2, "metavar": "LO HI"}
 SHOWN: Final = {"show_default": True}
@@ -65,58 +69,58 @@ SHAPED_MODES: Final = {
     "least": 1,
     "most": 20,
     **SHOWN,
-    "help": "For how many modes a shaper is made, the lowest ones.",
+    "help": "Shape the N lowest modes.",
 }
-JOINT: Final = {"help": "One shaper for all modes together, shorter than those of each one after another."}
+JOINT: Final = {"help": "One shaper for all modes together, shorter than one shaper after another."}
 REPRESENTATIONS: Final = ("auto", "expanded", "nested")
 WIDTHS: Final = "ieee|a4|MM"
-WIDTH: Final = {"metavar": WIDTHS, "help": "Width of the figure: 88.5, 170 or so many mm."}
-FONT: Final = {"metavar": "FONT", "help": "times (the default), latex or sans."}
+WIDTH: Final = {"metavar": WIDTHS, "help": "Width of the figure: 88.5 mm, 170 mm or a number in mm."}
+FONT: Final = {"metavar": "FONT", "help": "Font: times, latex or sans.  [default: times]"}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class CheckOptions:
-    """Of ``symflex check``."""
+    """Options of ``symflex check``."""
 
     as_json: bool = option(False, "--json", **JSON)
-    strict: bool = option(False, "--strict", help="Exit with code 3 where there is a warning.")
+    strict: bool = option(False, "--strict", help="Exit with code 3 if there is a warning.")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class DeriveOptions:
-    """Of ``symflex derive``."""
+    """Options of ``symflex derive``."""
 
     tfs: Sequence[str] = option((), "--tf", **SOME_TFS)
     form: str | None = option(
         None,
         "--form",
         metavar="FORM",
-        help="polynomial, monic, constant, factored, definitions, zpk, frequency; for beams, rods and delays "
-        "also hyperbolic, krylov, vaughan; nested is that representation. The shortest symbolic form by "
-        "default.",
+        help="polynomial, monic, constant, factored, definitions, zpk, frequency; for beams, rods and "
+        "delays also hyperbolic, krylov, vaughan; nested selects that representation.  [default: the "
+        "shortest symbolic form]",
     )
     format: str = option("text", "--format", choices=("text", "latex", "json"), **SHOWN)
     width: str | None = option(
         None,
         "--width",
         metavar=WIDTHS,
-        help="Column that equations in LaTeX are broken to, in type of ten points; not broken by default.",
+        help="Break LaTeX equations to a column of this width, in ten-point type.  [default: no breaks]",
     )
     representation: str = option(
         "auto",
         "--representation",
         choices=REPRESENTATIONS,
         **SHOWN,
-        help="Quotients of polynomials, or straight-line programs of named sub-impedances; auto takes the "
-        "latter where expansion would explode, and says so.",
+        help="expanded: quotients of polynomials; nested: straight-line programs of named sub-impedances; "
+        "auto: nested, with a note, where expansion would explode.",
     )
-    as_json: bool = option(False, "--json", help="The same as --format json.")
-    digits: int = option(6, "--digits", least=1, most=1000, **SHOWN, help="Digits of zpk.")
+    as_json: bool = option(False, "--json", help="Same as --format json.")
+    digits: int = option(6, "--digits", least=1, most=1000, **SHOWN, help="Digits of the form zpk.")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ExportOptions:
-    """Of ``symflex export``."""
+    """Options of ``symflex export``."""
 
     target: str = option("", "--to", required=True, metavar="TARGET", help="One of the targets below.")
     tfs: Sequence[str] = option((), "--tf", **SOME_TFS)
@@ -124,18 +128,18 @@ class ExportOptions:
         None,
         "--form",
         metavar="FORM",
-        help="latex: form of the functions, as for derive; code: band, a product over poles and zeros.",
+        help="latex: any form of derive; code: band, a product over poles and zeros.",
     )
     up_to: Stated | None = option(
         None,
         "--up-to",
         metavar="FREQUENCY",
-        help="Where the band of band forms ends, in Hz or with a unit.  [default: the model's band or modes]",
+        help="End of the band of a band form, in Hz or with a unit.  [default: the model's band or modes]",
     )
     width: str | None = option(
-        None, "--width", metavar=WIDTHS, help="latex: width of the column; a4 (170 mm) by default."
+        None, "--width", metavar=WIDTHS, help="latex: width of the column.  [default: a4, 170 mm]"
     )
-    no_figures: bool = option(False, "--no-figures", help="latex: a folder without figures.")
+    no_figures: bool = option(False, "--no-figures", help="latex: write no figures.")
     representation: str = option(
         "auto",
         "--representation",
@@ -144,46 +148,51 @@ class ExportOptions:
         help="Quotients of polynomials or nested expressions, as for derive.",
     )
     output: str | None = option(
-        None, "-o", "--output", is_path=True, help="File to write; standard output by default."
+        None, "-o", "--output", is_path=True, help="File to write.  [default: standard output]"
     )
-    is_minimal: bool = option(False, "--minimal", help="state-space: without hidden states.")
+    is_minimal: bool = option(False, "--minimal", help="state-space: leave out hidden states.")
     sample: str | None = option(
         None,
         "--sample",
         metavar="TIME",
-        help="state-space, c, numpy: the step from one sample to the next, 1ms, with the declared values.",
+        help=(
+            "state-space, c, numpy: sampling time, such as 1ms; writes difference equations with the "
+            "declared values."
+        ),
     )
     method: str | None = option(
         None,
         "--method",
         choices=("zoh", "tustin", "matched"),
-        help="--sample: the input held between samples, exactly; for controllers the bilinear "
-        "transformation, or roots matched.  [default: zoh]",
+        help="--sample: zoh holds the input between samples, exactly; tustin (bilinear) and matched "
+        "(roots) are for controllers.  [default: zoh]",
     )
     prewarp: str | None = option(
         None,
         "--prewarp",
         metavar="FREQUENCY",
-        help="--method tustin: where its response is right besides at 0, in Hz or with a unit.",
+        help="--method tustin: frequency at which the response is exact, in Hz or with a unit.",
     )
     is_direct: bool = option(
-        False, "--direct", help="--sample, c and numpy: one section for all poles, not one for every two."
+        False, "--direct", help="--sample, c and numpy: one section for all poles, not one for each pair."
     )
-    strict: bool = option(False, "--strict", help="Exit with 4 when the verified accuracy falls short.")
+    strict: bool = option(False, "--strict", help="Exit with code 4 if the verified accuracy falls short.")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class RootsOptions:
-    """Of ``symflex roots``, and of what Python finds at poles and zeros.
+    """Options of ``symflex roots``, and of what Python finds at poles and zeros.
 
     Python gives ``band`` in Hz and ``region`` in rad/s.
     """
 
     tf: str | None = option(None, "--tf", **ONE_TF)
     modes: int | None = option(
-        None, "--modes", least=1, help="Only the N lowest modes, with roots at the origin."
+        None, "--modes", least=1, help="Only the N lowest modes, and roots at the origin."
     )
-    mode: int | None = option(None, "--mode", least=1, help="Only mode number N, by natural frequency.")
+    mode: int | None = option(
+        None, "--mode", least=1, help="Only mode number N, in order of natural frequency."
+    )
     band: Ends | None = option(
         None, "--band", **TWO, help='Only natural frequencies in a band: 0.1 1000, "1 kHz".'
     )
@@ -193,7 +202,9 @@ class RootsOptions:
     digits: int | None = option(
         None, "--digits", least=1, most=10_000, help="Correct significant digits.  [default: 15]"
     )
-    explain: bool = option(False, "--explain", help="Say which constrained system's poles the zeros are.")
+    explain: bool = option(
+        False, "--explain", help="Say which constrained system has the zeros as its poles."
+    )
     sensitivity: Sequence[str] = option(
         (),
         "--sensitivity",
@@ -201,31 +212,33 @@ class RootsOptions:
         multiple=True,
         is_flag=False,
         flag_value="",
-        help="How roots move with a parameter, all of them when none is named; may be repeated.",
+        help="How roots move with this parameter, or with every parameter if none is named; may be repeated.",
     )
-    strict: bool = option(
-        False, "--strict", help="Exit with code 4 also when a part of the region is left out."
-    )
+    strict: bool = option(False, "--strict", help="Also exit with code 4 if part of the region is left out.")
     as_json: bool = option(False, "--json", **JSON)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class RationalOptions:
-    """Of ``symflex rational``."""
+    """Options of ``symflex rational``."""
 
     tf: str | None = option(None, "--tf", **ONE_TF)
     modes: int | None = option(
-        None, "--modes", least=0, help="How many modes are kept.  [default: those of [analysis], or 5]"
+        None, "--modes", least=0, help="Number of modes to keep.  [default: that of [analysis], or 5]"
     )
     form: str = option(
-        "product", "--form", choices=("product", "modal"), **SHOWN, help="Poles and zeros, or residues."
+        "product",
+        "--form",
+        choices=("product", "modal"),
+        **SHOWN,
+        help="product: poles and zeros; modal: residues.",
     )
     as_json: bool = option(False, "--json", **JSON)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class RespondOptions:
-    """Of ``symflex respond``."""
+    """Options of ``symflex respond``."""
 
     tf: str | None = option(None, "--tf", **ONE_TF)
     to: str = option(
@@ -233,44 +246,44 @@ class RespondOptions:
         "--to",
         **SHOWN,
         metavar="step|impulse|ramp|FILE.csv",
-        help="What the input does from t = 0 on; a file has two columns, time_s and the value.",
+        help="Input from t = 0 on; a file has two columns, time_s and the value.",
     )
     until: str | None = option(
         None,
         "--until",
         metavar="TIME",
-        help="Last time: 0.5s, '20 ms', 0.5.  [default: when the slowest motion has died away,"
-        " a file's last]",
+        help="Last time: 0.5s, '20 ms', 0.5.  [default: until the slowest motion has died away,"
+        " or the last time of a file]",
     )
     points: int | None = option(
         None,
         "--points",
         least=2,
         most=1_000_000,
-        help="Times, evenly spaced from 0 on.  [default: 201, or those of a file]",
+        help="Number of times, evenly spaced from 0.  [default: 201, or the times of a file]",
     )
     digits: int = option(
-        12, "--digits", least=1, most=1000, **SHOWN, help="Correct digits, of the largest value."
+        12, "--digits", least=1, most=1000, **SHOWN, help="Correct digits of the largest value."
     )
     output: str | None = option(
         None, "-o", "--output", is_path=True, help="File to write: .csv, .pdf, .pgf, .png or .svg."
     )
-    xlim: Ends | None = option(None, "--xlim", **TWO, help="Times shown in a figure [s].")
-    ylim: Ends | None = option(None, "--ylim", **TWO, help="Values shown in a figure.")
+    xlim: Ends | None = option(None, "--xlim", **TWO, help="Time axis of a figure [s].")
+    ylim: Ends | None = option(None, "--ylim", **TWO, help="Vertical axis of a figure.")
     width: float | str | None = option(None, "--width", **WIDTH)
     font: str | None = option(None, "--font", **FONT)
     shaped: str | None = option(
-        None, "--shaped", choices=SHAPERS, help="Let the input go through a shaper first, as of shape."
+        None, "--shaped", choices=SHAPERS, help="Pass the input through this shaper of 'symflex shape' first."
     )
     modes: int = option(1, "--modes", **SHAPED_MODES)
     joint: bool = option(False, "--joint", **JOINT)
-    strict: bool = option(False, "--strict", help="Exit with code 4 where a value is not certified.")
+    strict: bool = option(False, "--strict", help="Exit with code 4 if a value is not certified.")
     as_json: bool = option(False, "--json", **JSON)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ShapeOptions:
-    """Of ``symflex shape``."""
+    """Options of ``symflex shape``."""
 
     tf: str | None = option(None, "--tf", **ONE_TF)
     modes: int = option(1, "--modes", **SHAPED_MODES)
@@ -279,7 +292,10 @@ class ShapeOptions:
         "--kind",
         choices=SHAPERS,
         **SHOWN,
-        help="Zero vibration, zero derivative besides, or insensitive with 5 % left.",
+        help=(
+            "zv: zero vibration; zvd: its derivative is zero too; ei: extra-insensitive, with 5 % "
+            "residual vibration."
+        ),
     )
     joint: bool = option(False, "--joint", **JOINT)
     digits: int = option(15, "--digits", least=1, most=1000, **SHOWN, help="Correct significant digits.")
@@ -291,61 +307,73 @@ class ShapeOptions:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SweepOptions:
-    """Of ``symflex sweep``. Python gives the values of each parameter as a mapping, and the frequencies."""
+    """Options of ``symflex sweep``.
+
+    Python gives the values of each parameter as a mapping, and the frequencies.
+    """
 
     over: Sequence[str] | Mapping[str, str | Sequence[Stated | Decimal]] = option(
         (),
         "--over",
         multiple=True,
         metavar="NAME=VALUES",
-        help="k=1e4:1e6:log:200, k=1:5:lin:9, m=1,2,5; to draw from: k=1e4:1e6[:log], k=+-5%. Repeatable.",
+        help=(
+            "Grid: k=1e4:1e6:log:200, k=1:5:lin:9, m=1,2,5. Random: k=1e4:1e6[:log], k=+-5%. May be repeated."
+        ),
     )
-    draws: int | None = option(None, "--monte-carlo", least=1, metavar="N", help="Draw N points.")
-    seed: int = option(1, "--seed", least=0, **SHOWN, help="Of the random numbers.")
+    draws: int | None = option(None, "--monte-carlo", least=1, metavar="N", help="Draw N random points.")
+    seed: int = option(1, "--seed", least=0, **SHOWN, help="Seed of the random numbers.")
     of: str = option(
-        "poles", "--of", choices=("poles", "zeros", "response", "margins"), **SHOWN, help="What is computed."
+        "poles", "--of", choices=("poles", "zeros", "response", "margins"), **SHOWN, help="What to compute."
     )
     tf: str | None = option(None, "--tf", **ONE_TF)
     modes: int | None = option(None, "--modes", least=1, help="Only the N lowest modes.")
     band: Ends | None = option(
-        None, "--band", **TWO, help='Roots, or a response, in a band of frequencies: 0.1 1000, "1 kHz".'
+        None, "--band", **TWO, help='Only this band of frequencies: 0.1 1000, "1 kHz".'
     )
     count: int | None = option(
-        None, "--count", least=2, most=100_000, help=f"Frequencies of a response.  [default: {FREQUENCIES}]"
+        None,
+        "--count",
+        least=2,
+        most=100_000,
+        help=f"Number of frequencies of a response.  [default: {FREQUENCIES}]",
     )
-    gain: str | None = option(None, "--gain", metavar="K", help="The gain that closes the loop, for margins.")
+    gain: str | None = option(
+        None, "--gain", metavar="K", help="margins: the parameter that is the loop's gain."
+    )
     output: str | Path | None = option(
         None, "-o", "--output", is_path=True, help="File to write: .nc, .npz, .csv or .parquet."
     )
-    fresh: bool = option(False, "--fresh", help="Discard what an earlier run kept in FILE.part.")
+    fresh: bool = option(False, "--fresh", help="Discard the points that an earlier run kept in FILE.part.")
     workers: int | None = option(
-        None, "--workers", least=1, most=1024, help="Processes.  [default: one per processor]"
+        None, "--workers", least=1, most=1024, help="Number of processes.  [default: one per processor]"
     )
     scheduler: str | None = option(
-        None, "--scheduler", metavar="tcp://HOST:PORT", help="Work on a dask.distributed cluster."
+        None, "--scheduler", metavar="tcp://HOST:PORT", help="Compute on this dask.distributed cluster."
     )
     as_json: bool = option(False, "--json", help="Print a summary as JSON.")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class StabilityOptions:
-    """Of ``symflex stability``. Python gives ``limits`` in SI units, None for none, and ``up_to`` in Hz."""
+    """Options of ``symflex stability``.
 
-    gain: str = option(
-        "", "--gain", required=True, metavar="K", help="The parameter that is the loop's gain."
-    )
+    Python gives ``limits`` in SI units, None for none, and ``up_to`` in Hz.
+    """
+
+    gain: str = option("", "--gain", required=True, metavar="K", help="Parameter that is the loop's gain.")
     limits: tuple[Stated | None, Stated | None] | None = option(
         None,
         "--range",
         **TWO,
-        help='Only gains between two values: 0 1e4, "1 kN/m" inf.  [default: all of the sign assumed of it; '
+        help='Only gains between two values: 0 1e4, "1 kN/m" inf.  [default: every gain of its assumed sign; '
         "with beams, rods or delays up to 100 times its value]",
     )
     up_to: Stated | None = option(
         None,
         "--up-to",
         metavar="FREQUENCY",
-        help="Where poles have no end: how far they are counted, in Hz or with a unit.",
+        help="With infinitely many poles: highest frequency counted, in Hz or with a unit.",
     )
     digits: int | None = option(
         None, "--digits", least=1, most=1000, help="Correct significant digits.  [default: 15]"
@@ -355,67 +383,73 @@ class StabilityOptions:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ColocationOptions:
-    """Of ``symflex colocation``. Python gives degrees, decibels and Hz."""
+    """Options of ``symflex colocation``. Python gives degrees, decibels and Hz."""
 
-    tf: str = option(
-        "", "--tf", required=True, metavar="OUT/IN", help="The output that is away from the actuator."
-    )
-    reference: str = option("", "--with", required=True, metavar="OUT2/IN", help="The colocated output.")
-    phase: Stated = option("10 deg", "--phase", **SHOWN, help="Largest difference of phase.")
-    magnitude: Stated = option("1 dB", "--magnitude", **SHOWN, help="Largest difference of magnitude.")
+    tf: str = option("", "--tf", required=True, metavar="OUT/IN", help="Output away from the actuator.")
+    reference: str = option("", "--with", required=True, metavar="OUT2/IN", help="Colocated output.")
+    phase: Stated = option("10 deg", "--phase", **SHOWN, help="Largest phase difference.")
+    magnitude: Stated = option("1 dB", "--magnitude", **SHOWN, help="Largest magnitude difference.")
     band: Ends | None = option(
-        None, "--band", **TWO, help="Frequencies examined; by default those of [analysis]."
+        None, "--band", **TWO, help="Frequencies to examine.  [default: band of [analysis]]"
     )
     as_json: bool = option(False, "--json", **JSON)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PlotOptions:
-    """Of ``symflex plot``."""
+    """Options of ``symflex plot``."""
 
     kind: str = option("")
     tfs: Sequence[str] = option(
-        (), "--tf", multiple=True, metavar="OUT/IN", help="Draw this transfer function; repeatable."
+        (), "--tf", multiple=True, metavar="OUT/IN", help="Draw this transfer function; may be repeated."
     )
     gain: str | None = option(
-        None, "--gain", metavar="K", help="Draw a locus, or a Nyquist plot, of the loop with this gain."
+        None, "--gain", metavar="K", help="Parameter that is the loop's gain, for a locus or a Nyquist plot."
     )
     band: Ends | None = option(None, "--band", **TWO, help='Frequencies shown: 0.1 1000, "1 kHz".')
-    xlim: Ends | None = option(None, "--xlim", **TWO, help="Ends of the axis across; rad/s in an s plane.")
-    ylim: Ends | None = option(None, "--ylim", **TWO, help="Ends of the axis upwards; dB of a Bode plot.")
-    phase: Ends | None = option(None, "--phase", **TWO, help="Ends of the phases of a Bode plot [deg].")
+    xlim: Ends | None = option(
+        None, "--xlim", **TWO, help="Ends of the horizontal axis; rad/s in an s plane."
+    )
+    ylim: Ends | None = option(None, "--ylim", **TWO, help="Ends of the vertical axis; dB in a Bode plot.")
+    phase: Ends | None = option(None, "--phase", **TWO, help="Ends of the phase axis of a Bode plot [deg].")
     limits: tuple[Stated | None, Stated | None] | None = option(
         None, "--range", **TWO, help="First and last gain of a locus."
     )
-    modes: int | None = option(None, "--modes", least=1, help="How many modes are shown, the lowest ones.")
+    modes: int | None = option(None, "--modes", least=1, help="Show the N lowest modes.")
     output: str | None = option(
         None, "-o", "--output", is_path=True, help="File to write: .pdf, .pgf, .svg or .png."
     )
     width: float | str | None = option(None, "--width", **WIDTH)
     font: str | None = option(None, "--font", **FONT)
-    until: str | None = option(None, "--until", metavar="TIME", help="Last time of step and impulse: 0.5s.")
+    until: str | None = option(
+        None, "--until", metavar="TIME", help="Last time of a step or impulse response: 0.5s."
+    )
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class DrawOptions:
-    """Of ``symflex draw``."""
+    """Options of ``symflex draw``."""
 
-    values: bool = option(False, "--values", help="Write numbers with units at the symbols.")
+    values: bool = option(False, "--values", help="Label symbols with values and units.")
     output: str | None = option(
         None, "-o", "--output", is_path=True, help="File to write: .pdf, .pgf, .svg or .png."
     )
     width: str | None = option(
-        None, "--width", metavar=WIDTHS, help="Width of the drawing: 88.5, 170 or so many mm."
+        None, "--width", metavar=WIDTHS, help="Width of the drawing: 88.5 mm, 170 mm or a number in mm."
     )
     font: str | None = option(None, "--font", **FONT)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class AuditOptions:
-    """Of ``symflex audit``."""
+    """Options of ``symflex audit``."""
 
     tfs: Sequence[str] = option(
-        (), "--tf", multiple=True, metavar="OUT/IN", help="Only this formula; repeatable."
+        (),
+        "--tf",
+        multiple=True,
+        metavar="OUT/IN",
+        help="Only the formula of this transfer function; may be repeated.",
     )
     strict: bool = option(False, "--strict", help="Exit with code 4 unless every formula is proved equal.")
     as_json: bool = option(False, "--json", **JSON)
@@ -423,99 +457,118 @@ class AuditOptions:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class FitOptions:
-    """Of ``symflex fit``. Python gives data in place of their paths, too."""
+    """Options of ``symflex fit``. Python gives data in place of their paths, too."""
 
     data: Sequence[object] = option((), nargs=-1, required=True, is_path=True)
     base: str | Path | None = option(
-        None, "--base", is_path=True, help="Specification whose function the resonances multiply."
+        None, "--base", is_path=True, help="Specification whose transfer function the resonances multiply."
     )
     allow_outside: Places = option((), "--allow-outside", **OUTSIDE)
     tfs: Sequence[str] = option(
-        (), "--tf", multiple=True, metavar="OUT/IN", help="That function; repeat it, one per response."
+        (),
+        "--tf",
+        multiple=True,
+        metavar="OUT/IN",
+        help="Transfer function of --base; one for each response.",
     )
     modes: int | None = option(
-        None, "--modes", least=1, most=50, help="How many resonances; chosen by --criterion if absent."
+        None, "--modes", least=1, most=50, help="Number of resonances.  [default: chosen by --criterion]"
     )
     start: str = option(
         "auto",
         "--start",
         choices=("auto", "peaks", "vector", "aaa"),
         **SHOWN,
-        help="Where the fit begins; auto tries all and keeps the best.",
+        help="Start of the fit; auto tries all and keeps the best.",
     )
     criterion: str = option(
-        "bic", "--criterion", choices=("bic", "aicc"), **SHOWN, help="Chooses the number of resonances."
+        "bic",
+        "--criterion",
+        choices=("bic", "aicc"),
+        **SHOWN,
+        help="Criterion that chooses the number of resonances.",
     )
     band: tuple[float, float] | None = option(
-        None, "--band", type=float, **TWO, help="Only the lines between these frequencies [Hz]."
+        None, "--band", type=float, **TWO, help="Use only lines between these frequencies [Hz]."
     )
-    is_gain_free: bool = option(False, "--gain", help="Fit a gain besides the base too.")
-    is_lag_free: bool = option(False, "--lag", help="Fit a lag of the sensor, 1/(1 + T s).")
-    is_lag_signed: bool = option(False, "--signed-lag", help="The same, and it may be negative, a lead.")
+    is_gain_free: bool = option(False, "--gain", help="Fit a gain on the base, too.")
+    is_lag_free: bool = option(False, "--lag", help="Fit a sensor lag, 1/(1 + T s).")
+    is_lag_signed: bool = option(False, "--signed-lag", help="Like --lag, but T may be negative (a lead).")
     is_delay_free: bool = option(False, "--delay", help="Fit a dead time, exp(-T s), T not negative.")
     slope: int | None = option(
-        None, "--slope", least=-6, most=6, help="Without --base: the power of s; chosen if absent."
+        None, "--slope", least=-6, most=6, help="Without --base: power of s.  [default: chosen by the fit]"
     )
     columns: str = option(
         "",
         "--columns",
         metavar="WORDS",
-        help="What the columns are, such as f,re,im or f_khz,-,mag_db,phase_deg; arrays f=NAME,h=NAME; s21.",
+        help=(
+            "Columns of the file, such as f,re,im or f_khz,-,mag_db,phase_deg; of arrays f=NAME,h=NAME; "
+            "or s21."
+        ),
     )
     averages: float | None = option(
-        None, "--averages", type=float, least=1, help="Independent averages, where the file does not say."
+        None,
+        "--averages",
+        type=float,
+        least=1,
+        help="Number of independent averages, if the file does not give it.",
     )
     window: str | None = option(
         None,
         "--window",
         choices=("hann", "none"),
-        help="Time window of the estimate, if the file does not say.",
+        help="Time window of the estimate, if the file does not give it.",
     )
     driving: str | None = option(
         None,
         "--driving",
         metavar="OUT/IN",
-        help="The response at the driven point: it is fitted, and all give mass-normalised mode shapes.",
+        help=(
+            "Response at the driven point: fit it, and compute mass-normalised mode shapes from all "
+            "responses."
+        ),
     )
     output: str | None = option(None, "-o", "--output", is_path=True, help="Specification to write.")
     loop: str | None = option(
         None,
         "--loop",
         metavar="K",
-        help="Close a loop in it: the first response is fed back with this gain, as stability --gain K asks.",
+        help=(
+            "Also write a loop that feeds back the first response with the gain K, for 'symflex stability "
+            "--gain K'."
+        ),
     )
     figure: str | None = option(
         None,
         "--plot",
         is_path=True,
-        help="Figure to write: data, fit and what is left of all responses; .pdf, .svg or .png.",
+        help="Figure to write: data, fit and residual of all responses; .pdf, .svg or .png.",
     )
     order_figure: str | None = option(
-        None, "--plot-order", is_path=True, help="Stabilisation diagram to write: poles by their number."
+        None, "--plot-order", is_path=True, help="Stabilisation diagram to write: poles over their number."
     )
-    strict: bool = option(
-        False, "--strict", help="A fit that is poor is exit code 4, and nothing is written."
-    )
+    strict: bool = option(False, "--strict", help="Exit with code 4 and write nothing if the fit is poor.")
     as_json: bool = option(False, "--json", **JSON)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class MeasureOptions:
-    """Of ``symflex measure``."""
+    """Options of ``symflex measure``."""
 
     tf: str | None = option(None, "--tf", **ONE_TF)
     output: str = option(
         "", "-o", "--output", is_path=True, required=True, help="File to write: .csv, .npz or .uff."
     )
     band: tuple[float, float] | None = option(
-        None, "--band", type=float, **TWO, help="Lines shown [Hz].  [default: [analysis] band]"
+        None, "--band", type=float, **TWO, help="Frequencies to write [Hz].  [default: band of [analysis]]"
     )
     spacing: float | None = option(
-        None, "--spacing", type=float, help="Distance of lines [Hz].  [default: HI/800]"
+        None, "--spacing", type=float, help="Spacing of lines [Hz].  [default: HI/800]"
     )
-    averages: int = option(40, "--averages", least=1, **SHOWN, help="Records averaged.")
+    averages: int = option(40, "--averages", least=1, **SHOWN, help="Number of records to average.")
     noise: float = option(
-        0.03, "--noise", type=float, least=0, **SHOWN, help="Sensor noise over its signal, rms."
+        0.03, "--noise", type=float, least=0, **SHOWN, help="Ratio of sensor noise to signal, rms."
     )
     rolloff: float | None = option(
         5000.0,
@@ -525,12 +578,12 @@ class MeasureOptions:
         **SHOWN,
         help="Corner of the accelerometer [Hz]; 0 for none.",
     )
-    seed: int = option(1, "--seed", least=0, **SHOWN, help="Of the random numbers.")
+    seed: int = option(1, "--seed", least=0, **SHOWN, help="Seed of the random numbers.")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ReportOptions:
-    """Of ``symflex report``."""
+    """Options of ``symflex report``."""
 
     specs: Places = option((), nargs=-1, required=True, is_path=True, metavar="SPEC...")
     allow_outside: Places = option((), "--allow-outside", **OUTSIDE)
@@ -541,16 +594,16 @@ class ReportOptions:
         **SHOWN,
         is_path=True,
         metavar="DIR",
-        help="Folder to write; what is in it stays, but for files of the same name.",
+        help="Folder to write; files of the same name are replaced, others stay.",
     )
     pdf: bool | None = option(
-        None, "--pdf/--no-pdf", help="With report.pdf; by default where pdflatex is there."
+        None, "--pdf/--no-pdf", help="Write report.pdf.  [default: if pdflatex is installed]"
     )
     day: str | None = option(
         None,
         "--date",
         metavar="YYYY-MM-DD",
-        help="Date printed; today, or SOURCE_DATE_EPOCH. 'none' for none.",
+        help="Date to print, or 'none'.  [default: today, or SOURCE_DATE_EPOCH]",
     )
     jobs: int | None = option(
         None,
@@ -558,7 +611,7 @@ class ReportOptions:
         "--jobs",
         least=1,
         most=64,
-        help="Models computed at once; as many as there are processors.",
+        help="Models to compute at once.  [default: one per processor]",
     )
 
 

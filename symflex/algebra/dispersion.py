@@ -172,7 +172,9 @@ class KernelTable:
     def __bool__(self) -> bool:
         return bool(self.dispersions)
 
-    def without_tapers(self, what: str, hint: str = "its poles, zeros and values at frequencies are") -> None:
+    def without_tapers(
+        self, what: str, hint: str = "poles, zeros and frequency responses are available"
+    ) -> None:
         """Return if no coefficient varies along x.
 
         Raises ModelError: SF910 when one does, saying that ``what`` is not available then.

@@ -220,7 +220,7 @@ class PowerExpansion:
         taken = len(self.legs) * self.system.size**2 * self.terms * self.precision / 8
         if taken > MOST_MEMORY:
             message = f"solutions along a member that varies take about {taken / GB:.0f} GB"
-            hint = "ask for lower frequencies; are units, and powers of s, right?"
+            hint = "ask for lower frequencies, and check units and powers of s"
             raise BudgetError(Diagnostic("SF504", message, None, hint))
         with ctx.workprec(self.precision):
             start, end = self.system.ends()

@@ -112,7 +112,7 @@ class Ring:
         ring.
         """
         if self.is_sparse:
-            message = f"nothing is multiplied out with {len(self.names)} names"
+            message = f"products are not expanded with {len(self.names)} names"
             raise BudgetError(Diagnostic("SF502", message, None, "ask for the nested form"))
         check_expansion(polynomial, images, min(term_limit, memory_limit // self.bytes_of(1)))
         return polynomial.compose(*images, ctx=self.context)

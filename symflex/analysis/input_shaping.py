@@ -232,7 +232,7 @@ def input_shaper(
         if joint and modes > 1:
             found = joint_impulses(poles, kind, longest, bits) if kind in JOINT_ORDERS else None
             joint, impulses = found is not None, found or impulses
-            note = "" if joint else "no shorter one for all modes together was found: theirs in a row"
+            note = "" if joint else "no shorter joint shaper was found: one shaper for each mode, in a row"
     return InputShaper(bound.name, kind, chosen, tuple(impulses), digits, bits, joint, note)
 
 
@@ -240,13 +240,15 @@ def _of_mode(bound: AnyBoundFunction, root: Root, kind: str) -> list[tuple[arb, 
     half = arb.pi() / root.im
     amplitudes = SHAPERS[kind]((root.re * half).exp(), arb(TOLERANCE))
     if not all(a > 0 for a in amplitudes):
-        message = f"the mode of {bound.name} at {root.frequency_hz():g} Hz is damped too much for '{kind}'"
-        raise ModelError(Diagnostic("SF814", message, None, "take zv, or leave it as it is: it hardly rings"))
+        message = (
+            f"the mode of {bound.name} at {root.frequency_hz():g} Hz is too strongly damped for '{kind}'"
+        )
+        raise ModelError(Diagnostic("SF814", message, None, "use zv, or no shaper: the mode hardly rings"))
     return [(half * i, a) for i, a in enumerate(amplitudes)]
 
 
 def _convolved(one: Sequence[tuple[arb, arb]], other: Sequence[tuple[arb, arb]]) -> list[tuple[arb, arb]]:
     if len(one) * len(other) > MOST_IMPULSES:
-        message = f"the modes take more than {MOST_IMPULSES} impulses together"
-        raise UsageError(Diagnostic("SF902", message, None, "shape for fewer of them"))
+        message = f"the modes together need more than {MOST_IMPULSES} impulses"
+        raise UsageError(Diagnostic("SF902", message, None, "shape fewer modes"))
     return [(t + u, a * b) for t, a in one for u, b in other]

@@ -178,7 +178,7 @@ def sampled_transfer_function(bound: BoundTransferFunction, sampling: Sampling) 
                         bound.name, sampling, late, above, below, poles, zeros, bits
                     )
         digits *= 2
-    message = f"poles of {bound.name} cannot be told apart: it is not sampled"
+    message = f"poles of {bound.name} cannot be told apart, so it cannot be sampled"
     raise UncertifiedError(Diagnostic("SF810", message))
 
 
@@ -206,7 +206,7 @@ def _continuous(bound: BoundTransferFunction, digits: int, bits: int) -> _Contin
         _check_order(bound, num, den)
         if late < 0:
             message = f"{bound.name} looks ahead: its output would come before its input"
-            raise ModelError(Diagnostic("SF235", message, None, "a dead time is not negative"))
+            raise ModelError(Diagnostic("SF235", message, None, "make every dead time zero or positive"))
         terms.append(_Delayed(num, late))
     exact = [durations.exact(p) for p in (below, *quotient.above.values())]
     roots = [find_polynomial_roots(RootProblem(((p, 1),)), digits) if p.degree > 0 else () for p in exact[:2]]
@@ -262,7 +262,7 @@ def _tustin(bound: BoundTransferFunction, given: _Continuous, sampling: Sampling
     k = acb(sampling.rate)
     if any((k - p.enclosure()).contains(0) for p in given.poles):
         message = f"{bound.name} has a pole at {float(k.real.mid()):g} rad/s, which tustin takes to infinity"
-        raise UsageError(Diagnostic("SF902", message, None, "take another sampling time"))
+        raise UsageError(Diagnostic("SF902", message, None, "choose another sampling time"))
 
     def move(s: acb) -> acb:
         return (k + s) / (k - s)
@@ -327,7 +327,7 @@ def _delay(late: arb, sampling: Sampling) -> Fraction:
 
 def _only_whole(bound: BoundTransferFunction, given: _Continuous, sampling: Sampling) -> int:
     if len(given.terms) > 1:
-        message = f"{bound.name} is a sum of dead times, which '{sampling.method}' has no place for"
+        message = f"{bound.name} is a sum of dead times, which '{sampling.method}' cannot handle"
         raise UsageError(Diagnostic("SF902", message, None, "take zoh"))
     return int(_delay(given.terms[0].late, sampling) / sampling.sample)
 

@@ -369,5 +369,5 @@ def budget_of(seconds: float | None) -> Budget:
     if seconds is None:
         return entered_budget()
     if not 0 < seconds < inf:
-        raise UsageError(Diagnostic("SF902", f"a budget is a positive time in seconds, not {seconds}"))
+        raise UsageError(Diagnostic("SF902", f"a budget must be a positive time in seconds, not {seconds}"))
     return Budget(seconds)

@@ -57,7 +57,7 @@ class Fit:
 
     @property
     def is_minimum_phase(self) -> tuple[bool, ...]:
-        """Of each response, whether a minimum-phase function has its magnitude and phase.
+        """Whether a minimum-phase function has the magnitude and phase, for each response.
 
         False too where the data do not tell; ``found.phase_tests`` has the three verdicts.
         """
@@ -70,7 +70,7 @@ class Fit:
 
     @property
     def poor(self) -> tuple[str, ...]:
-        """Why the fit is poor, so that its numbers are not to be trusted within their errors; else empty."""
+        """Why the fit is poor: its numbers may be off by more than their errors; empty for a good fit."""
         return self.found.poor
 
     def values(self, response: int = 0) -> Complex:
@@ -78,7 +78,7 @@ class Fit:
         return self.found.values(response)
 
     def specification(self, folder: str | Path = ".", loop: str | None = None) -> str:
-        """Return the text of a specification that will stand in a folder; it names the base, or copies it.
+        """Return the text of a specification for a folder; it refers to the base or copies it.
 
         ``loop`` is the name of a gain: a loop is closed with it, from the first response to the input.
         """
@@ -93,12 +93,12 @@ class Fit:
         return loads(self.specification(Path()), "<fit>", allow_outside=allowed)
 
     def input_shaper(self, modes: int = 1, kind: str = "zv", *, joint: bool = False) -> InputShaper:
-        """Return a shaper for the lowest resonances, as of a specification with them."""
+        """Return an input shaper for the lowest resonances."""
         first, *_ = self.model().transfer_functions()
         return first.bind().input_shaper(modes, kind, joint=joint)
 
     def plot(self, response: int = 0, *, ax: AxesGiven | None = None) -> Figure:
-        """Return data and fit of one response, with what is left, as ``symflex fit --plot`` draws them.
+        """Return a figure of data, fit and residual of one response, as ``symflex fit --plot`` draws it.
 
         Two axes of your own, ``ax``, get magnitude and phase in your own style.
 

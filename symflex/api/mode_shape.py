@@ -78,7 +78,7 @@ class ModeShape:
 
     @property
     def reference(self) -> str:
-        """What is 1: a node, or ``beam(0.3)``, a place along an element or field."""
+        """The place with amplitude 1: a node, or a point along an element or field, ``beam(0.3)``."""
         return self.enclosed.reference
 
     @property
@@ -111,11 +111,11 @@ class ModeShape:
         return tuple(part.name for part in self.enclosed.distributed)
 
     def quantities(self, part: str) -> tuple[str, ...]:
-        """Return what is known along a part: ``y theta f tau`` of a beam, ``w w' w'' w'''`` of a field."""
+        """Return the quantities along a part: ``y theta f tau`` of a beam, ``w w' w'' w'''`` of a field."""
         return self.enclosed.along(part).states
 
     def domain(self, part: str) -> tuple[float, float]:
-        """Return where a part begins and ends [m]; an element begins at 0."""
+        """Return the ends of a part along x [m]; an element begins at 0."""
         found = self.enclosed.along(part)
         with precision(found.bits):
             return float(found.start.mid()), float((found.start + found.length).mid())
@@ -150,7 +150,7 @@ class ModeShape:
         return values.real if self.is_real else values
 
     def radius_along(self, part: str, x: ArrayLike, quantity: str | None = None) -> NDArray[np.float64]:
-        """Return bounds on the error of :meth:`along`, but for the rounding to double precision."""
+        """Return bounds on the error of :meth:`along`, without that of rounding to double precision."""
         import numpy as np
 
         places = np.asarray(x, dtype=float)
@@ -160,7 +160,7 @@ class ModeShape:
     def plot(
         self, *, width: float | str | None = None, font: str | None = None, ax: AxesGiven | None = None
     ) -> Figure:
-        """Return a figure: displacements along distributed parts, and of nodes side by side.
+        """Return a figure of displacements along distributed parts, and of nodes side by side.
 
         What moves in phase with the largest displacement is drawn in full, what moves in quadrature dashed.
 

@@ -95,7 +95,7 @@ class Model:
 
     @staticmethod
     def of(resolved: model_room.Model) -> Model:
-        """Return the face of an already resolved model."""
+        """Return a model from one that is already resolved."""
         model = object.__new__(Model)
         object.__setattr__(model, "resolved", resolved)
         return model
@@ -115,12 +115,12 @@ class Model:
         return f"<div>{head}{tail.partition('</style>')[2]}</div>\n{model_html(self.resolved)}"
 
     def draw(self, *, values: bool = False, width: float | None = None, font: str = "times") -> Figure:
-        """Draw the model as a textbook draws it, as ``symflex draw`` does.
+        """Draw the model as a textbook would, like ``symflex draw``.
 
         Parameters
         ----------
         values : bool
-            Write numbers with units at the symbols.
+            Label symbols with values and units.
         width : float, optional
             Width of the figure [mm]; by default a column (88.5), a page (170), or what the model needs.
             Lengths in the figure are what they are in print.
@@ -156,7 +156,7 @@ class Model:
 
     @property
     def warnings(self) -> tuple[Diagnostic, ...]:
-        """What the specification says that may not be meant, as ``symflex check`` prints it.
+        """Warnings of ``symflex check``: what the specification says but may not mean.
 
         Examples
         --------
@@ -276,7 +276,7 @@ class Model:
         up_to_hz: float | None = None,
         **values: Number,
     ) -> Stability:
-        """Return for which values of a gain all closed-loop poles lie in the open left half plane, proved.
+        """Return the gains for which all closed-loop poles are in the open left half plane, proved.
 
         Parameters
         ----------
@@ -329,7 +329,7 @@ class Model:
         ax: AxesGiven | None = None,
         **values: Number,
     ) -> Figure:
-        r"""Return the root locus: where the closed-loop poles go as a gain grows.
+        r"""Return the root locus: the paths of closed-loop poles as a gain grows.
 
         Parameters
         ----------
@@ -416,7 +416,7 @@ class Model:
         magnitude: float = 1.0,
         band: tuple[float, float] | None = None,
     ) -> DynamicColocation:
-        """Return up to which frequency an output moves with a colocated one.
+        """Return the frequency up to which an output moves with a colocated one.
 
         Parameters
         ----------
@@ -453,7 +453,7 @@ class Model:
         rolloff: float | None = 5000.0,
         seed: int = 1,
     ) -> MeasuredResponse:
-        """Return what an analyser would measure of a transfer function: synthetic data, and labelled so.
+        """Return a synthetic measurement of a transfer function, labelled as synthetic.
 
         Parameters
         ----------
@@ -470,7 +470,7 @@ class Model:
         rolloff : float, optional
             Corner of the accelerometer [Hz]; ``None`` for none.
         seed : int
-            Of the random numbers.
+            Seed of the random numbers.
 
         Raises
         ------
@@ -577,7 +577,7 @@ class Model:
         return self._export("numpy")
 
     def export_array_api(self) -> str:
-        """Return a module for numpy, torch, jax.numpy, cupy: whatever library its arguments are of."""
+        """Return a module for the library of its arguments: numpy, torch, jax.numpy, cupy."""
         return self._export("array-api")
 
     def export_jax(self) -> str:
@@ -585,7 +585,7 @@ class Model:
         return self._export("jax")
 
     def export_c(self) -> str:
-        """Return a C99 source that needs no header beside it, with a function per transfer function."""
+        """Return a C99 source that needs no header, with a function per transfer function."""
         return self._export("c")
 
     def export_state_space(self) -> str:
@@ -593,7 +593,7 @@ class Model:
         return self._export("state-space")
 
     def export_matlab(self, name: str = "") -> str:
-        """Return a MATLAB function file, which Octave runs as well.
+        """Return a function file for MATLAB and Octave.
 
         Parameters
         ----------
@@ -636,8 +636,8 @@ def load(
     path : str or Path
         The file.
     values : mapping of str to str or number, optional
-        What parameters are instead of what the file declares: quantities (``"80 kN/m"``), or numbers in SI
-        units. They are checked as the file's own are.
+        Values that replace those of the file: quantities (``"80 kN/m"``), or numbers in SI
+        units. They are checked like the file's own.
     allow_outside : iterable of str or Path
         Folders that its ``model`` blocks may read besides the folder of ``path`` and those below.
 
@@ -658,7 +658,7 @@ def loads(
     *,
     allow_outside: Iterable[str | Path] = (),
 ) -> Model:
-    """Read a specification given as text; ``name`` is what messages call it, ``values`` as in :func:`load`.
+    """Read a specification from a text; ``name`` is its name in messages, ``values`` are as in :func:`load`.
 
     ``model`` blocks read files at and below the folder of ``name``, and those of ``allow_outside``.
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class WrittenReport:
-    """Where a report is, and what it could not say.
+    """The files of a report, and what is missing from it.
 
     Parameters
     ----------
@@ -49,10 +49,10 @@ def write_report(
     Parameters
     ----------
     specs : str, Path or a sequence of them
-        Specifications; a folder stands for all in it and below, with the measured responses there.
-        Where no file has the name, the example of that name is taken, such as ``eppinger1988``.
+        Specifications; a folder stands for all in it and below, with its measured responses.
+        If no file has the name, the example of that name is taken, such as ``eppinger1988``.
     folder : str or Path
-        Where to write; what stands there stays, but for files of the same names.
+        Folder to write; files of the same name are replaced, others stay.
     pdf : bool, optional
         Whether to make a PDF; by default where pdflatex is there.
     day : date, optional

@@ -53,7 +53,7 @@ class FrequencyResponse(response_room.SampledResponse):
 
         figure = draw_response(self, ax)
         if figure is None:
-            message = "a response is drawn over two positive frequencies or more"
+            message = "a drawing of a response needs at least two positive frequencies"
             raise UsageError(Diagnostic("SF902", message))
         return figure
 

@@ -201,7 +201,7 @@ class PoleZeroMap(roots_room.PoleZeroMap):
 
 @dataclass(frozen=True)
 class Residue:
-    """How much of a mode a transfer function holds: its principal part at a pole p.
+    """The share of a mode in a transfer function: its principal part at a pole p.
 
     Parameters
     ----------
@@ -292,7 +292,7 @@ class Sensitivity:
 
     @property
     def derivative(self) -> mpmath.mpc | None:
-        """ds/dp [rad/s per unit of the parameter]; ``None`` where there is none."""
+        """ds/dp [rad/s per unit of the parameter]; ``None`` if there is none."""
         return None if self.moved.derivative is None else to_complex_mpmath(self.moved.derivative)
 
     @property

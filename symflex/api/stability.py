@@ -67,7 +67,7 @@ class Stability:
 
     @property
     def counted_up_to_hz(self) -> float:
-        """How far poles right of the axis are counted [Hz]; infinite when that is all of them."""
+        """Frequency up to which poles right of the axis are counted [Hz]; infinite if all are."""
         if self.proved.is_complete or self.proved.radius is None:
             return float("inf")
         return self.proved.radius / (2 * float(mpmath.pi))
@@ -82,7 +82,7 @@ class Stability:
 
     @property
     def boundaries(self) -> tuple[StabilityBoundary, ...]:
-        """Where the number of unstable poles changes, ascending."""
+        """The gains at which the number of unstable poles changes, ascending."""
         return tuple(
             StabilityBoundary(
                 to_mpmath(boundary.gain),
@@ -95,12 +95,12 @@ class Stability:
 
     @property
     def is_stable(self) -> bool | None:
-        """Whether the loop is stable with the gain's declared value; ``None`` where that is not proved."""
+        """Whether the loop is stable with the gain's declared value; ``None`` if not proved."""
         return self.proved.is_stable
 
     @property
     def verdict(self) -> StabilityVerdict:
-        """What is said of the gain's declared value: its ``word``, ``sentence`` and ``hidden_motion``."""
+        """The verdict for the gain's declared value: its ``word``, ``sentence`` and ``hidden_motion``."""
         return self.proved.verdict
 
     @property
@@ -118,7 +118,7 @@ class Stability:
 
     @property
     def bandwidth_hz(self) -> float:
-        """The bandwidth allowed: where the loop gain first falls below one, with a gain margin of 6 dB.
+        """The bandwidth with a gain margin of 6 dB: where the loop gain first falls below one.
 
         Infinite where every gain is stable, ``nan`` where no gain next to 0 is, where the loop gain is below
         one from the lowest frequencies on, or where the loop is closed in several places. Where stable gains

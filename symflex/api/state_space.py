@@ -66,7 +66,7 @@ class StateSpace:
 
     @staticmethod
     def of(model: Model, pairs: Sequence[tuple[str, str]], *, minimal: bool) -> StateSpace:
-        """Return the face of a realisation with the outputs and inputs of the given pairs."""
+        """Return a realisation with the outputs and inputs of the given pairs."""
         found = state_space_room.realise(model, pairs)
         return StateSpace(state_space_room.minimal(found) if minimal else found)
 
@@ -139,7 +139,7 @@ class StateSpace:
         return self._matrix(self.exact.d, len(self.exact.inputs))
 
     def bind(self, **values: int | float | Fraction | Decimal | str) -> BoundStateSpace:
-        """Return the matrices with the declared values, or the given ones in their place, as arrays.
+        """Return the matrices as arrays, with the declared values or the given ones.
 
         Every entry is the double nearest to its exact value.
 
@@ -164,7 +164,7 @@ class StateSpace:
         prewarp: float | Fraction | str | None = None,
         **values: int | float | Fraction | Decimal | str,
     ) -> SampledStateSpace:
-        """Return the system as it is seen at samples, its inputs held from one to the next: exactly.
+        """Return the exact system between samples, with its inputs held from one to the next.
 
         Every entry is the double nearest to that of the matrix exponential, which is computed in balls.
         ``tustin`` is for controllers: the difference equation that the bilinear transformation makes.

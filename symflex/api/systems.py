@@ -63,7 +63,9 @@ def from_control(sys: object) -> Model:
         blocks = _quotients(given)
     else:
         hint = "read_measurement() takes measured responses" if hasattr(given, "omega") else None
-        raise _refused(f"a '{type(sys).__name__}' is no transfer function and no state equations", hint)
+        raise _refused(
+            f"a '{type(sys).__name__}' is neither a transfer function nor a state-space system", hint
+        )
     names = _FreeNames()
     inputs = names.of(getattr(given, "input_labels", None), "u", len(blocks[0]))
     outputs = names.of(getattr(given, "output_labels", None), "y", len(blocks))
@@ -133,7 +135,7 @@ def from_matrices(
     for name, rows in matrices.items():
         if len(rows) != size or any(len(row) != size for row in rows) or not size:
             shape = f"{len(rows)} x {len(rows[0]) if rows else 0}"
-            raise _refused(f"{name} is {shape}", f"every matrix is square, here {size} x {size}")
+            raise _refused(f"{name} is {shape}", f"every matrix must be square, here {size} x {size}")
     names = tuple(unknowns) or tuple(f"q_{i + 1}" for i in range(size))
     if len(names) != size:
         raise _refused(f"{len(names)} unknowns for matrices of {size} rows", "name each of them")
@@ -188,7 +190,7 @@ def _quotients(given: Any) -> list[list[Quotient]]:  # noqa: ANN401 (a system of
     """Return numerators and denominators, by output and input."""
     if not hasattr(given, "ninputs"):
         if len(_rows("num", given.num)) > 1:
-            raise _refused("the numerator has several outputs", "take its outputs apart")
+            raise _refused("the numerator has several outputs", "pass its outputs one at a time")
         return [[(_rows("num", given.num)[0], _rows("den", given.den)[0])]]
     places = range(given.ninputs)
     return [
@@ -206,7 +208,7 @@ def _with_roots(gain: float, roots: Sequence[complex]) -> str:
         real = f"s - {_coefficient(root.real)}"
         if root.imag:
             if root.conjugate() not in left:
-                raise _refused(f"the root {root:g} has no conjugate one", "a system's coefficients are real")
+                raise _refused(f"the root {root:g} has no conjugate", "a system's coefficients are real")
             left.remove(root.conjugate())
             real = f"({real})^2 + {_coefficient(root.imag)}^2"
         factors.append(f"({real})")
@@ -221,7 +223,7 @@ def _rows(name: str, given: Any) -> list[list[Any]]:  # noqa: ANN401 (numbers or
         listed = [[listed]]
     rows = [list(row) if isinstance(row, list | tuple) else row for row in listed]
     if any(isinstance(row, list) for row in rows) and not all(isinstance(row, list) for row in rows):
-        raise _refused(f"{name} is no matrix: its rows differ", None)
+        raise _refused(f"{name} is not a matrix: its rows differ in length", None)
     return rows if rows and isinstance(rows[0], list) else [rows]
 
 
@@ -230,7 +232,7 @@ def _along(what: str, given: object, names: Sequence[str]) -> list[object]:
     if isinstance(given, str):
         if given not in names:
             raise _refused(
-                f"{what} names '{given[:SHOWN]}'",
+                f"{what} refers to the unknown '{given[:SHOWN]}', which does not exist",
                 nearest(given, names) or "unknowns: " + ", ".join(names[:8]),
             )
         return [int(n == given) for n in names]
@@ -242,7 +244,9 @@ def _along(what: str, given: object, names: Sequence[str]) -> list[object]:
     rows = _rows(what, given)
     entries = [e for row in rows for e in row]
     if len(entries) != len(names) or len(rows) not in (1, len(names)):
-        raise _refused(f"{what} has {len(entries)} entries", f"one for each of the {len(names)} unknowns")
+        raise _refused(
+            f"{what} has {len(entries)} entries", f"give one for each of the {len(names)} unknowns"
+        )
     return entries
 
 
@@ -262,8 +266,8 @@ def _coefficient(entry: Any) -> str:  # noqa: ANN401 (a number or an expression 
     if hasattr(entry, "free_symbols"):
         return f"({entry})"
     if not isinstance(entry, Real | Decimal) or not isfinite(entry):
-        hint = "entries are numbers or expressions of SymPy"
-        raise _refused(f"'{str(entry)[:SHOWN]}' is no real number", hint)
+        hint = "entries must be numbers or SymPy expressions"
+        raise _refused(f"'{str(entry)[:SHOWN]}' is not a real number", hint)
     # A double is the shortest decimal that prints it; those of numpy are doubles, too.
     text = repr(float(entry)) if hasattr(entry, "hex") else str(entry)
     return f"({text})" if text.startswith("-") or "/" in text else text

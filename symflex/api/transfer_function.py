@@ -46,7 +46,7 @@ Number = int | float | Fraction | Decimal | str
 
 @dataclass(frozen=True)
 class Form:
-    """A transfer function arranged for print, as SymPy expressions and as text.
+    """A printed form of a transfer function, as SymPy expressions and as text.
 
     Parameters
     ----------
@@ -88,12 +88,12 @@ class Form:
 
     @property
     def where(self) -> tuple[tuple[sympy.Symbol, sympy.Expr], ...]:
-        """The closed names that occur, with what they stand for."""
+        """The closed names in the form, with their expressions."""
         return tuple((self._sympy(Name(n)), self._sympy(e)) for n, e in self.printed.where)
 
     @property
     def closed(self) -> tuple[tuple[sympy.Expr, sympy.Expr], ...]:
-        """Closed forms of what tapers, ``Z_11(l)`` and ``besseli(0, q)``, and then the names in these."""
+        """Closed forms of tapered members, ``Z_11(l)``, ``besseli(0, q)``, then the names in them."""
         return tuple((self._sympy(left), self._sympy(e)) for left, e in self.printed.closed)
 
     def latex(self) -> str:
@@ -210,7 +210,7 @@ class TransferFunction(_Derived):
         return derive_json(self.exact, print_form(self.exact, form))
 
     def bind(self, **values: Number) -> BoundTransferFunction:
-        """Return the function with the declared values, or the given ones in their place.
+        """Return the function with the declared values, or with the given ones.
 
         Numbers are in SI units; strings may carry a unit, ``l="80 cm"``.
 
@@ -283,7 +283,7 @@ class TransferFunction(_Derived):
             raise UsageError(Diagnostic("SF902", f"there is no {what}", None, nearest(parameter, symbols)))
         form = self.form("hyperbolic") if self.is_distributed else self._shortest
         if form.printed.laws:
-            message = f"the waves of {self.name} have no formula, and so neither have its sensitivities"
+            message = f"the waves of {self.name} have no formula, so its sensitivities have none either"
             raise UsageError(Diagnostic("SF902", message, None, "use sensitivities() of the bound function"))
         part = form.den if of == "pole" else form.num
         return sensitivity_formula(part, form.where, to_sympy(Name("s"), symbols), symbols[parameter])
@@ -307,7 +307,7 @@ class NestedTransferFunction(_Derived):
 
     @property
     def size(self) -> int:
-        """How many operations a value takes, shared ones counted once."""
+        """Number of operations for a value; shared ones count once."""
         return self.exact.size
 
     def latex(self) -> str:
@@ -319,7 +319,7 @@ class NestedTransferFunction(_Derived):
         return derive_json(self.exact, print_form(self.exact))
 
     def bind(self, **values: Number) -> BoundNestedTransferFunction:
-        """Return the function with the declared values, or the given ones in their place.
+        """Return the function with the declared values, or with the given ones.
 
         Numbers are in SI units; strings may carry a unit, ``k="95 kN/m"``. Of what it returns, ``H(2j)`` is a
         value to double precision, from balls, and ``H.at(s)`` evaluates arrays.
@@ -340,7 +340,7 @@ class NestedTransferFunction(_Derived):
 
 @dataclass(frozen=True)
 class BoundTransferFunction(Toolboxes, Analyses):
-    """A transfer function with numbers: evaluates, and finds its poles and zeros.
+    """A transfer function with numbers: its values, poles, zeros and responses.
 
     Each is proved. A distributed system has infinitely many; they are found in a region.
     """
@@ -384,7 +384,7 @@ class BoundTransferFunction(Toolboxes, Analyses):
     def forced_response(
         self, times: ArrayLike, u: ArrayLike, digits: int = 12, shaper: InputShaper | None = None
     ) -> TimeResponse:
-        r"""Return the response, from rest, to an input that is a straight line between samples.
+        r"""Return the response from rest to an input given by samples, joined by straight lines.
 
         Parameters
         ----------
@@ -430,7 +430,7 @@ class BoundTransferFunction(Toolboxes, Analyses):
         digits: int = 15,
         budget: float | None = None,
     ) -> tuple[Sensitivity, ...]:
-        """Return how poles, and then zeros, move with parameters.
+        """Return how poles and zeros move with parameters, poles first.
 
         Parameters
         ----------
@@ -465,7 +465,7 @@ class BoundTransferFunction(Toolboxes, Analyses):
         digits: int = 15,
         budget: float | None = None,
     ) -> ZeroExplanation:
-        """Return what the zeros are the poles of; print it to read it.
+        """Return the system whose poles are the zeros, with the proof; print the result to read it.
 
         Parameters and errors are those of :meth:`zeros`: which zeros are spoken of one by one.
         """

@@ -113,7 +113,7 @@ def judge(tf: TransferFunction, published: Published) -> Audit:
         unread = str(reason)
     except BudgetError:
         spend()
-        unread, reading = "it expands beyond the limits of size", None
+        unread, reading = "it exceeds the size limits when it is expanded", None
     numbers = numbers_of(formula, tf, tf.model)
     found = compare_anywhere(numbers, tf)
     if not found.differs:

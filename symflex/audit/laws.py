@@ -78,7 +78,7 @@ def _poles(reading: FormulaReading, printed: LowestTerms, derived: LowestTerms) 
         return LawCheck("poles", True, "proved", detail)
     parts = []
     if extra:
-        parts.append(f"poles that are none of the system's{_where_zero(reading, printed, extra)}")
+        parts.append(f"it has poles that the system does not have{_where_zero(reading, printed, extra)}")
     if missing:
         parts.append(f"poles of the system are missing{_where_zero(reading, derived, missing)}")
     return LawCheck("poles", False, "proved", "; ".join(parts))
@@ -169,8 +169,8 @@ def _phase(numbers: Numbers) -> LawCheck | None:
             if not (printed.real.contains(0) or printed.imag.contains(0) or _is_axial(printed)):
                 angle = float((printed.log().imag * 180 / arb.pi()).mid())
                 detail = (
-                    "a lossless system answers in phase or in quadrature; "
-                    f"the printed formula at {float(omega):g} rad/s with {angle:.4g} deg"
+                    "a lossless system answers in phase or in quadrature; the printed formula has a phase "
+                    f"of {angle:.4g} deg at {float(omega):g} rad/s"
                 )
                 return LawCheck("lossless phase", False, "proved", detail)
     return LawCheck("lossless phase", True, "measured", f"in phase or in quadrature at {PROBES} frequencies")
@@ -228,7 +228,10 @@ def _interlacing(numbers: Numbers) -> LawCheck | None:
         )
     own = sum(e.kind == "zero" for e in printed)
     return LawCheck(
-        law, False, "measured", f"{right}; {_zeros(own)} of the printed one, not one between two poles"
+        law,
+        False,
+        "measured",
+        f"{right}; {_zeros(own)} of the printed one, which do not alternate with the poles",
     )
 
 

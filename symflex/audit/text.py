@@ -23,7 +23,7 @@ VERDICTS = {
     "equal": "proved equal to the derived function",
     "differs": "DIFFERS from the derived function: proved",
     "agrees": "agrees with the derived function to 50 digits at 40 points: NOT PROVED",
-    "undecided": "NOT DECIDED: no value of it can be compared",
+    "undecided": "NOT DECIDED: no value could be compared",
 }
 
 
@@ -158,7 +158,7 @@ def _numbers(audit: Audit, width: int) -> list[str]:
     if comparison is not None and comparison.point is not None and comparison.derived is not None:
         s = complex(*map(float, comparison.point))
         printed, derived = _complex(comparison.printed), _complex(comparison.derived)
-        apart = f", apart by {comparison.gap:.2g} of it" if printed == derived else ""
+        apart = f", relative difference {comparison.gap:.2g}" if printed == derived else ""
         given = "".join(f", {name} = {float(value.nearly):g}" for name, value in comparison.values)
         text = f"at s = {_complex(s)} rad/s{given}: printed {printed}, derived {derived}{apart} (proved)"
         lines += _filled(text, width, INDENT)

@@ -23,13 +23,13 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "check": ("formulas", "Parse and resolve a specification; report every problem at once."),
     "derive": ("formulas", "Print transfer functions in closed form."),
     "roots": ("analyses", "Print poles and zeros with proved enclosures."),
-    "rational": ("analyses", "Print rational approximations and where they are valid."),
-    "respond": ("respond", "Print the response in time to a step, an impulse or a ramp, enclosed."),
-    "shape": ("respond", "Print an input shaper: impulses after which modes do not ring."),
+    "rational": ("analyses", "Print rational approximations and the frequencies where they hold."),
+    "respond": ("respond", "Print the response to a step, an impulse or a ramp, with proved bounds."),
+    "shape": ("respond", "Print an input shaper: impulses that leave no mode ringing."),
     "sweep": ("analyses", "Solve a model at many values of its parameters."),
-    "stability": ("analyses", "Print for which values of a gain a feedback loop is stable."),
-    "colocation": ("analyses", "Print up to which frequency two outputs move together."),
-    "draw": ("plot", "Draw the model as a textbook draws it."),
+    "stability": ("analyses", "Print the gains for which a feedback loop is stable."),
+    "colocation": ("analyses", "Print the frequency up to which two outputs move together."),
+    "draw": ("plot", "Draw the model as a textbook would."),
     "plot": ("plot", "Draw a Bode plot, a pole-zero array, mode shapes, a root locus or a Nyquist plot."),
     "export": ("formulas", "Write numeric code or LaTeX."),
     "audit": ("formulas", "Compare printed formulas with derived ones."),
@@ -45,7 +45,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
 
 
 NO_CACHE = "--no-cache"
-GONE = "Derivations are quick and no longer kept on disk: leave it out."
+GONE = "symflex no longer caches derivations on disk: leave this option out."
 """The hint for NO_CACHE and the command ``cache``, which earlier versions had."""
 
 

@@ -29,13 +29,15 @@ NO_CLOSED_FORM = Diagnostic(
 def roots(spec: Specification, given: RootsOptions) -> int:
     """Print poles, zeros and hidden modes of one transfer function of SPEC.
 
-    Every root is proved to lie within its radius, with its multiplicity, and none is missing. Distributed
-    systems have infinitely many, of which the lowest are shown by default. Exit code 4 says that roots could
-    not be told apart, or that their number could not be proved; exit code 5, that the budget was exceeded:
-    what was proved until then is shown.
+    Every root is proved to lie within its radius, with its multiplicity, and the list is proved complete. A
+    distributed system has infinitely many roots; by default, the lowest are shown.
 
-    --sensitivity adds the relative change of each natural frequency, and the change of each damping ratio,
-    per relative change of a parameter. It takes the next word as a name: put it after SPEC.
+    --explain names the constrained system whose poles are the zeros. --sensitivity adds the relative change
+    of each natural frequency, and the change of each damping ratio, per relative change of a parameter; it
+    takes the next word as a name, so put it after SPEC.
+
+    Exit code 4: some roots could not be told apart, or their number could not be proved. Exit code 5: the
+    budget was exceeded; what was proved until then is shown.
     """
     from symflex import pipeline
     from symflex.cli.progress import ProgressBar
@@ -102,10 +104,9 @@ def roots(spec: Specification, given: RootsOptions) -> int:
 def rational(spec: Specification, given: RationalOptions) -> None:
     """Print a rational approximation of one transfer function of SPEC.
 
-    Of a beam, rod or delay, a number of modes is kept: in product form their poles and zeros, in modal form
-    their residues and a static correction. The frequencies up to which the approximation is within 1 % and
-    5 % of the exact function are found by sampling. A lumped system with all its modes is its own
-    approximation.
+    Of infinitely many modes, --modes are kept: in product form as poles and zeros, in modal form as residues
+    and a static correction. symflex samples the frequencies up to which the approximation is within 1 % and 5
+    % of the exact function. A lumped system with all its modes is its own approximation.
     """
     from symflex import pipeline
     from symflex.analysis.rational import approximate
@@ -119,14 +120,14 @@ def rational(spec: Specification, given: RationalOptions) -> None:
 
 @command_of("stability", StabilityOptions)
 def stability(spec: Specification, given: StabilityOptions) -> int:
-    """Print for which values of K all poles of SPEC lie in the open left half plane.
+    """Print the values of the gain K for which all poles of SPEC are stable.
 
-    The loop is closed in [signals]; K is one of [parameters]. Boundaries are enclosed, with the frequency at
-    which poles cross the imaginary axis, and poles right of it are counted between them; hidden modes count.
-    For the value that K has in SPEC, gain and phase margins follow.
+    Close the loop in [signals]; K is one of [parameters]. Boundaries are enclosed, with the frequency at
+    which poles cross the imaginary axis. Poles right of the axis, hidden ones included, are counted between
+    boundaries. Gain and phase margins are those of the value that K has in SPEC.
 
-    Exit code 4 says that something is not proved, and what. Poles of structures without loss have no end
-    along the axis: there, poles are counted up to a frequency, which is printed.
+    Exit code 4: something is not proved; the output says what. Structures without loss have poles all along
+    the axis; these are counted up to a frequency, which is printed.
     """
     from symflex.cli.progress import ProgressBar
     from symflex.loops import of_model
@@ -141,11 +142,11 @@ def stability(spec: Specification, given: StabilityOptions) -> int:
 
 @command_of("colocation", ColocationOptions)
 def colocation(spec: Specification, given: ColocationOptions) -> int:
-    """Print up to which frequency an output of SPEC moves with a colocated one.
+    """Print the frequency up to which an output of SPEC moves with a colocated one.
 
-    Within this band they are dynamically colocated, although flexible parts lie between them. It ends where
-    the ratio of the two first leaves the tolerances; that it does not before is proved. Exit code 4 says that
-    the end could not be told.
+    Up to this frequency the two outputs are dynamically colocated, although flexible parts lie between them.
+    The band ends where their ratio first leaves the tolerances; it is proved that it does not leave them
+    earlier. Exit code 4: the end could not be determined.
     """
     from symflex.loops import of_model
 
@@ -159,16 +160,17 @@ BUDGET_CODE = "SF5"
 
 @command_of("sweep", SweepOptions)
 def sweep(spec: Specification, given: SweepOptions) -> int:
-    """Solve SPEC at many values of its parameters: poles, zeros, a response or stability margins.
+    """Solve SPEC at many values of its parameters.
 
-    Several --over make a grid; ranges without a count are drawn from, N times, as a Latin hypercube. Every
-    root is proved at every point, as by 'symflex roots', and given as the nearest double with a radius; modes
-    keep their names along the sweep. The result does not depend on the number of workers.
+    Computes poles, zeros, a response or stability margins. Several --over make a grid; with --monte-carlo,
+    ranges without a count are sampled as a Latin hypercube. Every root is proved at every point, as by
+    'symflex roots', and written as the nearest double with a radius; modes keep their names along the sweep.
+    The result does not depend on the number of workers.
 
-    With -o, chunks that are done are kept in FILE.part until FILE is written: the same command goes on after
-    a kill. 'symflex plot sweep FILE' draws a .nc or .npz.
+    With -o, finished chunks are kept in FILE.part until FILE is written: after an interruption, the same
+    command continues. 'symflex plot sweep FILE' draws a .nc or .npz file.
 
-    Exit code 4 says that something is not certified, 5 that a budget was exceeded.
+    Exit code 4: something is not certified. Exit code 5: a budget was exceeded.
     """
     from symflex.cli.progress import ProgressBar
     from symflex.sweep import run
@@ -178,14 +180,14 @@ def sweep(spec: Specification, given: SweepOptions) -> int:
     if given.workers and given.scheduler:
         raise UsageError(Diagnostic("SF902", "give only one of --workers and --scheduler"))
     if given.fresh and not given.output:
-        raise UsageError(Diagnostic("SF902", "--fresh is for a file: give -o FILE"))
+        raise UsageError(Diagnostic("SF902", "--fresh needs a file: give -o FILE"))
     if given.output:
         check_writable(Path(given.output))
     model = spec.load()
     _check(given)
     task, design = run.plan_sweep(model, given)
     if doubled := [name for name in design.names if name in spec.settings]:
-        raise UsageError(Diagnostic("SF902", f"'{doubled[0]}' is swept and set"))
+        raise UsageError(Diagnostic("SF902", f"'{doubled[0]}' is both swept and set"))
     if given.of != "margins":
         first_pair(model, given.tf, "sweeping")
     with ProgressBar() as bar, run.open_executor(given.workers, given.scheduler) as (executor, size):
@@ -207,6 +209,6 @@ def _check(given: SweepOptions) -> None:
     if given.modes is not None and given.band is not None:
         raise UsageError(Diagnostic("SF902", "give only one of --modes and --band"))
     if given.of == "margins" and not given.gain:
-        raise UsageError(Diagnostic("SF902", "margins are those of a loop", None, "name its gain: --gain K"))
+        raise UsageError(Diagnostic("SF902", "margins need a loop", None, "name its gain: --gain K"))
     if given.of != "margins" and given.gain:
         raise UsageError(Diagnostic("SF902", "--gain is for --of margins"))

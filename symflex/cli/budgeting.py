@@ -107,10 +107,13 @@ def budgeted(command: Callable[..., int]) -> Callable[..., int]:
         envvar=MEMORY_VARIABLE,
         show_default=True,
         metavar="SIZE",
-        help="Stop when more is needed.",
+        help="Stop when the computation needs more memory than this.",
     )
     time = click.option(
-        "--budget", type=Seconds(), metavar="SECONDS", help="Stop then; what was proved is shown."
+        "--budget",
+        type=Seconds(),
+        metavar="SECONDS",
+        help="Stop after this time and show what was proved until then.",
     )
     return time(memory(run))
 
@@ -182,8 +185,8 @@ def _code_of(status: int, memory: int, said: IO[bytes]) -> int:
         return BUDGET_EXCEEDED
     if name in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         return 128 - code
-    message = f"a library ended the computation: {last or signal.strsignal(-code)}"
-    show_error(BudgetError(Diagnostic("SF508", message, None, "please report the model that does this")))
+    message = f"a library crashed: {last or signal.strsignal(-code)}"
+    show_error(BudgetError(Diagnostic("SF508", message, None, "please report this with the model")))
     return BUDGET_EXCEEDED
 
 

@@ -43,7 +43,7 @@ class _Setting:
         "--set",
         multiple=True,
         metavar="NAME=VALUE",
-        help="Another value of a parameter: k='80 kN/m', or SI units; repeatable.",
+        help="Change a parameter: k='80 kN/m', or a number in SI units; may be repeated.",
     )
 
 

@@ -30,11 +30,12 @@ if TYPE_CHECKING:
 def check(spec: Specification, given: CheckOptions) -> int:
     """Parse and resolve SPEC; report every problem at once.
 
-    Names, units, ports, linearity and solvability are checked, and that what varies along x is analytic.
+    This checks names, units, ports, linearity and solvability, and that everything that varies along x is
+    analytic.
 
-    Warnings tell what a typing error may have left behind: a node that one element touches, a name that
-    nothing uses, an input that reaches nothing, an element without effect. They also say how a frequency was
-    read, in cycles or in radians, where an expression could mean either. All other commands print them too.
+    Warnings point to possible typing errors: a node that only one element touches, a name that nothing uses,
+    an input that reaches nothing, an element without effect. They also say whether a frequency was read in
+    cycles or in radians where both are possible. All other commands print warnings too.
     """
     from symflex import pipeline
 
@@ -102,7 +103,7 @@ def chosen_representation(representation: str, form: str | None) -> str:
         return representation
     wanted = "nested" if form == "nested" else "expanded"
     if representation not in ("auto", wanted):
-        message = f"--form {form[:64]} is of the {wanted} representation, not the {representation} one"
+        message = f"--form {form[:64]} belongs to the {wanted} representation, not the {representation} one"
         raise UsageError(Diagnostic("SF902", message))
     return wanted
 
@@ -111,7 +112,7 @@ def chosen_representation(representation: str, form: str | None) -> str:
 def derive(spec: Specification, given: DeriveOptions) -> int:
     """Print the transfer functions of SPEC in closed form.
 
-    All of them by default. JSON strings are in the specification's own expression grammar.
+    By default, all of them. Strings in JSON use the specification's own expression grammar.
     """
     from symflex import pipeline
     from symflex.print.forms import print_forms, terms_to_print
@@ -173,23 +174,23 @@ class ExportCommand(click.Command):
 def export(spec: Specification, given: ExportOptions) -> int:
     """Write the transfer functions of SPEC for another program.
 
-    Numeric code is verified against ball arithmetic before it is written; the worst error stands in its
-    documentation. A target that consists of several files, as c does with its header, writes them beside
-    the one named with -o; on standard output it is one file.
+    Numeric code is verified against ball arithmetic before it is written; its documentation states the worst
+    error. A target with several files, such as c with its header, writes them next to the file of -o; on
+    standard output it is one file.
 
-    With --to latex and -o FOLDER/ every transfer function, table and figure becomes a file for a paper to
-    input, and document.tex inputs them all.
+    --to latex -o FOLDER/ writes every transfer function, table and figure to a file of its own for a paper to
+    input, and document.tex, which inputs them all.
 
-    With --to state-space all of them get one realisation, whose states are displacements, velocities,
-    currents and the like of the model. Exit code 3 says that there is none: beams, rods and delays have
-    infinitely many states, and what has more zeros than poles has no output equation.
+    --to state-space writes one realisation of all functions; its states are displacements, velocities,
+    currents and so on of the model. Exit code 3: there is none, because beams, rods and delays have
+    infinitely many states, or a function has more zeros than poles.
 
-    With --sample, --to c and numpy write difference equations: code for a controller or a filter that takes
-    one step at every sample, whose rounding errors are measured. Dead times may be any fraction of samples.
+    --sample with --to c or numpy writes difference equations: code for a controller or filter that takes one
+    step for each sample. Rounding errors are measured. A dead time may be any fraction of a sample.
 
-    With --form band code is a product over the poles and zeros in a band, times what they leave: exact up to
-    the band's end, and for these values of the parameters only. C, MATLAB, Julia, jax and arrays have what
-    has no short formula, such as networks and members that taper, in this form.
+    --form band writes a product over the poles and zeros in a band, times a short polynomial's exponential:
+    accurate up to the band's end, for the given parameter values only. C, MATLAB, Julia, jax and array-api
+    use this form for functions without a short formula, such as networks and tapered members.
     """
     from symflex import pipeline
     from symflex.codegen.exporters import EXPORTERS
@@ -223,7 +224,7 @@ def export(spec: Specification, given: ExportOptions) -> int:
         path = Path(given.output)
         files = {path: made.text} | {path.with_suffix(s): text for s, text in made.companions.items()}
         if len(files) <= len(made.companions):
-            message = f"'{given.output}' is the name of a file that belongs beside it"
+            message = f"'{given.output}' would overwrite a file that the export writes next to it"
             hint = f"end its name with {EXPORTERS[given.target].suffix}"
             raise UsageError(Diagnostic("SF902", message, None, hint))
         for file, text in files.items():
@@ -248,8 +249,8 @@ def _chosen(exporter: Exporter, given: ExportOptions) -> Exporter:
         raise UsageError(Diagnostic("SF902", "--width and --no-figures are for --to latex"))
     elif isinstance(exporter, Language):
         if given.form not in (None, BAND):
-            message = f"code has the form {BAND} besides its own, not '{given.form[:64]}'"
-            raise UsageError(Diagnostic("SF902", message, None, "other forms are for --to latex"))
+            message = f"the only --form for code is {BAND}, not '{given.form[:64]}'"
+            raise UsageError(Diagnostic("SF902", message, None, "use other forms with --to latex"))
         end = None if given.up_to is None else Fraction(highest_frequency(given.up_to))
         exporter = replace(exporter, form=given.form, up_to=end)
     elif given.form is not None:
@@ -257,7 +258,7 @@ def _chosen(exporter: Exporter, given: ExportOptions) -> Exporter:
     if given.up_to is not None and not isinstance(exporter, Language):
         raise UsageError(Diagnostic("SF902", "--up-to is for code"))
     if given.sample is None and (given.method or given.prewarp or given.is_direct):
-        raise UsageError(Diagnostic("SF902", "--method, --prewarp and --direct are of --sample"))
+        raise UsageError(Diagnostic("SF902", "--method, --prewarp and --direct need --sample"))
     sampling = None
     if given.sample is not None:
         from symflex.state_space.sampled import sampling_of
@@ -302,10 +303,10 @@ def _write_fragments(
 
 @command_of("audit", AuditOptions)
 def audit(spec: Specification, given: AuditOptions) -> int:
-    """Compare what SPEC says was printed with what is derived.
+    """Compare the formulas printed in SPEC with the derived ones.
 
-    Every formula of [published] is proved equal, or what is different is shown, with the structural laws it
-    violates. A difference is a result: the exit code is 0, and 4 with --strict.
+    Each formula of [published] is proved equal, or its differences are shown with the structural laws that it
+    violates. A difference is a result, so the exit code is 0; with --strict it is 4.
     """
     from symflex import audit as audit_room
     from symflex.audit.text import audit_document, audit_text

@@ -39,13 +39,13 @@ TEMPLATES: dict[str, str] = {
     "new", epilog="\b\n" + "\n".join(("Templates:", *(f"  {n}: {s}" for n, s in TEMPLATES.items())))
 )
 @click.argument("template", required=False)
-@click.option("--list", "is_list", is_flag=True, help="List the templates, as without TEMPLATE.")
-@click.option("-o", "--output", type=click.Path(), help="File to write; standard output by default.")
+@click.option("--list", "is_list", is_flag=True, help="List the templates.")
+@click.option("-o", "--output", type=click.Path(), help="File to write.  [default: standard output]")
 @reporting
 def new(template: str | None, *, output: str | None, is_list: bool) -> int:
-    """Write the specification TEMPLATE to start from; without TEMPLATE, list them.
+    """Write a specification to start from; without TEMPLATE, list the templates.
 
-    A template says at its head what it is and what to try next.
+    A template begins with comments that say what it is and what to try next.
     """
     if template is None or is_list:
         width = max(len(name) for name in TEMPLATES)
@@ -66,7 +66,7 @@ def new(template: str | None, *, output: str | None, is_list: bool) -> int:
     from symflex.files.write import write_atomically
 
     write_atomically(Path(output), text.encode())
-    note(f"wrote {output}; try: symflex derive {output}, and what its head says")
+    note(f"wrote {output}; try: symflex derive {output}, and read its comments")
     return 0
 
 
@@ -86,7 +86,7 @@ DOMAIN_WORDS = {"any": "any domain", "plane": "in the plane", "whole": "planar o
 @click.option("--json", "as_json", is_flag=True, help="Print the library, or the entry NAME, as JSON.")
 @reporting
 def elements(name: str | None, *, as_json: bool) -> int:
-    """List the element and block library, or describe one entry NAME."""
+    """List the elements and blocks of the library, or describe the entry NAME."""
     from symflex.library.blocks import BLOCKS
     from symflex.library.elements import ELEMENTS
     from symflex.library.words import hint_of_type
@@ -265,9 +265,9 @@ LONGEST_FACTOR = 16
 @click.option("--json", "as_json", is_flag=True, help="Print the units, or UNIT alone, as JSON.")
 @reporting
 def units(unit: str | None, *, as_json: bool) -> int:
-    """List the units and prefixes that quantities may have, or say what UNIT is, such as 'lbf*s/in'.
+    """List units and prefixes, or say what UNIT is, such as 'lbf*s/in'.
 
-    Units are multiplied, divided and raised to powers: 'N*m/A', 'kg*m^2', 'mm/rev'. Factors are exact.
+    Units can be multiplied, divided and raised to powers: 'N*m/A', 'kg*m^2', 'mm/rev'. Factors are exact.
     """
     from symflex.quantities.units import PLAIN_UNITS, PREFIXABLE_UNITS, PREFIXES
 

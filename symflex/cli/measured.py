@@ -22,20 +22,22 @@ SUFFIXES = (".pdf", ".png", ".svg")
 
 @bare_command("fit", FitOptions)
 def fit(given: FitOptions) -> int:
-    """Fit resonances to the frequency responses in DATA: text, .frd, .zma, .s1p, .s2p, .uff, .mat, .npz.
+    """Fit resonances to measured frequency responses.
 
-    Text in columns is read as instruments and programs save it. What a file does not say is guessed and
-    printed, one line a guess, and --columns overrules it; what could mean two things is asked for.
+    DATA are files of columns in text, .frd, .zma, .s1p, .s2p, .uff, .mat or .npz, as instruments and programs
+    save them. symflex guesses what a file does not state and prints each guess; --columns overrules it. If
+    something could mean two things, symflex asks for it.
 
-    On top of the transfer function --base SPEC --tf OUT/IN, or of a gain and a power of s, each resonance
-    adds a pair of poles and a pair of zeros. Several responses are fitted together and share their poles.
-    -o writes a specification with resonance blocks, which derive, roots, plot and export take like any other;
-    with --loop K it has a loop, of which stability --gain K tells the gains that are stable.
+    Each resonance adds a pair of poles and a pair of zeros to the transfer function --base SPEC --tf OUT/IN,
+    or to a gain and a power of s. Several responses are fitted together and share their poles. -o writes a
+    specification with resonance blocks, which derive, roots, plot and export can use; with --loop K it
+    contains a loop, and 'symflex stability --gain K' finds its stable gains.
 
-    The report has standard errors, and says where the measured phase parts from that of a minimum-phase
-    fit to the magnitude alone. A fit that does not describe the data within their noise, or does not
-    determine a resonance, says at its head that it is poor. Exit code 3 says that the data are invalid, 4
-    that no fit came of them, or with --strict a poor one.
+    The report gives standard errors, and the frequencies where the measured phase deviates from that of a
+    minimum-phase fit to the magnitude alone. A poor fit is one that does not describe the data within their
+    noise or does not determine a resonance; the report begins by saying so.
+
+    Exit code 3: the data are invalid. Exit code 4: no fit was found, or with --strict a poor one.
     """
     from symflex import pipeline
     from symflex.analysis.measured import fit as fitted
@@ -68,7 +70,9 @@ def fit(given: FitOptions) -> int:
         if len(measured) != 1:
             hint = "responses: " + ", ".join(response.name for response in every)
             raise UsageError(
-                Diagnostic("SF902", f"no single response is called '{given.driving[:64]}'", None, hint)
+                Diagnostic(
+                    "SF902", f"no response, or more than one, is called '{given.driving[:64]}'", None, hint
+                )
             )
         if given.base is not None:
             raise UsageError(Diagnostic("SF902", "--driving is for fits without --base"))
@@ -77,7 +81,7 @@ def fit(given: FitOptions) -> int:
         found = fitted(measured, given)
     shapes = mode_shapes(found, every) if given.driving else None
     if given.strict and found.poor:
-        hint = "without --strict it is printed all the same"
+        hint = "leave out --strict to print it anyway"
         raise FitError(Diagnostic("SF618", f"the fit is poor: {found.poor[0]}", None, hint))
     if given.output:
         text = fit_specification(found, Path(given.output).parent, given.loop)
@@ -87,7 +91,7 @@ def fit(given: FitOptions) -> int:
             pipeline.loads(text, given.output)
         except SymflexError:
             folders = " ".join(f"--allow-outside {folder}" for folder in given.allow_outside)
-            note(f"its base reads other folders: give {folders} where it is read")
+            note(f"its base reads other folders: give {folders} to the commands that read it")
     answer(given.as_json, lambda: fit_json(found, shapes), lambda: fit_text(found, terminal_width(), shapes))
     _draw(found, given)
     return 0
@@ -123,11 +127,11 @@ def _read(given: FitOptions) -> list[MeasuredResponse]:
 
 @command_of("measure", MeasureOptions)
 def measure(spec: Specification, given: MeasureOptions) -> int:
-    """Write what an analyser would measure of a transfer function of SPEC: synthetic data, and labelled so.
+    """Write a synthetic measurement of a transfer function of SPEC.
 
-    Band-limited noise drives the model; a sensor with noise of its own sees the response; overlapping
-    records with a Hann window are averaged to an H1 estimate and its coherence. The same seed gives
-    the same file.
+    Band-limited noise drives the model, and a sensor adds noise to the response. Overlapping records with a
+    Hann window are averaged to an H1 estimate and its coherence. The file says that its data are synthetic.
+    The same seed gives the same file.
     """
     from symflex.analysis.measured import measure as measured_of
     from symflex.data.measurement import WRITERS, measurement_bytes

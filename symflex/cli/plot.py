@@ -22,13 +22,13 @@ IN_TIME = ("step", "impulse")
 
 @command_of("draw", DrawOptions)
 def draw(spec: Specification, given: DrawOptions) -> int:
-    """Draw the model as a textbook draws it: masses, springs, members, circuits, motors, loops.
+    """Draw the model as a textbook would: masses, springs, beams, circuits, loops.
 
-    All places are found from the specification. The drawing is as wide as a column of a journal, the text of
-    a page, or what the model needs; --width sets it. With --values numbers stand at the symbols.
+    symflex finds all positions from the specification. The drawing is as wide as a journal column, the text
+    of a page, or what the model needs; --width sets it. --values labels symbols with numbers.
 
-    Without -o it is written to the current folder as SPEC_drawing.svg. A .pgf is for papers set with LaTeX,
-    as for plot.
+    Without -o, the drawing is written to the current folder as SPEC_drawing.svg. Use .pgf for papers set with
+    LaTeX, as for plot.
     """
     from symflex.drawing import drawing_of, render_drawing
     from symflex.files.write import write_atomically
@@ -49,24 +49,23 @@ def plot(spec: Specification, given: PlotOptions) -> int:
 
     Kinds are bode, impulse, locus, modes, nyquist, poles_zeros and step.
 
-    modes draws the shapes of the lowest modes of the model, --modes or [analysis] modes of them, else five.
-    locus --gain K draws where the closed-loop poles go as K grows, from proved poles to proved zeros; of a
-    distributed system those of the lowest modes. nyquist draws a transfer function, or with --gain K the loop
-    gain.
+    modes draws the lowest mode shapes: --modes of them, else [analysis] modes, else five. locus --gain K
+    draws the paths of the closed-loop poles as K grows, from proved poles to proved zeros; of a distributed
+    system, those of the lowest modes. nyquist draws a transfer function, or with --gain K the loop gain.
 
-    'symflex plot sweep FILE' draws a .nc or .npz that 'symflex sweep -o' wrote: modes over one parameter and
-    their loci, or medians and what holds 90 % of the points.
+    'symflex plot sweep FILE' draws a .nc or .npz file of 'symflex sweep -o': modes over one parameter and
+    their loci, or medians and the range of 90 % of the points.
 
-    --band shows a band of frequencies: of bode and nyquist the curves, of modes those in it, and of what is
-    drawn in the s plane all up to its end. --xlim, --ylim and --phase set the ends of axes; those of a
-    frequency or in the s plane may have a unit, '1 kHz'. step and impulse are drawn up to --until, or the end
-    of --xlim [s], by default until the slowest motion has died away.
+    --band limits the frequencies: of the curves of bode and nyquist, and of the modes drawn; figures in the s
+    plane show everything up to its end. --xlim, --ylim and --phase set the ends of axes; frequencies and
+    values in the s plane may have a unit, '1 kHz'. step and impulse run to --until or the end of --xlim [s],
+    by default until the slowest motion has died away.
 
-    Without -o the figure is written to the current folder as SPEC_KIND.pdf.
+    Without -o, the figure is written to the current folder as SPEC_KIND.pdf.
 
-    A .pgf is for papers set with LaTeX: load the package pgf and input the file. Its texts take the paper's
-    font; --font, there latex by default, only says how much room to leave for them. No LaTeX installation is
-    needed to write one.
+    Use .pgf for papers set with LaTeX: load the package pgf and input the file. Its text appears in the
+    paper's font; --font, for .pgf latex by default, only sets how much room it gets. Writing .pgf needs no
+    LaTeX installation.
     """
     from symflex import pipeline
     from symflex.figures import LOOP_FIGURES, draw, draw_loop, part_shown, save
@@ -98,7 +97,7 @@ def plot(spec: Specification, given: PlotOptions) -> int:
             raise UsageError(Diagnostic("SF902", message))
         frame = replace(frame, x=(0.0, float(duration(given.until, "--until"))))
     if drawn == "locus" and not gain:
-        message = "a locus is drawn of a loop"
+        message = "a locus needs a loop"
         raise UsageError(Diagnostic("SF902", message, None, "name its gain: --gain K, or gain in [figures]"))
     title = figure.title or None if figure else None
     if gain:
@@ -134,7 +133,7 @@ def _plot_sweep(spec: Specification, given: PlotOptions) -> int:
     """Draw what 'symflex sweep -o' wrote."""
     others = (given.tfs, given.gain, given.limits, given.band, given.xlim, given.ylim, given.phase)
     if spec.settings or any(others):
-        message = "--set, --tf, --gain, --range, --band and ends of axes are not for a sweep"
+        message = "--set, --tf, --gain, --range, --band and ends of axes do not apply to a sweep"
         raise UsageError(Diagnostic("SF902", message))
     from symflex.figures import draw_sweep, save
     from symflex.print.latex import width_of

@@ -19,21 +19,21 @@ EPOCH_VARIABLE = "SOURCE_DATE_EPOCH"
 
 @bare_command("report", ReportOptions)
 def report(given: ReportOptions) -> int:
-    """Write a report on models: equations, poles and zeros, figures, comparison, code.
+    """Write a report on models: equations, poles, zeros, figures, comparison, code.
 
-    A SPEC that is a folder stands for all specifications in it and below; measured responses (.csv, .uff,
-    .mat, .npz) that stand there are drawn with the transfer functions of their names. DIR/index.html is one
-    page that opens without a network and holds everything; beside it are report.tex and report.pdf, and the
-    folders figures, code and data. What a specification publishes is audited, models are compared, and the
-    claims of a publication that is known are judged. Where no file has the name, the example of that name is
-    taken: 'symflex report eppinger1988' needs no file, and 'symflex examples' lists the names.
+    A SPEC that is a folder stands for all specifications in it and below. Measured responses there (.csv,
+    .uff, .mat, .npz) are drawn with the transfer functions of the same name. DIR/index.html is one page with
+    everything, which opens without a network. Next to it are report.tex, report.pdf and the folders figures,
+    code and data. The report audits what a specification publishes, compares the models, and judges the
+    claims of a publication that it knows. If no file has the name, symflex takes the example of that name:
+    'symflex report eppinger1988' needs no file, and 'symflex examples' lists the names.
 
-    All specifications are checked before anything is computed: where one is invalid the exit code is 3, and
-    nothing is written. A model that cannot be computed afterwards costs its own chapter only, which says why.
+    All specifications are checked first: if one is invalid, the exit code is 3 and nothing is written. If a
+    model cannot be computed later, only its own chapter is missing, and the report says why.
 
-    Equal specifications give equal files when the date is fixed. Exit code 4 says that something could not be
-    certified, or a figure of [figures] not be drawn, 5 that a budget of time or memory was exceeded: the
-    report is written then, and says where.
+    With a fixed date, equal specifications give equal files. Exit code 4: something could not be certified,
+    or a figure of [figures] could not be drawn. Exit code 5: a budget of time or memory was exceeded. In both
+    cases the report is written and says where.
     """
     from symflex.cli.progress import ProgressBar
     from symflex.report.published import written

@@ -21,22 +21,23 @@ TABLE = ".csv"
 
 @command_of("respond", RespondOptions)
 def respond(spec: Specification, given: RespondOptions) -> int:
-    """Print what an output of SPEC does in time when its input is a unit step, impulse or ramp, or a file.
+    """Print the response of an output of SPEC to a step, impulse, ramp or a file.
 
-    Of --to FILE.csv the input is a straight line between samples, 0 before the first and constant after the
-    last; that is exact, too.
+    The input is of unit size; the system is at rest before t = 0. Every value is proved to lie within its
+    radius: the response is computed from proved poles, not from time steps.
 
-    The system is at rest before t = 0. Every value is proved to lie within its radius; the response comes
-    from proved poles, not from steps in time. An impulse that passes straight through to the output is said,
-    and is not among the values; that at t = 0 is the limit from above. Of beams with controllers or imposed
-    motions, and others of whose modes too little is known, what those beyond the lowest 25 add is estimated,
-    of networks beyond the lowest 12 where that is little; the first line says that the values are not
-    certified.
+    --to FILE.csv joins its samples by straight lines; the input is 0 before the first sample and constant
+    after the last. This is exact, too. --shaped passes the input through the shaper that 'symflex shape'
+    prints for the same transfer function.
 
-    With --shaped the input goes through the input shaper that 'symflex shape' prints for the same transfer
-    function: it is convolved by its impulses, at their proved times.
+    An impulse that passes straight through to the output is printed separately, not among the values. The
+    value at t = 0 is the limit from above.
 
-    Exit code 4 says that the response could not be found, and with --strict that it is not certified.
+    For beams with controllers or imposed motions, and wherever too little is known of the modes, the
+    contribution of the modes beyond the lowest 25 is estimated; of a network, beyond the lowest 12 if it is
+    small. The first line then says that the values are not certified.
+
+    Exit code 4: the response could not be found, or with --strict, it is not certified.
     """
     from symflex import pipeline
     from symflex.analysis.time_response import (
@@ -53,7 +54,7 @@ def respond(spec: Specification, given: RespondOptions) -> int:
 
     _check_place(given)
     if given.shaped is None and (given.joint or given.modes != 1):
-        raise UsageError(Diagnostic("SF902", "--modes and --joint are of --shaped zv, zvd or ei"))
+        raise UsageError(Diagnostic("SF902", "--modes and --joint need --shaped zv, zvd or ei"))
     until = None if given.until is None else duration(given.until, "--until")
     signal = read_signal(given.to) if given.to.lower().endswith(TABLE) else None
     model = spec.load()
@@ -104,7 +105,7 @@ def _check_place(given: RespondOptions) -> None:
             raise UsageError(Diagnostic("SF902", "give only one of --json and -o"))
     is_figure = Path(given.output or "").suffix in PICTURES
     if not is_figure and any((given.xlim, given.ylim, given.width, given.font)):
-        message = "--xlim, --ylim, --width and --font are of a figure"
+        message = "--xlim, --ylim, --width and --font apply only to a figure"
         raise UsageError(Diagnostic("SF902", message, None, "name one, as in -o step.svg"))
 
 
@@ -122,12 +123,14 @@ def _draw(found: EnclosedResponse, given: RespondOptions, path: Path) -> None:
 
 @command_of("shape", ShapeOptions)
 def shape(spec: Specification, given: ShapeOptions) -> int:
-    """Print an input shaper for the lowest modes of SPEC that oscillate.
+    """Print an input shaper for the lowest oscillating modes of SPEC.
 
-    A command that is convolved by its impulses leaves these modes at rest when it ends: exactly with zv and
-    zvd, and within 5 % of an unshaped impulse with ei, which stands larger errors of a frequency. Times and
-    amplitudes come from proved poles. The shapers of several modes are convolved; with --joint one is made
-    for all of them, which is shorter. -o draws what a mode rings if its frequency is another.
+    A command convolved with the impulses of the shaper leaves these modes at rest when it ends: exactly with
+    zv and zvd, and within 5 % of an unshaped impulse with ei, which tolerates larger errors of the frequency.
+    Times and amplitudes come from proved poles.
+
+    By default, shapers of several modes are convolved; --joint computes a single shorter one. -o draws the
+    residual vibration of a mode whose frequency differs from the model's.
     """
     from symflex import pipeline
     from symflex.analysis.input_shaping import input_shaper

@@ -193,7 +193,9 @@ def state_space_module(
     size = sum(v.size for _, rows, _ in system.matrices for row in rows for v in row.values())
     if size > TERM_LIMIT:
         message = f"the state equations have {size} terms; at most {TERM_LIMIT} are written"
-        raise BudgetError(Diagnostic("SF503", message, None, "give parameters numbers: bind() first"))
+        raise BudgetError(
+            Diagnostic("SF503", message, None, "give the parameters numbers first, with bind()")
+        )
     module = _Module(system, StateEquations(system))
     verified = tuple(module.measured(tf, band_hz, samples) for tf in tfs)
     return Export(module.text(verified, digits), shortfalls(verified), verified=verified)
@@ -435,7 +437,9 @@ def _without_delays(
     if len(delays) > 1:
         (one, first), (other, second), *_ = delays.items()
         message = f"{first} has a dead time of {float(one):g} s, {second} one of {float(other):g} s"
-        raise ModelError(Diagnostic("SF235", message, None, "choose functions with one dead time with --tf"))
+        raise ModelError(
+            Diagnostic("SF235", message, None, "use --tf to choose functions with the same dead time")
+        )
     unity = (("num", number(1)), ("den", number(1)))
     blocks = tuple(
         replace(b, block=BLOCKS["tf"], values=unity) if b.block is not None and b.block.kernel_time else b

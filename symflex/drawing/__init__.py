@@ -91,9 +91,10 @@ def drawing_of(
         needed = drawing.width / POINTS * MM_PER_INCH
         if not asked:
             return _with_joins(content, drawing).scaled(min(1.0, WIDEST_MM / needed))
-        message = f"the drawing has no room in {asked[0]:.4g} mm"
+        message = f"the drawing does not fit into {asked[0]:.4g} mm"
         hint = (
-            f"it takes {min(needed * SMALLEST_ASKED, WIDEST_MM):.0f} mm; without a width it has what it needs"
+            f"it needs {min(needed * SMALLEST_ASKED, WIDEST_MM):.0f} mm; leave out the width to let "
+            "symflex choose it"
         )
         raise UsageError(Diagnostic("SF902", message, None, hint))
 

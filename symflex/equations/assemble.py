@@ -100,7 +100,7 @@ def assemble(
     count = len(model.parameters) + len(model.definitions) + len(constants)
     most = SPARSE_LIMIT if is_sparse else GENERATOR_LIMIT
     if count > most:
-        message = f"{count} parameters, definitions and functions of them; at most {most} are carried"
+        message = f"{count} parameters, definitions and functions of them; at most {most} are allowed"
         raise _too_large(message, "write numbers in place of parameters that need no name")
     ring = Ring(
         (
@@ -392,10 +392,10 @@ class _Assembly:
         if tips and given != wanted:
             name = tips[0].field.name
             message = (
-                f"a stiffness of field '{name}' vanishes at an end: of solutions that are finite there, "
-                f"{wanted} conditions are needed, and there are {given}"
+                f"a stiffness of field '{name}' vanishes at an end: solutions that are finite there need "
+                f"{wanted} conditions, and there are {given}"
             )
-            hint = "write no condition for what is finite at the tip, such as forces of zero"
+            hint = "leave out conditions that only keep the tip finite, such as forces of zero"
             self.problems.append(Diagnostic("SF243", message, tips[0].field.span, hint))
 
     @property

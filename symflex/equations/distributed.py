@@ -165,7 +165,7 @@ def _local(
         except ZeroDivisionError:
             at = format_expression(point)
             message = f"{unknown}{chr(39) * order}({at}) is not known: a stiffness vanishes at x = {at}"
-            hint = "leave the condition out: only solutions that are finite there are taken"
+            hint = "leave the condition out: symflex uses only solutions that are finite there"
             raise ModelError(Diagnostic("SF250", message, point.span, hint)) from None
     return [propagation.embed(x) for x in row], [propagation.embed(x) for x in direct]
 
@@ -319,7 +319,7 @@ class _Demands:
         ends: tuple[Expression, Expression],
     ) -> Medium:
         if system.axes is not None:
-            message = f"a member of a frame that varies along x ('{name}') is not available yet"
+            message = f"a frame member that varies along x ('{name}') is not available yet"
             hint = "cut it into uniform pieces, or model its bending as a beam"
             raise ModelError(Diagnostic("SF910", message, span, hint))
         components = varying_components(system)
@@ -338,8 +338,11 @@ class _Demands:
             free = range(len(part.matrix)) if start is None else start.free
             held |= {system.states[i] for j, i in enumerate(part.states) if j not in free}
             if not set(free) >= set(range(len(part.states), len(part.matrix))):
-                message = f"a load on '{name}' does not vanish where its stiffness does, and moves it too far"
-                raise ModelError(Diagnostic("SF910", message, span, "let the load enter the conditions"))
+                message = (
+                    f"a load on '{name}' does not vanish where its stiffness does and would move it "
+                    "without bound"
+                )
+                raise ModelError(Diagnostic("SF910", message, span, "put the load into the conditions"))
         return Medium(system, tuple(parts), along, origin, singular[1], frozenset(held))
 
     def delay(self, name: str, s: Factored, time: Factored) -> int:
@@ -484,7 +487,7 @@ def _check_tip(model: Model, use: PlacedElement, *, is_second: bool) -> None:
     if tip.is_ground or sum(r.node == tip.node for r in touching) > 1:
         message = f"a stiffness of {use.element.type_name} '{use.name}' vanishes at its end '{tip.node}', "
         message += "which can be neither held nor loaded: it would move without bound"
-        hint = "let the section be small there, but not zero, or leave the end free"
+        hint = "make the section small there but not zero, or leave the end free"
         raise ModelError(Diagnostic("SF250", message, use.span, hint))
 
 
@@ -511,7 +514,7 @@ def _solution(field: FieldProblem, evaluator: ExactEvaluator, demands: _Demands)
         )
     if static := [u for u in field.unknowns if u not in system.states]:
         message = f"the equations of field '{field.name}' hold no derivative of " + " and ".join(static)
-        hint = "put what it equals in its place in the other equations and conditions"
+        hint = "substitute what it equals in the other equations and conditions"
         raise ModelError(Diagnostic("SF305", message, field.span, hint))
     span, ends = field.equations[0].span or field.span, (field.start, field.end)
     medium = demands.medium(field.name, system, span, ends)
@@ -520,9 +523,10 @@ def _solution(field: FieldProblem, evaluator: ExactEvaluator, demands: _Demands)
         is_refused = part.coefficients and (number != POLYNOMIAL or part.is_share)
         if is_refused and part.coefficients[0].is_zero and _is_loaded(part, system):
             message = (
-                f"field '{field.name}' has a solution constant in x; a uniform load on it is not available"
+                f"field '{field.name}' has a solution that is constant in x, so a uniform load on it "
+                "is not available"
             )
-            raise ModelError(Diagnostic("SF910", message, field.span, "let the load enter the conditions"))
+            raise ModelError(Diagnostic("SF910", message, field.span, "put the load into the conditions"))
     return FieldSolution(field, medium, inputs, medium.origin or evaluator.constant(field.start))
 
 
@@ -536,7 +540,7 @@ def _singular(
     except UnsolvedEndError as error:
         why, hint = str(error), error.hint
     except ZeroDivisionError:
-        why, hint = "a function of x vanishes there besides, and solutions are not power series", CUT
+        why, hint = "a function of x also vanishes there, and solutions are not power series", CUT
     message = f"a stiffness of '{name}' vanishes at x = {format_expression(end)}: {why}"
     raise ModelError(Diagnostic("SF250", message, span, hint))
 

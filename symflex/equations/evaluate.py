@@ -309,7 +309,7 @@ class Opener:
         depth += max((levels for _, levels in inner), default=0)
         if parts > OPENED_PARTS or depth > OPENED_DEPTH:
             message = (
-                f"the argument of {call.name} is too large with its definitions opened: more than "
+                f"the argument of {call.name} is too large once its definitions are substituted: more than "
                 f"{OPENED_PARTS} parts or {OPENED_DEPTH} levels"
             )
             hint = "declare the value of the argument as a parameter"

@@ -158,7 +158,7 @@ def triangular_order(first: Sequence[Sequence[Factored]]) -> list[int]:
             if i not in found and all(k == i or k in found or first[i][k].is_zero for k in size)
         ]
         if not ready:
-            message = "how solutions begin there is not seen from single coefficients"
+            message = "single coefficients do not show how solutions begin there"
             raise UnsolvedEndError(message, f"{BRACKETS}; or {CUT}")
         found += ready
     return found

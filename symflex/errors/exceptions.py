@@ -8,7 +8,7 @@ from symflex.errors.diagnostic import Diagnostic
 
 
 class SymflexError(Exception):
-    """Base of every error symflex raises on purpose.
+    """Base class of all errors that symflex raises on purpose.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ class BudgetError(SymflexError):
         self.found = found
 
 
-REPORT: Final = "this is a fault of symflex, not of the model: please report it with the specification"
+REPORT: Final = "this is a bug in symflex, not in your model: please report it with the specification"
 """The hint of every internal error."""
 
 

@@ -84,7 +84,7 @@ def parse(text: Text, *, limits: Limits = USER_LIMITS) -> Expression:
     """
     found = _read(text, limits, "sum").node
     if bracket := next((n for n in nodes(found) if isinstance(n, Differentiated)), None):
-        message = "a derivative along x of a bracket stands in the equations and conditions of [fields]"
+        message = "a derivative of a bracket along x belongs in the equations and conditions of [fields]"
         raise SpecError(
             Diagnostic("SF223", message, bracket.span, "a derivative in time is written with s: s*x")
         )
@@ -193,7 +193,7 @@ class _TreeBuilder:
         span = reading.text.at(start, end)
         quantity = parse_quantity(Text(f"{token} {unit}", span))
         if quantity.pi_power or quantity.cycles:
-            reading.refuse(start, end, "SF203", f"a point along x is a length, not in '{unit}'")
+            reading.refuse(start, end, "SF203", f"a point along x is a length and cannot be in '{unit}'")
         node = Measured(quantity.magnitude, quantity=quantity, span=span)
         return _Piece(node, start, end, size_of_number(quantity.magnitude), reading)
 
@@ -379,7 +379,7 @@ def _check_token(reading: _Reading, token: Token) -> None:
         message = f"this name has {len(token)} characters; at most {NAME_LENGTH} are allowed"
         reading.refuse(start, end, "SF112", message)
     if token.type == "PRIMES" and len(token) > limits.order:
-        message = f"a derivative of order {len(token)}; at most {limits.order} is allowed"
+        message = f"this derivative is of order {len(token)}; at most {limits.order} is allowed"
         reading.refuse(start, end, "SF103", message, "write a system of lower order in more unknowns")
     if token.type == "NUMBER":
         mantissa, _, exponent = token.lower().partition("e")
@@ -391,5 +391,5 @@ def _check_token(reading: _Reading, token: Token) -> None:
         # Compared by length first: the exponent may itself have thousands of digits.
         longest = len(str(limits.decimal_exponent))
         if len(significant) > longest or int(significant or "0") > limits.decimal_exponent:
-            message = f"the exponent of this number is beyond {limits.decimal_exponent}"
-            reading.refuse(start, end, "SF103", message, "choose units in which values lie nearer to 1")
+            message = f"the exponent of this number exceeds {limits.decimal_exponent}"
+            reading.refuse(start, end, "SF103", message, "choose units in which values are closer to 1")

@@ -89,7 +89,7 @@ def _token_hint(
     if token.type == "RPAR" and opening is None:
         return "there is no '(' for it to close"
     if token.type == "RPAR" and len(recent) > 1 and recent[-2].type == "LPAR":
-        return "something must stand between '(' and ')'"
+        return "write an expression between '(' and ')'"
     if token.type == "SCALE" and wants_operand and len(recent) > 1 and str(recent[-2]) == str(token) == "/":
         return "write '/' to divide"
     if wants_operand or len(recent) == 1:
@@ -102,7 +102,7 @@ def _equal_hint(value: str, token: Token, *, is_equation: bool) -> str:
         return "an expression has no '='; only the equations and conditions of a field do"
     start = token.start
     if not value[:start].strip():
-        return "something must stand to the left of '='"
+        return "write an expression to the left of '='"
     return "write a single '='" if value[:start].endswith("=") else "an equation has one '='"
 
 
@@ -114,13 +114,13 @@ def _neighbour_hint(value: str, recent: Sequence[Token]) -> str | None:
         hint = "primes follow the name of a field, w''(l), or a bracket, (a*x*w')'"
         return hint if before.type == "RPAR" else None
     if token.type == "DOT":
-        return "a decimal point stands in a number once" if before.type == "NUMBER" else None
+        return "a number has at most one decimal point" if before.type == "NUMBER" else None
     if before.type == "NAME" and str(before) in FUNCTIONS and token.type != "LPAR":
         return f"write '{before}({_short(token)})'" if _short(token) else f"write '{before}(...)'"
     if types[-4:] == ["NAME", "POWER", "NUMBER", "LPAR"] and str(recent[-4]) in FUNCTIONS:
         return f"write '{recent[-4]}(...)^{_short(before)}'"
     if token.type == "SCALE":
-        return "a length with its unit stands alone, or in a sum"
+        return "a length with a unit must stand alone or in a sum"
     left, right = _short(_operand(recent[:-1], types)), _short(token)
     cure = f"write {_quoted(f'{left}*{right}')}" if left and right else "write '*' to multiply"
     spaced = before.end < token.start

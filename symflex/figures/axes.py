@@ -222,7 +222,7 @@ def root_figure(axes: Axes) -> Figure:
     """Return the figure that axes stand in."""
     figure = axes.get_figure(root=True)
     if figure is None:
-        raise UsageError(Diagnostic("SF902", "these axes are of no figure"))
+        raise UsageError(Diagnostic("SF902", "these axes belong to no figure"))
     return figure
 
 
@@ -245,7 +245,7 @@ class Canvas:
         if len(self.axes) not in counts:
             needed = " or ".join(map(str, counts))
             message = f"this figure has {needed} panel{'s' if needed != '1' else ''}, not {len(self.axes)}"
-            raise UsageError(Diagnostic("SF902", message, None, "give ax as many axes"))
+            raise UsageError(Diagnostic("SF902", message, None, "pass that many axes as ax"))
         return self.axes
 
     def one_panel(self, height: float) -> Axes:

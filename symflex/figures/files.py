@@ -54,7 +54,7 @@ def render(figure: Figure, format: str, *, font: str = DEFAULT_FONT, has_text: b
     """
     if format not in FORMATS:
         hint = nearest(format, FORMATS) or "formats: " + ", ".join(FORMATS)
-        raise UsageError(Diagnostic("SF208", f"figures are not written as '{format[:64]}'", None, hint))
+        raise UsageError(Diagnostic("SF208", f"figures cannot be written as '{format[:64]}'", None, hint))
     buffer = BytesIO()
     with paper_style(font):
         if format == "pgf":

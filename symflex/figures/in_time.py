@@ -128,7 +128,7 @@ def _limit(axes: Axes, response: EnclosedResponse, frame: AxisLimits) -> None:
 
 def _said(responses: Sequence[EnclosedResponse], width: float) -> list[str]:
     """Return what stands below a title: what is not drawn, and what is not certified."""
-    said = [f"{r.tf}: besides, impulses that are not drawn" for r in responses if r.impulses]
+    said = [f"{r.tf}: it also has impulses, which are not drawn" for r in responses if r.impulses]
     said += [f"{r.tf}, not certified: {r.reason}" for r in responses if not r.certified]
     return [line for text in said for line in title_lines(text, width)]
 

@@ -78,7 +78,7 @@ def draw(
     """
     if kind not in FIGURES:
         if kind in LOOP_FIGURES:
-            message = f"a figure of kind '{kind}' is drawn of a loop"
+            message = f"a figure of kind '{kind}' needs a loop"
             raise UsageError(
                 Diagnostic("SF902", message, None, "name its gain: --gain K, or gain in [figures]")
             )
@@ -204,9 +204,7 @@ def draw_loop(
     """
     if kind not in LOOP_FIGURES:
         hint = "kinds: " + ", ".join(LOOP_FIGURES)
-        raise UsageError(
-            Diagnostic("SF208", f"no figure of kind '{kind[:64]}' is drawn of a loop", None, hint)
-        )
+        raise UsageError(Diagnostic("SF208", f"a loop has no figure of kind '{kind[:64]}'", None, hint))
     _check_frame(kind, frame)
     canvas = _canvas(band_hz, frame, title, width_mm, ax)
 

@@ -108,7 +108,7 @@ def draw_shapes(
     columns = _widths(panels, width - RIGHT - sum(gaps))
     own = canvas.own_axes(len(panels) * len(shapes)) if canvas.axes else ()
     if min(columns) < NARROWEST_PANEL and not own:
-        message = f"{len(panels)} panels side by side have no room in {MM_PER_INCH * width:.4g} mm"
+        message = f"{len(panels)} panels side by side do not fit into {MM_PER_INCH * width:.4g} mm"
         raise UsageError(Diagnostic("SF902", message, None, "the width of a page is 170 mm"))
     is_lagging = any(_lags(panel, shape) for shape in shapes for panel in panels)
     has_axis = any(not isinstance(panel, Plan) for panel in panels)

@@ -91,4 +91,4 @@ def _taken(path: Path, content: bytes) -> UsageError:
 
 
 def _foreign(lock: Path) -> UsageError:
-    return UsageError(Diagnostic("SF903", f"cannot write '{lock}': it is there, and no lock of symflex"))
+    return UsageError(Diagnostic("SF903", f"cannot write '{lock}': it exists and is not a lock of symflex"))

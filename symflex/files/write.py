@@ -38,7 +38,7 @@ def write_atomically(path: Path, data: bytes) -> None:
     except OSError as error:
         raise _unwritable(name, error.strerror or "input/output error") from None
     except ValueError:
-        raise _unwritable(name, "the name holds a character no file name can have") from None
+        raise _unwritable(name, "the name contains a character that file names cannot have") from None
 
 
 def check_writable(path: Path) -> None:
@@ -58,7 +58,7 @@ def check_writable(path: Path) -> None:
     except OSError as error:
         raise _unwritable(name, error.strerror or "input/output error") from None
     except ValueError:
-        raise _unwritable(name, "the name holds a character no file name can have") from None
+        raise _unwritable(name, "the name contains a character that file names cannot have") from None
     if not path.parent.is_dir():
         raise _unwritable(name, f"there is no folder '{os.path.dirname(name) or '.'}'")
     _check_entry(path.parent, name)
@@ -91,7 +91,7 @@ def write_folder(folder: Path, files: Mapping[str, str]) -> None:
     """
     for name in files:
         if name in ("", ".", "..") or Path(name).name != name or "\\" in name or "\0" in name:
-            message = f"{name!r} is not a name of a file"
+            message = f"{name!r} is not the name of a file"
             raise ValueError(message)
     try:
         Path(folder).mkdir(exist_ok=True)
@@ -101,7 +101,9 @@ def write_folder(folder: Path, files: Mapping[str, str]) -> None:
     except OSError as error:
         raise _unwritable(os.fspath(folder), error.strerror or "input/output error") from None
     except ValueError:
-        raise _unwritable(os.fspath(folder), "the name holds a character no file name can have") from None
+        raise _unwritable(
+            os.fspath(folder), "the name contains a character that file names cannot have"
+        ) from None
     for name, text in files.items():
         write_atomically(Path(folder) / name, text.encode())
 
@@ -132,12 +134,12 @@ def _make(folder: Path, *, is_root: bool) -> None:
     name = str(folder)
     try:
         if not is_root and folder.is_symlink():
-            raise _unwritable(name, "it is a symbolic link, and links are not written through", into=True)
+            raise _unwritable(name, "it is a symbolic link, and symflex does not write through links", into=True)
         folder.mkdir(parents=is_root, exist_ok=True)
     except OSError as error:
         raise _unwritable(name, error.strerror or "input/output error", into=True) from None
     except ValueError:
-        raise _unwritable(name, "the name holds a character no folder can have", into=True) from None
+        raise _unwritable(name, "the name contains a character that folders cannot have", into=True) from None
 
 
 def _write(path: Path, data: bytes) -> None:
@@ -167,7 +169,7 @@ def _mode_of_regular_file(path: Path) -> int | None:
     except FileNotFoundError:
         return None
     if stat.S_ISLNK(mode):
-        raise _unwritable(os.fspath(path), "it is a symbolic link, and links are not written through")
+        raise _unwritable(os.fspath(path), "it is a symbolic link, and symflex does not write through links")
     if not stat.S_ISREG(mode):
         raise _unwritable(os.fspath(path), "it is not a regular file")
     return stat.S_IMODE(mode)

@@ -134,12 +134,12 @@ def dynamic_colocation(
         hint = 'compare outputs of one unit; an angle times its lever is a displacement: "h*phi"'
         raise UsageError(Diagnostic("SF805", message, None, hint))
     if not 0 < phase < 90 or not magnitude > 0:  # noqa: PLR2004 (degrees)
-        message = "tolerances are a phase between 0 and 90 degrees and a magnitude above 0 dB"
+        message = "the phase tolerance must be between 0 and 90 degrees, the magnitude tolerance above 0 dB"
         raise UsageError(Diagnostic("SF805", message))
     band = tip.source.model.analysis.band
     if limits is None and band is None:
         message = "no band of frequencies is given"
-        raise UsageError(Diagnostic("SF804", message, None, "say --band LO HI, or band in [analysis]"))
+        raise UsageError(Diagnostic("SF804", message, None, "give --band LO HI, or band in [analysis]"))
     low, high = limits if limits is not None else (float(band[0]), float(band[1])) if band else (0.0, 0.0)
     for bound in (tip, joint):
         if bound.ratio.is_zero:

@@ -168,7 +168,7 @@ class DistributedFactors:
         disc = acb(arb(0, most), arb(0, most))
         tail = right_tail(function.bound, (function.a, function.b), (acb(1), disc), last)
         if tail.radius is None and not self.is_endless:
-            self.reasons.append("whether the loop gain is one at high frequencies is not proved")
+            self.reasons.append("it could not be decided whether the loop gain is one at high frequencies")
         return tail.radius or last
 
     def count(self, gain: Fraction) -> PoleCount:
@@ -236,14 +236,14 @@ class DistributedFactors:
         result = find_on_axis(function, equation, is_excluded, (low, high * 1.01), digits, self.budget)
         for gap in result.undecided:
             place = float((gap.mid() / (2 * arb.pi())).mid())
-            self.reasons.append(f"whether poles cross the axis near {place:.6g} Hz is not decided")
+            self.reasons.append(f"it could not be decided whether poles cross the axis near {place:.6g} Hz")
         return result
 
     def next_to_zero(self, function: LoopFunction) -> tuple[float, LoopAtOrigin | None]:
         """Return a frequency [rad/s] within which no pole crosses the axis but at 0, as far as proved."""
         origin = loop_at_origin(function, self.budget)
         if origin is None:
-            self.reasons.append("what poles do next to s = 0 is not proved")
+            self.reasons.append("the motion of poles next to s = 0 is not proved")
             return self.scale * NEXT_TO_ZERO, None
         radius = origin.series[0].reach / 4
         for _ in range(SHRINKINGS):
@@ -252,7 +252,7 @@ class DistributedFactors:
             radius = radius / 2
         else:
             # Several crossings meet at 0: nothing is gained by going closer.
-            self.reasons.append("what poles do next to s = 0 is not proved")
+            self.reasons.append("the motion of poles next to s = 0 is not proved")
             radius = origin.series[0].reach / 4
         return float(radius.lower()), origin
 

@@ -46,8 +46,8 @@ if TYPE_CHECKING:
     from symflex.loops.loop import GainPolynomial, LoopValue
 
 
-MIRRORED = "where poles that mirror each other meet on the imaginary axis is not searched"
-NETWORK = "for which gains a network too large to be written out is stable is not searched"
+MIRRORED = "points on the imaginary axis where mirrored poles meet are not searched"
+NETWORK = "stable gains are not searched for a network that is too large to be written out"
 RANGE_OF_NOMINAL = 100
 """How many times the nominal gain is examined of a loop with kernels: it may have boundaries without end."""
 GUARD_DIGITS = 6
@@ -181,8 +181,8 @@ def _factors(
     if not mixed:
         return [LumpedFactor.of(loop.bound, factor) for factor in plain], None, (low, high)
     if any(factor.degree > 1 for factor in mixed):
-        message = f"a loop with beams, rods or delays must be a straight line in '{loop.gain.name}'"
-        hint = "let the parameter occur as one gain, not squared"
+        message = f"a loop with beams, rods or delays must be linear in '{loop.gain.name}'"
+        hint = "use the parameter as a single gain, not squared"
         raise ModelError(Diagnostic("SF803", message, loop.gain.span, hint))
     if low is None or high is None:
         raise _range_needed(loop)
@@ -219,7 +219,7 @@ def _limits(loop: Loop, given: Limits | None, *, is_distributed: bool) -> Limits
     if given is not None:
         low, high = given
         if low is not None and high is not None and not low < high:
-            message = f"the range of '{loop.gain.name}' does not end above where it begins"
+            message = f"the range of '{loop.gain.name}' must end above its start"
             raise UsageError(Diagnostic("SF804", message))
         return given
     low = None if loop.gain.assume == "real" else Fraction(0)
@@ -232,7 +232,7 @@ def _limits(loop: Loop, given: Limits | None, *, is_distributed: bool) -> Limits
 
 
 def _range_needed(loop: Loop) -> UsageError:
-    message = f"a loop with kernels needs a bounded range of '{loop.gain.name}'"
+    message = f"a loop with beams, rods or delays needs a bounded range of '{loop.gain.name}'"
     return UsageError(Diagnostic("SF804", message, None, "give the parameter a value, or say --range LO HI"))
 
 
@@ -293,7 +293,7 @@ class _GainSearch:
             known = sum((4 if c.is_symmetric else 2) * len(c.frequencies) for c in group)
             if self._is_open and abs(counts[i + 1].right - counts[i].right) > max(known, 2):
                 where = f"near a gain of {float(gain.mid()):.6g}"
-                self.reasons.append(f"poles come from beyond the frequency counted up to, {where}")
+                self.reasons.append(f"poles enter from above the highest frequency counted, {where}")
             start = gain
         intervals.append(GainInterval(start, ends[-1], counts[-1]))
         return tuple(boundaries), tuple(intervals)
@@ -471,7 +471,7 @@ def distributed_crossovers(
             first /= 2
         else:
             # As where it is one at s = 0 itself: nothing is gained by going closer.
-            along.reasons.append("whether the loop gain is one next to s = 0 is not proved")
+            along.reasons.append("it could not be decided whether the loop gain is one next to s = 0")
             first = start
     last = along.last_crossover(function, gain)
     result = along.on_axis(function, equation, lambda value: False, (first, last), digits)

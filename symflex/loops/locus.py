@@ -115,8 +115,8 @@ def _parts(loop: Loop) -> tuple[Factored, Factored]:
     one = Factored.number(loop.bound.ratio.ring, 1)
     above = below = one
     if len(loop.with_gain) != 1 or loop.with_gain[0].degree != 1 or loop.with_gain[0].multiplicity != 1:
-        message = f"the characteristic function is not a straight line in '{loop.gain.name}'"
-        hint = "let the parameter occur as the gain of one loop"
+        message = f"the characteristic function is not linear in '{loop.gain.name}'"
+        hint = "use the parameter as the gain of one loop"
         raise UsageError(Diagnostic("SF806", message, loop.gain.span, hint))
     for factor in loop.factors:
         if factor.degree:
@@ -466,7 +466,7 @@ def require_arrival(locus: RootLocus) -> None:
     """Raise SF807 when curves of a locus do not end in proved poles."""
     if not locus.arrived:
         message = (
-            f"the poles traced do not end in those proved at {locus.gain} = {float(locus.limits[1]):.6g}"
+            f"the traced poles do not end at the poles proved at {locus.gain} = {float(locus.limits[1]):.6g}"
         )
         hint = "narrow the range of the gain"
         low, high = locus.limits

@@ -96,7 +96,7 @@ def characteristic_loop(
     """
     position = tf.ratio.ring.index.get(gain.name)
     if position is not None and any(value.depends_on(gain.name) for value in tf.kernels.values):
-        message = f"'{gain.name}' is part of a wavenumber, a length or a delay, and no gain"
+        message = f"'{gain.name}' is part of a wavenumber, a length or a delay and cannot be a gain"
         raise no_loop("SF801", message, gain)
     if position is None or not _depends(tf, position):
         message = f"no pole of the model depends on '{gain.name}'"

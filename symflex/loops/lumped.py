@@ -196,7 +196,7 @@ class LumpedFactor:
         factors = [(f, e) for f, e in self.factor.at(gain).factors if e > 0]
         roots = find_polynomial_roots(problem_of(self.bound, factors), COUNT_DIGITS, budget=budget)
         if any(root.re.contains(0) and not root.on_imaginary_axis for root in roots):
-            message = "it cannot be told on which side of the imaginary axis a pole lies"
+            message = "it could not be decided on which side of the imaginary axis a pole lies"
             raise UncertifiedError(Diagnostic("SF802", message))
         axis = sum(root.multiplicity for root in roots if root.on_imaginary_axis)
         return PoleCount(count_right(roots) * self.multiplicity, axis * self.multiplicity)

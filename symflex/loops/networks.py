@@ -109,7 +109,7 @@ def network_loop(equations: Equations, gain: ModelParameter, nominal: Fraction |
         return None
     if _shapes_waves(equations, gain.name):
         raise no_loop(
-            "SF801", f"'{gain.name}' is part of a wavenumber, a length or a delay, and no gain", gain
+            "SF801", f"'{gain.name}' is part of a wavenumber, a length or a delay and cannot be a gain", gain
         )
     read = equations.outputs[0].name
     plain = CramerEquations.of(equations, read, equations.inputs[0].owner).entries[:size]

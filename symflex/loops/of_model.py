@@ -71,7 +71,7 @@ def characteristic_loop(model: Model, gain: str, values: Mapping[str, Given] | N
         network = None if is_large else _of_network(model, parameter, given)
         if network is not None:
             return network
-        message = f"'{gain}' stands in several places of a network too large to be written out"
+        message = f"'{gain}' occurs in several places of a network that is too large to be written out"
         raise loop_room.no_loop("SF803", message, parameter) from error
     return loop_room.characteristic_loop(tf, parameter, given)
 

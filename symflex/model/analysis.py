@@ -79,11 +79,11 @@ def _band(reader: Reader, entry: KeyValue) -> tuple[Fraction, Fraction] | None:
         return None
     low, high = limits[0], limits[1]
     if low >= high:
-        message = "the band does not end above where it begins"
+        message = "the band must end above its start"
         reader.note("SF227", message, value.span, "write the lower frequency first")
         return None
     if low <= 0:
-        message = "the band does not begin above 0 Hz"
+        message = "the band must begin above 0 Hz"
         reader.note("SF227", message, value.items[0].span, "both frequencies must be positive")
         return None
     return low, high
@@ -171,7 +171,7 @@ def read_drawing(reader: Reader, section: TableValue | None, model: Model) -> Dr
     for text in (reader.strings(order, "order of [drawing]", "an array of nodes") or ()) if order else ():
         _check_among(reader, text, nodes, "node")
         if text.value in found:
-            reader.note("SF213", f"node '{text.value[:64]}' stands twice in order", text.span)
+            reader.note("SF213", f"node '{text.value[:64]}' appears twice in order", text.span)
         found.append(text.value)
     if rollers and not isinstance(rollers.value, BooleanValue):
         reader.misfit("rollers of [drawing] must be true or false", rollers.value)
@@ -218,7 +218,7 @@ def _until(reader: Reader, table: TableValue, kind: str, what: str) -> Fraction 
         number = in_limits(quantity)
     if number > 0:
         return number
-    reader.note("SF227", "the end of what is shown does not lie after t = 0", value.span, 'as in "0.5 s"')
+    reader.note("SF227", "the end time must be after t = 0", value.span, 'as in "0.5 s"')
     return None
 
 
@@ -361,7 +361,7 @@ def _name_problems(
 ) -> Iterator[Diagnostic]:
     for node in names(expression):
         if isinstance(node, Attribute | Derivative) or (isinstance(node, Call) and node.order):
-            message = "only s, pi, parameters, definitions and 'where' names may stand in a printed formula"
+            message = "a printed formula may use only s, pi, parameters, definitions and names from 'where'"
             yield Diagnostic("SF212", message, node.span)
         elif node.name in readable.broken:
             continue
@@ -394,7 +394,7 @@ def _circles(roots: Sequence[Expression], known: Mapping[str, Expression]) -> li
     _, circle = lines_in_order(roots, known)
     if not circle:
         return []
-    message = f"lines of a printed formula use each other in a circle: {' -> '.join(circle)}"
+    message = f"lines of a printed formula refer to each other in a circle: {' -> '.join(circle)}"
     return [Diagnostic("SF215", message, known[circle[-1]].span)]
 
 

@@ -299,13 +299,13 @@ def _load(reader: Reader, path_text: Text, origin: Origin) -> Model | None:
             else:
                 count = len(error.diagnostics)
                 message = f"'{path_text.value}' is invalid: {count} problem{'s' if count > 1 else ''}"
-                reader.note("SF258", message, path_text.span, "'symflex check' on that file says which")
+                reader.note("SF258", message, path_text.span, "run 'symflex check' on that file to see which")
         if path not in loads.models:
             loads.failed.add(path)
     loads.blocks[own] = loads.blocks.get(own, 0) + 1 + loads.blocks.get(path, 0)
     if loads.blocks[own] > BLOCK_LIMIT:
-        message = f"more than {BLOCK_LIMIT} model blocks, counted with those inside model blocks"
-        hint = "name a product of them once, and use the name"
+        message = f"more than {BLOCK_LIMIT} model blocks, including nested ones"
+        hint = "name a product of them once and use that name"
         reader.note("SF103", message, path_text.span, hint)
         return None
     return loads.models.get(path)
@@ -320,6 +320,6 @@ def _read(reader: Reader, path: Path, said: Text) -> Source | None:
         return None
     if parse_with_recovery(source)[0].root.get(DECLARATION) is None:
         message = f"'{said.value}' is not a specification: it does not declare {DECLARATION}"
-        reader.note("SF258", message, said.span, f"a specification says {DECLARATION} = 1 at its top")
+        reader.note("SF258", message, said.span, f"a specification begins with {DECLARATION} = 1")
         return None
     return source

@@ -104,7 +104,7 @@ def check_fields(reader: Reader, fields: Sequence[FieldProblem], around: Surroun
             if not problems and not calls:
                 reader.note(
                     "SF248",
-                    f"this condition of field '{field.name}' holds no value of a field",
+                    f"this condition of field '{field.name}' contains no value of a field",
                     equation.span,
                     f"for instance {field.unknowns[0]}(0) = 0",
                 )
@@ -226,12 +226,12 @@ def _check_equations(
     for equation, orders in zip(field.equations, found, strict=True):
         if not orders:
             wanted = ", ".join(field.unknowns)
-            message = f"this equation of field '{field.name}' holds none of its unknowns ({wanted})"
+            message = f"this equation of field '{field.name}' contains none of its unknowns ({wanted})"
             reader.note("SF242", message, equation.span)
             return None
     for unknown in field.unknowns:
         if not any(unknown in orders for orders in found):
-            message = f"the unknown '{unknown}' of field '{field.name}' stands in none of its equations"
+            message = f"the unknown '{unknown}' of field '{field.name}' appears in none of its equations"
             reader.note("SF242", message, field.span)
             return None
     if not inside.broken and _repeat(reader, field, point):
@@ -239,7 +239,7 @@ def _check_equations(
     highest = {u: max(orders.get(u, 0) for orders in found) for u in field.unknowns}
     order = sum(highest.values())
     if order == 0:
-        message = f"the equations of field '{field.name}' hold no derivative along x"
+        message = f"the equations of field '{field.name}' contain no derivative along x"
         reader.note("SF242", message, field.equations[0].span, f"write it with primes: {field.unknowns[0]}''")
         return None
     if order > ORDER_LIMIT:
@@ -249,7 +249,7 @@ def _check_equations(
     if not _can_be_solved(found, highest):
         leading = " and ".join(u + "'" * k for u, k in highest.items())
         message = f"the equations of field '{field.name}' do not determine its highest derivatives, {leading}"
-        hint = "each must follow from an equation of its own; put one equation into another until it does"
+        hint = "each needs an equation of its own; substitute one equation into another to get it"
         reader.note("SF242", message, field.equations[0].span, hint)
         return None
     return order
@@ -277,7 +277,7 @@ def _repetition_message(what: str, repetition: Repetition, equations: Sequence[E
         return f"this {what} contradicts {texts}{where}"
     if repetition.others:
         return f"this {what} repeats {texts}{where}"
-    return f"this {what} says nothing: what it holds cancels"
+    return f"this {what} says nothing: its terms cancel"
 
 
 def _orders(equation: Equation, unknowns: Sequence[str]) -> dict[str, int]:

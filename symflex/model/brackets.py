@@ -124,8 +124,8 @@ class _Opener:
 
     def refuse(self, span: Span | None) -> None:
         """Note what grows too large."""
-        message = f"more than {OPENED_LIMIT} parts when all primes are carried out"
-        hint = "give what is differentiated a name of its own, as an unknown with an equation of its own"
+        message = f"more than {OPENED_LIMIT} terms when all derivatives are expanded"
+        hint = "make the differentiated expression an unknown with an equation of its own"
         self.problems.append(Diagnostic("SF103", message, span, hint))
 
     def opened(self, expression: Expression) -> Expression:
@@ -144,7 +144,9 @@ class _Opener:
             case Quotient(above, below):
                 found = Quotient(self.opened(above), self.opened(below))
             case _:
-                message = "a bracket with primes may be added, and multiplied by what holds no unknown"
+                message = (
+                    "a bracket with primes may only be added, or multiplied by something without unknowns"
+                )
                 self.problems.append(Diagnostic("SF223", message, expression.span))
                 return expression
         return _placed(found, expression.span)
@@ -152,11 +154,11 @@ class _Opener:
     def _bracket(self, bracket: Differentiated) -> Expression:
         message = hint = ""
         if bracket.point is None and self.is_condition:
-            message = "a bracket with primes varies along x; only its value at a point may stand here"
+            message = "a bracket with primes varies along x; only its value at a point is allowed here"
             hint = f"evaluate it at a point: (...){chr(39) * bracket.order}(0)"
         fixed = [n for n in nodes(bracket.operand) if isinstance(n, Call) and n.name in self.unknowns]
         if fixed or (bracket.point is not None and not self.is_condition):
-            message = "this is the value at one point, and what varies along x belongs here"
+            message = "this is the value at one point; this place needs something that varies along x"
             hint = "leave the point out; what holds at a point belongs in the conditions"
         if message:
             place = fixed[0].span if fixed else bracket.span

@@ -236,7 +236,7 @@ def _formula_hint(text: Text, named: Collection[str]) -> str | None:
     """Return what a text lacks to be a formula of parameters, nothing where it holds no name."""
     used = _formula_names(text) - {"pi", *FUNCTIONS}
     if unknown := sorted(used.difference(named)):
-        return f"a formula names parameters, and '{unknown[0]}' is none"
+        return f"a formula may use only parameters, and '{unknown[0]}' is not one"
     return "a formula of parameters belongs in [definitions]" if used else None
 
 

@@ -62,7 +62,7 @@ def read_equations(
     if good and len(texts) != len(equations):
         message = f"{what} has {counted(len(equations), 'equation')} for {counted(len(texts), 'unknown')}"
         more = len(equations) > len(texts)
-        hint = "name in unknowns what the equations determine" if more else "each unknown needs an equation"
+        hint = "list in 'unknowns' what the equations determine" if more else "each unknown needs an equation"
         spare = equations[len(texts)].span if more else texts[len(equations)].span
         reader.note("SF242", message, spare, hint)
         return ()
@@ -85,5 +85,5 @@ def check_unknowns(reader: Reader, signals: Sequence[Signal], others: Iterable[E
     for unknown in unknowns:
         if unknown.name not in used:
             hint = nearest(unknown.name, used) or "leave it out, together with one equation"
-            message = f"no equation holds the unknown '{unknown.name}'"
+            message = f"no equation contains the unknown '{unknown.name}'"
             reader.note("SF242", message, unknown.span, hint)

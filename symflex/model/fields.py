@@ -101,7 +101,7 @@ def _read_field(
             "SF242",
             f"{what} has {one} for {other}",
             equations[-1].span if equations else entry.key_span,
-            "name what the equations determine: " + 'unknowns = ["w", "phi"]'
+            "list what the equations determine: " + 'unknowns = ["w", "phi"]'
             if len(equations) > len(unknowns)
             else "each unknown needs an equation",
         )
@@ -195,7 +195,7 @@ def _conditions(reader: Reader, entry: KeyValue, table: TableValue) -> tuple[Equ
     given = table.get("conditions")
     if given is None:
         message = f"field '{entry.key}' has no conditions"
-        hint = "as many as its order in x; write conditions = [] when another field holds them"
+        hint = "give as many as its order in x, or conditions = [] when another field has them"
         reader.note("SF214", message, entry.key_span, hint)
         return None
     texts = reader.strings(given, f"conditions of field '{entry.key}'", "an array of equations")

@@ -67,7 +67,7 @@ def check_header(reader: Reader, spec: Spec) -> None:
 
 
 def read_section(reader: Reader, spec: Spec, name: str) -> TableValue | None:
-    """Return a section's table, ``None`` where there is none."""
+    """Return a section's table, ``None`` if there is none."""
     entry = spec.root.get(name)
     if entry is None:
         return None
@@ -133,7 +133,7 @@ def _spans(entry: KeyValue) -> Iterator[Span]:
 
 
 def _below(heading: str, entry: KeyValue) -> Diagnostic:
-    message = f"'{entry.key}' stands below [{heading}] and so belongs to it"
+    message = f"'{entry.key}' is below [{heading}] and so belongs to it"
     if entry.key in SECTIONS:
         hint = f"write a heading [{entry.key}], or '{entry.key}.' above all headings"
     else:

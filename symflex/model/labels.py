@@ -45,7 +45,7 @@ def check_label(label: Text) -> str:
     while position < len(value):
         match = _TOKEN.match(value, position)
         if match is None:
-            message = f"{value[position]!r} may not stand in a LaTeX label"
+            message = f"{value[position]!r} is not allowed in a LaTeX label"
             raise _refused(label, position, position + 1, message)
         command = match["command"]
         if command and command not in ALLOWED_COMMANDS:

@@ -171,7 +171,7 @@ class _Degrees:
             half = isinstance(exponent, Quotient) or is_number(exponent, Fraction(1, 2))
             hint = "write sqrt(x) for a square root" if half else "write one number, such as 2 or -1"
             if any(isinstance(n, Name) and n.name == LAPLACE for n in names(power.base)):
-                hint = "powers of s are whole; a half power is what diffusion along x does: see [fields]"
+                hint = "powers of s are integers; diffusion along x gives half powers: see [fields]"
             self.note("SF225", "an exponent must be an integer number", exponent.span or power.span, hint)
             return base
         if abs(value) > EXPONENT_LIMIT:
@@ -215,15 +215,15 @@ class _Degrees:
         written = f"{call.name}{chr(39) * call.order}(...)"
         if self.scope.inside:
             message = f"{written} is the value at one point; the equations of a field hold at every x"
-            hint = "write the unknown bare here; what holds at a point belongs in the conditions"
+            hint = "write the unknown without a point here; what holds at a point belongs in the conditions"
             self.note("SF241", message, call.span, hint)
             return "unknown"
         if self.constant:
-            message = f"{written} varies in time; only parameters, definitions, s and pi may stand here"
+            message = f"{written} varies in time; only parameters, definitions, s and pi are allowed here"
             self.note("SF212", message, call.span)
             return "unknown"
         if call.order > ORDER_LIMIT:
-            message = f"a derivative of order {call.order}; at most {ORDER_LIMIT} is allowed"
+            message = f"this derivative is of order {call.order}; at most {ORDER_LIMIT} is allowed"
             self.note(
                 "SF103", message, call.span, "the field's equation gives higher derivatives by lower ones"
             )
@@ -258,7 +258,7 @@ def _strongest(degrees: Iterable[Degree]) -> Degree:
 
 
 def _derivative(span: Span | None) -> Diagnostic:
-    message = "a derivative along x may be taken only of an unknown of [fields]"
+    message = "only an unknown of [fields] has a derivative along x"
     return Diagnostic("SF223", message, span, "a derivative in time is written with s: s*x")
 
 

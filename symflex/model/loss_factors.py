@@ -87,7 +87,7 @@ def check_causal(model: object, what: str) -> None:
     unit = getattr(model, "imaginary", None)
     if unit is None:
         return
-    message = f"{what} is not available with loss factors (j): these hold on s = j*omega, omega > 0, alone"
+    message = f"{what} is not available with loss factors (j): these hold only on s = j*omega, omega > 0"
     hint = (
         "formulas, frequency responses, modes (roots) and numpy code are available; "
         "a damper or eta in seconds holds at every s"

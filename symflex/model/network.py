@@ -190,7 +190,7 @@ def _values(
         elif found is not None and parameter.name in spare:
             product = spare[parameter.name]
             place = f"{product.name} in place of {'*'.join(product.of)}"
-            message = f"{who} has {place}, and {parameter.name} besides"
+            message = f"{who} has {place} and also {parameter.name}"
             reader.note("SF247", message, found.key_span, f"leave {parameter.name} or {product.name} out")
         elif found is not None:
             expression = reader.expression(found.value, f"{parameter.name} of {who}")

@@ -78,8 +78,8 @@ class Reader:
         """
         self.problems.extend(diagnostics)
         if len(self.problems) > MAX_PROBLEMS:
-            message = f"more than {MAX_PROBLEMS} problems; these are the ones found first"
-            more = Diagnostic("SF103", message, None, "mend these, and check again")
+            message = f"more than {MAX_PROBLEMS} problems; only the first ones are listed"
+            more = Diagnostic("SF103", message, None, "fix these, then check again")
             raise SpecError(*self.problems[:MAX_PROBLEMS], more)
 
     def misfit(self, message: str, value: Value, hint: str | None = None) -> None:

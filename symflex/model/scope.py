@@ -43,8 +43,8 @@ RESERVED: dict[str, str] = {
 }
 """Names that have a meaning of their own, and which."""
 WHERE_J = (
-    "j, with j^2 = -1, makes loss factors, 'k*(1 + j*eta)': it may stand in values of elements (no length), "
-    "in definitions and in [fields]"
+    "j, with j^2 = -1, is for loss factors such as 'k*(1 + j*eta)': it is allowed in values of elements "
+    "(not lengths), in definitions and in [fields]"
 )
 LISTED_NAMES = 8
 """Names that a hint lists."""
@@ -214,15 +214,15 @@ def _ambiguous(name: str, readable: Sequence[Meaning], span: Span | None) -> Dia
 
 def _varying(written: str, meaning: Meaning, span: Span | None) -> Diagnostic:
     """Return the diagnostic of what varies in time and stands in a constant."""
-    message = f"'{written}' is {meaning.described}; only parameters, definitions, s and pi may stand here"
-    hint = "what varies in time may stand in [signals], in [outputs] and as the value of a source"
+    message = f"'{written}' is {meaning.described}; only parameters, definitions, s and pi are allowed here"
+    hint = "what varies in time belongs in [signals], in [outputs] or in the value of a source"
     return Diagnostic("SF212", message, span, hint)
 
 
 def without_point(name: str, written: str, span: Span | None) -> Diagnostic:
     """Return the diagnostic of a field that stands without a point where it needs one."""
     # No quotes here and below: they would be read as primes.
-    message = f"{written} varies along x; only its value at a point may stand here"
+    message = f"{written} varies along x; only its value at a point is allowed here"
     primes = written.removeprefix(name)
     return Diagnostic("SF241", message, span, f"evaluate it at a point: {name}{primes}(0)")
 

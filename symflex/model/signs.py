@@ -310,7 +310,7 @@ def ranged_values(draft: Draft | Model) -> Iterator[RangedValue]:
         for port in element.parameters:
             sign: Sign = "positive" if port.name == element.length else port.sign
             if sign != "any" and port.name in given:
-                reason = f"{port.doc} is positive" if sign == "positive" else f"{port.doc} cannot be"
+                reason = f"{port.doc} must be positive" if sign == "positive" else f"{port.doc} cannot be"
                 what = f"{port.name} of {element.type_name} '{use.name}'"
                 is_along = port.varies and COORDINATE in {n.name for n in names(given[port.name])}
                 length = given.get(element.length) if is_along else None

@@ -37,7 +37,7 @@ def unnamed_definitions(model: Model) -> tuple[Definition, ...]:
 
 def unused_name(kind: str, name: str, span: Span | None) -> Diagnostic:
     """Return the warning that nothing uses what bears a name."""
-    hint = "remove it, or use it where another name stands by mistake"
+    hint = "remove it, or use it where you wrote another name by mistake"
     return Diagnostic("SF651", f"nothing uses {kind} '{name}'", span, hint, "warning")
 
 

@@ -210,7 +210,7 @@ def roots_text(found: PoleZeroMap, digits: int, width: int = WIDTH) -> str:
         lines += wrap(found.verdict.hidden_motion, width, initial_indent=INDENT, subsequent_indent=2 * INDENT)
     if shown := region_text(found.region):
         if found.verdict.word == "unstable" and not found.unstable:
-            shown += "; poles in the right half plane, all that are known"
+            shown += "; all known poles in the right half plane"
         lines += wrap(f"shown: {shown}", width, initial_indent=INDENT, subsequent_indent=2 * INDENT)
     if found.is_default_region:
         lines.append(f"{INDENT}by default: a distributed system has infinitely many poles")
@@ -222,7 +222,7 @@ def roots_text(found: PoleZeroMap, digits: int, width: int = WIDTH) -> str:
         none = "none" if found.certificate.certified else "none found"
         lines += ["", _counted(title, roots, none), *_root_table(roots, digits, width)]
     if found.unstable:
-        title = f"{_counted('poles', found.unstable)}, in the right half plane, outside of what was asked for"
+        title = f"{_counted('poles', found.unstable)}, in the right half plane, outside the region asked for"
         lines += ["", title, *_root_table(found.unstable, digits, width)]
     if found.hidden:
         for cause, meaning in CAUSES.items():
@@ -233,7 +233,7 @@ def roots_text(found: PoleZeroMap, digits: int, width: int = WIDTH) -> str:
     if everything:
         lines += ["", "  radius bounds the distance from the printed value to the root [rad/s]"]
     if any(root.on_boundary for root in everything):
-        lines.append("  | marks a root on the boundary of what was asked for")
+        lines.append("  | marks a root on the boundary of the region asked for")
     if not all(root.certified for root in everything):
         lines.append("  ? marks roots that could not be told apart, enclosed as one")
     return "\n".join(lines)

@@ -138,7 +138,7 @@ _Result = tuple[Constant, PlacedUnit]
 NOT_IN_PARAMETERS = f"a parameter is real; {IMAGINARY_UNIT}"
 _ONE_NUMBER: Final = "the number stands before the unit and the unit holds no other, except 1 in '1/s'"
 _NO_GROUPS: Final = "digits are not grouped, as in '12000 m'"
-NEARER: Final = "choose a unit in which the number lies nearer to 1"
+NEARER: Final = "choose a unit in which the number is closer to 1"
 _NO_UNIT: Final = Unit(Fraction(1))
 # Stands at no place, so that a unit alone never seems to touch it.
 _NO_CONSTANT: Final = Constant(Fraction(1), 0, -1, -1)
@@ -157,7 +157,7 @@ def evaluate(value: str, kind: str) -> tuple[Constant, PlacedUnit]:
     """
     if len(value) > MAXIMUM_CHARACTERS:
         message = f"a {kind} of {len(value)} characters; at most {MAXIMUM_CHARACTERS} are read"
-        raise RejectedError("SF103", message, 0, len(value), "write the number in fewer digits")
+        raise RejectedError("SF103", message, 0, len(value), "write the number with fewer digits")
     if not value.strip(SPACES):
         hint = "write a number and a unit, as in '35 kN/m'"
         if kind == "unit":

@@ -154,7 +154,7 @@ def _locate_nested(bound: BoundNested, region: Region | None, digits: int, budge
 
     source = bound.source
     if source.model.imaginary:
-        message = f"modes of {bound.name} are not sought: its closed form is too large with loss factors"
+        message = f"modes of {bound.name} are not searched: its closed form is too large with loss factors"
         hint = "its frequency response shows them (plot bode); or let equal parts share their parameters"
         raise UncertifiedError(Diagnostic("SF404", message, source.model.imaginary.span, hint))
     model = _with_values(bound)
@@ -370,7 +370,7 @@ class _Searched:
             side.restore()
         self._hide(_match(*pair) if pair else [])
         if isinstance(self.region, Modes) and pair and pair[0].modes < self.region.count:
-            return ["too many poles and zeros coincide to tell the modes"]
+            return ["too many poles and zeros coincide to identify the modes"]
         return []
 
     def settle(self) -> None:
@@ -512,7 +512,7 @@ def _find(sides: Sequence[Side], region: Region) -> list[Root]:
         wanted += lacking
     if shared and sides[0].modes < region.count:
         # Of zeros there may be none that no pole takes with it; poles are what was asked for.
-        message = "too many poles and zeros coincide to tell the modes"
+        message = "too many poles and zeros coincide to identify the modes"
         raise BudgetError(Diagnostic("SF505", message, None, "ask for a band, which shows those that do not"))
     return shared
 

@@ -55,7 +55,7 @@ NO_STABILITY: Final = StabilityVerdict(
     "unknown",
     None,
     certified=False,
-    reason="loss factors hold on s = j*omega only, and say nothing of stability",
+    reason="loss factors hold only on s = j*omega and do not decide stability",
 )
 FOLLOWED: Final = "Newton steps from roots without losses"
 NOT_COUNTED: Final = "each root is proved; that no other lies between them is not"
@@ -166,7 +166,7 @@ def _upper(
         sides = [_vanishes(bound, g, h, root) for root in roots]
         if None not in sides:
             return [_lossy(r) for r, side in zip(roots, sides, strict=True) if side]
-    message = f"a root of {bound.name} is not told from the mirror image of another"
+    message = f"a root of {bound.name} cannot be told from the mirror image of another"
     raise UncertifiedError(
         Diagnostic("SF404", message, None, "loss factors as small as this may be left out")
     )

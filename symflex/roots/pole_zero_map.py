@@ -29,7 +29,7 @@ REFINEMENTS = 4
 AT_REST = "at s = 0"
 MOST_NAMES = 3
 """Nodes and signals that one line of hidden motion names."""
-ON_AXIS = "a pole lies on the imaginary axis or too close to it to be told"
+ON_AXIS = "a pole lies on the imaginary axis or too close to it to decide"
 NONE_FOUND = "no pole was found, and those elsewhere may lie on the imaginary axis"
 
 
@@ -364,7 +364,7 @@ class PoleZeroMap:
         certificate = self.certificate
         if certificate.is_exceeded:
             message = certificate.reason or "the budget was exceeded"
-            hint = "what was proved until then is in the attribute 'found' of this error"
+            hint = "the attribute 'found' of this error has what was proved until then"
             raise BudgetError(Diagnostic(certificate.code or "SF506", message, None, hint), found=self)
         return self
 

@@ -90,7 +90,7 @@ class Rectangle:
 
     def __post_init__(self) -> None:
         if self.re_low > self.re_high or self.im_low > self.im_high:
-            message = "a rectangle is given as RE0 <= RE1, IM0 <= IM1"
+            message = "a rectangle needs RE0 <= RE1, IM0 <= IM1"
             raise ValueError(message)
 
     def classify(self, roots: Sequence[Root]) -> tuple[Position, ...]:

@@ -100,7 +100,7 @@ def _doubles(matrix: mpmath.matrix, shape: tuple[int, int], name: str) -> np.nda
     array = np.array([[float(matrix[i, j]) for j in range(shape[1])] for i in range(shape[0])], dtype=float)
     if not np.isfinite(array).all():
         message = f"the state equations of {name} do not fit in double precision"
-        hint = "choose units in which values lie nearer to 1, or take fewer modes"
+        hint = "choose units in which values are closer to 1, or take fewer modes"
         raise ModelError(Diagnostic("SF233", message, None, hint))
     return array.reshape(shape)
 

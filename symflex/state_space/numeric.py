@@ -216,7 +216,7 @@ class Rounding:
         if not isfinite(found) or abs(found) < float_info.min:
             size = "large" if abs(found) > 1 else "small"
             message = f"{what} is too {size} for double precision"
-            hint = "choose units in which values lie nearer to 1, such as mm and t"
+            hint = "choose units in which values are closer to 1, such as mm and t"
             raise ModelError(Diagnostic("SF233", message, None, hint))
         return found
 
@@ -252,7 +252,7 @@ class Rounding:
                     if low == high:
                         return low
             bits *= 2
-        message = f"it cannot be told whether {what} is zero"
+        message = f"it could not be decided whether {what} is zero"
         raise UncertifiedError(Diagnostic("SF401", message))
 
     def _enclosed(self, polynomial: fmpz_mpoly, bits: int) -> arb:

@@ -163,7 +163,9 @@ def _monic(row: Row, top: Key) -> Row:
 def _check(row: Row) -> None:
     if sum(value.size for value in row.values()) > SIZE_LIMIT:
         message = f"state equations whose coefficients would exceed {SIZE_LIMIT} terms"
-        raise BudgetError(Diagnostic("SF502", message, None, "give parameters numbers: bind() first"))
+        raise BudgetError(
+            Diagnostic("SF502", message, None, "give the parameters numbers first, with bind()")
+        )
 
 
 def add(target: Row, source: Row, factor: FieldElement) -> None:

@@ -152,7 +152,10 @@ def realise_quotient(
 def not_rational(what: str) -> ModelError:
     """Return the error for beams, rods and delays where finitely many states are wanted."""
     message = f"{what} is not rational: beams, rods and delays have infinitely many states"
-    hint = "'symflex rational' has finitely many; in Python, H.rational(modes=N) has the same methods"
+    hint = (
+        "'symflex rational' approximates it with finitely many; in Python, H.rational(modes=N) has the "
+        "same methods"
+    )
     return ModelError(Diagnostic("SF235", message, None, hint))
 
 

@@ -157,7 +157,7 @@ def _generated(start: Sequence[Vector], rows: Sequence[Vector], system: StateSpa
         basis[pivot] = vector
         if sum(v.size for known in basis.values() for v in known.values()) > SIZE_LIMIT:
             message = f"the states of a minimal form are combinations of more than {SIZE_LIMIT} terms"
-            hint = "give parameters numbers: bind() first; or keep all states"
+            hint = "give the parameters numbers first, with bind(); or keep all states"
             raise BudgetError(Diagnostic("SF502", message, None, hint))
         waiting.insert(0, applied(vector, rows))
     return basis

@@ -68,17 +68,17 @@ class Sampling:
     def __post_init__(self) -> None:
         if self.method not in METHODS:
             hint = nearest(self.method, METHODS) or "methods: " + ", ".join(METHODS)
-            message = f"there is no method of sampling '{self.method[:64]}'"
+            message = f"there is no sampling method '{self.method[:64]}'"
             raise UsageError(Diagnostic("SF902", message, None, hint))
         if not self.sample > 0:
-            raise UsageError(Diagnostic("SF902", "a sampling time is positive"))
+            raise UsageError(Diagnostic("SF902", "a sampling time must be positive"))
         if self.prewarp is None:
             return
         if self.method != "tustin":
-            message = f"a frequency to prewarp at is of 'tustin', not of '{self.method}'"
+            message = f"prewarping applies to 'tustin', not to '{self.method}'"
             raise UsageError(Diagnostic("SF902", message))
         if not (self.prewarp > 0 and ball(self.prewarp * self.sample) < arb.pi()):
-            message = "the frequency to prewarp at is positive and below half of the sampling frequency"
+            message = "the prewarping frequency must be positive and below half of the sampling frequency"
             hint = f"that is {1 / (2 * float(self.sample)):g} Hz"
             raise UsageError(Diagnostic("SF902", message, None, hint))
 
@@ -100,9 +100,9 @@ class Sampling:
             raise UsageError(Diagnostic("SF902", f"a dead time has from 0 to {MOST_SAMPLES} samples"))
         if self.method != "zoh" and (delay / self.sample).denominator != 1:
             message = (
-                f"a dead time of {float(delay / self.sample):.6g} samples has no place in '{self.method}'"
+                f"'{self.method}' cannot represent a dead time of {float(delay / self.sample):.6g} samples"
             )
-            hint = "take zoh, or a sampling time of which it is a multiple"
+            hint = "use zoh, or a sampling time that divides it"
             raise UsageError(Diagnostic("SF902", message, None, hint))
 
 
@@ -226,9 +226,9 @@ def sampled(
     """
     sampling.check_delay(delay)
     if sampling.method == "matched":
-        message = "'matched' is of one transfer function, and state equations have none of their own"
+        message = "'matched' applies to one transfer function, not to state equations"
         raise UsageError(
-            Diagnostic("SF902", message, None, "take tustin, or export code with --to c or numpy")
+            Diagnostic("SF902", message, None, "use tustin, or export code with --to c or numpy")
         )
     states, inputs, outputs = names
     whole = ceil(delay / sampling.sample)
@@ -245,7 +245,7 @@ def sampled(
             return SampledStateSpace(arrays, sampling, delay, every, tuple(inputs), tuple(outputs))
         if bits >= LAST_BITS:
             message = "an entry of the sampled state equations does not fit in double precision"
-            raise ModelError(Diagnostic("SF233", message, None, "take a shorter sampling time"))
+            raise ModelError(Diagnostic("SF233", message, None, "choose a shorter sampling time"))
         bits *= 2
 
 
@@ -272,7 +272,7 @@ def _bilinear(
         inverse = (one * k - a).inv()
     except ZeroDivisionError:
         message = f"a pole at {float(k):g} rad/s, or one very near, is taken to infinity by tustin"
-        raise UsageError(Diagnostic("SF902", message, None, "take another sampling time")) from None
+        raise UsageError(Diagnostic("SF902", message, None, "choose another sampling time")) from None
     given = inverse * b * 2
     step = inverse * (one * k + a)
     return _with_past_inputs(step, given, given * 0, c * inverse * k, d + c * given * arb(0.5), whole)

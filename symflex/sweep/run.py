@@ -122,9 +122,9 @@ def _cluster(address: str) -> Iterator[tuple[Executor, int]]:
             finally:
                 executor.shutdown(wait=False)
     except distributed.KilledWorker as error:
-        message = f"a worker ended before its work: {error}"
+        message = f"a worker stopped before it was done: {error}"
         raise BudgetError(
-            Diagnostic("SF508", message, None, "take fewer workers, or more memory each")
+            Diagnostic("SF508", message, None, "use fewer workers, or more memory for each")
         ) from None
 
 
@@ -211,7 +211,7 @@ def run_sweep(
             shown.add(len(rows["point_status"]))
     except BrokenExecutor as error:
         hint = "there may be too little memory; with -o, the same command goes on where this one stopped"
-        message = f"a worker ended before its work: {error}"
+        message = f"a worker stopped before it was done: {error}"
         raise BudgetError(Diagnostic("SF508", message, None, hint)) from None
     rows = {name: _stacked([done[i][name] for i in chunks]) for name in done[0]}
     return assembled(task, design, rows, attributes or {}, _between(pickled, design))

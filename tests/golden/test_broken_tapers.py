@@ -113,12 +113,12 @@ BROKEN = {
     "tip_with_a_fractional_power": (
         member('E = "E", I = "I_0*(1 - x/l)*sqrt(1 - x/l)", A = "A_0"'),
         "SF250",
-        "a stiffness of 'arm' vanishes at x = l: a function of x vanishes there besides",
+        "a stiffness of 'arm' vanishes at x = l: a function of x also vanishes there",
     ),
     "tip_with_a_sine": (
         stiffened("x/l*sin(a*x)"),
         "SF250",
-        "a stiffness of 'w' vanishes at x = 0: a function of x vanishes there besides",
+        "a stiffness of 'w' vanishes at x = 0: a function of x also vanishes there",
     ),
     "tips_at_both_ends": (stiffened("x/l*(1 - x/l)"), "SF910", "stiffnesses vanish at both ends of 'w'"),
     "stiffness_zero_everywhere": (
@@ -218,7 +218,7 @@ BROKEN = {
             'E = "E", I = "I_0*(1 - c*x/l)", A = "A_0"', kind="frame", force='force = "tip.y"', output="tip.y"
         ),
         "SF910",
-        "a member of a frame that varies along x ('arm') is not available yet",
+        "a frame member that varies along x ('arm') is not available yet",
     ),
     # Units.
     "x_added_to_a_number": (
@@ -264,7 +264,7 @@ BROKEN = {
     "primes_without_a_point": (
         tapered(conditions=f"{CLAMPED}, \"w''(l) = 0\", \"«(E*I_0*(1 - c*x/l)*w'')'» = -F\""),
         "SF241",
-        "a bracket with primes varies along x; only its value at a point may stand here",
+        "a bracket with primes varies along x; only its value at a point is allowed here",
     ),
     "primes_beyond_the_domain": (
         tapered(conditions=f"{CLAMPED}, \"w''(l) = 0\", \"(E*I_0*w'')'(«2*l») = -F\""),
@@ -274,7 +274,7 @@ BROKEN = {
     "primes_in_a_section": (
         arm('I = "«(I_0*(1 - c*x/l))\'»", A = "A_0"'),
         "SF223",
-        "a derivative along x of a bracket stands in the equations and conditions of [fields]",
+        "a derivative of a bracket along x belongs in the equations and conditions of [fields]",
     ),
 }
 

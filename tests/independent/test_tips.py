@@ -148,7 +148,7 @@ def test_rigid_modes_of_a_free_wedge_are_counted_exactly():
     [
         ("(EI*(1 - x/l)^7*w'')'' + m*(1 - x/l)*s^2*w = 0", "irregular singular point"),
         ("(EI*(1 - x/l)^3*w'')'' + m*s^2*w = 0", "inertia does not vanish"),
-        ("(EI*(1 - x/l)^5*w'')'' + m*(1 - x/l)*s^2*w = 0", "how solutions begin there is not seen"),
+        ("(EI*(1 - x/l)^5*w'')'' + m*(1 - x/l)*s^2*w = 0", "do not show how solutions begin there"),
     ],
 )
 def test_ends_without_power_series_are_refused_where_the_equation_stands(equation, words):

@@ -104,7 +104,7 @@ def explanation_paragraphs(explained: ZeroExplanation) -> Iterator[list[str]]:
         yield [f"{source} does not move {output}: there are no zeros, and every mode is hidden."]
         return
     if not explained.has_zeros:
-        yield ["There are no zeros: the numerator is free of s."]
+        yield ["There are no zeros: the numerator does not depend on s."]
     if explained.kind == "noncolocated":
         if explained.has_zeros:
             yield [_noncolocated(explained)]
@@ -125,20 +125,20 @@ def _statement(explained: ZeroExplanation) -> str:
     held = "" if explained.held in explained.words else f" ({explained.held})"
     system = f"the system with {explained.words}{held}"
     zeros = "The zeros, with the hidden modes," if explained.has_hidden else "The zeros"
-    undriven = f"those parts of {system} that {source} does not drive then"
+    undriven = f"those parts of {system} that {source} then does not drive"
     if explained.kind == "beyond":
         return f"{source} does not act where {output} measures. {zeros} are the poles of {undriven}."
     if explained.kind == "partly":
         among = f"Among {zeros[0].lower()}{zeros[1:]}"
         return f"{source} does not act where {output} measures. {among} are the poles of {undriven}."
     if explained.kind == "open circuit":
-        where = f"{output} goes with the current that {source} delivers."
+        where = f"{output} is proportional to the current that {source} delivers."
     elif explained.kind == "free":
-        where = f"{output} goes with what it takes to impose {source}."
+        where = f"{output} is proportional to the effort that imposes {source}."
     elif explained.is_direct:
         where = f"{source} acts where {output} measures."
     else:
-        where = f"{source} acts elsewhere than {output} measures, but has the same effect but for a factor."
+        where = f"{source} does not act where {output} measures, but has the same effect up to a factor."
     verb = {
         "proved": f"{zeros} are",
         "not shown": f"{zeros} should be",
@@ -152,21 +152,28 @@ def _proof(explained: ZeroExplanation) -> str:
     own = _own(explained)
     more = f"*({explained.transmission})" if explained.transmission else ""
     if explained.kind == "partly":
-        said = [f"Proved: num = c{own}{more}*det, det of those parts and c free of s."]
+        said = [
+            f"Proved: num = c{own}{more}*det, where det belongs to those parts and c does not depend on s."
+        ]
     else:
         more += f"/({explained.extra})" if explained.extra else ""
-        said = [f"Proved: num = c{own}{more}*det, det of the constrained system and c free of s."]
+        said = [
+            (
+                f"Proved: num = c{own}{more}*det, where det belongs to the constrained system and c does not "
+                "depend on s."
+            )
+        ]
     if own:
-        said.append(f"{own[1:]} is what {explained.output} does to what it measures.")
+        said.append(f"{own[1:]} is the factor that {explained.output} applies to what it measures.")
     if explained.extra:
         said.append(
             f"{explained.extra if explained.extra != '...' else 'What is divided by'} is the "
             "driven part's own."
         )
     if explained.is_delayed:
-        said.append("Besides, num holds exponentials of s, which have no zeros.")
+        said.append("num also holds exponentials of s, which have no zeros.")
     if explained.has_hidden:
-        said.append("What num shares with the poles has cancelled, and is listed as hidden.")
+        said.append("Factors that num shares with the poles have cancelled and are listed as hidden.")
     return " ".join(said)
 
 
@@ -180,12 +187,12 @@ def _noncolocated(explained: ZeroExplanation) -> str:
     output, source = explained.output, explained.input
     text = (
         f"{source} does not act where {output} measures. The zeros are the poles of the system in which "
-        f"{source} takes whatever value keeps {output} at zero (Cramer's rule), which no support does."
+        f"{source} takes whatever value keeps {output} at zero (Cramer's rule); no support does that."
     )
     if explained.words:
         text += (
-            f" Here it is the system with {explained.words}. Proved: num = c{_own(explained)}*det, det of "
-            "that system and c free of s."
+            f" Here it is the system with {explained.words}. Proved: num = c{_own(explained)}*det, where "
+            "det belongs to that system and c does not depend on s."
         )
     return text
 
@@ -228,7 +235,7 @@ def _whereabouts(explained: ZeroExplanation) -> Iterator[list[str]]:
         lies = "zero lies" if explained.on_axis == 1 else "zeros lie"
         text = f"{explained.on_axis} {lies} on the imaginary axis"
         if explained.kind == "colocated":
-            text += ": at those frequencies the held system vibrates freely and the output rests"
+            text += ": at those frequencies the held system vibrates freely and the output stays at rest"
         yield [f"{text}."]
     if not explained.right_half_plane:
         return
@@ -244,11 +251,11 @@ def _whereabouts(explained: ZeroExplanation) -> Iterator[list[str]]:
     said = [f"Between {explained.input} and {explained.output} lies {bending.name}, which bends."]
     if bending.is_evanescent:
         said.append(
-            "At real s all its waves grow or decay along x and none travels (proved: mu^4 > 0). Real zeros "
-            "of a noncolocated pair come of such nonpropagating bending (Miu 1991)."
+            "At real s all its waves grow or decay along x and none travels (proved: mu^4 > 0). Real "
+            "zeros of a noncolocated pair come from such nonpropagating bending (Miu 1991)."
         )
     else:
-        said.append("Real zeros of a noncolocated pair come of nonpropagating bending (Miu 1991).")
+        said.append("Real zeros of a noncolocated pair come from nonpropagating bending (Miu 1991).")
     yield [" ".join(said)]
 
 

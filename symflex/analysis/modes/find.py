@@ -176,7 +176,11 @@ class _ModeSearch:
     def numbered(self, number: int, digits: int) -> tuple[Root, int]:
         """Return the pole of a mode, and which of its modes it is."""
         if number < 0:
-            raise UsageError(Diagnostic("SF902", f"modes count from 1, and 0 is at s = 0; found {number}"))
+            raise UsageError(
+                Diagnostic(
+                    "SF902", f"modes are numbered from 1, and mode 0 is the motion at s = 0; found {number}"
+                )
+            )
         found = self.map(Modes(max(number, 1)), digits)
         poles = found.poles
         if number == 0:
@@ -184,7 +188,7 @@ class _ModeSearch:
             rigid = next((p for p in (*poles, *hidden) if p.is_zero), None)
             if rigid is None:
                 message = "the model has no pole at 0, so no rigid-body motion"
-                raise UsageError(Diagnostic("SF902", message, None, "modes count from 1"))
+                raise UsageError(Diagnostic("SF902", message, None, "modes are numbered from 1"))
             return rigid, 0
         before = 0
         for root in poles:
@@ -194,7 +198,7 @@ class _ModeSearch:
                 return root, number - before - 1
             before += root.multiplicity
         count = f"{before} mode" + ("" if before == 1 else "s")
-        message = f"{self.bound.name} has {count} other than at 0, not {number}"
+        message = f"{self.bound.name} has only {count} besides those at s = 0; mode {number} does not exist"
         raise UsageError(Diagnostic("SF902", message))
 
     def again(self, root: Root, digits: int) -> Root:
@@ -232,7 +236,7 @@ class _ModeSearch:
             working *= 2
         if not best:
             message = f"the equations cannot be solved for the shape of the pole near {_printed(root)}"
-            raise UncertifiedError(Diagnostic("SF406", message, None, "the pole is not known well enough"))
+            raise UncertifiedError(Diagnostic("SF406", message, None, "ask for more digits of the pole"))
         return best
 
     def _at(self, root: Root, digits: int) -> tuple[EnclosedModeShape, ...]:
@@ -255,7 +259,7 @@ class _ModeSearch:
                 if dimension == 1:
                     # With more dimensions it may be that the balls are too wide for fewer.
                     message = f"s = {_printed(root)} is not a pole of the model's equations"
-                    hint = "zeros have no shape, nor have the poles of a filter in an output"
+                    hint = "zeros have no mode shape, and neither do poles of a filter in an output"
                     raise UsageError(Diagnostic("SF902", message, None, hint))
                 return ()
         return ()

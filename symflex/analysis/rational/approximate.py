@@ -238,7 +238,7 @@ Form = Callable[["AnyBoundFunction", KeptRoots, int], Approximant]
 def product_form(bound: AnyBoundFunction, kept: KeptRoots, digits: int) -> Approximant:
     """Return the product over the poles and zeros that are kept, right to the leading order at s = 0.
 
-    SF405 when the behaviour near s = 0 cannot be told.
+    SF405 when the behaviour near s = 0 cannot be determined.
     """
     start = expand_at_zero(bound, -(10**6), digits)
     order = _order_at_zero(kept.zeros) - _order_at_zero(kept.poles)

@@ -407,5 +407,5 @@ def _doubles(numbers: Sequence[mpmath.mpf], name: str) -> npt.NDArray[np.float64
     values = np.array([float(number) for number in numbers])
     if not np.isfinite(values).all() or any(n != 0 and v == 0 for n, v in zip(numbers, values, strict=True)):
         message = f"a coefficient of the approximation of {name} does not fit into double precision"
-        raise ModelError(Diagnostic("SF233", message, None, "poles, zeros and gain may; or take fewer modes"))
+        raise ModelError(Diagnostic("SF233", message, None, "use poles, zeros and gain, or keep fewer modes"))
     return values

@@ -123,7 +123,7 @@ def expand_at_zero(bound: AnyBoundFunction, last: int, digits: int) -> LaurentSe
             bits *= 2
             if found == "unproved":
                 orders = [None] * len(orders)
-    message = f"the behaviour of {bound.name} near s = 0 cannot be told"
+    message = f"the behaviour of {bound.name} near s = 0 could not be determined"
     raise UncertifiedError(Diagnostic("SF405", message))
 
 
@@ -143,7 +143,7 @@ def _network_at_zero(sides: NetworkSides, last: int, digits: int) -> LaurentSeri
             found = [acb(quotient[i].real) for i in range(count)]
         if _is_accurate(found, digits, bits_for_digits(digits)):
             return LaurentSeries(order, tuple(acb(about_zero(c.real)) for c in found))
-    message = f"the behaviour of {sides.bound.name} near s = 0 cannot be told"
+    message = f"the behaviour of {sides.bound.name} near s = 0 could not be determined"
     raise UncertifiedError(Diagnostic("SF405", message))
 
 
@@ -210,7 +210,7 @@ def expand_at_pole(
     name = bound.bound.name if isinstance(bound, NetworkSides) else bound.name
     if not root.certified:
         message = f"poles of {name} that cannot be told apart have no residues of their own"
-        raise UncertifiedError(Diagnostic("SF405", message, None, "more digits may tell them apart"))
+        raise UncertifiedError(Diagnostic("SF405", message, None, "more digits may separate them"))
     sides = _network_sides(bound, digits) if isinstance(bound, NetworkSides) else _sides(bound, root, digits)
     for bits, (above, below) in sides:
         with precision(bits):
@@ -226,7 +226,7 @@ def expand_at_pole(
                     found = [acb(about_zero(c.real), about_zero(c.imag)) for c in found]
                     return pole, LaurentSeries(-root.multiplicity, tuple(found), is_estimate=extra > 0)
     re, im = float(root.re.mid()), float(root.im.mid())
-    message = f"the residue of {name} at {re:g} {im:+g} j rad/s cannot be told"
+    message = f"the residue of {name} at {re:g} {im:+g} j rad/s could not be determined"
     raise UncertifiedError(Diagnostic("SF405", message))
 
 

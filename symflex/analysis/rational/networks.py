@@ -82,7 +82,7 @@ class NetworkSides:
             search, radius = self._search(digits)
             den, num = search.sides(radius)
         if den.zero_reach or num.zero_reach:
-            message = f"the behaviour of {self.bound.name} near s = 0 cannot be told"
+            message = f"the behaviour of {self.bound.name} near s = 0 could not be determined"
             raise UncertifiedError(Diagnostic("SF405", message))
         return num, den
 

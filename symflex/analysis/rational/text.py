@@ -94,7 +94,7 @@ def _validity(found: RationalApproximation) -> list[str]:
     for percent in PERCENTS:
         limit = found.valid_to(percent / 100)
         if not limit:
-            lines.append(f"off by more than {percent} % at {found.scan.low_hz:.4g} Hz already")
+            lines.append(f"already off by more than {percent} % at {found.scan.low_hz:.4g} Hz")
         else:
             least = "at least " if limit == found.scan.high_hz else ""
             lines.append(f"within {percent} % of the exact function up to {least}{limit:.6g} Hz")
@@ -102,7 +102,7 @@ def _validity(found: RationalApproximation) -> list[str]:
     band = f"{error.low_hz:.4g} to {error.high_hz:.4g} Hz"
     lines.append(f"worst error from {band}: {100 * error.worst:.3g} %, at {error.worst_at_hz:.6g} Hz")
     sampled = f"{len(scan.error)} samples from {scan.low_hz:.4g} to {scan.high_hz:.6g} Hz"
-    lines.append(f"these are of {sampled}, not proved")
+    lines.append(f"these errors are sampled at {sampled}, not proved")
     if found.omitted_hz is not None:
         lines.append(f"the first pole left out is at {found.omitted_hz:.6g} Hz")
     return lines

@@ -143,8 +143,12 @@ class RationalFunction(ABC):
         if form == TRANSFER_FUNCTION:
             num, den = self.coefficients()
             if num[0] and abs(num[0]) <= SCIPY_ZERO:
-                message = f"scipy takes the first coefficient of {self.source.name}, {num[0]:.3g}, for zero"
-                raise ModelError(Diagnostic("SF233", message, None, "zeros-poles-gain keeps it"))
+                message = (
+                    f"scipy would treat the first coefficient of {self.source.name}, {num[0]:.3g}, as zero"
+                )
+                raise ModelError(
+                    Diagnostic("SF233", message, None, "use the zeros-poles-gain form, which keeps it")
+                )
             with warnings.catch_warnings():
                 if not num.any():
                     # It finds nothing but zeros suspicious.

@@ -103,7 +103,10 @@ def check_order(begun: Iterable[Delay], durations: Durations) -> None:
 
 def too_early() -> UncertifiedError:
     """Return what is wrong where something comes before the input."""
-    message, hint = "the output would come before the input", "a delay in a denominator foresees its input"
+    message, hint = (
+        "the output would come before the input",
+        "a delay in a denominator needs future values of its input",
+    )
     return UncertifiedError(Diagnostic("SF810", message, None, hint))
 
 

@@ -96,7 +96,7 @@ class EnclosedResponse:
             (t for t, y in zip(self.times, self.enclosures, strict=False) if y.abs_lower() > LARGEST), None
         )
         if huge is not None:
-            message = f"the response of {self.tf} is beyond 10^{LARGEST_POWER} from {huge:g} s on"
+            message = f"the response of {self.tf} exceeds 10^{LARGEST_POWER} from {huge:g} s on"
             raise UsageError(Diagnostic("SF812", message, None, SHORTER))
 
     @cached_property
@@ -104,7 +104,7 @@ class EnclosedResponse:
         values = np.array(list(map(float, self.enclosures)), dtype=np.float64)  # of midpoints
         if (huge := np.flatnonzero(~np.isfinite(values))).size:
             message = (
-                f"the response of {self.tf} is beyond the range of doubles from {self.times[huge[0]]:g} s on"
+                f"the response of {self.tf} exceeds the range of doubles from {self.times[huge[0]]:g} s on"
             )
             raise UsageError(Diagnostic("SF812", message, None, SHORTER))
         off = map(arb.abs_upper, map(sub, self.enclosures, values.tolist()))
@@ -203,7 +203,7 @@ def _short(ball: arb) -> str:
 def _impulse(found: EnclosedResponse, impulse: ImpulseAt) -> str:
     order = impulse.order
     what = IMPULSES[order] if order < len(IMPULSES) else f"derivative {order} of an impulse"
-    return f"besides, at {_short(impulse.time)} s, {what} of weight {_short(impulse.weight)}"
+    return f"also, at {_short(impulse.time)} s, {what} of weight {_short(impulse.weight)}"
 
 
 def _more(shown: Sequence[object]) -> list[str]:

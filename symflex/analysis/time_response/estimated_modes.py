@@ -50,14 +50,14 @@ def estimated(bound: AnyBoundFunction, integrations: int, times: SampleTimes) ->
         found, count = _summed(bound, integrations, times, many), many
     told = sum(bool(y.rad() < EFFORT.too_much * found.largest) for y in found.sampled.values)
     if 2 * told < len(found.values):
-        message = f"the modes of {bound.name} fall off too slowly to say what it does in time"
+        message = f"the modes of {bound.name} decay too slowly to determine its response in time"
         # The smoother the input is, the less high modes add.
         smoother = ("a step in place of an impulse", "a ramp in place of a step")[
             integrations : integrations + 1
         ]
         hint = " or ".join([*(f"ask for {each}," for each in smoother), "filter the output"])
         raise UncertifiedError(Diagnostic("SF810", message, None, hint))
-    reason = f"what the modes beyond the lowest {count} add is estimated"
+    reason = f"the contribution of modes beyond the lowest {count} is estimated"
     return replace(found.sampled, modes=None, reason=reason)
 
 

@@ -6,7 +6,7 @@ Ways are asked in the order of :data:`WAYS`, and the first that answers is taken
 told of a response that is only estimated:
 
     a servo about a beam without loss    lossless modes: waves lose energy
-                                         lossy modes: some waves lose nothing in their material
+                                         lossy modes: some waves have no material loss
                                          passive modes: something in the model may supply energy
                                          estimated modes answer
 """
@@ -203,8 +203,10 @@ def _of_network(bound: BoundNested, integrations: int, times: SampleTimes) -> Sa
     propagation = equations_of(bound).propagation
     laws = () if propagation is None else propagation.table.dispersions
     if any(law.kind == "exponential" for law in laws):
-        message = f"{bound.name} is of a large network with delays: its response in time is not known"
-        raise ModelError(Diagnostic("SF813", message, None, "take 'symflex rational' of it first"))
+        message = (
+            f"{bound.name} belongs to a large network with delays, whose response in time is not available"
+        )
+        raise ModelError(Diagnostic("SF813", message, None, "approximate it with 'symflex rational' first"))
     return estimated(bound, integrations, times)
 
 
@@ -233,7 +235,7 @@ def _by_partial_fractions(asked: Asked) -> Plan | Refused:
 
 def _by_echoes(asked: Asked) -> Plan | Refused:
     if asked.quotient is None:
-        return Refused("some waves change their form")
+        return Refused("some waves change shape")
     return partial(_closely, asked, partial(echoed, asked.quotient, asked.integrations))
 
 
@@ -281,7 +283,9 @@ WAYS = (
 
 def _summed(asked: Asked, bounding: ModesBound, integrations: int) -> Sampled | Refused:
     found = summed(bounding, integrations, asked.times, asked.digits)
-    return Refused("what modes add does not fall off fast enough") if found is None else found.sampled
+    return (
+        Refused("the contributions of the modes do not decay fast enough") if found is None else found.sampled
+    )
 
 
 def _closely(asked: Asked, find: Callable[[SampleTimes, int], Sampled | None]) -> Sampled | Refused:

@@ -84,7 +84,7 @@ def forced_response(
     lags = SampleTimes.evenly(step * max(count - 1, 1), max(count, 2))
     ramp = time_response(bound, "ramp", lags, digits + MORE_DIGITS, shaper)
     if ramp.impulses or ramp.jumps:
-        message = f"{bound.name} differentiates its input: the response to one with bends jumps"
+        message = f"{bound.name} differentiates its input: an input with kinks makes its output jump"
         raise UncertifiedError(Diagnostic("SF810", message, None, "filter the output, or the input"))
     reasons = [ramp.reason]
     rises, runs = [b - a for a, b in pairwise(values)], [b - a for a, b in pairwise(bends)]
@@ -135,7 +135,10 @@ def exact_values(values: npt.ArrayLike, count: int) -> list[Fraction]:
     """
     given = np.atleast_1d(np.array(values, dtype=np.float64))
     if given.shape != (count,) or count < 2 or not np.isfinite(given).all():  # noqa: PLR2004 (a line has two ends)
-        message = f"an input has two or more finite values, one a time: {given.size} for {count} times"
+        message = (
+            f"an input needs two or more finite values, one for each time: {given.size} values for {count} "
+            "times"
+        )
         raise UsageError(Diagnostic("SF811", message))
     return [exact(v) for v in given.tolist()]
 
@@ -145,13 +148,13 @@ def _grid(sampled: Sequence[Fraction], times: Sequence[Fraction]) -> tuple[Fract
     every = [*sampled, *times]
     for a, b in (*pairwise(sampled), *pairwise(times)):
         if not a < b:
-            message = f"times increase; {float(b):g} s stands after {float(a):g} s"
+            message = f"times must increase: {float(b):g} s follows {float(a):g} s"
             raise UsageError(Diagnostic("SF811", message))
     off = [t - sampled[0] for t in every]
     scale = lcm(*(t.denominator for t in off))
     step = Fraction(gcd(*(int(t * scale) for t in off)), scale) or Fraction(1)
     places = [int(t / step) for t in off]
     if max(places) > MOST_TIMES:
-        message = f"times have too little in common: the last is {max(places):.3g} times their common measure"
+        message = f"the times have no usable common step: the last is {max(places):.3g} times the longest one"
         raise UsageError(Diagnostic("SF811", message, None, "sample the input evenly"))
     return Fraction(sampled[0]), step, places

@@ -294,7 +294,7 @@ def _modes_of(bound: BoundTransferFunction) -> LosslessModes | Refused:
         modes = LosslessModes(bound, tuple(factors), enclosures.rates[0])
         above = sum(f.turns * f.exponent for f in factors)
         if modes.growth > 0 or above > 0 or not modes.constant.is_finite():
-            return Refused("it grows faster than its poles allow for")
+            return Refused("it grows faster than its poles allow")
     return modes
 
 

@@ -105,7 +105,7 @@ def lossy_bound(bound: BoundTransferFunction, integrations: int) -> tuple[LossyB
     """Return what bounds the modes of a function whose waves all lose energy in the material."""
     function = SizeOfExponentials.of(bound)
     if function is None:
-        return Refused("it is no short sum of exponentials")
+        return Refused("it is not a short sum of exponentials")
     start = KernelFunction(bound, bound.den).frequency_of(1.0)
     found = []
     for sectors in (TILTED, SECTORS):
@@ -114,5 +114,5 @@ def lossy_bound(bound: BoundTransferFunction, integrations: int) -> tuple[LossyB
         if far_out is not None and least is not None:
             found.append(LossyBound(function, far_out, log(least)))
     if not found:
-        return Refused("some waves lose nothing in their material")
+        return Refused("some waves have no material loss")
     return found[-1 if found[0].least > found[-1].least + log(FAR) else 0], integrations

@@ -110,32 +110,34 @@ def passive_bound(bound: BoundTransferFunction, integrations: int) -> tuple[Pass
     here = acting(model, bound.source.input)
     function = SizeOfExponentials.of(bound)
     if not here:
-        return Refused("the input is no force or torque on a node")
+        return Refused("the input is not a force or torque on a node")
     if function is None:
-        return Refused("it is no short sum of exponentials")
+        return Refused("it is not a short sum of exponentials")
     there = measured(assemble(model), bound.source.output.name)
     if there is None:
         model = parted_at(model, bound.source.output.name)
         there = measured(assemble(model), bound.source.output.name)
     if there is None:
-        return Refused("the output is no displacement of a node")
+        return Refused("the output is not a displacement of a node")
     order = there.factor.exponent_of(there.factor.ring.context.gen(0))
     factor = there.factor / Factored.generator(there.factor.ring, "s") ** order
     if not factor.is_constant or order < 0:
-        return Refused("the output is no derivative of a displacement")
+        return Refused("the output is not a derivative of a displacement")
     if integrations - order not in (STEP, RAMP):
-        return Refused("only a step of a displacement, and what is smoother, is bounded by energy")
+        return Refused("energy bounds only step responses of displacements, and smoother ones")
     size, ends = abs(ball(factor.unit)), [here]
     if here != there.coordinates:
         ends.append(there.coordinates)
     if None in (force_on(model, coordinates[0][0]) for coordinates in ends):
-        return Refused("no force does work on a node")
+        return Refused("an end is a coordinate on which no force or torque does work")
     if len(ends) == 1:
         return PassiveBound(function, order, size, ()), integrations
     found = (SizeOfExponentials.of(c) for c in _colocated(bound, model, ends))
     sizes = tuple(each for each in found if each is not None)
     if len(sizes) < PAIR:
-        return Refused("a force at one end does not move the other as much as the other way round")
+        return Refused(
+            "the two ends are not reciprocal: a force at one does not move the other as much as the reverse"
+        )
     return PassiveBound(function, order, size, sizes), integrations
 
 

@@ -75,14 +75,14 @@ class SampleTimes:
         """
         given = np.atleast_1d(np.array(times, dtype=np.float64))
         if given.ndim != 1 or given.size > MOST_TIMES:
-            raise _refused(f"times are a list of at most {MOST_TIMES} numbers")
+            raise _refused(f"times must be a list of at most {MOST_TIMES} numbers")
         if not np.isfinite(given).all():
-            raise _refused("times are finite numbers")
+            raise _refused("times must be finite numbers")
         if given.size and given[0] < 0:
-            raise _refused(f"a response begins at t = 0; {given[0]:g} s is before")
+            raise _refused(f"a response begins at t = 0, and {given[0]:g} s is earlier")
         if (late := np.flatnonzero(np.diff(given) <= 0)).size:
             a, b = given[late[0]], given[late[0] + 1]
-            raise _refused(f"times increase; {b:g} s stands after {a:g} s")
+            raise _refused(f"times must increase: {b:g} s follows {a:g} s")
         given.setflags(write=False)
         if given.size < FEWEST:
             return cls(given, None)

@@ -264,7 +264,7 @@ def band_form(values: EnclosedValues, up_to: Fraction | None = None) -> BandForm
             break
         far *= FURTHER
         found = locate(bound, Band(Fraction(0), far), DIGITS)
-    reason = found.certificate.reason or "it is not smooth beside its poles and zeros"
+    reason = found.certificate.reason or "what remains after dividing by its poles and zeros is not smooth"
     message = f"{bound.name} has no band form up to {float(end):.4g} Hz: {reason}"
     raise ModelError(Diagnostic("SF910", message, None, "ask for a lower --up-to, or export it to numpy"))
 

@@ -60,7 +60,10 @@ def nearest_double(value: Fraction, pi_power: int = 0) -> float:
     if not isfinite(result) or abs(result) < float_info.min:
         size = "large" if abs(result) > 1 else "small"
         message = f"a number of this model is too {size} for double precision"
-        hint = "choose units in which values lie nearer to 1, such as mm and t; exact commands keep it"
+        hint = (
+            "choose units in which values are closer to 1, such as mm and t; commands that compute "
+            "exactly can still use it"
+        )
         raise ModelError(Diagnostic("SF233", message, None, hint))
     return result
 

@@ -44,8 +44,8 @@ def build_varying(tf: TransferFunction) -> Piecewise:
     if _has_uniform(tf):
         tf = followed_along_x(tf)
     if _has_uniform(tf):
-        message = f"{tf.name} has members of frames besides tapered ones, for which there is no code yet"
-        hint = "--form band has it, with numbers for parameters"
+        message = f"{tf.name} combines frame members with tapered ones, for which code is not available yet"
+        hint = "use --form band, which replaces parameters by their values"
         raise ModelError(Diagnostic("SF910", message, None, hint))
     return _Workshop(tf).program()
 
@@ -119,7 +119,7 @@ class _Workshop:
             if not singular.orders[i][i] and not matrix[i][i].is_zero:
                 if not matrix[i][i].is_constant or matrix[i][i].unit.denominator != 1:
                     message = f"code that starts at the end of '{parted.law.name}' where a stiffness vanishes"
-                    hint = "its poles, zeros and values at frequencies are there"
+                    hint = "poles, zeros and frequency responses are available"
                     raise ModelError(Diagnostic("SF910", f"{message} is not available yet", None, hint))
                 exponents[i] = int(matrix[i][i].unit)
                 matrix[i][i] = matrix[i][i] * 0

@@ -274,7 +274,12 @@ def _fit(
             place = float(line.observation.omega[int(np.argmax(wrong))]) / (2 * np.pi)
             message = f"the base {base.tf} is zero or infinite at {place:.4g} Hz, inside the band measured"
             raise FitError(
-                Diagnostic("SF615", message, None, "a base needs damping, or --band a smaller band")
+                Diagnostic(
+                    "SF615",
+                    message,
+                    None,
+                    "add damping to the base, or choose a --band without this frequency",
+                )
             )
     problem = problem.at([_kept(line, wild_lines(line.omega, line.ratio)) for line in problem.lines])
     most = max(MOST_LINES // len(problem.lines), FEWEST_OF_EACH)
@@ -304,7 +309,7 @@ def _fit(
     )
     fit = ResonanceFit(problem, bases, candidate, scores, given.criterion, tests, ())
     if stages.is_cut:
-        reasons = ("the time given was over before the fit was complete", *reasons)
+        reasons = ("the time budget ended before the fit was complete", *reasons)
     elif _is_drowned(fit):
         reasons = (*reasons, "the data show no resonance, and noise as large as the response")
     return replace(fit, warnings=_warnings(fit), poor=(*reasons, *_poor(fit)))
@@ -375,9 +380,9 @@ def _poor(fit: ResonanceFit) -> tuple[str, ...]:
     if fit.problem.is_noise_known and fit.refined.reduced > LARGE:
         reasons.append(f"the residual is {np.sqrt(fit.refined.reduced):.2g} times what coherence explains")
     if fit.candidate.is_rivalled:
-        reasons.append("another power of s describes the data as well: gain and zeros may be others")
+        reasons.append("another power of s fits the data equally well, with another gain and other zeros")
     if fit.refined.correlation > SMOOTH:
-        reasons.append("neighbouring lines deviate together, as they do where the model lacks something")
+        reasons.append("neighbouring lines deviate together: the model lacks something")
     for i in np.flatnonzero(fit.modes).tolist():
         if not errors.zeta_p[i] <= WEAK * found.zeta_p[i]:
             where = f"{named_pair(fit, i)} at {found.omega_p[i] / (2 * np.pi):.4g} Hz"
@@ -439,8 +444,8 @@ def _warnings(fit: ResonanceFit) -> tuple[str, ...]:
                 continue
             if abs(found.zeta_z[r, i]) > OVERDAMPED:
                 warnings.append(
-                    f"zero pair {i + 1}{where} has the damping ratio {found.zeta_z[r, i]:.2g}: two "
-                    "real zeros, that stand for what a gain, a power of s and resonances cannot have"
+                    f"zero pair {i + 1}{where} has the damping ratio {found.zeta_z[r, i]:.2g}: two real "
+                    "zeros, which stand for behaviour that a gain, a power of s and resonances cannot have"
                 )
             if not low <= abs(found.omega_z[r, i]) <= high:
                 place = abs(found.omega_z[r, i]) / (2 * np.pi)
@@ -460,7 +465,7 @@ def _warnings(fit: ResonanceFit) -> tuple[str, ...]:
         if narrow:
             pairs = ", ".join(map(str, narrow))
             warnings.append(
-                f"less than four lines in the half-power bandwidth of pole pair {pairs}: if the estimate "
+                f"fewer than four lines in the half-power bandwidth of pole pair {pairs}: if the estimate "
                 "used a Hann window, say --window hann, or damping comes out too large"
             )
             break

@@ -82,7 +82,9 @@ def mode_shapes(fit: ResonanceFit, measured: Sequence[MeasuredResponse]) -> Fitt
     units = sorted({motion.unit for motion in motions})
     if len(units) > 1:
         message = f"responses of different kinds: {', '.join(units)}"
-        raise DataError(Diagnostic("SF602", message, None, "all are over one force, or all over one torque"))
+        raise DataError(
+            Diagnostic("SF602", message, None, "divide all of them by one force, or all by one torque")
+        )
     systems = [_system(response, motion) for response, motion in zip(measured, motions, strict=True)]
     logarithms, covariance = _refined(systems, fit)
     count = logarithms.size // 2
@@ -262,6 +264,6 @@ def _motion_over_force(name: str, unit: str) -> _Motion:
     kind = KINDS.get((dimension.kg, dimension.m))
     others = (dimension.A, dimension.K, dimension.mol, dimension.cd)
     if kind is None or dimension.s not in (0, 1, 2) or any(others):
-        message = f"{name} in {unit} is not a motion over a force"
+        message = f"{name} in {unit} is not a motion per force"
         raise DataError(Diagnostic("SF602", message, None, "such as m/N, m/(N*s), m/(N*s^2) or rad/(N*m)"))
     return _Motion(2 - int(dimension.s), float(read.scale) * np.pi**read.pi_power, kind)

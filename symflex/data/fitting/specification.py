@@ -53,7 +53,7 @@ def fit_specification(found: ResonanceFit, folder: str | Path, loop: str | None 
     ways: list[Mapping[str, object] | None] = [None]
     if loop is not None and (not _is_name(loop) or loop in {*RESERVED, *taken}):
         raise UsageError(
-            Diagnostic("SF902", f"'{loop[:64]}' is no name for the gain of a loop", None, "say K")
+            Diagnostic("SF902", f"'{loop[:64]}' is not a valid name for the gain of a loop", None, "say K")
         )
     if len(bases) == 1 and loop is None:  # a copied base has inputs of its own, which no signal drives
         source = read(bases[0])

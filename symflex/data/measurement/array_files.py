@@ -97,7 +97,7 @@ class ByteReader:
         if dtype.kind == "U":
             codes = np.frombuffer(taken, np.dtype(self.order + "u4"))
             wrong = (codes > LAST_CHARACTER) | ((codes >= SURROGATES[0]) & (codes <= SURROGATES[1]))
-            require(not np.any(wrong), "a text holds what is not a character")
+            require(not np.any(wrong), "a text contains an invalid character")
         return np.frombuffer(taken, dtype).reshape(tuple(shape), order=order)
 
     def integer(self, kind: str) -> int:
@@ -219,7 +219,7 @@ def read_netcdf(data: bytes, items: int) -> tuple[Attributes, dict[str, Variable
         body.take(begin)
         values = body.numbers(kind, shape)
         left -= values.nbytes
-        require(left >= 0, "variables stand in the same place")
+        require(left >= 0, "variables overlap")
         found[name] = tuple(dimensions[number][0] for number in numbers), values, about
     return attributes, found
 
@@ -307,7 +307,7 @@ def read_variables(data: bytes, limit: int) -> Arrays:
     require(len(data) >= _HEADER, CUT)
     order = {b"IM": "<", b"MI": ">"}.get(data[126:128])
     if order is None:
-        message = "no mark of byte order"
+        message = "no byte-order mark"
         raise ValueError(message)
     version = ByteReader(data[_VERSION:126], order).integer("u2") >> 8
     if version == _VERSION_7_3:

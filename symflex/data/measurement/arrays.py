@@ -180,7 +180,10 @@ def _renamed(arrays: Arrays, asked: str, name: str) -> dict[str, Array]:
             what = f"--columns {part[:60]}: " + (
                 f"no array '{key[:40]}'" if kind in known else f"unknown '{kind}'"
             )
-            hint = f"left of = stand {', '.join(sorted(known))}, right of it {listed_names(list(arrays))}"
+            hint = (
+                f"the names left of '=' are {', '.join(sorted(known))}; those right of it are "
+                f"{listed_names(list(arrays))}"
+            )
             raise UsageError(Diagnostic("SF902", f"'{name}': {what}", None, hint))
         found[words.get(kind, kind)] = arrays[key]
     return found

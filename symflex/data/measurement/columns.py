@@ -322,7 +322,7 @@ def _sections(columns: Sequence[DataColumn]) -> list[list[DataColumn]]:
     if not any(found[:-1]) and all(_is_rounded(first, other) for other in own[1:]):
         return [[first, *rest]]
     if not all(any(c.meaning.kind for c in one) for one in found):
-        message = "a second column of frequency, which differs from the first"
+        message = "there are two frequency columns with different values"
         raise DataError(Diagnostic("SF602", message, own[1].span, ask(columns)))
     return [[order[a], *one] for a, one in zip(begins, found, strict=True)]
 
@@ -432,7 +432,7 @@ def _values(group: dict[str, DataColumn], lines: Real, guesses: list[str]) -> Co
             else:
                 size = _size(group["magnitude"], group["magnitude"].meaning.scale)
             guesses.append(
-                "there is no phase: that of a minimum-phase response with this magnitude is computed"
+                "there is no phase: symflex computes that of a minimum-phase response with this magnitude"
             )
             phase = _minimum_phase(lines, size)
         return np.asarray(size * np.exp(1j * phase), np.complex128)
@@ -457,13 +457,13 @@ def _decided(magnitude: DataColumn, phase: DataColumn, lines: Real, guesses: lis
     readings = scales[:1] if not is_gain and min(usual) < FITS and np.ptp(usual) > UNDECIDED else scales
     factor = _best({f: min(costs[s, f] for s in readings) for f in factors}, UNDECIDED)
     if factor is None:
-        message = f"no unit of column '{phase.name[:40]}', and the numbers fit degrees as well as radians"
+        message = f"column '{phase.name[:40]}' has no unit, and its numbers fit degrees as well as radians"
         hint = "say phase_deg or phase_rad with --columns, such as --columns f,mag_db,phase_deg"
         raise DataError(Diagnostic("SF602", message, phase.span, hint))
     scale = _best({s: costs[s, factor] for s in scales}, UNDECIDED / 2)
     if scale is None and is_gain:
         message = (
-            f"no unit of column '{magnitude.name[:40]}', and the numbers fit dB as well as a plain ratio"
+            f"column '{magnitude.name[:40]}' has no unit, and its numbers fit dB as well as a plain ratio"
         )
         hint = "say mag or mag_db with --columns, such as --columns f,mag_db,phase_deg"
         raise DataError(Diagnostic("SF602", message, magnitude.span, hint))

@@ -57,8 +57,8 @@ SAVE_AS: Final = {
     ".tdms": "export the channels as text, or read them with nptdms and save them with numpy.savez",
     ".h5": "save the arrays with numpy.savez",
     ".hdf5": "save the arrays with numpy.savez",
-    ".wav": "frequency responses are read, not samples in time",
-    ".toml": "a specification is no measured data",
+    ".wav": "symflex reads frequency responses, not time series",
+    ".toml": "this is a specification, not measured data",
 }
 """What to do with files that are not read."""
 
@@ -69,10 +69,10 @@ def read_measurement(path: str | Path, columns: str = "") -> tuple[MeasuredRespo
     Parameters
     ----------
     path : str or Path
-        A regular file of at most 50 MB; the end of its name says what it holds, see :data:`READERS`. Files
+        A regular file of at most 50 MB; the end of its name gives its format, see :data:`READERS`. Files
         with other endings are read as text in columns.
     columns : str
-        What the columns are, where the file does not say or says it wrongly: words such as ``f,re,im`` or
+        What the columns are, if the file does not say or is wrong: words such as ``f,re,im`` or
         ``f_khz,-,mag_db,phase_deg`` for text and matrices, ``f=NAME,h=NAME`` for named arrays, ``s21`` or
         ``z11`` for Touchstone files.
 
@@ -112,7 +112,7 @@ def read_measurement(path: str | Path, columns: str = "") -> tuple[MeasuredRespo
     except DataError as error:
         if error.diagnostics[0].code not in ("SF601", "SF605"):
             raise
-        message = f"'{name}' is no table in text; other data files end in {', '.join(READERS)}"
+        message = f"'{name}' is not a text table; other data files end in {', '.join(READERS)}"
         raise DataError(Diagnostic("SF606", message)) from None
 
 
@@ -137,10 +137,10 @@ def prepared(
     if window not in (None, "hann", "none"):
         raise UsageError(Diagnostic("SF902", f"the window '{window[:40]}' is neither hann nor none"))
     if averages is not None and not 1 <= averages <= MOST_AVERAGES:
-        message = f"the number of averages is {averages:g}; it lies between 1 and {MOST_AVERAGES:g}"
+        message = f"the number of averages is {averages:g}; it must lie between 1 and {MOST_AVERAGES:g}"
         raise UsageError(Diagnostic("SF902", message))
     if band is not None and not 0 <= band[0] < band[1]:
-        raise UsageError(Diagnostic("SF902", "a band is two frequencies in Hz, the lower one first"))
+        raise UsageError(Diagnostic("SF902", "give a band as two frequencies in Hz, the lower one first"))
     found = []
     for response in responses:
         known = response
@@ -256,6 +256,6 @@ def measurement_bytes(response: MeasuredResponse, path: str | Path) -> bytes:
     """
     suffix = Path(path).suffix.lower()
     if suffix not in WRITERS:
-        message = f"'{path}': measurements are written to {', '.join(WRITERS)}"
+        message = f"'{path}': the name of a measurement must end in {', '.join(WRITERS)}"
         raise UsageError(Diagnostic("SF902", message))
     return WRITERS[suffix](response)

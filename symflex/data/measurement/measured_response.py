@@ -89,7 +89,7 @@ class MeasuredResponse:
 
     @property
     def spacing_hz(self) -> float | None:
-        """The distance between neighbouring lines [Hz] where it is the same throughout, else None."""
+        """The spacing of lines [Hz] if it is uniform, else None."""
         steps = np.diff(self.frequency_hz)
         if not steps.size or np.ptp(steps) > 1e-3 * float(steps.mean()):
             return None
@@ -109,7 +109,7 @@ class MeasuredResponse:
         return np.sqrt(share / (2 * (self.averages or 1.0)))
 
     def misfit_db(self, model: npt.NDArray[np.complex128]) -> float:
-        """Return the root mean square of the model over the data on the lines [dB], magnitude alone."""
+        """Return the root mean square of the model's magnitude over that of the data on the lines [dB]."""
         with np.errstate(divide="ignore"):
             level = 20 * np.log10(np.abs(model / self.values))
         return float(np.sqrt(np.mean(level**2)))
@@ -119,11 +119,11 @@ class MeasuredResponse:
         return float(np.degrees(np.sqrt(np.mean(np.angle(model / self.values) ** 2))))
 
     def between(self, low_hz: float, high_hz: float) -> MeasuredResponse:
-        """Return the lines within a band [Hz], its ends included."""
+        """Return the lines within a band [Hz], including its ends."""
         return self.taken(np.flatnonzero((self.frequency_hz >= low_hz) & (self.frequency_hz <= high_hz)))
 
     def taken(self, lines: npt.NDArray[np.intp]) -> MeasuredResponse:
-        """Return some lines, in the order of their numbers."""
+        """Return the lines with these numbers, in their order."""
         coherence = None if self.coherence is None else self.coherence[lines]
         return replace(
             self, frequency_hz=self.frequency_hz[lines], values=self.values[lines], coherence=coherence
@@ -182,12 +182,12 @@ def checked_response(
         note("SF603", wrong, "value", say, hint)
 
     wrong = ~np.isfinite(frequency) | (frequency < 0)
-    hint = "frequencies are positive numbers [Hz]"
+    hint = "frequencies must be positive [Hz]"
     note("SF603", wrong, "frequency", lambda i: f"frequency {frequency[i]:g} Hz", hint)
     is_finite = np.isfinite(values)
     note_value(~is_finite, lambda i: "the value is not a finite number", "leave the line out")
     wrong = is_finite & (values == 0)
-    note_value(wrong, lambda i: "the value is zero, which no measurement is", "leave the line out")
+    note_value(wrong, lambda i: "the value is zero, which a measured value never is", "leave the line out")
     with np.errstate(over="ignore"):
         size = np.abs(values)
     note_value(
@@ -237,7 +237,7 @@ def averages_of(text: str, file: str, span: Span | None = None) -> float:
     if not 1 <= number <= MOST_AVERAGES:
         place = "" if span else f"'{file}': "
         message = f"{place}the number of averages is '{text[:40]}'"
-        raise DataError(Diagnostic("SF603", message, span, "a number from 1 on"))
+        raise DataError(Diagnostic("SF603", message, span, "write a number of at least 1"))
     return number
 
 
@@ -253,7 +253,8 @@ def unit_of(text: str, file: str, span: Span | None = None) -> str:
         place = "" if span else f"'{file}': "
         message = f"{place}the unit of the values: {reason.message}"
         hint = (
-            reason.hint or "such as m/N, m/(N*s^2), rad/V; 1 for a pure number; without a unit leave it out"
+            reason.hint
+            or "such as m/N, m/(N*s^2), rad/V; 1 for a pure number; leave it out if there is no unit"
         )
         raise DataError(Diagnostic("SF602", message, span, hint)) from None
     return unit

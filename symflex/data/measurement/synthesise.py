@@ -95,16 +95,16 @@ class MeasurementPlan:
             or not 0 < self.spacing_hz < self.high_hz
             or not 0 < self.low_hz < self.high_hz
         ):
-            message = "a measurement needs 0 < LO < HI and a distance of lines below HI"
+            message = "a measurement needs 0 < LO < HI and a line spacing below HI"
             raise UsageError(Diagnostic("SF902", message))
         if not LOWEST_HZ <= self.low_hz < self.high_hz <= HIGHEST_HZ:
             message = f"frequencies of a measurement lie between {LOWEST_HZ:g} and {HIGHEST_HZ:g} Hz"
             raise UsageError(Diagnostic("SF902", message))
         if self.noise < 0 or self.averages < 1 or (self.rolloff_hz is not None and self.rolloff_hz <= 0):
-            raise UsageError(Diagnostic("SF902", "noise, averages and roll-off are positive"))
+            raise UsageError(Diagnostic("SF902", "noise, averages and roll-off must be positive"))
         if SAMPLING * self.high_hz / self.spacing_hz * self.averages > MOST_SAMPLES:
             message = f"this measurement takes more than {MOST_SAMPLES} samples"
-            raise UsageError(Diagnostic("SF902", message, None, "fewer averages, or lines further apart"))
+            raise UsageError(Diagnostic("SF902", message, None, "use fewer averages, or lines further apart"))
 
 
 def synthesise(
@@ -157,8 +157,8 @@ def synthesise(
         shown = (lines >= plan.low_hz * (1 - 1e-9)) & (lines <= plan.high_hz * (1 + 1e-9)) & (lines > 0)
         coherence = np.abs(cross[shown]) ** 2 / (power_in[shown] * power_out[shown])
     if not (np.isfinite(coherence).all() and np.isfinite(cross[shown]).all()):
-        message = f"what the sensor shows of {name} leaves what doubles can hold"
-        raise UsageError(Diagnostic("SF902", message, None, "less --noise, or a higher --rolloff"))
+        message = f"the sensor signal of {name} exceeds the range of double precision"
+        raise UsageError(Diagnostic("SF902", message, None, "use less --noise or a higher --rolloff"))
     independent = 1.0 if plan.averages == 1 else round(OVERLAP_WORTH * plan.averages, 2)
     sensor = "no sensor" if plan.rolloff_hz is None else f"sensor 2nd order, {plan.rolloff_hz:g} Hz"
     note = (

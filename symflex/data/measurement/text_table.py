@@ -63,7 +63,10 @@ def decoded(name: str, data: bytes) -> tuple[str, tuple[str, ...]]:
             text = data.decode("utf-8")
     except UnicodeDecodeError:
         try:
-            text, guesses = data.decode("cp1252"), ("the text is Latin-1 (Windows-1252), as it is not UTF-8",)
+            text, guesses = (
+                data.decode("cp1252"),
+                ("the file is not UTF-8 and is read as Latin-1 (Windows-1252)",),
+            )
         except UnicodeDecodeError as error:
             raise _no_text(name, f"byte 0x{data[error.start]:02x} at byte offset {error.start}") from None
     text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n").rstrip("\x1a\n")
@@ -203,7 +206,9 @@ class TextTable:
         longest = max(range(len(lines)), key=lambda i: len(lines[i]))
         if len(lines[longest]) > LONGEST_LINE:
             message = f"{name}:{longest + 1}:1: a line of {len(lines[longest])} characters"
-            raise DataError(Diagnostic("SF601", message, None, f"lines have up to {LONGEST_LINE}"))
+            raise DataError(
+                Diagnostic("SF601", message, None, f"a line may have at most {LONGEST_LINE} characters")
+            )
         lengths = np.cumsum([0, *(len(line) + 1 for line in lines)])
         delimiter, decimal = _format(lines)
         if decimal == ",":

@@ -71,14 +71,18 @@ def read_universal_file(name: str, data: bytes, stem: str, asked: str = "") -> t
     or lines.
     """
     if asked:
-        raise UsageError(Diagnostic("SF902", f"'{name}' says itself what it holds: it has no --columns"))
+        raise UsageError(
+            Diagnostic("SF902", f"'{name}' describes its own contents: --columns does not apply")
+        )
     places, kinds = _datasets(name, data)
     if not places:
         held = ", ".join(f"{k} ({DATASETS.get(k, 'not read')})" for k in sorted(set(kinds))[:8])
         message = f"'{name}' holds no dataset 58 (function at nodal degree of freedom)"
         message += f"; it holds datasets {held}" if held else ""
         raise DataError(
-            Diagnostic("SF601", message, None, "datasets stand between lines with -1 in columns 5 and 6")
+            Diagnostic(
+                "SF601", message, None, "a line with -1 in columns 5 and 6 begins and ends each dataset"
+            )
         )
     if len(places) > MAX_RESPONSES:
         raise DataError(Diagnostic("SF607", f"'{name}' holds more than {MAX_RESPONSES} datasets 58"))
@@ -252,7 +256,7 @@ def _unit(entry: Mapping[str, Any], system: int) -> tuple[str, tuple[str, ...]]:
         try:
             return unit_of(f"({labels[0]})/({labels[1]})", ""), ()
         except DataError:
-            return "", (f"the units {labels[0]}/{labels[1]} are not known here, the values have none",)
+            return "", (f"the units {labels[0]}/{labels[1]} are unknown, so the values have no unit",)
     if system != SI or labels[0].lower() == "g":
         return "", (f"values of the types {over} are in units that are not SI, and are taken without a unit",)
     unit = f"({SPECIFIC_TYPES[kinds[0]][1]})/{SPECIFIC_TYPES[kinds[1]][1]}"

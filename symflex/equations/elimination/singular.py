@@ -304,13 +304,13 @@ def _zero_ends(equations: Equations, through: nmod_mat) -> Iterator[Diagnostic]:
     for j in idle:
         source = model.inputs[j]
         message = f"input '{source.name}' reaches no output: all its transfer functions are 0"
-        hint = "is a name on its way misspelt, or does an output lack?"
+        hint = "check the spelling of the names on its way, or add an output"
         yield Diagnostic("SF652", message, source.span, hint, "warning")
     for i in rows if len(idle) < len(model.inputs) else ():
         if all(not int(through[i, j]) for j in columns):
             output = model.outputs[i]
             message = f"no input reaches output '{output.name}': all its transfer functions are 0"
-            hint = "is a name in its expression, or on the way to it, misspelt?"
+            hint = "check the spelling of the names in its expression and on the way to it"
             yield Diagnostic("SF653", message, output.span, hint, "warning")
 
 

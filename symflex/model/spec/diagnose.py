@@ -77,12 +77,12 @@ def _twice(source: Source, scan: Scan, statement: Statement, message: str) -> Di
     if message.startswith("Duplicate"):
         found = message.rpartition("key ")[2]
         return Diagnostic(
-            "SF102", f"the key {found} stands twice in an inline table", _value_span(source, text, statement)
+            "SF102", f"the key {found} appears twice in an inline table", _value_span(source, text, statement)
         )
     first = _first(scan, statement, name)
     if first is None:
         what = "table" if statement.header else "key"
-        hint = "it stands in an inline table, or is a value already; write it there"
+        hint = "it is in an inline table, or already has a value; write it there"
         return Diagnostic(
             "SF102", f"{what} '{_cut(name)}' cannot be added to what is defined above", span, hint
         )
@@ -249,7 +249,7 @@ def _bad_collection(source: Source, text: str, whole: Span, message: str, place:
     if text[whole.start] == "{":
         if place.text in {"\n", "\r", ""} and place.start < whole.end:
             hint = "write it on one line, or as a table with its own [header]"
-            return Diagnostic("SF101", "an inline table ends on the line it begins", whole, hint)
+            return Diagnostic("SF101", "an inline table must end on the line where it begins", whole, hint)
         if place.text == "}":
             return Diagnostic(
                 "SF101", "an inline table has no comma before its '}'", place, "remove the comma"

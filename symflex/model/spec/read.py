@@ -46,7 +46,7 @@ def read_file(name: str, limit: int) -> bytes:
     except OSError as error:
         raise _unreadable(name, error.strerror or "input/output error") from None
     except ValueError:
-        raise _unreadable(name, "the name holds a character no file name can have") from None
+        raise _unreadable(name, "the name contains a character that file names cannot have") from None
 
 
 def read_bytes(name: str, limit: int) -> bytes:

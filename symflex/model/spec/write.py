@@ -16,7 +16,7 @@ INLINE_SECTIONS: Final = frozenset({"parameters", "elements", "inputs", "outputs
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 _NOT_LITERAL = re.compile(r"[\x00-\x08\x0a-\x1f\x7f']")
 _ESCAPED = re.compile(r'[\x00-\x1f\x7f"\\]')
-SHORTER = "give fewer digits, or a unit in which the number lies nearer to 1"
+SHORTER = "give fewer digits, or a unit in which the number is closer to 1"
 FLATTER = "no key of a specification needs as many"
 _SURROGATE = re.compile(r"[\ud800-\udfff]")
 _SHORT_ESCAPES = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r", "\b": "\\b", "\f": "\\f"}
@@ -97,8 +97,8 @@ def _value(value: object, path: tuple[str, ...], depth: int = 0) -> str:
     if hasattr(value, "tolist"):  # an array or number of numpy, a matrix of SymPy
         return _value(value.tolist(), path, depth)
     if not isinstance(value, Mapping | list | tuple):
-        message = f"a value of type '{type(value).__name__}' has no place in a specification"
-        hint = "text, numbers, booleans, lists and mappings have"
+        message = f"a value of type '{type(value).__name__}' cannot be written into a specification"
+        hint = "use text, numbers, booleans, lists and mappings"
         raise _refused("SF104", path, message, hint)
     if depth >= MAX_NESTING:
         raise _refused("SF103", path[:3], f"brackets nested deeper than {MAX_NESTING}", FLATTER)

@@ -117,7 +117,7 @@ def _arranged(
 ) -> PrintedForm:
     if isinstance(tf, NestedTransferFunction):
         if form not in (None, "nested"):
-            message = f"{tf.name} is derived in nested form, which is not expanded into others"
+            message = f"{tf.name} was derived in nested form, which cannot be expanded into other forms"
             raise UsageError(Diagnostic("SF902", message, None, "ask for the expanded representation"))
         from symflex.print.forms.nested import nested_form  # only with large models
 

@@ -42,13 +42,13 @@ LARGEST = 1e36
 NARROW = 1.05
 """How far above one that is none a radius may be: the path about what lies within takes steps."""
 ROOTS = {"wave": 2, "bending": 4}
-NO_FORMULA = "without a formula for the wavenumbers no end of the poles is known"
-TOO_MANY = "of so many exponentials no end of the poles is known"
-TWO_WAVENUMBERS = "where a part has two wavenumbers no end of the poles is known"
-ADVANCED = "a delayed term has the highest power of s, and poles right of the axis have no end"
-NEUTRAL = "delayed terms share the highest power of s, none outweighs the others, and poles have no end"
-EVERY_DELAYED = "where every term is delayed no end of the poles is known"
-NO_LOSS = "poles of waves without enough loss have no end along the axis"
+NO_FORMULA = "no bound on the poles is known without a formula for the wavenumbers"
+TOO_MANY = "no bound on the poles is known for so many exponentials"
+TWO_WAVENUMBERS = "no bound on the poles is known when a part has two wavenumbers"
+ADVANCED = "a delayed term has the highest power of s, so poles right of the axis have no bound"
+NEUTRAL = "delayed terms share the highest power of s and none outweighs the others, so poles have no bound"
+EVERY_DELAYED = "no bound on the poles is known when every term is delayed"
+NO_LOSS = "waves without enough loss have poles all along the axis"
 
 Terms = dict[Exponent, dict[Fraction, acb]]
 """Of a sum of exponentials, amplitudes as sums of powers of s."""

@@ -332,6 +332,6 @@ def turns_about_zero(winding: CertifiedWinding, left: float, holes: Sequence[Cel
         if not turns:
             break
     if found is None:
-        message = f"the order of the root of {winding.function.bound.name} at s = 0 cannot be told"
+        message = f"the order of the root of {winding.function.bound.name} at s = 0 could not be determined"
         raise UncertifiedError(Diagnostic("SF404", message))
     return found

@@ -30,8 +30,8 @@ if TYPE_CHECKING:
     from symflex.roots.root import Root
     from symflex.transfer import BoundTransferFunction
 
-PASSIVE = "passive, energy is nowhere supplied"
-COMPRESSED = "compressed members feed slow motion only, and there no pole is right of the axis"
+PASSIVE = "passive, nothing supplies energy"
+COMPRESSED = "compressed members supply energy to slow motion only, which has no pole right of the axis"
 PASSIVE_LOOP = "the loop is a spring and a damper on a passive structure"
 ACCUMULATING = "poles accumulate in the right half plane"
 DEGENERATE = "a root where wavenumbers meet may be no pole"
@@ -101,7 +101,7 @@ def search_right(
         except BudgetError as error:
             if is_mirrored:
                 return _known_to(known, unproved, reached)
-            more = f"{count} are counted, and not all found: " if count else ""
+            more = f"{count} are counted, but not all are found: " if count else ""
             return RightHalfPlane(tuple(known), more + error.diagnostics[0].message)
         seen = [root for root in again.roots if root.re.contains(0) or is_right(root)]
         if proof is None:

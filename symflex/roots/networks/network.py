@@ -159,7 +159,7 @@ class _NetworkReading:
             if each.about not in self.delivered:
                 rows[each.about] = dict(LinearForm.total([each.form]).terms)
         if equations.model.has_equations:
-            _refuse("[equations] stand beside it")
+            _refuse("the model also has [equations]")
         signals = {v: row for v, row in rows.items() if v.kind in ("signal", "value")}
         replaced = self._signals(signals)
         for variable in replaced:
@@ -202,7 +202,7 @@ class _NetworkReading:
         )
         try:
             if any(v in inputs or v in self.delivered for v in form):
-                _refuse("the output reads what is no motion of a node")
+                _refuse("the output reads something that is not the motion of a node")
             for member in members:
                 if not all(any(not x.is_zero for x in row) for row in member.system):
                     _refuse(f"member '{member.name}' is rigid in one direction")

@@ -49,16 +49,16 @@ WIDER = 1e-3
 """How far beyond the limits of a band is searched, relative to them."""
 MATCHING_ROUNDS = 20
 """Searches that go further because input or output do not see some of the modes."""
-PASSIVE = "passive, energy is nowhere supplied"
-NOT_PASSIVE = "it is not proved that energy is nowhere supplied, and real poles were not counted"
+PASSIVE = "passive, nothing supplies energy"
+NOT_PASSIVE = "it is not proved that nothing supplies energy, and real poles were not counted"
 NONE_ON_AXIS = "none of those found lies on the imaginary axis"
 ACCUMULATE = "roots accumulate where a denominator vanishes, and could not be counted"
 NOT_COUNTED = "the roots could not be counted"
 REACHED = "poles are known up to {:.4g} Hz only"
 ZERO = "the transfer function is zero: its modes, which are all hidden, were not searched"
-TOO_FEW = "fewer modes than asked for lie where could be searched"
+TOO_FEW = "the part that could be searched has fewer modes than asked for"
 UNTOLD = "some roots could not be told apart"
-UNDECIDED_AT_REST = "how often 0 is a root could not be told"
+UNDECIDED_AT_REST = "the multiplicity of the root at 0 could not be determined"
 
 
 def locate_in_network(
@@ -230,7 +230,7 @@ def _hidden(shared: Sequence[Root], poles: Sequence[Root], region: Region) -> tu
 
 def _nothing(reason: str, proof: str, code: str | None = None) -> LocatedRoots:
     """Return that no root was found: of a passive network some may still lie on the imaginary axis."""
-    verdict = judge([], f"{proof}, but it may vibrate for ever; {reason}" if proof else reason)
+    verdict = judge([], f"{proof}, but it may vibrate forever; {reason}" if proof else reason)
     return LocatedRoots(CRAMER, (), (), (), verdict, (reason,), (), code)
 
 
@@ -262,7 +262,7 @@ class _NetworkSearch:
                 if lacking <= 0:
                     return
                 wanted += lacking
-            self.reasons.append("too many modes are hidden to tell those that are not")
+            self.reasons.append("too many modes are hidden to identify those that are not")
         elif isinstance(self.region, Mode):
             self._find(self.region.number, self.region.number, None)
         else:

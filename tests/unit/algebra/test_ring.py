@@ -185,7 +185,7 @@ def test_nothing_is_substituted_in_a_sparse_ring():
     with pytest.raises(BudgetError) as caught:
         ring.compose(ring.generator("s"), [ring.generator(n) for n in NAMES])
     (problem,) = caught.value.diagnostics
-    assert (problem.code, problem.message) == ("SF502", "nothing is multiplied out with 4 names")
+    assert (problem.code, problem.message) == ("SF502", "products are not expanded with 4 names")
     assert problem.hint == "ask for the nested form"
 
 

@@ -196,4 +196,4 @@ def test_where_no_joint_shaper_is_found_those_of_the_modes_stand_in_a_row():
     ):
         shaper = input_shaper(rational(text), 2, kind, joint=True)
         assert (shaper.joint, shaper.times) == (False, input_shaper(rational(text), 2, kind).times)
-        assert "theirs in a row" in str(shaper)
+        assert "one shaper for each mode, in a row" in str(shaper)

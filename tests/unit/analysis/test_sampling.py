@@ -163,11 +163,11 @@ def test_how_it_is_sampled_makes_sense():
     lag = loads('symflex = 1\ninputs.u = {}\noutputs.y = "u/(s + 2)"').transfer_function("y", "u").bind()
     for asked, said in (
         (("1 ms", "tustn"), "did you mean 'tustin'"),
-        (("1 ms", "zoh", 10.0), "is of 'tustin'"),
+        (("1 ms", "zoh", 10.0), "applies to 'tustin'"),
         (("1 ms", "tustin", "600 Hz"), "half of the sampling frequency"),
         (("1 ms", "tustin", -1.0), "half of the sampling frequency"),
-        ((0.0,), "sampling time is positive"),
-        ((-1.0,), "sampling time is positive"),
+        ((0.0,), "sampling time must be positive"),
+        ((-1.0,), "sampling time must be positive"),
         ((float("nan"),), "finite"),
         (("1 kg",), "positive time"),
     ):

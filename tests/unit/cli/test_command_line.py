@@ -61,7 +61,7 @@ def test_what_kept_derivations_is_refused_with_a_hint(shell):
     for words in (("cache",), ("cache", "--clear"), ("derive", "two_mass.toml", "--no-cache")):
         done = shell(*words)
         assert (done.code, done.out) == (2, ""), words
-        assert "no longer kept on disk: leave it out" in done.err, words
+        assert "no longer caches derivations on disk: leave this option out" in done.err, words
 
 
 def test_an_exceeded_budget_ends_with_code_5(shell, monkeypatch):

@@ -62,7 +62,7 @@ def test_a_value_that_is_set_is_used(oscillator):
 
 def test_text_says_what_is_an_impulse(oscillator):
     out = oscillator("respond", "osc.toml", "--tf", "A/F", "--to", "impulse", "--until", "1 s").out
-    assert "besides, at 0 s, an impulse of weight 0.5" in out
+    assert "also, at 0 s, an impulse of weight 0.5" in out
     assert max(map(len, out.splitlines())) <= 80
 
 
@@ -167,7 +167,7 @@ def test_a_dead_time_of_the_specification_becomes_states(shell, tmp_path):
     assert float((names["C"] @ w)[0]) == pytest.approx(step_of_oscillator(0.487), rel=1e-12)
     done = shell("export", "late.toml", *asked)
     assert done.code == 3
-    assert "choose functions with one dead time with --tf" in done.err
+    assert "use --tf to choose functions with the same dead time" in done.err
 
 
 def test_a_controller_is_exported_with_its_poles_and_what_rounding_costs(oscillator, tmp_path):
@@ -184,7 +184,7 @@ def test_a_controller_is_exported_with_its_poles_and_what_rounding_costs(oscilla
 def test_options_of_sampling_that_do_not_go_together_are_refused(oscillator):
     for asked, said in (
         (["--to", "julia", "--sample", "1ms"], "--sample is for"),
-        (["--to", "c", "--method", "zoh"], "are of --sample"),
+        (["--to", "c", "--method", "zoh"], "need --sample"),
         (["--to", "state-space", "--sample", "1ms", "--direct"], "--direct is for"),
         (["--to", "state-space", "--sample", "1ms", "--method", "matched"], "of one transfer function"),
         (["--to", "c", "--sample", "1ms", "--minimal"], "--minimal is for"),
@@ -200,8 +200,8 @@ def test_options_of_sampling_that_do_not_go_together_are_refused(oscillator):
 def test_inputs_that_were_broken_by_hand_get_a_sentence(oscillator, tmp_path):
     for asked, code, said in (
         (["--until", "1e300"], 2, "error[SF103]: --until '1e300': a decimal exponent beyond 60"),
-        (["--until", "1", "--modes", "2"], 2, "--modes and --joint are of --shaped"),
-        (["--until", "1", "--width", "a4"], 2, "--xlim, --ylim, --width and --font are of a figure"),
+        (["--until", "1", "--modes", "2"], 2, "--modes and --joint need --shaped"),
+        (["--until", "1", "--width", "a4"], 2, "--xlim, --ylim, --width and --font apply only to a figure"),
         (
             ["--until", "1", "-o", "osc.svg", "--width", "a4", "--font", "sans", "--ylim", "0", "1"],
             0,
@@ -209,7 +209,7 @@ def test_inputs_that_were_broken_by_hand_get_a_sentence(oscillator, tmp_path):
         ),
         (["--until", "1", "--shaped", "zv", "--modes", "7"], 2, "has 1 modes that oscillate, not 7"),
         (["--to", "gap.csv"], 3, "gap.csv:3:1: error[SF603]: a number is missing"),
-        (["--to", "odd.csv"], 2, "times have too little in common"),
+        (["--to", "odd.csv"], 2, "the times have no usable common step"),
         (["--to", "same.csv"], 3, "same.csv:3:1: error[SF604]: times do not increase"),
     ):
         (tmp_path / "gap.csv").write_text("time_s,u\n0,0\n1,\n2,1\n", encoding="utf-8")
@@ -228,9 +228,9 @@ def test_what_grows_beyond_doubles_is_printed_in_decimals_and_not_drawn(shell, t
         assert abs(mpmath.mpf(document["value"][1]) / expected - 1) < mpmath.mpf("1e-11")
     drawn = shell("respond", "up.toml", "--until", "1000", "--points", "3", "-o", "up.svg")
     assert drawn.code == 2
-    assert "error[SF812]: the response of y/u is beyond the range of doubles from 500 s on" in drawn.err
+    assert "error[SF812]: the response of y/u exceeds the range of doubles from 500 s on" in drawn.err
     beyond = shell("respond", "up.toml", "--until", "1e10s")
-    assert (beyond.code, "error[SF812]: the response of y/u is beyond 10^100000 from" in beyond.err) == (
+    assert (beyond.code, "error[SF812]: the response of y/u exceeds 10^100000 from" in beyond.err) == (
         2,
         True,
     )

@@ -158,7 +158,7 @@ def test_exported_code_has_the_value_that_is_set(spec):
 
 def test_what_is_swept_is_not_set(spec):
     done = spec("sweep", "spec.toml", "--over", "k=1:2:lin:2", "--set", "k=3")
-    assert (done.code, "'k' is swept and set" in done.err) == (2, True)
+    assert (done.code, "'k' is both swept and set" in done.err) == (2, True)
 
 
 def test_a_sweep_that_is_stored_is_not_drawn_with_other_values(spec):

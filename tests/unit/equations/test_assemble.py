@@ -185,7 +185,7 @@ def test_what_is_too_large_is_refused_with_the_way_round_it(monkeypatch):
             PENDULUM.replace("[elements]", '[definitions]\nc = "2*k"\n[elements]').replace(
                 '"k"', '"c*sqrt(k*m)"'
             ),
-            "5 parameters, definitions and functions of them; at most 4 are carried",
+            "5 parameters, definitions and functions of them; at most 4 are allowed",
             "write numbers in place of parameters that need no name",
         ),
         ("UNKNOWN_LIMIT", 2, PENDULUM, "2 unknowns; at most 1 are solved for", "split the model"),

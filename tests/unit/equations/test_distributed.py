@@ -137,7 +137,7 @@ Y = "{static}(1)"
         pipeline.derive_all(pipeline.loads(text))
     (problem,) = caught.value.diagnostics
     assert problem.span.text == "f"
-    assert problem.hint == "put what it equals in its place in the other equations and conditions"
+    assert problem.hint == "substitute what it equals in the other equations and conditions"
 
 
 def test_equations_that_leave_a_highest_derivative_open_are_refused_at_their_field():

@@ -138,9 +138,9 @@ def test_a_uniform_load_where_a_constant_solves_the_equation_is_refused():
     with pytest.raises(ModelError) as caught:
         assemble(read("w''' = s^2*w' + p", 3))
     (problem,) = caught.value.diagnostics
-    message = "field 'w' has a solution constant in x; a uniform load on it is not available"
+    message = "field 'w' has a solution that is constant in x, so a uniform load on it is not available"
     assert (problem.code, problem.message, problem.span.text) == ("SF910", message, "w")
-    assert problem.hint == "let the load enter the conditions"
+    assert problem.hint == "put the load into the conditions"
 
 
 def test_a_line_without_stiffness_is_refused_at_its_place():

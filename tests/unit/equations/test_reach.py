@@ -69,7 +69,7 @@ def test_an_output_that_is_zero_only_by_balance_is_told():
     assert messages(elements=elements, inputs='F = { force = "z" }', outputs=outputs)[-1] == (
         "SF653",
         "no input reaches output 'Y': all its transfer functions are 0",
-        "is a name in its expression, or on the way to it, misspelt?",
+        "check the spelling of the names in its expression and on the way to it",
         "warning",
     )
 
@@ -79,7 +79,7 @@ def test_an_idle_input_is_told_with_what_may_be_wrong():
         (
             "SF652",
             "input 'u' reaches no output: all its transfer functions are 0",
-            "is a name on its way misspelt, or does an output lack?",
+            "check the spelling of the names on its way, or add an output",
             "warning",
         )
     ]

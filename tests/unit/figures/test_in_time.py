@@ -38,7 +38,7 @@ def test_a_step_figure_has_a_curve_a_function_up_to_the_time_asked_for():
 
 def test_an_impulse_that_is_not_drawn_is_said():
     figure = drawn("impulse", AxisLimits(x=(0.0, 2.0)))
-    assert "E/r: besides, impulses that are not drawn" in figure.get_suptitle()
+    assert "E/r: it also has impulses, which are not drawn" in figure.get_suptitle()
 
 
 def test_the_time_shown_is_read_from_the_specification():

@@ -53,7 +53,7 @@ def test_what_is_no_regular_file_is_not_overwritten(tmp_path):
     os.mkfifo(tmp_path / "fifo")
     assert refusal(tmp_path).endswith("it is not a regular file")
     assert refusal(tmp_path / "fifo").endswith("it is not a regular file")
-    assert refusal(tmp_path / "a\0.svg").endswith("the name holds a character no file name can have")
+    assert refusal(tmp_path / "a\0.svg").endswith("the name contains a character that file names cannot have")
     (tmp_path / "file").write_bytes(b"")
     assert refusal(tmp_path / "file" / "a.svg").endswith("Not a directory")
 
@@ -99,7 +99,7 @@ def test_a_folder_is_made_and_filled(tmp_path):
 
 def test_a_name_that_leads_elsewhere_is_refused_before_anything_is_written(tmp_path):
     for name in ["", ".", "..", "../a", "/a", "b/c", "a\\b", "a\0"]:
-        with pytest.raises(ValueError, match="is not a name of a file"):
+        with pytest.raises(ValueError, match="is not the name of a file"):
             write_folder(tmp_path / "new", {"a.tex": "", name: ""})
         assert not (tmp_path / "new").exists(), name
 

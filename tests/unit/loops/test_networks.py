@@ -165,7 +165,7 @@ def test_a_nyquist_plot_says_that_poles_of_a_network_are_known_in_a_disc():
 
 def test_what_is_no_gain_of_a_network_is_followed_by_value():
     model = pipeline.loads(chain(6))
-    for name, message in (("k", "'k' stands in several places of a network"), ("rho", "'rho' is part of")):
+    for name, message in (("k", "'k' occurs in several places of a network"), ("rho", "'rho' is part of")):
         with pytest.raises(ModelError, match=message) as caught:
             of_model.characteristic_loop(model, name)
         assert "symflex sweep FILE --over" in caught.value.diagnostics[0].hint

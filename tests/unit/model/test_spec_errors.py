@@ -108,7 +108,7 @@ def test_latex_in_double_quotes_is_pointed_at_its_backslash() -> None:
 
 def test_an_inline_table_over_several_lines_is_one_error() -> None:
     text = "m = {\n  a = 1,\n  b = 2\n}\nn = 3\n"
-    assert only(text).message == "an inline table ends on the line it begins"
+    assert only(text).message == "an inline table must end on the line where it begins"
 
 
 def recovered(text: str) -> TableValue:

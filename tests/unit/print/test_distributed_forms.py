@@ -349,7 +349,7 @@ def test_derivatives_have_a_krylov_form_where_wavenumbers_are_polynomials():
 
 def test_a_krylov_form_that_is_not_found_is_refused(monkeypatch):
     monkeypatch.setattr("symflex.print.forms.krylov.in_krylov_functions", lambda *_: None)
-    with pytest.raises(UsageError, match=r"has no krylov form.*not seen to be entire"):
+    with pytest.raises(UsageError, match=r"has no krylov form.*not be shown to be entire"):
         print_form(case("sliding_free_beam", "V_act/F"), "krylov")
 
 

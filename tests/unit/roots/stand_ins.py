@@ -13,7 +13,7 @@ from symflex.roots.root import Root
 from tests.unit.roots.distributed_models import ROD, bound
 
 UNLIMITED = Budget()
-OVER = BudgetError(Diagnostic("SF506", "the time given is over"))
+OVER = BudgetError(Diagnostic("SF506", "the time budget is used up"))
 
 
 def root(re, im=0.0, times=1, size=0.0, *, certified=True):

@@ -339,7 +339,7 @@ def word(model):
 def test_signs_are_told_with_numbers_whatever_the_form_of_a_value():
     for text in (SHAFT.replace("SHEAR", "E/(2*(1 + nu))"), SHAFT.replace("SHEAR", "G"), PINNED, COIL):
         for nu in ("0.3", "-0.3"):
-            assert word(members(text, nu)).sentence.endswith("passive, energy is nowhere supplied"), text
+            assert word(members(text, nu)).sentence.endswith("passive, nothing supplies energy"), text
 
 
 def test_a_modulus_that_is_negative_with_its_numbers_is_refused():
@@ -348,7 +348,7 @@ def test_a_modulus_that_is_negative_with_its_numbers_is_refused():
 
 
 def test_motor_constants_that_are_equal_by_value_make_a_passive_motor():
-    assert word(members(MOTOR)).reason == "a pole at 0; passive, energy is nowhere supplied"
+    assert word(members(MOTOR)).reason == "a pole at 0; passive, nothing supplies energy"
     assert not is_passive(members(MOTOR, k_e="2.5"))
 
 

@@ -225,7 +225,7 @@ def test_an_exceeded_budget_is_an_error_that_holds_the_map():
             shown.complete()
         (diagnostic,) = failed.value.diagnostics
         assert (diagnostic.message, diagnostic.code) == (said, coded)
-        assert diagnostic.hint == "what was proved until then is in the attribute 'found' of this error", code
+        assert diagnostic.hint == "the attribute 'found' of this error has what was proved until then", code
         assert failed.value.found is shown, (reason, code)
 
 

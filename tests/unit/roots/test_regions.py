@@ -149,8 +149,8 @@ def test_impossible_regions_are_refused():
     for make, message in [
         (lambda: Band(Fraction(2), Fraction(1)), "band"),
         (lambda: Band(Fraction(-1), Fraction(1)), "band"),
-        (lambda: rectangle(1, 0, 0, 1), "^a rectangle is given as RE0 <= RE1, IM0 <= IM1$"),
-        (lambda: rectangle(0, 1, 1, 0), "^a rectangle is given as RE0 <= RE1, IM0 <= IM1$"),
+        (lambda: rectangle(1, 0, 0, 1), "^a rectangle needs RE0 <= RE1, IM0 <= IM1$"),
+        (lambda: rectangle(0, 1, 1, 0), "^a rectangle needs RE0 <= RE1, IM0 <= IM1$"),
         (lambda: Modes(-1), "^the number of modes cannot be -1$"),
         (lambda: Mode(0), "^modes are numbered from 1, not 0$"),
     ]:

@@ -433,7 +433,7 @@ def test_a_hub_with_an_arm_turns_rigidly_at_the_origin():
 def test_there_are_only_as_many_modes_as_there_are():
     bound = chain()
     for mode, said in (
-        (6, "has 5 modes other than at 0, not 6"),
+        (6, "has only 5 modes besides those at s = 0; mode 6 does not exist"),
         (0, "no pole at 0"),  # it is held, and has no motion as a rigid body
         (-1, ""),
     ):

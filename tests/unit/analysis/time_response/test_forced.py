@@ -75,7 +75,7 @@ def test_samples_that_make_no_sense_are_refused_with_a_sentence():
         ([0.0, 1.0], [1.0, np.nan], "finite values"),
         ([0.0], [1.0], "two or more"),
         ([1.0, 0.0], [1.0, 2.0], "increase"),
-        ([0.0, 1.0, 2.3456789012], [1.0, 2.0, 3.0], "too little in common"),
+        ([0.0, 1.0, 2.3456789012], [1.0, 2.0, 3.0], "no usable common step"),
     ):
         found = words(respond, times, values)
         assert found.startswith("UsageError") and said in found, (times, values)

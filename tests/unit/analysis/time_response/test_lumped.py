@@ -109,7 +109,7 @@ def test_poles_that_only_constants_bring_together_are_refused():
 def test_times_that_are_none_are_refused_with_a_sentence():
     for times, said in (
         ([-1.0, 0.0], "begins at t = 0"),
-        ([0.0, 2.0, 1.0], "1 s stands after 2 s"),
+        ([0.0, 2.0, 1.0], "1 s follows 2 s"),
         ([0.0, 0.0], "increase"),
         ([np.nan], "finite"),
         ([np.inf], "finite"),

@@ -95,4 +95,4 @@ def test_a_real_pole_far_below_the_band_is_a_power_of_s():
 def test_whatever_the_time_the_best_fit_so_far_is_returned(seconds):
     with Budget(seconds=seconds).entered():
         fit = fit_resonances([two_modes(6)])
-    assert fit.resonances.order == 4 or "the time given was over before the fit was complete" in fit.poor
+    assert fit.resonances.order == 4 or "the time budget ended before the fit was complete" in fit.poor

@@ -178,7 +178,7 @@ def test_what_is_no_data_file_says_what_to_do(tmp_path):
     for name, said in (
         ("a.xlsx", "save the sheet as .csv"),
         ("a.tdms", "nptdms"),
-        ("a.xyz", "no table in text"),
+        ("a.xyz", "not a text table"),
     ):
         (tmp_path / name).write_text("nothing here\n")
         with pytest.raises(DataError) as caught:

@@ -194,7 +194,7 @@ def test_no_time_is_said_to_be_over_and_keeps_what_was_found():
     region = Modes(30)
     result = locate(bound(DELAY_LOOP), region, 12, Budget(5, clock=lambda: next(times)))
     assert result.certificate.is_exceeded
-    assert "the time given is over" in result.certificate.reason
+    assert "the time budget is used up" in result.certificate.reason
 
 
 def test_a_million_modes_are_refused_at_once():

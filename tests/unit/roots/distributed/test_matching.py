@@ -102,7 +102,7 @@ class Sharing(StandIn):
 def test_so_many_modes_are_lacking_that_it_is_given_up():
     poles, zeros = Sharing([], modes=1), Sharing([], modes=1)
     with pytest.raises(
-        BudgetError, match=r"SF505.*: too many poles and zeros coincide to tell the modes"
+        BudgetError, match=r"SF505.*: too many poles and zeros coincide to identify the modes"
     ) as e:
         _find((poles, zeros), Modes(3))
     assert e.value.diagnostics[0].hint == "ask for a band, which shows those that do not"

@@ -284,7 +284,7 @@ def test_too_few_modes_left_after_a_repeated_search_are_said(world):
     for modes, reason in [(1, True), (2, None)]:
         world.sides["poles"] = Known([], modes=modes, engine_after="subdivision")
         told = world.locate(region=Modes(2)).certificate
-        assert told.reason == (reason and "too many poles and zeros coincide to tell the modes"), modes
+        assert told.reason == (reason and "too many poles and zeros coincide to identify the modes"), modes
 
 
 # ------------------------------------------------------------ one mode by its number
@@ -333,7 +333,7 @@ def test_a_search_broken_off_says_how_far_it_came(world):
         world.sides["poles"] = Known(pair(-1, 9), modes=modes, reached=log(4 * pi), fails=OVER)
         shown = world.locate(region=Modes(9))
         told = shown.certificate
-        assert told.reason == f"the time given is over; {said}", modes
+        assert told.reason == f"the time budget is used up; {said}", modes
         assert (told.certified, told.is_exceeded, told.code) == (False, True, "SF506"), modes
         assert len(shown.poles) == 2, modes
         assert shown.verdict.reason == told.reason, modes
@@ -342,9 +342,9 @@ def test_a_search_broken_off_says_how_far_it_came(world):
 def test_how_far_is_not_said_of_a_band_or_where_it_came_nowhere(world):
     for reached in [-inf, inf]:
         world.sides["poles"] = Known(pair(-1, 9), reached=reached, fails=OVER)
-        assert world.locate(region=Modes(9)).certificate.reason == "the time given is over", reached
+        assert world.locate(region=Modes(9)).certificate.reason == "the time budget is used up", reached
     world.sides["poles"] = Known(pair(-1, 9), fails=OVER)
-    assert world.locate().certificate.reason == "the time given is over"
+    assert world.locate().certificate.reason == "the time budget is used up"
 
 
 def test_a_search_that_found_nothing_but_the_origin_fails_and_zeros_alone_are_something(world):
@@ -388,7 +388,7 @@ def test_all_that_was_exceeded_is_said(world):
     both = BudgetError(*OVER.diagnostics, Diagnostic("SF504", "the memory is used up"))
     world.sides["poles"] = Known(pair(-1, 9), fails=both)
     told = world.locate().certificate
-    assert (told.reason, told.code) == ("the time given is over; the memory is used up", "SF506")
+    assert (told.reason, told.code) == ("the time budget is used up; the memory is used up", "SF506")
 
 
 def test_an_unstable_pole_of_a_search_broken_off_is_no_hidden_mode(world):
@@ -406,7 +406,7 @@ def test_a_budget_that_ends_on_the_right_leaves_what_is_proved_of_the_region(wor
     assert shown.certificate.certified
     assert not shown.certificate.is_exceeded
     assert shown.verdict.word == "unknown"
-    assert shown.verdict.reason == "the time given is over"
+    assert shown.verdict.reason == "the time budget is used up"
 
 
 # ------------------------------------------------------------ the right half plane

@@ -385,7 +385,7 @@ def test_the_smallest_circle_that_could_be_counted_tells_the_roots_next_to_0_or_
     ]:
         assert turns_about_zero(Circles(*counts, power=power), pi / 2, ()) == found
     with pytest.raises(
-        UncertifiedError, match=r"SF404.*the order of the root of \S+ at s = 0 cannot be told"
+        UncertifiedError, match=r"SF404.*the order of the root of \S+ at s = 0 could not be determined"
     ):
         turns_about_zero(Circles(None, 3, None, 5, power=2), pi / 2, ())
 

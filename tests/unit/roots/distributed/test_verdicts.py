@@ -300,7 +300,7 @@ def test_a_budget_spent_by_the_count_is_said(searching):
 
 def test_a_budget_spent_by_the_search_is_said_with_what_was_counted(searching):
     for count, said in [
-        (3, "3 are counted, and not all found: the budget is spent"),
+        (3, "3 are counted, but not all are found: the budget is spent"),
         (RootOnPathError(), "the budget is spent"),
     ]:
         again = Half(0, roots=(RIGHT, TWICE), proof=SPENT)
