@@ -134,7 +134,8 @@ def _make(folder: Path, *, is_root: bool) -> None:
     name = str(folder)
     try:
         if not is_root and folder.is_symlink():
-            raise _unwritable(name, "it is a symbolic link, and symflex does not write through links", into=True)
+            reason = "it is a symbolic link, and symflex does not write through links"
+            raise _unwritable(name, reason, into=True)
         folder.mkdir(parents=is_root, exist_ok=True)
     except OSError as error:
         raise _unwritable(name, error.strerror or "input/output error", into=True) from None
