@@ -93,7 +93,7 @@ def test_matrices_that_do_not_fit_are_refused():
         ({"M": [[1, np.nan], [0, 1]], **one}, "'nan' is not a real number"),
         ({"M": np.eye(2) * 1j, **one}, "not a real number"),
         ({"M": np.eye(2), "inputs": {"F": 2}, "outputs": {"X": 0}}, "input 'F' is at 2"),
-        ({"M": np.eye(2), "inputs": {"F": "q_3"}, "outputs": {"X": 0}}, "names 'q_3'"),
+        ({"M": np.eye(2), "inputs": {"F": "q_3"}, "outputs": {"X": 0}}, "the unknown 'q_3'"),
         ({"M": np.eye(2), "inputs": {"F": [1, 2, 3]}, "outputs": {"X": 0}}, "has 3 entries"),
         ({"M": np.eye(2), "unknowns": ["x"], **one}, "1 unknowns"),
     ):

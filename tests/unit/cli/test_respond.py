@@ -186,7 +186,7 @@ def test_options_of_sampling_that_do_not_go_together_are_refused(oscillator):
         (["--to", "julia", "--sample", "1ms"], "--sample is for"),
         (["--to", "c", "--method", "zoh"], "need --sample"),
         (["--to", "state-space", "--sample", "1ms", "--direct"], "--direct is for"),
-        (["--to", "state-space", "--sample", "1ms", "--method", "matched"], "of one transfer function"),
+        (["--to", "state-space", "--sample", "1ms", "--method", "matched"], "to one transfer function"),
         (["--to", "c", "--sample", "1ms", "--minimal"], "--minimal is for"),
         (["--to", "c", "--sample", "0"], "positive time"),
         (["--to", "c", "--sample", "1ms", "--method", "tustin", "--prewarp", "1kHz"], "that is 500 Hz"),
