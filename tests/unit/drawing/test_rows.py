@@ -144,7 +144,7 @@ def test_a_width_without_room_is_refused_with_the_width_it_takes():
         for kind, key in (kinds[i % 2],)
     )
     text = f'symflex = 1\n[elements]\n{links}\n[inputs]\nF = {{ force = "x0" }}\n[outputs]\nX = "x20"\n'
-    with pytest.raises(UsageError, match=r"SF902.*no room in 88.5 mm"):
+    with pytest.raises(UsageError, match=r"SF902.*does not fit into 88.5 mm"):
         drawing_of(read(text), width_mm=88.5)
 
 
