@@ -193,6 +193,7 @@ def export(spec: Specification, given: ExportOptions) -> int:
     use this form for functions without a short formula, such as networks and tapered members.
     """
     from symflex import pipeline
+    from symflex.codegen.export import Language
     from symflex.codegen.exporters import EXPORTERS
     from symflex.codegen.latex import LatexExporter
     from symflex.codegen.module_text import identifiers
@@ -213,7 +214,8 @@ def export(spec: Specification, given: ExportOptions) -> int:
         model, pairs, representation, solves=exporter.solves, is_read=given.target == "latex"
     )
     if reason:
-        note(reason)
+        is_solved = not (model.is_distributed and isinstance(exporter, Language)) or exporter.is_open
+        note(reason if is_solved else "in band form, with the numbers of the file: the formula would be long")
     if isinstance(exporter, LatexExporter) and given.output and is_folder:
         return _write_fragments(exporter, model, derived, given.output, strict=given.strict)
     stem = Path(given.output).stem if given.output else identifiers({"": Path(spec.path).stem}, ())[""]

@@ -8,6 +8,7 @@ import pytest
 
 from symflex.cli.library import TEMPLATES
 from symflex.codegen.exporters import EXPORTERS
+from tests.unit.cli.commands import WORKED
 
 
 def test_a_figure_is_written_in_the_format_of_its_name(shell):
@@ -266,3 +267,10 @@ def test_a_transfer_function_that_is_zero_is_left_out_of_a_plot(shell):
     done = shell("plot", "zero.toml", "poles_zeros", "-o", "a.svg")
     assert (done.code, done.err.count("SF653")) == (0, 1)
     assert done.err.endswith("Z/F is identically zero and is left out\nwrote a.svg\n")
+
+
+@pytest.mark.slow
+def test_what_is_written_in_band_form_is_called_so(shell):
+    arm = WORKED / "frames" / "two_link_arm.toml"
+    for target, said in (("c", "in band form"), ("numpy", "solved as a network")):
+        assert shell("export", str(arm), "--to", target).err.startswith(said), target
