@@ -104,6 +104,7 @@ def test_an_example_that_somebody_broke_is_an_error_with_its_place(shell, monkey
     assert (done.code, f"{broken}:1:" in done.err) == (3, True)
 
 
+@pytest.mark.slow
 def test_a_report_takes_the_name_of_an_example_where_no_such_file_exists(shell):
     done = shell("report", "rod_tip_mass", "-o", "out", "-j", "1", "--no-pdf", "--date", "none")
     assert (done.code, done.out) == (0, "open out/index.html\n")
