@@ -130,7 +130,7 @@ BROKEN = {
     "section_negative_at_its_end": (
         arm('I = "«I_0*(1 - 2*x/l)^3»", A = "A_0"'),
         "SF209",
-        "I of beam 'arm' at x = l is negative (-2.13e-07); a second moment of area is positive",
+        "I of beam 'arm' at x = l is negative (-2.13e-07); a second moment of area must be positive",
     ),
     "section_negative_between_its_ends": (
         arm('I = "I_0", A = "«A_0*(1 - 5*x/l*(1 - x/l))»"'),
@@ -140,17 +140,17 @@ BROKEN = {
     "section_zero_between_its_ends": (
         arm('I = "«I_0*(1 - 2*x/l)^2»", A = "A_0"'),
         "SF209",
-        "I of beam 'arm' at x = 0.5 m is 0; a second moment of area is positive",
+        "I of beam 'arm' at x = 0.5 m is 0; a second moment of area must be positive",
     ),
     "section_that_is_nothing": (
         arm('I = "«I_0*(x/l - x/l)»", A = "A_0"'),
         "SF209",
-        "I of beam 'arm' is 0; a second moment of area is positive",
+        "I of beam 'arm' is 0; a second moment of area must be positive",
     ),
     "tension_that_turns_negative": (
         arm('N = "«N_0*cos(2*x/l)»", A = "A_0"', kind="string").replace('E = "E", ', ""),
         "SF209",
-        "N of string 'arm' at x = l is negative (-832.294); a tension is positive",
+        "N of string 'arm' at x = l is negative (-832.294); a tension must be positive",
     ),
     # x where it means nothing.
     "x_in_a_domain": (tapered(domain='"0", "«x»"'), "SF210", NO_X),

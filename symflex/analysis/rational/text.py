@@ -102,7 +102,7 @@ def _validity(found: RationalApproximation) -> list[str]:
     band = f"{error.low_hz:.4g} to {error.high_hz:.4g} Hz"
     lines.append(f"worst error from {band}: {100 * error.worst:.3g} %, at {error.worst_at_hz:.6g} Hz")
     sampled = f"{len(scan.error)} samples from {scan.low_hz:.4g} to {scan.high_hz:.6g} Hz"
-    lines.append(f"these errors are sampled at {sampled}, not proved")
+    lines.append(f"sampled, not proved: {sampled}")
     if found.omitted_hz is not None:
         lines.append(f"the first pole left out is at {found.omitted_hz:.6g} Hz")
     return lines

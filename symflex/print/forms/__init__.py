@@ -131,7 +131,7 @@ def _arranged(
     if tf.is_distributed:
         made = _distributed(tf, form, digits, arranged or Arranged())
     else:
-        made = _lumped(tf, form, digits, arranged or Arranged())
+        made = _lumped(tf, form, digits, arranged)
     if form is None and _length(made) > LONG and (written := _written(tf)) is not None:
         return min((made, written), key=lambda f: _length(f) * (1 if f is made else SHORTER))
     return made
@@ -153,14 +153,15 @@ def _distributed(tf: TransferFunction, form: str | None, digits: int, arranged: 
     return opened if MORE * _length(opened) < _length(kept) else kept
 
 
-def _lumped(tf: TransferFunction, form: str | None, digits: int, arranged: Arranged) -> PrintedForm:
+def _lumped(tf: TransferFunction, form: str | None, digits: int, arranged: Arranged | None) -> PrintedForm:
     """Return a form, definitions closed where that is shorter and no form was asked for."""
 
     def shortest(own: TransferFunction) -> PrintedForm:
         return min((_made(own, name, digits) for name in ([form] if form else _candidates(own))), key=_length)
 
     opened = shortest(tf)
-    closed = arranged.definitions.of(tf) if form is None and tf.definitions else None
+    is_kept = form is None and bool(tf.definitions)
+    closed = (arranged or Arranged()).definitions.of(tf) if is_kept else None
     # What cancels only where definitions are opened would stand in both sides.
     if closed is None or _order(closed) > _order(tf):
         return opened

@@ -83,7 +83,7 @@ def test_what_ends_a_command_is_said_with_its_code():
         ("block = bytearray(b'x') * 10**9", ("--memory", "500 MB"), 5, "SF504"),
         ("from flint import fmpz; x = fmpz(1) << 16 * 10**9", ("--memory", "500 MB"), 5, "SF504"),
         ("os.kill(os.getpid(), 11)", (), 5, "SF508"),
-        ("os.write(2, b'Impossible inverse'); os.abort()", (), 5, "computation: Impossible inverse"),
+        ("os.write(2, b'Impossible inverse'); os.abort()", (), 5, "crashed: Impossible inverse"),
         ("sys.exit(3)", (), 3, ""),
         # Beyond what systems count it is no limit.
         ("sys.exit(3)", ("--memory", "999999999 TB"), 3, ""),

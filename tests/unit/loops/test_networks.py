@@ -111,7 +111,7 @@ def test_stability_of_a_network_is_that_at_its_own_gain():
         assert (unstable(6, gain, 2 * pi * 300) > 0) is (word == "unstable")
         assert not network.certified and not network.intervals
         said = stability_text(network)
-        assert f"examined: K = {gain} alone" in said and "is not searched" in said
+        assert f"examined: K = {gain} alone" in said and "are not searched" in said
         assert "stable for" not in said and "boundaries" not in said
     assert (
         found(chain(6).replace('K = "1 N*s/m"', 'K = "K"').replace('K = "K"', "K = {}")).verdict.word

@@ -235,7 +235,7 @@ def test_a_figure_that_cannot_be_drawn_is_told_in_its_place_and_on_the_terminal(
     text = text.replace("K = ", "R = 2\nK = ").replace('"K*i"', '"K*R^2*i"')
     report = report_on(tmp_path, square=text)
     page = html.unescape(report_page(report))
-    assert "square: the characteristic function is not a straight line in" in page
+    assert "square: the characteristic function is not linear in" in page
     assert any("square, figure square: the characteristic function is not" in w for w in report.warnings)
 
 
