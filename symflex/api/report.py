@@ -70,19 +70,21 @@ def write_report(
 
     Examples
     --------
+    A parameter without a value leaves the formulas and costs the numbers:
+
     >>> import symflex, tempfile
     >>> from pathlib import Path
     >>> text = '''symflex = 1
+    ... parameters.k = { unit = "N/m" }
     ... inputs = { F = { force = "x" } }
     ... outputs = { X = "x" }
-    ... elements.m = { type = "mass", at = "x", m = "2 kg" }
-    ... elements.b = { type = "damper", between = ["x", "ground"], b = "3 N*s/m" }'''
+    ... elements.k = { type = "spring", between = ["x", "ground"], k = "k" }'''
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     spec = Path(folder, "mass.toml")
+    ...     spec = Path(folder, "spring.toml")
     ...     _ = spec.write_text(text, encoding="utf-8")
     ...     written = symflex.write_report(spec, Path(folder, "report"), pdf=False)
-    ...     written.page.name, written.is_certified, written.warnings
-    ('index.html', True, ())
+    ...     written.page.name, written.warnings[1]
+    ('index.html', "spring, roots: parameter 'k' has no value")
     """
     from symflex.report.published import written
 
