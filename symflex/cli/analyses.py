@@ -104,9 +104,9 @@ def roots(spec: Specification, given: RootsOptions) -> int:
 def rational(spec: Specification, given: RationalOptions) -> None:
     """Print a rational approximation of one transfer function of SPEC.
 
-    Of infinitely many modes, --modes are kept: in product form as poles and zeros, in modal form as residues
-    and a static correction. symflex samples the frequencies up to which the approximation is within 1 % and 5
-    % of the exact function. A lumped system with all its modes is its own approximation.
+    A distributed system keeps as many modes as --modes says: as poles and zeros in product form, as residues
+    and a static correction in modal form. symflex samples the frequencies up to which the approximation is
+    within 1 % and 5 % of the exact function. A lumped system with all its modes is its own approximation.
     """
     from symflex import pipeline
     from symflex.analysis.rational import approximate

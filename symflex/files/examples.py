@@ -9,7 +9,7 @@ Names are looked up in what the folder holds, and never joined to a path: ``../x
 from __future__ import annotations
 
 import os
-import re
+import tomllib
 from pathlib import Path
 from typing import Final
 
@@ -26,7 +26,6 @@ FOLDERS: Final[dict[str, str]] = {
 """What each folder holds; ``claims.toml`` is no model, see ``symflex.report.claims``."""
 CLAIMS: Final = "claims.toml"
 LISTED: Final = "'symflex examples' lists them"
-_TITLE: Final = re.compile(r'^title\s*=\s*"(.*)"\s*$', re.MULTILINE)
 _PACKAGE: Final = Path(__file__).parents[1]
 
 
@@ -55,8 +54,7 @@ def title_of(name: str, path: Path) -> str:
     """Return what an example is, in one line."""
     if name in FOLDERS:
         return FOLDERS[name]
-    match = _TITLE.search(path.read_text(encoding="utf-8"))
-    return match[1] if match else path.stem
+    return str(tomllib.loads(path.read_text(encoding="utf-8")).get("title", path.stem))
 
 
 def find_example(name: str) -> Path:

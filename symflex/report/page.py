@@ -37,6 +37,8 @@ if TYPE_CHECKING:
 
 DEEPEST_HEADING: Final = 6
 CONTENTS_DEPTH: Final = 2
+PAIR: Final = 2
+"""Columns up to which a table with text is narrow enough for every screen."""
 WIDE: Final = 6
 """Columns from which a table with text may be wider than the column of text."""
 LONG_INLINE: Final = 600
@@ -206,7 +208,7 @@ def _formula(formula: DisplayedFormula) -> Iterator[str]:
 def _table(table: Table) -> str:
     # On a narrow screen the cells of a row stand below each other, each with its head.
     has_text = any(c.side == "text" for c in table.columns)
-    is_stacked = len(table.columns) > 2 and has_text  # noqa: PLR2004
+    is_stacked = len(table.columns) > PAIR and has_text
     is_wide = len(table.columns) >= WIDE and has_text
     kind = ' class="stack"' if is_stacked else ""
     place = "scroll wide" if is_wide else "scroll"
