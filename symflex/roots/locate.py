@@ -58,7 +58,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symflex.equations import Equations
-    from symflex.model import Model
+    from symflex.model import ExactValue, Model
     from symflex.roots.counting.winding import Cell
     from symflex.transfer import AnyBoundFunction, BoundTransferFunction
 
@@ -111,7 +111,7 @@ def locate(
     )
     verdict = replace(found.verdict, moving=_moving_unseen(bound))
     if bound.source.hides_waves and verdict.word != "unstable":
-        proof, _ = _passivity(bound)
+        proof, _ = _passivity_of(bound)
         verdict = (
             replace(verdict, reason=f"{proof}; {UNSEEN_ON_AXIS}")
             if proof
@@ -164,7 +164,14 @@ def _locate_nested(bound: BoundNested, region: Region | None, digits: int, budge
     is_default = region is None or isinstance(region, Everything)
     where = default_region(bound) if region is None or isinstance(region, Everything) else region
     found = locate_in_network(
-        equations_of(bound), bound.name, pair, where, digits, budget, is_default=is_default
+        equations_of(bound),
+        bound.name,
+        pair,
+        where,
+        digits,
+        budget,
+        is_default=is_default,
+        proof=_passivity(source.model, bound.values)[0],
     )
     is_open = not found.certificate.certified and found.certificate.code is None
     if not is_open or not may_be_expanded(model, pair):
@@ -414,7 +421,7 @@ class _Searched:
         poles = [] if bound.ratio.is_zero else [(0, bound.den)]
         coincident = [h for h in self.hidden if h.cause == "coincident"]
         degenerate = _degenerate_points(bound)
-        proof, rests = _passivity(bound)
+        proof, rests = _passivity_of(bound)
         limit = fastest_growth(bound.source.model, bound.all_values) if bound.is_of_model else None
         found: list[tuple[Root, ...]] = []
         gaps: list[RightHalfPlane] = []
@@ -533,11 +540,12 @@ def _chosen(roots: Sequence[Root], region: Region) -> list[Root]:
     return list(in_order(roots) if isinstance(region, Mode) else chosen(roots, region))
 
 
-def _passivity(bound: BoundTransferFunction) -> tuple[str, bool]:
+def _passivity_of(bound: BoundTransferFunction) -> tuple[str, bool]:
+    return _passivity(bound.source.model, bound.all_values) if bound.is_of_model else ("", False)
+
+
+def _passivity(model: Model, values: Sequence[tuple[str, ExactValue]]) -> tuple[str, bool]:
     """Return why no pole lies right of the imaginary axis, and whether none lies on it but at 0."""
-    if not bound.is_of_model:
-        return "", False
-    model, values = bound.source.model, bound.all_values
     if is_passive(model, values) or are_passive(model, values):
         return PASSIVE, False
     loop = passive_loop(model, "", values)

@@ -70,7 +70,6 @@ class Network:
     # Powers of s in front of determinant, and of the determinant bordered by input and output.
     below: int
     above: int
-    passive: bool  # nothing supplies energy: it is proved that no lambda is negative
     # Whether the roots of denominator and of numerator mirror each other in the imaginary axis: it is proved.
     symmetric: tuple[bool, bool]
 
@@ -191,15 +190,12 @@ class _NetworkReading:
             for v, c in row.items():
                 if i <= position[v]:
                     entries[i, position[v]] = c * scale[i]
-        passive = is_passive(equations.model)
-        self._check(entries, members, is_passive=passive)
+        self._check(entries, members, is_passive=is_passive(equations.model))
         symmetric = (
             self._is_symmetric([read.divisor]),
             self._is_symmetric(driven.values()) and self._is_symmetric(form.values()),
         )
-        network = Network(
-            self.numbers, len(order), entries, members, {}, {}, below, below, passive, symmetric
-        )
+        network = Network(self.numbers, len(order), entries, members, {}, {}, below, below, symmetric)
         try:
             if any(v in inputs or v in self.delivered for v in form):
                 _refuse("the output reads something that is not the motion of a node")

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING
 from flint import arb, ctx
 
 from symflex.errors import BudgetError
-from symflex.model.signs import is_passive
 from symflex.roots.networks.anywhere import CRAMER, roots_in_disc
 from symflex.roots.networks.at_rest import order_at_zero
 from symflex.roots.networks.counting import Counter
@@ -49,7 +48,6 @@ WIDER = 1e-3
 """How far beyond the limits of a band is searched, relative to them."""
 MATCHING_ROUNDS = 20
 """Searches that go further because input or output do not see some of the modes."""
-PASSIVE = "passive, nothing supplies energy"
 NOT_PASSIVE = "it is not proved that nothing supplies energy, and real poles were not counted"
 NONE_ON_AXIS = "none of those found lies on the imaginary axis"
 ACCUMULATE = "roots accumulate where a denominator vanishes, and could not be counted"
@@ -70,10 +68,12 @@ def locate_in_network(
     budget: Budget,
     *,
     is_default: bool,
+    proof: str,
 ) -> PoleZeroMap:
     """Find poles and zeros of a transfer function, by counts where nothing loses energy, else in discs.
 
-    ``equations`` have numbers in place of all parameters. Of a function that is zero, nothing is searched.
+    ``equations`` have numbers in place of all parameters, and ``proof`` says why they have no pole right of
+    the imaginary axis, or is empty. Of a function that is zero, nothing is searched.
     """
     if is_zero(equations, *pair):
         return _with_certificate(_nothing(ZERO, ""), name, region, digits, is_default=is_default)
@@ -90,12 +90,12 @@ def locate_in_network(
         digits,
         budget,
         symmetric=(False, False) if network is None else network.symmetric,
-        proof=PASSIVE if is_passive(equations.model) else "",
+        proof=proof,
     )
     if network is None or not (network.driven and network.read):
         found = in_disc()
     else:
-        found = _without_losses(_NetworkSearch(network, cramer, region, digits, budget), in_disc)
+        found = _without_losses(_NetworkSearch(network, cramer, region, digits, budget), in_disc, proof)
     return _with_certificate(found, name, region, digits, is_default=is_default)
 
 
@@ -154,7 +154,7 @@ class LocatedRoots:
     code: str | None = None  # of what was exceeded
 
 
-def _without_losses(search: _NetworkSearch, in_disc: Callable[[], LocatedRoots]) -> LocatedRoots:
+def _without_losses(search: _NetworkSearch, in_disc: Callable[[], LocatedRoots], proof: str) -> LocatedRoots:
     """Count the poles, and the zeros where the output is what the input drives.
 
     Else all are found in a disc, and where that comes to nothing the poles are counted nevertheless.
@@ -177,7 +177,6 @@ def _without_losses(search: _NetworkSearch, in_disc: Callable[[], LocatedRoots])
         engine, zeros = f"{WITTRICK_WILLIAMS}, {CRAMER}", found.zeros or zeros
         reasons += found.reasons
     known = [*poles, *(h.root for h in hidden if not h.is_proved)]
-    proof = PASSIVE if search.network.passive else ""
     unseen = [h.root for h in hidden if h.is_proved]
     verdict = judge(known, NONE_ON_AXIS if proof else NOT_PASSIVE, proof, unseen)
     reasons += search.reasons

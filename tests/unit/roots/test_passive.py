@@ -365,6 +365,24 @@ def test_sources_that_supply_energy_are_not_taken_for_springs_dampers_or_masses(
         assert closed(members(FOLLOWS.replace("FORCE", force))) is None, force
 
 
+def test_a_source_between_two_nodes_is_a_spring_and_a_damper_by_what_moves_between_them():
+    turns = FOLLOWS.replace('at = "y"', 'between = ["y", "x"]')
+    for force, is_one in (
+        ("-(k + b*s)*(y - x)", True),
+        ("b*s*(x - y)", True),
+        ("(k + b*s)*(y - x)", False),  # of the wrong sign
+        ("-k*y", False),  # not relative
+        ("-k*(y - x/2)", False),
+    ):
+        assert (closed(members(turns.replace("FORCE", force))) is not None) is is_one, force
+
+
+def test_poles_of_a_network_are_left_of_the_axis_where_a_motor_in_a_joint_is_a_damper():
+    (tf,) = pipeline.derive_bound(pipeline.load("derivations/frames/two_link_arm.toml"), [("theta_2", "tau")])
+    verdict = pipeline.roots(tf, Modes(1)).verdict
+    assert (verdict.word, verdict.certified) == ("marginal", True)
+
+
 def test_a_current_that_follows_a_voltage_is_a_resistor_or_a_capacitor():
     # Of a voltage the derivative does no work: the second one is no inertia.
     for current, is_one in (("-v_2/R", True), ("-C*s*v_2", True), ("-C*b/k*s^2*v_2", False)):
