@@ -270,8 +270,8 @@ class Piston(Element):
     type_name = "piston"
     summary = "Piston, diaphragm or cylinder between motion and pressure"
     ports = (
-        Port("mover", 1, "translation", "node that moves with the piston", reacts=True), Port("chamber", 1,
-        "acoustic", "node of the pressure in front of it", reacts=True),
+        Port("mover", 1, "translation", "node that moves with the piston", reacts=True),
+        Port("chamber", 1, "acoustic", "node of the pressure in front of it", reacts=True),
     )
     parameters = (ParameterPort("A", "m^2", "an area"),)
     through = ("f", "q")
