@@ -90,7 +90,7 @@ class Transformer(TwoPort):
 
 
 class Gyrator(TwoPort):
-    """A lossless crossing of effort and flow: ``effort_from = ratio*flow_to``, ``effort_to = ratio*flow_from``.
+    """A lossless coupling: ``effort_from = ratio*flow_to``, ``effort_to = ratio*flow_from``.
 
     Effort is force [N], torque [N m] or voltage [V]; flow is velocity [m/s, rad/s] or current [A]. Power
     drawn at ``from`` is delivered at ``to``. ``f``, ``tau`` or ``i``, depending on the domain of ``to``, is
