@@ -177,7 +177,7 @@ def fit(
     window : str, optional
         ``hann`` or ``none``, where the data do not say.
     gain : bool
-        Fit a gain besides the base.
+        Fit a gain in addition to the base.
     lag : bool or "signed"
         Fit a lag of the sensor, 1/(1 + T s); it is not negative unless it is ``"signed"``.
     delay : bool
@@ -192,8 +192,8 @@ def fit(
     DataError
         SF601 to SF607: data that cannot be used.
     FitError
-        SF615: the base vanishes in the band. Otherwise the best fit is returned, and ``poor`` says why it is
-        no good one.
+        SF615: the base vanishes in the band. Otherwise the best fit is returned, and ``poor`` says why it may
+        be wrong.
     UsageError
         SF902 names and options that contradict each other.
 

@@ -33,8 +33,8 @@ class ModeShape:
     """The motion of everything at one pole, up to a common factor; the largest displacement found is 1.
 
     Displacements are those of nodes in translation, along beams, rods and strings, and of each field's first
-    unknown [m]; where none of them moves, the largest angle is 1, else the largest voltage. At an undamped
-    pole a shape is real, as far as all that moves depends on s^2 alone.
+    unknown [m]. If none of them moves, the largest angle is 1, else the largest voltage. At an undamped
+    pole, a shape is real if all that moves depends on s^2 alone.
 
     Parameters
     ----------

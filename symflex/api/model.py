@@ -156,7 +156,7 @@ class Model:
 
     @property
     def warnings(self) -> tuple[Diagnostic, ...]:
-        """Warnings of ``symflex check``: what the specification says but may not mean.
+        """Warnings of ``symflex check``: possible mistakes in the specification.
 
         Examples
         --------

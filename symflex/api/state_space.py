@@ -33,8 +33,8 @@ MOST_STATES: Final = 8
 class StateSpace:
     """``w' = A w + B u``, ``y = C w + D u`` with the parameters as symbols.
 
-    The states w are quantities of the model: displacements and velocities of nodes, currents, voltages. That
-    the matrices satisfy the model's equations is proved when they are made.
+    The states w are quantities of the model: displacements and velocities of nodes, currents, voltages. It is
+    proved that the matrices satisfy the model's equations.
 
     Parameters
     ----------

@@ -88,7 +88,7 @@ class Form:
 
     @property
     def where(self) -> tuple[tuple[sympy.Symbol, sympy.Expr], ...]:
-        """The closed names in the form, with their expressions."""
+        """The names that the form introduces or keeps, with their expressions."""
         return tuple((self._sympy(Name(n)), self._sympy(e)) for n, e in self.printed.where)
 
     @property
@@ -299,7 +299,7 @@ class TransferFunction(_Derived):
 class NestedTransferFunction(_Derived):
     """A transfer function as a straight-line program: numerator over denominator, in named sub-impedances.
 
-    Neither need be a polynomial, and common factors are not looked for. See
+    Numerator and denominator need not be polynomials, and may have common factors. See
     :func:`symflex.transfer.derive_nested`.
     """
 
@@ -342,7 +342,8 @@ class NestedTransferFunction(_Derived):
 class BoundTransferFunction(Toolboxes, Analyses):
     """A transfer function with numbers: its values, poles, zeros and responses.
 
-    Each is proved. A distributed system has infinitely many; they are found in a region.
+    Poles, zeros and responses are proved. A distributed system has infinitely many poles and zeros; those in a
+    region are found.
     """
 
     bound: transfer_room.BoundTransferFunction
@@ -492,7 +493,7 @@ class BoundNestedTransferFunction(BoundNested, Toolboxes, Analyses):
 
     @property
     def bound(self) -> BoundNestedTransferFunction:
-        """Itself."""
+        """The function itself, which is already bound."""
         return self
 
     @cached_property
