@@ -192,8 +192,8 @@ def fit(
     DataError
         SF601 to SF607: data that cannot be used.
     FitError
-        SF615: the base vanishes in the band. Otherwise the best fit is returned, and ``poor`` says why it may
-        be wrong.
+        SF615: the base vanishes in the band. Otherwise the best fit is returned, and ``poor`` says why it is
+        not a good one.
     UsageError
         SF902 names and options that contradict each other.
 

@@ -33,8 +33,9 @@ def from_control(sys: object) -> Model:
     Returns
     -------
     Model
-        State equations become ``[equations]`` with the states as unknowns; transfer functions become blocks. Inputs,
-        outputs and states keep their labels, with ``_`` for characters that a name cannot have: ``u[0]`` is ``u_0``.
+        State equations become ``[equations]`` with the states as unknowns; transfer functions become blocks.
+        Inputs, outputs and states keep their labels, with ``_`` for characters that a name cannot have:
+        ``u[0]`` is ``u_0``.
 
     Raises
     ------

@@ -342,8 +342,8 @@ class NestedTransferFunction(_Derived):
 class BoundTransferFunction(Toolboxes, Analyses):
     """A transfer function with numbers: its values, poles, zeros and responses.
 
-    Poles, zeros and responses are proved. A distributed system has infinitely many poles and zeros; those in a
-    region are found.
+    Poles, zeros and responses are proved. A distributed system has infinitely many poles and zeros; symflex
+    finds those in a region.
     """
 
     bound: transfer_room.BoundTransferFunction
