@@ -162,7 +162,8 @@ class ModeShape:
     ) -> Figure:
         """Return a figure of displacements along distributed parts, and of nodes side by side.
 
-        What moves in phase with the largest displacement is drawn in full, what moves in quadrature dashed.
+        Motion in phase with the largest displacement is drawn as full lines, motion in quadrature as dashed
+        lines.
 
         Parameters
         ----------
