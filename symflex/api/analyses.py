@@ -49,18 +49,18 @@ class Analyses(Plotted):
     ) -> TimeResponse:
         r"""Return the response to a unit step at t = 0, from rest, at increasing times [s] from 0 on.
 
-        Without ``times`` at 201, until the slowest motion has died away or was seen often enough: in a
-        notebook ``H.step_response()`` is a figure.
+        Without ``times``, there are 201 of them, until the slowest motion has died away or has repeated
+        often enough. In a notebook, ``H.step_response()`` shows a figure.
 
-        Every value has a radius, within which the true one is proved to lie where the result says
-        ``certified``: ``digits`` digits of the largest value are correct. With a ``shaper``, as of
-        :meth:`input_shaper`, the input is convolved by its impulses.
+        Every value has a radius. If the result says ``certified``, the true value is proved to lie within
+        it, and ``digits`` digits of the largest value are correct. A ``shaper``, from :meth:`input_shaper`,
+        convolves the input with its impulses.
 
         Raises
         ------
         UsageError
-            SF811 for times that are negative or do not increase; SF812, from ``values``, where a response
-            grows beyond the range of doubles, at once where it grows beyond 10^100000.
+            SF811 for times that are negative or do not increase; SF812 when ``values`` are read and the
+            response grows beyond the range of doubles, or at once if it grows beyond 10^100000.
         UncertifiedError
             SF810 when poles cannot be told apart.
 
@@ -77,8 +77,9 @@ class Analyses(Plotted):
     def step_info(self, digits: int = 12) -> StepInfo | None:
         r"""Return final value, peak, overshoot, rise and settling time of the step response, each a ball.
 
-        That no later peak is higher, and no later crossing of a level follows, is proved. None where the
-        response does not come to rest, or at 0, jumps after delays, or is not proved.
+        It is proved that no later peak is higher, and that no later crossing of a level follows. The result
+        is None if the response does not come to rest, comes to rest at 0, jumps after delays, or is not
+        proved.
 
         Examples
         --------
@@ -97,8 +98,8 @@ class Analyses(Plotted):
     ) -> TimeResponse:
         r"""Return the response to a unit impulse at t = 0; see :meth:`step_response`.
 
-        What passes straight through to the output is an impulse itself. It is no value: ``impulses`` holds
-        its time and weight, and those of its derivatives.
+        If the input passes straight through to the output, the response contains an impulse, which has no
+        value: ``impulses`` holds its time and weight, and those of its derivatives.
 
         Examples
         --------
@@ -119,7 +120,7 @@ class Analyses(Plotted):
     def input_shaper(
         self, modes: int = 1, kind: str = "zv", digits: int = 15, *, joint: bool = False
     ) -> InputShaper:
-        r"""Return impulses by which a command is convolved so that the lowest modes do not ring after it.
+        r"""Return impulses to convolve with a command, so that the lowest modes do not ring after it.
 
         See :func:`symflex.analysis.input_shaping.input_shaper`.
 
@@ -157,14 +158,14 @@ class Analyses(Plotted):
     ) -> tuple[Root, ...]:
         """Return the poles by natural frequency, both members of each conjugate pair.
 
-        Poles in the right half plane are always among them: those outside of what was asked for stand at the
-        end. :attr:`PoleZeroMap.verdict` of :meth:`pole_zero_map` says whether they are all.
+        Poles in the right half plane are always included; those outside the region asked for come last.
+        :attr:`PoleZeroMap.verdict` of :meth:`pole_zero_map` says whether these are all.
 
         Parameters
         ----------
         modes : int, optional
-            Only the lowest modes, with the roots at the origin. For a distributed system the model's
-            ``[analysis]`` decides when nothing else is asked for, and else the number is five.
+            Only the lowest modes, with the roots at the origin. For a distributed system, the default is
+            the number in the model's ``[analysis]``, or five.
         mode : int, optional
             Only the mode of this number, from 1 by natural frequency, both members of a conjugate pair; of a
             lossless system it is found without those below it.
@@ -179,8 +180,7 @@ class Analyses(Plotted):
         ------
         BudgetError
             SF505, SF506 when the search takes too long: its ``found`` is a
-            :class:`~symflex.roots.PoleZeroMap` with all that was proved until then, ``None`` if that is
-            nothing.
+            :class:`~symflex.roots.PoleZeroMap` with all roots proved so far, ``None`` if there are none.
         UsageError
             SF902 for more than one choice, or one that is impossible.
 
@@ -244,14 +244,14 @@ class Analyses(Plotted):
         region : (float, float, float, float), optional
             Only the rectangle ``(re_low, re_high, im_low, im_high)`` [rad/s].
         budget : float, optional
-            Time the search may take [s]. When it is over, what was proved is returned: every root is, but not
-            that none is missing, and ``certificate.is_exceeded`` is true. Without it, the search of a
-            distributed system is limited by the work it does.
+            Time the search may take [s]. When it runs out, the roots proved so far are returned: each is
+            proved, but not that none is missing, and ``certificate.is_exceeded`` is true. Without it, a
+            fixed amount of work limits the search of a distributed system.
 
         Raises
         ------
         BudgetError
-            SF505, SF506 when nothing but roots at 0 was found of a distributed system.
+            SF505, SF506 if only roots at 0 were found of a distributed system.
         UsageError
             SF902 for more than one choice, or one that is impossible.
 
@@ -278,7 +278,7 @@ class Analyses(Plotted):
         r"""Return the residues at the poles, in their order; see :meth:`poles`.
 
         Parameters and errors are those of :meth:`poles`. UncertifiedError: SF405 when poles cannot be told
-        apart, or the behaviour at one cannot be told.
+        apart, or the behaviour at one cannot be determined.
 
         Examples
         --------
@@ -300,8 +300,8 @@ class Analyses(Plotted):
         Parameters
         ----------
         modes : int, optional
-            How many modes are kept, besides roots at the origin. By default those up to the end of ``band``,
-            else as many as the model's ``[analysis]`` says, else five.
+            How many modes are kept, in addition to roots at the origin. By default those up to the end of
+            ``band``, else as many as the model's ``[analysis]`` says, else five.
         form : str
             ``product``: the poles and zeros, right to the leading order at s = 0; ``modal``: the principal
             parts at the poles, and a constant that makes the finite part at s = 0 exact.
@@ -313,7 +313,7 @@ class Analyses(Plotted):
         UsageError
             SF902 for an unknown form, SF227 for a band that is empty or not positive.
         UncertifiedError
-            SF405 when residues, or the behaviour near s = 0, cannot be told.
+            SF405 when residues, or the behaviour near s = 0, cannot be determined.
         """
         from symflex.analysis.rational import approximate  # not needed for roots
 
@@ -322,7 +322,8 @@ class Analyses(Plotted):
     def mode_shape(self, mode: Mode, digits: int = 15) -> ModeShape:
         """Return how everything moves in one mode; the largest displacement is 1.
 
-        The shape is taken from the model's equations, not from the transfer function: hidden modes have one.
+        The shape comes from the model's equations, not from the transfer function, so hidden modes have one
+        too.
 
         Parameters
         ----------

@@ -177,7 +177,7 @@ def fit(
     window : str, optional
         ``hann`` or ``none``, where the data do not say.
     gain : bool
-        Fit a gain besides the base.
+        Fit a gain in addition to the base.
     lag : bool or "signed"
         Fit a lag of the sensor, 1/(1 + T s); it is not negative unless it is ``"signed"``.
     delay : bool
@@ -193,7 +193,7 @@ def fit(
         SF601 to SF607: data that cannot be used.
     FitError
         SF615: the base vanishes in the band. Otherwise the best fit is returned, and ``poor`` says why it is
-        no good one.
+        not a good one.
     UsageError
         SF902 names and options that contradict each other.
 

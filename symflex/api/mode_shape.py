@@ -33,8 +33,8 @@ class ModeShape:
     """The motion of everything at one pole, up to a common factor; the largest displacement found is 1.
 
     Displacements are those of nodes in translation, along beams, rods and strings, and of each field's first
-    unknown [m]; where none of them moves, the largest angle is 1, else the largest voltage. At an undamped
-    pole a shape is real, as far as all that moves depends on s^2 alone.
+    unknown [m]. If none of them moves, the largest angle is 1, else the largest voltage. At an undamped
+    pole, a shape is real if all that moves depends on s^2 alone.
 
     Parameters
     ----------
@@ -162,7 +162,8 @@ class ModeShape:
     ) -> Figure:
         """Return a figure of displacements along distributed parts, and of nodes side by side.
 
-        What moves in phase with the largest displacement is drawn in full, what moves in quadrature dashed.
+        Motion in phase with the largest displacement is drawn as full lines, motion in quadrature as dashed
+        lines.
 
         Parameters
         ----------

@@ -123,15 +123,15 @@ class Model:
             Label symbols with values and units.
         width : float, optional
             Width of the figure [mm]; by default a column (88.5), a page (170), or what the model needs.
-            Lengths in the figure are what they are in print.
+            Lengths in the figure are those in print.
         font : str
             ``times``, ``latex`` or ``sans``.
 
         Raises
         ------
         UsageError
-            SF902 a width that has no room for the model, or is not between 80 and 1000 mm; SF208 an unknown
-            font.
+            SF902 a width that is too small for the model, or is not between 80 and 1000 mm; SF208 an
+            unknown font.
 
         Examples
         --------
@@ -156,7 +156,7 @@ class Model:
 
     @property
     def warnings(self) -> tuple[Diagnostic, ...]:
-        """Warnings of ``symflex check``: what the specification says but may not mean.
+        """Warnings of ``symflex check``: possible mistakes in the specification.
 
         Examples
         --------
@@ -187,7 +187,7 @@ class Model:
         ModelError
             SF30x when the equations are singular, with the reason.
         BudgetError
-            SF501, SF502 when it is too large expanded, as of frames; :meth:`nested` has it then.
+            SF501, SF502 when its expanded form is too large, as for frames; use :meth:`nested` then.
         """
         return self._derived(pipeline.pick_pairs(self.resolved, [f"{output}/{input}"]))[0]
 
@@ -283,14 +283,14 @@ class Model:
         gain : str
             A parameter; the loop is closed in the model's signals.
         limits : (float or None, float or None), optional
-            Range of the gain in SI units, its ends left out; ``None`` for no limit. By default all values of
-            the sign assumed of it; with beams, rods or delays up to 100 times its declared value.
+            Range of the gain in SI units, without its ends; ``None`` for no limit. By default all values of
+            its assumed sign; with beams, rods or delays up to 100 times its declared value.
         digits : int
             Significant digits of boundaries and frequencies.
         budget : float, optional
             Time [s].
         up_to_hz : float, optional
-            Where poles have no end along the axis: how far they are counted [Hz].
+            If infinitely many poles lie along the axis: how far they are counted [Hz].
         **values : number or str
             In place of declared values, as for :meth:`TransferFunction.bind`.
 
@@ -338,9 +338,9 @@ class Model:
         limits : (float, float), optional
             First and last gain in SI units; from 0 to ten times the declared value by default.
         modes : int, optional
-            Of a distributed system, how many modes are traced.
+            For a distributed system, how many modes are traced.
         band : (float, float), optional
-            What is shown ends with that of the band [Hz].
+            The figure ends where the band ends [Hz].
         xlim, ylim : (float, float), optional
             Ends of the axes [rad/s].
         width, font, ax : optional
@@ -475,7 +475,7 @@ class Model:
         Raises
         ------
         UsageError
-            SF902 an undamped pole, an unknown name or a band that cannot be meant.
+            SF902 an undamped pole, an unknown name or an impossible band.
 
         Examples
         --------
@@ -514,23 +514,24 @@ class Model:
         Parameters
         ----------
         over : mapping of str to str or sequence
-            Values per parameter, in SI units or with a unit: a sequence; ``"1e4:1e6:log:200"`` for so many
-            between two limits; to draw from, ``"1e4:1e6"``, ``"1e4:1e6:log"`` or ``"+-5%"``.
+            Values per parameter, in SI units or with a unit: a sequence; ``"1e4:1e6:log:200"`` for 200
+            values between two limits; ``"1e4:1e6"``, ``"1e4:1e6:log"`` or ``"+-5%"`` as ranges to draw
+            from.
         of : str
             ``poles``, ``zeros``, ``response`` or ``margins``.
         tf : str, optional
             ``"OUT/IN"``; the first transfer function by default.
         modes, band : int, (float, float), optional
-            Which roots: so many of the lowest modes, or those in a band [Hz].
+            Which roots: a number of the lowest modes, or those in a band [Hz].
         frequencies : sequence of float
             Of a response [Hz].
         gain : str
             That closes the loop, for margins.
         draws, seed : int
-            How many points are drawn from ranges, as a Latin hypercube, and of which random numbers.
+            How many points are drawn from ranges, as a Latin hypercube, and the seed of the random numbers.
         output : str or Path, optional
-            A .nc, .npz, .csv or .parquet to write; until then, what is done is kept in ``FILE.part``, and the
-            same call goes on after a kill.
+            A .nc, .npz, .csv or .parquet to write. Until then, finished points are kept in ``FILE.part``,
+            and the same call continues after a kill.
         fresh : bool
             Discard what an earlier call kept there.
         executor : concurrent.futures.Executor, optional
@@ -546,7 +547,7 @@ class Model:
         Raises
         ------
         UsageError
-            SF902 what cannot be swept or read, SF916 ``FILE.part`` belongs to another sweep.
+            SF902 for something that cannot be swept or read, SF916 ``FILE.part`` belongs to another sweep.
         BudgetError
             SF507 too many points, SF508 a worker died.
 
@@ -598,7 +599,7 @@ class Model:
         Parameters
         ----------
         name : str
-            Of its main function, which has to be the file's; by default made from the title.
+            The name of its main function, which must be that of the file; by default made from the title.
         """
         return self._export("matlab", name)
 
@@ -608,7 +609,7 @@ class Model:
         Parameters
         ----------
         name : str
-            From which the module's name is made; by default the title.
+            The source of the module's name; by default the title.
         """
         return self._export("julia", name)
 

@@ -81,21 +81,21 @@ class Plotted:
         font : str, optional
             ``times``, ``latex`` or ``sans``.
         ax : two matplotlib axes, optional
-            Of your own, to draw on, in your own style; where there are lines already, the next colours are
-            taken. One alone shows magnitudes.
+            Your own axes to draw on, in your own style; lines that are already there keep their colours,
+            and the next ones are used. One axes alone shows magnitudes.
 
         Returns
         -------
         matplotlib.figure.Figure
-            A figure of no window: a notebook shows it, ``savefig`` writes it, its ``axes`` can be added to.
-            For a window give axes of :func:`matplotlib.pyplot.subplots`.
+            A figure without a window: a notebook shows it, ``savefig`` writes it, and you can draw on its
+            ``axes``. For a window, give axes of :func:`matplotlib.pyplot.subplots`.
 
         Raises
         ------
         UsageError
-            SF902 for limits that are none, and for too many axes or too few.
+            SF902 for invalid limits, and for too many axes or too few.
         ModelError
-            SF402 where a function is identically zero.
+            SF402 if a function is identically zero.
 
         Examples
         --------
@@ -121,16 +121,16 @@ class Plotted:
     ) -> Figure:
         r"""Return the poles and zeros in the s plane, of other transfer functions in panels beside it.
 
-        Roots far outside of what is shown are named at the border, where an arrow points to them.
+        Roots far outside the figure are named at its border, where an arrow points to them.
 
         Parameters
         ----------
         *others, width, font, ax : optional
             As for :meth:`bode`; one axes per function.
         modes : int, optional
-            Of a distributed system, how many modes are shown; by default the model's, or five.
+            For a distributed system, how many modes are shown; by default the model's, or five.
         band : (float, float), optional
-            What is shown ends with that of the band [Hz].
+            The figure ends where the band ends [Hz].
         xlim, ylim : (float, float), optional
             Ends of the axes [rad/s].
 

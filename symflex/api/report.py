@@ -23,7 +23,7 @@ class WrittenReport:
     page : Path
         The page to open.
     pdf : Path or None
-        None where there is none.
+        The PDF; None if none was made.
     warnings : tuple of str
         What was left out or is not certified.
     is_certified : bool
@@ -49,12 +49,12 @@ def write_report(
     Parameters
     ----------
     specs : str, Path or a sequence of them
-        Specifications; a folder stands for all in it and below, with its measured responses.
+        Specifications; a folder means all in it and below, with its measured responses.
         If no file has the name, the example of that name is taken, such as ``eppinger1988``.
     folder : str or Path
         Folder to write; files of the same name are replaced, others stay.
     pdf : bool, optional
-        Whether to make a PDF; by default where pdflatex is there.
+        Whether to make a PDF; by default if pdflatex is installed.
     day : date, optional
         Printed; without it equal specifications give equal files.
     jobs : int
@@ -70,7 +70,7 @@ def write_report(
 
     Examples
     --------
-    A parameter without a value leaves the formulas and costs the numbers:
+    If a parameter has no value, the report has the formulas but no numbers:
 
     >>> import symflex, tempfile
     >>> from pathlib import Path

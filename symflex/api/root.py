@@ -201,7 +201,7 @@ class PoleZeroMap(roots_room.PoleZeroMap):
 
 @dataclass(frozen=True)
 class Residue:
-    """The share of a mode in a transfer function: its principal part at a pole p.
+    """The contribution of a mode to a transfer function: its principal part at a pole p.
 
     Parameters
     ----------

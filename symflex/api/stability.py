@@ -120,9 +120,9 @@ class Stability:
     def bandwidth_hz(self) -> float:
         """The bandwidth with a gain margin of 6 dB: where the loop gain first falls below one.
 
-        Infinite where every gain is stable, ``nan`` where no gain next to 0 is, where the loop gain is below
-        one from the lowest frequencies on, or where the loop is closed in several places. Where stable gains
-        end with the range examined, it is what half of the largest one gives.
+        It is infinite if every gain is stable. It is ``nan`` if no gain next to 0 is stable, if the loop
+        gain is below one from the lowest frequencies on, or if the loop is closed in several places. If the
+        stable gains end with the range examined, it is the bandwidth at half of the largest one.
         """
         found = self.proved.bandwidth
         if found is not None and found.gain is None:

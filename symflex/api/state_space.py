@@ -33,8 +33,8 @@ MOST_STATES: Final = 8
 class StateSpace:
     """``w' = A w + B u``, ``y = C w + D u`` with the parameters as symbols.
 
-    The states w are quantities of the model: displacements and velocities of nodes, currents, voltages. That
-    the matrices satisfy the model's equations is proved when they are made.
+    The states w are quantities of the model: displacements and velocities of nodes, currents, voltages. It is
+    proved that the matrices satisfy the model's equations.
 
     Parameters
     ----------
@@ -178,14 +178,14 @@ class StateSpace:
         method : str
             ``zoh`` or ``tustin``.
         prewarp : float, Fraction or str, optional
-            Of ``tustin``: the frequency at which it is right besides at 0, [Hz] or with a unit.
+            For ``tustin``: the frequency at which it is exact in addition to 0, [Hz] or with a unit.
         **values : optional
             As for :meth:`bind`.
 
         Raises
         ------
         ModelError
-            As of :meth:`bind`; SF233 where the system grows beyond double precision within a sample.
+            As for :meth:`bind`; SF233 if the system grows beyond double precision within a sample.
         UsageError
             SF902 for an unknown parameter, or a sampling time that is not positive.
 

@@ -33,13 +33,14 @@ def from_control(sys: object) -> Model:
     Returns
     -------
     Model
-        State equations become ``[equations]`` with the states as unknowns, transfer functions blocks. Inputs,
-        outputs and states keep their labels, with ``_`` for what no name may hold: ``u[0]`` is ``u_0``.
+        State equations become ``[equations]`` with the states as unknowns; transfer functions become blocks.
+        Inputs, outputs and states keep their labels, with ``_`` for characters that a name cannot have:
+        ``u[0]`` is ``u_0``.
 
     Raises
     ------
     UsageError
-        SF902 for a system in discrete time, for measured responses, and for what is no system.
+        SF902 for a system in discrete time, for measured responses, and for objects that are not systems.
 
     Examples
     --------
@@ -116,7 +117,7 @@ def from_matrices(
     Raises
     ------
     UsageError
-        SF902 for sizes that do not fit, numbers that are not finite or not real, and names that are none.
+        SF902 for sizes that do not fit, numbers that are not finite or not real, and invalid names.
     SpecError
         For entries that no expression may hold, with what they are.
 

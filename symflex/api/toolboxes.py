@@ -62,15 +62,16 @@ class Toolboxes:
         dt : float, Fraction or str
             The sampling time, [s] or with a unit, ``"1 ms"``.
         method : str
-            ``zoh``, the input held between samples, exactly, with dead times of any fraction; for controllers
-            ``tustin``, the bilinear transformation, and ``matched``, every root s becomes exp(s dt).
+            ``zoh``, the exact step with the input held between samples, with dead times of any fraction.
+            For controllers: ``tustin``, the bilinear transformation, or ``matched``, where every root s
+            becomes exp(s dt).
         prewarp : float, Fraction or str, optional
-            Of ``tustin``: the frequency at which it is right besides at 0, [Hz] or with a unit.
+            For ``tustin``: the frequency at which it is exact in addition to 0, [Hz] or with a unit.
 
         Raises
         ------
         UsageError
-            SF902 for a method, a time or a frequency that cannot be.
+            SF902 for an impossible method, time or frequency.
         ModelError
             SF235 for beams, and delays in loops; SF236 for a function that grows with s.
 
@@ -93,21 +94,21 @@ class Toolboxes:
         ----------
         form : str
             ``transfer-function``; or ``state-space``, see :meth:`state_space`, which loses far fewer digits
-            where the degree is high.
+            if the degree is high.
         minimal : bool
             For ``state-space``.
 
         Returns
         -------
         control.TransferFunction or control.StateSpace
-            Coefficients are the doubles nearest to the exact ones. The attribute ``metadata`` holds units and
-            ``coefficients_error``, what rounding coefficients does to the function.
+            Coefficients are the doubles nearest to the exact ones. The attribute ``metadata`` holds units
+            and ``coefficients_error``, the error of the function that comes from rounding coefficients.
 
         Raises
         ------
         ModelError
-            SF235 for beams, rods and delays: :meth:`rational` first; SF233 when a coefficient does not fit in
-            double precision; SF236 as for :meth:`state_space`.
+            SF235 for beams, rods and delays: use :meth:`rational` first; SF233 when a coefficient does not
+            fit in double precision; SF236 as for :meth:`state_space`.
         UsageError
             SF902 when python-control is not installed, and for an unknown form.
         """

@@ -88,7 +88,7 @@ class Form:
 
     @property
     def where(self) -> tuple[tuple[sympy.Symbol, sympy.Expr], ...]:
-        """The closed names in the form, with their expressions."""
+        """The names that the form introduces or keeps, with their expressions."""
         return tuple((self._sympy(Name(n)), self._sympy(e)) for n, e in self.printed.where)
 
     @property
@@ -259,9 +259,9 @@ class TransferFunction(_Derived):
     def sensitivity_formula(self, parameter: str, of: str = "pole") -> tuple[sympy.Expr, sympy.Expr]:
         """Return numerator and denominator of ds/dp for a pole s, a formula in s and the parameters.
 
-        With D the denominator it is ``-(dD/dp)/(dD/ds)``, valid at every simple root of D that moves with the
-        parameter; those that do not are left out of D. The derivative goes through all definitions,
-        wavenumbers and kernels, whose names are replaced by what they stand for.
+        With D the denominator it is ``-(dD/dp)/(dD/ds)``, valid at every simple root of D that moves with
+        the parameter; those that do not are left out of D. The derivative goes through all definitions,
+        wavenumbers and kernels, whose names are replaced by their expressions.
 
         Parameters
         ----------
@@ -273,7 +273,7 @@ class TransferFunction(_Derived):
         Raises
         ------
         UsageError
-            SF902 for an unknown parameter, or where wavenumbers have no formula.
+            SF902 for an unknown parameter, or if wavenumbers have no formula.
         """
         from symflex.analysis.sensitivity.text import sensitivity_formula  # needs all of SymPy
 
@@ -299,7 +299,7 @@ class TransferFunction(_Derived):
 class NestedTransferFunction(_Derived):
     """A transfer function as a straight-line program: numerator over denominator, in named sub-impedances.
 
-    Neither need be a polynomial, and common factors are not looked for. See
+    Numerator and denominator need not be polynomials, and may have common factors. See
     :func:`symflex.transfer.derive_nested`.
     """
 
@@ -342,7 +342,8 @@ class NestedTransferFunction(_Derived):
 class BoundTransferFunction(Toolboxes, Analyses):
     """A transfer function with numbers: its values, poles, zeros and responses.
 
-    Each is proved. A distributed system has infinitely many; they are found in a region.
+    Poles, zeros and responses are proved. A distributed system has infinitely many poles and zeros; symflex
+    finds those in a region.
     """
 
     bound: transfer_room.BoundTransferFunction
@@ -389,21 +390,22 @@ class BoundTransferFunction(Toolboxes, Analyses):
         Parameters
         ----------
         times : array_like of float, shape (n,)
-            Increasing times [s] of the samples, at which the response is given too. Those that are evenly
-            spaced but for rounding count as even.
+            Increasing times [s] of the samples, and of the response. Times that are evenly spaced except
+            for rounding count as evenly spaced.
         u : array_like of float, shape (n,)
-            The input at these times. It is 0 before the first; where it does not begin with 0, it jumps.
+            The input at these times. It is 0 before the first time; if it does not begin with 0, it jumps
+            there.
         digits : int
             As for :meth:`step_response`.
         shaper : InputShaper, optional
-            Convolves the input by its impulses.
+            Convolves the input with its impulses.
 
         Raises
         ------
         UsageError
-            SF811 for times that do not increase, or values that are no numbers or not as many.
+            SF811 for times that do not increase, or values that are not numbers or do not match the times.
         UncertifiedError
-            SF810 as for :meth:`step_response`, and where the transfer function differentiates its input.
+            SF810 as for :meth:`step_response`, and if the transfer function differentiates its input.
 
         Examples
         --------
@@ -437,7 +439,7 @@ class BoundTransferFunction(Toolboxes, Analyses):
         modes, mode, band, budget : optional
             As for :meth:`poles`; the budget is for the search for the roots.
         parameters : sequence of str
-            All on which the function depends when none is given.
+            By default all parameters on which the function depends.
         digits : int
             Correct significant digits of every derivative.
 
@@ -492,7 +494,7 @@ class BoundNestedTransferFunction(BoundNested, Toolboxes, Analyses):
 
     @property
     def bound(self) -> BoundNestedTransferFunction:
-        """Itself."""
+        """The function itself, which is already bound."""
         return self
 
     @cached_property

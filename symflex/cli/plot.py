@@ -49,17 +49,18 @@ def plot(spec: Specification, given: PlotOptions) -> int:
 
     Kinds are bode, impulse, locus, modes, nyquist, poles_zeros and step.
 
-    modes draws the lowest mode shapes: --modes of them, else [analysis] modes, else five. locus --gain K
-    draws the paths of the closed-loop poles as K grows, from proved poles to proved zeros; of a distributed
-    system, those of the lowest modes. nyquist draws a transfer function, or with --gain K the loop gain.
+        modes draws the lowest mode shapes: as many as --modes says, else [analysis] modes, else five. locus
+        --gain K draws the paths of the closed-loop poles as K grows, from proved poles to proved zeros. For
+        a distributed system, these are the paths of the lowest modes. nyquist draws a transfer function, or
+        with --gain K the loop gain.
 
     'symflex plot sweep FILE' draws a .nc or .npz file of 'symflex sweep -o': modes over one parameter and
     their loci, or medians and the range of 90 % of the points.
 
-    --band limits the frequencies: of the curves of bode and nyquist, and of the modes drawn; figures in the s
-    plane show everything up to its end. --xlim, --ylim and --phase set the ends of axes; frequencies and
-    values in the s plane may have a unit, '1 kHz'. step and impulse run to --until or the end of --xlim [s],
-    by default until the slowest motion has died away.
+        --band limits the frequencies of the curves of bode and nyquist, and of the modes drawn. Figures in
+        the s plane show everything up to its end. --xlim, --ylim and --phase set the ends of axes.
+        Frequencies and values in the s plane may have a unit, '1 kHz'. step and impulse run to --until or
+        the end of --xlim [s], by default until the slowest motion has died away.
 
     Without -o, the figure is written to the current folder as SPEC_KIND.pdf.
 

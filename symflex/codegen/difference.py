@@ -371,7 +371,7 @@ class _StepCode:
         if poles:
             lines += ["", *wrapped(f"Poles in z: {', '.join(poles[:SHOWN_POLES])}{more}.", width)]
         if sampled.late:
-            lines += wrapped(f"Besides, a dead time of {sampled.late} times the sampling time.", width)
+            lines += wrapped(f"In addition, a dead time of {sampled.late} times the sampling time.", width)
         return [*lines, "", *wrapped(said, width)]
 
     def python(self) -> str:

@@ -41,8 +41,8 @@ NAMED = 12
 """Members of a network that a docstring names: three lines."""
 
 FOLLOWED = (
-    "Waves are followed along members whose coefficients vary, in pieces: ever more of them the faster they "
-    "oscillate, and beyond some thousand waves there is no number."
+    "Waves are followed piece by piece along members whose coefficients vary. The faster they oscillate, the "
+    "more pieces there are; beyond some thousand waves, values are NaN."
 )
 """What is said of functions of members that vary along x."""
 

@@ -285,11 +285,11 @@ class _Module:
         kind = (
             "Every state is controllable and observable, for almost all values of the parameters."
             if self._system.is_minimal
-            else "The states are all of the model's, hidden ones too."
+            else "The states are all those of the model, hidden ones too."
         )
         lines += wrapped(kind, WIDTH)
         proof = (
-            "Proved: put into the model's equations, they satisfy these identically. "
+            "Proved: substituted into the model's equations, they satisfy them identically. "
             "Measured with the values in PARAMETERS:"
         )
         lines += [*wrapped(proof, WIDTH), ""]
@@ -461,7 +461,7 @@ def sampled_module(system: StateSpace, sampling: Sampling, delay: Fraction) -> s
     """
     valued = tuple(p for p in system.model.parameters if p.value is not None)
     found = sampled_state_space(system, dict(read_values(valued, {})), sampling, delay)
-    lines = ["One step of a linear system from a sample to the next, its inputs held between.", ""]
+    lines = ["One step of a linear system from a sample to the next, with its inputs held in between.", ""]
     lines += origin(system.model, "")
     lines += ["Written by symflex. With w the states, u the inputs and y the outputs, in every step", ""]
     lines += ["    w[k + 1] = A w[k] + B u[k],    y[k] = C w[k] + D u[k].", ""]

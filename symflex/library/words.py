@@ -42,7 +42,7 @@ THINGS: tuple[Thing, ...] = (
     Thing(
         ("pendulum", "inverted_pendulum", "pole"),
         "rigid_body",
-        "at a pin; gravity is a torsion_spring of m*g*l, negative where it stands on its head",
+        "at a pin; gravity is a torsion_spring of m*g*l, negative if it is inverted",
     ),
     Thing(("damper", "dashpot", "shock_absorber", "viscous_friction"), "damper, rotary_damper"),
     Thing(("tyre", "tire", "mount", "isolator", "bearing", "contact"), "spring", "with a damper beside it"),
@@ -53,7 +53,7 @@ THINGS: tuple[Thing, ...] = (
     Thing(
         ("gear", "gearbox", "gears", "reducer"),
         "transformer",
-        "ratio = what turns behind over what turns before",
+        "ratio = speed of the output over speed of the input",
     ),
     Thing(("planetary", "epicyclic", "differential", "power_split"), "planetary_gear"),
     Thing(("rack", "rack_and_pinion", "pinion", "drum", "winch"), "transformer", 'ratio = "r" [m/rad]'),

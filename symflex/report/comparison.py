@@ -169,29 +169,29 @@ def comparison_section(models: Sequence[ModelFacts]) -> Section | None:
     tables = [_table(rows, heads) for rows, heads in chosen if rows]
     explained: tuple[Paragraph, ...] = (
         text(
-            "Poles and zeros are counted with multiplicity, and against the same model with all its springs "
-            "and massless beams made rigid (exact limits). For beams and other distributed parts those "
-            "through the highest pole listed are counted. Of functions that agree in all of this one is "
-            "shown. A dash stands where the rigid model has no response to compare with, as where only "
-            "springs hold it to ground."
+            "Poles and zeros are counted with multiplicity, and compared with those of the same model with "
+            "all its springs and massless beams made rigid (exact limits). For beams and other distributed "
+            "parts, those up to the highest pole listed are counted. If several functions agree in all of "
+            "this, one is shown. A dash means that the rigid model has no response to compare with, for "
+            "example because only springs hold it to ground."
         ),
         text(
             "Minimum phase means: no zero in the open right half plane. “For all values” is proved for all "
-            "positive values of the parameters. A function is colocated when its output is taken where the "
+            "positive values of the parameters. A function is colocated if its output is taken where the "
             "input acts, or rigidly joined to it. A compliance with an end on ground belongs to the base, or "
-            "is a contact where its force is measured; between moving parts, one in bending belongs to a "
-            "link, another to the transmission."
+            "is a contact if its force is measured. Between moving parts, a compliance in bending belongs to "
+            "a link, any other to the transmission."
         ),
     )
     if controlled:
         explained = (
             *explained,
             text(
-                "Outputs are together where one differs from the output on which the input does work by at "
-                "most 10 degrees of phase and 1 dB. A loop is stable with all closed-loop poles in the left "
-                "half plane; for which gains is proved as far as the model's chapter says. The bandwidth "
-                "allowed is the frequency at which the loop gain first falls below one, with half of the "
-                "gain at which the loop becomes unstable (a gain margin of 6 dB)."
+                "Two outputs are together if one differs from the output on which the input does work by at "
+                "most 10 degrees of phase and 1 dB. A loop is stable if all closed-loop poles are in the "
+                "left half plane; the model's chapter says how far the stable gains are proved. The "
+                "bandwidth allowed is the frequency at which the loop gain first falls below one, with half "
+                "of the gain at which the loop becomes unstable (a gain margin of 6 dB)."
             ),
         )
     return Section("Comparison of models", (*tables, *explained), ANCHOR)

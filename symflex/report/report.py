@@ -417,8 +417,8 @@ def _provenance(date: str) -> Section:
             text(
                 f"Written by symflex {_version('symflex')}{when}. Every formula is derived exactly from the "
                 "specification printed with its model; every root marked certified is enclosed in ball "
-                "arithmetic, and none is missing from the region named. What was sampled rather than proved "
-                "is said to be."
+                "arithmetic, and none is missing from the region named. Results that were sampled rather "
+                "than proved are marked as such."
             ),
             Table(columns("Program", ("Version", "plain")), rows),
         ),

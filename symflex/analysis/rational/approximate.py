@@ -155,7 +155,7 @@ def approximate(
 
     SF902 for an unknown form or a negative number of modes, SF227 for a band that is empty or not positive,
     SF402 when the function is identically zero, SF405 when residues, or the behaviour near s = 0, cannot be
-    told.
+    determined.
 
     Examples
     --------

@@ -164,10 +164,10 @@ class _Files:
             "array omega.",
             "Nothing is allocated and nothing is kept between calls: all functions are reentrant. Values at "
             "poles are not finite. Parameters are real numbers in SI units; p may be "
-            f"&{self.prefix}_defaults, or point to a changed copy of it, which functions in band form do not "
-            "look at. Link with the mathematical library, and compile without -ffast-math.",
+            f"&{self.prefix}_defaults, or point to a changed copy of it. Functions in band form ignore p. "
+            "Link with the mathematical library, and compile without -ffast-math.",
             "Errors named below were measured with these operations in IEEE double precision; the library's "
-            "own errors in exp, sin and the like come on top.",
+            "own errors in exp, sin and similar functions come in addition.",
         ]
         origin = origin_lines(self.model, WIDTH - 3)
         gap = [""] if origin else []

@@ -191,7 +191,7 @@ class BandForm:
     def beside(self, part: float, error: str) -> str:
         """Return what a docstring says of values beside the axis, where the error was measured."""
         at = f"abs(re(s)) = {part * self.end:.3g} rad/s"
-        return f"Beside the axis, at {at}, the worst relative error is {error}."
+        return f"Away from the axis, at {at}, the worst relative error is {error}."
 
     def program(self) -> Piecewise:
         """Return the program."""

@@ -137,7 +137,7 @@ ARRAY_API_DIALECT = Dialect(
     "Any",
     "Any",
     "number or array",
-    ("array of complex", "Of the same library; a number when numbers alone are given. Not finite at poles."),
+    ("array of complex", "Of the same library; a number if all arguments are numbers. Not finite at poles."),
     is_argument=True,
 )
 
@@ -154,7 +154,7 @@ JAX_DIALECT = Dialect(
     ("Array of complex", "Not finite at poles."),
     has_fixed_sizes=True,
     remark="""\
-Accuracy holds in double precision, which jax has to be told to use before anything else:
+Accuracy holds in double precision. Switch it on in jax before anything else:
 
     jax.config.update("jax_enable_x64", True)
 """,
@@ -398,7 +398,7 @@ NUMPY = Language(
 )
 ARRAY_API = Language(
     ".py",
-    "the same for numpy, torch, jax.numpy, cupy: whatever library the arguments are of",
+    "the same for the library of the arguments: numpy, torch, jax.numpy, cupy",
     partial(python_module, dialect=ARRAY_API_DIALECT),
 )
 JAX = Language(

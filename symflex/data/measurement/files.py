@@ -79,15 +79,15 @@ def read_measurement(path: str | Path, columns: str = "") -> tuple[MeasuredRespo
     Returns
     -------
     tuple of MeasuredResponse
-        What was guessed stands in their ``guesses``.
+        Their ``guesses`` say what was guessed.
 
     Raises
     ------
     UsageError
         SF901 when there is no such regular file; SF902 when a library for its format is not installed, or
-        columns are asked that are not there.
+        columns are asked for that do not exist.
     DataError
-        SF601 to SF607: what is wrong with it, as far as can be with line and column.
+        SF601 to SF607: what is wrong with it, with line and column if possible.
 
     Examples
     --------

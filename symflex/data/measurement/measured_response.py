@@ -25,7 +25,7 @@ class MeasuredResponse:
     Parameters
     ----------
     name : str
-        What it is called in reports: ``OUT/IN`` where the file says so, else the file's stem.
+        Its name in reports: ``OUT/IN`` if the file says so, else the file's stem.
     frequency_hz : array of float, shape (n,)
         Positive and increasing [Hz].
     values : array of complex, shape (n,)
@@ -43,7 +43,7 @@ class MeasuredResponse:
     notes : tuple of str
         What the file says about itself.
     guesses : tuple of str
-        What was taken for granted when the file was read, because it does not say so.
+        What was assumed when the file was read, because it does not say so.
 
     Notes
     -----
@@ -123,7 +123,7 @@ class MeasuredResponse:
         return self.taken(np.flatnonzero((self.frequency_hz >= low_hz) & (self.frequency_hz <= high_hz)))
 
     def taken(self, lines: npt.NDArray[np.intp]) -> MeasuredResponse:
-        """Return the lines with these numbers, in their order."""
+        """Return the lines with these indices, in this order."""
         coherence = None if self.coherence is None else self.coherence[lines]
         return replace(
             self, frequency_hz=self.frequency_hz[lines], values=self.values[lines], coherence=coherence

@@ -53,10 +53,10 @@ class TwoPort(Element):
 class Transformer(TwoPort):
     """A gear, rack, screw, lever or electrical transformer: ``to = ratio * from``.
 
-    Each side is a node, or a pair of nodes: what the first is over the second. The across variables
-    (displacement [m], angle [rad], voltage [V]) are in the given ratio;
-    the force, torque or current delivered at ``to`` is drawn ``ratio`` times at ``from``, so no
-    power is lost. ``f``, ``tau`` or ``i`` (by the domain of ``to``) is what is delivered at ``to``.
+    Each side is a node, or a pair of nodes, of which the first is taken relative to the second. The ratio
+    holds between displacements [m], angles [rad] or voltages [V]. ``f``, ``tau`` or ``i``, depending on the
+    domain of ``to``, is delivered at ``to``; ``ratio`` times as much is drawn at ``from``, so no power is
+    lost.
     """
 
     type_name = "transformer"
@@ -90,11 +90,11 @@ class Transformer(TwoPort):
 
 
 class Gyrator(TwoPort):
-    """A lossless crossing: ``effort_from = ratio*flow_to``, ``effort_to = ratio*flow_from``.
+    """A lossless coupling: ``effort_from = ratio*flow_to``, ``effort_to = ratio*flow_from``.
 
-    Effort is force [N], torque [N m] or voltage [V]; flow is velocity [m/s, rad/s] or current [A].
-    Power drawn at ``from`` is delivered at ``to``. The quantity named by the domain of ``to``
-    (``f``, ``tau``, ``i``) is what is delivered there.
+    Effort is force [N], torque [N m] or voltage [V]; flow is velocity [m/s, rad/s] or current [A]. Power
+    drawn at ``from`` is delivered at ``to``. ``f``, ``tau`` or ``i``, depending on the domain of ``to``, is
+    delivered there.
     """
 
     type_name = "gyrator"
@@ -228,8 +228,8 @@ class PlanetaryGear(Element):
     """A planetary gear without losses: ``sun + rho*ring = (1 + rho)*carrier``, of the three angles [rad].
 
     rho is the teeth of the ring over those of the sun; ``tau`` [N m] is the torque delivered to the sun,
-    while the ring gets ``rho*tau`` and the carrier ``-(1 + rho)*tau``. With one of the three at ``"ground"``
-    it is a gear of one ratio. Source: Willis 1841, Principles of Mechanism.
+    while the ring gets ``rho*tau`` and the carrier ``-(1 + rho)*tau``. With one of the three at
+    ``"ground"``, it is a gear with a fixed ratio. Source: Willis 1841, Principles of Mechanism.
     """
 
     type_name = "planetary_gear"
@@ -262,16 +262,16 @@ class PlanetaryGear(Element):
 class Piston(Element):
     """A piston or diaphragm of area A [m^2]: its motion pushes air or liquid, and is pushed by the pressure.
 
-    As the mover goes along x, ``q = A*s*x`` [m^3/s] flows into the first node of ``chamber``, out of the
-    second where there is one; the mover is pushed by ``f = -A*(p_1 - p_2)`` [N]. Source: Beranek 1954,
-    Acoustics, chapter 3.
+    When the mover moves along x, ``q = A*s*x`` [m^3/s] flows into the first node of ``chamber`` and, if
+    there is a second, out of that. The force on the mover is ``f = -A*(p_1 - p_2)`` [N]. Source: Beranek
+    1954, Acoustics, chapter 3.
     """
 
     type_name = "piston"
     summary = "Piston, diaphragm or cylinder between motion and pressure"
     ports = (
         Port("mover", 1, "translation", "node that moves with the piston", reacts=True),
-        Port("chamber", 1, "acoustic", "node of the pressure before it", reacts=True),
+        Port("chamber", 1, "acoustic", "node of the pressure in front of it", reacts=True),
     )
     parameters = (ParameterPort("A", "m^2", "an area"),)
     through = ("f", "q")
@@ -339,9 +339,9 @@ class Piezo(Element):
 class CoupledInductors(Element):
     """Two windings on one core: ``v_1 = s*(L_1*i_1 + M*i_2)`` and ``v_2 = s*(M*i_1 + L_2*i_2)``.
 
-    The first two terminals are those of the first winding, with the dot at the first of them, the last two
-    those of the second, with the dot at the third; ``i_1`` and ``i_2`` [A] flow in at the dots. Real windings
-    have ``M^2 <= L_1*L_2``. An ideal transformer is a ``transformer``.
+    Terminals one and two belong to the first winding, three and four to the second; the dots are at
+    terminals one and three. ``i_1`` and ``i_2`` [A] flow in at the dots. Real windings have
+    ``M^2 <= L_1*L_2``. An ideal transformer is a ``transformer``.
     """
 
     type_name = "coupled_inductors"
@@ -379,15 +379,16 @@ class CoupledInductors(Element):
 class OpAmp(Element):
     """An operational amplifier: ``out = A(s)*(p - n)``, without input current and output resistance.
 
-    Ideal where nothing is given: feedback keeps both inputs at one voltage. With the gain A at rest and the
-    unity-gain frequency f_u, ``1/A(s) = 1/A + s/(2 pi f_u)``, without the term of what is left out. ``i`` [A]
-    is delivered at the output. Source: Sedra & Smith 2004, Microelectronic Circuits, chapter 2.
+    Without ``A`` and ``f_u`` it is ideal: feedback keeps both inputs at one voltage. With the gain A at
+    rest and the unity-gain frequency f_u, ``1/A(s) = 1/A + s/(2 pi f_u)``; the term of a parameter that is
+    not given is zero. ``i`` [A] is delivered at the output. Source: Sedra & Smith 2004, Microelectronic
+    Circuits, chapter 2.
     """
 
     type_name = "op_amp"
     summary = "Operational amplifier, ideal or of a gain and a bandwidth"
     ports = (
-        Port("inputs", 2, "electrical", "the input that is not inverted, and the one that is"),
+        Port("inputs", 2, "electrical", "the noninverting input, and the inverting one"),
         Port("out", 1, "electrical", "node of the output"),
     )
     parameters = (
@@ -453,7 +454,7 @@ SENSED: tuple[Port, Port] = (
     Port("terminals", 2, "electrical", "the two terminals of the source"),
 )
 FELT: tuple[Port, Port] = (
-    Port("inputs", 2, "electrical", "the two nodes between which the current flows that controls it"),
+    Port("inputs", 2, "electrical", "the two nodes between which the controlling current flows"),
     SENSED[1],
 )
 
@@ -474,7 +475,7 @@ class Vcvs(ControlledSource):
 class Vccs(ControlledSource):
     """A current source that a voltage controls: ``i = g*(in_1 - in_2)`` [A].
 
-    It is delivered into the first terminal, and the second gives it.
+    It is delivered into the first terminal, and drawn from the second.
     """
 
     type_name = "vccs"
@@ -500,7 +501,7 @@ class Ccvs(ControlledSource):
 class Cccs(ControlledSource):
     """A current source that a current controls: ``i = beta*i_in`` [A]; ``i_in`` flows from in_1 to in_2.
 
-    It is delivered into the first terminal, and the second gives it.
+    It is delivered into the first terminal, and drawn from the second.
     """
 
     type_name = "cccs"

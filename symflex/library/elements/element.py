@@ -298,7 +298,7 @@ class Element(ABC):
         """Contribute this element's unknowns, rows, branches and injections."""
 
 
-LOSS_FACTOR: Final = ParameterPort("eta_s", "1", "a loss factor, on s = j*omega", "0")
+LOSS_FACTOR: Final = ParameterPort("eta_s", "1", "a loss factor, valid on s = j*omega", "0")
 """Of structural damping: what gives way has its stiffness times ``1 + j*eta_s``."""
 
 

@@ -146,9 +146,9 @@ class Shaft(LineElement):
     """A uniform shaft of length l [m] and polar second moment of area J [m^4] in torsion.
 
     ``tau`` [N m] is the torque the shaft delivers at its second end. ``eta`` [s] is Kelvin-Voigt damping,
-    ``c_f`` and ``k_f`` a viscous and an elastic foundation per length. For a section that is not circular, G
-    stands for G times the torsion constant over J.
-    Source: Timoshenko, Young & Weaver 1974, Vibration Problems in Engineering, chapter 5.
+    ``c_f`` and ``k_f`` a viscous and an elastic foundation per length. If the section is not circular, give
+    G times the torsion constant over J as G. Source: Timoshenko, Young & Weaver 1974, Vibration Problems in
+    Engineering, chapter 5.
     """
 
     type_name = "shaft"
@@ -206,12 +206,12 @@ THEORIES = ("euler-bernoulli", "rayleigh", "timoshenko")
 class Beam(LineElement):
     """A uniform beam of length l [m], cross-section A [m^2] and second moment of area I [m^4] in bending.
 
-    Between planar nodes, the second one l further along x. ``f`` [N] and ``tau`` [N m] are the force and
-    moment the beam delivers at its second end. ``eta`` [s] is Kelvin-Voigt damping (E, and G in the
-    Timoshenko theory, times 1 + eta*s), ``c_f`` and ``k_f`` a viscous and an elastic foundation per
-    length, ``N`` [N] an axial force, positive in tension. A slender beam (l/depth > 10) needs no more than
-    the Euler-Bernoulli theory; Rayleigh adds rotary inertia, Timoshenko also shear.
-    Source: Timoshenko, Young & Weaver 1974, Vibration Problems in Engineering, chapter 5.
+    It joins planar nodes, the second one l further along x. ``f`` [N] and ``tau`` [N m] are the force and
+    moment the beam delivers at its second end. ``eta`` [s] is Kelvin-Voigt damping: it multiplies E, and G
+    in the Timoshenko theory, by 1 + eta*s. ``c_f`` and ``k_f`` are a viscous and an elastic foundation per
+    length, ``N`` [N] is an axial force, positive in tension. For a slender beam (l/depth > 10), the
+    Euler-Bernoulli theory is enough; Rayleigh adds rotary inertia, Timoshenko also shear. Source:
+    Timoshenko, Young & Weaver 1974, Vibration Problems in Engineering, chapter 5.
     """
 
     type_name = "beam"
@@ -263,18 +263,19 @@ class Beam(LineElement):
 
 
 class FrameMember(LineElement):
-    """A uniform member of a plane frame: bends as a beam of any theory, and stretches as a rod.
+    """A uniform member of a plane frame: it bends as a beam of any theory, and stretches as a rod.
 
-    Between nodes of the plane, the second one l [m] from the first in the direction at an angle [rad] from
-    the x axis, counted from x to y. ``f_x``, ``f_y`` [N] and ``tau`` [N m] are the force and moment it
-    delivers at its second end, along the axes x and y. At a point of it, ``x``, ``y`` and ``theta`` are its
-    motion along these axes, ``u`` and ``v`` the same along the member and across it, to the left of its
-    direction. ``f_x``, ``f_y``, ``tau`` and ``f_u``, ``f_v`` are there what the part beyond the point exerts
-    on the part before it: ``f_u = EA u'`` is positive in tension, ``tau = EI v''`` and ``f_v = -EI v'''``
-    after Euler and Bernoulli. ``N`` [N] is an axial force at rest, positive in tension, ``c_f`` and ``k_f`` a
-    foundation per length that acts along and across, an ``inextensible`` member bends only. All else is as of
-    ``beam`` and ``rod``. Valid for small motions, in which bending and stretching do not act on each other.
-    Source: Clough & Penzien 1993, Dynamics of Structures, chapters 11 and 17.
+    It joins nodes in the plane. The second one is l [m] away from the first, at an angle [rad] from the x
+    axis, counted from x to y. ``f_x``, ``f_y`` [N] and ``tau`` [N m] are the force and moment it delivers
+    at its second end, along the axes x and y. At a point of the member, ``x``, ``y`` and ``theta`` are its
+    motion along these axes; ``u`` and ``v`` are its motion along the member and across it, to the left of
+    its direction. ``f_x``, ``f_y``, ``tau``, ``f_u`` and ``f_v`` at a point are exerted by the part beyond
+    it on the part before it: ``f_u = EA u'`` is positive in tension, ``tau = EI v''`` and
+    ``f_v = -EI v'''`` in the Euler-Bernoulli theory. ``N`` [N] is an axial force at rest, positive in
+    tension. ``c_f`` and ``k_f`` are a foundation per length that acts along and across the member. An
+    ``inextensible`` member only bends. Everything else is as for ``beam`` and ``rod``. Valid for small
+    motions, in which bending and stretching do not act on each other. Source: Clough & Penzien 1993,
+    Dynamics of Structures, chapters 11 and 17.
     """
 
     type_name = "frame"

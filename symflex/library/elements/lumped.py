@@ -171,7 +171,7 @@ class ThroughSource(Element):
 
 
 class ForceSource(ThroughSource):
-    """A force f [N] applied to a node, or between two, on the first; ``f`` is the force delivered."""
+    """A force ``f`` [N] on a node, or on the first of two nodes, with its reaction on the second."""
 
     type_name = "force_source"
     summary = "Force applied to a node"
@@ -181,7 +181,7 @@ class ForceSource(ThroughSource):
 
 
 class TorqueSource(ThroughSource):
-    """A torque tau [N m] applied to a node, or between two, on the first; ``tau`` is the torque delivered."""
+    """A torque ``tau`` [N m] on a node, or on the first of two nodes, with its reaction on the second."""
 
     type_name = "torque_source"
     summary = "Torque applied to a node"
@@ -220,7 +220,7 @@ class AcrossSource(Element):
 
 
 class VoltageSource(AcrossSource):
-    """A voltage v [V] of a node over ground, or over a second node; ``i`` [A] is delivered into the first."""
+    """A voltage v [V] of a node, over ground or a second node; ``i`` [A] is delivered into the first."""
 
     type_name = "voltage_source"
     summary = "Voltage imposed on a node"
@@ -232,7 +232,7 @@ class VoltageSource(AcrossSource):
 class AcousticMass(Impedance):
     """The mass of air in a port or tube, ``p_a - p_b = M*s*q``; ``q`` [m^3/s] flows from a to b.
 
-    ``M = rho*l/A`` [kg/m^4] of a tube of length l and section A; of a liquid, an inertance.
+    ``M = rho*l/A`` [kg/m^4] for a tube of length l and section A; for a liquid, it is called an inertance.
     Source: Beranek 1954, Acoustics, chapter 5.
     """
 
@@ -245,7 +245,7 @@ class AcousticMass(Impedance):
 
 
 class AcousticResistance(Impedance):
-    """A mesh, slit or orifice, ``p_a - p_b = R*q``; the flow ``q`` [m^3/s] is from a to b.
+    """A mesh, slit or orifice, ``p_a - p_b = R*q``; the flow ``q`` [m^3/s] goes from a to b.
 
     Source: Beranek 1954, Acoustics, chapter 5.
     """
@@ -258,10 +258,10 @@ class AcousticResistance(Impedance):
 
 
 class AcousticCompliance(Branch):
-    """The air in a box, or an accumulator, ``q = C*s*p``; the flow ``q`` [m^3/s] is into it.
+    """The air in a box, or an accumulator, ``q = C*s*p``; the flow ``q`` [m^3/s] goes into it.
 
-    ``C = V/(rho*c^2)`` [m^3/Pa] of a volume V of a gas or liquid in which sound travels at c.
-    Source: Beranek 1954, Acoustics, chapter 5.
+    ``C = V/(rho*c^2)`` [m^3/Pa] for a volume V of a gas or liquid in which sound travels at c. Source:
+    Beranek 1954, Acoustics, chapter 5.
     """
 
     type_name = "acoustic_compliance"
@@ -283,7 +283,7 @@ class FlowSource(ThroughSource):
 
 
 class PressureSource(AcrossSource):
-    """A pressure p [Pa] of a node, or over a second one; ``q`` [m^3/s] is delivered into the first."""
+    """A pressure p [Pa] of a node, or over a second node; ``q`` [m^3/s] is delivered into the first."""
 
     type_name = "pressure_source"
     summary = "Pressure imposed on a node"

@@ -33,9 +33,9 @@ if TYPE_CHECKING:
 class RigidBody(Element):
     """A planar body of mass m [kg] and moment of inertia J [kg m^2] about its mass centre.
 
-    The mass centre lies cg [m] beyond the node along x, ``y_cg = y + cg*theta``. ``f`` and ``tau``
-    are the inertial force [N] and moment about the node [N m]. At a node that moves along x the mass does so
-    too, and ``f_x`` is the inertial force of that.
+    The mass centre lies cg [m] beyond the node along x, ``y_cg = y + cg*theta``. ``f`` and ``tau`` are the
+    inertial force [N] and moment about the node [N m]. If the node moves along x, the mass moves with it,
+    and ``f_x`` is the inertial force along x.
     """
 
     type_name = "rigid_body"
@@ -81,9 +81,9 @@ def _with_x(quantities: tuple[str, ...], domain: Placing) -> tuple[str, ...]:
 class RigidLink(Element):
     """A massless rigid link of the given length [m], at an angle [rad] from the x axis.
 
-    ``y_b = y_a + length*cos(angle)*theta_a`` and ``theta_b = theta_a``; where its nodes move along x, also
-    ``x_b = x_a - length*sin(angle)*theta_a``. ``f`` [N] and ``tau`` [N m] are the force and moment delivered
-    at the second node, ``f_x`` [N] the force along x.
+    ``y_b = y_a + length*cos(angle)*theta_a`` and ``theta_b = theta_a``; if its nodes move along x, also
+    ``x_b = x_a - length*sin(angle)*theta_a``. ``f`` [N] and ``tau`` [N m] are the force and moment
+    delivered at the second node, ``f_x`` [N] the force along x.
     """
 
     type_name = "rigid_link"
@@ -139,10 +139,10 @@ def _offset(a: Variable | None, b: Variable | None, theta: Variable | None, leve
 class MasslessBeam(Element):
     """A massless beam of bending stiffness EI [N m^2] and length l [m].
 
-    ``f`` [N] and ``tau`` [N m] are the force and moment the beam delivers at its second end.
-    Written as the flexibility of a cantilever (Timoshenko & Gere 1972, table of beam deflections),
-    which keeps the rows polynomial: relative to the rigid motion of the first end, the second end
-    deflects by ``(P*l^3/3 + M*l^2/2)/EI`` and turns by ``(P*l^2/2 + M*l)/EI`` under P and M applied to it.
+    ``f`` [N] and ``tau`` [N m] are the force and moment the beam delivers at its second end. A force P and
+    a moment M at the second end deflect it by ``(P*l^3/3 + M*l^2/2)/EI`` and turn it by
+    ``(P*l^2/2 + M*l)/EI``, relative to the rigid motion of the first end. Source: Timoshenko & Gere 1972,
+    table of beam deflections.
     """
 
     type_name = "massless_beam"
@@ -228,8 +228,8 @@ def _hold(use: ElementUse, held: Mapping[str, str]) -> Stamp:
 class Fixed(Element):
     """Everything at the node is zero; ``f``, ``f_x``, ``tau`` or ``i`` is the reaction delivered to the node.
 
-    At a component of a planar node, ``p.x``, that alone is held. Between two nodes a rigid joint: they move
-    alike, and the reaction is delivered to the first.
+    At a component of a planar node, such as ``p.x``, only that component is held. Between two nodes it is a
+    rigid joint: both move alike, and the reaction is delivered to the first.
     """
 
     type_name = "fixed"
@@ -257,7 +257,7 @@ class Fixed(Element):
 class Slider(Element):
     """The slope theta is zero, deflections are free; ``tau`` [N m] is the reaction.
 
-    Between two nodes, their slopes are the same.
+    Between two nodes, it makes their slopes equal.
     """
 
     type_name = "slider"
@@ -272,10 +272,10 @@ class Slider(Element):
 
 
 class Pin(Element):
-    """The deflection y is zero, in the plane x as well, and the slope is free.
+    """The deflection y is zero, in the plane also x, and the slope is free.
 
-    ``f`` [N] is the reaction along y, ``f_x`` [N] that along x. Between two nodes a hinge: they deflect
-    alike, and turn as they like.
+    ``f`` [N] is the reaction along y, ``f_x`` [N] that along x. Between two nodes it is a hinge: their
+    deflections are equal, and their slopes are free.
     """
 
     type_name = "pin"

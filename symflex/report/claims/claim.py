@@ -70,7 +70,7 @@ class Claim:
         needs = dict.fromkeys(model_of(name) for check in self.checks for name in check.of)
         missing = [name for name in needs if name not in models]
         if missing:
-            return Finding("not examined", (f"The report does not hold {', '.join(missing)}.",))
+            return Finding("not examined", (f"The report has no model {', '.join(missing)}.",))
         try:
             found = [check.judge(models) for check in self.checks]
         except KeyError as lacking:
@@ -155,8 +155,8 @@ def claim_section(publication: Publication, findings: Sequence[Finding]) -> Sect
     )
     lead = text(
         f"{publication.name}, {publication.title}: {counted(len(findings), 'claim')}, of which {summary}. "
-        "Each verdict is computed from the models below, with their values of the parameters; a condition is "
-        "named where the claim depends on it."
+        "Each verdict is computed from the models below, with their values of the parameters. If a claim "
+        "depends on a condition, the verdict names it."
     )
     table = Table(columns("Claim", ("Verdict", "plain"), "What was computed"), rows)
     return Section("Claims of the publication", (lead, table), ANCHOR)

@@ -253,12 +253,12 @@ def best_fit(
     told = [(stem, fact) for stem, facts in models.items() for fact in facts.data]
     measured = [(stem, fact) for stem, fact in told if not fact.is_synthetic]
     if not measured:
-        lacking = "The comparison needs measured data, which the report does not hold."
+        lacking = "The comparison needs measured data, and the report has none."
         return _unexamined(f"{lacking} {synthetic} {_off(told)}." if told else lacking)
     if not decibels:
-        return _unexamined(f"What counts as close is not said. {_off(measured)}.")
+        return _unexamined(f"The claim does not say what counts as close. {_off(measured)}.")
     good = {stem for stem, fact in measured if fact.decibels < decibels}
-    return judged(good == set(of), f"{_off(measured)}. Well means here: within {decibels:g} dB rms.")
+    return judged(good == set(of), f"{_off(measured)}. Close means here: within {decibels:g} dB rms.")
 
 
 def unstable_at_high_gain(models: Models, of: tuple[str, ...]) -> Finding:

@@ -159,7 +159,7 @@ def data_section(study: Study) -> ChapterPart | None:
                 band,
                 ", ",
                 Code(measured.name),
-                f" is off {whose} data by {misfit}, all lines alike.",
+                f" differs from {whose} data by {misfit}, with equal weight for every line.",
             )
         )
     return ChapterPart("Data", tuple(blocks), files) if blocks else None
@@ -210,7 +210,7 @@ def export_section(study: Study) -> ChapterPart:
     data = (
         ("derive", "closed forms, as symflex derive --json prints them"),
         ("roots", "poles and zeros with all certified digits"),
-        ("facts", "what the comparison is made of"),
+        ("facts", "facts that the comparison uses"),
     )
     rows += [
         ((PageLink(f"data/{study.stem}_{k}.json", f"data/{study.stem}_{k}.json"),), (what,))

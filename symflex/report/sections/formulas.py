@@ -131,7 +131,7 @@ def _of(tf: AnyTransferFunction, form: PrintedForm, label: str) -> tuple[Block, 
     if tf.is_zero:
         return (text("Identically zero: the input does not reach the output."),)
     if rows is None or len(latex) > LONGEST_LATEX:
-        blocks.append(Notice("The closed form is too long for a page; the folder's data hold it."))
+        blocks.append(Notice("The closed form is too long for a page; it is in the folder data."))
     else:
         blocks.append(DisplayedFormula(rows, latex, f"{tf.name} in closed form"))
     labels = form_labels(tf, form)
@@ -214,7 +214,7 @@ def _audited(audit: Audit) -> tuple[Block, ...]:
         blocks.append(
             text(
                 f"The largest deviation of the magnitude from {low} to {high} Hz {size} at "
-                f"{deviation.magnitude_hz:.4g} Hz, that of the phase is {deviation.phase_deg:+.4g}° at "
+                f"{deviation.magnitude_hz:.4g} Hz; that of the phase is {deviation.phase_deg:+.4g}° at "
                 f"{deviation.phase_hz:.4g} Hz (measured)."
             )
         )
