@@ -100,7 +100,7 @@ def draw_locus(locus: RootLocus, canvas: Canvas) -> Figure:
 
     Crosses are the poles at the first gain, squares those at the last, stars those at the gain's own
     value, circles the zeros; all of them are proved. The lines between are traced numerically: solid from
-    poles at the first gain, dashed from infinity, dotted from where none is marked. The roots that belong
+    poles at the first gain, dashed from where none is marked, such as infinity. The roots that belong
     together are shown; the legend says how many of each lie outside, and arrows at the border where. Grey
     circles surround points at which poles accumulate. Right of the imaginary axis the ground is tinted, and
     the title says at each of these gains whether the loop is stable.
@@ -132,8 +132,7 @@ def draw_locus(locus: RootLocus, canvas: Canvas) -> Figure:
             draw_points(axes, inside, LOOKS[kind], told)
     kinds = (
         (locus.branches, "-", None),
-        (locus.entering, "--", "poles from infinity"),
-        (locus.joining, ":", "from poles not marked"),
+        (locus.entering, "--", "from poles not marked"),
     )
     for branches, line, told_of in kinds:
         shown = [b for b in branches if any(_is_seen(axes, s) for s in b)]
@@ -202,9 +201,7 @@ def _view(locus: RootLocus, marks: Sequence[RootMark], canvas: Canvas) -> View:
     high_hz = None if canvas.band_hz is None else canvas.band_hz[1]
     view = choose_view(marks, high_hz, (CLOSE, 1 / CLOSE), _belonging_together(marks))
     size = max(map(abs, view.shown), default=0.0)
-    curves = (
-        s for branch in (*locus.branches, *locus.joining) for s in branch if abs(s) <= CURVE_REACH * size
-    )
+    curves = (s for branch in locus.branches for s in branch if abs(s) <= CURVE_REACH * size)
     reach = 0.0 if high_hz is None else ROOM * 2 * pi * high_hz
     re, im = view.re, (min(view.im[0], -reach), max(view.im[1], reach))
     for s in curves:

@@ -52,10 +52,6 @@ WIDER = (1.4, 1.15, 1.02)
 TURNS = (0.3, 1.9, 3.4, 5.0)
 TOUCHING = 1e-7
 ENDS_AGREE = 1e-6
-OUT_OF_SIGHT = 2.5
-"""How far a curve from infinity is followed, relative to the largest pole at the first or last gain."""
-THINNINGS = 150
-"""How often the gain is halved at most to follow it there."""
 
 
 @dataclass(frozen=True)
@@ -72,12 +68,9 @@ class RootLocus:
     arrived: bool  # every curve ends next to a proved pole at the last gain, and no two at the same
     # The proved poles at the last gain [rad/s] to which a curve of any kind goes.
     ends: tuple[complex, ...] = ()
-    # Curves of poles that come from infinity as the gain leaves its first value, as those of a delay do from
-    # no gain on.
+    # Curves to poles at the last gain from where none is marked: from infinity, as those of a delay, from
+    # higher modes at the first gain, or from where poles accumulate.
     entering: tuple[tuple[complex, ...], ...] = ()
-    # Curves to poles at the last gain from where none is marked: from higher modes at the first gain, or from
-    # where poles accumulate.
-    joining: tuple[tuple[complex, ...], ...] = ()
     # The gain's own value and the proved poles there, where it has one between the limits.
     nominal: tuple[Fraction, PoleZeroMap] | None = None
 
@@ -224,26 +217,16 @@ def trace_locus(
     lowest = [True] * len(final) if region is None else _lowest(end, wanted)
     kept = [s for i, s in enumerate(final) if lowest[i] or (matched is not None and i in matched)]
     entering: list[tuple[complex, ...]] = []
-    joining: list[tuple[complex, ...]] = []
     if matched is not None and len(kept) > len(matched):
         # Both members of a pair are followed, as where they part one of them may come from a marked pole.
         back = _trace(function, kept, top, [*reversed(goals[:-1])])
-        size = max(abs(s) for s in (*kept, *poles))
         ended = {final[i] for i in matched}
         for s, branch in zip(kept, back, strict=True):
             near = _nearest(first, branch[-1])
-            if near is not None:
-                if s not in ended:
-                    branches.append((poles[near], *reversed(branch)))
-            elif _is_among(end.excluded, branch[-1]):
-                joining.append(tuple(reversed(_before(end.excluded, branch))))
-            elif (landed := _landed(function, branch[-1], bottom, size)) is not None:
-                joining.append((landed, *reversed(branch)))
-            else:
-                tail = _outwards(function, branch[-1], bottom, goals[0], OUT_OF_SIGHT * size)
-                entering.append((*reversed(tail), *reversed(branch)))
-        entering, parted = _until_parting(entering)
-        branches += parted
+            if near is None:
+                entering.append(tuple(reversed(_before(end.excluded, branch))))
+            elif s not in ended:
+                branches.append((poles[near], *reversed(branch)))
     return RootLocus(
         loop.gain.name,
         (low, high),
@@ -253,7 +236,6 @@ def trace_locus(
         matched is not None,
         tuple(kept),
         tuple(entering),
-        tuple(joining),
         _at_nominal(loop, (low, high), region, budget),
     )
 
@@ -264,25 +246,6 @@ def _at_nominal(
     if loop.nominal is None or not limits[0] < loop.nominal < limits[1]:
         return None
     return loop.nominal, closed_loop_roots(loop, loop.nominal, region, budget)
-
-
-def _until_parting(
-    entering: Sequence[tuple[complex, ...]],
-) -> tuple[list[tuple[complex, ...]], list[tuple[complex, ...]]]:
-    """Cut curves from infinity where they meet one from a marked pole on the axis and leave it as a pair.
-
-    Which of the two leaves which way has no meaning, and both are drawn alike from there on.
-    """
-    kept, parted = [], []
-    ends = {branch[-1] for branch in entering}
-    for branch in entering:
-        last = max((i for i, s in enumerate(branch) if not s.imag), default=None)
-        if last is None or not branch[-1].imag or branch[-1].conjugate() in ends:
-            kept.append(branch)
-        else:
-            kept.append(branch[: last + 1])
-            parted.append(branch[last:])
-    return kept, parted
 
 
 def _range(
@@ -346,27 +309,6 @@ def _before(holes: Sequence[Exclusion], branch: list[complex]) -> list[complex]:
     """Return a curve up to where it enters such a part; its first point, which is proved, in any case."""
     inside = (i for i, s in enumerate(branch) if i and _is_among(holes, s))
     return branch[: next(inside, len(branch))]
-
-
-def _landed(function: Traceable, s: complex, gain: float, size: float) -> complex | None:
-    """Return the pole at the first gain next to one a little later, ``None`` where none is near."""
-    found = _newton(function, s, gain, ())
-    is_near = found is not None and abs(found - s) <= 2 * FAREST * max(size, abs(s))
-    return found if is_near else None
-
-
-def _outwards(function: Traceable, s: complex, low: float, gain: float, reach: float) -> list[complex]:
-    """Follow a pole out of sight as the gain falls to the first one."""
-    tail: list[complex] = []
-    shift = gain - low
-    for _ in range(THINNINGS):
-        shift /= 2
-        found = _newton(function, s, low + shift, ())
-        if found is None or abs(found) < abs(s) or abs(s) > reach:
-            break
-        tail.append(found)
-        s = found
-    return tail
 
 
 def _nearest(points: Sequence[complex], s: complex) -> int | None:

@@ -66,7 +66,7 @@ class Sought:
 
     def search(self, winding: Winding) -> RootSearch:
         """Return a search of the plane that counts as told."""
-        return RootSearch(winding, self.winding, self.holes, self.digits)
+        return RootSearch(winding, self.holes, self.digits)
 
 
 @dataclass(frozen=True, slots=True)

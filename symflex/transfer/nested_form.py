@@ -44,6 +44,7 @@ from symflex.transfer.balls import (
 )
 from symflex.transfer.bind import BoundTransferFunction, Given, bind, values_for
 from symflex.transfer.derive import nested_transfer
+from symflex.transfer.direct_solve import NotFollowedError, Point, SingularPointError
 from symflex.transfer.transfer_function import TransferFunction, name_quantity, unit_of_quotient
 
 if TYPE_CHECKING:
@@ -58,8 +59,6 @@ if TYPE_CHECKING:
     from symflex.equations.line_network import LineNetwork
     from symflex.model import ExactValue, Input, Model, ModelParameter, Output
     from symflex.transfer.balls import Arithmetic, Value
-    from symflex.transfer.direct_solve import Point
-    from symflex.transfer.enclosed_network import EnclosedNetwork, NetworkResponses
     from symflex.transfer.probes import Probes
 
 CONSTANT_BITS = 256
@@ -70,7 +69,6 @@ class CutModel:
     """A distributed model, of which the network that double precision solves is made when it is wanted."""
 
     solve: ModelSolve  # its equations at points
-    _known: dict[object, NetworkResponses] = field(default_factory=dict)
 
     @property
     def model(self) -> Model:
@@ -85,25 +83,26 @@ class CutModel:
         with uncollected():
             return line_network(self.solve.direct.equations)
 
-    def responses(self, bits: int, values: Mapping[str, ExactValue]) -> NetworkResponses:
-        """Return the network with numbers, solved in balls at a precision."""
-        from symflex.transfer.enclosed_network import NetworkResponses  # few functions are of so many members
+    def value(self, pair: tuple[str, str], values: Mapping[str, ExactValue], s: acb) -> acb:
+        """Return a ball around the value of a function, from the equations themselves, with numbers."""
+        if self.solve.direct.unsolved:
+            return acb("nan")
+        try:
+            return self.solve.direct.at(Point(lambda: s, self._parameters(values)), [pair]).values[pair]
+        except (SingularPointError, NotFollowedError):
+            return acb("nan")
 
+    def _parameters(self, values: Mapping[str, ExactValue]) -> dict[str, Callable[[], arb]]:
+        """Return how to enclose every parameter at the current precision."""
         declared = {p.name: p.value for p in self.model.parameters if p.value is not None}
-        key = bits, tuple(sorted((declared | dict(values)).items()))
-        if key not in self._known:
-            with ctx.workprec(bits):
-                constants = {n: acb(x()) for n, x in self.constants(values).items()}
-            self._known[key] = NetworkResponses(bits, self.network, constants)
-        return self._known[key]
+        # A function does not depend on a parameter without value, though its network may.
+        return {p.name: _one for p in self.model.parameters} | {
+            name: enclosure(value) for name, value in (declared | dict(values)).items()
+        }
 
     def constants(self, values: Mapping[str, ExactValue]) -> dict[str, Callable[[], arb]]:
         """Return, per name of the entries but s, how to enclose it at the current precision."""
-        declared = {p.name: p.value for p in self.model.parameters if p.value is not None}
-        # A function does not depend on a parameter without value, though its network may.
-        known = {p.name: _one for p in self.model.parameters} | {
-            name: enclosure(value) for name, value in (declared | dict(values)).items()
-        }
+        known = self._parameters(values)
         return {**known, "pi": arb.pi} | {
             c.generator: later(c.expression, known) for c in self.network.equations.constants
         }
@@ -307,14 +306,13 @@ class BoundNested:
             used = self.source.generators - {LAPLACE}
             return EnclosedNested(bits, self.source, {n: acb(self._enclosures[n]()) for n in used})
 
-    def solved(self, bits: int) -> EnclosedNetwork | None:
-        """Return the same for points, where a network of line elements is solved with fewer bits."""
-        if self.source.cut is None or not self.source.is_distributed:
-            return None
-        from symflex.transfer.enclosed_network import EnclosedNetwork  # few functions are of so many members
-
-        numbers = self.source.cut.network.numbers(self.source.output.name, self.source.input.name)
-        return EnclosedNetwork(self.source.cut.responses(bits, dict(self.values)), *numbers)
+    def solved(self, s: acb, bits: int) -> acb:
+        """Return a ball around the value from the equations; not finite where they are singular."""
+        if self.source.cut is None:
+            return acb("nan")
+        with ctx.workprec(bits):
+            pair = self.source.output.name, self.source.input.name
+            return self.source.cut.value(pair, dict(self.values), s)
 
     @cached_property
     def _known(self) -> Callable[[int], EnclosedNested]:
@@ -331,15 +329,10 @@ class BoundNested:
             return 0j
         # A wide ball may hold a zero divisor where the function has none: once more before a limit is sought.
         value = double_value(self._known, s, 1, bits)
-        if isfinite(value) or self.solved(FIRST_BITS) is None:
+        if isfinite(value) or self.source.cut is None:
             return value
-
         # A program may divide by what is zero for these values, such as the sine of an angle of 180 degrees.
-        def network(bits: int) -> Callable[[acb], acb]:
-            solved = self.solved(bits)
-            return lambda at: acb("nan") if solved is None else solved.value_and_slope(at)[0]
-
-        return double_value(network, s, 1)
+        return double_value(lambda bits: partial(self.solved, bits=bits), s, 1)
 
     def bits_at(self, s: complex) -> int:
         """Return with how many bits the value is known: at other points as many do, or nearly."""

@@ -106,6 +106,10 @@ class BoundedModes:
         self._side = Side(self._bound, self._bound.den, EFFORT.pole_digits, entered_budget())
         self._rings: dict[Cell, Ring] = {}
         self._known: dict[float, PartialSum] = {}
+        # What one count of modes found serves the next: roots from one reach on, and terms of roots.
+        self._begun = 0.0
+        self._added: list[Root] = []
+        self._terms: dict[int, tuple[Root, ExponentialTerm]] = {}
         self.is_exhausted = False  # whether a search for more modes ended by itself
 
     def summed(self, count: int) -> PartialSum | None:
@@ -154,9 +158,7 @@ class BoundedModes:
                     return None
                 if any(within):
                     continue
-                term = self._bounding.term(root, self._integrations) or term_at(
-                    self._bound, root, self._integrations
-                )
+                term = self._term(root)
                 if term is None:
                     return None
                 terms.append(term)
@@ -173,6 +175,15 @@ class BoundedModes:
                 self._bounding.name,
             )
             return self._known.setdefault(reached, total)
+
+    def _term(self, root: Root) -> ExponentialTerm | None:
+        """Return what a pole and its conjugate add."""
+        if id(root) in self._terms:
+            return self._terms[id(root)][1]
+        term = self._bounding.term(root, self._integrations) or term_at(self._bound, root, self._integrations)
+        if term is not None:
+            self._terms[id(root)] = root, term
+        return term
 
     def _about_accumulations(
         self, reached: float, poles: list[acb]
@@ -209,8 +220,10 @@ class BoundedModes:
         winding = CertifiedWinding(side.function, entered_budget())
         try:
             within = winding.count_within(side.reached, pi)
-            places = [_root_of(root) for root in chain[-len(CONTINUATION) :]]
-            added: list[Root] = []
+            if self._begun != side.reached:
+                self._begun, self._added = side.reached, []
+            added = self._added
+            places = [_root_of(root) for root in [*chain, *added][-len(CONTINUATION) :]]
             while len(chain) + len(added) <= count:
                 place = sum(c * z for c, z in zip(CONTINUATION, places, strict=True))
                 found = prove_simple(side.function, acb(place**2), EFFORT.pole_digits)

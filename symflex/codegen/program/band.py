@@ -289,12 +289,14 @@ def _located(bound: AnyBoundFunction, up_to: Fraction | None) -> tuple[PoleZeroM
         ]
         for x in (found.poles, found.zeros)
     )
-    if len(poles) <= modes:
+    # Where no wave is reflected there may be few poles, and zeros without end.
+    told = poles if len(poles) > modes else zeros
+    if len(told) <= modes:
         return found, LUMPED_END
     # Between two modes, where the function is neither large nor small.
-    end = Fraction(f"{sqrt(poles[modes - 1] * poles[modes]):.3g}")
+    end = Fraction(f"{sqrt(told[modes - 1] * told[modes]):.3g}")
     if len(zeros) >= modes + BEYOND and max(zeros) < ENOUGH * end:
-        found = locate(bound, Band(Fraction(0), Fraction(max(poles))), DIGITS)
+        found = locate(bound, Band(Fraction(0), Fraction(max(told))), DIGITS)
     return found, end
 
 

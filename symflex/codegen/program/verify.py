@@ -23,7 +23,6 @@ from symflex.codegen.program.evaluate import evaluate, nearest_double
 from symflex.errors import BudgetError, Diagnostic, ModelError
 from symflex.transfer import BoundNested, NestedTransferFunction, bind, bind_nested
 from symflex.transfer.bind import EnclosedTransferFunction
-from symflex.transfer.enclosed_network import EnclosedNetwork
 from symflex.transfer.nested_form import EnclosedNested
 from symflex.transfer.of_model import derive_for_roots, derive_nested
 
@@ -488,7 +487,7 @@ class EnclosedValues:
     def __init__(self, bound: BoundTransferFunction | BoundNested) -> None:
         self.bound = bound
         self._first_bits = FIRST_BITS
-        self._known: dict[int, Enclosed | EnclosedNested | EnclosedNetwork] = {}
+        self._known: dict[int, Enclosed | EnclosedNested] = {}
 
     def at(self, s: complex) -> EnclosedValue | None:
         """Return the value at ``s``, or ``None`` at a pole or zero."""
@@ -498,17 +497,19 @@ class EnclosedValues:
             spend()
             function = self._function(bits)
             value, slope = function.value_and_slope(point)
+            if not value.is_finite() and isinstance(self.bound, BoundNested):
+                # Its program divides by zero for these values; without a slope errors count more.
+                value, slope = self.bound.solved(point, bits), acb(0)
             if value.is_finite() and slope.is_finite() and value.rel_accuracy_bits() >= ENOUGH_BITS:
-                if isinstance(function, EnclosedNested | EnclosedNetwork):
+                if isinstance(function, EnclosedNested):
                     self._first_bits = bits  # the next point most likely needs as many
                 return EnclosedValue(value, slope, bits)
             bits *= 2
         return None
 
-    def _function(self, bits: int) -> Enclosed | EnclosedNested | EnclosedNetwork:
+    def _function(self, bits: int) -> Enclosed | EnclosedNested:
         if bits not in self._known:
-            solved = self.bound.solved(bits) if isinstance(self.bound, BoundNested) else None
-            self._known[bits] = solved or self.bound.enclosed(bits)
+            self._known[bits] = self.bound.enclosed(bits)
         return self._known[bits]
 
 

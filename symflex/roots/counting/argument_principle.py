@@ -32,8 +32,6 @@ FIRST_STEP = 0.2
 """Of the first step [in z]."""
 SMALLEST = 1e-12
 """Step [in z] below which a root is said to lie on the path."""
-SMALLEST_TURN = 1e-6
-"""The same about a disc [rad]."""
 LOSSY = 0.01
 """Share of its bound below which a turn says that the bound is poor: nearly equal exponentials cancel."""
 
@@ -64,29 +62,6 @@ class LogarithmicLine:
         ball = acb(re, im).exp()
         centre = acb(middle.real, middle.imag).exp()
         return ball, centre, ball.abs_upper() * acb(re.rad(), im.rad()).abs_upper()
-
-
-@dataclass(frozen=True, slots=True)
-class Circle:
-    """About an exact point."""
-
-    centre: acb  # exact
-    radius: arb  # exact [rad/s]
-
-    def point(self, t: float) -> acb:
-        """Return a point."""
-        return self.centre + self.radius * (acb(0, 2) * arb.pi() * arb(t)).exp()
-
-    def step(self, start: float, end: float) -> tuple[acb, acb, arb]:
-        """Return a ball around a step, its middle, and the most that s moves from the middle on it."""
-        middle, half = (start + end) / 2, (end - start) / 2
-        turn = arb(middle, half * WIDENED + SPREAD)
-        ball = self.centre + self.radius * (acb(0, 2) * arb.pi() * turn).exp()
-        return ball, self.point(middle), self.radius * 2 * arb.pi() * turn.rad()
-
-
-Path = LogarithmicLine | Circle
-"""A curve in the s plane, from t = 0 to 1."""
 
 
 class CertifiedWinding(Winding):
@@ -127,16 +102,6 @@ class CertifiedWinding(Winding):
         with precision(BITS):
             return _whole(turn / _angle(left))
 
-    def count_in_disc(self, centre: acb, radius: arb) -> int:
-        """Return the number of roots closer to an exact point than a radius [rad/s]: proved.
-
-        RootOnPathError where a root lies on the circle, or too close to it.
-        """
-        bits = max(BITS, centre.bits() + BITS)
-        with precision(bits):
-            turn, _ = self._follow(Circle(centre, radius), 2 * pi, SMALLEST_TURN, bits)
-            return _whole(turn / (2 * arb.pi()))
-
     def certified_turn(self, start: complex, end: complex, smallest: float = SMALLEST) -> arb:
         """Return a ball around the change of the argument [rad] from ``start`` straight to ``end``, in z.
 
@@ -153,7 +118,7 @@ class CertifiedWinding(Winding):
             self._turns[start, end] = turn
         return self._turns[start, end]
 
-    def _follow(self, path: Path, length: float, smallest: float, bits: int) -> tuple[arb, int]:
+    def _follow(self, path: LogarithmicLine, length: float, smallest: float, bits: int) -> tuple[arb, int]:
         """Return the change of the argument along a path, and the precision that it took."""
         tries_series = self._tries_series
 
@@ -172,7 +137,7 @@ class CertifiedWinding(Winding):
         return turn, bits
 
     def _change(
-        self, path: Path, start: float, end: float, bits: int, *, tries_series: bool = False
+        self, path: LogarithmicLine, start: float, end: float, bits: int, *, tries_series: bool = False
     ) -> tuple[float, arb]:
         """Return a bound on how far arg F may turn on a step, and how far it turns from end to end."""
         ball, centre, reach = path.step(start, end)

@@ -11,27 +11,22 @@ from dataclasses import dataclass
 from math import inf
 from typing import TYPE_CHECKING
 
-from flint import acb, arb
+from flint import acb
 
 from symflex.errors import BudgetError, Diagnostic
 from symflex.roots.axes.axis_scan import sign_changes
 from symflex.roots.counting.winding import RING, Cell, RootOnPathError, Winding
 from symflex.roots.plane.local_roots import (
-    in_disc,
     is_branched,
-    middle_of,
     prove_simple,
     prove_together,
-    resolve,
-    snapped,
 )
-from symflex.roots.precision import bits_for_digits, precision
+from symflex.roots.precision import precision
 from symflex.roots.root import Root, groups, overlap
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from symflex.roots.counting.argument_principle import CertifiedWinding
 
 MARGIN = 0.03
 """How far beyond the axes cells reach [rad], so that no side lies on a row of roots."""
@@ -49,20 +44,10 @@ CONVERGED = 1e-11
 """Step [in z] after which no further one is needed."""
 FIRST_BITS = 128
 """Of points handed to proofs."""
-SMALL = 1e-9
-"""Size of cells in which roots that cannot be told apart by splitting are told apart by their moments."""
 NEAR = 0.1
 """Size of cells in which a root without a box is enclosed by a circle."""
 NEIGHBOURS = 1e-4
-"""Relative radius of the circle about one of several roots in a cell within which the others are sought."""
-CLUSTER_BITS = 256
-"""Of moments; twice as many each time they do not tell roots apart."""
-CLUSTER_DOUBLINGS = 4
-"""After which roots are left as one."""
-DISC_GROWTH = 100
-"""Of a disc that does not yet hold all roots of a cluster."""
-APART = 8
-"""Radii of a disc about several roots at which the circle goes by whose moments they are told apart."""
+"""Relative radius of the disc about a root in which others are sought that it may not be told from."""
 FEW = 8
 """Modes from which on a search goes on in smaller rings."""
 UNCHECKED = 12
@@ -94,7 +79,7 @@ class RootSearch:
     up to which it searched.
     """
 
-    def __init__(self, winding: Winding, proof: CertifiedWinding, holes: Sequence[Cell], digits: int) -> None:
+    def __init__(self, winding: Winding, holes: Sequence[Cell], digits: int) -> None:
         self.function = winding.function
         self.holes = tuple(holes)
         self.digits = digits
@@ -104,7 +89,6 @@ class RootSearch:
         self.missing = 0
         self.reached = -inf
         self._winding = winding
-        self._proof = proof
 
     @property
     def left(self) -> float:
@@ -242,7 +226,7 @@ class RootSearch:
             if found is None and part.size > CLOSEST and number > 0:
                 parts = self._split(part, number)
             if found is None and parts is None and number > 0:
-                found = self._cluster(part, number)
+                found = self._as_one(part, number)
             if found is not None:
                 roots.extend(found)
             elif parts is not None:
@@ -294,81 +278,28 @@ class RootSearch:
         if count <= self.function.power:
             # No box about it: perhaps a wavenumber vanishes there, which has two branches.
             return None if root is not None or cell.size > NEAR else self._about(s, count)
-        # Several roots, perhaps too close to each other to be parted by cuts.
+        # Several roots, which cuts part, unless all are where wavenumbers meet.
         with precision(FIRST_BITS):
             radius = (s.abs_upper() * NEIGHBOURS).mid()
-        found = resolve(self.function, s, radius, self.digits, CLUSTER_BITS, even=self.is_even)
-        if found is None or sum(each.multiplicity for each in found) * self.function.power != count:
-            if not is_branched(self.function, s, radius):
-                return None
-            one = prove_together(
-                self.function, s, radius, self.digits, count, even=self.is_even, is_close=True
-            )
-            if one is None:
-                return None
-            found = self._apart(one) or [one]
-        return found if all(_is_in(cell, each) for each in found) else None
+        if not is_branched(self.function, s, radius):
+            return None
+        one = prove_together(self.function, s, radius, self.digits, count, even=self.is_even, is_close=True)
+        return [one] if one is not None and _is_in(cell, one) else None
 
-    def _apart(self, root: Root) -> list[Root] | None:
-        """Return the roots that agree in all digits wanted, by more digits."""
-        bits = 2 * max(CLUSTER_BITS, root.working_bits())
-        with precision(bits):
-            centre = acb(root.re.mid(), root.im.mid())
-            radius = ((root.re.rad() + root.im.rad()) * APART).upper()
-        found = resolve(self.function, centre, radius, self.digits, bits, even=self.is_even)
-        total = 0 if found is None else sum(each.multiplicity for each in found)
-        return found if total == root.multiplicity else None
-
-    def _cluster(self, cell: Cell, count: int) -> list[Root] | None:
-        """Return the roots in a small cell by their moments, or as one that could not be told apart."""
-        whole, broken = divmod(count, self.function.power)
-        if broken or cell.size > SMALL:
+    def _as_one(self, cell: Cell, count: int) -> list[Root] | None:
+        """Return the roots of a cell too small to be cut as one, in a disc proved to hold them."""
+        if count % self.function.power:
             return None
         with precision(FIRST_BITS):
             centre = acb(cell.centre.real, cell.centre.imag).exp().mid()
-            radius = (centre.abs_upper() * 2 * cell.size).mid()
-        bits = CLUSTER_BITS
-        for _ in range(CLUSTER_DOUBLINGS):
-            found = resolve(self.function, centre, radius, self.digits, bits, even=self.is_even)
-            if found is not None and sum(root.multiplicity for root in found) == whole:
-                return found
-            bits *= 2
-        return self._as_one(centre, radius, count)
+        return self._about(centre, count)
 
     def _about(self, s: acb, count: int) -> list[Root] | None:
-        """Return the only root in a circle that is not small: next to a branch, small ones fail."""
+        """Return all roots next to a point as one, in a disc proved to hold so many."""
         with precision(FIRST_BITS):
             size = (s.abs_upper() * NEIGHBOURS).mid()
         found = prove_together(self.function, s, size, self.digits, count, even=self.is_even)
-        if found is not None:
-            return [found]
-        return self._in_disc(snapped(s, size, even=self.is_even), size, count)
-
-    def _in_disc(self, centre: acb, size: arb, count: int) -> list[Root] | None:
-        """Return all roots in a disc as one if there are so many."""
-        try:
-            if self._proof.count_in_disc(centre, size) != count:
-                return None
-        except RootOnPathError:
-            return None
-        return [in_disc(centre, size, count // self.function.power, even=self.is_even)]
-
-    def _as_one(self, centre: acb, radius: arb, count: int) -> list[Root] | None:
-        """Return the smallest disc that is proved to hold all roots of a cluster."""
-        together = prove_together(self.function, centre, radius, self.digits, count, even=self.is_even)
-        if together is not None:
-            return [together]
-        bits = max(CLUSTER_BITS, 2 * bits_for_digits(self.digits))
-        centre = middle_of(self.function, centre, radius, bits) or centre
-        with precision(bits):
-            size = (centre.abs_upper() * arb(10) ** -self.digits).mid()
-            centre = snapped(centre, size, even=self.is_even)
-            while size < radius:
-                found = self._in_disc(centre, size, count)
-                if found is not None:
-                    return found
-                size = (size * DISC_GROWTH).mid()
-        return None
+        return None if found is None else [found]
 
 
 def _is_in(cell: Cell, root: Root) -> bool:

@@ -91,6 +91,21 @@ def test_the_band_ends_where_it_is_asked_to():
     assert "628.32 rad/s, 100 Hz" in said[1]
 
 
+@pytest.mark.slow
+def test_a_rod_whose_damper_takes_every_wave_has_zeros_alone():
+    text = """
+symflex = 1
+elements.bar = { type = "rod", between = ["ground", "x"], E = 1, A = 1, rho = 1, l = 1 }
+elements.end = { type = "damper", between = ["x", "ground"], b = 1 }
+inputs.F = { force = "x" }
+outputs.X = "x"
+"""
+    s = 1j * np.linspace(0.1, 15, 30)
+    # 1/(s coth s + s)
+    exact = (1 - np.exp(-2 * s)) / (2 * s)
+    assert np.all(np.abs(executed(exported(text, "numpy").text)["X_over_F"](s) - exact) < 1e-14)
+
+
 def test_what_is_lumped_is_exact_and_needs_no_rest():
     _, tfs = derived("six_mass")
     program, verified, said = choose_band(tfs[0])

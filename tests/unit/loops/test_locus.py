@@ -89,7 +89,7 @@ def test_poles_that_come_from_infinity_are_traced(loop):
     assert [branch[0] for branch in locus.branches] == [-1]
     assert len(locus.entering) == 8  # five modes, one of them real and from -1
     for branch in locus.entering:
-        assert branch[0].real < -500
+        assert branch[0].real < -100
         for s in branch[::9]:
             gain = -(s + 1) / (s + 3) * np.exp(s / 10)
             assert abs(gain.imag) < 1e-9 * abs(gain)
@@ -109,10 +109,10 @@ def test_poles_that_come_from_infinity_are_traced(loop):
 def test_a_pole_from_infinity_meets_one_of_the_plant(loop):
     # (s + 1) exp(s/2) has its least value on the axis at -3: there the two meet, and leave as a pair.
     locus = trace_locus(characteristic(loop("K*D/(s + 1)")), (Fraction(0), Fraction(4)), modes=3)
-    (real,) = (branch for branch in locus.entering if not branch[-1].imag)
-    assert abs(real[-1] + 3) < 0.1
-    pair = sorted((branch[-1] for branch in locus.branches), key=lambda s: s.imag)
-    assert len(pair) == 2
+    drawn = sorted((*locus.branches, *locus.entering), key=lambda branch: abs(branch[-1]))[:2]
+    for branch in drawn:
+        assert min(abs(s + 3) for s in branch) < 0.1
+    pair = sorted((branch[-1] for branch in drawn), key=lambda s: s.imag)
     assert pair[0] == pytest.approx(pair[1].conjugate(), rel=1e-9)
     assert abs(pair[1] + 1 + 4 * np.exp(-pair[1] / 2)) < 1e-8
 
@@ -201,7 +201,7 @@ def test_the_frame_holds_the_poles_at_the_last_gain(loop):
     done = characteristic(loop("K*D*(s + 3)/(s + 1)", T="0.1 s"))
     figure = draw_loop("locus", done, limits=(Fraction(0), Fraction(9, 10)))
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert labels == ["poles, $K = 0$", "poles, $K = 0.9$", "zeros", "poles from infinity"]
+    assert labels == ["poles, $K = 0$", "poles, $K = 0.9$", "zeros", "from poles not marked"]
     # The fifth mode is near (2 n + 1) pi / T for n = 3.
     assert figure.axes[0].get_ylim()[1] > 7 * np.pi / 0.1
     assert figure.axes[0].get_xlim()[0] < -3

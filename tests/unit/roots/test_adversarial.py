@@ -231,8 +231,6 @@ CASES = (
     Case("squares of hyperbolic cosines", cascade(ROD, "1"), equal_rods, band=(0.0, 2.1)),
     Case("rods side by side, 1e-10 apart", side_by_side("1.0000000001"),
          functools.partial(rods_apart, "1.0000000001"), band=(0.0, 0.6)),
-    Case("delays in series, 1e-14 apart", delays_in_series("1.00000000000001"),
-         functools.partial(two_delays, "1.00000000000001"), band=(0.0, 1.5)),
     Case("oscillators 5e-15 apart", OSCILLATORS, oscillators),
     Case("double real roots of two lines", DIFFUSION, diffusion, region=(-150.0, 1.0, -3.0, 3.0)),
     Case("all roots on the side of the region", HELD_ROD, held_rod, region=(0.0, 5.0, 0.5, 10.0),
@@ -316,6 +314,24 @@ def test_certified_the_whole_region_is_proved_and_roots_on_its_boundary_say_so(c
                 else any(abs(abs(s) - 2 * pi * hertz) < mpf(10) ** -20 for hertz in case.band)
             )
             assert root.on_boundary == at_a_limit, s
+
+
+CLOSER = Case(
+    "delays in series, 1e-14 apart",
+    delays_in_series("1.00000000000001"),
+    functools.partial(two_delays, "1.00000000000001"),
+    band=(0.0, 1.5),
+)
+
+
+@pytest.mark.slow
+def test_roots_closer_than_cells_are_cut_are_enclosed_together_and_not_certified():
+    result = CLOSER.solve()
+    assert not result.certificate.certified
+    assert result.certificate.counted == result.certificate.found
+    assert any(root.multiplicity > 1 and not root.certified for root in result.poles)
+    for found, expected in zip((result.poles, result.zeros), CLOSER.expected(), strict=True):
+        check_exactly(found, not_left_out(CLOSER, result, expected))
 
 
 # ---------------------------------------------------------------------------------- roots without number

@@ -8,7 +8,7 @@ from math import log, pi
 from types import SimpleNamespace
 
 import pytest
-from flint import acb, arb
+from flint import arb
 
 from symflex.roots.counting.winding import Cell, RootOnPathError
 from symflex.roots.plane import search as transcendental
@@ -50,13 +50,13 @@ class Counting:
 
 
 def search(**options):
-    return RootSearch(Counting(**options), None, (), DIGITS)
+    return RootSearch(Counting(**options), (), DIGITS)
 
 
 @pytest.fixture
 def known(monkeypatch):
     """Let proofs say what a test sets, and keep what they are asked."""
-    answers = SimpleNamespace(simple=None, resolved=None, branched=False, together=None, asked={})
+    answers = SimpleNamespace(simple=None, branched=False, together=None, asked={})
 
     def say(name, answer):
         def called(*given, **more):
@@ -66,7 +66,6 @@ def known(monkeypatch):
         monkeypatch.setattr(transcendental, name, called)
 
     say("prove_simple", "simple")
-    say("resolve", "resolved")
     say("is_branched", "branched")
     say("prove_together", "together")
     return answers
@@ -128,49 +127,25 @@ def test_newtons_method_that_leaves_the_cell_finds_nothing(known):
     assert known.asked == {}
 
 
-NEIGHBOUR = exp(PLACE + 1e-3j)
-
-
-def test_several_roots_are_told_apart_if_all_lie_within_the_cell(known):
-    known.resolved = [root(HERE), root(NEIGHBOUR)]
+def test_several_roots_are_together_only_next_to_a_branch(known):
+    known.together = root(HERE, 2)
     one = search(is_even=True)
-    assert together(one, 0.3, 2) == known.resolved
-    (function, s, radius, digits, bits), options = known.asked["resolve"]
+    assert together(one, 0.3, 2) is None
+    (function, s, radius), _ = known.asked["is_branched"]
     assert function is one.function
     assert is_here(s)
     assert float(radius) == pytest.approx(abs(HERE) * 1e-4, rel=1e-6)
-    assert (digits, bits, options) == (DIGITS, 256, {"even": True})
-    known.resolved = [root(HERE), root(exp(PLACE + 1))]
-    assert together(search(), 0.3, 2) is None
-
-
-def test_several_roots_that_are_not_all_told_apart_are_together_only_next_to_a_branch(known):
-    for resolved in [None, [root(HERE)]]:
-        known.resolved, known.together, known.branched = resolved, root(HERE, 2), False
-        one = search(is_even=True)
-        one._apart = lambda given: None
-        assert together(one, 0.3, 2) is None, resolved
-        (function, s, radius), _ = known.asked["is_branched"]
-        assert function is one.function, resolved
-        assert is_here(s), resolved
-        assert float(radius) == pytest.approx(abs(HERE) * 1e-4, rel=1e-6), resolved
-        known.branched = True
-        assert together(one, 0.3, 2) == [known.together], resolved
-        given, options = known.asked["prove_together"]
-        assert given[0] is one.function, resolved
-        assert is_here(given[1]), resolved
-        assert (float(given[2]), *given[3:]) == (float(radius), DIGITS, 2), resolved
-        assert options == {"even": True, "is_close": True}, resolved
-        known.together = None
-        assert together(one, 0.3, 2) is None, resolved
-
-
-def test_next_to_a_branch_more_digits_may_tell_them_apart(known):
-    known.branched, known.together = True, root(HERE, 2)
-    one, given = search(), []
-    one._apart = lambda both: given.append(both) or [root(HERE), root(NEIGHBOUR)]
-    assert len(together(one, 0.3, 2)) == 2
-    assert given == [known.together]
+    known.branched = True
+    assert together(one, 0.3, 2) == [known.together]
+    given, options = known.asked["prove_together"]
+    assert given[0] is one.function
+    assert is_here(given[1])
+    assert (float(given[2]), *given[3:]) == (float(radius), DIGITS, 2)
+    assert options == {"even": True, "is_close": True}
+    known.together = root(exp(PLACE + 1), 2)
+    assert together(one, 0.3, 2) is None
+    known.together = None
+    assert together(one, 0.3, 2) is None
 
 
 # ------------------------------------------------------------------------------------------------- cells
@@ -230,12 +205,12 @@ def test_mirror_images_and_what_is_no_root_are_left_out():
 
 def test_a_cell_without_roots_is_not_looked_at_and_one_that_is_too_small_not_cut():
     one = search()
-    one._together = one._split = one._cluster = None
+    one._together = one._split = one._as_one = None
     assert one._separate(cell_about(PLACE, 1), 0) == ([], 0)
     one, given = search(), []
     one._together = lambda cell, count: None
     one._split = lambda cell, count: given.append(cell)
-    one._cluster = lambda cell, count: [root(HERE)]
+    one._as_one = lambda cell, count: [root(HERE)]
     one._separate(cell_about(PLACE, 0.5e-11), 1)
     assert given == []
     one._separate(cell_about(PLACE, 2e-11), 1)
@@ -246,11 +221,11 @@ def test_a_cell_that_cannot_be_cut_is_looked_at_closer():
     one, given = search(), []
     one._together = lambda cell, count: None
     one._split = lambda cell, count: None
-    one._cluster = lambda cell, count: given.append((cell, count)) or [root(HERE, 2)]
+    one._as_one = lambda cell, count: given.append((cell, count)) or [root(HERE, 2)]
     cell = cell_about(PLACE, 1)
     assert one._separate(cell, 2) == ([root(HERE, 2)], 0)
     assert given == [(cell, 2)]
-    one._cluster = lambda cell, count: None
+    one._as_one = lambda cell, count: None
     assert one._separate(cell, 2) == ([], 2)
 
 
@@ -290,30 +265,13 @@ def test_a_root_is_in_a_cell_by_its_logarithm_whatever_the_turn_and_a_hair_outsi
         assert _is_in(Cell(0.5, 1.0, -0.1, 0.1), root(exp(1.0 + beside + 0j))) is inside
 
 
-def test_a_cluster_keeps_to_what_is_counted(known):
-    known.resolved = [root(HERE), root(NEIGHBOUR)]
+def test_roots_of_a_small_cell_are_one_if_they_are_a_multiple_of_the_power(known):
+    known.together = root(HERE, 2)
     one = search(power=2, is_even=True)
-    assert one._cluster(cell_about(PLACE, 1e-10), 4) == known.resolved
-    given, options = known.asked["resolve"]
-    assert abs(complex(given[1]) - HERE) < 1e-12
-    assert float(given[2]) == pytest.approx(abs(HERE) * 2e-10, rel=1e-6)
-    assert (given[3:], options) == ((DIGITS, 256), {"even": True})
-    # Others than are counted, fewer or more, are left together.
-    for count in (2, 6):
-        known.together = root(HERE, count // 2)
-        assert one._cluster(cell_about(PLACE, 1e-10), count) == [known.together]
-    # Precision was doubled before.
-    assert known.asked["resolve"][0][4] == 256 * 2**3
+    assert one._as_one(cell_about(PLACE, 1e-11), 4) == [known.together]
     given, options = known.asked["prove_together"]
-    assert (given[0], given[3:], options) == (one.function, (DIGITS, 6), {"even": True})
-
-
-def test_roots_are_told_apart_within_a_few_radii_of_their_disc(known):
-    known.resolved = [root(HERE), root(NEIGHBOUR)]
-    both = Root(arb(2, 1e-20), arb(1, 3e-20), 2, on_imaginary_axis=False, is_real=False, certified=False)
-    assert search(is_even=True)._apart(both) == known.resolved
-    given, options = known.asked["resolve"]
-    assert given[1] == acb(2, 1)
-    assert float(given[2]) == pytest.approx(8 * 4e-20, rel=1e-3)
-    assert given[4] >= 512
-    assert options == {"even": True}
+    assert (given[0], given[3:], options) == (one.function, (DIGITS, 4), {"even": True})
+    assert is_here(given[1])
+    assert one._as_one(cell_about(PLACE, 1e-11), 3) is None
+    known.together = None
+    assert one._as_one(cell_about(PLACE, 1e-11), 4) is None
