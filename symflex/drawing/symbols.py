@@ -149,7 +149,7 @@ def _stroke(kind: str, written: Sequence[str], length: float) -> Strokes:
         case "dot":
             return (circle(*points[0], float(written[-1]), fill="#000000", width=0.3),)
         case "arrow" | "push" | "span":
-            return arrow(*points, BOLD if kind == "push" else LINE, is_double=kind == "span")
+            return arrow(points[0], points[1], BOLD if kind == "push" else LINE, is_double=kind == "span")
     return (line(*points, width=_STROKE.get(kind) or float(kind)),)
 
 
