@@ -6,13 +6,14 @@ import os
 import secrets
 import stat
 from contextlib import contextmanager
+from itertools import count
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
 from symflex.errors import Diagnostic, UsageError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
 PERMISSIONS = 0o666
 LINK = "it is a symbolic link, and symflex does not write through links"
@@ -163,6 +164,19 @@ def _sync_folder(folder: Path) -> None:
         os.fsync(descriptor)
     finally:
         os.close(descriptor)
+
+
+def free_name(stem: str, taken: Iterable[str], suffix: str = "") -> str:
+    """Return a file's name that is not taken, not even where capitals count as small letters.
+
+    Examples
+    --------
+    >>> free_name("Beam", ["beam.csv"], ".csv")
+    'Beam_2.csv'
+    """
+    small = {name.lower() for name in taken}
+    offered = (f"{stem}{'' if number == 1 else f'_{number}'}{suffix}" for number in count(1))
+    return next(name for name in offered if name.lower() not in small)
 
 
 @contextmanager
