@@ -2,7 +2,7 @@
 
 There is one function per piece, and one that finds which serves. Their names begin with what they are for and
 end with the function's: ``_value_of_X_over_F`` calls ``_piece_0_of_X_over_F``. What a language writes in its
-own way is overridden: numbers, powers, a statement, a branch, a function.
+own way is a template of its printer, or overridden: complex numbers, a statement, a branch, a function.
 """
 
 from __future__ import annotations
@@ -34,9 +34,19 @@ class InfixPrinter(ABC):
     locals: Mapping[str, str]
     variable: str  # identifier of s, or of what takes its place
     inverse: str = ""  # identifier of 1/s; only far branches have it
+    space: str = ""  # what functions are looked up in
 
+    # What languages write differently: signs, and templates of a base and its exponent; of z, which is not a
+    # number beyond an end; of the values of a list; of a list and the position of one of them; of a run-time
+    # function, named as in :mod:`symflex.codegen.program.evaluate`, and its arguments.
     times: ClassVar[str] = "*"
     over: ClassVar[str] = "/"
+    power: ClassVar[str] = "{}**{}"
+    cut_off: ClassVar[str]
+    listed: ClassVar[str] = "[{}]"
+    item: ClassVar[str] = "{}[{}]"
+    called: ClassVar[str] = "_{}({})"
+    first: ClassVar[int] = 0  # position of the first value of a list
 
     def print(self, node: tree.CodeNode) -> str:
         """Return the text of an expression."""
@@ -79,31 +89,13 @@ class InfixPrinter(ABC):
         below = "" if scale == "1.0" else f" {self.over} abs({scale})"
         return f"abs({quantity}) < {condition.limit!r}{below}"
 
-    # --------------------------------------------------------------------- what languages write differently
-
     @abstractmethod
     def complex_number(self, real: float, imaginary: float) -> str:
         """Return a number as text that needs no parentheses."""
 
-    @abstractmethod
-    def power(self, base: str, exponent: int) -> str:
-        """Return a power of text that needs no parentheses."""
-
-    @abstractmethod
-    def cut_off(self, point: tree.CodeNode, end: float) -> str:
-        """Return the text, one operand, of a :class:`symflex.codegen.program.nodes.Within`."""
-
-    def listed(self, texts: Iterable[str]) -> str:
-        """Return a list."""
-        return f"[{', '.join(texts)}]"
-
-    def item(self, values: str, position: int) -> str:
-        """Return one value of a list, counted from 0."""
-        return f"{values}[{position}]"
-
     def call(self, function: str, arguments: Sequence[str]) -> str:
-        """Return a call of a run-time function, named as in :mod:`symflex.codegen.program.evaluate`."""
-        return f"_{function}({', '.join(arguments)})"
+        """Return a call of a run-time function."""
+        return self.called.format(function, ", ".join(arguments))
 
     # -------------------------------------------------------------------------------------------- the tree
 
@@ -120,7 +112,8 @@ class InfixPrinter(ABC):
             case tree.LargerRoot() | tree.RootFactor():
                 return self._print(node.spelled)
             case tree.Within(point, end):
-                return self.cut_off(point, end), LEAF
+                z = self.print(point)
+                return self.cut_off.format(z=z, end=end, space=self.space), LEAF
             case tree.ParameterValue(name):
                 return self.parameters[name], LEAF
             case tree.Assigned(name):
@@ -132,7 +125,7 @@ class InfixPrinter(ABC):
             case tree.Add() | tree.Multiply() | tree.Divide() | tree.Negate():
                 return self.operation(node)
             case tree.IntegerPower(base, exponent):
-                return self.power(self.within(base, LEAF), exponent), _POWER
+                return self.power.format(self.within(base, LEAF), exponent), _POWER
             case tree.Apply(function, argument):
                 return self.applied(function, argument), LEAF
         return self.with_lists(node), LEAF
@@ -143,7 +136,7 @@ class InfixPrinter(ABC):
             case tree.Solutions(coefficients, terms):
                 return self.call("series_solutions", [self.list_of(coefficients), str(terms)])
             case tree.Item(values, position):
-                return self.item(self.within(values, LEAF), position)
+                return self.item.format(self.within(values, LEAF), self.first + position)
         message = f"no text for {type(node).__name__}"
         raise TypeError(message)
 
@@ -162,7 +155,7 @@ class InfixPrinter(ABC):
 
     def list_of(self, nodes: Iterable[tree.CodeNode]) -> str:
         """Return a list of expressions."""
-        return self.listed(self.print(n) for n in nodes)
+        return self.listed.format(", ".join(map(self.print, nodes)))
 
     def _sum(self, terms: Sequence[tree.CodeNode]) -> str:
         text = self.within(terms[0], _PRODUCT)
@@ -207,9 +200,24 @@ class PrivateFunctions(ABC):
     def statement(self, target: str, value: str, depth: int = 1) -> list[str]:
         """Return the lines of an assignment, indented by so many steps."""
 
-    @abstractmethod
     def blocks(self) -> list[str]:
         """Return the functions, each as text that ends with a line end."""
+        if self.program.is_lumped:
+            return [self._lumped(self.program)]
+        pieces = (block for i, piece in enumerate(self.program.code) for block in self._piece(i, piece))
+        return [self._choice(self.program), *pieces]
+
+    @abstractmethod
+    def _lumped(self, program: tree.Piecewise) -> str:
+        """Return the function of a lumped program."""
+
+    @abstractmethod
+    def _choice(self, program: tree.Piecewise) -> str:
+        """Return the function that finds the piece that serves."""
+
+    @abstractmethod
+    def _piece(self, number: int, piece: tree.CodePiece) -> list[str]:
+        """Return the functions of a piece."""
 
     def arguments(self, variable: str) -> list[str]:
         """Return what the functions take: s or its like, and the parameters."""
@@ -247,19 +255,6 @@ class NumberFunctions(PrivateFunctions):
     def function(self, name: str, arguments: Sequence[str], body: Sequence[str]) -> str:
         """Return a function."""
 
-    def returned(self, value: str, depth: int = 1) -> list[str]:
-        """Return the statement that ends a function; by default ``return``, written as an assignment is."""
-        return self.statement("return", value, depth)
-
-    def blocks(self) -> list[str]:
-        """Return the functions, each as text that ends with a line end."""
-        if self.program.is_lumped:
-            return [self._lumped(self.program)]
-        blocks = [self._choice(self.program)]
-        for i, piece in enumerate(self.program.code):
-            blocks += self._piece(i, piece)
-        return blocks
-
     def _function(self, kind: str, variable: str, body: Sequence[str]) -> str:
         return self.function(f"_{kind}_of_{self.name}", self.arguments(variable), body)
 
@@ -276,10 +271,10 @@ class NumberFunctions(PrivateFunctions):
             body = [
                 *self.statement(inverse, one, 2),
                 *self.assigned(late, printer, 2),
-                *self.returned(printer.print(far.values[0]), 2),
+                *self.statement("return", printer.print(far.values[0]), 2),
             ]
             lines += self.branch(f"abs({s}) > {program.limit!r}", body)
-        return self._function("value", s, [*lines, *self.returned(printer.print(near.values[0]))])
+        return self._function("value", s, [*lines, *self.statement("return", printer.print(near.values[0]))])
 
     def _choice(self, program: tree.Piecewise) -> str:
         """Return the function that finds the piece that serves."""
@@ -292,8 +287,8 @@ class NumberFunctions(PrivateFunctions):
         *others, last = sorted(served)
         for k in others:
             test = " || ".join(f"{number} == {n}" for n in served[k])
-            lines += self.branch(test, self.returned(self._call(f"piece_{k}", s), 2))
-        return self._function("value", s, [*lines, *self.returned(self._call(f"piece_{last}", s))])
+            lines += self.branch(test, self.statement("return", self._call(f"piece_{k}", s), 2))
+        return self._function("value", s, [*lines, *self.statement("return", self._call(f"piece_{last}", s))])
 
     def _piece(self, number: int, piece: tree.CodePiece) -> list[str]:
         assignments = (*piece.code.constants, *piece.code.assignments)
@@ -301,13 +296,13 @@ class NumberFunctions(PrivateFunctions):
         lines = self.assigned(assignments, printer)
         if piece.circle:
             values = ", ".join(printer.print(v) for v in piece.code.values).join(self.brackets)
-            parts = self._function(f"parts_{number}", s, [*lines, *self.returned(values)])
+            parts = self._function(f"parts_{number}", s, [*lines, *self.statement("return", values)])
             return [parts, self._mean(number, piece.circle)]
-        lines += self.returned(printer.quotient(*piece.code.values))
+        lines += self.statement("return", printer.quotient(*piece.code.values))
         return [self._function(f"piece_{number}", s, lines)]
 
     def _mean(self, number: int, points: int) -> str:
         _, (s, z) = self.scope((), "s", "z")
         parts = f"{z} {self.arrow} {self._call(f'parts_{number}', z)}"
         whole = f"_mean_over_circle({parts}, {s}, {points})"
-        return self._function(f"piece_{number}", s, self.returned(whole))
+        return self._function(f"piece_{number}", s, self.statement("return", whole))

@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from symflex.codegen.export import Contents, Member
-    from symflex.codegen.program.nodes import CodeNode
     from symflex.model import Model
 
 WIDTH = 92
@@ -63,22 +62,13 @@ WORDS_OF_TITLE = 4
 class JuliaPrinter(InfixPrinter):
     """Prints expressions whose values are numbers."""
 
+    power: ClassVar = "{}^{}"
+    cut_off: ClassVar = "ifelse(abs({z}) <= {end!r}, {z}, NaN * {z})"
+    first: ClassVar = 1
+
     def complex_number(self, real: float, imaginary: float) -> str:
         """Return a number as text that needs no parentheses."""
         return f"complex({real!r}, {imaginary!r})"
-
-    def power(self, base: str, exponent: int) -> str:
-        """Return a power of text that needs no parentheses."""
-        return f"{base}^{exponent}"
-
-    def cut_off(self, point: CodeNode, end: float) -> str:
-        """Return the text of a number that is NaN beyond an end."""
-        z = self.print(point)
-        return f"ifelse(abs({z}) <= {end!r}, {z}, NaN * {z})"
-
-    def item(self, values: str, position: int) -> str:
-        """Return one value of a vector, counted from 0."""
-        return f"{values}[{position + 1}]"
 
 
 def head(name: str, arguments: Sequence[str]) -> list[str]:

@@ -110,8 +110,14 @@ SYSTEM_ROLES = ("system", "coefficients")
 class MatlabPrinter(InfixPrinter):
     """Prints expressions whose values are numbers or columns."""
 
-    times: ClassVar[str] = ".*"
-    over: ClassVar[str] = "./"
+    times: ClassVar = ".*"
+    over: ClassVar = "./"
+    power: ClassVar = "{}.^{}"
+    cut_off: ClassVar = "({z} + 0.0 ./ (abs({z}) <= {end!r}))"
+    listed: ClassVar = "{{{}}}"
+    item: ClassVar = "{}{{{}}}"
+    called: ClassVar = "{}({})"
+    first: ClassVar = 1
 
     def to_complex(self, operand: CodeNode) -> tuple[str, int]:
         """Return the number itself: a square root needs no complex operand to be complex."""
@@ -124,27 +130,6 @@ class MatlabPrinter(InfixPrinter):
         return (
             f"({real!r} {'-' if imaginary < 0 else '+'} {abs(imaginary)!r}i)" if real else f"({imaginary!r}i)"
         )
-
-    def power(self, base: str, exponent: int) -> str:
-        """Return a power of text that needs no parentheses."""
-        return f"{base}.^{exponent}"
-
-    def cut_off(self, point: CodeNode, end: float) -> str:
-        """Return the text of numbers to which 0/0 is added beyond an end."""
-        z = self.print(point)
-        return f"({z} + 0.0 ./ (abs({z}) <= {end!r}))"
-
-    def listed(self, texts: Iterable[str]) -> str:
-        """Return a cell array."""
-        return f"{{{', '.join(texts)}}}"
-
-    def item(self, values: str, position: int) -> str:
-        """Return one value of a cell array, counted from 0."""
-        return f"{values}{{{position + 1}}}"
-
-    def call(self, function: str, arguments: Sequence[str]) -> str:
-        """Return a call of a run-time function."""
-        return f"{function}({', '.join(arguments)})"
 
 
 def continued(text: str, indent: str) -> list[str]:
@@ -177,15 +162,6 @@ class LocalFunctions(PrivateFunctions):
         pieces = ", ".join(f"@{self.names[str(i)]}" for i in self.program.pieces)
         return self.statement("value", f"in_pieces(@{self.names['number']}, {{{pieces}}}, s, given)")
 
-    def blocks(self) -> list[str]:
-        """Return the functions, each as text that ends with a line end."""
-        if self.program.is_lumped:
-            return [self._lumped(self.program)]
-        blocks = [self._number(self.program)]
-        for i, piece in enumerate(self.program.code):
-            blocks += self._piece(i, piece)
-        return blocks
-
     # ------------------------------------------------------------------------------------------- functions
 
     def _function(self, outputs: str, role: str, variable: str, body: Sequence[str]) -> str:
@@ -216,7 +192,7 @@ class LocalFunctions(PrivateFunctions):
         ]
         return self._function(value, "value", s, lines)
 
-    def _number(self, program: Piecewise) -> str:
+    def _choice(self, program: Piecewise) -> str:
         """Return the function that tells which piece serves."""
         assignments = (*program.tests.constants, *program.tests.assignments)
         printer, (s, number) = self.scope(assignments, "s", "number")

@@ -19,7 +19,7 @@ from symflex.drawing.geometry import Lettering
 from symflex.errors import Text
 from symflex.expressions import Attribute, Call, Differentiated, Name, replace_values, substitute
 from symflex.expressions import nodes as parts_of
-from symflex.figures.style import PRIMES, label_of_name, label_of_unit
+from symflex.figures.style import PRIMES, label_of_name, label_of_unit, power_of_ten
 from symflex.model import ExactValue
 from symflex.print.label import read_label
 from symflex.print.latex.equation import model_labels
@@ -171,7 +171,7 @@ class Labels:
             if found.unit:
                 one = unit_of(found.unit)
                 value = ExactValue(found.magnitude / one.scale, found.pi_power - one.pi_power)
-                return with_unit(number_latex(decimal_text(value)), found.unit)
+                return with_unit(power_of_ten(decimal_text(value), r"\cdot "), found.unit)
         written = self.expression(expression)
         written = written.removeprefix(r"1 \cdot ")  # of a power of ten
         is_named = any(isinstance(n, Name | Attribute | Call) for n in parts_of(expression))
@@ -188,20 +188,6 @@ class Labels:
         return [f"{self.name(p.name)} = {value_latex(p)}" for p in shown]
 
 
-def number_latex(decimal: str) -> str:
-    r"""Return a decimal in mathematics.
-
-    Examples
-    --------
-    >>> print(number_latex("2.1e-11"), number_latex("1e6"), number_latex("95"))
-    2.1\cdot 10^{-11} 10^{6} 95
-    """
-    mantissa, _, exponent = decimal.partition("e")
-    if mantissa in ("1", "-1") and exponent:
-        return f"{mantissa[:-1]}10^{{{exponent}}}"
-    return rf"{mantissa}\cdot 10^{{{exponent}}}" if exponent else mantissa
-
-
 def with_unit(number: str, unit: str) -> str:
     """Return a number in mathematics with its unit."""
     measured = label_of_unit(unit).strip("$")
@@ -211,4 +197,4 @@ def with_unit(number: str, unit: str) -> str:
 def value_latex(parameter: ModelParameter) -> str:
     """Return a parameter's value in the unit it was written in; one without a value has none."""
     value, unit = parameter.as_written()
-    return "" if value is None else with_unit(number_latex(decimal_text(value)), unit)
+    return "" if value is None else with_unit(power_of_ten(decimal_text(value), r"\cdot "), unit)

@@ -1,4 +1,4 @@
-r"""The symbols of elements: one function each, registered in :data:`SYMBOLS` by the element's type.
+r"""The symbols of elements, written down or a function each, in :data:`SYMBOLS` by the element's type.
 
 A symbol is drawn from its first end at the origin to its second at ``(length, 0)``; what stands at one node
 or holds one is drawn about that node's point. What a type has no entry for is drawn as a box with its name.
@@ -8,6 +8,7 @@ or holds one is drawn about that node's point. What a type has no entry for is d
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from math import cos, pi, sin
 from typing import TYPE_CHECKING, Final, Literal
@@ -114,24 +115,121 @@ def earth(x: float = 0.0, y: float = 0.0) -> Strokes:
     return (line((x, y), (x, y - 3)), *bars)
 
 
-def spring(length: float) -> Strokes:
-    """Return a zigzag."""
-    lead, turns, size = 0.16 * length, 4, 3.6
-    step = (length - 2 * lead) / (2 * turns)
-    teeth = [(lead + (i + 0.5) * step, size if i % 2 == 0 else -size) for i in range(2 * turns)]
-    return (line((0, 0), (lead, 0), *teeth, (length - lead, 0), (length, 0)),)
+_STROKE: Final = {"line": LINE, "thin": THIN, "bold": BOLD, "member": MEMBER}
+"""Widths of lines by what they are called in a symbol that is written down; others are numbers."""
+_POINT: Final = re.compile(r"([\d.]+)([+-][\d.]+)?,(-?[\d.]+)")
 
 
-def damper(length: float) -> Strokes:
-    """Return a dashpot: a cup, a piston in it."""
-    a, b, size = 0.32 * length, 0.72 * length, 3.6
-    piston = 0.52 * length
-    return (
-        line((0, 0), (a, 0)),
-        line((b, size), (a, size), (a, -size), (b, -size)),
-        line((piston, 0), (length, 0)),
-        line((piston, 2.5), (piston, -2.5), width=1.2),
-    )
+def drawn(strokes: str) -> Callable[[float], Strokes]:
+    """Return what draws a symbol that is written down, stroke by stroke.
+
+    The x of a point is a share of the symbol's length, with points after it, its y is in points: ``.5-4,3``
+    is 4 points before the middle and 3 above the axis.
+
+    Examples
+    --------
+    >>> [stroke.points for stroke in drawn("line 0,0 .5-4,0; thin .5-4,3 .5-4,-3")(24.0)]
+    [((0.0, 0.0), (8.0, 0.0)), ((8.0, 3.0), (8.0, -3.0))]
+    """
+    written = [stroke.split() for stroke in strokes.split(";")]
+    return lambda length: tuple(s for kind, *rest in written for s in _stroke(kind, rest, length))
+
+
+def _stroke(kind: str, written: Sequence[str], length: float) -> Strokes:
+    found = (m.groups() for m in map(_POINT.fullmatch, written) if m)
+    points = [(float(share) * length + float(more or 0), float(y)) for share, more, y in found]
+    match kind:
+        case "box" | "body" | "shape":
+            fill = FILLED if kind == "body" else PAPER
+            if len(points) > 2:  # noqa: PLR2004
+                return (outline(*points, fill=fill),)
+            return (rectangle(*points[0], *points[1], fill=fill),)
+        case "disc":
+            return (circle(*points[0], float(written[-1])),)
+        case "dot":
+            return (circle(*points[0], float(written[-1]), fill="#000000", width=0.3),)
+        case "arrow" | "push" | "span":
+            return arrow(points[0], points[1], BOLD if kind == "push" else LINE, is_double=kind == "span")
+    return (line(*points, width=_STROKE.get(kind) or float(kind)),)
+
+
+# A zigzag.
+spring = drawn(
+    "line 0,0 .16,0 .2025,3.6 .2875,-3.6 .3725,3.6 .4575,-3.6 .5425,3.6 .6275,-3.6 .7125,3.6 .7975,-3.6 "
+    ".84,0 1,0"
+)
+# A dashpot: a cup, a piston in it.
+damper = drawn("line 0,0 .32,0; line .72,3.6 .32,3.6 .32,-3.6 .72,-3.6; line .52,0 1,0; 1.2 .52,2.5 .52,-2.5")
+# A disc in a housing.
+rotary_damper = drawn("bold 0,0 .3,0; line .7,4.6 .3,4.6 .3,-4.6 .7,-4.6; bold .55,0 1,0; 2.0 .55,3 .55,-3")
+resistor = drawn("line 0,0 .18,0; box .18,-2.8 .82,2.8; line .82,0 1,0")
+# Two plates.
+capacitor = drawn(
+    "line 0,0 .5-1.5,0; 1.2 .5-1.5,-4.5 .5-1.5,4.5; 1.2 .5+1.5,-4.5 .5+1.5,4.5; line .5+1.5,0 1,0"
+)
+# Plus at the first end.
+voltage_source = drawn("line 0,0 1,0; disc .5,0 5.5; thin .5-10,4 .5-7,4; thin .5-8.5,2.5 .5-8.5,5.5")
+# An arrow to the first end.
+current_source = drawn("line 0,0 1,0; disc .5,0 5.5; arrow .5+4,0 .5-4,0")
+# Two arrows, to the right into the second end and to the left into the first.
+effort_between = drawn("push .42,0 0,0; push .58,0 1,0")
+# A distance that is given.
+motion_between = drawn("span 0,0 1,0")
+rigid_link = drawn("member 0,0 1,0")
+# A thin blade.
+massless_beam = drawn("box 0,-1 1,1")
+# A thin line between two eyes.
+string = drawn(".6 0,0 1,0; disc 0+1.2,0 1.2; disc 1-1.2,0 1.2")
+# For what is left out.
+dots = drawn("line 0,0 .5-8,0; line .5+8,0 1,0; dot .5-4,0 .9; dot .5,0 .9; dot .5+4,0 .9")
+# A hinge.
+pin_joint = drawn("line 0,0 1,0; disc .5,0 2.2")
+fixed_joint = drawn("member 0,0 1,0; member .5,-4 .5,4")
+# A sleeve that keeps the angle.
+slider_joint = drawn("line 0,0 .5-1.5,0; 1.2 .5-1.5,-5 .5-1.5,5; 1.2 .5+1.5,-5 .5+1.5,5; line .5+1.5,0 1,0")
+# A machine with its brushes; the layout writes the letter.
+dc_motor = drawn("box .5-2.5,7.4 .5+2.5,9.8; box .5-2.5,-9.8 .5+2.5,-7.4; disc .5,0 8")
+# A winding in the gap of a magnet.
+voice_coil = drawn(
+    "body .2,-7.5 .8-3,-7.5 .8-3,-5.2 .2+2.4,-5.2 .2+2.4,5.2 .8-3,5.2 .8-3,7.5 .2,7.5; "
+    "thin .2+4,-4.2 .2+4,4.2; thin .2+6.6,-4.2 .2+6.6,4.2; thin .2+9.2,-4.2 .2+9.2,4.2; "
+    "thin .2+11.8,-4.2 .2+11.8,4.2; box .2+4,-1.2 .8,1.2; line .8,0 1,0"
+)
+# A triangle that points at its output; the layout knows the signs of its inputs.
+op_amp = drawn("shape .2,-9 .85,0 .2,9; line .85,0 1,0")
+# A box with the diamond of a source that something controls.
+controlled_source = drawn("box .2,-8 .8,8; shape .5-6,0 .5,6 .5+6,0 .5,-6")
+# A piston in a cylinder.
+piston = drawn(
+    "line 0,0 .45,0; line .15,6 .9,6; line .15,-6 .9,-6; line .9,-6 .9,6; body .45,-5.4 .45+3,5.4; "
+    "line .9,0 1,0"
+)
+# Two wheels that mesh, seen from the side.
+gears = drawn(
+    "bold 0,0 .5-4,0; bold .5+4,0 1,0; disc .5-5,0 5; disc .5+4,0 4; disc .5-5,0 .8; disc .5+4,0 .8"
+)
+# Two pulleys with a belt, seen from the side.
+belt = drawn(
+    "bold 0,0 .26,0; bold .74,0 1,0; line .26,5 .74,4; line .26,-5 .74,-4; disc .26,0 5; disc .74,0 4; "
+    "disc .26,0 .8; disc .74,0 .8"
+)
+# A lever about a pivot.
+lever = drawn(
+    "line 0,0 .5-5,0; 1.4 .5-5,-6 .5+5,6; line .5+5,0 1,0; line .5-5,0 .5-5,-6; line .5+5,0 .5+5,6; "
+    "disc .5,0 1.3"
+)
+# A box in which two arrows cross.
+crossing = drawn(
+    "line 0,0 .18,0; line .82,0 1,0; box .18,-6.5 .82,6.5; thin .18+2.5,-3.5 .82-2.5,3.5; "
+    "thin .18+2.5,3.5 .82-2.5,-3.5"
+)
+# A stack of plates.
+piezo = drawn(
+    "body .2,-6.5 .8,6.5; thin .32,-6.5 .32,6.5; thin .44,-6.5 .44,6.5; thin .56,-6.5 .56,6.5; "
+    "thin .68,-6.5 .68,6.5"
+)
+# For what has no symbol of its own.
+box = drawn("line 0,0 .15,0; box .15,-5 .85,5; line .85,0 1,0")
 
 
 def torsion_spring(length: float) -> Strokes:
@@ -149,23 +247,6 @@ def torsion_spring(length: float) -> Strokes:
     )
 
 
-def rotary_damper(length: float) -> Strokes:
-    """Return a disc in a housing."""
-    a, b, size = 0.3 * length, 0.7 * length, 4.6
-    return (
-        line((0, 0), (a, 0), width=BOLD),
-        line((b, size), (a, size), (a, -size), (b, -size)),
-        line((0.55 * length, 0), (length, 0), width=BOLD),
-        line((0.55 * length, 3), (0.55 * length, -3), width=2.0),
-    )
-
-
-def resistor(length: float) -> Strokes:
-    """Return a resistor."""
-    a = 0.18 * length
-    return (line((0, 0), (a, 0)), rectangle(a, -2.8, length - a, 2.8), line((length - a, 0), (length, 0)))
-
-
 def inductor(length: float) -> Strokes:
     """Return four half turns."""
     a = 0.18 * length
@@ -175,39 +256,6 @@ def inductor(length: float) -> Strokes:
         line((0, 0), *(p for bump in bumps for p in bump), (length, 0)),
         line((a, -1.2), (a, 0), width=THIN),
     )
-
-
-def capacitor(length: float) -> Strokes:
-    """Return two plates."""
-    middle, gap, size = length / 2, 1.5, 4.5
-    return (
-        line((0, 0), (middle - gap, 0)),
-        line((middle - gap, -size), (middle - gap, size), width=1.2),
-        line((middle + gap, -size), (middle + gap, size), width=1.2),
-        line((middle + gap, 0), (length, 0)),
-    )
-
-
-def voltage_source(length: float) -> Strokes:
-    """Return a circle on the line, plus at the first end."""
-    m, r = length / 2, 5.5
-    return (
-        line((0, 0), (length, 0)),
-        Stroke(circle(m, 0, r).points, LINE, PAPER),
-        line((m - r - 4.5, 4.0), (m - r - 1.5, 4.0), width=THIN),
-        line((m - r - 3.0, 2.5), (m - r - 3.0, 5.5), width=THIN),
-    )
-
-
-def current_source(length: float) -> Strokes:
-    """Return a circle with an arrow to the first end."""
-    m, r = length / 2, 5.5
-    return (line((0, 0), (length, 0)), circle(m, 0, r), *arrow((m + 4, 0), (m - 4, 0)))
-
-
-def effort_between(length: float) -> Strokes:
-    """Return two arrows, to the right into the second end and to the left into the first."""
-    return (*arrow((0.42 * length, 0), (0, 0), BOLD), *arrow((0.58 * length, 0), (length, 0), BOLD))
 
 
 def torque_between(length: float) -> Strokes:
@@ -220,21 +268,6 @@ def torque_between(length: float) -> Strokes:
         arc(m, 0, 2.8, -30, 200, THIN),
         head((m - 2.8, -0.6), (0.2, -0.97), 2.8),
     )
-
-
-def motion_between(length: float) -> Strokes:
-    """Return a distance that is given."""
-    return arrow((0, 0), (length, 0), LINE, is_double=True)
-
-
-def rigid_link(length: float) -> Strokes:
-    """Return a bar."""
-    return (line((0, 0), (length, 0), width=MEMBER),)
-
-
-def massless_beam(length: float) -> Strokes:
-    """Return a thin blade."""
-    return (rectangle(0, -1.0, length, 1.0),)
 
 
 HALF: Final = 2.2
@@ -284,79 +317,6 @@ def shaft(length: float) -> Strokes:
     return (*rod(length), *ends)
 
 
-def string(length: float) -> Strokes:
-    """Return a thin line between two eyes."""
-    return (line((0, 0), (length, 0), width=0.6), circle(1.2, 0, 1.2), circle(length - 1.2, 0, 1.2))
-
-
-def dots(length: float) -> Strokes:
-    """Return three dots on a line, for what is left out."""
-    m = length / 2
-    points = (circle(m + d, 0, 0.9, fill="#000000", width=0.3) for d in (-4, 0, 4))
-    return (line((0, 0), (m - 8, 0)), line((m + 8, 0), (length, 0)), *points)
-
-
-def pin_joint(length: float) -> Strokes:
-    """Return a hinge."""
-    m = length / 2
-    return (line((0, 0), (length, 0)), circle(m, 0, 2.2))
-
-
-def fixed_joint(length: float) -> Strokes:
-    """Return a rigid joint."""
-    m = length / 2
-    return (line((0, 0), (length, 0), width=MEMBER), line((m, -4), (m, 4), width=MEMBER))
-
-
-def slider_joint(length: float) -> Strokes:
-    """Return a sleeve that keeps the angle."""
-    m = length / 2
-    return (
-        line((0, 0), (m - 1.5, 0)),
-        line((m - 1.5, -5), (m - 1.5, 5), width=1.2),
-        line((m + 1.5, -5), (m + 1.5, 5), width=1.2),
-        line((m + 1.5, 0), (length, 0)),
-    )
-
-
-def dc_motor(length: float) -> Strokes:
-    """Return a machine with its brushes; the letter is written by the layout."""
-    m, r = length / 2, 8.0
-    brushes = (rectangle(m - 2.5, r - 0.6, m + 2.5, r + 1.8), rectangle(m - 2.5, -r - 1.8, m + 2.5, -r + 0.6))
-    return (*brushes, circle(m, 0, r))
-
-
-def voice_coil(length: float) -> Strokes:
-    """Return a winding in the gap of a magnet."""
-    a, b = 0.2 * length, 0.8 * length
-    turns = [line((a + 4 + 2.6 * i, -4.2), (a + 4 + 2.6 * i, 4.2), width=THIN) for i in range(4)]
-    return (
-        outline(
-            (a, -7.5),
-            (b - 3, -7.5),
-            (b - 3, -5.2),
-            (a + 2.4, -5.2),
-            (a + 2.4, 5.2),
-            (b - 3, 5.2),
-            (b - 3, 7.5),
-            (a, 7.5),
-            fill=FILLED,
-        ),
-        *turns,
-        rectangle(a + 4, -1.2, b, 1.2),
-        line((b, 0), (length, 0)),
-    )
-
-
-def op_amp(length: float) -> Strokes:
-    """Return a triangle that points at its output; the layout knows the signs of its inputs."""
-    a, b = 0.2 * length, 0.85 * length
-    return (
-        outline((a, -9), (b, 0), (a, 9)),
-        line((b, 0), (length, 0)),
-    )
-
-
 def planetary(length: float) -> Strokes:
     """Return a ring with its sun and three planets, seen from the front."""
     m, between = length / 2, 6.2
@@ -381,50 +341,6 @@ def windings(length: float) -> Strokes:
         sides.append(line((a, half), *turns, (a, -half)))
     cores = [line((m + x, -half - 1), (m + x, half + 1), width=THIN) for x in (-0.7, 0.7)]
     return (*sides, *cores)
-
-
-def controlled_source(length: float) -> Strokes:
-    """Return a box with the diamond of a source that something controls."""
-    a, m, b = 0.2 * length, length / 2, 0.8 * length
-    return (rectangle(a, -8, b, 8), outline((m - 6, 0), (m, 6), (m + 6, 0), (m, -6)))
-
-
-def piston(length: float) -> Strokes:
-    """Return a piston in a cylinder."""
-    a, m, b = 0.15 * length, 0.45 * length, 0.9 * length
-    return (
-        line((0, 0), (m, 0)),
-        line((a, 6), (b, 6)),
-        line((a, -6), (b, -6)),
-        line((b, -6), (b, 6)),
-        rectangle(m, -5.4, m + 3, 5.4, FILLED),
-        line((b, 0), (length, 0)),
-    )
-
-
-def gears(length: float) -> Strokes:
-    """Return two wheels that mesh, seen from the side."""
-    m = length / 2
-    return (
-        line((0, 0), (m - 4, 0), width=BOLD),
-        line((m + 4, 0), (length, 0), width=BOLD),
-        circle(m - 5, 0, 5.0),
-        circle(m + 4, 0, 4.0),
-        circle(m - 5, 0, 0.8),
-        circle(m + 4, 0, 0.8),
-    )
-
-
-def belt(length: float) -> Strokes:
-    """Return two pulleys with a belt, seen from the side."""
-    a, b = 0.26 * length, 0.74 * length
-    return (
-        line((0, 0), (a, 0), width=BOLD),
-        line((b, 0), (length, 0), width=BOLD),
-        line((a, 5), (b, 4)),
-        line((a, -5), (b, -4)),
-        *(circle(x, 0, r) for x, r in ((a, 5.0), (b, 4.0), (a, 0.8), (b, 0.8))),
-    )
 
 
 def rack(length: float) -> Strokes:
@@ -458,19 +374,6 @@ def screw(length: float) -> Strokes:
     )
 
 
-def lever(length: float) -> Strokes:
-    """Return a lever about a pivot."""
-    m = length / 2
-    return (
-        line((0, 0), (m - 5, 0)),
-        line((m - 5, -6), (m + 5, 6), width=1.4),
-        line((m + 5, 0), (length, 0)),
-        line((m - 5, 0), (m - 5, -6)),
-        line((m + 5, 0), (m + 5, 6)),
-        circle(m, 0, 1.3),
-    )
-
-
 def coils(length: float) -> Strokes:
     """Return two windings on a core."""
     m = length / 2
@@ -482,35 +385,6 @@ def coils(length: float) -> Strokes:
         line((m - 0.7, -5), (m - 0.7, 8), width=THIN),
         line((m + 0.7, -5), (m + 0.7, 8), width=THIN),
     )
-
-
-def crossing(length: float) -> Strokes:
-    """Return a box in which two arrows cross."""
-    a, b = 0.18 * length, 0.82 * length
-    return (
-        line((0, 0), (a, 0)),
-        line((b, 0), (length, 0)),
-        rectangle(a, -6.5, b, 6.5),
-        line((a + 2.5, -3.5), (b - 2.5, 3.5), width=THIN),
-        line((a + 2.5, 3.5), (b - 2.5, -3.5), width=THIN),
-    )
-
-
-def piezo(length: float) -> Strokes:
-    """Return a stack of plates."""
-    a, b = 0.2 * length, 0.8 * length
-    count = 5
-    plates = [
-        line((a + (b - a) * i / count, -6.5), (a + (b - a) * i / count, 6.5), width=THIN)
-        for i in range(1, count)
-    ]
-    return (rectangle(a, -6.5, b, 6.5, FILLED), *plates)
-
-
-def box(length: float) -> Strokes:
-    """Return a box, for what has no symbol of its own."""
-    a, b = 0.15 * length, 0.85 * length
-    return (line((0, 0), (a, 0)), rectangle(a, -5, b, 5), line((b, 0), (length, 0)))
 
 
 def pin_support() -> Strokes:
@@ -598,7 +472,13 @@ TRANSFORMERS: Final[dict[tuple[str, str], Callable[[float], Strokes]]] = {
 }
 """A transformer by the domains of its two sides; of other domains it is a box."""
 TRANSFORMER_SYMBOLS: Final[dict[str, Callable[[float], Strokes]]] = {
-    draw.__name__: draw for draw in (gears, belt, screw, rack, lever, coils, box)
+    "gears": gears,
+    "belt": belt,
+    "screw": screw,
+    "rack": rack,
+    "lever": lever,
+    "coils": coils,
+    "box": box,
 }
 """What a specification may call the symbol of a transformer."""
 

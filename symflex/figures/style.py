@@ -289,6 +289,24 @@ def label_of_unit(unit: str) -> str:
     return rf"$\mathrm{{{''.join(parts)}}}$"
 
 
+TIGHT_DOT: Final = r"\!\cdot\!"
+
+
+def power_of_ten(decimal: str, times: str) -> str:
+    r"""Return a decimal in mathematics, without a factor 1 before a power of ten.
+
+    Examples
+    --------
+    >>> print(power_of_ten("2.1e-11", r"\cdot "), power_of_ten("-1e+06", r"\cdot "), power_of_ten("95", ""))
+    2.1\cdot 10^{-11} -10^{6} 95
+    """
+    mantissa, _, exponent = decimal.partition("e")
+    power = f"10^{{{int(exponent or 0)}}}"
+    if mantissa in ("1", "-1") and exponent:
+        return f"{mantissa[:-1]}{power}"
+    return f"{mantissa}{times}{power}" if exponent else mantissa
+
+
 def label_of_frequency(value: float) -> str:
     """Return a number on a logarithmic axis, written out where that is short.
 
@@ -299,9 +317,7 @@ def label_of_frequency(value: float) -> str:
     """
     if PLAIN_LOW <= value < PLAIN_HIGH:
         return f"{value:g}"
-    mantissa, exponent = f"{value:.0e}".split("e")
-    power = f"10^{{{int(exponent)}}}"
-    return f"${power}$" if mantissa == "1" else rf"${mantissa}\!\cdot\!{power}$"
+    return f"${power_of_ten(f'{value:.0e}', TIGHT_DOT)}$"
 
 
 def number_label(value: float) -> str:
@@ -312,9 +328,4 @@ def number_label(value: float) -> str:
     >>> number_label(25.0), number_label(1e6), number_label(2.5e-7)
     ('25', '10^{6}', '2.5\\times 10^{-7}')
     """
-    text = f"{value:.4g}"
-    if "e" not in text:
-        return text
-    mantissa, exponent = text.split("e")
-    power = f"10^{{{int(exponent)}}}"
-    return power if mantissa == "1" else rf"{mantissa}\times {power}"
+    return power_of_ten(f"{value:.4g}", r"\times ")

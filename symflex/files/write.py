@@ -5,15 +5,18 @@ from __future__ import annotations
 import os
 import secrets
 import stat
+from contextlib import contextmanager
+from itertools import count
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
 from symflex.errors import Diagnostic, UsageError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
 PERMISSIONS = 0o666
+LINK = "it is a symbolic link, and symflex does not write through links"
 
 
 def write_atomically(path: Path, data: bytes) -> None:
@@ -30,15 +33,8 @@ def write_atomically(path: Path, data: bytes) -> None:
     Traceback (most recent call last):
     symflex.errors.exceptions.UsageError: error[SF903]: cannot write 'no/such/folder/a.svg': ...
     """
-    name = os.fspath(path)
-    try:
+    with _refusals(os.fspath(path)):
         _write(Path(path), data)
-    except FileNotFoundError:
-        raise _unwritable(name, f"there is no folder '{os.path.dirname(name) or '.'}'") from None
-    except OSError as error:
-        raise _unwritable(name, error.strerror or "input/output error") from None
-    except ValueError:
-        raise _unwritable(name, "the name contains a character that file names cannot have") from None
 
 
 def check_writable(path: Path) -> None:
@@ -53,14 +49,10 @@ def check_writable(path: Path) -> None:
     symflex.errors.exceptions.UsageError: error[SF903]: cannot write 'no/such/folder/a.svg': ...
     """
     name = os.fspath(path)
-    try:
+    with _refusals(name):
         _mode_of_regular_file(path)
-    except OSError as error:
-        raise _unwritable(name, error.strerror or "input/output error") from None
-    except ValueError:
-        raise _unwritable(name, "the name contains a character that file names cannot have") from None
-    if not path.parent.is_dir():
-        raise _unwritable(name, f"there is no folder '{os.path.dirname(name) or '.'}'")
+        if not path.parent.is_dir():
+            raise FileNotFoundError
     _check_entry(path.parent, name)
 
 
@@ -93,17 +85,8 @@ def write_folder(folder: Path, files: Mapping[str, str]) -> None:
         if name in ("", ".", "..") or Path(name).name != name or "\\" in name or "\0" in name:
             message = f"{name!r} is not the name of a file"
             raise ValueError(message)
-    try:
+    with _refusals(os.fspath(folder)):
         Path(folder).mkdir(exist_ok=True)
-    except FileNotFoundError:
-        parent = os.path.dirname(os.fspath(folder).rstrip("/")) or "."
-        raise _unwritable(os.fspath(folder), f"there is no folder '{parent}'") from None
-    except OSError as error:
-        raise _unwritable(os.fspath(folder), error.strerror or "input/output error") from None
-    except ValueError:
-        raise _unwritable(
-            os.fspath(folder), "the name contains a character that file names cannot have"
-        ) from None
     for name, text in files.items():
         write_atomically(Path(folder) / name, text.encode())
 
@@ -132,15 +115,10 @@ def write_tree(folder: Path, files: Mapping[str, bytes]) -> None:
 
 def _make(folder: Path, *, is_root: bool) -> None:
     name = str(folder)
-    try:
+    with _refusals(name, into=True):
         if not is_root and folder.is_symlink():
-            reason = "it is a symbolic link, and symflex does not write through links"
-            raise _unwritable(name, reason, into=True)
+            raise _unwritable(name, LINK, into=True)
         folder.mkdir(parents=is_root, exist_ok=True)
-    except OSError as error:
-        raise _unwritable(name, error.strerror or "input/output error", into=True) from None
-    except ValueError:
-        raise _unwritable(name, "the name contains a character that folders cannot have", into=True) from None
 
 
 def _write(path: Path, data: bytes) -> None:
@@ -170,7 +148,7 @@ def _mode_of_regular_file(path: Path) -> int | None:
     except FileNotFoundError:
         return None
     if stat.S_ISLNK(mode):
-        raise _unwritable(os.fspath(path), "it is a symbolic link, and symflex does not write through links")
+        raise _unwritable(os.fspath(path), LINK)
     if not stat.S_ISREG(mode):
         raise _unwritable(os.fspath(path), "it is not a regular file")
     return stat.S_IMODE(mode)
@@ -186,6 +164,35 @@ def _sync_folder(folder: Path) -> None:
         os.fsync(descriptor)
     finally:
         os.close(descriptor)
+
+
+def free_name(stem: str, taken: Iterable[str], suffix: str = "") -> str:
+    """Return a file's name that is not taken, not even where capitals count as small letters.
+
+    Examples
+    --------
+    >>> free_name("Beam", ["beam.csv"], ".csv")
+    'Beam_2.csv'
+    """
+    small = {name.lower() for name in taken}
+    offered = (f"{stem}{'' if number == 1 else f'_{number}'}{suffix}" for number in count(1))
+    return next(name for name in offered if name.lower() not in small)
+
+
+@contextmanager
+def _refusals(name: str, *, into: bool = False) -> Iterator[None]:
+    """Say what the system refuses as the program says it, SF903."""
+    try:
+        yield
+    except FileNotFoundError:
+        reason = f"there is no folder '{os.path.dirname(name.rstrip('/')) or '.'}'"
+    except OSError as error:
+        reason = error.strerror or "input/output error"
+    except ValueError:
+        reason = f"the name contains a character that {'folders' if into else 'file names'} cannot have"
+    else:
+        return
+    raise _unwritable(name, reason, into=into)
 
 
 def _unwritable(name: str, reason: str, *, into: bool = False) -> UsageError:

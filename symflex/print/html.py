@@ -12,9 +12,9 @@ from symflex.print.latex.table import decimal_text
 from symflex.print.roots import PAGE_COLUMNS, columns_for, one_of_each_pair, region_text, roots_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
-    from symflex.model import Model, ModelParameter
+    from symflex.model import ExactValue, Model
     from symflex.print.roots import PrintedRoot, RootColumn
     from symflex.print.text import Passage
     from symflex.roots import PoleZeroMap
@@ -129,15 +129,7 @@ def model_html(model: Model) -> str:
         lines.append(f"<div>{_cut(model.source)}</div>")
     if model.settable:
         labels = model_labels(model)
-        rows = [
-            (
-                f"${escape_label(labels[p.name])}$",
-                f"<code>{escape_html(p.name)}</code>",
-                *_written(p),
-                _cut(p.doc),
-            )
-            for p in model.settable
-        ]
+        rows = [(*_valued(p.name, labels, *p.as_written()), _cut(p.doc)) for p in model.settable]
         head = ("Symbol", "Name", "Value", "Unit", "Meaning")
         lines.append(html_table(head, (TEXT, TEXT, NUMBER, TEXT, TEXT), rows))
     names = [f"<code>{escape_html('/'.join(pair))}</code>" for pair in model.transfer_functions]
@@ -152,10 +144,16 @@ def escape_label(latex: str) -> str:
     return latex.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
 
 
-def _written(parameter: ModelParameter) -> tuple[str, str]:
-    value, unit = parameter.as_written()
-    shown = "symbolic" if value is None else decimal_text(value)
-    return shown, escape_html("" if unit == "1" else unit)
+def _valued(
+    name: str, labels: Mapping[str, str], value: ExactValue | None, unit: str
+) -> tuple[str, str, str, str]:
+    """Return symbol, name, value and unit of a parameter."""
+    return (
+        f"${escape_label(labels[name])}$" if name in labels else "",
+        f"<code>{escape_html(name)}</code>",
+        "symbolic" if value is None else decimal_text(value),
+        escape_html("" if unit == "1" else unit),
+    )
 
 
 def _cut(text: str) -> str:
@@ -172,12 +170,7 @@ def bound_html(bound: BoundTransferFunction) -> str:
     if formula is not None:
         lines.append(f"<div>$\\displaystyle {escape_label(formula)}$</div>")
     rows = [
-        (
-            f"${escape_label(labels[name])}$" if name in labels else "",
-            f"<code>{escape_html(name)}</code>",
-            decimal_text(value if shown is None else shown),
-            escape_html("" if unit == "1" else unit),
-        )
+        _valued(name, labels, value if shown is None else shown, unit)
         for name, value in bound.values
         for shown, unit in (parameters[name].as_written(value) if name in parameters else (value, ""),)
     ]

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Final
 from symflex.budget import TIME_OVER, Budget, entered_budget
 from symflex.errors import BudgetError, Diagnostic, SpecError, SymflexError, UncertifiedError, UsageError
 from symflex.errors.diagnostic import printable
+from symflex.files.write import free_name
 from symflex.report.chapter import Chapter, chapter_of, failed_chapter
 from symflex.report.claims.claim import claim_section, claims_json, judge_all, publication_of
 from symflex.report.claims.read import CLAIMS, is_claims, read_claims
@@ -117,15 +118,9 @@ def name_specifications(paths: Sequence[Path]) -> dict[str, Path]:
     {'beam': PosixPath('a/beam.toml'), 'Beam_2': PosixPath('b/Beam.toml'), 'm_2__x_': PosixPath('2 <x>.toml')}
     """
     named: dict[str, Path] = {}
-    taken = set(RESERVED)
     for path in paths:
         plain = re.sub(r"[^A-Za-z0-9_]", "_", path.stem)[:64]
-        plain = plain if plain[:1].isalpha() else f"m_{plain}"
-        stem, number = plain, 2
-        while stem.lower() in taken:
-            stem, number = f"{plain}_{number}", number + 1
-        taken.add(stem.lower())
-        named[stem] = path
+        named[free_name(plain if plain[:1].isalpha() else f"m_{plain}", (*RESERVED, *named))] = path
     return named
 
 

@@ -238,36 +238,27 @@ def negative(x: Term) -> Term:
     return replace(x, text=f"-{x.within(_LEAF)}", binding=_SIGN)
 
 
+# What computes with a complex number: plus another, another less it, times another, by the other's kind.
+_SUMS = {Kind.COMPLEX: "cx_add", Kind.REAL: "cx_addr", Kind.IMAGINARY: "cx_addi"}
+_DIFFERENCES = {Kind.COMPLEX: "cx_sub", Kind.REAL: "cx_rsub", Kind.IMAGINARY: "cx_isub"}
+_PRODUCTS = {Kind.COMPLEX: "cx_mul", Kind.REAL: "cx_scale", Kind.IMAGINARY: "cx_turn"}
+
+
 def total(x: Term, y: Term) -> Term:
     """Return the sum of two numbers."""
-    match x.kind, y.kind:
-        case (Kind.COMPLEX, Kind.COMPLEX):
-            return _call("cx_add", Kind.COMPLEX, x, y)
-        case (Kind.COMPLEX, Kind.REAL):
-            return _call("cx_addr", Kind.COMPLEX, x, y)
-        case (Kind.COMPLEX, Kind.IMAGINARY):
-            return _call("cx_addi", Kind.COMPLEX, x, y)
-        case (_, Kind.COMPLEX):
-            return total(y, x)
-        case (Kind.REAL, Kind.IMAGINARY):
-            return _call("cx_of", Kind.COMPLEX, x, y)
-        case (Kind.IMAGINARY, Kind.REAL):
-            return _call("cx_of", Kind.COMPLEX, y, x)
-    return _infix(x, "+", y, x.kind)
+    if Kind.COMPLEX in (x.kind, y.kind):
+        first, second = (x, y) if x.kind is Kind.COMPLEX else (y, x)
+        return _call(_SUMS[second.kind], Kind.COMPLEX, first, second)
+    if x.kind is y.kind:
+        return _infix(x, "+", y, x.kind)
+    return _call("cx_of", Kind.COMPLEX, *((x, y) if x.kind is Kind.REAL else (y, x)))
 
 
 def difference(x: Term, y: Term) -> Term:
     """Return one number less another."""
-    match x.kind, y.kind:
-        case (Kind.COMPLEX, Kind.COMPLEX):
-            return _call("cx_sub", Kind.COMPLEX, x, y)
-        case (Kind.REAL, Kind.COMPLEX):
-            return _call("cx_rsub", Kind.COMPLEX, x, y)
-        case (Kind.IMAGINARY, Kind.COMPLEX):
-            return _call("cx_isub", Kind.COMPLEX, x, y)
-        case (Kind.REAL, Kind.REAL) | (Kind.IMAGINARY, Kind.IMAGINARY):
-            return _infix(x, "-", y, x.kind)
-    return total(x, negative(y))
+    if y.kind is Kind.COMPLEX:
+        return _call(_DIFFERENCES[x.kind], Kind.COMPLEX, x, y)
+    return _infix(x, "-", y, x.kind) if x.kind is y.kind else total(x, negative(y))
 
 
 def product(x: Term, y: Term) -> Term:
@@ -278,33 +269,23 @@ def product(x: Term, y: Term) -> Term:
     >>> product(Term("w", Kind.IMAGINARY), Term("w", Kind.IMAGINARY)).text
     '-(w * w)'
     """
-    match x.kind, y.kind:
-        case (Kind.COMPLEX, Kind.COMPLEX):
-            return _call("cx_mul", Kind.COMPLEX, x, y)
-        case (Kind.REAL, Kind.COMPLEX):
-            return _call("cx_scale", Kind.COMPLEX, x, y)
-        case (Kind.IMAGINARY, Kind.COMPLEX):
-            return _call("cx_turn", Kind.COMPLEX, x, y)
-        case (Kind.COMPLEX, _):
-            return product(y, x)
-        case (Kind.IMAGINARY, Kind.IMAGINARY):
-            return negative(_infix(x, "*", y, Kind.REAL))
-    return _infix(x, "*", y, Kind.REAL if x.kind is y.kind else Kind.IMAGINARY)
+    if Kind.COMPLEX in (x.kind, y.kind):
+        first, second = (x, y) if y.kind is Kind.COMPLEX else (y, x)
+        return _call(_PRODUCTS[first.kind], Kind.COMPLEX, first, second)
+    if x.kind is not y.kind:
+        return _infix(x, "*", y, Kind.IMAGINARY)
+    found = _infix(x, "*", y, Kind.REAL)
+    return negative(found) if x.kind is Kind.IMAGINARY else found
 
 
 def quotient(x: Term, y: Term) -> Term:
     """Return the quotient of two numbers."""
-    match x.kind, y.kind:
-        case (_, Kind.COMPLEX):
-            return _call("cx_div", Kind.COMPLEX, complex_term(x), y)
-        case (Kind.COMPLEX, _):
-            name = "cx_over" if y.kind is Kind.REAL else "cx_under"
-            return _call(name, Kind.COMPLEX, x, y)
-        case (Kind.REAL, Kind.IMAGINARY):
-            return negative(_infix(x, "/", y, Kind.IMAGINARY))
-        case (Kind.IMAGINARY, Kind.IMAGINARY):
-            return _infix(x, "/", y, Kind.REAL)
-    return _infix(x, "/", y, x.kind)
+    if y.kind is Kind.COMPLEX:
+        return _call("cx_div", Kind.COMPLEX, complex_term(x), y)
+    if x.kind is Kind.COMPLEX:
+        return _call("cx_over" if y.kind is Kind.REAL else "cx_under", Kind.COMPLEX, x, y)
+    found = _infix(x, "/", y, Kind.REAL if x.kind is y.kind else Kind.IMAGINARY)
+    return negative(found) if (x.kind, y.kind) == (Kind.REAL, Kind.IMAGINARY) else found
 
 
 def _power(base: Term, exponent: int) -> Term:

@@ -183,16 +183,17 @@ class Functions:
 
     def _store(self, scope: Body, value: Term) -> None:
         """Write a value into the arrays."""
-        if value.kind is Kind.COMPLEX:
-            scope.say("const cx g =", value.text)
-            scope.say("real[i] =", "g.re")
-            scope.say("imag[i] =", "g.im")
-        elif value.kind is Kind.REAL:
-            scope.say("real[i] =", value.text)
-            scope.say("imag[i] =", "0.0")
-        else:
-            scope.say("real[i] =", "0.0")
-            scope.say("imag[i] =", value.text)
+        real, imag = _parts(scope, value)
+        scope.say("real[i] =", real)
+        scope.say("imag[i] =", imag)
+
+
+def _parts(scope: Body, value: Term) -> tuple[str, str]:
+    """Return real and imaginary part of a value; a complex one gets a variable."""
+    if value.kind is Kind.COMPLEX:
+        scope.say("const cx g =", value.text)
+        return "g.re", "g.im"
+    return (value.text, "0.0") if value.kind is Kind.REAL else ("0.0", value.text)
 
 
 def _mentions(line: str, name: str) -> bool:
@@ -339,12 +340,7 @@ def rational_lanes(program: tree.Piecewise, members: Mapping[str, str]) -> list[
     block = outer.within(3)
     block.assign(program.near.assignments)
     value = block.term(program.near.values[0])
-    parts = {"re": "0.0", "im": "0.0"}
-    if value.kind is Kind.COMPLEX:
-        block.say("const cx g =", value.text)
-        parts = {"re": "g.re", "im": "g.im"}
-    else:
-        parts["re" if value.kind is Kind.REAL else "im"] = value.text
+    parts = dict(zip(("re", "im"), _parts(block, value), strict=True))
     varying = {name: text for name, text in parts.items() if text != "0.0"}
     arrays = {name: block.name(f"g_{name}") for name in varying}
     for name, text in varying.items():

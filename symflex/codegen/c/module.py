@@ -208,9 +208,7 @@ class _Files:
 
     def _described(self, key: str) -> list[str]:
         member = self.of_s[key]
-        tf = member.tf
-        unit = f" [{tf.unit}]" if tf.unit else ""
-        lines = [inert(f"{tf.quantity[:1].upper()}{tf.quantity[1:]} {tf.name}{unit}."), ""]
+        lines = [member.headline, ""]
         lines += [f"  {line}" if line else "" for line in formula_lines(member.formula, WIDTH - 5)]
         said = member.verification.text(self.digits)
         sentences = [f"At s = j omega, {said}."]

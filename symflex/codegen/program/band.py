@@ -32,6 +32,7 @@ from typing import TYPE_CHECKING
 from flint import acb, arb, ctx, fmpq
 
 from symflex.codegen.program.forge import Forge, schedule
+from symflex.codegen.program.nodes import RootFactor, Within
 from symflex.errors import Diagnostic, ModelError
 from symflex.roots.locate import DEFAULT_MODES, locate
 from symflex.roots.region import Band, Everything, Modes
@@ -196,14 +197,18 @@ class BandForm:
     def program(self) -> Piecewise:
         """Return the program."""
         forge = Forge()
-        s = forge.within(self.end * (1 + SLACK)) if self.is_limited else forge.s
+        s = (
+            forge.label(forge.make(Within, forge.s, self.end * (1 + SLACK)), "z")
+            if self.is_limited
+            else forge.s
+        )
         factors = [forge.constant(Fraction(self.gain))]
         base = forge.power(s, abs(self.power))
         factors += [base] if self.power > 0 else [forge.divide(forge.constant(1), base)] if self.power else []
         for first in range(0, max(len(self.zeros), len(self.poles)), GROUP):
             zeros, poles = (x[first : first + GROUP] for x in (self.zeros, self.poles))
             above, below = (
-                forge.multiply([forge.root_factor(s, r.re, r.im, is_mirrored=r.is_mirrored) for r in x])
+                forge.multiply([forge.make(RootFactor, s, r.re, r.im, r.is_mirrored) for r in x])
                 for x in (zeros, poles)
             )
             scale = prod((r.scale for r in poles), start=Fraction(1)) / prod(r.scale for r in zeros)

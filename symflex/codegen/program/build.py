@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 from symflex.algebra import LAPLACE, Factored
 from symflex.budget import spend
 from symflex.codegen.program.forge import Forge, schedule
-from symflex.codegen.program.nodes import ParameterValue
+from symflex.codegen.program.nodes import ParameterValue, Solve
 from symflex.codegen.program.polynomials import (
     RingValues,
     degree_of,
@@ -41,6 +41,7 @@ if TYPE_CHECKING:
 
     from symflex.algebra import Ring
     from symflex.codegen.program.nodes import Piecewise
+    from symflex.equations import ConstantFunction
     from symflex.equations.line_network import LineNetwork
     from symflex.model import Model
     from symflex.transfer import ClosedForm, NestedTransferFunction, TransferFunction
@@ -288,20 +289,10 @@ def build_nested(tf: NestedTransferFunction) -> Piecewise:
         raise BudgetError(Diagnostic("SF503", message, None, "evaluate it with the Python interface"))
     forge = Forge()
     program = tf.program
-    parameters = {p.name for p in tf.model.parameters}
-    constants = {c.generator: c.expression for c in tf.constants}
-
-    def generator(position: int) -> int:
-        name = program.names[position]
-        if name == LAPLACE:
-            return forge.s
-        if name == PI:
-            return forge.constant(1, 1)
-        return forge.parameter(name) if name in parameters else constant_of(forge, tf.model, constants[name])
-
+    named = _generators(forge, tf.model, tf.constants)
     made = program.values(
         program.operations(tf.steps),
-        name=generator,
+        name=lambda position: named(program.names[position]),
         number=lambda x: forge.divide(forge.constant(x.numerator), forge.constant(x.denominator)),
         negative=forge.negate,
         total=forge.add,
@@ -315,21 +306,26 @@ def build_nested(tf: NestedTransferFunction) -> Piecewise:
     return schedule(forge, tuple(p.name for p in tf.parameters), whole, None, inf)
 
 
-def _build_solved(tf: NestedTransferFunction, network: LineNetwork) -> Piecewise:
-    """Return the program of a transfer function of a network of line elements, which is solved as it is."""
-    forge = Forge()
-    names = {p.name for p in tf.model.parameters}
-    constants = {c.generator: c.expression for c in network.equations.constants}
+def _generators(forge: Forge, model: Model, constants: Iterable[ConstantFunction]) -> Callable[[str], int]:
+    """Return what makes s, pi, parameters and functions of constants of their names."""
+    parameters = {p.name for p in model.parameters}
+    known = {c.generator: c.expression for c in constants}
 
     def named(name: str) -> int:
         if name == LAPLACE:
             return forge.s
         if name == PI:
             return forge.constant(1, 1)
-        return forge.parameter(name) if name in names else constant_of(forge, tf.model, constants[name])
+        return forge.parameter(name) if name in parameters else constant_of(forge, model, known[name])
 
+    return named
+
+
+def _build_solved(tf: NestedTransferFunction, network: LineNetwork) -> Piecewise:
+    """Return the program of a transfer function of a network of line elements, which is solved as it is."""
+    forge = Forge()
     entries = network.values(
-        name=named,
+        name=_generators(forge, tf.model, network.equations.constants),
         number=forge.constant,
         total=forge.add,
         product=forge.multiply,
@@ -338,5 +334,6 @@ def _build_solved(tf: NestedTransferFunction, network: LineNetwork) -> Piecewise
         exponential=lambda x: forge.apply("complex_exp", x),
     )
     used = {node.name for node in forge.nodes if isinstance(node, ParameterValue)}
-    value = forge.solve(entries, network.table, *network.numbers(tf.output.name, tf.input.name))
+    ends = network.numbers(tf.output.name, tf.input.name)
+    value = forge.make(Solve, tuple(entries), network.table, *ends)
     return schedule(forge, tuple(p.name for p in tf.model.parameters if p.name in used), value, None, inf)

@@ -14,7 +14,7 @@ from fractions import Fraction
 from functools import cache, partial
 from math import gcd, pi, prod
 from operator import mul
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from symflex.algebra import LAPLACE, Factored, degree_in
 from symflex.algebra.normal_form import NormalForm
@@ -164,6 +164,7 @@ _Choice = tuple[tuple[bool, ...], tuple[bool, ...], bool, tuple["Dispersion", ..
 """What makes a piece: groups near zero, delays that grow, meeting pairs, lone dispersions."""
 
 
+Choice = TypeVar("Choice")
 _LocalParts = dict[tuple[int, ...], dict["Key", Factored]]
 """Per order of the derivatives in the small lengths, the coefficients of what remains."""
 
@@ -402,14 +403,8 @@ class _PieceMaker:
         tests += [self._lone_test(site, d) for d in laws]
         fifth = len(tests)
         occurs = self._together(forge, tests, counts, None)
-        code: list[CodePiece] = []
-        known: dict[_Choice, int] = {}
-        numbers: list[int] = []
-        for number in range(2 ** len(tests)):
-            bits = [bool(number >> i & 1) for i in range(len(tests))]
-            near = self._near(bits, counts)
-            if not occurs(near):
-                near = (False,) * len(near)
+
+        def choice(near: tuple[bool, ...], bits: Sequence[bool]) -> _Choice:
             grows = tuple(bits[first:second])
             far = {self.groups[i].dispersion for i in pairs if not near[i]}
             lone = tuple(
@@ -419,12 +414,27 @@ class _PieceMaker:
                 bits[second + j] and not near[i] and self.groups[i].dispersion not in lone
                 for j, i in enumerate(pairs)
             )
-            key = (near, grows, meets, lone)
-            if key not in known:
-                known[key] = len(code)
-                code.append(self._piece(*key))
-            numbers.append(known[key])
-        return self._assembled(forge, tests, numbers, code, None)
+            return near, grows, meets, lone
+
+        choices = self._choices(len(tests), counts, occurs, choice)
+        kept = list(dict.fromkeys(choices))
+        code = [self._piece(*each) for each in kept]
+        return self._assembled(forge, tests, [kept.index(each) for each in choices], code, None)
+
+    def _choices(
+        self,
+        count: int,
+        counts: Sequence[int],
+        occurs: Callable[[tuple[bool, ...]], bool],
+        choice: Callable[[tuple[bool, ...], Sequence[bool]], Choice],
+    ) -> list[Choice]:
+        """Return what is chosen by the results of tests, for every number that these make."""
+        found = []
+        for number in range(2**count):
+            bits = [bool(number >> i & 1) for i in range(count)]
+            near = self._near(bits, counts)
+            found.append(choice(near if occurs(near) else (False,) * len(near), bits))
+        return found
 
     def _lone_test(self, site: Site, dispersion: Dispersion) -> _Test:
         """Return the test that the smaller of a pair's arguments is small at every length."""
@@ -667,32 +677,26 @@ class _PieceMaker:
         first = len(tests)
         signed = [d for d in self.table.dispersions if axis.sign(d) is None]
         tests += [(site.coefficient(d), 0.0, forge.constant(1)) for d in signed]
-        code: list[CodePiece] = []
-        known: dict[tuple[tuple[bool, ...], tuple[bool, ...]], int] = {}
-        numbers: list[int] = []
-        first_turn: int | None = None
         occurs = self._together(forge, tests, counts, 0)
-        for number in range(2 ** len(tests)):
-            bits = [bool(number >> i & 1) for i in range(len(tests))]
-            near, negative = self._near(bits, counts), tuple(bits[first:])
-            if not occurs(near):
-                near = (False,) * len(near)
-            if all(near):
-                negative = (False,) * len(negative)
-            key = (near, negative)
-            if key not in known:
-                known[key] = len(code)
-                if any(near) and not all(near):
-                    code.append(self._piece(near, is_complex=True))
-                else:
-                    signs = dict(zip(signed, negative, strict=True))
-                    made = self._real_piece(axis.where(signs), first_turn, is_near=all(near))
-                    if made is None:
-                        return None
-                    piece, first_turn = made
-                    code.append(piece)
-            numbers.append(known[key])
-        return self._assembled(forge, tests, numbers, code, first_turn)
+
+        def choice(near: tuple[bool, ...], bits: Sequence[bool]) -> tuple[tuple[bool, ...], tuple[bool, ...]]:
+            return near, tuple(b and not all(near) for b in bits[first:])
+
+        choices = self._choices(len(tests), counts, occurs, choice)
+        kept = list(dict.fromkeys(choices))
+        code: list[CodePiece] = []
+        turn: int | None = None
+        for near, negative in kept:
+            if any(near) and not all(near):
+                code.append(self._piece(near, is_complex=True))
+                continue
+            signs = dict(zip(signed, negative, strict=True))
+            made = self._real_piece(axis.where(signs), turn, is_near=all(near))
+            if made is None:
+                return None
+            piece, turn = made
+            code.append(piece)
+        return self._assembled(forge, tests, [kept.index(each) for each in choices], code, turn)
 
     def _real_piece(
         self, axis: RealAxis, wanted: int | None, *, is_near: bool

@@ -29,8 +29,6 @@ from symflex.codegen.program import nodes as tree
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
-    from symflex.equations.line_network import Table
-
 
 class Depends(IntFlag):
     """What a value varies with, besides parameters."""
@@ -53,7 +51,8 @@ class Forge:
         """Return what an expression is made of."""
         return cast("tuple[int, ...]", self.nodes[x].children)
 
-    def _make(self, kind: Callable[..., tree.CodeNode], *operands: Any) -> int:  # noqa: ANN401 (numbers of nodes)
+    def make(self, kind: Callable[..., tree.CodeNode], *operands: Any) -> int:  # noqa: ANN401 (numbers of nodes)
+        """Return a node of a kind, with what it holds."""
         node = kind(*operands)
         known = self._numbers.get(node)
         if known is not None:
@@ -72,38 +71,34 @@ class Forge:
         exact = Fraction(value)
         if exact == 0:
             pi_power = 0
-        number = self._make(tree.RealNumber, abs(exact), pi_power)
+        number = self.make(tree.RealNumber, abs(exact), pi_power)
         return self.negate(number) if exact < 0 else number
 
     def complex_number(self, real: Fraction | int, imaginary: Fraction | int) -> int:
         """Return ``real + 1j*imaginary``."""
-        return self._make(tree.ComplexNumber, Fraction(real), Fraction(imaginary))
+        return self.make(tree.ComplexNumber, Fraction(real), Fraction(imaginary))
 
     def to_complex(self, x: int) -> int:
         """Return a real number as a complex one; see :class:`nodes.ToComplex`."""
         minus, size = self.signed(x)
         if self.is_number(size, 0):
             return size
-        number = self.complex_number(1, 0) if self.is_number(size, 1) else self._make(tree.ToComplex, size)
+        number = self.complex_number(1, 0) if self.is_number(size, 1) else self.make(tree.ToComplex, size)
         return self.negate(number) if minus else number
-
-    def larger_root(self, formula: int, middle: int, product: int) -> int:
-        """Return the value of a formula that is known to be a :class:`nodes.LargerRoot`."""
-        return self._make(tree.LargerRoot, formula, middle, product)
 
     def parameter(self, name: str) -> int:
         """Return a parameter."""
-        return self._make(tree.ParameterValue, name)
+        return self.make(tree.ParameterValue, name)
 
     @property
     def s(self) -> int:
         """The Laplace variable."""
-        return self._make(tree.Laplace)
+        return self.make(tree.Laplace)
 
     @property
     def inverse(self) -> int:
         """The quotient 1/s."""
-        return self._make(tree.InverseLaplace)
+        return self.make(tree.InverseLaplace)
 
     def is_number(self, x: int, value: int) -> bool:
         """Tell whether ``x`` is the given non-negative integer."""
@@ -119,7 +114,7 @@ class Forge:
         is_negative, inner = self.signed(x)
         if is_negative or self.is_number(inner, 0):
             return inner
-        return self._make(tree.Negate, x)
+        return self.make(tree.Negate, x)
 
     def add(self, terms: Iterable[int]) -> int:
         """Return a sum; a term without minus sign comes first when there is one."""
@@ -130,7 +125,7 @@ class Forge:
         if first is None:
             return self.negate(self.add([self.negate(t) for t in kept]))
         kept.insert(0, kept.pop(first))
-        return kept[0] if len(kept) == 1 else self._make(tree.Add, tuple(kept))
+        return kept[0] if len(kept) == 1 else self.make(tree.Add, tuple(kept))
 
     def multiply(self, factors: Sequence[int]) -> int:
         """Return a product, its parameters multiplied first, so that they are multiplied once per call."""
@@ -149,7 +144,7 @@ class Forge:
         return self.negate(product) if is_negative else product
 
     def _product(self, factors: Sequence[int]) -> int:
-        return factors[0] if len(factors) == 1 else self._make(tree.Multiply, tuple(factors))
+        return factors[0] if len(factors) == 1 else self.make(tree.Multiply, tuple(factors))
 
     def divide(self, above: int, below: int) -> int:
         """Return a quotient."""
@@ -157,7 +152,7 @@ class Forge:
         minus_below, denominator = self.signed(below)
         whole = numerator
         if not self.is_number(denominator, 1) and not self.is_number(numerator, 0):
-            whole = self._make(tree.Divide, numerator, denominator)
+            whole = self.make(tree.Divide, numerator, denominator)
         return whole if minus_above == minus_below else self.negate(whole)
 
     def power(self, base: int, exponent: int) -> int:
@@ -171,7 +166,7 @@ class Forge:
             power = self.power(size, exponent)
             return self.negate(power) if exponent % 2 else power
         if not self.depends[base]:
-            return self._make(tree.IntegerPower, base, exponent)
+            return self.make(tree.IntegerPower, base, exponent)
         if exponent % 2:
             return self._product([self.power(base, exponent - 1), base])
         half = self.power(base, exponent // 2)
@@ -179,26 +174,12 @@ class Forge:
 
     def apply(self, function: str, argument: int) -> int:
         """Return an elementary function."""
-        return self._make(tree.Apply, function, argument)
-
-    def within(self, end: float) -> int:
-        """Return s up to an absolute value; see :class:`nodes.Within`."""
-        return self.label(self._make(tree.Within, self.s, end), "z")
-
-    def root_factor(
-        self, point: int, re: tuple[float, float], im: tuple[float, float], *, is_mirrored: bool
-    ) -> int:
-        """Return the factor of a root or a pair; see :class:`nodes.RootFactor`."""
-        return self._make(tree.RootFactor, point, re, im, is_mirrored)
+        return self.make(tree.Apply, function, argument)
 
     def solutions(self, coefficients: Sequence[int], terms: int) -> tuple[int, ...]:
         """Return a differential equation's solutions at 1; see :class:`nodes.Solutions`."""
-        row = self.label(self._make(tree.Solutions, tuple(coefficients), terms), "solutions")
+        row = self.label(self.make(tree.Solutions, tuple(coefficients), terms), "solutions")
         return tuple(self.item(row, k) for k in range(len(coefficients)))
-
-    def solve(self, entries: Sequence[int], network: Table, output: int, source: int) -> int:
-        """Return what an output of a network is per unit of an input; see :class:`nodes.Solve`."""
-        return self._make(tree.Solve, tuple(entries), network, output, source)
 
     def fundamental_minors(
         self,
@@ -213,19 +194,19 @@ class Forge:
 
         The ``ends`` are where x starts, and the length.
         """
-        row = self._make(tree.FundamentalMinors, *ends, tuple(bases), along, places, wanted, tip)
+        row = self.make(tree.FundamentalMinors, *ends, tuple(bases), along, places, wanted, tip)
         size = 1 + max(max(place[:2]) for place in places)
         items = [self.item(self.label(row, "minors"), k) for k in range(len(wanted) + size)]
         return items[: len(wanted)], items[len(wanted) :]
 
     def scaled_sum(self, amplitudes: Sequence[int], exponents: Sequence[int]) -> tuple[int, int]:
         """Return a sum over its largest exponential, and the logarithm of that."""
-        row = self.label(self._make(tree.ScaledSum, tuple(amplitudes), tuple(exponents)), "total")
+        row = self.label(self.make(tree.ScaledSum, tuple(amplitudes), tuple(exponents)), "total")
         return self.item(row, 0), self.item(row, 1)
 
     def item(self, values: int, position: int) -> int:
         """Return one value of a list."""
-        return self._make(tree.Item, values, position)
+        return self.make(tree.Item, values, position)
 
     def label(self, x: int, name: str) -> int:
         """Ask for an assignment of ``x``; the first name given stays."""

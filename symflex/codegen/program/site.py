@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from symflex.algebra import LAPLACE
 from symflex.codegen.program.build import Generators
+from symflex.codegen.program.nodes import LargerRoot
 from symflex.codegen.program.polynomials import evaluate_polynomial
 from symflex.codegen.program.series import series_length
 
@@ -154,7 +155,7 @@ class Site:
             [forge.constant(1), forge.negate(forge.divide(c0, forge.multiply([middle, middle])))]
         )
         formula = forge.multiply([middle, forge.add([forge.constant(1), self._root(inside)])])
-        large = forge.larger_root(formula, middle, c0)
+        large = forge.make(LargerRoot, formula, middle, c0)
         first, second = self._root(large), self._root(forge.divide(c0, large))
         return self.forge.label(first, "lambda_1"), self.forge.label(second, "lambda_2")
 

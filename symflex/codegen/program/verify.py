@@ -27,7 +27,7 @@ from symflex.transfer.nested_form import EnclosedNested
 from symflex.transfer.of_model import derive_for_roots, derive_nested
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from numpy.typing import NDArray
 
@@ -165,10 +165,11 @@ def choose_programs(
     would be too large, SF233 when a number does not fit in double precision.
     """
     gauge = _gauge(_solved(tf), band_hz, samples)
-    own = _choose(gauge)
-    if has_real:
-        return own, _choose_real(gauge)
-    return own, own if _is_lossless(gauge) else None
+    own, programs = _choose(gauge), _real_programs(gauge)
+    first = next(programs, None)
+    if first is None or not has_real:
+        return own, None if first is None else own
+    return own, _choose_pieces(chain([first], programs), gauge, "real")
 
 
 def _solved(tf: AnyTransferFunction) -> AnyTransferFunction:
@@ -301,30 +302,15 @@ def _choose(gauge: _Gauge) -> tuple[Piecewise, Verification]:
     return program, gauge.verified(form, error)
 
 
-def _is_lossless(gauge: _Gauge) -> bool:
-    """Tell whether a function is real or imaginary on the axis, as a program in real arithmetic needs it."""
-    return next(_real_programs(gauge), None) is not None
-
-
 def _real_programs(gauge: _Gauge) -> Iterator[Piecewise]:
-    """Yield the programs of the frequency response in real arithmetic, none where one is complex."""
+    """Yield the programs of the frequency response in real arithmetic, none where it is complex."""
     pieces, references = gauge.pieces, gauge.references
     if pieces is None or (references is not None and references.are_complex):
         return
     usual, *others = series_uses(pieces.tf, is_measured=references is not None)
-    first = pieces.of_frequency(usual)
-    if first is not None:
+    if (first := pieces.of_frequency(usual)) is not None:
         yield first
-        yield from (made for use in others if (made := pieces.of_frequency(use)) is not None)
-
-
-def _choose_real(gauge: _Gauge) -> tuple[Piecewise, Verification] | None:
-    """Return the program of the frequency response in real arithmetic, None where there is none."""
-    programs = _real_programs(gauge)
-    first = next(programs, None)
-    if first is None:
-        return None
-    return _choose_pieces(chain([first], programs), gauge, "real")
+        yield from filter(None, map(pieces.of_frequency, others))
 
 
 def _choose_pieces(programs: Iterator[Piecewise], gauge: _Gauge, form: str) -> tuple[Piecewise, Verification]:
@@ -548,16 +534,12 @@ class References:
 
     def worst_error(self, program: Piecewise) -> float:
         """Return a bound of the error at all frequencies, for a program that gets the nearest doubles."""
-        return max(self._errors(program), default=0.0)
+        return self.worst_of(evaluate(program, _arguments(program, self.s), doubles(self.bound)))
 
-    def worst_of(self, values: Sequence[complex], end: float = inf) -> float:
-        """Return a bound of the error of values at all frequencies, up to ``abs(s) = end``."""
-        pairs = zip(self.s, self._references, values, strict=True)
-        return max((r.error_of(complex(v)) for s, r, v in pairs if abs(s) <= end), default=0.0)
-
-    def _errors(self, program: Piecewise) -> list[float]:
-        values = evaluate(program, _arguments(program, self.s), doubles(self.bound))
-        return [r.error_of(complex(v)) for r, v in zip(self._references, values, strict=True)]
+    def worst_of(self, values: Iterable[complex]) -> float:
+        """Return a bound of the error of values at all frequencies."""
+        pairs = zip(self._references, values, strict=True)
+        return max((r.error_of(complex(v)) for r, v in pairs), default=0.0)
 
 
 def _reference(values: EnclosedValues, s: complex) -> _Reference | None:

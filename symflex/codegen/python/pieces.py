@@ -12,7 +12,7 @@ from abc import ABC, abstractmethod
 from cmath import isfinite
 from dataclasses import dataclass, field, replace
 from textwrap import TextWrapper
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -352,7 +352,9 @@ WIDTH = 88
 class PythonPrinter(InfixPrinter):
     """Prints expressions as Python of numpy."""
 
-    space: str = "np"  # what functions are looked up in
+    space: str = "np"
+
+    cut_off: ClassVar = "{space}.where({space}.abs({z}) <= {end!r}, {z}, {space}.full_like({z}, {space}.nan))"
 
     def assignment(self, name: str, value: tree.CodeNode, indent: str) -> list[str]:
         """Return the lines of an assignment."""
@@ -369,20 +371,11 @@ class PythonPrinter(InfixPrinter):
             return f"_complex_exp({self.print(argument)})"
         return f"{self.space}.{NUMPY_FUNCTIONS[function]}({self.print(argument)})"
 
-    def cut_off(self, point: tree.CodeNode, end: float) -> str:
-        """Return the text of a point that is not a number beyond an end."""
-        z, space = self.print(point), self.space
-        return f"{space}.where({space}.abs({z}) <= {end!r}, {z}, {space}.full_like({z}, {space}.nan))"
-
     def complex_number(self, real: float, imaginary: float) -> str:
         """Return a number as text that needs no parentheses."""
         if not real:
             return f"({imaginary!r}j)"
         return f"({real!r}{imaginary:+}j)" if imaginary else f"({real!r}+0j)"
-
-    def power(self, base: str, exponent: int) -> str:
-        """Return a power of text that needs no parentheses."""
-        return f"{base}**{exponent}"
 
 
 @dataclass(frozen=True)

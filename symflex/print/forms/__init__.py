@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 from importlib import import_module
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from symflex.algebra import degree_in
 from symflex.errors import Diagnostic, InternalError, UsageError
 from symflex.errors.diagnostic import nearest
-from symflex.expressions import format_expression
-from symflex.print.forms.arrange import Arranged, Arranger
+from symflex.print.forms.arrange import Arranged, Arranger, length
 from symflex.print.forms.definitions import definitions_form
 from symflex.print.forms.hidden import hidden_expressions, with_hidden
 from symflex.print.forms.notation import reachable
@@ -23,37 +22,25 @@ from symflex.print.forms.polynomial import (
     monic_form,
     polynomial_form,
 )
-from symflex.print.forms.printed import Arrange, Begin, BegunForm, PrintedForm, counts_of, forms_of, require
+from symflex.print.forms.printed import Arrange, Begin, PrintedForm, counts_of, forms_of, require
 from symflex.print.forms.shapes import shaped
 from symflex.print.read_back import read_back
 from symflex.transfer import NestedTransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from symflex.transfer import AnyTransferFunction, TransferFunction
 
 
-def _later(name: str) -> Arrange:
-    """Return a form whose module is imported when it is asked for, as few prints need these."""
+def _later(name: str, what: str = "form") -> Callable[..., Any]:
+    """Return a form, or the draft of one, whose module is imported when it is asked for."""
 
-    def form(*arguments: object) -> PrintedForm:
-        """Arrange a transfer function as the function of that name in its module says."""
-        made: Arrange = getattr(import_module(f"symflex.print.forms.{name}"), f"{name}_form")
-        return made(*arguments)
+    def made(*arguments: object) -> object:
+        """Do what the function of that name in its module does."""
+        return getattr(import_module(f"symflex.print.forms.{name}"), f"{name}_{what}")(*arguments)
 
-    return form
-
-
-def _draft_later(name: str) -> Begin:
-    """Return what begins such a form."""
-
-    def draft(tf: TransferFunction, arranged: Arranged) -> BegunForm | None:
-        """Begin a form as the function of that name in its module says."""
-        begin: Begin = getattr(import_module(f"symflex.print.forms.{name}"), f"{name}_draft")
-        return begin(tf, arranged)
-
-    return draft
+    return made
 
 
 FORMS: dict[str, Arrange] = {
@@ -80,8 +67,8 @@ CANDIDATES = ("definitions", "factored", "polynomial")
 DISTRIBUTED_CANDIDATES: dict[str, Begin] = {
     "hyperbolic": hyperbolic_draft,
     "factored": factored_draft,
-    "vaughan": _draft_later("vaughan"),
-    "krylov": _draft_later("krylov"),
+    "vaughan": _later("vaughan", "draft"),
+    "krylov": _later("krylov", "draft"),
 }
 """The same for functions with kernels."""
 LONG = 200
@@ -171,8 +158,7 @@ def _lumped(tf: TransferFunction, form: str | None, digits: int, arranged: Arran
 
 def _read(form: PrintedForm) -> float:
     """Return the length of a form and half of that of its definitions, which a reader looks up."""
-    looked_up = (e for name, e in form.where if name in form.definitions)
-    return _length(form) + sum(len(format_expression(e)) for e in looked_up) / 2
+    return _length(form) + length(*(e for name, e in form.where if name in form.definitions)) / 2
 
 
 def _order(tf: TransferFunction) -> int:
@@ -273,7 +259,7 @@ def _candidates(tf: TransferFunction) -> tuple[str, ...]:
 def _length(form: PrintedForm) -> int:
     """Return the length of all but the model's definitions, which may stay closed."""
     parts = [form.num, form.den, *(e for name, e in form.where if name not in form.definitions)]
-    return sum(len(format_expression(part)) for part in parts)
+    return length(*parts)
 
 
 __all__ = [

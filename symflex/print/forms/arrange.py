@@ -159,7 +159,7 @@ class Arranger:
             content = polynomial.term_content()
             rest = self.collected(polynomial / content, nested=True)
             tried.insert(1, product_of([self._flat(content), rest]))
-        return min(tried, key=lambda e: len(format_expression(e)))
+        return min(tried, key=length)
 
     def separated(self, polynomial: fmpz_mpoly, *, by_functions: bool) -> Expression:
         """Return a sum of coefficients times sums of functions.
@@ -494,9 +494,9 @@ def _cost(expression: Expression) -> int:
     return len(text) * (READABLE + max(0, deepest - READABLE)) // READABLE
 
 
-def length(sides: Iterable[Expression]) -> int:
+def length(*expressions: Expression) -> int:
     """Return how many characters expressions take."""
-    return sum(len(format_expression(e)) for e in sides)
+    return sum(len(format_expression(e)) for e in expressions)
 
 
 def shortest_sides(printer: ProductPrinter, value: Factored, laws: Mapping[str, Factored]) -> Sides:
@@ -508,4 +508,4 @@ def shortest_sides(printer: ProductPrinter, value: Factored, laws: Mapping[str, 
     for name, one in laws.items():
         if value.depends_on(name):
             tried = [v * one**t for v in tried for t in (0, -1, 1)]
-    return min((printer.sides(v) for v in tried), key=length)
+    return min((printer.sides(v) for v in tried), key=lambda sides: length(*sides))

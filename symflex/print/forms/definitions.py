@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symflex.algebra import Factored, Ring, degree_in
-from symflex.expressions import Expression, Name, format_expression
-from symflex.print.forms.arrange import Arranger
+from symflex.expressions import Expression, Name
+from symflex.print.forms.arrange import Arranger, length
 from symflex.print.forms.kept import REWRITE_LIMIT, in_definitions, is_divisor
 from symflex.print.forms.notation import constant_symbols
 from symflex.print.forms.polynomial import in_kernels
@@ -38,8 +38,8 @@ def definitions_form(tf: TransferFunction) -> PrintedForm:
         closed_num, closed_den = _from_closure(tf, tf.closed)
         # A rational factor may stand differently in the two: take both parts from one of them then.
         if _same_parts(tf, tf.closed):
-            num, den = min(closed_num, num, key=_length), min(closed_den, den, key=_length)
-        elif _length(closed_num) + _length(closed_den) <= _length(num) + _length(den):
+            num, den = min(closed_num, num, key=length), min(closed_den, den, key=length)
+        elif length(closed_num, closed_den) <= length(num, den):
             num, den = closed_num, closed_den
     return PrintedForm("definitions", num, den)
 
@@ -48,10 +48,6 @@ def _is_large(tf: TransferFunction) -> bool:
     """Tell whether rewriting the expanded polynomials would cost more than it can shorten."""
     terms = max(tf.length, 1)
     return terms > (REWRITE_LIMIT if tf.definitions else SMALL)
-
-
-def _length(expression: Expression) -> int:
-    return len(format_expression(expression))
 
 
 def _same_parts(tf: TransferFunction, closed: ClosedForm) -> bool:

@@ -7,12 +7,11 @@ The transfer functions of a model share base lengths: with one output at midspan
 from __future__ import annotations
 
 from dataclasses import replace
-from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symflex.algebra import Factored, KernelTable, Ring
 from symflex.algebra.normal_form import NormalForm
-from symflex.print.forms.invariants import IMAGINARY, in_exponentials, real_powers
+from symflex.print.forms.invariants import IMAGINARY, factor_by_factor, in_exponentials, real_powers
 from symflex.print.forms.notation import angles_of
 
 if TYPE_CHECKING:
@@ -55,27 +54,20 @@ def _doubled(tf: TransferFunction, length: Factored) -> TransferFunction | None:
     angles = [a for a in angles_of(tf.kernels) if a.length is length]
     ring = tf.ratio.ring
     kernels = [ring.index[g] for a in angles for g in a.kernels.values()]
-    result = Factored.number(ring, tf.ratio.unit)
-    used = False
-    for side in (1, -1):
-        rest = Factored.number(ring, 1)
-        for factor, exponent in tf.ratio.factors:
-            if exponent * side < 0:
-                continue
-            one = Factored(ring, Fraction(1), ((factor, abs(exponent)),))
-            if not any(int(factor.degrees()[i]) for i in kernels):
-                result = result * one**side
-            elif (found := _in_doubles(tf, factor, angles)) is not None:
-                result, used = result * found**exponent, True
-            else:
-                rest = rest * one
-        if not rest.is_one:
-            expanded = rest.expand()
-            found = _in_doubles(tf, expanded, angles) if len(expanded) <= LARGE else None
-            if found is None:
-                return None
-            result, used = result * found**side, True
-    if not used:
+
+    def holds(factor: fmpz_mpoly) -> bool:
+        return any(int(factor.degrees()[i]) for i in kernels)
+
+    def one(factor: fmpz_mpoly) -> Factored | None:
+        return _in_doubles(tf, factor, angles) if holds(factor) else Factored.polynomial(ring, factor)
+
+    def whole(side: fmpz_mpoly) -> Factored | None:
+        return _in_doubles(tf, side, angles) if len(side) <= LARGE else None
+
+    if not any(holds(factor) for factor, _ in tf.ratio.factors):
+        return None
+    result = factor_by_factor(tf.ratio, ring, one, whole)
+    if result is None:
         return None
     twice = length * 2
     table = KernelTable(

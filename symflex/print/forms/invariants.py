@@ -21,7 +21,7 @@ from symflex.print.forms.notation import angles_of, coefficient_name
 from symflex.transfer.expansion import compose_rational
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from flint import fmpz_mpoly
 
@@ -81,30 +81,19 @@ class Invariants:
 
         Factors that are not invariant by themselves are multiplied with others of their side.
         """
-        result = Factored.number(self.ring, value.unit)
         kernels = [self.source.index[k.generator] for k in self.table.kernels if k.wavenumber]
         waves = [self.source.index[name] for name in self.table.wavenumbers]
-        for side in (1, -1):
-            rest = Factored.number(self.source, 1)
-            for factor, exponent in value.factors:
-                if exponent * side < 0:
-                    continue
-                one = Factored(self.source, Fraction(1), ((factor, abs(exponent)),))
-                degrees = factor.degrees()
-                # A sum of powers of wavenumbers need not be invariant either.
-                moving = kernels if len(factor) == 1 else [*kernels, *waves]
-                if not any(int(degrees[i]) for i in moving):
-                    result = result * Factored.polynomial(self.ring, self.embed(factor)) ** exponent
-                elif (found := self._invariant(factor)) is not None:
-                    result = result * found**exponent
-                else:
-                    rest = rest * one
-            if not rest.is_one:
-                found = self._whole(rest.expand())
-                if found is None:
-                    return None
-                result = result * found**side
-        return self._without_wavenumbers(result)
+
+        def one(factor: fmpz_mpoly) -> Factored | None:
+            degrees = factor.degrees()
+            # A sum of powers of wavenumbers need not be invariant either.
+            moving = kernels if len(factor) == 1 else [*kernels, *waves]
+            if not any(int(degrees[i]) for i in moving):
+                return Factored.polynomial(self.ring, self.embed(factor))
+            return self._invariant(factor)
+
+        result = factor_by_factor(value, self.ring, one, self._whole)
+        return None if result is None else self._without_wavenumbers(result)
 
     def _whole(self, side: fmpz_mpoly) -> Factored | None:
         """Return a numerator or denominator in the K as :meth:`_invariant` does, in all ways there are."""
@@ -324,6 +313,35 @@ class Invariants:
                     images[angle.kernels["cos"]] = 2 * k["cos"] ** 2 - 1
                     images[angle.kernels["sin"]] = 2 * k["sin"] * k["cos"]
         return Invariants(self.source, table), images
+
+
+def factor_by_factor(
+    value: Factored,
+    ring: Ring,
+    one: Callable[[fmpz_mpoly], Factored | None],
+    whole: Callable[[fmpz_mpoly], Factored | None],
+) -> Factored | None:
+    """Return a quotient over another ring, ``None`` where it has no image there.
+
+    ``one`` is the image of a factor, and ``whole`` that of the product of those of a side that have none by
+    themselves.
+    """
+    result = Factored.number(ring, value.unit)
+    for side in (1, -1):
+        rest = Factored.number(value.ring, 1)
+        for factor, exponent in value.factors:
+            if exponent * side < 0:
+                continue
+            if (found := one(factor)) is not None:
+                result = result * found**exponent
+            else:
+                rest = rest * Factored(value.ring, Fraction(1), ((factor, abs(exponent)),))
+        if not rest.is_one:
+            found = whole(rest.expand())
+            if found is None:
+                return None
+            result = result * found**side
+    return result
 
 
 def in_krylov_functions(

@@ -10,7 +10,14 @@ from symflex.algebra import LAPLACE, Factored, Ring, by_powers, degree_in, irred
 from symflex.expressions import Expression, Name, number, power, product_of, quotient, sum_of
 from symflex.print.forms.arrange import Arranged, Arranger, ProductPrinter, shortest_sides
 from symflex.print.forms.kept import KeptDefinitions
-from symflex.print.forms.notation import Naming, Notation, constant_symbols, notation_of, wavenumber_laws
+from symflex.print.forms.notation import (
+    Naming,
+    Notation,
+    constant_symbols,
+    notation_of,
+    plain_printer,
+    wavenumber_laws,
+)
 from symflex.print.forms.printed import BegunForm, PrintedForm, terms_of
 
 if TYPE_CHECKING:
@@ -27,19 +34,13 @@ def polynomial_form(tf: TransferFunction) -> PrintedForm:
 
     Functions of s stand among the coefficients.
     """
+    notation = Notation({}, ())
+    arranger = plain_printer(tf, tf.ratio.ring).arranger
     if tf.is_distributed:
-        return collected_form(tf)
-    arranger = _arranger(tf)
-    return PrintedForm(
-        "polynomial",
-        arranger.collected(tf.ratio.numerator().expand()),
-        arranger.collected(tf.ratio.denominator().expand()),
-    )
-
-
-def _arranger(tf: TransferFunction) -> Arranger:
-    ring = tf.ratio.ring
-    return Arranger.plain(ring, constant_symbols(tf), (), KeptDefinitions.of(tf, ring))
+        notation = notation_of(tf, tf.ratio.ring.used_in(f for f, _ in tf.ratio.factors), Naming.of(tf))
+        arranger = kernel_printer(tf, notation).arranger
+    num, den = (arranger.collected(side.expand()) for side in (tf.ratio.numerator(), tf.ratio.denominator()))
+    return PrintedForm("polynomial", num, den, notation.lines, notation.laws, notation.closed)
 
 
 def monic_form(tf: TransferFunction) -> PrintedForm:
@@ -58,7 +59,7 @@ def constant_form(tf: TransferFunction) -> PrintedForm:
 def _normalised(tf: TransferFunction, name: str, choose: Callable[[Iterable[int]], int]) -> PrintedForm:
     """Return the polynomial form divided by the coefficient of one of the denominator's powers of s."""
     ring = tf.ratio.ring
-    arranger = _arranger(tf)
+    arranger = plain_printer(tf, tf.ratio.ring).arranger
     den = tf.ratio.denominator().expand()
     parts = by_powers(ring, den)
     divisor = parts[choose(parts)]
@@ -93,7 +94,7 @@ def factored_form(tf: TransferFunction) -> PrintedForm:
         from symflex.print.forms.irreducible import irreducible_kernels  # only with beams
 
         return in_kernels(tf, "factored", irreducible_kernels(tf.ratio, tf.kernels))
-    arranger, value = _arranger(tf), tf.radicals.with_powers(tf.ratio)
+    arranger, value = plain_printer(tf, tf.ratio.ring).arranger, tf.radicals.with_powers(tf.ratio)
     return PrintedForm(
         "factored", _irreducible(arranger, value.numerator()), _irreducible(arranger, value.denominator())
     )
@@ -157,18 +158,3 @@ def kernel_printer(
     ring = tf.ratio.ring
     arranger = Arranger.plain(ring, symbols, apart, KeptDefinitions.of(tf, ring))
     return (arranged or Arranged()).printer(arranger)
-
-
-def collected_form(tf: TransferFunction) -> PrintedForm:
-    """Return the polynomial form of a function with kernels: both sides by descending powers of s."""
-    used = tf.ratio.ring.used_in(f for f, _ in tf.ratio.factors)
-    notation = notation_of(tf, used, Naming.of(tf))
-    arranger = kernel_printer(tf, notation).arranger
-    return PrintedForm(
-        "polynomial",
-        arranger.collected(tf.ratio.numerator().expand()),
-        arranger.collected(tf.ratio.denominator().expand()),
-        notation.lines,
-        notation.laws,
-        notation.closed,
-    )

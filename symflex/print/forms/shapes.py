@@ -47,6 +47,7 @@ from symflex.expressions import (
 )
 from symflex.expressions.format import number_text
 from symflex.model.model import IMAGINARY
+from symflex.print.forms.arrange import length
 from symflex.transfer.balls import enclosure, principal_values
 
 if TYPE_CHECKING:
@@ -367,7 +368,7 @@ def _through_argument(form: PrintedForm, argument: str, wave: Name) -> PrintedFo
     ordered = sorted(found, key=lambda base: (base != S, isinstance(base, Call)))
     line = of_powers(scale, {base: found[base] for base in ordered})
     others = [num, den, *(e for name, e in lines.items() if name != argument)]
-    is_shorter = _length(line) + LINE <= _length(lines[argument]) + _length(own)
+    is_shorter = length(line) + LINE <= length(lines[argument], own)
     if is_shorter and not any(wave in names(e) for e in others):
         lines[argument] = line
         del lines[wave.name]
@@ -396,8 +397,8 @@ def _decimals(model: Model, num: Expression, den: Expression) -> tuple[Expressio
     inside = next((b for b in sums if Name(IMAGINARY) not in names(b)), None)
     if inside is not None and scale != 1 and (spread := _scaled(inside, 1 / scale)) is not None:
         tried.append(product_of([spread if b == inside else power(b, n) for b, n in powers.items()]))
-    new = min(tried, key=_length), product_of([power(b, n) for b, n in divisors.items()])
-    return new if sum(map(_length, new)) <= MORE * (_length(num) + _length(den)) else (num, den)
+    new = min(tried, key=length), product_of([power(b, n) for b, n in divisors.items()])
+    return new if length(*new) <= MORE * length(num, den) else (num, den)
 
 
 def _typed_scale(total: Sum, wanted: set[Fraction]) -> Fraction:
@@ -411,10 +412,6 @@ def _typed_scale(total: Sum, wanted: set[Fraction]) -> Fraction:
         return sum(x in wanted for x in divided), is_whole[0], sum(is_whole)
 
     return max(tried, key=rank)
-
-
-def _length(expression: Expression) -> int:
-    return len(format_expression(expression))
 
 
 def _scaled(total: Sum, divisor: Fraction) -> Expression | None:

@@ -77,7 +77,7 @@ def vaughan_draft(tf: TransferFunction, arranged: Arranged) -> BegunForm:
 def _shortest(page: _DecayingPage, variants: Sequence[_Variant]) -> PrintedForm:
     _, sides = min(
         (
-            (variant.cost + length(sides := page.sides(value)), sides)
+            (variant.cost + length(*(sides := page.sides(value))), sides)
             for variant in variants
             for value in page.opened(variant)
         ),
@@ -331,9 +331,7 @@ class _DecayingPage:
                 if angle.dispersion.kind != "bending" or len(best) == 1:
                     continue
                 opened = self._open(best, i)
-                if len(format_expression(self._printer.sum(opened))) <= len(
-                    format_expression(self._printer.sum(best))
-                ):
+                if length(self._printer.sum(opened)) <= length(self._printer.sum(best)):
                     best = opened
             factors.append((best, exponent))
         return Factored(self.ring, value.unit, tuple(factors))

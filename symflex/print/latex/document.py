@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 from symflex.algebra import LAPLACE
 from symflex.errors import Diagnostic, UsageError
+from symflex.files.write import free_name
 from symflex.print.forms import counts_of, with_hidden
 from symflex.print.latex.equation import equation_label, form_labels, ratio_latex, transfer_function_latex
 from symflex.print.latex.expression import Writer
@@ -24,7 +25,7 @@ from symflex.print.width import EM_MM
 from symflex.transfer import NestedTransferFunction
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Sequence
 
     from symflex.expressions import Expression
     from symflex.model import Model
@@ -109,14 +110,14 @@ def latex_files(
         if not block.file:
             parts.append(block.text)
             continue
-        name = _free_name(block.file, files)
+        name = free_name(block.file, (DOCUMENT, *files), ".tex")
         files[name] = _file(block, width_mm)
         after = block.text[len(block.text.rstrip("\n")) :]
         parts.append(f"\\input{{{name.removesuffix('.tex')}}}{after}")
     if pictures:
         parts.append("\\section{Figures}\n\n")
     for picture in pictures:
-        name = _free_name(_plain_stem(picture.name), files, ".pgf")
+        name = free_name(_plain_stem(picture.name), (DOCUMENT, *files), ".pgf")
         files[name] = picture.latex
         # What a figure shows stands on the page that shows it.
         parts.append(
@@ -130,15 +131,6 @@ def latex_files(
 def _caption(picture: Picture) -> str:
     ratios = ", ".join(f"${ratio_latex(tf)}$" for tf in picture.of)
     return f"{escape_text(picture.title)}{f' of {ratios}' if ratios else ''}."
-
-
-def _free_name(stem: str, files: Mapping[str, str], suffix: str = ".tex") -> str:
-    """Return a name that none of the files has, not even where capitals count as small letters."""
-    taken = {DOCUMENT, *(name.lower() for name in files)}
-    name, number = f"{stem}{suffix}", 2
-    while name.lower() in taken:
-        name, number = f"{stem}_{number}{suffix}", number + 1
-    return name
 
 
 def _file(block: _Block, width_mm: float) -> str:

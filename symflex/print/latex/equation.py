@@ -7,7 +7,7 @@ Output: ``equation`` and ``align`` environments; they need amsmath and nothing e
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 from symflex.algebra import LAPLACE
@@ -100,7 +100,7 @@ def transfer_function_latex(
     width = None if width_mm is None else max(width_mm, NARROWEST_MM) / EM_MM
     parts = [_formula(tf, form, writer, width, label or equation_label(tf.name))]
     if form.where or form.laws:
-        parts.append(_align(_where_rows(form, writer, width), "align*", ""))
+        parts.append(_align(_where_rows(_explained(form, writer), writer, width), "align*", ""))
     return "\n".join(parts)
 
 
@@ -130,9 +130,7 @@ def formula_latex(
     rows = [_row(left, left_width, expression, writer, width, left_width)]
     parts = [_align(rows, "align*", "")]
     if where:
-        lines = _broken_rows(_defined(where, writer), writer, width - _WHERE_WIDTH)
-        lines[0] = _DisplayRow(f"{_WHERE}{lines[0].left}", lines[0].left_width, lines[0].right)
-        parts.append(_align(lines, "align*", ""))
+        parts.append(_align(_where_rows(_defined(where, writer), writer, width - _WHERE_WIDTH), "align*", ""))
     return "\n".join(parts)
 
 
@@ -142,8 +140,7 @@ def inline_latex(tf: AnyTransferFunction, form: PrintedForm) -> str:
     formula = f"{_left_side(tf, form, writer)[0]} = {_right_side(form, writer)[0]}"
     if not (form.where or form.laws):
         return formula
-    sides = [*_defined(form.where, writer), *_laws(form, writer)]
-    where = [f"{left} = {writer.piece(right).markup}" for left, _, right in sides]
+    where = [f"{left} = {writer.piece(right).markup}" for left, _, right in _explained(form, writer)]
     return rf"{formula},\quad \text{{where }} " + r",\; ".join(where)
 
 
@@ -163,7 +160,7 @@ def notebook_latex(tf: AnyTransferFunction, form: PrintedForm) -> str | None:
     one_line = _left_side(tf, form, writer)[1] + RELATION + right_width
     if not (form.where or form.laws) and one_line <= width:
         return inline_latex(tf, form)
-    rows = [*_rows(tf, form, writer, width), *_where_rows(form, writer, width)]
+    rows = [*_rows(tf, form, writer, width), *_where_rows(_explained(form, writer), writer, width)]
     lines = []
     for row in rows:
         first, *more = row.right if row.right[0] else row.right[1:]
@@ -278,25 +275,24 @@ def free_names(form: PrintedForm, writer: ExpressionWriter) -> tuple[str, str]:
     return free[0] if free else _NUMERATORS[-1]
 
 
-def _where_rows(form: PrintedForm, writer: Writer, width: float | None) -> list[_DisplayRow]:
-    if not (form.where or form.laws):
-        return []
-    rows = _broken_rows([*_defined(form.where, writer), *_laws(form, writer)], writer, width)
-    first = rows[0]
-    rows[0] = _DisplayRow(f"{_WHERE}{first.left}", first.left_width, first.right)
-    return rows
+def _explained(form: PrintedForm, writer: Writer) -> list[_Sides]:
+    """Return both sides of what stands below a formula: definitions of names, and laws."""
+    laws = [(writer.piece(left), right) for left, right in laws_and_starts(form)]
+    return [*_defined(form.where, writer), *((left.markup, left.width, right) for left, right in laws)]
+
+
+def _where_rows(equations: Sequence[_Sides], writer: Writer, width: float | None) -> list[_DisplayRow]:
+    """Return equations aligned with each other, "where" before the first."""
+    widths = (left_width + _WHERE_WIDTH * (not i) for i, (_, left_width, _) in enumerate(equations))
+    column = max(widths, default=0.0)
+    rows = [_row(left, own, right, writer, width, column) for left, own, right in equations]
+    return [replace(row, left=f"{_WHERE}{row.left}") if not i else row for i, row in enumerate(rows)]
 
 
 def _defined(where: Sequence[tuple[str, Expression]], writer: Writer) -> list[_Sides]:
     """Return both sides of definitions of names."""
     labels = [(writer.label(name), expression) for name, expression in where]
     return [(label.latex, label.width, expression) for label, expression in labels]
-
-
-def _laws(form: PrintedForm, writer: Writer) -> list[_Sides]:
-    """Return the differential equations of functions of x and their values at x = 0."""
-    sides = [(writer.piece(left), right) for left, right in laws_and_starts(form)]
-    return [(left.markup, left.width, right) for left, right in sides]
 
 
 def laws_and_starts(form: PrintedForm) -> Iterator[tuple[Expression, Expression]]:
@@ -309,12 +305,6 @@ def laws_and_starts(form: PrintedForm) -> Iterator[tuple[Expression, Expression]
         yield law.left, law.right
         yield from ((Call(name, number(0), k), number(int(k == order - 1))) for k in range(order))
     yield from form.closed
-
-
-def _broken_rows(equations: Sequence[_Sides], writer: Writer, width: float | None) -> list[_DisplayRow]:
-    """Return equations below "where", aligned with each other."""
-    column = max(_WHERE_WIDTH + equations[0][1], *(left_width for _, left_width, _ in equations))
-    return [_row(left, own, right, writer, width, column) for left, own, right in equations]
 
 
 def _row(

@@ -15,6 +15,7 @@ from symflex.drawing import draw_model
 from symflex.errors import Diagnostic, SymflexError, UncertifiedError
 from symflex.figures import FIGURES, LOOP_FIGURES, AxisLimits, draw, draw_loop, draw_measured
 from symflex.figures.axes import FREE
+from symflex.files.write import free_name
 from symflex.model import Figure
 from symflex.report.document import (
     ChapterPart,
@@ -228,14 +229,9 @@ def export_section(study: Study) -> ChapterPart:
 def _names(study: Study, responses: tuple[SampledResponse, ...]) -> list[str]:
     """Return a file's name for each, different also where capitals count as small letters."""
     found: list[str] = []
-    taken: set[str] = set()
     for response in responses:
         plain = re.sub(r"[^A-Za-z0-9_]", "_", response.tf.replace("/", "_over_"))
-        name, number = f"data/{study.stem}_{plain}.csv", 2
-        while name.lower() in taken:
-            name, number = f"data/{study.stem}_{plain}_{number}.csv", number + 1
-        taken.add(name.lower())
-        found.append(name)
+        found.append(free_name(f"data/{study.stem}_{plain}", found, ".csv"))
     return found
 
 
