@@ -134,6 +134,7 @@ def responses_of(arrays: Arrays, name: str, stem: str, asked: str = "") -> tuple
     >>> one.name, one.frequency_hz.size
     ('a', 8)
     """
+    arrays = _with_axes(arrays)
     if "=" in asked:
         arrays = _renamed(arrays, asked, name)
     matrix = _matrix_of(arrays)
@@ -157,6 +158,18 @@ def responses_of(arrays: Arrays, name: str, stem: str, asked: str = "") -> tuple
             known |= {k: a for k, a in outer.items() if k in (*FREQUENCY, *ANGULAR, *UNITS, "averages")}
         found += _from_scope(known | scopes[scope], name, stem if len(holding) == 1 else scope or stem)
     return tuple(found) if found else _from_unknown(arrays, name, stem)
+
+
+def _with_axes(arrays: Arrays) -> Arrays:
+    """Return arrays with the frequencies that structures of Testlab tell by start and increment."""
+    found = dict(arrays)
+    for stem in [key.removesuffix(".x_values.increment") for key in arrays if key.endswith(".increment")]:
+        parts = ("x_values.start_value", "x_values.increment", "y_values.values")
+        start, step, values = (arrays.get(f"{stem}.{part}", np.empty(0)) for part in parts)
+        if start.size == step.size == 1 and values.size and {start.dtype.kind, step.dtype.kind} <= set("fiu"):
+            lines = start.item() + step.item() * np.arange(max(values.shape))
+            found[f"{stem}.y_values.frequency_hz"] = lines
+    return found
 
 
 def _meaning(key: str) -> ColumnMeaning:

@@ -36,15 +36,17 @@ _WORDS: Final = {
     "z'' zs'' quadrature",
     "real": "re real realteil réel réelle reale zre zreal z' zs' inphase",
     "power": "psd power pxx autopower",
-    "magnitude": "magnitude mag magn magnitud magnitudine gain amplitude ampl amp amplitud ampiezza abs modulus "
-    "module modulo módulo level spl |h| |z| z zmod impedance betrag verstärkung pegel logmag linmag db dbspl dbv "
-    "dbr амплитуда 幅值 幅度 振幅 ゲイン",
+    "magnitude": "magnitude mag magn magnitud magnitudine gain amplitude ampl amp amplitud ampiezza abs "
+    "modulus module modulo módulo level spl |h| |z| z zmod impedance betrag verstärkung pegel logmag linmag "
+    "db dbspl dbv dbr амплитуда 幅值 幅度 振幅 ゲイン",
     "omega": "omega w ω angular",
     "frequency": "frequency freq frequencies freqs f hz fhz khz mhz ghz stimulus hertz "
     "frequenz fréquence frequenza frecuencia frequência frekvens frequentie частота 频率 周波数",
 }  # fmt: skip
 """Words by which a column is known, the first kind that has one of them."""
 KINDS: Final = {word: kind for kind, words in _WORDS.items() for word in words.split()}
+_SPREAD: Final = frozenset("std stdev sd sigma unc uncertainty var variance snr thd".split())
+"""Words of columns that say how accurate others are."""
 _PARTS: Final = r"gamma\^?2|[^\W\d_]+'*|\|\w\|"
 _OHMS: Final = ("ohm", "ohms", "\u03c9", "\u2126")
 _FREQUENCY_UNITS: Final = {
@@ -52,8 +54,8 @@ _FREQUENCY_UNITS: Final = {
     **dict.fromkeys(("rad/s", "rad_s", "rads", "rad/sec", "rad/second"), 1 / (2 * np.pi)),
 }  # fmt: skip
 _DEGREES: Final = (
-    "deg", "degree", "degrees", "grad", "grados", "degrés", "gradi", "град", "度", "°", "º", "ø", "*", "\ufffd",
-    "degs",
+    "deg", "degree", "degrees", "grad", "grados", "degrés", "gradi", "град", "度", "degs", "°", "º", "ø", "*",
+    "\ufffd",
 )  # fmt: skip
 _PHASE_UNITS: Final = dict.fromkeys(_DEGREES, np.pi / 180) | dict.fromkeys(
     ("rad", "radian", "radians", "rads"), 1.0
@@ -66,6 +68,7 @@ _SPICE_KINDS: Final = {"db": "db", "p": "phase", "m": "mag", "r": "re", "i": "im
 _NEGATIVE = re.compile(r"(?:-|neg(?:ative)?\b\.?|minus\b)\s*(?=\D)", re.I)
 _END = re.compile(r"(?:v|u|i|signal|voltage|ch\w?)?[ _.(]*(in|out)(?:put)?\)?", re.I)
 """Labels of what goes in and what comes out: Vin, V(out), u_in, Output."""
+_RATIO: Final = "ratio"
 _CROSS = re.compile(r"[sgp]_?(?:xy|yx)|.*\b(?:csd|cross)\b.*", re.I)
 _LETTERS: Final = {
     ("x", "y"): ("real", "imaginary"),  # of lock-in amplifiers
@@ -165,7 +168,7 @@ def meaning_of(name: str, unit_below: str = "") -> ColumnMeaning:
     text = re.sub(
         r"\bdb\s+re\b[^)\]]*", "dB", written.replace("\u2220", "phase ").replace("Â°", "°"), flags=re.I
     )
-    text = re.sub(r"\|([^|]{2,})\|", r"mag \1", text)
+    text = re.sub(r"\|([^|hz]|[^|]{2,})\|", r"mag \1", text, flags=re.I)
     text = _SPICE.sub(lambda m: _SPICE_KINDS[(m[1] or m[2] or m[3]).lower()], text)
     sign = -1.0 if _NEGATIVE.match(text) else 1.0
     text = _NEGATIVE.sub("", text, count=1) if sign < 0 else text
@@ -176,7 +179,11 @@ def meaning_of(name: str, unit_below: str = "") -> ColumnMeaning:
         parts = re.findall(_PARTS, inside.lower())
         is_unit = inside.lower() in UNITS
         is_argument = re.search(r"\w$", text[: bracket.start()]) and re.fullmatch(r"[\w .()]+", inside)
-        if is_unit or "/" in inside or not (is_argument or unit.lower() in UNITS or any(p in KINDS for p in parts)):
+        if (
+            is_unit
+            or "/" in inside
+            or not (is_argument or unit.lower() in UNITS or any(p in KINDS for p in parts))
+        ):
             unit, text = inside, text.replace(bracket[0], " " * len(bracket[0]))
     if not unit and (match := _SUFFIX.search(text)):
         unit, text = match[1] or match[2], text[: match.start()]
@@ -196,7 +203,8 @@ def meaning_of(name: str, unit_below: str = "") -> ColumnMeaning:
         kind, unit = "magnitude", text.strip()
     if kind == "phase" and unit.lower() not in _PHASE_UNITS and set(_DEGREES) & set(words):
         unit = "deg"
-    if kind in ("frequency", "omega") and {"response", "function"} & set(words):
+    is_of_other = kind in ("frequency", "omega") and {"response", "function"} & set(words)
+    if is_of_other or _SPREAD & set(words):
         kind = ""
     word = next((w for w in words if KINDS.get(w) == kind), "")
 
@@ -221,12 +229,18 @@ def _with_unit(found: ColumnMeaning, unit: str, sign: float, is_log: bool) -> Co
         own = "rad/s" if found.kind == "omega" else found.word if found.word in _FREQUENCY_UNITS else ""
         factor = _FREQUENCY_UNITS.get(small or own)
         factor = 1e-3 if unit == "mHz" else factor
+        factor = _FREQUENCY_UNITS["rad/s"] if found.kind == "omega" and small in ("1/s", "s^-1") else factor
         return replace(found, kind="frequency", factor=factor, scale="logarithm" if is_log else "linear")
     if found.kind == "phase":
         factor = _PHASE_UNITS.get(small)
         return replace(found, factor=None if factor is None else sign * factor)
     if found.kind == "magnitude":
-        is_level = small.startswith(_LEVELS) or found.word == "logmag" or found.word.startswith("db") or found.word == "spl"
+        is_level = (
+            small.startswith(_LEVELS)
+            or found.word == "logmag"
+            or found.word.startswith("db")
+            or found.word == "spl"
+        )
         is_plain = bool(small) and not is_level and small != "-"
         return replace(found, scale="decibel" if is_level else "linear" if is_plain else "unknown")
     return replace(found, factor=sign)
@@ -336,7 +350,13 @@ def assembled(
     if len(made) > MAX_RESPONSES:
         raise DataError(Diagnostic("SF607", f"'{file}' holds more than {MAX_RESPONSES} responses"))
     made = _made_over_input(made, guesses)
-    problems = [d for m in made if not are_few(~np.isfinite(m.values)) for c in m.columns for d in _wrong(c, m.frequency_hz)]
+    problems = [
+        d
+        for m in made
+        if not are_few(~np.isfinite(m.values))
+        for c in m.columns
+        for d in _wrong(c, m.frequency_hz)
+    ]
     if problems:
         raise DataError(*problems[:MAX_ERRORS])
     names = dict.fromkeys(c.name for c in columns if id(c) not in used and not is_asked)
@@ -394,9 +414,13 @@ def _over_input(columns: list[DataColumn], guesses: list[str]) -> list[DataColum
         return columns
     over, result = sorted(ends, key=lambda c: ends[c])
     ratio = _plain_size(result) / np.where(_plain_size(over) == 0, np.nan, _plain_size(over))
-    guesses.append(f"the magnitude is '{result.name[:30]}' over '{over.name[:30]}'")
+    what = "magnitude" if "magnitude" in kinds else "spectrum"
+    guesses.append(f"the {what} is '{result.name[:30]}' over '{over.name[:30]}'")
     whole = replace(
-        result, meaning=ColumnMeaning(kinds.pop()), numbers=ratio, wrong=tuple({*result.wrong, *over.wrong})
+        result,
+        meaning=ColumnMeaning(kinds.pop(), word=_RATIO),
+        numbers=ratio,
+        wrong=tuple({*result.wrong, *over.wrong}),
     )
     return [whole if c is result else c for c in columns if c is not over]
 
@@ -504,9 +528,8 @@ def _groups(
     if not found and powers:
         best = max((c for c in powers if c.meaning.label != "xyz"), key=_power, default=powers[0])
         others = f", the strongest of {len(powers)}" if len(powers) > 1 else ""
-        guesses.append(
-            f"'{best.name[:30]}'{others}: its square root is the magnitude, the excitation taken as flat"
-        )
+        flat = "" if best.meaning.word == _RATIO else ", the excitation taken as flat"
+        guesses.append(f"'{best.name[:30]}'{others}: its square root is the magnitude{flat}")
         found = [(best.meaning.label, {"power": best})]
     sizes = [c for c in rest if c.meaning.kind == "magnitude"]
     if not found and is_asked and len(sizes) == 1:

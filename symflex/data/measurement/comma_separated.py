@@ -250,9 +250,7 @@ def _units(table: TextTable, line: int, width: int) -> list[str]:
     return units if is_row else []
 
 
-def _ways_to_cut(
-    table: TextTable, line: int, width: int, *, are_counted: bool = False
-) -> list[list[str]]:
+def _ways_to_cut(table: TextTable, line: int, width: int, *, are_counted: bool = False) -> list[list[str]]:
     """Return the ways to cut a line into as many names as there are columns, or one less: the frequency's."""
     text = table.lines[line].strip()
     if text.startswith(COMMENTS) or (text.count('"') == 2 and text[0] == text[-1] == '"'):  # noqa: PLR2004

@@ -170,10 +170,13 @@ def checked_response(
     def note(
         code: str, wrong: npt.NDArray[np.bool_], column: str, say: Callable[[int], str], hint: str
     ) -> None:
-        for i in np.flatnonzero(wrong)[: MAX_ERRORS - len(problems)].tolist():
+        # The first one tells: of two sweeps, or a column that was misread, every line would be named.
+        for i in np.flatnonzero(wrong)[:1].tolist():
             span = span_of(int(lines[i]), column)
             place = "" if span else f"'{file}', line {lines[i] + 1} of {response.name}: "
-            problems.append(Diagnostic(code, place + say(i), span, hint))
+            others = int(np.sum(wrong)) - 1
+            more = f"; so in {others} more line{'s' * (others > 1)}" if others else ""
+            problems.append(Diagnostic(code, place + say(i) + more, span, hint))
 
     def note_value(wrong: npt.NDArray[np.bool_], say: Callable[[int], str], hint: str) -> None:
         note("SF603", wrong, "value", say, hint)
@@ -198,18 +201,20 @@ def checked_response(
         note("SF603", wrong, "coherence", lambda i: f"coherence {shares[i]:g}", hint)
     if not problems and frequency.size:
         steps = np.diff(frequency, prepend=-1.0)
-        hint = "one line per frequency"
-        note("SF604", steps == 0, "frequency", lambda i: f"frequency {frequency[i]:.9g} Hz repeats", hint)
-        backwards = steps < 0
-        others = int(backwards.sum()) - 1
-        more = f", and {others} more lines are out of order" if others else ""
-        # The first one tells: in a file sorted downwards every line would be named.
+        hint = "one line per frequency, and one sweep or response per table"
         note(
             "SF604",
-            backwards & (np.cumsum(backwards) == 1),
+            steps == 0,
             "frequency",
-            lambda i: f"frequency {frequency[i]:.9g} Hz follows {frequency[i - 1]:.9g} Hz{more}",
-            "sort the lines by frequency",
+            lambda i: f"frequency {frequency[i]:.9g} Hz repeats with other values",
+            hint,
+        )
+        note(
+            "SF604",
+            steps < 0,
+            "frequency",
+            lambda i: f"frequency {frequency[i]:.9g} Hz follows {frequency[i - 1]:.9g} Hz",
+            hint,
         )
     if problems:
         raise DataError(*problems)
@@ -220,7 +225,7 @@ def checked_response(
 
 
 def are_few(wrong: npt.NDArray[np.bool_]) -> bool:
-    """Return whether lines without a number may be left out: a tenth of those between the first and last good.
+    """Return whether lines without a number may be left out: of those between good ones, a tenth.
 
     Examples
     --------
@@ -275,7 +280,7 @@ def _ordered(
 
 
 def _goes_through_again(frequency: npt.NDArray[np.float64]) -> bool:
-    """Return whether a few long runs cover the same band: several sweeps or responses, not lines out of order."""
+    """Return whether a few long runs cover the same band: several sweeps, not lines out of order."""
     runs = np.cumsum(np.diff(frequency, prepend=frequency[0]) < 0)
     switches = np.count_nonzero(np.diff(runs[np.argsort(frequency, kind="stable")]))
     return bool(8 * (runs[-1] + 1) <= frequency.size < 4 * switches)

@@ -29,7 +29,9 @@ SIGNS: Final = "#%!/*; \t"
 """What stands before the text of a comment."""
 _NUMBER: Final = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _LEVEL = re.compile(rf"\(?({_NUMBER})\s*dB\s*[,;]\s*({_NUMBER})\s*\S{{0,3}}\)?", re.I)
-_CARTESIAN = re.compile(rf"\(?({_NUMBER})\s*([-+])\s*(?:[ij]\s*\*?\s*)?({_NUMBER})\s*\*?\s*(?:[ij]m?)?\)?", re.I)
+_CARTESIAN = re.compile(
+    rf"\(?({_NUMBER})\s*([-+])\s*(?:[ij]\s*\*?\s*)?({_NUMBER})\s*\*?\s*(?:[ij]m?)?\)?", re.I
+)
 _IMAGINARY = re.compile(rf"({_NUMBER})[ij]m?", re.I)
 _PAIR = re.compile(rf"\(?({_NUMBER}),\s*({_NUMBER})\)?")
 _THOUSANDS = re.compile(r"[-+]?\d{1,3}(?:,\d{3})+\.\d+")
@@ -68,7 +70,7 @@ def decoded(name: str, data: bytes) -> tuple[str, tuple[str, ...]]:
         else:
             text = data.decode("utf-8")
     except UnicodeDecodeError:
-        # Of a name in another alphabet no letter is right, and units in it may be: what is no character stays.
+        # Of names in another alphabet no letter is right then, but their units may be.
         text = data.decode("cp1252", "replace")
         guesses = ("the file is not UTF-8 and is read as Latin-1 (Windows-1252)",)
     text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n").rstrip("\x1a\n")
