@@ -26,6 +26,7 @@ from symflex.data.measurement.columns import (
     columns_asked,
     meaning_of,
     names_of,
+    unit_by_round_ends,
 )
 from symflex.data.measurement.measured_response import (
     MAX_BYTES,
@@ -57,8 +58,6 @@ WORDS: Final = {"cxy": "coherence", "cohere": "coherence", "magdb": "mag_db", "p
 """Names of arrays that are none of columns."""
 UNITS: Final = ("frequencyunit", "frequency_unit", "units")
 _HINT: Final = "arrays: frequency_hz (n), values (n or m x n, complex), coherence, averages, window, tf"
-ROUND: Final = 1e-7
-"""Relative deviation from a decimal of three digits, below which a number was meant to be one."""
 
 
 def read_npz(name: str, data: bytes, stem: str, asked: str = "") -> tuple[MeasuredResponse, ...]:
@@ -135,6 +134,7 @@ def responses_of(arrays: Arrays, name: str, stem: str, asked: str = "") -> tuple
     >>> one.name, one.frequency_hz.size
     ('a', 8)
     """
+    arrays = _with_axes(arrays)
     if "=" in asked:
         arrays = _renamed(arrays, asked, name)
     matrix = _matrix_of(arrays)
@@ -158,6 +158,18 @@ def responses_of(arrays: Arrays, name: str, stem: str, asked: str = "") -> tuple
             known |= {k: a for k, a in outer.items() if k in (*FREQUENCY, *ANGULAR, *UNITS, "averages")}
         found += _from_scope(known | scopes[scope], name, stem if len(holding) == 1 else scope or stem)
     return tuple(found) if found else _from_unknown(arrays, name, stem)
+
+
+def _with_axes(arrays: Arrays) -> Arrays:
+    """Return arrays with the frequencies that structures of Testlab tell by start and increment."""
+    found = dict(arrays)
+    for stem in [key.removesuffix(".x_values.increment") for key in arrays if key.endswith(".increment")]:
+        parts = ("x_values.start_value", "x_values.increment", "y_values.values")
+        start, step, values = (arrays.get(f"{stem}.{part}", np.empty(0)) for part in parts)
+        if start.size == step.size == 1 and values.size and {start.dtype.kind, step.dtype.kind} <= set("fiu"):
+            lines = start.item() + step.item() * np.arange(max(values.shape))
+            found[f"{stem}.y_values.frequency_hz"] = lines
+    return found
 
 
 def _meaning(key: str) -> ColumnMeaning:
@@ -336,25 +348,6 @@ def _from_unknown(arrays: Arrays, name: str, stem: str) -> tuple[MeasuredRespons
     shares = {k.lower(): a for k, a in arrays.items() if _meaning(k.lower()).kind == "coherence"}
     found = _from_scope(shares | {key: arrays[f], "values": arrays[h]}, name, stem)
     return tuple(replace(one, guesses=(*guesses, *one.guesses)) for one in found)
-
-
-def unit_by_round_ends(lines: Array) -> str | None:
-    """Return the unit, Hz or rad/s, in which the ends of a band are round numbers; None where it is not one.
-
-    Examples
-    --------
-    >>> unit_by_round_ends(2 * np.pi * np.array([1.0, 50])), unit_by_round_ends(np.array([1.0, 50]))
-    ('rad/s', 'Hz')
-    """
-    ends = [
-        x for x in (lines[0], lines[1] if lines[0] == 0 else lines[0], lines[-1]) if x > 0 and np.isfinite(x)
-    ]
-
-    def is_round(x: float) -> bool:
-        return abs(float(f"{x:.2e}") - x) <= ROUND * abs(x)
-
-    in_hz, in_rad = all(map(is_round, ends)), all(is_round(x / (2 * np.pi)) for x in ends)
-    return None if in_hz == in_rad or not ends else "Hz" if in_hz else "rad/s"
 
 
 def _ask_unit(what: str, name: str, in_hz: str, in_rad: str) -> DataError:

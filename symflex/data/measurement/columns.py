@@ -21,7 +21,7 @@ from typing import Any, Final, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from symflex.data.measurement.measured_response import MAX_ERRORS, MAX_RESPONSES, unit_of
+from symflex.data.measurement.measured_response import MAX_ERRORS, MAX_RESPONSES, are_few, unit_of
 from symflex.errors import DataError, Diagnostic, Span, UsageError, nearest
 
 Choice = TypeVar("Choice", str, float)
@@ -29,33 +29,59 @@ Real = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
 
 _WORDS: Final = {
-    "coherence": "coherence coh gamma2 gamma^2 coherency kohärenz cohérence",
-    "phase": "phase phas angle ang arg phi φ θ θz theta zphz",
-    "imaginary": "im imag imaginary imaginär zim zimag zimg z'' quadrature",
-    "real": "re real zre zreal z' inphase",
+    "coherence": "coherence coh gamma2 gamma^2 coherency kohärenz cohérence coherencia coerenza",
+    "phase": "phase phas phs phse angle ang arg argument phi φ θ θz theta zphz ph cph winkel fase fas faza "
+    "фаза 相位 位相",
+    "imaginary": "im imag imaginary imaginär imaginärteil imaginaire imaginaria immaginaria zim zimag zimg "
+    "z'' zs'' quadrature",
+    "real": "re real realteil réel réelle reale zre zreal z' zs' inphase",
     "power": "psd power pxx autopower",
-    "magnitude": "magnitude mag gain amplitude ampl amp abs modulus module level spl |h| |z| z zmod "
-    "impedance betrag db dbspl dbv dbr",
+    "magnitude": "magnitude mag magn magnitud magnitudine gain amplitude ampl amp amplitud ampiezza abs "
+    "modulus module modulo módulo level spl |h| |z| z zmod impedance betrag verstärkung pegel logmag linmag "
+    "db dbspl dbv dbr амплитуда 幅值 幅度 振幅 ゲイン",
     "omega": "omega w ω angular",
-    "frequency": "frequency freq frequencies freqs f hz fhz khz mhz ghz stimulus "
-    "frequenz fréquence frequenza frecuencia",
+    "frequency": "frequency freq frequencies freqs f hz fhz khz mhz ghz stimulus hertz "
+    "frequenz fréquence frequenza frecuencia frequência frekvens frequentie частота 频率 周波数",
 }  # fmt: skip
 """Words by which a column is known, the first kind that has one of them."""
 KINDS: Final = {word: kind for kind, words in _WORDS.items() for word in words.split()}
+_SPREAD: Final = frozenset("std stdev sd sigma unc uncertainty var variance snr thd".split())
+"""Words of columns that say how accurate others are."""
 _PARTS: Final = r"gamma\^?2|[^\W\d_]+'*|\|\w\|"
 _OHMS: Final = ("ohm", "ohms", "\u03c9", "\u2126")
 _FREQUENCY_UNITS: Final = {
-    "hz": 1.0, "khz": 1e3, "mhz": 1e6, "ghz": 1e9,
+    **dict.fromkeys(("hz", "hertz", "гц"), 1.0), "khz": 1e3, "mhz": 1e6, "ghz": 1e9,
     **dict.fromkeys(("rad/s", "rad_s", "rads", "rad/sec", "rad/second"), 1 / (2 * np.pi)),
 }  # fmt: skip
-_DEGREES: Final = ("deg", "degree", "degrees", "grad", "°", "º", "ø", "*", "\ufffd", "degs")
+_DEGREES: Final = (
+    "deg", "degree", "degrees", "grad", "grados", "degrés", "gradi", "град", "度", "degs", "°", "º", "ø", "*",
+    "\ufffd",
+)  # fmt: skip
 _PHASE_UNITS: Final = dict.fromkeys(_DEGREES, np.pi / 180) | dict.fromkeys(
     ("rad", "radian", "radians", "rads"), 1.0
 )
-UNITS: Final = frozenset((*_FREQUENCY_UNITS, *_PHASE_UNITS, "db", *_OHMS))
+_LEVELS: Final = ("db", "дб")
+UNITS: Final = frozenset((*_FREQUENCY_UNITS, *_PHASE_UNITS, *_LEVELS, *_OHMS))
+_SPICE = re.compile(r"\bv(db|p|m|r|i)(?=\()|\bi(db|p)(?=\()|\b(p)(?=\([vi]\()", re.I)
+_SPICE_KINDS: Final = {"db": "db", "p": "phase", "m": "mag", "r": "re", "i": "im"}
+"""Functions by which circuit simulators name columns: VDB(out), P(V(out))."""
+_NEGATIVE = re.compile(r"(?:-|neg(?:ative)?\b\.?|minus\b)\s*(?=\D)", re.I)
+_END = re.compile(r"(?:v|u|i|signal|voltage|ch\w?)?[ _.(]*(in|out)(?:put)?\)?", re.I)
+"""Labels of what goes in and what comes out: Vin, V(out), u_in, Output."""
+_RATIO: Final = "ratio"
+_CROSS = re.compile(r"[sgp]_?(?:xy|yx)|.*\b(?:csd|cross)\b.*", re.I)
+_LETTERS: Final = {
+    ("x", "y"): ("real", "imaginary"),  # of lock-in amplifiers
+    ("r", "x"): ("real", "imaginary"),  # of impedances
+    ("rs", "xs"): ("real", "imaginary"),
+    ("g", "b"): ("real", "imaginary"),  # of admittances
+}
+"""Letters that mean something as a pair alone."""
 _BRACKET = re.compile(r"[\[({<]\s*([^\[\](){}<>]*(?:\([^()]*\)[^\[\](){}<>]*)?)\s*[\])}>]")
 _SUFFIX = re.compile(
-    r"(?:[\s_/,:]|\bin )\s*(hz|khz|mhz|ghz|rad/s|rad_s|db|deg|degrees?|rad|radians?|ohms?|°|º)\s*$", re.I
+    r"(?:[\s_/,:]|\bin )\s*(hz|khz|mhz|ghz|rad/s|rad_s|db|deg|degrees?|rad|radians?|ohms?|°|º|гц|дб|град)\s*$"
+    r"|(?<=\S)\s+/\s+(\S+)\s*$",
+    re.I,
 )
 HINT: Final = (
     "columns: frequency_hz; re, im or magnitude_db, phase_deg or magnitude, phase_rad; coherence if known"
@@ -70,6 +96,8 @@ MOST_RADIANS, MOST_DEGREES = 7.0, 1e4
 """A column whose largest number lies between is rather a phase, in degrees."""
 MOST_LISTED: Final = 6
 """Columns that are not used and are listed by name."""
+ROUNDED_COHERENCE: Final = 1.01
+"""Up to which coherence was rounded upwards."""
 FILLED: Final = 0.95
 SAME_FREQUENCY: Final = 1e-3
 """Relative distance up to which two columns, of two units perhaps, hold the same frequency."""
@@ -78,6 +106,8 @@ SAME_PHASE: Final = 1e-2
 UNLIKE, CLEARLY = 0.1, 4.0
 """Mean of 1 - cos of a difference of phases up to which they are alike; how much closer one has to be."""
 FEWEST_TO_DECIDE: Final = 8
+ROUND: Final = 1e-7
+"""Relative deviation from a decimal of three digits, below which a number was meant to be one."""
 LONGEST_NAME: Final = 200
 BEYOND: Final = 7.0
 """How far a magnitude is continued beyond its ends: a factor e^7 in frequency."""
@@ -138,18 +168,25 @@ def meaning_of(name: str, unit_below: str = "") -> ColumnMeaning:
     text = re.sub(
         r"\bdb\s+re\b[^)\]]*", "dB", written.replace("\u2220", "phase ").replace("Â°", "°"), flags=re.I
     )
-    text = re.sub(r"\|([^|]{2,})\|", r"mag \1", text)
+    text = re.sub(r"\|([^|hz]|[^|]{2,})\|", r"mag \1", text, flags=re.I)
+    text = _SPICE.sub(lambda m: _SPICE_KINDS[(m[1] or m[2] or m[3]).lower()], text)
+    sign = -1.0 if _NEGATIVE.match(text) else 1.0
+    text = _NEGATIVE.sub("", text, count=1) if sign < 0 else text
     if text.strip().lower() in _PHASE_UNITS:
         unit = text.strip()
     for bracket in _BRACKET.finditer(text):
         inside = bracket[1].strip()
         parts = re.findall(_PARTS, inside.lower())
         is_unit = inside.lower() in UNITS
-        is_argument = re.search(r"\w$", text[: bracket.start()]) and re.fullmatch(r"[\w .]+", inside)
-        if is_unit or not (is_argument or any(p in KINDS for p in parts)):
+        is_argument = re.search(r"\w$", text[: bracket.start()]) and re.fullmatch(r"[\w .()]+", inside)
+        if (
+            is_unit
+            or "/" in inside
+            or not (is_argument or unit.lower() in UNITS or any(p in KINDS for p in parts))
+        ):
             unit, text = inside, text.replace(bracket[0], " " * len(bracket[0]))
     if not unit and (match := _SUFFIX.search(text)):
-        unit, text = match[1], text[: match.start()]
+        unit, text = match[1] or match[2], text[: match.start()]
     low = text.lower().replace("in-phase", "inphase")
     words = re.findall(_PARTS, low)
     kind = next((k for k in _WORDS if any(KINDS.get(w) == k for w in words)), "")
@@ -161,8 +198,13 @@ def meaning_of(name: str, unit_below: str = "") -> ColumnMeaning:
             if unit.lower() in (*_DEGREES[:-2], low)
             else ""
         )
-        kind = "magnitude" if unit.lower() == "db" else kind
-    if kind in ("frequency", "omega") and {"response", "function"} & set(words):
+        kind = "magnitude" if unit.lower() in _LEVELS else kind
+    if not kind and text.strip().lower() in _OHMS:
+        kind, unit = "magnitude", text.strip()
+    if kind == "phase" and unit.lower() not in _PHASE_UNITS and set(_DEGREES) & set(words):
+        unit = "deg"
+    is_of_other = kind in ("frequency", "omega") and {"response", "function"} & set(words)
+    if is_of_other or _SPREAD & set(words):
         kind = ""
     word = next((w for w in words if KINDS.get(w) == kind), "")
 
@@ -173,10 +215,11 @@ def meaning_of(name: str, unit_below: str = "") -> ColumnMeaning:
     label = " ".join(re.sub(_PARTS, kept, text).split())
     label = re.sub(r"[(\[]\W*[)\]]", "", label).strip(" :;,.-_'|")
     label = label[1:-1] if re.fullmatch(r"\([^()]*\)", label) else label
+    if not kind and _END.fullmatch(label):
+        kind = "magnitude"
     if kind == "magnitude" and not unit and {"abs", "lin", "linear"} & set(words):
         unit = "lin"
     found = ColumnMeaning(kind, label=label, unit=unit, word=word)
-    sign = -1.0 if re.match(r"-\s*\D", written) else 1.0
     return _with_unit(found, unit, sign, "log" in words or low.startswith("log"))
 
 
@@ -186,15 +229,53 @@ def _with_unit(found: ColumnMeaning, unit: str, sign: float, is_log: bool) -> Co
         own = "rad/s" if found.kind == "omega" else found.word if found.word in _FREQUENCY_UNITS else ""
         factor = _FREQUENCY_UNITS.get(small or own)
         factor = 1e-3 if unit == "mHz" else factor
+        factor = _FREQUENCY_UNITS["rad/s"] if found.kind == "omega" and small in ("1/s", "s^-1") else factor
         return replace(found, kind="frequency", factor=factor, scale="logarithm" if is_log else "linear")
     if found.kind == "phase":
         factor = _PHASE_UNITS.get(small)
         return replace(found, factor=None if factor is None else sign * factor)
     if found.kind == "magnitude":
-        is_level = small.startswith("db") or found.word.startswith("db") or found.word == "spl"
+        is_level = (
+            small.startswith(_LEVELS)
+            or found.word == "logmag"
+            or found.word.startswith("db")
+            or found.word == "spl"
+        )
         is_plain = bool(small) and not is_level and small != "-"
         return replace(found, scale="decibel" if is_level else "linear" if is_plain else "unknown")
     return replace(found, factor=sign)
+
+
+def meanings_of(names: Sequence[str], units_below: Sequence[str] = ()) -> list[ColumnMeaning]:
+    """Return what columns are; letters such as X and Y, or R and theta, mean something beside each other.
+
+    Examples
+    --------
+    >>> [m.kind for m in meanings_of(["Freq", "X (V)", "Y (V)"])]
+    ['frequency', 'real', 'imaginary']
+    """
+    below = list(units_below) or [""] * len(names)
+    found = [meaning_of(name, unit) for name, unit in zip(names, below, strict=True)]
+    kinds = {m.kind for m in found}
+    if "frequency" not in kinds or {"real", "imaginary"} <= kinds or {"magnitude", "phase"} <= kinds:
+        return found
+    letters: dict[str, int] = {}
+    for i, meaning in enumerate(found):
+        if not meaning.kind and (first := re.match(r"[a-z]{1,2}\b", meaning.label, re.I)):
+            letters.setdefault(first[0].lower(), i)
+    pairs = [pair for pair in _LETTERS if set(pair) <= set(letters)]
+    if "phase" in kinds and "r" in letters:
+        found[letters["r"]] = replace(meaning_of("magnitude", found[letters["r"]].unit), word="r")
+    elif len(pairs) == 1 and not any(m.word == "z" for m in found):
+        for letter, kind in zip(pairs[0], _LETTERS[pairs[0]], strict=True):
+            i = letters[letter]
+            found[i] = ColumnMeaning(kind, 1.0, unit=found[i].unit, word=letter)
+    return found
+
+
+def counts(numbers: npt.NDArray[Any]) -> bool:
+    """Return whether a column numbers its rows, from 0 or from 1."""
+    return numbers.size > 1 and numbers[0].real in (0, 1) and bool(np.all(np.diff(numbers.real) == 1))
 
 
 def names_of(made: Sequence[Assembled], stem: str) -> list[str]:
@@ -217,7 +298,8 @@ def columns_asked(asked: str, width: int, names: Sequence[str] = ()) -> list[Col
     words = [word.strip() for word in asked.split(",")]
     hint = "such as f,re,im or f_khz,-,mag_db,phase_deg: f, omega, re, im, mag, mag_db, phase, coh, h, psd, -"
     if len(words) > width:
-        listed = f": {', '.join(name[:30] for name in names[:12])}" if names else ""
+        known = [name[:30] for name in names if name]
+        listed = f": {', '.join(known[:12])}{', ...' if len(known) > 12 else ''}" if known else ""  # noqa: PLR2004
         message = f"--columns has {len(words)} words, and there are {width} columns{listed}"
         raise UsageError(Diagnostic("SF902", message, None, hint))
     found = []
@@ -242,7 +324,12 @@ def assembled(
     a phase, that of a minimum-phase function is taken for a power spectrum, and where ``is_asked``.
     """
     guesses: list[str] = []
-    columns = _with_frequency(list(columns), file, header, guesses)
+    columns = _over_input(_with_frequency(list(columns), file, header, guesses), guesses)
+    crossed = next((c for c in columns if _CROSS.fullmatch(c.meaning.label) and c.meaning.kind), None)
+    if crossed is not None and not is_asked:
+        message = f"column '{crossed.name[:40]}' is a cross spectrum by its name, which is no response"
+        hint = "divide it by the spectrum of the input, or say with --columns what the columns are"
+        raise DataError(Diagnostic("SF602", message, crossed.span, hint))
     sections = _sections(columns)
     made: list[Assembled] = []
     used: set[int] = set()
@@ -253,7 +340,7 @@ def assembled(
             values = _values(group, lines, guesses)
             coherence = group.get("coherence")
             unit = ratio_unit(next(iter(group.values())).meaning.unit, file)
-            shares = None if coherence is None else coherence.numbers.real
+            shares = None if coherence is None else _shares(coherence, guesses)
             kept = tuple(c for c in (frequency, *group.values()))
             used |= {id(c) for c in kept}
             if not any(m.label != label and np.array_equal(values, m.values, equal_nan=True) for m in made):
@@ -262,7 +349,14 @@ def assembled(
         raise DataError(*_missing(columns, file, header))
     if len(made) > MAX_RESPONSES:
         raise DataError(Diagnostic("SF607", f"'{file}' holds more than {MAX_RESPONSES} responses"))
-    problems = [d for m in made for c in m.columns for d in _wrong(c, m.frequency_hz)]
+    made = _made_over_input(made, guesses)
+    problems = [
+        d
+        for m in made
+        if not are_few(~np.isfinite(m.values))
+        for c in m.columns
+        for d in _wrong(c, m.frequency_hz)
+    ]
     if problems:
         raise DataError(*problems[:MAX_ERRORS])
     names = dict.fromkeys(c.name for c in columns if id(c) not in used and not is_asked)
@@ -291,15 +385,61 @@ def _with_frequency(
     first = columns[0]
     steps = np.diff(first.numbers.real)
     is_named = re.search(r"[^\W\d_]", first.name) and not re.match(r"x\b|x_", first.name, re.I)
-    counts = bool(np.all(steps == 1)) and first.numbers[0].real in (0, 1) and not first.meaning.unit
+    is_index = counts(first.numbers) and not first.meaning.unit
     is_monotonic = np.all(steps > 0) or np.all(steps < 0)
-    if first.meaning.kind or is_named or counts or not steps.size or not is_monotonic:
+    if first.meaning.kind or is_named or is_index or not steps.size or not is_monotonic:
         place = "" if header else f"'{file}': "
         raise DataError(Diagnostic("SF602", f"{place}no column is the frequency", header, ask(columns)))
-    unit = first.meaning.unit
-    factor = _FREQUENCY_UNITS.get(unit.lower())
-    guesses.append(f"column 1 has no name and is taken as the frequency in {unit if factor else 'Hz'}")
-    return [replace(first, meaning=ColumnMeaning("frequency", factor or 1.0)), *columns[1:]]
+    factor = _FREQUENCY_UNITS.get(first.meaning.unit.lower())
+    unit = first.meaning.unit if factor else unit_by_round_ends(first.numbers.real) or "Hz"
+    why = ", in which its ends are round numbers" if unit == "rad/s" and not factor else ""
+    guesses.append(f"column 1 has no name and is taken as the frequency in {unit}{why}")
+    return [replace(first, meaning=ColumnMeaning("frequency", _FREQUENCY_UNITS[unit.lower()])), *columns[1:]]
+
+
+def _over_input(columns: list[DataColumn], guesses: list[str]) -> list[DataColumn]:
+    """Return columns with the ratio of two sizes, of what comes out and what goes in, instead of the two.
+
+    Where another column is the magnitude already, or the two have phases of their own, there is no ratio.
+    """
+    sizes = [c for c in columns if c.meaning.kind in ("magnitude", "power")]
+    ends = {c: match[1].lower() for c in sizes if (match := _END.fullmatch(c.meaning.label))}
+    labels = {c.meaning.label for c in ends}
+    if any(c.meaning.label in labels for c in columns if c.meaning.kind and c not in ends):
+        return columns
+    if len(sizes) > len(ends):
+        return [replace(c, meaning=ColumnMeaning()) if c in ends else c for c in columns]
+    kinds = {c.meaning.kind for c in ends}
+    if sorted(ends.values()) != ["in", "out"] or len(kinds) != 1:
+        return columns
+    over, result = sorted(ends, key=lambda c: ends[c])
+    ratio = _plain_size(result) / np.where(_plain_size(over) == 0, np.nan, _plain_size(over))
+    what = "magnitude" if "magnitude" in kinds else "spectrum"
+    guesses.append(f"the {what} is '{result.name[:30]}' over '{over.name[:30]}'")
+    whole = replace(
+        result,
+        meaning=ColumnMeaning(kinds.pop(), word=_RATIO),
+        numbers=ratio,
+        wrong=tuple({*result.wrong, *over.wrong}),
+    )
+    return [whole if c is result else c for c in columns if c is not over]
+
+
+def _plain_size(column: DataColumn) -> Real:
+    is_level = column.meaning.scale == "decibel" or np.any(column.numbers.real < 0)
+    with np.errstate(all="ignore"):
+        return _size(column, "decibel" if is_level else "linear")
+
+
+def _made_over_input(made: list[Assembled], guesses: list[str]) -> list[Assembled]:
+    """Return one response for two, of which one is what goes in and the other what comes out."""
+    ends = [match[1].lower() if (match := _END.fullmatch(m.label)) else "" for m in made]
+    if sorted(ends) != ["in", "out"] or not np.array_equal(made[0].frequency_hz, made[1].frequency_hz):
+        return made
+    over, result = (made[ends.index(end)] for end in ("in", "out"))
+    guesses.append(f"the response is '{result.label[:30]}' over '{over.label[:30]}'")
+    with np.errstate(all="ignore"):
+        return [replace(result, label="", values=result.values / over.values, unit="")]
 
 
 def _sections(columns: Sequence[DataColumn]) -> list[list[DataColumn]]:
@@ -336,15 +476,38 @@ def _is_rounded(first: DataColumn, other: DataColumn) -> bool:
 
 def _hertz(column: DataColumn, guesses: list[str]) -> Real:
     numbers = np.asarray(column.numbers.real, np.float64)
-    if column.meaning.factor is None:
-        guesses.append(f"'{column.name[:30]}' has no unit and is read in Hz")
+    factor = column.meaning.factor
+    if factor is None:
+        is_angular = unit_by_round_ends(numbers) == "rad/s"
+        factor = _FREQUENCY_UNITS["rad/s"] if is_angular else 1.0
+        said = "rad/s, in which its ends are round numbers" if is_angular else "Hz"
+        guesses.append(f"'{column.name[:30]}' has no unit and is read in {said}")
     if column.meaning.word in _WORDS["omega"] and column.meaning.word and not column.meaning.unit:
         guesses.append(f"'{column.name[:30]}' has no unit and is read in rad/s")
     if column.meaning.scale == "logarithm":
         guesses.append(f"'{column.name[:30]}' is read as the decimal logarithm of the frequency")
         with np.errstate(over="ignore"):
             numbers = 10.0**numbers
-    return numbers * (column.meaning.factor or 1.0)
+    return numbers * factor
+
+
+def unit_by_round_ends(lines: Real) -> str | None:
+    """Return the unit, Hz or rad/s, in which the ends of a band are round numbers; None where it is not one.
+
+    Examples
+    --------
+    >>> unit_by_round_ends(2 * np.pi * np.array([1.0, 50])), unit_by_round_ends(np.array([1.0, 50]))
+    ('rad/s', 'Hz')
+    """
+    ends = [
+        x for x in (lines[0], lines[1] if lines[0] == 0 else lines[0], lines[-1]) if x > 0 and np.isfinite(x)
+    ]
+
+    def is_round(x: float) -> bool:
+        return abs(float(f"{x:.2e}") - x) <= ROUND * abs(x)
+
+    in_hz, in_rad = all(map(is_round, ends)), all(is_round(x / (2 * np.pi)) for x in ends)
+    return None if in_hz == in_rad or not ends else "Hz" if in_hz else "rad/s"
 
 
 def _groups(
@@ -365,9 +528,8 @@ def _groups(
     if not found and powers:
         best = max((c for c in powers if c.meaning.label != "xyz"), key=_power, default=powers[0])
         others = f", the strongest of {len(powers)}" if len(powers) > 1 else ""
-        guesses.append(
-            f"'{best.name[:30]}'{others}: its square root is the magnitude, the excitation taken as flat"
-        )
+        flat = "" if best.meaning.word == _RATIO else ", the excitation taken as flat"
+        guesses.append(f"'{best.name[:30]}'{others}: its square root is the magnitude{flat}")
         found = [(best.meaning.label, {"power": best})]
     sizes = [c for c in rest if c.meaning.kind == "magnitude"]
     if not found and is_asked and len(sizes) == 1:
@@ -400,6 +562,20 @@ def _pairs(columns: Sequence[DataColumn]) -> list[dict[str, DataColumn]]:
         if one and len(one) == len(two):
             return [{a: c, b: d} for c, d in zip(one, two, strict=True)]
     return []
+
+
+def _shares(column: DataColumn, guesses: list[str]) -> Real:
+    """Return coherence between 0 and 1: from per cent, and without what rounding put beyond 1."""
+    shares = np.asarray(column.numbers.real, np.float64)
+    most = float(np.nanmax(shares, initial=0))
+    is_share = most <= 2 or most > 100 * ROUNDED_COHERENCE or np.nanmedian(shares) <= 2  # noqa: PLR2004
+    if column.meaning.unit == "%" or not is_share:
+        guesses.append(f"'{column.name[:30]}' is read in per cent")
+        shares, most = shares / 100, most / 100
+    if 1 < most <= ROUNDED_COHERENCE:
+        guesses.append(f"'{column.name[:30]}' is a little above 1 in places, and is taken as 1 there")
+        shares = np.where(shares > 1, 1.0, shares)
+    return shares
 
 
 def _in_one_unit(phases: list[DataColumn]) -> list[DataColumn]:
@@ -604,8 +780,10 @@ def _missing(columns: Sequence[DataColumn], file: str, header: Span | None) -> l
 
 def ask(columns: Sequence[DataColumn]) -> str:
     """Return the hint with the option that says what columns are, the likelier reading first."""
-    places = [i for i, c in enumerate(columns) if c.meaning.kind == "frequency"] or [0]
+    is_indexed = len(columns) > 2 and counts(columns[0].numbers)  # noqa: PLR2004
+    places = [i for i, c in enumerate(columns) if c.meaning.kind == "frequency"] or [int(is_indexed)]
     rest = [i for i, c in enumerate(columns) if i not in places and c.meaning.kind != "coherence"]
+    rest = rest[1:] if is_indexed and len(rest) > 2 and rest[0] == 0 else rest  # noqa: PLR2004
     if len(rest) == 1:
         return "--columns f,mag_db, or --columns f,mag, computes the phase of a minimum-phase response"
     if not rest:

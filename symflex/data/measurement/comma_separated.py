@@ -23,7 +23,9 @@ from symflex.data.measurement.columns import (
     ask,
     assembled,
     columns_asked,
+    counts,
     meaning_of,
+    meanings_of,
     names_of,
     ratio_unit,
 )
@@ -64,7 +66,7 @@ def read_columns(name: str, data: bytes, stem: str, asked: str = "") -> tuple[Me
         raise DataError(Diagnostic("SF607", f"'{name}' has more than {MAX_LINES} lines"))
     guesses = list(table.guesses)
     made, found = _responses(name, table, blocks, asked, guesses)
-    guesses += found
+    guesses += found + _skipped(table, blocks)
     unit_span = fields.get("averages")
     averages = None if unit_span is None else averages_of(unit_span.text, name, unit_span)
 
@@ -142,18 +144,39 @@ def _responses(
     return assembled(columns, name, header)
 
 
+def _skipped(table: TextTable, blocks: Sequence[NumberBlock]) -> list[str]:
+    """Return what is to be said of lines among the numbers and below them that are no rows."""
+    used = {i for block in blocks for i in (*block.lines, *block.above)}
+    within = [
+        i for i in range(blocks[0].lines[0], len(table.lines))
+        if i not in used and table.lines[i].strip() and not table.lines[i].strip().startswith(COMMENTS)
+    ]  # fmt: skip
+    if not within:
+        return []
+    first = f"line {within[0] + 1} ('{' '.join(table.lines[within[0]].split())[:30]}')"
+    if len(within) == 1:
+        return [f"{first} is no row of numbers, and is skipped"]
+    return [f"{len(within)} lines among the numbers or below them are no rows and are skipped: {first}, ..."]
+
+
 def _columns(
     table: TextTable, block: NumberBlock, guesses: list[str]
 ) -> tuple[list[DataColumn], Span | None]:
     """Return the columns of a block, and the line that names them, None where there is none."""
     width = block.width
     numbers = [block.numbers(i) for i in range(width)]
+    if numbers[0][0].dtype.kind == "c" and not np.any(numbers[0][0].imag):  # numpy writes all as complex
+        numbers[0] = numbers[0][0].real, numbers[0][1]
     line, cells, under, below = _header(table, block, [n.dtype.kind == "c" for n, _ in numbers])
     if table.delimiter == "," and 0 < 2 * sum(map(bool, cells)) == width:
         message = f"{width} cells where the header has {width // 2} names: decimal commas between commas?"
         hint = "save the file with semicolons or tabs between the columns"
         raise DataError(Diagnostic("SF602", message, table.line(block.lines[0]), hint))
-    meanings = [meaning_of(c, u) for c, u in zip(cells, below, strict=True)]
+    meanings = meanings_of(cells, below)
+    if {m.word for m in meanings} >= {"x", "y"} and not any(
+        np.any(n.real < 0) for (n, _), m in zip(numbers, meanings, strict=True) if m.word in ("x", "y")
+    ):  # two amplitudes rather than the parts of one number
+        meanings = [meaning_of(c, u) for c, u in zip(cells, below, strict=True)]
     for i, (values, _) in enumerate(numbers):
         if values.dtype.kind == "c":
             meanings[i] = ColumnMeaning("complex", label=cells[i])
@@ -194,13 +217,17 @@ def _header(
 ) -> tuple[int | None, list[str], int | None, list[str]]:
     """Return the line that names most columns, its cells, and the line of units below with its cells."""
     width = block.width
+    are_counted = width > 2 and counts(block.numbers(0)[0])  # noqa: PLR2004
     best: tuple[float, int, list[str]] | None = None
     for line in block.above[-NEAR:]:
-        for cells in _ways_to_cut(table, line, width):
-            kinds = ["complex" if is_complex[i] else meaning_of(c).kind for i, c in enumerate(cells[:width])]
+        for cells in _ways_to_cut(table, line, width, are_counted=are_counted):
+            named = meanings_of(cells[:width])
+            kinds = ["complex" if is_complex[i] else m.kind for i, m in enumerate(named)]
             values = sum(kind not in ("", "frequency") for kind in kinds)
             known = values + ("frequency" in kinds) if values else 0
-            score = known + (len(cells) == width) / 2
+            # A row of units, Hz and deg, names columns where nothing else does.
+            is_units = sum(c.strip("[]() ").lower() in UNITS for c in cells) >= 2  # noqa: PLR2004
+            score = known + (len(cells) == width) / 2 - is_units
             is_better = best is None or score > best[0] or (score == best[0] and line > best[1])
             if known >= 2 and is_better:  # noqa: PLR2004
                 best = score, line, cells[:width]
@@ -223,7 +250,7 @@ def _units(table: TextTable, line: int, width: int) -> list[str]:
     return units if is_row else []
 
 
-def _ways_to_cut(table: TextTable, line: int, width: int) -> list[list[str]]:
+def _ways_to_cut(table: TextTable, line: int, width: int, *, are_counted: bool = False) -> list[list[str]]:
     """Return the ways to cut a line into as many names as there are columns, or one less: the frequency's."""
     text = table.lines[line].strip()
     if text.startswith(COMMENTS) or (text.count('"') == 2 and text[0] == text[-1] == '"'):  # noqa: PLR2004
@@ -237,7 +264,9 @@ def _ways_to_cut(table: TextTable, line: int, width: int) -> list[list[str]]:
     for cells in ways:
         names = [bare(c) for c in cells]
         has_frequency = any(meaning_of(n).kind == "frequency" for n in names)
-        if len(names) == width - 1 and has_frequency and table.lines[line].startswith(table.delimiter):
+        # The names of R's write.table are one less than the columns, of which the first counts the rows.
+        is_short = are_counted or table.lines[line].startswith(table.delimiter)
+        if len(names) == width - 1 and has_frequency and is_short:
             names = ["", *names]
         if len(names) == width - 1 and not has_frequency:
             names = ["", *names] if all(meaning_of(n).kind for n in names) else []

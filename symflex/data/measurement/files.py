@@ -6,6 +6,7 @@ What a user knows of the responses, and their files do not say, is added afterwa
 from __future__ import annotations
 
 import os
+import re
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -22,6 +23,7 @@ from symflex.data.measurement.touchstone import read_touchstone
 from symflex.data.measurement.universal_file import (
     COHERENCE,
     FREQUENCY_AXIS,
+    MARK,
     RESPONSE,
     read_universal_file,
 )
@@ -57,6 +59,9 @@ SAVE_AS: Final = {
     ".tdms": "export the channels as text, or read them with nptdms and save them with numpy.savez",
     ".h5": "save the arrays with numpy.savez",
     ".hdf5": "save the arrays with numpy.savez",
+    ".s3p": "save two of its ports as .s2p",
+    ".s4p": "save two of its ports as .s2p",
+    ".json": "save the responses as text in columns, or with numpy.savez",
     ".wav": "symflex reads frequency responses, not time series",
     ".toml": "this is a specification, not measured data",
 }
@@ -105,6 +110,8 @@ def read_measurement(path: str | Path, columns: str = "") -> tuple[MeasuredRespo
         raise DataError(Diagnostic("SF607", f"'{name}' is larger than {MAX_BYTES} bytes"))
     if not data.strip():
         raise DataError(Diagnostic("SF605", f"'{name}' is empty"))
+    if re.match(rb"[\r\n]*" + MARK + rb"[ \t]*\r?\n", data):
+        suffix = ".uff"  # whatever the file is called, no table begins so
     if suffix in READERS:
         return READERS[suffix](name, data, Path(name).stem, columns)
     try:

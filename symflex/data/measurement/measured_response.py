@@ -139,6 +139,8 @@ MAX_BYTES: Final = 50_000_000
 MAX_LINES: Final = 1_000_000
 MAX_RESPONSES: Final = 100
 """Larger files are refused before they fill the memory."""
+MOST_LEFT_OUT: Final = 0.1
+"""Share of lines without a number that are left out; more may be a column that was misread."""
 MAX_ERRORS: Final = 20
 """Problems of one file that are listed."""
 FEWEST_LINES = 3
@@ -152,31 +154,29 @@ SMALLEST, LARGEST = 1e-100, 1e100
 def checked_response(
     response: MeasuredResponse, file: str, span_of: Callable[[int, str], Span | None]
 ) -> MeasuredResponse:
-    """Return a response whose lines are in order, without the one at 0 Hz, and reversed where all go down.
+    """Return a response whose lines are in order, at positive frequencies, and hold a number each.
 
-    ``span_of`` says where a line's ``frequency``, ``value`` or ``coherence`` stands. SF603 values that are
-    not numbers, or out of range; SF604 frequencies that repeat or do not increase; SF605 too few lines; SF607
-    too many.
+    Lines are reversed or sorted; what was left out is said. ``span_of`` says where a line's ``frequency``,
+    ``value`` or ``coherence`` stands. SF603 values that are not numbers, or out of range; SF604 frequencies
+    that repeat, or go through the band more than once; SF605 too few lines; SF607 too many.
     """
     if response.frequency_hz.size > MAX_LINES:
         raise DataError(Diagnostic("SF607", f"'{file}' has more than {MAX_LINES} lines"))
-    lines = np.flatnonzero(response.frequency_hz != 0)
-    guesses = response.guesses
-    if lines.size < response.frequency_hz.size:
-        guesses += ("the line at 0 Hz is left out",)
-    if lines.size > 1 and np.all(np.diff(response.frequency_hz[lines]) < 0):
-        lines, guesses = lines[::-1], (*guesses, "the lines go down in frequency, and are reversed")
-    response = replace(response.taken(lines), guesses=guesses)
+    lines, said = _ordered(response, span_of)
+    response = replace(response.taken(lines), guesses=(*response.guesses, *said))
     frequency, values, coherence = response.frequency_hz, response.values, response.coherence
     problems: list[Diagnostic] = []
 
     def note(
         code: str, wrong: npt.NDArray[np.bool_], column: str, say: Callable[[int], str], hint: str
     ) -> None:
-        for i in np.flatnonzero(wrong)[: MAX_ERRORS - len(problems)].tolist():
+        # The first one tells: of two sweeps, or a column that was misread, every line would be named.
+        for i in np.flatnonzero(wrong)[:1].tolist():
             span = span_of(int(lines[i]), column)
             place = "" if span else f"'{file}', line {lines[i] + 1} of {response.name}: "
-            problems.append(Diagnostic(code, place + say(i), span, hint))
+            others = int(np.sum(wrong)) - 1
+            more = f"; so in {others} more line{'s' * (others > 1)}" if others else ""
+            problems.append(Diagnostic(code, place + say(i) + more, span, hint))
 
     def note_value(wrong: npt.NDArray[np.bool_], say: Callable[[int], str], hint: str) -> None:
         note("SF603", wrong, "value", say, hint)
@@ -201,18 +201,20 @@ def checked_response(
         note("SF603", wrong, "coherence", lambda i: f"coherence {shares[i]:g}", hint)
     if not problems and frequency.size:
         steps = np.diff(frequency, prepend=-1.0)
-        hint = "one line per frequency"
-        note("SF604", steps == 0, "frequency", lambda i: f"frequency {frequency[i]:.9g} Hz repeats", hint)
-        backwards = steps < 0
-        others = int(backwards.sum()) - 1
-        more = f", and {others} more lines are out of order" if others else ""
-        # The first one tells: in a file sorted downwards every line would be named.
+        hint = "one line per frequency, and one sweep or response per table"
         note(
             "SF604",
-            backwards & (np.cumsum(backwards) == 1),
+            steps == 0,
             "frequency",
-            lambda i: f"frequency {frequency[i]:.9g} Hz follows {frequency[i - 1]:.9g} Hz{more}",
-            "sort the lines by frequency",
+            lambda i: f"frequency {frequency[i]:.9g} Hz repeats with other values",
+            hint,
+        )
+        note(
+            "SF604",
+            steps < 0,
+            "frequency",
+            lambda i: f"frequency {frequency[i]:.9g} Hz follows {frequency[i - 1]:.9g} Hz",
+            hint,
         )
     if problems:
         raise DataError(*problems)
@@ -220,6 +222,68 @@ def checked_response(
         message = f"'{file}' has {values.size} lines of data; at least {FEWEST_LINES} are needed"
         raise DataError(Diagnostic("SF605", message))
     return response
+
+
+def are_few(wrong: npt.NDArray[np.bool_]) -> bool:
+    """Return whether lines without a number may be left out: of those between good ones, a tenth.
+
+    Examples
+    --------
+    >>> are_few(np.array([True, False, True, False])), are_few(np.array([True] * 9 + [False] * 20))
+    (False, True)
+    """
+    good = np.flatnonzero(~wrong)
+    if good.size < FEWEST_LINES:
+        return False
+    return float(np.mean(wrong[good[0] : good[-1] + 1])) <= MOST_LEFT_OUT
+
+
+def _ordered(
+    response: MeasuredResponse, span_of: Callable[[int, str], Span | None]
+) -> tuple[npt.NDArray[np.intp], list[str]]:
+    """Return the lines that are used, by frequency where it can be told, and what is to be said of it."""
+    frequency, values, coherence = response.frequency_hz, response.values, response.coherence
+    said = []
+
+    def note(left_out: npt.NDArray[np.intp], kind: str) -> None:
+        places = [(int(i), span_of(int(i), "frequency")) for i in left_out[:SHOWN_NAMES]]
+        listed = ", ".join(str(place.line if place else i + 1) for i, place in places)
+        more = f", ... ({left_out.size} in all)" if left_out.size > SHOWN_NAMES else ""
+        many = "lines" if left_out.size > 1 else "line"
+        said.append(f"left out {kind}: {many} {listed}{more}")
+
+    lines = np.flatnonzero(frequency != 0)
+    if lines.size < frequency.size:
+        said.append("the line at 0 Hz is left out")
+    is_negative = frequency[lines] < 0
+    if is_negative.any() and (~is_negative).sum() >= FEWEST_LINES:
+        note(lines[is_negative], "negative frequencies")
+        lines = lines[~is_negative]
+    with np.errstate(all="ignore"):
+        wrong = ~np.isfinite(frequency[lines]) | ~np.isfinite(values[lines]) | (values[lines] == 0)
+    if coherence is not None:
+        wrong |= np.isnan(coherence[lines])
+    if wrong.any() and are_few(wrong):
+        note(lines[wrong], "what holds no number, or zero")
+        lines = lines[~wrong]
+    steps = np.diff(frequency[lines])
+    if lines.size > 1 and np.all(steps < 0):
+        return lines[::-1], [*said, "the lines go down in frequency, and are reversed"]
+    if np.any(steps < 0) and not _goes_through_again(frequency[lines]):
+        said.append("the lines are not in order of frequency, and are sorted")
+        lines = lines[np.argsort(frequency[lines], kind="stable")]
+    same = np.flatnonzero((np.diff(frequency[lines]) == 0) & (np.diff(values[lines]) == 0))
+    if same.size:
+        note(lines[same + 1], "what repeats the line before it")
+        lines = np.delete(lines, same + 1)
+    return lines, said
+
+
+def _goes_through_again(frequency: npt.NDArray[np.float64]) -> bool:
+    """Return whether a few long runs cover the same band: several sweeps, not lines out of order."""
+    runs = np.cumsum(np.diff(frequency, prepend=frequency[0]) < 0)
+    switches = np.count_nonzero(np.diff(runs[np.argsort(frequency, kind="stable")]))
+    return bool(8 * (runs[-1] + 1) <= frequency.size < 4 * switches)
 
 
 def nowhere(index: int, column: str) -> Span | None:

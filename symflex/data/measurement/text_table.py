@@ -29,10 +29,18 @@ SIGNS: Final = "#%!/*; \t"
 """What stands before the text of a comment."""
 _NUMBER: Final = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _LEVEL = re.compile(rf"\(?({_NUMBER})\s*dB\s*[,;]\s*({_NUMBER})\s*\S{{0,3}}\)?", re.I)
-_CARTESIAN = re.compile(rf"\(?({_NUMBER})\s*([-+])\s*(?:[ij]\s*\*?\s*)?({_NUMBER})\s*\*?\s*[ij]?\)?", re.I)
+_CARTESIAN = re.compile(
+    rf"\(?({_NUMBER})\s*([-+])\s*(?:[ij]\s*\*?\s*)?({_NUMBER})\s*\*?\s*(?:[ij]m?)?\)?", re.I
+)
+_IMAGINARY = re.compile(rf"({_NUMBER})[ij]m?", re.I)
 _PAIR = re.compile(rf"\(?({_NUMBER}),\s*({_NUMBER})\)?")
 _THOUSANDS = re.compile(r"[-+]?\d{1,3}(?:,\d{3})+\.\d+")
-_SPACED = re.compile(r"(?<!\s)\s*([-+])\s+(?=[\d.]+(?:e[-+]?\d+)?[ij]\b)", re.I)
+_GAPPED = re.compile(r"[-+]?\d{1,3}(?:['\u2019\u00a0\u2009\u202f]\d{3})+(?:[.,]\d+)?")
+_WITH_UNIT = re.compile(rf"({_NUMBER})\s*(?:([kMG]?)(?:Hz)?|dB|deg|°|Ohm|\u03a9|\u2126)", re.I)
+_PREFIXES: Final = {"": 1.0, "k": 1e3, "m": 1e6, "g": 1e9}
+_APART = re.compile(r"(?<=\d),\s+(?=[-+.\d])")
+"""Between real and imaginary part, where blanks are between columns: ngspice."""
+_SPACED = re.compile(r"(?<!\s)\s*([-+])\s+(?=[\d.]+(?:e[-+]?\d+)?[ij]m?\b)", re.I)
 _GROUPED = re.compile(r"[-+]?\d{1,3}(?:\.\d{3})+,\d+")
 _CONTROL = re.compile("[\0-\x08\x0e-\x19\x1b-\x1f]")
 _CANDIDATES: Final = (
@@ -62,13 +70,9 @@ def decoded(name: str, data: bytes) -> tuple[str, tuple[str, ...]]:
         else:
             text = data.decode("utf-8")
     except UnicodeDecodeError:
-        try:
-            text, guesses = (
-                data.decode("cp1252"),
-                ("the file is not UTF-8 and is read as Latin-1 (Windows-1252)",),
-            )
-        except UnicodeDecodeError as error:
-            raise _no_text(name, f"byte 0x{data[error.start]:02x} at byte offset {error.start}") from None
+        # Of names in another alphabet no letter is right then, but their units may be.
+        text = data.decode("cp1252", "replace")
+        guesses = ("the file is not UTF-8 and is read as Latin-1 (Windows-1252)",)
     text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n").rstrip("\x1a\n")
     if match := _CONTROL.search(text):
         raise _no_text(name, f"it holds the control character 0x{ord(match[0]):02x}")
@@ -89,6 +93,8 @@ def number(cell: str, decimal: str = ".") -> float | complex | None:
     (2.5, 1000.0, (1-2j), None)
     """
     text = cell.strip("\"' ").replace("\u2212", "-")
+    if _GAPPED.fullmatch(text):
+        text = re.sub(r"[^-+\d.,]", "", text)
     if decimal == ",":
         if "." in text:
             if not _GROUPED.fullmatch(text):
@@ -105,6 +111,8 @@ def number(cell: str, decimal: str = ".") -> float | complex | None:
         return number(text.replace("d", "e").replace("D", "e"))
     if decimal == "." and _THOUSANDS.fullmatch(text):
         return float(text.replace(",", ""))
+    if (match := _WITH_UNIT.fullmatch(text)) and not re.search(r"\dm(hz)?$", text):
+        return float(match[1]) * _PREFIXES[(match[2] or "").lower()]
     return _complex_number(text)
 
 
@@ -115,7 +123,10 @@ def _complex_number(text: str) -> complex | None:
         return complex(size * np.exp(1j * np.radians(float(match[2]))))
     match = _CARTESIAN.fullmatch(text)
     if match and re.search("[ij]", text, re.I):
-        return complex(float(match[1]), float(match[2] + match[3].lstrip("+-")))
+        sign = -1.0 if match[2] == "-" else 1.0  # older numpy writes 1+-2j
+        return complex(float(match[1]), sign * float(match[3]))
+    if match := _IMAGINARY.fullmatch(text):
+        return complex(0.0, float(match[1]))
     match = _PAIR.fullmatch(text)
     if match and ("(" in text or ("." in match[1] and "." in match[2])):
         return complex(float(match[1]), float(match[2]))
@@ -133,6 +144,8 @@ def cut(line: str, delimiter: str, *, are_all_kept: bool = False) -> list[str]:
     text = line.strip()
     if text.count('"') == 2 and text[0] == text[-1] == '"':  # noqa: PLR2004 (a whole line in quotes)
         text = text[1:-1]
+    if delimiter in " \t" and ", " in text.replace(",\t", ", "):
+        text = _APART.sub(",", text)
     if delimiter == " ":
         text = _SPACED.sub(r"\1", text) if "i" in text or "j" in text else text
         cells = re.findall(r'"[^"]*"|\S+', text)

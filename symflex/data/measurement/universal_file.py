@@ -7,6 +7,7 @@ datasets summary). What pyuff could stumble over is looked at first, so that mes
 from __future__ import annotations
 
 import os
+import re
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -168,6 +169,8 @@ def _check_header(name: str, line: int, block: Sequence[bytes]) -> None:
 
 def _read(pyuff: ModuleType, name: str, data: bytes, places: Sequence[DatasetPlace]) -> list[dict[str, Any]]:
     found = []
+    if not re.search(rb"^ *58[bB]", data, re.M):  # it knows marks with 74 blanks behind them, or none
+        data = re.sub(rb"^    -1[ \t]+(?=\r?$)", MARK, data, flags=re.M)
     # pyuff opens files by name; a copy of what was checked is what it gets.
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "data.uff")

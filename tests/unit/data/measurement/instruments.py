@@ -389,6 +389,124 @@ def text_files():  # noqa: PLR0915 - one statement a file
     )
 
 
+def wild_files():
+    """Return files of text whose words, signs or lines are not those of one table of numbers."""
+    two = (H, 0.5 * H)
+    yield Saved("rows_named.txt", ("f re im\n" + rows(POINT, F, RE, IM, sep=" ")).encode())
+    yield Saved("reactance.csv", ("Frequency(Hz), R(ohm)-data, X(ohm)-data\n" + rows(F, RE, IM)).encode())
+    yield Saved("susceptance.csv", ("Frequency(Hz), G(S), B(S)\n" + rows(F, RE, IM)).encode())
+    yield Saved("lock_in.txt", ("Freq (Hz)\tR (V)\tTheta (deg)\n" + rows(F, SIZE, DEG, sep="\t")).encode())
+    yield Saved("lock_in_xy.csv", ("f;x;y;r;phase\n" + rows(F, RE, IM, SIZE, TURN, sep=";")).encode())
+    yield Saved(
+        "memory.csv",
+        (
+            "Frequency (Hz),Gain: Magnitude (dB),Gain: Magnitude (dB) (Memory),Phase (°),Phase (°) (Memory)\n"
+            + rows(F, DB, DB + 20 * np.log10(0.5), DEG, DEG)
+        ).encode(),
+        two,
+    )
+    yield Saved(
+        "unit_row.txt", ("Linear\tAmplitude\tPhase\nHz\tg/N\t°\n" + rows(F, SIZE, DEG, sep="\t")).encode()
+    )
+    yield Saved(
+        "one_x.lvm",
+        (
+            "Separator\tTab\n***End_of_Header***\n\nY_Unit_Label\tdB\tDegree\nX_Dimension\tFrequency\tFrequency\n"
+            "X_Value\tFRF (Magnitude)\tFRF (Phase)\tComment\n" + rows(F, DB, DEG, sep="\t")
+        ).encode(),
+    )
+    yield Saved("probe.csv", ("Frequency,DB(V(OUT)),P(V(OUT))\n" + rows(F, DB, DEG)).encode())
+    yield Saved("printed.out", ("  FREQ   VDB(OUT)   VP(OUT)\n\n" + rows(F, DB, DEG, sep="   ")).encode())
+    yield Saved(
+        "printed_complex.txt",
+        (
+            "Index frequency v(out)\n" + rows(POINT, F, [f"{z.real:.9e},\t{z.imag:.9e}" for z in H], sep="\t")
+        ).encode(),
+    )
+    yield Saved(
+        "in_and_out.txt",
+        (
+            "Freq.\tV(in)\tV(out)\n"
+            + rows(F, ["2.0,0.0"] * F.size, [f"{z.real:.9e},{z.imag:.9e}" for z in 2 * H], sep="\t")
+        ).encode(),
+    )
+    yield Saved(
+        "two_channels.csv", ("freq,vin,vout,phase_deg\n" + rows(F, 0 * F + 1.5, 1.5 * SIZE, DEG)).encode()
+    )
+    yield Saved(
+        "levels.csv",
+        ("f (Hz),Input (dBV),Output (dBV),Phase (deg)\n" + rows(F, 0 * F - 6, DB - 6, DEG)).encode(),
+    )
+    yield Saved(
+        "old_numpy.txt",
+        (
+            "# freq H\n"
+            + rows(
+                [f"({f:.12e}+0.0e+00j)" for f in F], [f"({z.real:.9e}+{z.imag:.9e}j)" for z in H], sep="  "
+            )
+        ).encode(),
+    )
+    yield Saved("julia.csv", ("f,H\n" + rows(F, [f"{z.real:.9e} - {-z.imag:.9e}im" for z in H])).encode())
+    yield Saved(
+        "french.csv",
+        ("Fréquence (Hz);Partie réelle;Partie imaginaire\n" + rows(F, RE, IM, sep=";", decimal=",")).encode(
+            "cp1252"
+        ),
+    )
+    yield Saved(
+        "spanish.csv", ("Frecuencia (Hz);Magnitud (dB);Fase (grados)\n" + rows(F, DB, DEG, sep=";")).encode()
+    )
+    yield Saved(
+        "russian.csv", ("Частота, Гц;Амплитуда, дБ;Фаза, град\n" + rows(F, DB, DEG, sep=";")).encode()
+    )
+    yield Saved("japanese.csv", ("周波数[Hz],ゲイン[dB],位相[deg]\n" + rows(F, DB, DEG)).encode("shift_jis"))
+    yield Saved("ohm.txt", ("Freq[Hz]   Ohm   Phase[Deg]\n" + rows(F, SIZE, DEG, sep="   ")).encode())
+    yield Saved(
+        "negative_phase.csv",
+        (
+            "freq / Hz, neg. Phase / °, Z / Ohm, Z' / Ohm, -Z'' / Ohm, Cs / F\n"
+            + rows(F, -DEG, SIZE, RE, -IM, TEN)
+        ).encode(),
+    )
+    yield Saved(
+        "apostrophes.csv",
+        (
+            "Frequenz [Hz];Betrag [dB];Phase [°]\n"
+            + rows([f"{1000 * f:,.7f}".replace(",", "'") for f in F], DB, DEG, sep=";")
+        ).encode(),
+        frequency=(1000 * F,),
+    )
+    yield Saved(
+        "cells_with_units.csv",
+        (
+            "Frequency,Magnitude,Phase\n"
+            + rows(
+                [f"{f:.9f} Hz" if f < 20 else f"{f / 1e3:.12f} kHz" for f in F],
+                [f"{d:.6f} dB" for d in DB],
+                [f"{d:.6f} deg" for d in DEG],
+            )
+        ).encode(),
+    )
+    yield Saved("angular.csv", ("omega [1/s],|G|,arg(G) [rad]\n" + rows(2 * np.pi * F, SIZE, TURN)).encode())
+    yield Saved(
+        "spread.csv",
+        ("f,mag,mag_std,phase_deg,phase_std\n" + rows(F, SIZE, SIZE / 99, DEG, 0 * F + 0.5)).encode(),
+    )
+    yield Saved("per_cent.csv", ("f (Hz),re,im,Coherence (%)\n" + rows(F, RE, IM, 100 * COH)).encode())
+    yield Saved("padded.txt", universal(F, H).encode(), tolerance=1e-4, frequency=(F,))
+
+
+def universal(f, h):
+    """Return a universal file of one dataset 58 with single precision, blanks behind its marks."""
+    ends = f"{4:5d}{1:10d}{1:5d}{0:10d} {'NONE':<10}{1:10d}{3:4d} {'NONE':<10}{2:10d}{3:4d}"
+    axis = f"{5:10d}{f.size:10d}{1:10d}{f[0]:13.5E}{f[1] - f[0]:13.5E}{0.0:13.5E}"
+    kinds = [f"{kind:10d}{0:5d}{0:5d}{0:5d} {'NONE':<20} {'NONE':<20}" for kind in (18, 8, 13, 0)]
+    parts = np.column_stack([h.real, h.imag]).ravel()
+    numbers = ["".join(f"{x:13.5E}" for x in parts[i : i + 6]) for i in range(0, parts.size, 6)]
+    lines = ["    -1  ", "    58", *["NONE"] * 5, ends, axis, *kinds, *numbers, "    -1  "]
+    return "\n".join(lines) + "\n"
+
+
 def network_files():
     """Return Touchstone files: the impedance of one port, and S21 of two."""
     s11 = (H - 0.05) / (H + 0.05)
@@ -448,6 +566,8 @@ def array_files():
     yield Saved("real_matrix.mat", mat(data=np.column_stack([F, RE, IM])), columns="f,re,im")
     yield Saved("many.mat", mat(freq=column, H=np.column_stack([H, H2])), (H, H2))
     yield Saved("runs.mat", mat(run=np.array([{"f": F, "H": H}, {"f": F, "H": H2}], object)), (H, H2))
+    axis = {"start_value": F[0], "increment": F[1] - F[0]}
+    yield Saved("testlab.mat", mat(Signal={"x_values": axis, "y_values": {"values": H[:, None]}}))
     yield Saved("unnamed.npz", npz(F, H))
     yield Saved("named.npz", npz(axis=np.e * F, G=H), columns="f=axis,h=G", frequency=(np.e * F,))
     yield Saved("parts.npz", npz(f_hz=F, re=RE, im=IM))
@@ -456,4 +576,4 @@ def array_files():
 
 def all_files():
     """Return all of them."""
-    return [*text_files(), *network_files(), *array_files()]
+    return [*text_files(), *wild_files(), *network_files(), *array_files()]

@@ -58,6 +58,11 @@ GUESSES = {
     "pocket.s1p": "Z11 is the response, from S-parameters with the reference 0.05 Ohm",
     "through.s2p": "S21 is the response",
     "radians.mat": "read in rad/s, in which its ends are round numbers",
+    "two_channels.csv": "the magnitude is 'vout' over 'vin'",
+    "in_and_out.txt": "the response is 'V(out)' over 'V(in)'",
+    "lock_in_xy.csv": "columns 'x', 'y' not used",
+    "cells_with_units.csv": "'Magnitude' has no unit and is read in dB",
+    "per_cent.csv": "'Coherence (%)' is read in per cent",
     "network.csv": "line 7 names the columns, and the numbers begin in line 8",
 }
 
@@ -125,6 +130,9 @@ HOSTILE = {
     "a long line": ("f,re,im\n" + "1," * 20000 + "\n", "SF601", "a.csv:2:1"),
     "commas twice": ("f,re,im\n1,5,2,5,3,5\n2,5,2,5,3,5\n3,5,2,5,3,5\n", "SF602", "a.csv:2:1"),
     "a counter": (",re,im\n0,1,2\n1,2,3\n2,1,2\n", "SF602", "a.csv:1:1"),
+    "cross spectrum": ("f,Re(Sxy),Im(Sxy)\n1,2,3\n2,2,3\n3,4,5\n", "SF602", "a.csv:1:3"),
+    "two axes": ("f,x,y\n1,2,3\n2,2,3\n3,4,5\n", "SF602", "a.csv:1:1"),
+    "three axes": ("f,x,y,z\n1,2,-3,1\n2,2,3,1\n3,4,5,1\n", "SF602", "a.csv:1:3"),
     "prose": ("Dear reader,\nthis is a letter.\n", "SF605", "a.csv"),
 }
 

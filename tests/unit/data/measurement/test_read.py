@@ -69,6 +69,43 @@ def test_a_line_at_zero_hertz_is_left_out(write):
     assert found.frequency_hz.tolist() == [1, 2, 3]
 
 
+LEFT_OUT = {
+    "no number": ("7,nan,4", "left out what holds no number, or zero: line 8"),
+    "overload": ("7,OVLD,OVLD", "left out what holds no number, or zero: line 8"),
+    "zero": ("7,0,0", "left out what holds no number, or zero: line 8"),
+    "empty": ("7,,", "line 8 ('7,,') is no row of numbers, and is skipped"),
+    "below zero": ("-7,2,3", "left out negative frequencies: line 8"),
+    "twice": ("6,6,-6", "left out what repeats the line before it: line 8"),
+    "not in order": ("30,30,-30", "the lines are not in order of frequency, and are sorted"),
+}
+
+
+def test_lines_that_cannot_be_used_are_left_out_and_said(write):
+    numbers = [i for i in range(1, 21) if i != 7]
+    for case, (line, said) in LEFT_OUT.items():
+        lines = [f"{i},{i},{-i}" for i in numbers]
+        (found,) = read_measurement(write("a.csv", "\n".join(["f,re,im", *lines[:6], line, *lines[6:], ""])))
+        expected = numbers + [30] * (case == "not in order")
+        assert found.frequency_hz.tolist() == expected, case
+        assert found.values.tolist() == [f - 1j * f for f in expected], case
+        assert said in found.guesses, (case, found.guesses)
+
+
+def test_lines_are_left_out_at_the_ends_without_limit_and_a_tenth_between(write):
+    def text(bad):
+        return "f,re,im\n" + "".join(f"{i},{'nan' if i in bad else i},1\n" for i in range(1, 41))
+
+    (found,) = read_measurement(write("a.csv", text({*range(1, 11), *range(30, 41)})))
+    assert found.frequency_hz.tolist() == list(range(11, 30))
+    with pytest.raises(DataError, match="so in 7 more lines"):
+        read_measurement(write("a.csv", text(set(range(2, 18, 2)))))
+
+
+def test_columns_that_are_not_named_are_not_listed(write):
+    with pytest.raises(UsageError, match=r"5 words, and there are 4 columns: f, re, im\n"):
+        read_measurement(write("a.csv", ",f,re,im\n0,1,2,3\n1,2,3,4\n2,3,4,5\n"), "-,f,re,im,coh")
+
+
 MISTAKES = {
     "unknown column": ("frequency_hz,re,img\n1,2,3\n", "SF602", "a.csv:1:17"),
     "no header": ("1,2,3\n2,3,4\n", "SF602", "a.csv:1:1"),
@@ -91,7 +128,12 @@ MISTAKES = {
     "unit of the values": ("# unit: furlong/N\n" + PLAIN, "SF602", "a.csv:1:9"),
     "too large to square": (PLAIN.replace("2,3,4", "2,1e300,4"), "SF603", "a.csv:3:3"),
     "too small to square": (PLAIN.replace("2,3,4", "2,1e-300,0"), "SF603", "a.csv:3:3"),
-    "unsorted": (PLAIN.replace("3,4,5", "1.5,4,5"), "SF604", "a.csv:4:1"),
+    "two sweeps": (
+        "f,re,im\n"
+        + "".join(f"{f},2,3\n" for f in (*range(1, 20), *range(1, 20))).replace("1,2,3\n2", "1,2,4\n2", 1),
+        "SF604",
+        "a.csv:21:1",
+    ),
     "twice": (PLAIN.replace("3,4,5", "2,4,5"), "SF604", "a.csv:4:1"),
     "empty": ("", "SF605", "a.csv"),
     "comments only": ("# nothing\n", "SF605", "a.csv"),
@@ -100,7 +142,7 @@ MISTAKES = {
     "binary": (b"f,re,im\n\xff\xfe\x00\x01", "SF601", "a.csv"),
     "NUL": (b"f,re,im\n1,\x00,3", "SF601", "a.csv"),
     "control": (b"f,re,im\n1,\x02,3", "SF601", "a.csv"),
-    "no Windows-1252": (b"f,re,im\n1,\x81,3", "SF601", "a.csv"),
+    "no Windows-1252": (b"f,re,im\n1,\x81,3\n2,3,4\n", "SF603", "a.csv:2:3"),
 }
 
 
@@ -146,7 +188,7 @@ def test_wrong_arrays_are_refused(write):
         for arrays, code in (
             ({"f": FREQUENCY}, "SF602"),
             ({"f": FREQUENCY, "H": VALUES[:7]}, "SF602"),
-            ({"f": FREQUENCY[[1, 0, *range(2, 10)]], "H": VALUES}, "SF604"),
+            ({"f": np.minimum(FREQUENCY, FREQUENCY[-2]), "H": VALUES}, "SF604"),
             ({"f": FREQUENCY, "H": VALUES * np.nan}, "SF603"),
             ({"f": np.array(["a", "b"]), "H": VALUES}, "SF602"),
         ):
