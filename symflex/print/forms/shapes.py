@@ -75,7 +75,7 @@ def shaped(model: Model, form: PrintedForm) -> PrintedForm:
     if sum(len(nodes(e)) for e in parts) > LARGEST:
         return form
     form = _with_plain_lines(form)
-    signs = _Signs.of(model)
+    signs = _Signs.of(model).with_decays(form.where)
     # Differences turned by the declared values: as often as not that gives more minus signs.
     tried = [_signed(form, each, model) for each in (signs, replace(signs, turns=True))]
     return min(tried, key=lambda made: str((made.num, made.den, made.where)).count("Negative"))
@@ -108,6 +108,15 @@ class _Signs:
             n for _, e in model.expressions() for n in nodes(e) if isinstance(n, Sum) and S not in names(n)
         )
         return _Signs(known, {_texts(n.terms): n for n in sums})
+
+    def with_decays(self, where: Sequence[tuple[str, Expression]]) -> _Signs:
+        """Return these with what where lines say decays, as ``exp(-gamma*l)``: it is zero far away."""
+        known = dict(self.known)
+        for name, line in reversed(where):
+            if {n.name for n in names(line)} <= {*known, *FUNCTIONS}:
+                (known[name],) = principal_values(line, 1, lambda name: [known[name]])
+        decays = {name: acb(0) for name, _ in where if name in known and abs(known[name]) < 1 / FAR}
+        return replace(self, known={**self.known, **decays})
 
     def oriented(self, expression: Expression) -> Expression:
         """Return an expression with every sum in it as a person would write it."""
@@ -175,6 +184,8 @@ class _Signs:
     def absorbed(self, num: Expression) -> Expression:
         """Return minus a numerator, the sign within a sum that ends with a negative term if there is one."""
         factors = list(num.factors) if isinstance(num, Product) else [num]
+        if (turned := _turned(num)) is not None:
+            return turned
         for i, factor in enumerate(factors):
             if isinstance(factor, Sum) and isinstance(factor.terms[-1], Negative):
                 if len(factor.terms) == 2 or self._sign(factor):  # noqa: PLR2004
@@ -193,6 +204,30 @@ class _Signs:
 
 def _texts(terms: Iterable[Expression]) -> frozenset[str]:
     return frozenset(map(format_expression, terms))
+
+
+def _turned(expression: Expression) -> Expression | None:
+    """Return minus an expression if that has no minus sign in front of it or of a term, else nothing."""
+    match expression:
+        case Negative(operand):
+            return operand
+        case Product(factors):
+            for i, factor in enumerate(factors):
+                if isinstance(factor, Sum) and (turned := _difference(factor)) is not None:
+                    return product_of([*factors[:i], turned, *factors[i + 1 :]])
+        case Sum():
+            return _difference(expression)
+    return None
+
+
+def _difference(total: Sum) -> Expression | None:
+    """Return minus a sum, whose terms are all turned themselves or one of two; nothing where that fails."""
+    turned = [_turned(t) for t in total.terms]
+    if None not in turned:
+        return sum_of([t for t in turned if t])
+    if len(turned) == 2 and turned[0] is None and turned[1] is not None:  # noqa: PLR2004
+        return sum_of([turned[1], negative(total.terms[0])])
+    return None
 
 
 def _gathered(terms: Sequence[Expression]) -> Sequence[Expression]:
