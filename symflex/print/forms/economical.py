@@ -12,10 +12,11 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
 from itertools import combinations
+from math import isqrt
 from operator import add
 from typing import TYPE_CHECKING
 
-from symflex.algebra import Factored, Kernel, KernelTable, Ring
+from symflex.algebra import Factored, Kernel, KernelTable, Ring, composed
 from symflex.algebra.normal_form import NormalForm
 from symflex.print.forms.invariants import IMAGINARY, in_exponentials, real_powers
 from symflex.print.forms.notation import angles_of
@@ -44,6 +45,7 @@ def economical(tf: TransferFunction) -> TransferFunction:
     """
     if any(len(factor) > LARGE for factor, _ in tf.ratio.factors):
         return tf
+    tf = _without_wavenumbers(tf)
     for _ in range(DOUBLINGS):
         lengths = dict.fromkeys(a.length for a in angles_of(tf.kernels) if is_half(a.length))
         found = next((d for length in lengths if (d := _doubled(tf, length)) is not None), None)
@@ -59,6 +61,21 @@ class _Sum:
 
     kernels: Mapping[str, str]  # of the sum, generators by function
     parts: tuple[Mapping[str, str], ...]  # of its lengths
+
+
+def _without_wavenumbers(tf: TransferFunction) -> TransferFunction:
+    """Return a function with ``s/c`` for a wavenumber that is no root, except in arguments."""
+    images = {}
+    for law in tf.kernels.dispersions:
+        if law.kind == "wave":
+            square = NormalForm(tf.ratio.ring, tf.kernels).power_of(law)
+            above, below = isqrt(abs(square.unit.numerator)), isqrt(square.unit.denominator)
+            if square.unit == Fraction(above, below) ** 2 and not any(e % 2 for _, e in square.factors):
+                factors = tuple((f, e // 2) for f, e in square.factors)
+                images[law.wavenumbers[0]] = Factored(square.ring, Fraction(above, below), factors)
+    if not any(tf.ratio.depends_on(wave) for wave in images):
+        return tf
+    return replace(tf, reduced=composed(tf.ratio, images), parts=None)
 
 
 def added(tf: TransferFunction) -> TransferFunction:

@@ -130,6 +130,8 @@ class _Signs:
                 return negative(self._oriented(product))
             case Product(factors):
                 return self._rejoined(product_of(_joined(factors)))
+            case Call("exp", argument) if any(isinstance(n, Product) for n in nodes(argument)):
+                return replace(part, argument=min(argument, of_powers(*powers_of(argument)), key=_length))
             case Call("sqrt", Negative(Sum(terms))):
                 return replace(part, argument=sum_of(_led([negative(t) for t in terms])))
         return part
@@ -301,12 +303,25 @@ def _joined(factors: Sequence[Expression]) -> Sequence[Expression]:
         factors = (of_powers(*powers_of(product_of(factors))),)
     decays = [f for f in factors if isinstance(f, Call) and f.name == "exp"]
     times = [powers_of(f.argument) for f in decays]
-    if len(decays) < 2 or not all(front < 0 and powers.pop(S, 0) == 1 for front, powers in times):  # noqa: PLR2004
+    if len(decays) < 2:  # noqa: PLR2004
         return factors
-    numbers = number(-sum((front for front, powers in times if not powers), start=Fraction(0)))
-    total = sum_of([*(of_powers(-front, powers) for front, powers in times if powers), numbers])
-    merged = Call("exp", negative(product_of([total, S])))
-    return [merged if f is decays[0] else f for f in factors if f is decays[0] or f not in decays]
+    if all(front < 0 and powers.get(S) == 1 for front, powers in times):
+        for _, powers in times:
+            del powers[S]
+        numbers = number(-sum((front for front, powers in times if not powers), start=Fraction(0)))
+        total = sum_of([*(of_powers(-front, powers) for front, powers in times if powers), numbers])
+        merged: list[Expression] = [Call("exp", negative(product_of([total, S])))]
+    else:  # those of one wave, which cancel where they travel opposite ways
+        fronts: dict[frozenset[tuple[Expression, int]], Fraction] = {}
+        for front, powers in times:
+            wave = frozenset(powers.items())
+            fronts[wave] = fronts.get(wave, Fraction(0)) + front
+        if len(fronts) == len(decays):
+            return factors
+        alike = {frozenset(powers.items()): powers for _, powers in times}
+        merged = [Call("exp", of_powers(x, alike[wave])) for wave, x in fronts.items() if x]
+    first = factors.index(decays[0])
+    return [*factors[:first], *merged, *(f for f in factors[first:] if f not in decays)]
 
 
 def _in_ratios(num: Expression, den: Expression) -> tuple[Expression, Expression]:
