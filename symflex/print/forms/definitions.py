@@ -49,7 +49,11 @@ def definitions_form(tf: TransferFunction) -> PrintedForm:
 def _with_factor(part: Expression) -> Expression:
     """Return a sum with what all its terms share in front: ``R*(C*s + 1)`` for ``R*C*s + R``."""
     if isinstance(part, Product):
-        return product_of(sorted(part.factors, key=lambda f: isinstance(f, Sum)))
+        places = [n for n, f in enumerate(part.factors) if isinstance(f, Sum)] or [0]
+        between = part.factors[places[0] : places[-1]]
+        moved = [f for f in between if not isinstance(f, Sum)]
+        sums = [f for f in between if isinstance(f, Sum)]
+        return product_of([*part.factors[: places[0]], *moved, *sums, *part.factors[places[-1] :]])
     if not isinstance(part, Sum):
         return part
     terms = [powers_of(t) for t in part.terms]
