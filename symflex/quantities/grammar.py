@@ -4,7 +4,7 @@ A quantity is a constant and a unit. The constant is made of decimal numbers, ``
 ``**``) and parentheses; every intermediate value is a rational number times an integer power of pi. The
 unit is made of symbols, ``*``, ``/``, integer powers and parentheses; a space or a dot multiplies too,
 except after a slash, where its reach would be a guess (``J/kg K``). ``1/s`` is the one place for a
-number in a unit.
+number in a unit, except a power without its sign, ``m2``. The usual products may run together, ``Nm``.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from typing import Final, TypeVar
 
 from symflex.quantities.characters import IMAGINARY_NAMES, IMAGINARY_UNIT, character_hint, code_point
 from symflex.quantities.lalr import END, Grammar, Reading, Token, UnexpectedError
-from symflex.quantities.units import Unit, unit_hint, unit_named
+from symflex.quantities.units import Unit, run_together, unit_hint, unit_named
 
 MAXIMUM_CHARACTERS: Final = 200
 MAXIMUM_DIGITS: Final = 60
@@ -95,6 +95,7 @@ GRAMMAR: Final = rf"""
 SIGNED_NUMBER: Final = re.compile(rf"[+-]?[{SPACES}]*{NUMBER}")
 _INTEGER: Final = re.compile(r"[0-9]{1,60}")
 UNIT_START: Final = re.compile(_SYMBOL)
+_NO_UNIT: Final = Unit(Fraction(1))
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,12 +110,16 @@ class Constant:
 
 @dataclass(frozen=True, slots=True)
 class PlacedUnit:
-    """A unit and the characters it was read from; ``factors`` counts what a space or dot joins."""
+    """A unit and the characters it was read from; ``factors`` counts what a space or dot joins.
+
+    ``before`` is the part of the unit that a power does not reach, kg of kgm^2.
+    """
 
     unit: Unit
     start: int
     end: int
     factors: int = 1
+    before: Unit = _NO_UNIT
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,7 +144,6 @@ NOT_IN_PARAMETERS = f"a parameter is real; {IMAGINARY_UNIT}"
 _ONE_NUMBER: Final = "the number stands before the unit and the unit holds no other, except 1 in '1/s'"
 _NO_GROUPS: Final = "digits are not grouped, as in '12000 m'"
 NEARER: Final = "choose a unit in which the number is closer to 1"
-_NO_UNIT: Final = Unit(Fraction(1))
 # Stands at no place, so that a unit alone never seems to touch it.
 _NO_CONSTANT: Final = Constant(Fraction(1), 0, -1, -1)
 
@@ -337,7 +341,10 @@ class _Evaluator:
         return _checked(Constant(base.magnitude**power, base.pi_power * power, base.start, exponent.end))
 
     def symbol(self, symbol: Token) -> PlacedUnit:
-        unit = unit_named(str(symbol))
+        unit, together = unit_named(str(symbol)), run_together(str(symbol))
+        if unit is None and together:
+            before, last = together
+            return PlacedUnit(before * last, symbol.start, symbol.end, before=before)
         if unit is None:
             message = f"unknown unit '{symbol}'"
             meant = unit_hint(str(symbol))
@@ -351,13 +358,13 @@ class _Evaluator:
         if max(abs(above), degree) > MAXIMUM_UNIT_POWER:
             message = f"a unit's power beyond {MAXIMUM_UNIT_POWER}"
             raise RejectedError("SF103", message, exponent.start, exponent.end, "write it in lower powers")
-        unit: Unit | None = base.unit**above
-        if degree > 1:
-            unit = (base.unit**above).root(degree)
+        unit: Unit | None = (base.unit / base.before) ** above
+        if degree > 1 and unit:
+            unit = unit.root(degree)
         if unit is None:
             message = f"the power {exponent.value} of this unit has no exact factor"
             raise RejectedError("SF202", message, base.start, exponent.end)
-        return _checked_unit(PlacedUnit(unit, base.start, exponent.end))
+        return _checked_unit(PlacedUnit(base.before * unit, base.start, exponent.end))
 
     def raise_superscript(self, base: PlacedUnit, superscript: Token) -> PlacedUnit:
         digits = superscript.translate(_PLAIN_DIGITS)

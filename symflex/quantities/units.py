@@ -231,9 +231,6 @@ _INSTEAD: Final[dict[str, str]] = {
         "rev": "revs revolution revolutions turn turns",
         "rev/s": "rps",
         "cycle": "cycles cyc",
-        "N*m": "Nm",
-        "N*m*s": "Nms",
-        "N*s": "Ns",
         "g_n": "g_0 g0 gn",
         "%": "percent",
     }.items()
@@ -248,6 +245,14 @@ _INSTEAD: Final[dict[str, str]] = {
     "\u00b0C": "only absolute temperatures are read: use 'K'",
     "\u00b0F": "only absolute temperatures are read: use 'K'",
 }
+
+# Products that data sheets print without a sign; the first factor may have a prefix.
+_RUN_TOGETHER: Final = {
+    product_of_units.replace("*", ""): product_of_units.split("*")
+    for product_of_units in (
+        "N*m N*cm N*mm N*s N*m*s kg*m kg*cm kg*mm g*cm g*mm V*A V*s A*s W*s".split()
+    )
+}  # fmt: skip
 
 _FORCES: Final = {"lb": "lbf", "lbm": "lbf", "oz": "ozf", "kg": "kgf", "g": "gf"}
 _MASSES: Final = {"lbf": "lb", "ozf": "oz", "kgf": "kg"}
@@ -274,6 +279,29 @@ def unit_named(symbol: str) -> Unit | None:
         if factor is not None and unit is not None:
             return unit.scaled(factor)
     return None
+
+
+def run_together(symbol: str) -> tuple[Unit, Unit] | None:
+    """Return what precedes the last unit of ``kgm2``, and that with its power; ``None`` for most symbols.
+
+    The usual products are read without a sign between their factors. A digit is a power, as in UCUM, and
+    that of the last factor only, like a power that follows.
+
+    Examples
+    --------
+    >>> [str(unit.dimension) for unit in run_together("kgm2")], run_together("Nkg"), run_together("ms")
+    (['kg', 'm^2'], None, None)
+    """
+    letters, power = (symbol[:-1], int(symbol[-1])) if symbol[-1] in "234" else (symbol, 1)
+    names = [letters] if power > 1 else []
+    for length in (0, 1, 2):
+        if letters[length:] in _RUN_TOGETHER:
+            first, *others = _RUN_TOGETHER[letters[length:]]
+            names = [letters[:length] + first, *others]
+    units = [unit for unit in map(unit_named, names) if unit]
+    if not units or len(units) < len(names):
+        return None
+    return functools.reduce(Unit.__mul__, units[:-1], _ONE), units[-1] ** power
 
 
 def unit_hint(symbol: str) -> str | None:

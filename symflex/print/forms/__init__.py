@@ -58,6 +58,8 @@ FORMS: dict[str, Arrange] = {
 
 DECIMAL_FORMS = ("zpk",)
 """Those that print decimals, of so many digits as they are told."""
+OF_SUMS = ("hyperbolic", "factored")
+"""Those that may have kernels of two lengths and of their sum."""
 AS_ARRANGED = ("zpk", "frequency")
 """Those that are not functions of s, or print decimals anyway."""
 LARGE = 300
@@ -126,11 +128,15 @@ def _arranged(
 
 def _distributed(tf: TransferFunction, form: str | None, digits: int, arranged: Arranged) -> PrintedForm:
     """Return a form with definitions closed, or with them opened where that is much shorter."""
-    from symflex.print.forms.economical import economical  # only with beams
+    from symflex.print.forms.economical import added, economical  # only with beams
 
     def shortest(own: TransferFunction) -> PrintedForm:
         each = economical(own)
-        made = _drafted(each, arranged) if form is None else (_made(each, form, digits),)
+        whole = added(each)
+        if form is None:
+            made = tuple(_drafted(each, whole, arranged))
+        else:
+            made = (_made(whole if form in OF_SUMS else each, form, digits),)
         return replace(min(made, key=_length), source=own)
 
     closed, opened = arranged.definitions.of(tf), shortest(tf)
@@ -186,9 +192,11 @@ def _made(tf: TransferFunction, form: str, digits: int) -> PrintedForm:
     return _explained(tf, FORMS[form](*arguments))
 
 
-def _drafted(tf: TransferFunction, arranged: Arranged) -> Iterator[PrintedForm]:
+def _drafted(tf: TransferFunction, whole: TransferFunction, arranged: Arranged) -> Iterator[PrintedForm]:
     """Yield the forms of a function with kernels that might print shortest, always some."""
-    begun = [DISTRIBUTED_CANDIDATES[name](tf, arranged) for name in _candidates(tf)]
+    begun = [
+        DISTRIBUTED_CANDIDATES[name](whole if name in OF_SUMS else tf, arranged) for name in _candidates(tf)
+    ]
     drafts = [draft for draft in begun if draft is not None]
     most = max(FEW, MORE * min(draft.terms for draft in drafts))
     yield from (_explained(tf, draft.finish()) for draft in drafts if draft.terms <= most)

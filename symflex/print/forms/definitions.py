@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symflex.algebra import Factored, Ring, degree_in
-from symflex.expressions import Expression, Name
+from symflex.expressions import Expression, Name, Product, Sum, product_of, sum_of
 from symflex.print.forms.arrange import Arranger, length
 from symflex.print.forms.kept import REWRITE_LIMIT, in_definitions, is_divisor
 from symflex.print.forms.notation import constant_symbols
 from symflex.print.forms.polynomial import in_kernels
 from symflex.print.forms.printed import PrintedForm
+from symflex.print.forms.shapes import of_powers, powers_of, rebuilt
 
 if TYPE_CHECKING:
     from flint import fmpz_mpoly
@@ -41,7 +43,31 @@ def definitions_form(tf: TransferFunction) -> PrintedForm:
             num, den = min(closed_num, num, key=length), min(closed_den, den, key=length)
         elif length(closed_num, closed_den) <= length(num, den):
             num, den = closed_num, closed_den
-    return PrintedForm("definitions", num, den)
+    return PrintedForm("definitions", rebuilt(num, _with_factor), rebuilt(den, _with_factor))
+
+
+def _with_factor(part: Expression) -> Expression:
+    """Return a sum with what all its terms share in front: ``R*(C*s + 1)`` for ``R*C*s + R``."""
+    if isinstance(part, Product):
+        places = [n for n, f in enumerate(part.factors) if isinstance(f, Sum)] or [0]
+        between = part.factors[places[0] : places[-1]]
+        moved = [f for f in between if not isinstance(f, Sum)]
+        sums = [f for f in between if isinstance(f, Sum)]
+        return product_of([*part.factors[: places[0]], *moved, *sums, *part.factors[places[-1] :]])
+    if not isinstance(part, Sum):
+        return part
+    terms = [powers_of(t) for t in part.terms]
+    shared: dict[Expression, int] = {
+        base: min(powers.get(base, 0) for _, powers in terms)
+        for base in terms[0][1]
+        if isinstance(base, Name) and all(powers.get(base, 0) > 0 for _, powers in terms)
+    }
+    if not shared:
+        return part
+    rest = (
+        of_powers(x, {b: n - shared.get(b, 0) for b, n in p.items() if n != shared.get(b)}) for x, p in terms
+    )
+    return product_of([of_powers(Fraction(1), shared), sum_of(rest)])
 
 
 def _is_large(tf: TransferFunction) -> bool:

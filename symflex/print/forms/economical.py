@@ -1,15 +1,22 @@
 """Arguments of single transfer functions as long as the model's.
 
 The transfer functions of a model share base lengths: with one output at midspan all of them are in kernels of
-``l/2``. One that needs only even multiples of such a half is written in kernels of ``l`` again.
+``l/2``. One that needs only even multiples of such a half is written in kernels of ``l`` again. A member
+that is cut at a node has kernels of ``a`` and ``l - a``. With those of the whole length it prints shorter:
+``sinh(q)`` with ``q = gamma*l`` for ``cosh(q_1)*sinh(q_2) + sinh(q_1)*cosh(q_2)``.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import partial
+from itertools import combinations
+from math import isqrt
+from operator import add
 from typing import TYPE_CHECKING
 
-from symflex.algebra import Factored, KernelTable, Ring
+from symflex.algebra import Factored, Kernel, KernelTable, Ring, composed
 from symflex.algebra.normal_form import NormalForm
 from symflex.print.forms.invariants import IMAGINARY, factor_by_factor, in_exponentials, real_powers
 from symflex.print.forms.notation import angles_of
@@ -26,6 +33,9 @@ DOUBLINGS = 8
 """Halvings that are undone at most."""
 LARGE = 300
 """Number of terms of a factor from which it is left as it is."""
+MOST = 5
+"""Number of lengths of one wavenumber up to which sums of them are tried."""
+TWO = 2
 
 
 def economical(tf: TransferFunction) -> TransferFunction:
@@ -35,6 +45,7 @@ def economical(tf: TransferFunction) -> TransferFunction:
     """
     if any(len(factor) > LARGE for factor, _ in tf.ratio.factors):
         return tf
+    tf = _without_wavenumbers(tf)
     for _ in range(DOUBLINGS):
         lengths = dict.fromkeys(a.length for a in angles_of(tf.kernels) if is_half(a.length))
         found = next((d for length in lengths if (d := _doubled(tf, length)) is not None), None)
@@ -42,6 +53,128 @@ def economical(tf: TransferFunction) -> TransferFunction:
             return tf
         tf = found
     return tf
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Sum:
+    """A sum of lengths of one wavenumber that is shorter than one of them."""
+
+    kernels: Mapping[str, str]  # of the sum, generators by function
+    parts: tuple[Mapping[str, str], ...]  # of its lengths
+
+
+def _without_wavenumbers(tf: TransferFunction) -> TransferFunction:
+    """Return a function with ``s/c`` for a wavenumber that is no root, except in arguments."""
+    images = {}
+    for law in tf.kernels.dispersions:
+        if law.kind == "wave":
+            square = NormalForm(tf.ratio.ring, tf.kernels).power_of(law)
+            above, below = isqrt(abs(square.unit.numerator)), isqrt(square.unit.denominator)
+            if square.unit == Fraction(above, below) ** 2 and not any(e % 2 for _, e in square.factors):
+                factors = tuple((f, e // 2) for f, e in square.factors)
+                images[law.wavenumbers[0]] = Factored(square.ring, Fraction(above, below), factors)
+    if not any(tf.ratio.depends_on(wave) for wave in images):
+        return tf
+    return replace(tf, reduced=composed(tf.ratio, images), parts=None)
+
+
+def added(tf: TransferFunction) -> TransferFunction:
+    """Return the same function with kernels of sums of its lengths in factors that are shorter so.
+
+    The kernels of the two lengths and of their sum are not independent, which is for print alone.
+    """
+    if any(len(factor) > LARGE for factor, _ in tf.ratio.factors):
+        return tf
+    used = tf.ratio.ring.used_in(f for f, _ in tf.ratio.factors)
+    own = {(a.wavenumber, a.length): a for a in angles_of(tf.kernels, used) if a.dispersion.shift.is_zero}
+    groups: dict[str, list[Factored]] = {}
+    for wave, length in own:
+        groups.setdefault(wave, []).append(length)
+    found, sums = list(tf.kernels.kernels), list[_Sum]()
+    for wave, lengths in groups.items():
+        if len(lengths) > MOST:
+            continue
+        for n in range(2, len(lengths) + 1):
+            for parts in combinations(lengths, n):
+                total = sum(parts[1:], parts[0])
+                if _terms(total) < max(map(_terms, parts)):
+                    angle = own[wave, parts[0]]
+                    names = {f: f"{f}[{wave},sum {len(sums)}]" for f in angle.kernels}
+                    found += [
+                        Kernel(g, f, angle.dispersion, wave, total)  # type: ignore[arg-type]
+                        for f, g in names.items()
+                    ]
+                    sums.append(_Sum(names, tuple(own[wave, part].kernels for part in parts)))
+    if not sums:
+        return tf
+    ring = Ring((*tf.ratio.ring.names, *(g for one in sums for g in one.kernels.values())))
+    normal = NormalForm(ring, _over(ring, replace(tf.kernels, kernels=tuple(found))))
+
+    def image(factor: fmpz_mpoly) -> Factored:
+        best = Factored.polynomial(ring, ring.taken_over(factor))
+        while True:
+            ways = [partial(_put, normal, one, k) for one in sums for k in range(len(one.parts))]
+            ways += [partial(_paired, ring, one) for one in sums if len(one.parts) == TWO]
+            shorter = min((best.map_factors(ring, way) for way in ways), key=_size)
+            if _size(shorter) >= _size(best):
+                return best
+            best = shorter
+
+    return replace(tf, reduced=tf.ratio.map_factors(ring, image), kernels=normal.table, parts=None)
+
+
+def _over(ring: Ring, table: KernelTable) -> KernelTable:
+    """Return a table over a larger ring."""
+
+    def image(value: Factored) -> Factored:
+        return Factored(ring, value.unit, tuple((ring.taken_over(f), e) for f, e in value.factors))
+
+    return table.embedded([(value, image(value)) for value in table.values])
+
+
+def _put(normal: NormalForm, one: _Sum, k: int, factor: fmpz_mpoly) -> Factored:
+    """Return a factor without the k-th part of a sum, which is the sum less the others."""
+    ring, part = normal.ring, one.parts[k]
+    images = {name: ring.generator(name) for name in ring.names}
+    for even, odd, sign in (("cosh", "sinh", 1), ("cos", "sin", -1)):
+        if even in part:
+            x, y = (ring.generator(one.kernels[f]) for f in (even, odd))
+            for other in (p for p in one.parts if p is not part):
+                c, s = ring.generator(other[even]), ring.generator(other[odd])
+                x, y = x * c - sign * (y * s), y * c - x * s
+            images |= {part[even]: x, part[odd]: y}
+    return normal.reduce(factor.compose(*images.values(), ctx=ring.context))
+
+
+def _paired(ring: Ring, one: _Sum, factor: fmpz_mpoly) -> Factored:
+    """Return a factor with ``p*sinh(x + y)`` for ``p*sinh(x)*cosh(y) + p*cosh(x)*sinh(y)``, and the like."""
+    terms = {tuple(map(int, powers)): int(x) for powers, x in factor.to_dict().items()}
+    first, second = one.parts
+    for even, odd, sign in (("cosh", "sinh", 1), ("cos", "sin", -1)):
+        if even not in first:
+            continue
+        c, s, e, o = (ring.generator(p[f]) for p in (first, second) for f in (even, odd))
+        for left, right, times, joined in ((c * e, s * o, sign, even), (s * e, c * o, 1, odd)):
+            removed, other, put = (_powers(m) for m in (left, right, ring.generator(one.kernels[joined])))
+            for powers, x in list(terms.items()):
+                rest = tuple(n - m for n, m in zip(powers, removed, strict=True))
+                beside, new = (tuple(map(add, rest, p)) for p in (other, put))
+                if min(rest) >= 0 and terms.get(powers) == x and terms.get(beside) == times * x:
+                    del terms[powers], terms[beside]
+                    terms[new] = terms.get(new, 0) + x
+    return Factored.polynomial(ring, ring.context.from_dict({p: x for p, x in terms.items() if x}))
+
+
+def _powers(monomial: fmpz_mpoly) -> tuple[int, ...]:
+    return tuple(map(int, monomial.degrees()))
+
+
+def _terms(length: Factored) -> int:
+    return len(length.numerator().expand())
+
+
+def _size(value: Factored) -> int:
+    return sum(len(factor) for factor, _ in value.factors)
 
 
 def is_half(length: Factored) -> bool:

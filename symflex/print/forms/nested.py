@@ -262,6 +262,9 @@ class _Printer:
         ratio /= prod(f.value for f in below if isinstance(f, Number))
         above = [f for f in above if not isinstance(f, Number)]
         below = [f for f in below if not isinstance(f, Number)]
+        turned = next((n for n, f in enumerate(above) if isinstance(f, Sum) and _turned(f) is not f), None)
+        if ratio < 0 and turned is not None:
+            ratio, above[turned] = -ratio, _turned(above[turned])
         if below and ratio.numerator == 1 != ratio:
             below.append(Number(1 / ratio))
         elif ratio != 1:
@@ -299,4 +302,15 @@ def _times(left: Expression, right: Expression) -> Expression:
 
 
 def _negated(expression: Expression) -> Expression:
-    return expression.operand if isinstance(expression, Negative) else Negative(expression)
+    turned = _turned(expression)
+    return Negative(expression) if turned is expression else turned
+
+
+def _turned(expression: Expression) -> Expression:
+    """Return minus an expression that has a minus sign, another one as it is."""
+    match expression:
+        case Negative(operand):
+            return operand
+        case Sum(terms) if any(isinstance(t, Negative) for t in terms):
+            return Sum(tuple(sorted(map(_negated, terms), key=lambda t: isinstance(t, Negative))))
+    return expression

@@ -76,7 +76,7 @@ def shaped(model: Model, form: PrintedForm) -> PrintedForm:
     if sum(len(nodes(e)) for e in parts) > LARGEST:
         return form
     form = _with_plain_lines(form)
-    signs = _Signs.of(model)
+    signs = _Signs.of(model).with_decays(form.where)
     # Differences turned by the declared values: as often as not that gives more minus signs.
     tried = [_signed(form, each, model) for each in (signs, replace(signs, turns=True))]
     return min(tried, key=lambda made: str((made.num, made.den, made.where)).count("Negative"))
@@ -110,6 +110,15 @@ class _Signs:
         )
         return _Signs(known, {_texts(n.terms): n for n in sums})
 
+    def with_decays(self, where: Sequence[tuple[str, Expression]]) -> _Signs:
+        """Return these with what where lines say decays, as ``exp(-gamma*l)``: it is zero far away."""
+        known = dict(self.known)
+        for name, line in reversed(where):
+            if {n.name for n in names(line)} <= {*known, *FUNCTIONS}:
+                (known[name],) = principal_values(line, 1, lambda name: [known[name]])
+        decays = {name: acb(0) for name, _ in where if name in known and abs(known[name]) < 1 / FAR}
+        return replace(self, known={**self.known, **decays})
+
     def oriented(self, expression: Expression) -> Expression:
         """Return an expression with every sum in it as a person would write it."""
         return rebuilt(expression, self._oriented)
@@ -122,6 +131,8 @@ class _Signs:
                 return negative(self._oriented(product))
             case Product(factors):
                 return self._rejoined(product_of(_joined(factors)))
+            case Call("exp", argument) if any(isinstance(n, Product) for n in nodes(argument)):
+                return replace(part, argument=min(argument, of_powers(*powers_of(argument)), key=_length))
             case Call("sqrt", Negative(Sum(terms))):
                 return replace(part, argument=sum_of(_led([negative(t) for t in terms])))
         return part
@@ -176,6 +187,8 @@ class _Signs:
     def absorbed(self, num: Expression) -> Expression:
         """Return minus a numerator, the sign within a sum that ends with a negative term if there is one."""
         factors = list(num.factors) if isinstance(num, Product) else [num]
+        if (turned := _turned(num)) is not None:
+            return turned
         for i, factor in enumerate(factors):
             if isinstance(factor, Sum) and isinstance(factor.terms[-1], Negative):
                 if len(factor.terms) == 2 or self._sign(factor):  # noqa: PLR2004
@@ -194,6 +207,30 @@ class _Signs:
 
 def _texts(terms: Iterable[Expression]) -> frozenset[str]:
     return frozenset(map(format_expression, terms))
+
+
+def _turned(expression: Expression) -> Expression | None:
+    """Return minus an expression if that has no minus sign in front of it or of a term, else nothing."""
+    match expression:
+        case Negative(operand):
+            return operand
+        case Product(factors):
+            for i, factor in enumerate(factors):
+                if isinstance(factor, Sum) and (turned := _difference(factor)) is not None:
+                    return product_of([*factors[:i], turned, *factors[i + 1 :]])
+        case Sum():
+            return _difference(expression)
+    return None
+
+
+def _difference(total: Sum) -> Expression | None:
+    """Return minus a sum, whose terms are all turned themselves or one of two; nothing where that fails."""
+    turned = [_turned(t) for t in total.terms]
+    if None not in turned:
+        return sum_of([t for t in turned if t])
+    if len(turned) == 2 and turned[0] is None and turned[1] is not None:  # noqa: PLR2004
+        return sum_of([turned[1], negative(total.terms[0])])
+    return None
 
 
 def _gathered(terms: Sequence[Expression]) -> Sequence[Expression]:
@@ -267,12 +304,25 @@ def _joined(factors: Sequence[Expression]) -> Sequence[Expression]:
         factors = (of_powers(*powers_of(product_of(factors))),)
     decays = [f for f in factors if isinstance(f, Call) and f.name == "exp"]
     times = [powers_of(f.argument) for f in decays]
-    if len(decays) < 2 or not all(front < 0 and powers.pop(S, 0) == 1 for front, powers in times):  # noqa: PLR2004
+    if len(decays) < 2:  # noqa: PLR2004
         return factors
-    numbers = number(-sum((front for front, powers in times if not powers), start=Fraction(0)))
-    total = sum_of([*(of_powers(-front, powers) for front, powers in times if powers), numbers])
-    merged = Call("exp", negative(product_of([total, S])))
-    return [merged if f is decays[0] else f for f in factors if f is decays[0] or f not in decays]
+    if all(front < 0 and powers.get(S) == 1 for front, powers in times):
+        for _, powers in times:
+            del powers[S]
+        numbers = number(-sum((front for front, powers in times if not powers), start=Fraction(0)))
+        total = sum_of([*(of_powers(-front, powers) for front, powers in times if powers), numbers])
+        merged: list[Expression] = [Call("exp", negative(product_of([total, S])))]
+    else:  # those of one wave, which cancel where they travel opposite ways
+        fronts: dict[frozenset[tuple[Expression, int]], Fraction] = {}
+        for front, powers in times:
+            wave = frozenset(powers.items())
+            fronts[wave] = fronts.get(wave, Fraction(0)) + front
+        if len(fronts) == len(decays):
+            return factors
+        alike = {frozenset(powers.items()): powers for _, powers in times}
+        merged = [Call("exp", of_powers(x, alike[wave])) for wave, x in fronts.items() if x]
+    first = factors.index(decays[0])
+    return [*factors[:first], *merged, *(f for f in factors[first:] if f not in decays)]
 
 
 def _in_ratios(num: Expression, den: Expression) -> tuple[Expression, Expression]:

@@ -8,6 +8,7 @@ about their degree over the prime, 1e-16. Entries of a fundamental matrix are ra
 
 from __future__ import annotations
 
+from itertools import combinations
 from random import Random
 
 from sympy.ntheory import sqrt_mod
@@ -97,6 +98,12 @@ class Point:
                 argument = values[kernel.wavenumber] * length
             self._learn(argument, circular=kernel.dispersion.kind == "bending")
             values[kernel.generator] = self._function(kernel.function, argument)
+        halves = {}
+        for k in (k for k in tf.kernels.kernels if k.wavenumber):
+            half = values[k.wavenumber] * self._product(k.length, values) * inverse(2) % PRIME
+            halves.setdefault(k.wavenumber, {})[half] = k.dispersion.kind == "bending"
+        for own in halves.values():
+            self._learn_sums(list(own), circular=any(own.values()))
         return self._product(tf.ratio, values)
 
     def _learn(self, argument, *, circular):
@@ -109,6 +116,17 @@ class Point:
             for b in range(-REACH, REACH + 1) if circular else (0,):
                 key = (a + b * UNIT) * half % PRIME
                 self._exponentials[key] = pow(e, a, PRIME) * pow(z, b, PRIME) % PRIME
+
+    def _learn_sums(self, halves, *, circular):
+        """Know the exponentials of sums of arguments, which forms may be written in."""
+        for n in range(2, min(len(halves), 4) + 1):
+            for parts in combinations(halves, n):
+                for a in range(-REACH, REACH + 1):
+                    for b in range(-REACH, REACH + 1) if circular else (0,):
+                        turn, value = a + b * UNIT, 1
+                        for half in parts:
+                            value = value * self._exponentials[turn * half % PRIME] % PRIME
+                        self._exponentials.setdefault(turn * sum(parts) % PRIME, value)
 
     def _exp(self, argument):
         if argument % PRIME not in self._exponentials:  # of a parameter

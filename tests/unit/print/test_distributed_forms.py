@@ -526,3 +526,19 @@ Y = "m"
     form, hidden = with_hidden(tf, print_form(tf))
     assert format_expression(hidden[0][0]) == "cosh(q/2)*sinh(q/2) - cos(q/2)*sin(q/2)"
     assert [name for name, _ in form.where] == ["q", "mu", "a_1", "A", "I"]
+
+
+def test_a_member_cut_at_a_node_prints_with_its_whole_length():
+    # Green's function of a string, Morse & Ingard 1968, section 4.2
+    model = pipeline.loads("""
+        symflex = 1
+        parameters = { N = {}, m = {}, l = {}, a = {}, p = {} }
+        inputs.F.force = "x"
+        outputs.Y = "left.y(p)"
+        [elements]
+        left = { type = "string", between = ["ground", "x"], N = "N", rhoA = "m", l = "a" }
+        right = { type = "string", between = ["x", "ground"], N = "N", rhoA = "m", l = "l - a" }
+    """)
+    (tf,) = pipeline.derive_all(model)
+    assert shown(tf) == ("sinh(q_1)*sinh(q_2)", "N*gamma*sinh(q_3)")
+    assert lines(tf, None)[:3] == ["q_1 = gamma*(l - a)", "q_2 = gamma*p", "q_3 = gamma*l"]

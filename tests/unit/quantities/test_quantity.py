@@ -167,7 +167,7 @@ def test_an_unknown_unit_is_SF201():
         "3 sec",
         "3 qwerty",
         "2 kgg",
-        "5 m2",
+        "5 m5",
         "3 \u043a\u0433",
         "3 \u00b0C",
         "2 pi",
