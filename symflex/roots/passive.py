@@ -226,7 +226,9 @@ class _Structure:
         shares = [
             found[v] / found[effort] * sign for v, sign in zip(ends, (1, -1), strict=False) if v in found
         ]
-        if len(shares) != sum(v is not None for v in ends) or any(not (x - shares[0]).is_zero for x in shares):
+        if len(shares) != sum(v is not None for v in ends) or any(
+            not (x - shares[0]).is_zero for x in shares
+        ):
             return None
         law, below = self._powers(shares[0].numerator()), self._powers(shares[0].denominator())
         if law is None or below is None or below.keys() != {(0, 0)}:

@@ -132,7 +132,7 @@ class _Signs:
             case Product(factors):
                 return self._rejoined(product_of(_joined(factors)))
             case Call("exp", argument) if any(isinstance(n, Product) for n in nodes(argument)):
-                return replace(part, argument=min(argument, of_powers(*powers_of(argument)), key=_length))
+                return replace(part, argument=min(argument, of_powers(*powers_of(argument)), key=length))
             case Call("sqrt", Negative(Sum(terms))):
                 return replace(part, argument=sum_of(_led([negative(t) for t in terms])))
         return part
