@@ -79,8 +79,10 @@ class LazyGroup(click.Group):
         name = args[0]
         if name not in COMMANDS and not name.startswith("-"):
             from symflex.errors.diagnostic import nearest  # most commands go well
+            from symflex.model.analysis import FIGURE_KINDS
 
-            hint = GONE if name == "cache" else nearest(name, COMMANDS)
+            figure = f"a figure is drawn by: symflex plot SPEC {name}"
+            hint = GONE if name == "cache" else figure if name in FIGURE_KINDS else nearest(name, COMMANDS)
             ctx.fail(f"No such command '{name}'." + (f" {hint[0].upper()}{hint[1:]}" if hint else ""))
         return super().resolve_command(ctx, args)
 

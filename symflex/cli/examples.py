@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import filecmp
 import os
 import textwrap
 import tomllib
@@ -79,15 +80,15 @@ def copy(name: str, folder: str | None) -> int:
     NAME is a folder or a model of the list, such as eppinger1988, eppinger1988/two_mass or two_mass. A folder
     is copied with all that is in it, by default into a folder of its name. A model is copied with the models
     and data that it needs, by default into the current folder. FOLDER is made if it does not exist, and no
-    existing file is overwritten.
+    other file that exists is overwritten.
     """
     from symflex.files.write import write_tree  # a list writes nothing
 
     path = find_example(name)
     target = Path(folder or (path.name if path.is_dir() else "."))
     files = _all_in(path) if path.is_dir() else _needed_by(path)
-    for inside in files:
-        if os.path.lexists(target / inside):
+    for inside, file in files.items():
+        if os.path.lexists(target / inside) and not _is_the_same(target / inside, file):
             message, hint = f"'{target / inside}' exists and is not overwritten", "name another FOLDER"
             raise UsageError(Diagnostic("SF903", message, None, hint))
     write_tree(target, {inside: file.read_bytes() for inside, file in files.items()})
@@ -97,6 +98,14 @@ def copy(name: str, folder: str | None) -> int:
     others = f", {len(files)} files" if path.is_dir() else others
     note(f"wrote {first}{others}; try: symflex {tries} {first}")
     return 0
+
+
+def _is_the_same(there: Path, file: Path) -> bool:
+    return (
+        there.is_file()
+        and there.stat().st_size == file.stat().st_size
+        and filecmp.cmp(there, file, shallow=False)
+    )
 
 
 def _all_in(folder: Path) -> dict[str, Path]:

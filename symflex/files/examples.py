@@ -57,6 +57,18 @@ def title_of(name: str, path: Path) -> str:
     return str(tomllib.loads(path.read_text(encoding="utf-8")).get("title", path.stem))
 
 
+def example_of(path: str) -> str | None:
+    """Return the name of the example whose file a path seems to mean; ``None`` if there is none.
+
+    Examples
+    --------
+    >>> example_of("derivations/classics/quarter_car.toml"), example_of("my_car.toml")
+    ('quarter_car', None)
+    """
+    name = Path(path).stem
+    return next((name for known in examples() if known.rpartition("/")[2] == name), None)
+
+
 def find_example(name: str) -> Path:
     """Return the path of an example by its name, or by the last part of it.
 

@@ -24,6 +24,8 @@ _CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f]")
 _ESCAPE = re.compile(r"\\(?![btnfr\"\\uU])")
 _STRING_OR_COMMENT = re.compile(r"""("(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')|\#[^\n]*+""")
 _INLINE_COMMENT = re.compile(r"[ \t]*+\#[^\n]*+$")
+FOREIGN_COMMENTS = ("%", "//", ";", "--", "/*")
+"""How comments begin in MATLAB, C, Lua and files of settings."""
 _SHOWN = 40
 
 
@@ -155,7 +157,8 @@ def _bad_key(source: Source, text: str, statement: Statement) -> Diagnostic:
     else:
         found = _INLINE_COMMENT.sub("", found.partition("\n")[0]).rstrip()
         message = f"{_shown(found)} is neither key = value nor a [table]"
-        hint = "write '=' between key and value"
+        is_comment = found.startswith(FOREIGN_COMMENTS)
+        hint = "a comment begins with '#'" if is_comment else "write '=' between key and value"
     width = max(1, len(found.partition("\n")[0]))
     return Diagnostic("SF101", message, Span(source, statement.start, statement.start + width), hint)
 

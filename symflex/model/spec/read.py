@@ -8,6 +8,7 @@ import stat
 from typing import TYPE_CHECKING, Final
 
 from symflex.errors import Diagnostic, Source, Span, SpecError, UsageError
+from symflex.files.examples import example_of
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -44,7 +45,7 @@ def read_file(name: str, limit: int) -> bytes:
     try:
         return read_bytes(name, limit)
     except OSError as error:
-        raise _unreadable(name, error.strerror or "input/output error") from None
+        raise _unreadable(name, error.strerror or "input/output error", example_of(name)) from None
     except ValueError:
         raise _unreadable(name, "the name contains a character that file names cannot have") from None
 
@@ -67,8 +68,9 @@ def read_bytes(name: str, limit: int) -> bytes:
         return file.read(limit + 1)
 
 
-def _unreadable(name: str, reason: str) -> UsageError:
-    return UsageError(Diagnostic("SF901", f"cannot read '{name}': {reason}"))
+def _unreadable(name: str, reason: str, example: str | None = None) -> UsageError:
+    hint = None if example is None else f"'symflex examples copy {example}' writes a model of this name"
+    return UsageError(Diagnostic("SF901", f"cannot read '{name}': {reason}", None, hint))
 
 
 def _not_utf8(name: str, data: bytes, offset: int) -> Diagnostic:

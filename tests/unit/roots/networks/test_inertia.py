@@ -44,6 +44,15 @@ def test_as_many_pivots_are_negative_as_eigenvalues():
         assert found.negative == np.sum(values < 0), (constraints, seed)
 
 
+def test_pairs_are_eliminated_where_nothing_stands_on_the_diagonal():
+    for seed in range(24):
+        matrix = random_matrix(seed, size=6)
+        np.fill_diagonal(matrix, 0)
+        values = np.linalg.eigvalsh(matrix)
+        if np.min(np.abs(values)) > 1e-9:
+            assert pivots(sparse(matrix), range(6)).negative == np.sum(values < 0), seed
+
+
 def test_the_pivots_product_is_the_determinant():
     for seed in range(6):
         matrix = random_matrix(seed, constraints=3)
