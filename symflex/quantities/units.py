@@ -309,8 +309,8 @@ def unit_hint(symbol: str) -> str | None:
 
     Examples
     --------
-    >>> unit_hint("KN"), unit_hint("Nm"), unit_hint("kgm2")
-    ("did you mean 'kN'?", "did you mean 'N*m'?", "did you mean 'kg*m^2'?")
+    >>> unit_hint("KN"), unit_hint("kgmm")
+    ("did you mean 'kN'?", "did you mean 'kg*mm'?")
     """
     if symbol in _INSTEAD:
         return _INSTEAD[symbol]

@@ -77,7 +77,7 @@ def test_a_long_chain_of_lines_is_answered():
 
 
 def test_a_name_with_a_mistake_of_its_own_is_not_called_unknown():
-    text = MODEL.replace("8 N/m", "8 Nm/m") + 'expr = "1/k"\n'
+    text = MODEL.replace("8 N/m", "8 Nq/m") + 'expr = "1/k"\n'
     with pytest.raises(SpecError) as caught:
         load_model(Source("spec.toml", text))
     assert [d.code for d in caught.value.diagnostics] == ["SF201"]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from symflex import pipeline
 from symflex.budget import Budget
 from symflex.model import with_numbers
+from symflex.model.signs import is_passive
 from symflex.roots.networks.counting import Counter
 from symflex.roots.networks.network import network_of
 from symflex.roots.networks.poles_zeros import locate_in_network
@@ -39,8 +40,10 @@ def located(text, region=None, digits=12, output="X", source="F"):
     """Return poles and zeros."""
     pair = (output, source)
     where = region or Modes(4)
+    equations = equations_of(text)
+    proof = "passive" if is_passive(equations.model) else ""
     return locate_in_network(
-        equations_of(text), "/".join(pair), pair, where, digits, Budget(), is_default=False
+        equations, "/".join(pair), pair, where, digits, Budget(), is_default=False, proof=proof
     )
 
 
