@@ -11,6 +11,7 @@ Here 1/C and G are polynomials ``k + c s + m s^2`` without negative coefficients
 and so is what holds an end; over s their real parts are not negative where that of s is positive (Anderson &
 Vongpanitlerd 1973, Network Analysis and Synthesis, chapter 2). The same is true of ``s^2 C`` and ``s^2/G``.
 Where ``v' = -(R + L s) i`` and ``i' = -(G + C s) v`` the charge ``i/s`` is a displacement and v its force.
+Where a layer couples displacements G is a symmetric matrix with semidefinite coefficients of 1, s and s^2.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ from symflex.roots import precision
 from symflex.transfer.balls import evaluated
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from symflex.equations import Continuum, Equations
     from symflex.expressions import Call
@@ -42,6 +43,8 @@ if TYPE_CHECKING:
 BITS = 128
 MOST_STATES = 6
 """Of a field, whose displacements and forces are told by trial."""
+MOST_TOGETHER = 4
+"""Displacements that are coupled, whose energies take a determinant for each choice of some of them."""
 INERTIA = 2
 """The power of s of a mass."""
 LINE = 2
@@ -92,32 +95,35 @@ class _Fields:
 
     def _paired(self, field: Continuum) -> Iterator[_Paired]:
         """Yield the pairs of a field with which it is passive: its energy may be written in several ways."""
-        n = len(field.system.states)
-        if n % 2 or n > MOST_STATES:
+        if len(field.system.states) % 2:
             return
-        for matrix, states in _canonical(field):
-            for chosen in combinations(range(n), n // 2):
-                others = [i for i in range(n) if i not in chosen]
-                for forces, signs in product(permutations(others), product((1, -1), repeat=n // 2)):
-                    pairs = tuple(zip(chosen, forces, signs, strict=True))
-                    if (
-                        _is_reciprocal(matrix, pairs)
-                        and _begins_without_force(field, pairs)
-                        and self._supplies_nothing(field, matrix, pairs)
-                    ):
-                        yield _Paired(field, states, pairs)
+        for matrix, states, known in _canonical(field):
+            for pairs in _pairings(len(matrix)) if known is None else known:
+                if (
+                    _is_reciprocal(matrix, pairs)
+                    and _begins_without_force(field, pairs)
+                    and self._supplies_nothing(field, matrix, pairs)
+                ):
+                    yield _Paired(field, states, pairs)
 
-    def _supplies_nothing(self, field: Continuum, matrix: Matrix, pairs: Iterable[Pair]) -> bool:
+    def _supplies_nothing(self, field: Continuum, matrix: Matrix, pairs: Sequence[Pair]) -> bool:
         """Tell whether what is stored and lost along a field is not negative, and zero only at rest."""
         resting = set[int]()
         for q, p, sign in pairs:
-            give, hold = matrix[q][p] * sign, matrix[p][q] * sign
-            for state, value in ((p, give if give.is_zero else 1 / give), (q, hold)):
-                powers = set[int]() if value.is_zero else self._stored(value, field)
-                if powers is None:
-                    return False
-                if powers:
-                    resting.add(state)
+            give = matrix[q][p] * sign
+            powers = set[int]() if give.is_zero else self._stored(1 / give, field)
+            if powers is None:
+                return False
+            if powers:
+                resting.add(p)
+        for group in _joined(len(pairs), lambda i, j: not matrix[pairs[i][1]][pairs[j][0]].is_zero):
+            together = [pairs[i] for i in group]
+            held = [[matrix[p][q] * sign for q, _, _ in together] for _, p, sign in together]
+            powers = self._held(held, field)
+            if powers is None:
+                return False
+            if powers:
+                resting |= {q for q, _, _ in together}
         # A state at rest has no slope; if that is made of one other state alone, it rests, too.
         size = range(len(matrix))
         while True:
@@ -126,6 +132,28 @@ class _Fields:
             if not more:
                 return len(resting) == len(matrix)
             resting |= more
+
+    def _held(self, held: Matrix, field: Continuum | None) -> set[int] | None:
+        """Return the powers of s whose energy holds all displacements, ``None`` where one may be negative."""
+        own = held[0][0]
+        if len(held) == 1:
+            return set() if own.is_zero else self._stored(own, field) if field else self._powers(own, None)
+        parts = [[_coefficients(value) for value in row] for row in held]
+        if len(held) > MOST_TOGETHER or any(part is None for row in parts for part in row):
+            return None
+        powers = {power for row in parts for part in row for power in part or ()}
+        if max(powers, default=0) > INERTIA:
+            return None
+        definite, size = set[int](), range(len(held))
+        for power in powers:
+            matrix = [[(part or {}).get(power, own * 0) for part in row] for row in parts]
+            for chosen in chain.from_iterable(combinations(size, n + 1) for n in size):
+                minor = _determinant([[matrix[i][j] for j in chosen] for i in chosen])
+                if not minor.is_zero and self._sign(minor, field) != 1:
+                    return None
+                if not minor.is_zero and len(chosen) == len(held):
+                    definite.add(power)
+        return definite
 
     def _ends_are_passive(self, fields: Sequence[_Paired]) -> bool:
         """Tell whether no energy comes in at the ends, if all inputs rest."""
@@ -138,9 +166,9 @@ class _Fields:
         for each, _, place, given in ends:
             rows = [[_at(x, place) for x in row] for row in each.states]
             states.append([_reduced(LinearForm.of(*zip(given, row, strict=True)), known) for row in rows])
-        moved = [free[q] for (each, *_), free in zip(ends, states, strict=True) for q, _, _ in each.pairs]
+        shifts = [free[q] for (each, *_), free in zip(ends, states, strict=True) for q, _, _ in each.pairs]
         # What moves with a velocity v is q = v/s: it is v/s that is free.
-        slow = {v: _laplace(c) for form in moved for v, c in form.items() if _is_over_s(c)}
+        slow = {v: _laplace(c) for form in shifts for v, c in form.items() if _is_over_s(c)}
         supplied: dict[tuple[Variable, Variable], Factored] = {}
         for (each, side, _, _), unscaled in zip(ends, states, strict=True):
             free = [{v: c * slow[v] if v in slow else c for v, c in form.items()} for form in unscaled]
@@ -150,9 +178,14 @@ class _Fields:
                 for (one, a), (other, b) in product(free[q].items(), free[p].items()):
                     work = a * b * (side * sign)
                     supplied[one, other] = supplied.get((one, other), work * 0) + work
+        drawn = {both: -work for both, work in supplied.items() if not work.is_zero}
+        if any((j, i) not in drawn or not (drawn[j, i] - work).is_zero for (i, j), work in drawn.items()):
+            return False
+        moved = list(dict.fromkeys(one for one, _ in drawn))
+        works = [[drawn.get((one, other), fields[0].field.start * 0) for other in moved] for one in moved]
         return all(
-            work.is_zero or (one == other and self._powers(-work, None) is not None)
-            for (one, other), work in supplied.items()
+            self._held([[works[i][j] for j in group] for i in group], None) is not None
+            for group in _joined(len(moved), lambda i, j: not works[i][j].is_zero)
         )
 
     def _eliminated(self, forces: set[Variable]) -> dict[Variable, Terms] | None:
@@ -185,14 +218,10 @@ class _Fields:
 
     def _powers(self, value: Factored, field: Continuum | None) -> set[int] | None:
         """Return the powers of s in a value, ``None`` where one of them may have a negative coefficient."""
-        ring = value.ring
-        moving = value.filter(lambda factor: degree_in(factor, 0) > 0)
-        if not moving.denominator().is_one:
+        parts = _coefficients(value)
+        if parts is None or max(parts, default=0) > INERTIA:
             return None
-        rest = value / moving
-        parts = by_powers(ring, moving.expand())
-        signs = (self._sign(Factored.polynomial(ring, part) * rest, field) for part in parts.values())
-        return set(parts) if max(parts) <= INERTIA and all(sign == 1 for sign in signs) else None
+        return set(parts) if all(self._sign(part, field) == 1 for part in parts.values()) else None
 
     def _sign(self, value: Factored, field: Continuum | None) -> int | None:
         """Return the sign of a value all along a field, but for its ends; ``None`` where it is not told."""
@@ -243,26 +272,75 @@ class _Fields:
         return arb("nan") if found is None else found
 
 
-def _canonical(field: Continuum) -> Iterator[tuple[Matrix, Matrix]]:
-    """Yield equations of a field, and their states by its own: with forces for slopes, and as they are.
+def _canonical(field: Continuum) -> Iterator[tuple[Matrix, Matrix, Sequence[tuple[Pair, ...]] | None]]:
+    """Yield equations of a field and their states by its own, with forces for slopes and as they are.
 
-    Forces come first: where fields meet, it is their work that is the same on both sides.
+    Forces come first: where fields meet, it is their work that is the same on both sides. The third of each
+    are the pairs, None where these are to be found by trial.
     """
     matrix = [list(row) for row in field.system.matrix]
     n, zero = len(matrix), matrix[0][0] * 0
     unit = [[zero + int(i == j) for j in range(n)] for i in range(n)]
     # Finite solutions at a tip are told in the field's own states.
-    if None not in field.initial and n == BEAM and all(_is_slope(matrix, i) for i in range(n - 1)):
-        yield from _bent(matrix, unit)
-    elif None not in field.initial and all(_is_slope(matrix, i) for i in range(0, n, 2)):
-        yield from _stretched(matrix, unit)
-    yield matrix, unit
+    if None not in field.initial:
+        if n == BEAM and all(_is_slope(matrix, i) for i in range(n - 1)):
+            yield from ((*each, None) for each in _bent(matrix, unit))
+        elif all(_is_slope(matrix, i) for i in range(0, n, 2)):
+            m = n // 2
+            pairs = [tuple((i, m + i, sign) for i in range(m)) for sign in (1, -1)]
+            yield from ((*each, None if n <= MOST_STATES else pairs) for each in _stretched(matrix, unit))
+            yield from _beside(matrix, unit)
+    if n <= MOST_STATES:
+        yield matrix, unit, None
     if n == LINE:
         s = _laplace(zero)
         for i, j in ((0, 1), (1, 0)):  # a state over s: the charge of a current, the flux of a voltage
             rates = [list(row) for row in matrix]
             rates[i][j], rates[j][i] = matrix[i][j] / s, matrix[j][i] * s
-            yield rates, [[x / s for x in row] if k == i else row for k, row in enumerate(unit)]
+            yield rates, [[x / s for x in row] if k == i else row for k, row in enumerate(unit)], None
+
+
+def _pairings(n: int) -> Iterator[tuple[Pair, ...]]:
+    """Yield every way to tell n states into displacements and forces that do work on them."""
+    for chosen in combinations(range(n), n // 2):
+        others = [i for i in range(n) if i not in chosen]
+        for forces, signs in product(permutations(others), product((1, -1), repeat=n // 2)):
+            yield tuple(zip(chosen, forces, signs, strict=True))
+
+
+def _joined(n: int, is_joined: Callable[[int, int], bool]) -> Iterator[list[int]]:
+    """Yield which of n hang together."""
+    left = list(range(n))
+    while left:
+        group = [left.pop(0)]
+        for one in group:
+            more = [other for other in left if is_joined(one, other)]
+            group += more
+            left = [other for other in left if other not in more]
+        yield group
+
+
+def _determinant(matrix: Matrix) -> Factored:
+    """Return the determinant of a small matrix, by its first row."""
+    first, *rest = matrix
+    if not rest:
+        return first[0]
+    total = first[0] * 0
+    for j, x in enumerate(first):
+        total = total + x * _determinant([[*row[:j], *row[j + 1 :]] for row in rest]) * (-1) ** j
+    return total
+
+
+def _coefficients(value: Factored) -> dict[int, Factored] | None:
+    """Return the coefficients of a polynomial in s, ``None`` where a value is none."""
+    if value.is_zero:
+        return {}
+    moving = value.filter(lambda factor: degree_in(factor, 0) > 0)
+    if not moving.denominator().is_one:
+        return None
+    rest = value / moving
+    parts = by_powers(value.ring, moving.expand())
+    return {power: Factored.polynomial(value.ring, part) * rest for power, part in parts.items()}
 
 
 def _laplace(value: Factored) -> Factored:
@@ -340,10 +418,50 @@ def _stretched(matrix: Matrix, unit: Matrix) -> Iterator[tuple[Matrix, Matrix]]:
         yield rows, [*unit[::2], *forces]
 
 
+def _beside(matrix: Matrix, unit: Matrix) -> Iterator[tuple[Matrix, Matrix, Sequence[tuple[Pair, ...]]]]:
+    """Yield beams and strings side by side, each bent or stretched alone, which hold one another.
+
+    The states of a beam are w, its slope, the moment K w'' and the force that balances the loads; those of a
+    string are w and K w'.
+    """
+    n, zero = len(matrix), matrix[0][0] * 0
+    starts = [i for i in range(n) if i == 0 or not _is_slope(matrix, i - 1)]
+    orders = [end - start for start, end in zip(starts, [*starts[1:], n], strict=True)]
+    if len(starts) == 1 or not set(orders) <= {LINE, BEAM}:
+        return
+    rates, states = [[zero] * n for _ in range(n)], [list(row) for row in unit]
+    pairs, scale = list[Pair](), list[Factored]()
+    for i, order in zip(starts, orders, strict=True):
+        row = matrix[i + order - 1]
+        own = {*starts, i + 2} if order == BEAM else {*starts}
+        if row[i].is_zero or any(_moves(x) or not (x.is_zero or j in own) for j, x in enumerate(row)):
+            return
+        told = [
+            k * matrix[j + its - 1][i] / row[j] * (1 if its == order else -1)
+            for k, j, its in zip(scale, starts, orders, strict=False)
+            if not (row[j].is_zero or matrix[j + its - 1][i].is_zero)
+        ]
+        scale.append(next(iter(told), row[i].denominator()))
+        for j in starts:
+            rates[i + order - 1][j] = row[j] * scale[-1]
+        rates[i][i + 1] = 1 / scale[-1] if order == LINE else zero + 1
+        states[i + order - 1] = [x * scale[-1] for x in unit[i + order - 1]]
+        if order == LINE:
+            pairs.append((i, i + 1, 1))
+        else:
+            held = row[i + 2] * scale[-1]
+            rates[i + 1][i + 2], rates[i + 2][i + 1], rates[i + 2][i + 3] = 1 / scale[-1], held, zero + 1
+            states[i + 2] = [x * scale[-1] for x in unit[i + 2]]
+            states[i + 3][i + 1] = -held
+            pairs += [(i, i + 3, -1), (i + 1, i + 2, 1)]
+    yield rates, states, [tuple((q, p, sign * turned) for q, p, sign in pairs) for turned in (1, -1)]
+
+
 def _is_reciprocal(matrix: Matrix, pairs: Sequence[Pair]) -> bool:
     """Tell whether the work of pairs changes by nothing but squares of displacements and forces."""
     for (q, p, sign), (other, force, its) in product(pairs, repeat=2):
-        if q != other and not (matrix[q][force].is_zero and matrix[p][other].is_zero):
+        held = matrix[p][other] * sign - matrix[force][q] * its
+        if q != other and not (matrix[q][force].is_zero and held.is_zero):
             return False
         carried = matrix[q][other]
         if carried.depends_on(LAPLACE) or not (carried * sign + matrix[force][p] * its).is_zero:

@@ -510,6 +510,107 @@ def test_some_of_these_have_poles_in_the_right_half_plane():
         assert any(root.re > 0 for root in pipeline.roots(bound, Modes(2), 12).poles), name
 
 
+COUPLED = """
+[fields.w]
+unknowns = UNKNOWNS
+domain = ["0", "l"]
+equations = EQUATIONS
+conditions = CONDITIONS
+[outputs]
+y = "u'(l)"
+"""
+LAYER = ["T*u'' - k/l*(u - h) = rhoA*s^2*u", "2*T*h'' - (k/l)*(h - u) = rhoA*s^2*h"]
+ENDS = ["u(0) = 0", "h(0) = 0"]
+LOOSE = [*ENDS, "T*u'(l) = F", "h'(l) = 0"]
+TIED = [*ENDS, "T*u'(l) + k*(u(l) - h(l)) = F", "2*T*h'(l) + k*(h(l) - u(l)) = 0"]
+BOTH_PINNED = ["u(0) = 0", "u''(0) = 0", "u(l) = 0", "EI*u''(l) = F*l"]
+BOTH_PINNED += ["h(0) = 0", "h''(0) = 0", "h(l) = 0", "h''(l) = 0"]
+SANDWICH = ["EI*u'''' + rhoA*s^2*u + k/l*(u - h) = 0", "EI*h'''' + rhoA*s^2*h + k/l*(h - u) = 0"]
+TOGETHER = {
+    "strings": (LAYER, TIED),
+    "strings and a layer that is lossy": ([x.replace("k/l", "(k/l + c*s)") for x in LAYER], TIED),
+    "three strings": (
+        [
+            "T*u'' - k/l*(u - h) = rhoA*s^2*u",
+            "T*h'' - k/l*(2*h - u - z) = rhoA*s^2*h",
+            "T*z'' - k/l*(z - h) = rhoA*s^2*z",
+        ],
+        [*LOOSE, "z(0) = 0", "z'(l) = 0"],
+    ),
+    "beams": (SANDWICH, BOTH_PINNED),
+    "beams of which one is pulled": ([SANDWICH[0].replace(" = 0", " - T*u'' = 0"), SANDWICH[1]], BOTH_PINNED),
+    "a beam and a string": (
+        ["EI*u'''' + rhoA*s^2*u + k*(u - h)/l = 0", "T*h'' = rhoA*s^2*h + k*(h - u)/l"],
+        ["u(0) = 0", "u'(0) = 0", "u''(l) = 0", "EI*u'''(l) = -F", "h(0) = 0", "h(l) = 0"],
+    ),
+    "beams that shear": (
+        [
+            "kGA*(u'' - a') = rhoA*s^2*u + k/l*(u - h)",
+            "EI*a'' + kGA*(u' - a) = J*s^2*a",
+            "kGA*(h'' - b') = rhoA*s^2*h + k/l*(h - u)",
+            "EI*b'' + kGA*(h' - b) = J*s^2*b",
+        ],
+        [
+            *ENDS,
+            "a(0) = 0",
+            "b(0) = 0",
+            "kGA*(u'(l) - a(l)) = F",
+            "a'(l) = 0",
+            "h'(l) - b(l) = 0",
+            "b'(l) = 0",
+        ],
+    ),
+    "strings with a mass of both": (["T*u'' = 2*rhoA*s^2*u + rhoA*s^2*h", "T*h'' = rhoA*s^2*(u + h)"], LOOSE),
+}
+APART = {
+    "a layer that pushes": ([x.replace("k/l", "-9*k/l") for x in LAYER], LOOSE),
+    "a layer without reaction": ([LAYER[0], "T*h'' = rhoA*s^2*h"], LOOSE),
+    "a layer that turns": ([LAYER[0], "T*h'' - k/l*(h + u) = rhoA*s^2*h"], LOOSE),
+    "a spring that pushes": (LAYER, [x.replace("k*", "-k*") for x in TIED]),
+    "a spring without reaction": (LAYER, [*TIED[:3], "h'(l) = 0"]),
+    "more mass of both than of each": (
+        ["T*u'' = rhoA*s^2*u + 2*rhoA*s^2*h", "T*h'' = rhoA*s^2*h + 2*rhoA*s^2*u"],
+        LOOSE,
+    ),
+    "columns": (
+        [x.replace(" = 0", f" + 9*T*{u}'' = 0") for x, u in zip(SANDWICH, "uh", strict=True)],
+        BOTH_PINNED,
+    ),
+}
+
+
+def together(equations, conditions):
+    text = HEAD + COUPLED
+    unknowns = [u for u in "uhzab" if any(f"{u}(0)" in each for each in conditions)]
+    for name, given in (("UNKNOWNS", unknowns), ("EQUATIONS", equations), ("CONDITIONS", conditions)):
+        text = text.replace(name, "[" + ", ".join(f'"{each}"' for each in given) + "]")
+    return pipeline.loads(text)
+
+
+@pytest.mark.slow
+def test_displacements_that_hold_one_another_share_their_energy():
+    for name, given in TOGETHER.items():
+        assert known(together(*given)), name
+
+
+@pytest.mark.slow
+def test_what_couples_displacements_may_supply_energy():
+    for name, given in APART.items():
+        assert not known(together(*given)), name
+
+
+@pytest.mark.slow
+def test_two_equal_beams_move_together_and_against_each_other():
+    # Sines: rhoA omega^2 is EI (n pi/l)^4 of motion together, and twice the layer's more against each other.
+    model = together(*TOGETHER["beams"])
+    (bound,) = pipeline.derive_bound(model, model.transfer_functions)
+    found = pipeline.roots(bound, Modes(2), 12)
+    bending = 2 * (pi / 1.2) ** 4
+    expected = [(bending / 1.5) ** 0.5, ((bending + 2 * 7 / 1.2) / 1.5) ** 0.5]
+    assert [float(p.im) for p in found.poles if p.im > 0] == pytest.approx(expected, rel=1e-10)
+    assert found.verdict.word == "marginal"
+
+
 SHEARS = """
 [fields.beam]
 unknowns = ["w", "phi"]
