@@ -250,10 +250,7 @@ def worst(name: str, target: str) -> float | None:
     """
     case = case_of(name)
     try:
-        found = [
-            case.references[tf.name].worst_of(values)
-            for tf, values in TARGETS[target](case)
-        ]
+        found = [case.references[tf.name].worst_of(values) for tf, values in TARGETS[target](case)]
     except ModelError:
         return None
     if not found:
