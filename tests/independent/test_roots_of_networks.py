@@ -32,7 +32,7 @@ def equations_of(network):
 
 def located(network, region, digits=15):
     return locate_in_network(
-        equations_of(network), "X/F", ("X", "F"), region, digits, Budget(), is_default=False
+        equations_of(network), "X/F", ("X", "F"), region, digits, Budget(), is_default=False, proof=""
     )
 
 
