@@ -21,8 +21,6 @@ from symflex.roots.functions.kernel_function import ROOM, angle
 from symflex.roots.precision import precision
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from symflex.roots.functions.kernel_function import KernelFunction
 
 
@@ -245,17 +243,7 @@ def _followed(series: LocalSeries, centre: acb, radius: arb, start: acb, end: ac
     here = series.around(centre, radius)
     if here is None or len(here[0]) < LEAST:
         return NOTHING
-    return turn_of(*here, radius, (start - centre, end - centre))
-
-
-def turn_of(
-    coefficients: Sequence[acb], missed: arb, radius: arb, ends: tuple[acb, acb]
-) -> tuple[float, arb]:
-    """Return a bound on how far the argument turns away from that of an exponential, and its turn.
-
-    ``coefficients`` are of the powers of the way from the middle of a disc, which holds a step between two
-    ``ends``, given likewise; in all of the disc they lack so much at most.
-    """
+    coefficients, missed = here
     growth = (coefficients[1] / coefficients[0]).mid()
     if not growth.is_finite():
         return NOTHING
@@ -283,7 +271,7 @@ def turn_of(
         # What was cut off would make the argument at the ends too blurred to add up.
         bound = max(BLURRED, bound)
     unsure = acb(arb(0, error), arb(0, error))
-    before, after = (acb_poly(flat)(place) + unsure for place in ends)
-    turn = (growth * (ends[1] - ends[0])).imag
+    ends = [acb_poly(flat)(place - centre) + unsure for place in (start, end)]
+    turn = (growth * (end - start)).imag
     # Both ends lie within a right angle of the middle.
-    return bound, turn + (after / first).arg() - (before / first).arg()
+    return bound, turn + (ends[1] / first).arg() - (ends[0] / first).arg()

@@ -14,10 +14,14 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb, ctx
 
-from symflex.roots.counting.winding import RootOnPathError
 from symflex.roots.networks.at_rest import order_at_zero
 from symflex.roots.networks.cramer import MOST_LOST, CramerEquations, CramerValue, EssentialSingularityError
-from symflex.roots.networks.disc_series import GUARD_BITS, DiscSeries, points_needed
+from symflex.roots.networks.disc_series import (
+    GUARD_BITS,
+    DiscSeries,
+    RootNearCircleError,
+    points_needed,
+)
 from symflex.roots.networks.members import UndecidedError
 from symflex.roots.precision import bits_for_digits
 from symflex.roots.root import Root, mirror_images
@@ -218,7 +222,7 @@ class DiscSearch:
         for _ in range(TRIES):
             try:
                 return self._sides(wide)
-            except RootOnPathError:
+            except RootNearCircleError:
                 wide *= WIDENED
             except EssentialSingularityError:
                 if wide == radius:
@@ -346,7 +350,7 @@ def _clusters(
         size = max(float(abs(g - guess).upper()) for g in near) * 4 + float(abs(guess).upper()) * 2.0**-30
         try:
             number = series.count_about(guess, size)
-        except RootOnPathError:
+        except RootNearCircleError:
             continue
         box = acb(arb(guess.real.mid(), size), arb(guess.imag.mid(), size))
         if number and abs(box) < 1 and not any(box.overlaps(b) for b, _ in (*boxes, *found)):

@@ -12,15 +12,14 @@ narrowed by values at points.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import ceil, log
+from math import ceil, exp, log, pi
 from typing import TYPE_CHECKING
 
-from flint import acb, acb_poly, arb, ctx
+from flint import acb, acb_poly, acb_series, arb, ctx
 
 from symflex.algebra.interval_newton import stays_inside
 from symflex.budget import spend
-from symflex.roots.counting.local_series import turn_of
-from symflex.roots.counting.winding import WIDENED, RootOnPathError, total_turn
+from symflex.transfer.balls import series_terms
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -28,15 +27,22 @@ if TYPE_CHECKING:
 GUARD_BITS = 64
 MOST_TIMES_BITS = 8
 """Of the precision of a series, that telling its roots apart may take."""
-FIRST_ARC, SMALLEST_ARC = 2.0**-5, 2.0**-13
-"""Steps on which the argument is followed, over a circle's length: the first, and the shortest."""
-FEWEST_TERMS = 24
-"""Of a series about a point of a circle."""
+SMALLEST_ARC = 2.0**-11
+"""Of a circle on which the argument is followed [rad]: below, a root is taken to lie on it."""
+BISECTIONS = 60
+SERIES_TERMS = 40
+"""Of the function about a point of a circle; what comes after is bounded."""
 LEFT_OUT = 8
 """Times what coefficients lack, that leaving some out may add: three bits of them."""
+WITHIN = 0.9
+"""Of the distance to 0, how far the function may move on a step."""
 WIDENINGS = 8
 FEWEST_POINTS = 8
 """Half of them, on a circle."""
+
+
+class RootNearCircleError(Exception):
+    """A root lies on the circle, or too close to it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,32 +105,64 @@ class DiscSeries:
     # -------------------------------------------------------------------------------------- counting
 
     def count(self) -> int:
-        """Return how many roots the disc holds: proved. RootOnPathError with one close to its edge."""
+        """Return how many roots the disc holds: proved. RootNearCircleError with one close to its edge."""
         # From one real value to another: half of the circle turns by a multiple of pi.
-        return self._turns(acb(0), 1.0, arb.pi)
+        return self._turns(acb(0), 1.0, pi, arb.pi)
 
     def count_about(self, centre: acb, size: float) -> int:
         """Return how many roots lie in a disc about a point, within the unit disc: proved."""
-        return self._turns(centre, size, lambda: 2 * arb.pi())
+        return self._turns(centre, size, 2 * pi, lambda: 2 * arb.pi())
 
-    def _turns(self, centre: acb, size: float, whole: Callable[[], arb]) -> int:
-        """Return how often the argument turns by an angle, on an arc of that angle about a point."""
+    def _turns(self, centre: acb, size: float, stop: float, unit: Callable[[], arb]) -> int:
+        """Follow the argument along a circle in steps on which the function stays close to an exponential."""
         with ctx.workprec(self.bits):
-
-            def point(t: float) -> acb:
-                return centre + size * acb(0, whole() * t).exp()
-
-            def change(start: float, end: float) -> tuple[float, arb]:
-                middle = point((start + end) / 2).mid()
-                local = self.about(middle)
-                local += [acb(0)] * (FEWEST_TERMS - len(local))
-                reach = (size * whole() * (end - start) / 2 * WIDENED).upper()
-                return turn_of(local, self.off, reach, (point(start) - middle, point(end) - middle))
-
-            number = (total_turn(change, FIRST_ARC, SMALLEST_ARC) / whole()).unique_fmpz()
+            angle, total = 0.0, arb(0)
+            before: tuple[acb, acb, acb] | None = None
+            while True:
+                spend()
+                point = centre + size * (acb(0, angle).exp() if angle < stop else _end(unit()))
+                local = self.about(point)
+                value = local[0] + ball_about_zero(self.off)
+                if before is not None:
+                    last, start, rate = before
+                    turn = rate * (point - start)
+                    total += turn.imag + (value / (last * turn.exp())).arg()
+                if angle >= stop:
+                    break
+                rate = (local[1] / local[0]).mid()
+                step = self._reach(local, value, rate) / size
+                if step < SMALLEST_ARC:
+                    raise RootNearCircleError
+                before, angle = (value, point, rate), min(angle + step, stop)
+            number = (total / unit()).unique_fmpz()
             if number is None:
-                raise RootOnPathError
+                raise RootNearCircleError
             return int(number)
+
+    def _reach(self, local: Sequence[acb], value: acb, rate: acb) -> float:
+        """Return how far about a point ``f(x + h) exp(-rate h)/f(x)`` stays closer to 1 than 1 is to 0."""
+        least = abs(value).abs_lower()
+        if not least > 0:
+            raise RootNearCircleError
+        plain = [float((abs(c) / least).abs_upper()) for c in local]
+        slope = float(abs(rate).abs_upper())
+        with series_terms(SERIES_TERMS):
+            decay = acb_series([0, -rate]).exp()
+            turned = [float((abs(c) / least).abs_upper()) for c in (acb_series(local) * decay).coeffs()[1:]]
+        off = float((self.off / least).abs_upper())
+        low, high = 0.0, 1.0
+        for _ in range(BISECTIONS):
+            middle = (low * high) ** 0.5 if low else high / 4
+            # Terms beyond the series are bounded on a circle four times as large (Cauchy).
+            wide = 4 * middle
+            beyond = _polynomial_at(plain, wide) * exp(min(slope * wide, 700.0)) * 4.0**-SERIES_TERMS * 4 / 3
+            total = (
+                _polynomial_at([0.0, *turned], middle) + off * (1 + exp(min(slope * middle, 700.0))) + beyond
+            )
+            low, high = (middle, high) if total < WITHIN else (low, middle)
+            if low and high < 1.1 * low:
+                break
+        return low
 
     # -------------------------------------------------------------------------------------- roots
 
@@ -170,6 +208,18 @@ class DiscSeries:
                     return box
                 reach = (reach * 4).abs_upper()
         return None
+
+
+def _end(unit: arb) -> acb:
+    """Return where a path round half a circle, or a whole one, ends."""
+    return acb(-1) if unit < 4 else acb(1)  # noqa: PLR2004  (between pi and 2 pi)
+
+
+def _polynomial_at(sizes: Sequence[float], x: float) -> float:
+    total = 0.0
+    for c in reversed(sizes):
+        total = total * x + c
+    return total
 
 
 def ball_about_zero(size: arb) -> acb:

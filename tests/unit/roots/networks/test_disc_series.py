@@ -7,8 +7,7 @@ from math import log, pi
 import pytest
 from flint import acb, arb, ctx
 
-from symflex.roots.counting.winding import RootOnPathError
-from symflex.roots.networks.disc_series import DiscSeries, points_needed
+from symflex.roots.networks.disc_series import DiscSeries, RootNearCircleError, points_needed
 
 BITS = 160
 
@@ -51,7 +50,7 @@ def test_roots_are_counted_with_their_multiplicities():
     assert hyperbolic_cosine().count() == 6
     assert series(lambda s: s**3 * (s - 2) ** 2 * (s + 20), 20.0).count() == 5
     assert series(lambda s: s * s * s.cosh(), 48.0).order_at_zero() == 2
-    with pytest.raises(RootOnPathError):
+    with pytest.raises(RootNearCircleError):
         series(lambda s: s - 10, 5.0).count()
 
 
