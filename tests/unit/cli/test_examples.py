@@ -64,6 +64,12 @@ def test_every_model_is_copied_with_what_it_needs(shell):
     assert nested == {"polynomial_resonance.toml", "rigid_body.toml", "synthetic_figure_3.csv"}
 
 
+def test_two_examples_share_a_file_they_both_need(shell):
+    for name in ("fitted_resonances", "polynomial_resonance"):
+        done = shell("examples", "copy", name)
+        assert (done.code, "rigid_body.toml" in done.err) == (0, True), name
+
+
 def test_an_existing_file_is_not_overwritten_and_nothing_else_is_written(shell):
     (shell.folder / "rigid_body.toml").write_text("mine")
     before = copied(shell)

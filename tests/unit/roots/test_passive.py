@@ -377,6 +377,7 @@ def test_a_source_between_two_nodes_is_a_spring_and_a_damper_by_what_moves_betwe
         assert (closed(members(turns.replace("FORCE", force))) is not None) is is_one, force
 
 
+@pytest.mark.slow
 def test_poles_of_a_network_are_left_of_the_axis_where_a_motor_in_a_joint_is_a_damper():
     (tf,) = pipeline.derive_bound(pipeline.load("derivations/frames/two_link_arm.toml"), [("theta_2", "tau")])
     verdict = pipeline.roots(tf, Modes(1)).verdict
