@@ -499,9 +499,7 @@ def unit_by_round_ends(lines: Real) -> str | None:
     >>> unit_by_round_ends(2 * np.pi * np.array([1.0, 50])), unit_by_round_ends(np.array([1.0, 50]))
     ('rad/s', 'Hz')
     """
-    ends = [
-        x for x in (lines[0], lines[1] if lines[0] == 0 else lines[0], lines[-1]) if x > 0 and np.isfinite(x)
-    ]
+    ends = [x for x in (*lines[: 2 if lines[0] == 0 else 1], lines[-1]) if x > 0 and np.isfinite(x)]
 
     def is_round(x: float) -> bool:
         return abs(float(f"{x:.2e}") - x) <= ROUND * abs(x)
