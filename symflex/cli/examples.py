@@ -101,11 +101,7 @@ def copy(name: str, folder: str | None) -> int:
 
 
 def _is_the_same(there: Path, file: Path) -> bool:
-    return (
-        there.is_file()
-        and there.stat().st_size == file.stat().st_size
-        and filecmp.cmp(there, file, shallow=False)
-    )
+    return there.is_file() and filecmp.cmp(there, file, shallow=False)
 
 
 def _all_in(folder: Path) -> dict[str, Path]:

@@ -66,7 +66,7 @@ def example_of(path: str) -> str | None:
     ('quarter_car', None)
     """
     name = Path(path).stem
-    return next((name for known in examples() if known.rpartition("/")[2] == name), None)
+    return name if any(known.rpartition("/")[2] == name for known in examples()) else None
 
 
 def find_example(name: str) -> Path:

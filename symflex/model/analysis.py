@@ -35,7 +35,7 @@ from symflex.model.model import (
 from symflex.model.scope import COMPARED_NAMES, LISTED_NAMES, RESERVED
 from symflex.model.signs import Line
 from symflex.model.spec import ArrayValue, BooleanValue, NumberValue, TableValue
-from symflex.quantities import unit_of
+from symflex.quantities import IMAGINARY_NAMES, unit_of
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -49,7 +49,6 @@ if TYPE_CHECKING:
 FIGURE_KINDS = ("bode", "poles_zeros", "nyquist", "locus", "modes", "step", "impulse")
 OF_A_LOOP = ("nyquist", "locus")
 IN_TIME = ("step", "impulse")
-IMAGINARY_UNITS = ("j", "i")
 MODES_LIMIT = 1_000_000
 DIGITS_LIMIT = 10_000
 PER_SECOND = unit_of("1/s").dimension
@@ -381,8 +380,8 @@ def _unknown(node: Name, known: Collection[str], readable: Readable) -> Diagnost
         return Diagnostic("SF212", message, node.span, hint)
     close = nearest(node.name, {*known, *readable.constants})
     hint = f"{close} else define it in 'where'" if close else "define it in 'where'"
-    if node.name in IMAGINARY_UNITS:
-        hint = "a printed formula holds s in place of j*omega: write -s^2 for omega^2"
+    if not close and node.name in IMAGINARY_NAMES:
+        hint = "define it in 'where'; if it is the imaginary unit, write s for j*omega and -s^2 for omega^2"
     return Diagnostic("SF210", f"unknown name '{node.name[:64]}' in a printed formula", node.span, hint)
 
 

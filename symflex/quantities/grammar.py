@@ -341,8 +341,8 @@ class _Evaluator:
         return _checked(Constant(base.magnitude**power, base.pi_power * power, base.start, exponent.end))
 
     def symbol(self, symbol: Token) -> PlacedUnit:
-        unit, together = unit_named(str(symbol)), run_together(str(symbol))
-        if unit is None and together:
+        unit = unit_named(str(symbol))
+        if unit is None and (together := run_together(str(symbol))):
             before, last = together
             return PlacedUnit(before * last, symbol.start, symbol.end, before=before)
         if unit is None:

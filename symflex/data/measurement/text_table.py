@@ -70,7 +70,7 @@ def decoded(name: str, data: bytes) -> tuple[str, tuple[str, ...]]:
         else:
             text = data.decode("utf-8")
     except UnicodeDecodeError:
-        # Of names in another alphabet no letter is right then, but their units may be.
+        # Every letter of a name in another alphabet is wrong then, but its unit may be right.
         text = data.decode("cp1252", "replace")
         guesses = ("the file is not UTF-8 and is read as Latin-1 (Windows-1252)",)
     text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n").rstrip("\x1a\n")

@@ -47,7 +47,10 @@ def definitions_form(tf: TransferFunction) -> PrintedForm:
 
 
 def _with_factor(part: Expression) -> Expression:
-    """Return a sum with what all its terms share in front: ``R*(C*s + 1)`` for ``R*C*s + R``."""
+    """Return a sum with what all its terms share in front: ``R*(C*s + 1)`` for ``R*C*s + R``.
+
+    In a product, what is no sum stands before the sums.
+    """
     if isinstance(part, Product):
         places = [n for n, f in enumerate(part.factors) if isinstance(f, Sum)] or [0]
         between = part.factors[places[0] : places[-1]]
