@@ -2,7 +2,7 @@
 
 Whatever can grow asks :func:`spend` in its loops. The command line enters one budget for all of a command,
 and so can Python: ``with Budget(seconds=10, memory=2 * GB).entered(): ...``. A search that shows what it
-proved until its time was over is given a budget besides.
+proved until its time was over enters a budget besides.
 """
 
 from __future__ import annotations
@@ -81,6 +81,7 @@ class Budget:
     memory: int | None = None
     _start: float = field(init=False, repr=False, compare=False)
     _look: float = field(init=False, repr=False, compare=False)
+    _outer: Budget | None = field(default=None, init=False, repr=False, compare=False)  # heeded as well
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "_start", self.clock())
@@ -109,6 +110,7 @@ class Budget:
 
     def _changed(self, part: Budget) -> Budget:
         object.__setattr__(part, "_start", self._start)
+        object.__setattr__(part, "_outer", self._outer)
         return part
 
     @property
@@ -123,20 +125,19 @@ class Budget:
 
     @property
     def is_timed(self) -> bool:
-        """Whether time is limited, here or in the entered budget."""
-        return self.seconds is not None or entered_budget().seconds is not None
+        """Whether time is limited."""
+        return self.seconds is not None or (self._outer is not None and self._outer.is_timed)
 
     def spend(self) -> None:
-        """Raise an error if time or memory is used up, here or in the entered budget.
+        """Raise an error if time or memory is used up.
 
         Raises
         ------
         BudgetError
             SF506 when the time is over, SF504 when the memory is used up.
         """
-        entered = _ENTERED.get()
-        if entered is not None and entered is not self:
-            entered.spend()
+        if self._outer is not None:
+            self._outer.spend()
         if self.seconds is None and self.memory is None:
             return
         now = self.clock()
@@ -156,6 +157,12 @@ class Budget:
             yield self
         finally:
             _ENTERED.reset(token)
+
+    def besides(self) -> Budget:
+        """Return this budget, to be entered while the one that is entered now is heeded as well."""
+        both = self._changed(replace(self))
+        object.__setattr__(both, "_outer", _ENTERED.get())
+        return both
 
 
 _ENTERED: ContextVar[Budget | None] = ContextVar("budget", default=None)

@@ -71,10 +71,8 @@ def loads(
     return load_with(Source(name, text), settings or {}, allow_outside=allow_outside)
 
 
-def roots(
-    bound: AnyBoundFunction, region: Region | None = None, digits: int = 15, budget: Budget | None = None
-) -> PoleZeroMap:
+def roots(bound: AnyBoundFunction, region: Region | None = None, digits: int = 15) -> PoleZeroMap:
     """Return poles, zeros and hidden modes, proved; see :func:`symflex.roots.locate.locate`."""
     from symflex.roots.locate import locate  # imports numpy
 
-    return locate(bound, region, digits, budget)
+    return locate(bound, region, digits)

@@ -30,7 +30,7 @@ import numpy as np
 import numpy.typing as npt
 from flint import acb
 
-from symflex.budget import entered_budget, spend
+from symflex.budget import spend
 from symflex.errors import Diagnostic, SymflexError, UncertifiedError, UsageError
 from symflex.model.loss_factors import check_causal
 from symflex.roots import Band, Certificate, Everything, PoleZeroMap
@@ -175,9 +175,9 @@ class _Walk:
         else:
             self.function = KernelFunction(bound, bound.ratio)
             sides = [KernelFunction(bound, part) for part in (bound.num, bound.den)]
-        self.start = min(Winding(f, entered_budget()).smallest(pi / 2 if f.is_even else pi) for f in sides)
+        self.start = min(Winding(f).smallest(pi / 2 if f.is_even else pi) for f in sides)
         """ln of a radius below the lowest pole and zero."""
-        self._winding = Winding(self.function, entered_budget())
+        self._winding = Winding(self.function)
 
     def reach_axis(self, start: float) -> tuple[Point, float]:
         """Return a point low on the axis, and the phase there."""
@@ -516,7 +516,7 @@ def roots_if_found(bound: AnyBoundFunction, band: Band | None = None) -> PoleZer
         problem = error.diagnostics[0]
         if problem.code not in WITHOUT_ROOTS:
             raise
-        certificate = Certificate("", False, 0, 0, problem.message, is_exceeded=True, code=problem.code)
+        certificate = Certificate("", 0, 0, problem.message, problem.code)
         return PoleZeroMap(bound.name, region or Everything(), (), (), (), certificate, is_infinite=True)
 
 

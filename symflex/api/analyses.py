@@ -223,7 +223,8 @@ class Analyses(Plotted):
 
     def _map(self, given: RootsOptions, budget: float | None) -> roots_room.PoleZeroMap:
         digits = 15 if given.digits is None else given.digits
-        return locate(self.bound, region_of(given), digits, budget_of(budget))
+        with budget_of(budget).besides().entered():
+            return locate(self.bound, region_of(given), digits)
 
     def pole_zero_map(
         self,
@@ -290,7 +291,8 @@ class Analyses(Plotted):
         from symflex.analysis.rational import find_residues  # not needed for roots
 
         region = region_of(RootsOptions(None, modes, mode, band))
-        return ResidueTable(Residue(r) for r in find_residues(self.bound, region, digits, budget_of(budget)))
+        with budget_of(budget).besides().entered():
+            return ResidueTable(Residue(r) for r in find_residues(self.bound, region, digits))
 
     def rational(
         self, modes: int | None = None, form: str = "product", *, band: tuple[float, float] | None = None

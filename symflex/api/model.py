@@ -313,7 +313,8 @@ class Model:
         from symflex.loops.of_model import stability  # imports numpy
 
         given = StabilityOptions(gain, limits, up_to_hz, digits)
-        return Stability(stability(self.resolved, given, values, budget_of(budget)))
+        with budget_of(budget).besides().entered():
+            return Stability(stability(self.resolved, given, values))
 
     def locus(
         self,

@@ -53,8 +53,8 @@ def roots(spec: Specification, given: RootsOptions) -> int:
         shown = given.digits or model.analysis.digits or 15
         is_explained = bool(given.sensitivity) or given.explain
         (bound,) = pipeline.derive_for_roots(model, [pair], is_explained=is_explained)
-    with ProgressBar() as bar:
-        found = pipeline.roots(bound, chosen, shown, entered_budget().told(bar))
+    with ProgressBar() as bar, entered_budget().told(bar).entered():
+        found = pipeline.roots(bound, chosen, shown)
     moved: tuple[RootDerivative, ...] = ()
     explained: ZeroExplanation | None = None
     wanted, is_over = bool(given.sensitivity), found.certificate.is_exceeded
@@ -135,8 +135,8 @@ def stability(spec: Specification, given: StabilityOptions) -> int:
     from symflex.loops.stability_map import stability_text
 
     model = spec.load()
-    with ProgressBar() as bar:
-        found = of_model.stability(model, given, budget=entered_budget().told(bar))
+    with ProgressBar() as bar, entered_budget().told(bar).entered():
+        found = of_model.stability(model, given)
     answer(given.as_json, found.to_json_dict, lambda: stability_text(found))
     return 0 if found.certified else 4
 

@@ -13,7 +13,6 @@ from matplotlib.font_manager import FontProperties
 from matplotlib.patches import Circle
 
 from symflex.analysis.response import adaptive_grid, default_band, grid_about, respond, roots_if_found
-from symflex.budget import entered_budget
 from symflex.figures.axes import (
     FREE,
     RIGHT_HALF_PLANE,
@@ -291,7 +290,7 @@ def draw_loop_gain(loop: AnyLoop, canvas: Canvas) -> Figure:
         curve, closed = _network_curve(loop, gain, canvas), closed_loop_roots(loop, gain)
     else:
         curve, closed = _curve(loop_gain(loop), canvas), roots_if_found(closed_loop(loop))
-        apart = poles_apart(loop.bound, loop.factors, entered_budget())
+        apart = poles_apart(loop.bound, loop.factors)
         closed = replace(closed, verdict=closed.verdict.beside(apart.verdict))
     return _draw_curves([curve], [label], canvas, f"closed loop {closed.verdict.headline}")
 

@@ -21,7 +21,6 @@ from symflex.transfer.transfer_function import HiddenFactor
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.budget import Budget
     from symflex.loops.loop import GainPolynomial
     from symflex.transfer import BoundTransferFunction
 
@@ -38,9 +37,7 @@ class PolesApart:
     axis: int = 0  # on the axis, those that input and output see
 
 
-def poles_apart(
-    bound: BoundTransferFunction, factors: Sequence[GainPolynomial], budget: Budget
-) -> PolesApart:
+def poles_apart(bound: BoundTransferFunction, factors: Sequence[GainPolynomial]) -> PolesApart:
     """Return where the roots of those factors lie that do not depend on the gain.
 
     ``bound`` carries their ring. What divides the others has no poles of its own.
@@ -69,7 +66,7 @@ def poles_apart(
         parts=None if is_plain else (one, den),
         is_of_model=False,
     )
-    found = locate(apart, None if is_plain else Modes(1), budget=budget)
+    found = locate(apart, None if is_plain else Modes(1))
     every = (*found.all_poles, *(h.root for h in found.hidden))
     on_axis = [r for r in found.poles if r.on_imaginary_axis]
     return PolesApart(found.verdict, count_right(every), sum(r.multiplicity for r in on_axis))

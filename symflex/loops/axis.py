@@ -18,7 +18,7 @@ from symflex.algebra import Factored
 from symflex.algebra.interval_newton import narrowed
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic, SymflexError
-from symflex.roots import Budget, precision
+from symflex.roots import precision
 from symflex.roots.counting.local_series import SERIES_POINTS, LocalSeries, local_series
 from symflex.roots.counting.winding import Winding
 from symflex.roots.functions.kernel_function import KernelFunction
@@ -59,13 +59,11 @@ def find_on_axis(
     is_excluded: Callable[[LoopValue], bool],
     limits: tuple[float, float],
     digits: int,
-    budget: Budget,
 ) -> AxisRoots:
     """Return the roots of a real function of A and B at ``s = j omega``, 0 < omega [rad/s] within limits.
 
     ``equation`` returns its value and its derivative in omega; ``is_excluded`` tells that roots among these
-    values are not asked for. The budget is spent by every interval: SF505, SF506 when there are too many, or
-    the time is over.
+    values are not asked for. SF505, SF506 when there are too many intervals, or the time is over.
     """
     low, high = limits
     pending: list[tuple[float, float]] = []
@@ -79,7 +77,7 @@ def find_on_axis(
     for _ in range(MOST_INTERVALS):
         if not pending:
             return AxisRoots(tuple(roots), _joined(undecided))
-        budget.spend()
+        spend()
         start, end = pending.pop()
         ball = _between(start, end)
         around, centre = function.on(ball, BITS)
@@ -229,7 +227,7 @@ class LoopAtOrigin:
         return parts[0] + arb(0, rest), parts[1] + arb(0, rest_over_omega)
 
 
-def loop_at_origin(function: LoopFunction, budget: Budget) -> LoopAtOrigin | None:
+def loop_at_origin(function: LoopFunction) -> LoopAtOrigin | None:
     """Return A and B near 0, ``None`` where their orders or series cannot be told."""
     ring = function.bound.ratio.ring
     orders, found = [], []
@@ -240,7 +238,7 @@ def loop_at_origin(function: LoopFunction, budget: Budget) -> LoopAtOrigin | Non
             order = part.order()
             if order is None or part.power != 1:
                 return None
-            lowest = Winding(part, budget).smallest(pi)
+            lowest = Winding(part).smallest(pi)
         except SymflexError:
             spend()
             return None

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
-from symflex.budget import Budget, entered_budget
+from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UsageError
 from symflex.loops.stability_map import hertz, real_json
 from symflex.roots import decimals, precision
@@ -113,7 +113,6 @@ def dynamic_colocation(
     phase: float = 10.0,
     magnitude: float = 1.0,
     limits: tuple[float, float] | None = None,
-    budget: Budget | None = None,
 ) -> DynamicColocation:
     """Return up to which frequency an output moves with a colocated one, from the same input.
 
@@ -144,7 +143,7 @@ def dynamic_colocation(
     for bound in (tip, joint):
         if bound.ratio.is_zero:
             raise ModelError(Diagnostic("SF402", f"{bound.name} is identically zero"))
-    search = _ColocationSearch(tip, joint, phase, magnitude, budget or entered_budget())
+    search = _ColocationSearch(tip, joint, phase, magnitude)
     edge, is_decided, begins, cause = search.first_exit(low, high)
     return DynamicColocation(
         tip.name, joint.name, phase, magnitude, (low, high), edge, is_decided, cause, begins
@@ -159,7 +158,6 @@ class _ColocationSearch:
     joint: BoundTransferFunction
     phase: float
     magnitude: float
-    budget: Budget
 
     def __post_init__(self) -> None:
         self._ratio = self._ratio_function()
@@ -196,7 +194,7 @@ class _ColocationSearch:
             for _ in range(MOST_INTERVALS):
                 if not pending:
                     return None, True, True, ""
-                self.budget.spend()
+                spend()
                 left, right = pending.pop()
                 ball = arb(left).union(arb(right))
                 state, cause = self._state(ball)

@@ -20,7 +20,7 @@ from symflex.errors import Diagnostic, UncertifiedError
 from symflex.loops.axis import AxisRoots, LoopAtOrigin, find_on_axis, loop_at_origin
 from symflex.loops.loop import GainPolynomial, LoopFunction, LoopValue
 from symflex.loops.stability_map import Crossing, PoleCount
-from symflex.roots import Budget, precision
+from symflex.roots import precision
 from symflex.roots.counting.winding import RootOnPathError
 from symflex.roots.distributed.far_out import Tail, right_tail
 from symflex.roots.distributed.side import Side
@@ -63,7 +63,6 @@ class DistributedFactors:
     factors: tuple[GainPolynomial, ...]
     limits: tuple[Fraction, Fraction]  # range of the gain
     up_to: float | None  # a frequency up to which to search where no end can be proved [rad/s]
-    budget: Budget  # of the search
     reasons: list[str] = field(default_factory=list)
     method: str = "argument principle"
 
@@ -176,7 +175,7 @@ class DistributedFactors:
 
         SF802 when a pole lies on the path of the count.
         """
-        side = Side(self.bound, self._product(gain), COUNT_DIGITS, self.budget)
+        side = Side(self.bound, self._product(gain), COUNT_DIGITS)
         zeros = sum(root.multiplicity for root in side.roots)
         if not all(root.certified for root in side.roots):
             self.reasons.append("poles next to s = 0 are counted as poles at 0")
@@ -233,7 +232,7 @@ class DistributedFactors:
     ) -> AxisRoots:
         """Return the roots of a real function along the axis between two frequencies."""
         low, high = limits
-        result = find_on_axis(function, equation, is_excluded, (low, high * 1.01), digits, self.budget)
+        result = find_on_axis(function, equation, is_excluded, (low, high * 1.01), digits)
         for gap in result.undecided:
             place = float((gap.mid() / (2 * arb.pi())).mid())
             self.reasons.append(f"it could not be decided whether poles cross the axis near {place:.6g} Hz")
@@ -241,7 +240,7 @@ class DistributedFactors:
 
     def next_to_zero(self, function: LoopFunction) -> tuple[float, LoopAtOrigin | None]:
         """Return a frequency [rad/s] within which no pole crosses the axis but at 0, as far as proved."""
-        origin = loop_at_origin(function, self.budget)
+        origin = loop_at_origin(function)
         if origin is None:
             self.reasons.append("the motion of poles next to s = 0 is not proved")
             return self.scale * NEXT_TO_ZERO, None

@@ -17,9 +17,9 @@ from typing import TYPE_CHECKING, Final
 from flint import acb, arb
 
 from symflex.algebra import degree_in
-from symflex.budget import Budget, entered_budget
+from symflex.budget import entered_budget, spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
-from symflex.loops.apart import PolesApart, poles_apart
+from symflex.loops.apart import poles_apart
 from symflex.loops.distributed import SHRINKINGS, DistributedFactors
 from symflex.loops.locus import closed_loop_roots
 from symflex.loops.loop import Loop, LoopFunction
@@ -63,7 +63,6 @@ def find_stable_gains(
     loop: AnyLoop,
     limits: Limits | None = None,
     digits: int = 15,
-    budget: Budget | None = None,
     up_to: float | None = None,
 ) -> StabilityMap:
     """Return for which gains a loop is stable, proved.
@@ -76,17 +75,17 @@ def find_stable_gains(
     SF803 a loop with kernels that is not a straight line in the gain, SF804 a range is needed, or is empty;
     SF505, SF506.
     """
-    budget = budget or entered_budget()
     if isinstance(loop, NetworkLoop):
-        return _at_nominal(loop, limits or (None, None), digits, budget, NETWORK)
-    lumped, along, (low, high) = _factors(loop, limits, up_to, budget)
+        return _at_nominal(loop, limits or (None, None), digits, NETWORK)
+    lumped, along, (low, high) = _factors(loop, limits, up_to)
     if along is not None and any(along.is_mirrored(function) for function in along.with_gain):
-        return _at_nominal(loop, (low, high), digits, budget, MIRRORED)
-    apart = _apart(loop, budget)
-    crossings = [c for factor in lumped for c in factor.crossings(digits + GUARD_DIGITS, budget)]
+        return _at_nominal(loop, (low, high), digits, MIRRORED)
+    # Poles that no gain moves, as far as they are roots of polynomials.
+    apart = poles_apart(loop.bound, _split(loop)[0])
+    crossings = [c for factor in lumped for c in factor.crossings(digits + GUARD_DIGITS)]
     if along is not None:
         crossings += along.crossings(digits + GUARD_DIGITS)
-    search = _GainSearch(lumped, along, (low, high), budget, PoleCount(apart.right, apart.axis))
+    search = _GainSearch(lumped, along, (low, high), PoleCount(apart.right, apart.axis))
     boundaries, intervals = search.between(crossings)
     nominal = loop.nominal
     reasons = [] if along is None else along.reasons
@@ -112,8 +111,8 @@ def find_stable_gains(
         is_passive=along is not None and along.passive is not None,
     )
     if nominal is not None and found.nominal_interval is None and along is None:
-        found = replace(found, at_nominal=closed_loop_roots(loop, nominal, budget=budget).verdict)
-    loop_gain = _loop_gain(loop, along, digits + GUARD_DIGITS, budget)
+        found = replace(found, at_nominal=closed_loop_roots(loop, nominal).verdict)
+    loop_gain = _loop_gain(loop, along, digits + GUARD_DIGITS)
     phase_margins: tuple[PhaseMargin, ...] = ()
     bandwidth = beyond = None
     if loop_gain is not None:
@@ -135,12 +134,12 @@ def find_stable_gains(
     )
 
 
-def _at_nominal(loop: AnyLoop, limits: Limits, digits: int, budget: Budget, reason: str) -> StabilityMap:
+def _at_nominal(loop: AnyLoop, limits: Limits, digits: int, reason: str) -> StabilityMap:
     """Return what is known where the range of the gain is not searched: whether its own value is stable."""
     verdict = None
     if loop.nominal is not None:
-        verdict = closed_loop_roots(loop, loop.nominal, budget=budget).verdict
-        budget.spend()  # a search that ends with its time returns what it proved, perhaps nothing
+        verdict = closed_loop_roots(loop, loop.nominal).verdict
+        spend()  # a search that ends with its time returns what it proved, perhaps nothing
     return StabilityMap(
         loop.gain.name,
         loop.gain.unit,
@@ -172,7 +171,7 @@ def _holds_smallest(
 
 
 def _factors(
-    loop: Loop, limits: Limits | None, up_to: float | None, budget: Budget
+    loop: Loop, limits: Limits | None, up_to: float | None
 ) -> tuple[list[LumpedFactor], DistributedFactors | None, Limits]:
     """Return the factors of polynomials, those of all else, and the range of the gain."""
     plain, mixed = _split(loop)
@@ -189,14 +188,9 @@ def _factors(
     lumped = [LumpedFactor.of(loop.bound, factor) for factor in plain]
     return (
         lumped,
-        DistributedFactors(loop.bound, loop.gain.name, mixed, (low, high), up_to, budget),
+        DistributedFactors(loop.bound, loop.gain.name, mixed, (low, high), up_to),
         (low, high),
     )
-
-
-def _apart(loop: Loop, budget: Budget) -> PolesApart:
-    """Return the poles that no gain moves, as far as they are roots of polynomials."""
-    return poles_apart(loop.bound, _split(loop)[0], budget)
 
 
 def _split(loop: Loop) -> tuple[tuple[GainPolynomial, ...], tuple[GainPolynomial, ...]]:
@@ -243,7 +237,6 @@ class _GainSearch:
     lumped: Sequence[LumpedFactor]
     along: DistributedFactors | None
     limits: Limits
-    budget: Budget
     apart: PoleCount  # of poles that no gain moves
 
     def __post_init__(self) -> None:
@@ -280,7 +273,9 @@ class _GainSearch:
         ends: list[arb | None] = [low, *gains, high]
         counts = []
         for i, (below, above) in enumerate(pairwise(ends)):
-            self.budget.progress.report(i / len(ends), f"poles counted in {i} of {len(ends) - 1} intervals")
+            entered_budget().progress.report(
+                i / len(ends), f"poles counted in {i} of {len(ends) - 1} intervals"
+            )
             counts.append(self._count(_sample(below, above)))
         boundaries, intervals = [], []
         start: arb | None = ends[0]
@@ -299,10 +294,10 @@ class _GainSearch:
         return tuple(boundaries), tuple(intervals)
 
     def _count(self, gain: Fraction) -> PoleCount:
-        self.budget.spend()
+        spend()
         total = self.apart
         for factor in self.lumped:
-            total = total + factor.count(gain, self.budget)
+            total = total + factor.count(gain)
         if self.along is not None:
             total = total + self.along.count(gain)
         return total
@@ -375,15 +370,15 @@ def _gain_margins(found: StabilityMap) -> tuple[GainMargin, ...]:
     return tuple(margins)
 
 
-def _loop_gain(loop: Loop, along: DistributedFactors | None, digits: int, budget: Budget) -> LoopGain | None:
+def _loop_gain(loop: Loop, along: DistributedFactors | None, digits: int) -> LoopGain | None:
     """Return the loop gain of a loop that is a straight line in its gain, and closed once."""
     with_gain = loop.with_gain
     if len(with_gain) != 1 or with_gain[0].degree != 1 or with_gain[0].multiplicity != 1:
         return None
     (factor,) = with_gain
     if along is not None and factor in along.factors:
-        return LoopGain(along.with_gain[0], along, digits, budget)
-    return LoopGain(LoopFunction.of(loop.bound, *factor.coefficients), None, digits, budget)
+        return LoopGain(along.with_gain[0], along, digits)
+    return LoopGain(LoopFunction.of(loop.bound, *factor.coefficients), None, digits)
 
 
 def _phase_margins(loop_gain: LoopGain, nominal: Fraction) -> tuple[PhaseMargin, ...]:
@@ -404,14 +399,13 @@ class LoopGain:
     function: LoopFunction  # A and B
     along: DistributedFactors | None  # whose factor this is; None of polynomials
     digits: int  # of frequencies
-    budget: Budget  # limits the search
 
     def crossovers(self, gain: Fraction) -> list[tuple[arb, acb]]:
         """Return the frequencies [rad/s] at which it is one in magnitude, ascending, and B/A there."""
         if self.along is not None:
             found = distributed_crossovers(self.along, gain, self.digits)
         else:
-            found = lumped_crossovers(self.function, gain, self.digits, self.budget)
+            found = lumped_crossovers(self.function, gain, self.digits)
         return sorted(found, key=lambda pair: float(pair[0].mid()))
 
     def ratio(self, omega: arb) -> acb:
@@ -422,9 +416,7 @@ class LoopGain:
             return ratio
 
 
-def lumped_crossovers(
-    function: LoopFunction, nominal: Fraction, digits: int, budget: Budget
-) -> list[tuple[arb, acb]]:
+def lumped_crossovers(function: LoopFunction, nominal: Fraction, digits: int) -> list[tuple[arb, acb]]:
     """Return the frequencies [rad/s] at which ``abs(A) = abs(K B)``, and B/A there.
 
     ``A(s) A(-s) - K^2 B(s) B(-s)`` is even in s; its roots on the imaginary axis are these frequencies.
@@ -436,7 +428,7 @@ def lumped_crossovers(
     if squared.is_zero():
         return []
     problem, found = problem_of(function.bound, [(squared, 1)]), []
-    for root in find_polynomial_roots(problem, digits, budget=budget):
+    for root in find_polynomial_roots(problem, digits):
         if root.on_imaginary_axis and root.im > 0:
             bits = 2 * root.working_bits()
             around, _ = function.on(root.im, bits)

@@ -13,7 +13,7 @@ from math import inf
 from typing import TYPE_CHECKING
 
 from symflex.algebra import Factored
-from symflex.budget import Budget, entered_budget, spend
+from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError, UsageError
 from symflex.loops.apart import poles_apart
 from symflex.loops.loop import NO_LOOP, Loop, LoopFunction
@@ -133,21 +133,19 @@ def _with(loop: Loop, num: Factored, den: Factored, gain: Fraction) -> BoundTran
     return replace(bound, values=values, ratio=num / den, hidden=(), parts=parts)
 
 
-def closed_loop_roots(
-    loop: AnyLoop, gain: Fraction, region: Region | None = None, budget: Budget | None = None
-) -> PoleZeroMap:
+def closed_loop_roots(loop: AnyLoop, gain: Fraction, region: Region | None = None) -> PoleZeroMap:
     """Return the poles at a gain, and the zeros they go to: those of ``B/(A + K B)``.
 
     What is said of stability holds for the whole model: poles that no gain moves count as well.
     """
     if isinstance(loop, NetworkLoop):
-        return loop.located(gain, region or Modes(loop.modes), budget or entered_budget())
-    found = locate(closed_loop(loop, gain), region, 15, budget)
-    apart = poles_apart(loop.bound, loop.factors, budget or entered_budget())
+        return loop.located(gain, region or Modes(loop.modes))
+    found = locate(closed_loop(loop, gain), region, 15)
+    apart = poles_apart(loop.bound, loop.factors)
     return replace(found, verdict=found.verdict.beside(apart.verdict))
 
 
-def _traceable(loop: AnyLoop, roots: Sequence[Root], budget: Budget) -> Traceable:
+def _traceable(loop: AnyLoop, roots: Sequence[Root]) -> Traceable:
     """Return A and B where poles are followed between gains at which their roots are known."""
     if isinstance(loop, Loop):
         above, below = _parts(loop)
@@ -155,7 +153,7 @@ def _traceable(loop: AnyLoop, roots: Sequence[Root], budget: Budget) -> Traceabl
     largest = max((abs(s) for s in _points(roots)), default=0.0)
     for wider in WIDER if largest else ():
         try:
-            return loop.in_disc(wider * largest, budget)
+            return loop.in_disc(wider * largest)
         except (EssentialSingularityError, UndecidedError):
             continue
     message = "poles of the network cannot be followed as far as they are marked"
@@ -168,7 +166,6 @@ def trace_locus(
     loop: AnyLoop,
     limits: tuple[Fraction | None, Fraction | None] | None = None,
     modes: int | None = None,
-    budget: Budget | None = None,
     *,
     band_hz: tuple[float, float] | None = None,
 ) -> RootLocus:
@@ -178,20 +175,19 @@ def trace_locus(
     by default as many as lie in the band [Hz] at the first or at the last gain, or 5. SF804 no range, SF806
     no straight line in the gain.
     """
-    budget = budget or entered_budget()
     low, high = _range(loop, limits)
     is_endless = isinstance(loop, NetworkLoop) or bool(loop.bound.kernels)
     if modes is None and band_hz is not None and is_endless:
         band = Band(Fraction(0), Fraction(band_hz[1]))
-        shown = [closed_loop_roots(loop, gain, band, budget).poles for gain in (low, high)]
+        shown = [closed_loop_roots(loop, gain, band).poles for gain in (low, high)]
         modes = max(sum(root.multiplicity for root in poles if not root.im < 0) for poles in shown)
     wanted = modes or loop.model.analysis.modes or DEFAULT_MODES
     region: Region | None = Modes(wanted) if is_endless else None
     wider: Region | None = Modes(wanted + 2) if is_endless else None
-    start = closed_loop_roots(loop, low, region, budget)
-    end = closed_loop_roots(loop, high, wider, budget)
-    budget.spend()  # a search that ends with its time returns what it proved, perhaps nothing
-    function = _traceable(loop, (*start.all_poles, *end.all_poles), budget)
+    start = closed_loop_roots(loop, low, region)
+    end = closed_loop_roots(loop, high, wider)
+    spend()  # a search that ends with its time returns what it proved, perhaps nothing
+    function = _traceable(loop, (*start.all_poles, *end.all_poles))
     poles, final = _points(start.all_poles), _points(end.all_poles)
     bottom, top = float(low), float(high)
     goals = _goals(bottom, top)
@@ -236,16 +232,16 @@ def trace_locus(
         matched is not None,
         tuple(kept),
         tuple(entering),
-        _at_nominal(loop, (low, high), region, budget),
+        _at_nominal(loop, (low, high), region),
     )
 
 
 def _at_nominal(
-    loop: AnyLoop, limits: tuple[Fraction, Fraction], region: Region | None, budget: Budget
+    loop: AnyLoop, limits: tuple[Fraction, Fraction], region: Region | None
 ) -> tuple[Fraction, PoleZeroMap] | None:
     if loop.nominal is None or not limits[0] < loop.nominal < limits[1]:
         return None
-    return loop.nominal, closed_loop_roots(loop, loop.nominal, region, budget)
+    return loop.nominal, closed_loop_roots(loop, loop.nominal, region)
 
 
 def _range(

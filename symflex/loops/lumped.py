@@ -19,7 +19,6 @@ from symflex.algebra import Ring, degree_in
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.loops.stability_map import Crossing, PoleCount
 from symflex.roots import (
-    Budget,
     PolynomialInS,
     RealConstant,
     Root,
@@ -88,33 +87,33 @@ class LumpedFactor:
             common,
         )
 
-    def crossings(self, digits: int, budget: Budget) -> list[Crossing]:
+    def crossings(self, digits: int) -> list[Crossing]:
         """Return the gains at which the number of poles on a side of the axis may change, real and finite."""
         found: list[Crossing] = []
         whole = self.even * self.common, self.odd * self.common
         if degree_in(whole[0], K) == 0 and degree_in(whole[1], K) == 0:
             return []
         if degree_in(whole[0], W) or len(whole[1]):
-            for gain in self._gains(self.ring.coefficients(whole[0], W)[:1], digits, budget):
+            for gain in self._gains(self.ring.coefficients(whole[0], W)[:1], digits):
                 found.append(Crossing(gain, (arb(0),)))
-        for gain in self._gains([self._leading(whole)], digits, budget):
+        for gain in self._gains([self._leading(whole)], digits):
             found.append(Crossing(gain, (), is_infinite=True))
         if degree_in(self.common, W):
             symmetric = [self._leading((self.common, self.common * 0))]
-            found += [Crossing(gain, (), is_infinite=True) for gain in self._gains(symmetric, digits, budget)]
-            found += self._meetings(digits, budget)
-        found += self._on_axis(digits, budget)
+            found += [Crossing(gain, (), is_infinite=True) for gain in self._gains(symmetric, digits)]
+            found += self._meetings(digits)
+        found += self._on_axis(digits)
         return found
 
-    def _meetings(self, digits: int, budget: Budget) -> list[Crossing]:
+    def _meetings(self, digits: int) -> list[Crossing]:
         """Return where poles that mirror each other in the axis meet, on it or beside it."""
         w, k = (str(self.ring.context.gen(i)) for i in (W, K))
         simple = self.common / self.common.gcd(self.common.derivative(w))
         if degree_in(simple, W) < 2 or degree_in(simple, K) == 0:  # noqa: PLR2004 (two roots can meet)
             return []
         slope = simple.derivative(w)
-        gains = self._real_roots(simple.discriminant(w), K, digits, budget)
-        squares = self._real_roots(simple.resultant(slope, k), W, digits + SPARE_DIGITS, budget)
+        gains = self._real_roots(simple.discriminant(w), K, digits)
+        squares = self._real_roots(simple.resultant(slope, k), W, digits + SPARE_DIGITS)
         found = []
         for gain in gains:
             near = tuple(
@@ -125,7 +124,7 @@ class LumpedFactor:
             found.append(Crossing(gain.re, near, is_symmetric=True))
         return found
 
-    def _on_axis(self, digits: int, budget: Budget) -> list[Crossing]:
+    def _on_axis(self, digits: int) -> list[Crossing]:
         """Return where E and O vanish together at a positive w."""
         even, odd = (self.ring.coefficients(f, K) for f in (self.even, self.odd))
         if not len(self.odd) or len(even) == len(odd) == 1:
@@ -134,11 +133,11 @@ class LumpedFactor:
             zero = self.ring.constant(0)
             even, odd = ([*f, zero][:2] for f in (even, odd))
             resultant = even[0] * odd[1] - even[1] * odd[0]
-            roots = self._real_roots(resultant, W, digits + SPARE_DIGITS, budget)
+            roots = self._real_roots(resultant, W, digits + SPARE_DIGITS)
             return [c for root in roots if root.re > 0 and (c := self._affine(root, even, odd))]
         name = [str(self.ring.context.gen(i)) for i in (W, K)]
-        squares = self._real_roots(self.even.resultant(self.odd, name[K]), W, digits + SPARE_DIGITS, budget)
-        gains = self._real_roots(self.even.resultant(self.odd, name[W]), K, digits, budget)
+        squares = self._real_roots(self.even.resultant(self.odd, name[K]), W, digits + SPARE_DIGITS)
+        gains = self._real_roots(self.even.resultant(self.odd, name[W]), K, digits)
         found = []
         for gain in gains:
             # Which frequencies belong to a gain is told by exclusion: at the others E or O is not 0.
@@ -178,23 +177,23 @@ class LumpedFactor:
         chosen, power = (odd, higher) if len(odd) and 2 * higher + 1 > 2 * high else (even, high)
         return self.ring.coefficients(chosen, W)[power]
 
-    def _gains(self, polynomials: Sequence[fmpz_mpoly], digits: int, budget: Budget) -> list[arb]:
-        return [root.re for f in polynomials for root in self._real_roots(f, K, digits, budget)]
+    def _gains(self, polynomials: Sequence[fmpz_mpoly], digits: int) -> list[arb]:
+        return [root.re for f in polynomials for root in self._real_roots(f, K, digits)]
 
-    def _real_roots(self, polynomial: fmpz_mpoly, variable: int, digits: int, budget: Budget) -> list[Root]:
+    def _real_roots(self, polynomial: fmpz_mpoly, variable: int, digits: int) -> list[Root]:
         """Return the real roots of a polynomial in one of w and K; each once."""
         if degree_in(polynomial, variable) == 0:
             return []
         problem = RootProblem(((self._polynomial(self.ring.coefficients(polynomial, variable)), 1),))
-        return [root for root in find_polynomial_roots(problem, digits, budget=budget) if root.is_real]
+        return [root for root in find_polynomial_roots(problem, digits) if root.is_real]
 
-    def count(self, gain: Fraction, budget: Budget) -> PoleCount:
+    def count(self, gain: Fraction) -> PoleCount:
         """Return how many poles lie right of the axis and on it for a gain that is not a crossing.
 
         SF802 when a root cannot be told from one on the axis.
         """
         factors = [(f, e) for f, e in self.factor.at(gain).factors if e > 0]
-        roots = find_polynomial_roots(problem_of(self.bound, factors), COUNT_DIGITS, budget=budget)
+        roots = find_polynomial_roots(problem_of(self.bound, factors), COUNT_DIGITS)
         if any(root.re.contains(0) and not root.on_imaginary_axis for root in roots):
             message = "it could not be decided on which side of the imaginary axis a pole lies"
             raise UncertifiedError(Diagnostic("SF802", message))

@@ -32,7 +32,6 @@ from symflex.transfer.balls import ball
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.budget import Budget
     from symflex.equations import Equations
     from symflex.model import Model, ModelParameter
     from symflex.roots import PoleZeroMap, Region
@@ -66,7 +65,7 @@ class NetworkLoop:
         """How many the model asks for."""
         return self.model.analysis.modes or DEFAULT_MODES
 
-    def located(self, gain: Fraction, region: Region, budget: Budget) -> PoleZeroMap:
+    def located(self, gain: Fraction, region: Region) -> PoleZeroMap:
         """Return poles and zeros of ``B/(A + K B)``, whose poles are those of the closed loop."""
         rows = list(self.cramer.entries)
         closed = dict(rows[self.acts])
@@ -74,7 +73,7 @@ class NetworkLoop:
             closed[j] = closed[j] + slope * gain if j in closed else slope * gain
         rows[self.acts] = {j: value for j, value in closed.items() if not value.is_zero}
         quotient = CramerEquations(self.cramer.equations, rows, self.cramer.divisor)
-        return locate_quotient(quotient, "closed loop", region, DIGITS, budget)
+        return locate_quotient(quotient, "closed loop", region, DIGITS)
 
     def gains(self, gain: Fraction, omega: Sequence[float]) -> list[complex]:
         """Return the loop gain ``K B/A`` at frequencies [rad/s], not proved."""
@@ -85,12 +84,12 @@ class NetworkLoop:
                 found.append(complex((-ball(gain) * value.num / value.den).mid()))
         return found
 
-    def in_disc(self, radius: float, budget: Budget) -> LoopInDisc:
+    def in_disc(self, radius: float) -> LoopInDisc:
         """Return A and B in a disc about 0 [rad/s].
 
         UndecidedError, EssentialSingularityError where they are not enclosed there.
         """
-        return LoopInDisc(*DiscSearch(self.cramer, DIGITS, budget, (False, False)).series(radius))
+        return LoopInDisc(*DiscSearch(self.cramer, DIGITS, (False, False)).series(radius))
 
 
 AnyLoop = Loop | NetworkLoop

@@ -35,7 +35,6 @@ from symflex.transfer.of_model import (
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from symflex.budget import Budget
     from symflex.loops.networks import AnyLoop
     from symflex.loops.stability_map import StabilityMap
     from symflex.model import ModelParameter
@@ -102,7 +101,6 @@ def stability(
     model: Model,
     given: StabilityOptions,
     values: Mapping[str, Given] | None = None,
-    budget: Budget | None = None,
 ) -> StabilityMap:
     """Return for which values of a gain the model is stable; see :func:`symflex.loops.find_stable_gains`.
 
@@ -112,10 +110,10 @@ def stability(
     limits = gain_ends(given.limits, pick_gain(model.parameters, given.gain))
     radians = None if given.up_to is None else 2 * pi * highest_frequency(given.up_to)
     loop = characteristic_loop(model, given.gain, values)
-    return find_stable_gains(loop, limits, given.digits or model.analysis.digits or 15, budget, radians)
+    return find_stable_gains(loop, limits, given.digits or model.analysis.digits or 15, radians)
 
 
-def colocation(model: Model, given: ColocationOptions, budget: Budget | None = None) -> DynamicColocation:
+def colocation(model: Model, given: ColocationOptions) -> DynamicColocation:
     """Return up to which frequency one output moves with another; see :func:`.loops.dynamic_colocation`."""
     check_causal(model, "a bound on colocation")
     band = None if given.band is None else band_ends(given.band, above_zero=True)
@@ -123,4 +121,4 @@ def colocation(model: Model, given: ColocationOptions, budget: Budget | None = N
     phase = tolerance(given.phase, "--phase", ("deg", "°"), "10 deg")
     magnitude = tolerance(given.magnitude, "--magnitude", ("dB",), "1 dB")
     limits = None if band is None else (float(band[0]), float(band[1]))
-    return dynamic_colocation(tip, joint, phase, magnitude, limits, budget)
+    return dynamic_colocation(tip, joint, phase, magnitude, limits)

@@ -13,7 +13,6 @@ from symflex.analysis.explanation import explain_zeros
 from symflex.analysis.rational import approximate
 from symflex.analysis.response import adaptive_grid, default_band, respond
 from symflex.audit import audit, check_published
-from symflex.budget import entered_budget
 from symflex.errors import BudgetError, Diagnostic, SymflexError
 from symflex.loops import find_stable_gains
 from symflex.loops.of_model import characteristic_loop, colocation
@@ -152,9 +151,7 @@ class Study:
     def _maps(self) -> tuple[tuple[str, PoleZeroMap | SymflexError], ...]:
         digits = max(self.model.analysis.digits or DIGITS, DIGITS)
         return tuple(
-            (b.name, attempt(partial(pipeline.roots, b, None, digits, entered_budget())))
-            for b in self.bounds
-            if not b.is_zero
+            (b.name, attempt(partial(pipeline.roots, b, None, digits))) for b in self.bounds if not b.is_zero
         )
 
     @cached_property
@@ -238,7 +235,7 @@ class Study:
         return tuple(attempt(partial(self._stable_gains, gain)) for gain in gains)
 
     def _stable_gains(self, gain: str) -> StabilityMap:
-        return find_stable_gains(self.loop(gain), budget=entered_budget())
+        return find_stable_gains(self.loop(gain))
 
     def loop(self, gain: str) -> AnyLoop:
         """Return the characteristic function as a polynomial in a gain.

@@ -24,7 +24,6 @@ from symflex.roots.polynomials.discs import propose_by_durand_kerner, propose_by
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
-    from symflex.budget import Budget
     from symflex.roots.counting.argument_principle import CertifiedWinding
     from symflex.roots.functions.kernel_function import KernelFunction
     from symflex.roots.polynomials.discs import Proposer
@@ -57,7 +56,6 @@ class Sought:
     order: int  # to which it vanishes at s = 0
     holes: tuple[Cell, ...]  # neighbourhoods of points where roots accumulate, left out
     digits: int  # significant digits of every root
-    budget: Budget  # of the search
 
     @property
     def mirrors(self) -> bool:
@@ -87,7 +85,7 @@ def without_losses(sought: Sought) -> Iterator[Attempt]:
 def guess_and_prove(sought: Sought) -> Iterator[Attempt]:
     """Look for sign changes on both axes where roots mirror each other, then in cells of the whole plane."""
     for scans in (True, False) if sought.mirrors else (False,):
-        yield Attempt(sought.search(Winding(sought.function, sought.budget)), scans)
+        yield Attempt(sought.search(Winding(sought.function)), scans)
 
 
 def subdivide(sought: Sought) -> Iterator[Attempt]:

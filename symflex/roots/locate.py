@@ -67,7 +67,6 @@ def locate(
     bound: AnyBoundFunction,
     region: Region | None = None,
     digits: int = 30,
-    budget: Budget | None = None,
     *,
     with_zeros: bool = True,
 ) -> PoleZeroMap:
@@ -76,7 +75,7 @@ def locate(
     Each root has so many correct significant digits. A transfer function that is identically zero has neither
     poles nor zeros; all its modes are hidden. Those of a distributed system, of which there are infinitely
     many, are searched in :func:`default_region` when everything is asked for, and the search is limited by
-    its work where no budget is given. Of one in nested form, a network of beams, roots are counted
+    its work where no time is. Of one in nested form, a network of beams, roots are counted
     without expanding anything. Where zeros are not wanted those of a distributed system may be left out, and
     poles that coincide with one stay among the others.
     """
@@ -84,7 +83,7 @@ def locate(
         # Figures, responses and tables of one function ask for the same roots.
         known = bound.located.get((region, digits))
         if not isinstance(known, PoleZeroMap):
-            known = _locate_nested(bound, region, digits, budget or entered_budget())
+            known = _locate_nested(bound, region, digits)
             if known.certificate.certified:
                 bound.located[region, digits] = known
         return known
@@ -94,7 +93,7 @@ def locate(
         where = default_region(bound) if is_open and bound.is_distributed else region or Everything()
         return locate_lossy(bound, where, digits, locate)
     if bound.is_distributed:
-        return locate_distributed(bound, region, digits, budget or entered_budget(), with_zeros=with_zeros)
+        return locate_distributed(bound, region, digits, with_zeros=with_zeros)
     above = [(f, e) for f, e in bound.ratio.factors if e > 0]
     below = [(f, -e) for f, e in bound.ratio.factors if e < 0]
     hidden = [(f.polynomial, f.multiplicity) for f in bound.hidden]
@@ -107,7 +106,6 @@ def locate(
         region,
         digits,
         [(problem_of(bound, factors), "cancelled") for factors in together],
-        budget=budget,
     )
     verdict = replace(found.verdict, moving=_moving_unseen(bound))
     if bound.source.hides_waves and verdict.word != "unstable":
@@ -148,7 +146,7 @@ def lumped(bound: BoundNested) -> BoundTransferFunction:
     return found
 
 
-def _locate_nested(bound: BoundNested, region: Region | None, digits: int, budget: Budget) -> PoleZeroMap:
+def _locate_nested(bound: BoundNested, region: Region | None, digits: int) -> PoleZeroMap:
     """Find poles and zeros of a function in nested form, from the equations it solves."""
     from symflex.roots.networks.poles_zeros import locate_in_network  # few models are so large
 
@@ -160,7 +158,7 @@ def _locate_nested(bound: BoundNested, region: Region | None, digits: int, budge
     model = _with_values(bound)
     pair = (source.output.name, source.input.name)
     if not model.is_distributed:
-        return locate(lumped(bound), region, digits, budget)
+        return locate(lumped(bound), region, digits)
     is_default = region is None or isinstance(region, Everything)
     where = default_region(bound) if region is None or isinstance(region, Everything) else region
     found = locate_in_network(
@@ -169,7 +167,6 @@ def _locate_nested(bound: BoundNested, region: Region | None, digits: int, budge
         pair,
         where,
         digits,
-        budget,
         is_default=is_default,
         proof=_passivity(source.model, bound.values)[0],
     )
@@ -179,7 +176,7 @@ def _locate_nested(bound: BoundNested, region: Region | None, digits: int, budge
     # What resists the counts of a network may yield to those of its formula, where that is not too large.
     try:
         (expanded,) = derive_all(source.model, [pair])
-        other = locate(bind(expanded, dict(bound.values)), region, digits, budget)
+        other = locate(bind(expanded, dict(bound.values)), region, digits)
     except BudgetError:
         return found
     is_better = other.certificate.certified or other.certificate.found > found.certificate.found
@@ -209,7 +206,6 @@ def locate_distributed(
     bound: BoundTransferFunction,
     region: Region | None,
     digits: int,
-    budget: Budget,
     *,
     with_zeros: bool = True,
 ) -> PoleZeroMap:
@@ -222,7 +218,7 @@ def locate_distributed(
     """
     is_default = region is None or isinstance(region, Everything)
     where = default_region(bound) if region is None or isinstance(region, Everything) else region
-    searched = _Searched(bound, where, digits, budget, with_zeros=with_zeros)
+    searched = _Searched(bound, where, digits, with_zeros=with_zeros)
     reason, code = None, None
     try:
         searched.find()
@@ -256,22 +252,13 @@ def locate_distributed(
     # Nobody asked for these modes and no others.
     is_free = is_default and isinstance(where, Modes)
     found += sum(root.multiplicity for root in (*beyond, *hidden))
-    certificate = Certificate(
-        ", ".join(engines),
-        reason is None,
-        found + missing,
-        found,
-        reason,
-        is_exceeded=code is not None,
-        code=code,
-    )
     return PoleZeroMap(
         bound.name,
         where,
         (*chosen[0], *(beyond if is_free else ())),
         tuple(chosen[1]),
         (*searched.hidden, *map(HiddenRoot, hidden)),
-        certificate,
+        Certificate(", ".join(engines), found + missing, found, reason, code),
         digits,
         tuple(_exclusion(hole) for hole in sorted(excluded, key=lambda hole: hole.low)),
         is_default and not all(side.is_finite for side in searched.sides[:1]),
@@ -289,11 +276,10 @@ class _Searched:
         bound: BoundTransferFunction,
         region: Region,
         digits: int,
-        budget: Budget,
         *,
         with_zeros: bool = True,
     ) -> None:
-        self.bound, self.region, self.digits, self.budget = bound, region, digits, budget
+        self.bound, self.region, self.digits = bound, region, digits
         self._above = bound.num if with_zeros else Factored.number(bound.ratio.ring, 1)
         match region:
             case Modes(count) | Mode(count):
@@ -308,8 +294,8 @@ class _Searched:
         """Find the roots of all sides."""
         bound, digits, where = self.bound, self.digits, self.region
         if not bound.ratio.is_zero:
-            self.sides.append(Side(bound, bound.den, digits, self.budget))
-            self.sides.append(Side(bound, self._above, digits, self.budget))
+            self.sides.append(Side(bound, bound.den, digits))
+            self.sides.append(Side(bound, self._above, digits))
         if isinstance(where, Mode):
             for side in self.sides:
                 side.numbered(where.number)
@@ -321,7 +307,7 @@ class _Searched:
         within = Band(Fraction(0), Fraction(highest)) if isinstance(where, Modes) and highest else where
         factors = tuple((h.polynomial, h.multiplicity) for h in bound.hidden)
         product = Factored(bound.ratio.ring, Fraction(1), factors)
-        cancelled = Side(bound, product, digits, self.budget, is_hidden=True)
+        cancelled = Side(bound, product, digits, is_hidden=True)
         self._within = within
         self.sides.append(cancelled)
         _find((cancelled,), within)
@@ -360,7 +346,7 @@ class _Searched:
             return "; ".join(dict.fromkeys(reasons)) or None
         engines = [side.engine for side in self.sides]
         for i, side in enumerate(self.sides):
-            self.budget.progress.report(i / len(self.sides), "proving that no root is missing")
+            entered_budget().progress.report(i / len(self.sides), "proving that no root is missing")
             is_last = i == len(self.sides) - 1
             proof = side.prove(self._within if is_last else self.region)
             if not proof.is_complete:
@@ -431,7 +417,7 @@ class _Searched:
                 side = (
                     self.sides[place]
                     if place < len(self.sides)
-                    else Side(bound, part, self.digits, self.budget, is_hidden=is_hidden)
+                    else Side(bound, part, self.digits, is_hidden=is_hidden)
                 )
                 known = [*side.roots, *(h.root for h in coincident if h.is_proved is is_hidden)]
                 if proof or is_over:
@@ -441,7 +427,7 @@ class _Searched:
                     gaps.append(RightHalfPlane((), unproved or ""))
                     continue
                 reached = 0.0 if unproved else self._reached(side)
-                whole = search_right(bound, part, side, known, reached, self.digits, self.budget, limit)
+                whole = search_right(bound, part, side, known, reached, self.digits, limit)
             except SymflexError as error:
                 found.append(())
                 gaps.append(RightHalfPlane((), error.diagnostics[0].message))

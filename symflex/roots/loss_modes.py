@@ -24,7 +24,7 @@ from flint import acb, acb_series, arb
 
 from symflex.algebra import Factored, by_powers, degree_in, terms_of
 from symflex.algebra.interval_newton import stays_inside
-from symflex.budget import entered_budget, spend
+from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic, UncertifiedError
 from symflex.model import with_numbers
 from symflex.model.model import IMAGINARY, ExactValue
@@ -123,7 +123,7 @@ def locate_lossy(
         poles,
         zeros,
         tuple(HiddenRoot(root, cause) for root in concealed),
-        Certificate(engine, reason is None, total + missing, total, reason),
+        Certificate(engine, total + missing, total, reason),
         digits,
         is_infinite=bound.is_distributed,
         verdict=NO_STABILITY,
@@ -342,7 +342,7 @@ def _missing(function: KernelFunction, roots: Sequence[Root], circles: tuple[flo
         disc = acb(arb(0, arb(high).exp().upper()), arb(0, arb(high).exp().upper()))
         if order is None or not function.is_analytic_on(disc, FLOAT_BITS):
             raise RootOnPathError
-    winding = CertifiedWinding(function, entered_budget())
+    winding = CertifiedWinding(function)
 
     def within(z: float) -> int:
         with precision(FLOAT_BITS):

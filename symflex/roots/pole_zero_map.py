@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal, Self
 
+from symflex.budget import entered_budget, spend
 from symflex.errors import BudgetError, Diagnostic
 from symflex.roots.engines import POLYNOMIAL
 from symflex.roots.polynomial_roots import find_polynomial_roots, in_order
@@ -17,7 +18,6 @@ from symflex.roots.root import Root, groups, overlap
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from symflex.budget import Budget
     from symflex.roots.problem import RootProblem
 
 
@@ -235,27 +235,31 @@ class Certificate:
     ----------
     engine : str
         Name of the root finder.
-    certified : bool
-        Every root counted was found, and told apart from the others.
     counted : int
         Roots that exist, with multiplicity: the degrees of numerator, denominator and hidden factors.
     found : int
         Roots enclosed, with multiplicity.
     reason : str, optional
         Why it is not certified.
-    is_exceeded : bool
-        The budget was exceeded: every root shown is proved, and others may be missing.
     code : str, optional
         The error code of what was exceeded.
     """
 
     engine: str
-    certified: bool
     counted: int
     found: int
     reason: str | None = None
-    is_exceeded: bool = False
     code: str | None = None
+
+    @property
+    def certified(self) -> bool:
+        """Whether every root counted was found, and told apart from the others."""
+        return self.reason is None
+
+    @property
+    def is_exceeded(self) -> bool:
+        """Whether the budget was exceeded: every root shown is proved, and others may be missing."""
+        return self.code is not None
 
 
 @dataclass(frozen=True, slots=True)
@@ -362,10 +366,9 @@ class PoleZeroMap:
         True
         """
         certificate = self.certificate
-        if certificate.is_exceeded:
-            message = certificate.reason or "the budget was exceeded"
+        if certificate.code is not None:
             hint = "the attribute 'found' of this error has what was proved until then"
-            raise BudgetError(Diagnostic(certificate.code or "SF506", message, None, hint), found=self)
+            raise BudgetError(Diagnostic(certificate.code, certificate.reason or "", None, hint), found=self)
         return self
 
     def to_json_dict(self) -> dict[str, object]:
@@ -399,7 +402,6 @@ def find_pole_zero_map(
     region: Region | None = None,
     digits: int = 30,
     hidden: Sequence[tuple[RootProblem, str]] = (),
-    budget: Budget | None = None,
 ) -> PoleZeroMap:
     """Find poles and zeros, without common factors, in a region; by default everywhere.
 
@@ -425,9 +427,8 @@ def find_pole_zero_map(
     found, apart = 0, True
     exceeded: Diagnostic | None = None
     for i, (problem, within) in enumerate(sought):
-        if budget is not None:
-            budget.progress.report(i / len(sought), f"polynomial {i + 1} of {len(sought)}")
-        roots, everywhere, exceeded = _locate(problem, within, digits, budget)
+        entered_budget().progress.report(i / len(sought), f"polynomial {i + 1} of {len(sought)}")
+        roots, everywhere, exceeded = _locate(problem, within, digits)
         located.append(roots)
         every.append(everywhere)
         found += sum(root.multiplicity for root in everywhere)
@@ -444,15 +445,7 @@ def find_pole_zero_map(
         reason = f"{counted} roots exist, {found} were found"
     elif reason is None and not apart:
         reason = "some roots could not be told apart; each such group is enclosed as one"
-    certificate = Certificate(
-        POLYNOMIAL,
-        reason is None,
-        counted,
-        found,
-        reason,
-        is_exceeded=exceeded is not None,
-        code=None if exceeded is None else exceeded.code,
-    )
+    code = None if exceeded is None else exceeded.code
     concealed += [
         HiddenRoot(root, cause)
         for (_, cause), known, whole_roots in zip(hidden, others, every[2:], strict=False)
@@ -466,7 +459,7 @@ def find_pole_zero_map(
         pole_roots,
         zero_roots,
         tuple(concealed),
-        certificate,
+        Certificate(POLYNOMIAL, counted, found, reason, code),
         digits,
         verdict=verdict,
         unstable=right_beyond(every[0], pole_roots),
@@ -525,7 +518,7 @@ def _inside(roots: Sequence[Root], positions: Sequence[Position]) -> tuple[Root,
 
 
 def _locate(
-    problem: RootProblem, region: Region, digits: int, budget: Budget | None
+    problem: RootProblem, region: Region, digits: int
 ) -> tuple[tuple[Root, ...], tuple[Root, ...], Diagnostic | None]:
     """Return the roots in the region, all roots, and what failed."""
     roots: tuple[Root, ...] = ()
@@ -533,9 +526,8 @@ def _locate(
     exceeded = None
     for doubling in range(REFINEMENTS):
         try:
-            if budget is not None:
-                budget.spend()
-            roots = find_polynomial_roots(problem, digits << doubling, budget=budget)
+            spend()
+            roots = find_polynomial_roots(problem, digits << doubling)
         except BudgetError as error:
             exceeded = error.diagnostics[0]
             if doubling == 0:

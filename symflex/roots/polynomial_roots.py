@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
-from symflex.budget import Budget, entered_budget
 from symflex.errors import BudgetError
 from symflex.roots.engines import proposers_for
 from symflex.roots.polynomials.discs import Disc, Proposer, connected
@@ -32,7 +31,6 @@ def find_polynomial_roots(
     problem: RootProblem,
     digits: int,
     proposers: tuple[Proposer, ...] = (),
-    budget: Budget | None = None,
 ) -> tuple[Root, ...]:
     """Enclose every root of a product of polynomials with exact coefficients.
 
@@ -56,17 +54,15 @@ def find_polynomial_roots(
         raise ValueError(message)
     for polynomial, _ in problem.factors:
         polynomial.require_leading_coefficient()
-    search = _PolynomialSearch(problem, digits, proposers, budget or entered_budget())
+    search = _PolynomialSearch(problem, digits, proposers)
     return search.run()
 
 
 class _PolynomialSearch:
     """Solves the parts of a product one after the other."""
 
-    def __init__(
-        self, problem: RootProblem, digits: int, proposers: tuple[Proposer, ...], budget: Budget
-    ) -> None:
-        self.problem, self.digits, self.proposers, self.budget = problem, digits, proposers, budget
+    def __init__(self, problem: RootProblem, digits: int, proposers: tuple[Proposer, ...]) -> None:
+        self.problem, self.digits, self.proposers = problem, digits, proposers
         self.splitting = Splitting(0, ())
         self.solved: dict[int, list[Root]] = {}
 
@@ -74,7 +70,7 @@ class _PolynomialSearch:
         """Return all roots."""
         wanted = self.digits
         try:
-            self.splitting = split(self.problem, self.budget)
+            self.splitting = split(self.problem)
             for _ in range(DISTINCTION_ROUNDS):
                 for i in range(len(self.splitting.parts)):
                     self._solve(i, wanted)
@@ -92,11 +88,8 @@ class _PolynomialSearch:
     def _solve(self, i: int, digits: int) -> None:
         part = self.splitting.parts[i]
         proposers = self.proposers or proposers_for(part.polynomial.degree)
-        with self.budget.entered():
-            for discs in isolations(
-                part.polynomial, digits, in_square=part.in_square, proposers=proposers, budget=self.budget
-            ):
-                self.solved[i] = _roots_of(part, discs, digits)
+        for discs in isolations(part.polynomial, digits, in_square=part.in_square, proposers=proposers):
+            self.solved[i] = _roots_of(part, discs, digits)
 
     def _all(self) -> list[Root]:
         roots = [root for part in self.solved.values() for root in part]

@@ -17,7 +17,7 @@ from functools import reduce
 from flint import arb, arb_poly, fmpz_mpoly, fmpz_mpoly_ctx
 
 from symflex.algebra import Ring, degree_in, square_free_factors
-from symflex.budget import Budget, entered_budget
+from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError
 from symflex.roots.precision import precision
 from symflex.transfer import BoundTransferFunction, coefficients_in_s
@@ -179,7 +179,7 @@ class Splitting:
     parts: tuple[SquareFreePart, ...]  # pairwise coprime
 
 
-def split(problem: RootProblem, budget: Budget | None = None) -> Splitting:
+def split(problem: RootProblem) -> Splitting:
     """Take a product of polynomials apart into coprime square-free parts; SF506 when the time is over.
 
     It is exact over Q(constants), the constants taken as algebraically independent.
@@ -190,12 +190,11 @@ def split(problem: RootProblem, budget: Budget | None = None) -> Splitting:
     >>> splitting.zeros, [(part.polynomial.integers(), part.in_square) for part in splitting.parts]
     (2, [((4, 1), True), ((1, 1), False)])
     """
-    time = budget or entered_budget()
     ring = _Ring.of(problem)
     zeros = 0
     base: list[tuple[fmpz_mpoly, int]] = []
     for polynomial, exponent in problem.factors:
-        time.spend()
+        spend()
         low = next(i for i, c in enumerate(polynomial.coefficients) if not c.is_zero())
         zeros += low * exponent
         for factor, power in square_free_factors(ring.lift(polynomial, low))[1]:
@@ -203,7 +202,7 @@ def split(problem: RootProblem, budget: Budget | None = None) -> Splitting:
                 base = _insert(base, factor, power * exponent)
     parts: list[SquareFreePart] = []
     for element, multiplicity in base:
-        time.spend()
+        spend()
         even = element.gcd(ring.reflect(element))
         odd = element // even
         if _degree(even) > 0:

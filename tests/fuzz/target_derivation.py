@@ -169,4 +169,5 @@ def run(data):
             with suppress(SymflexError):
                 exporter.export(model, derived, "a", is_alone=True)
         (bound,) = pipeline.derive_bound(model, pairs)
-        roots_text(pipeline.roots(bound, None, 15, Budget(SECONDS)), 15, 80)
+        with Budget(SECONDS).entered():
+            roots_text(pipeline.roots(bound, None, 15), 15, 80)

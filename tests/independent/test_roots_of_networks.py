@@ -11,7 +11,6 @@ import pytest
 from mpmath import arg, exp, mp, mpc, mpf
 
 from symflex import pipeline
-from symflex.budget import Budget
 from symflex.model import with_numbers
 from symflex.roots.networks.anywhere import roots_in_disc
 from symflex.roots.networks.cramer import CramerEquations
@@ -32,7 +31,7 @@ def equations_of(network):
 
 def located(network, region, digits=15):
     return locate_in_network(
-        equations_of(network), "X/F", ("X", "F"), region, digits, Budget(), is_default=False, proof=""
+        equations_of(network), "X/F", ("X", "F"), region, digits, is_default=False, proof=""
     )
 
 
@@ -113,7 +112,7 @@ def test_counts_of_eigenvalues_and_winding_numbers_find_the_same(network):
     counted = located(network, region)
     assert counted.certificate.certified
     cramer = CramerEquations.of(equations_of(network), "X", "F")
-    wound = roots_in_disc(cramer, region, 15, Budget(), symmetric=(False, False))
+    wound = roots_in_disc(cramer, region, 15, symmetric=(False, False))
     assert frequencies(counted.poles, top) == pytest.approx(frequencies(wound.poles, top))
     assert frequencies(counted.zeros, top) == pytest.approx(frequencies(wound.zeros, top), abs=1e-9)
     hidden = [h.root for h in counted.hidden]

@@ -28,7 +28,7 @@ def test_what_is_entered_is_asked_by_every_loop():
 
 def test_a_budget_without_limits_of_its_own_heeds_the_one_that_is_entered():
     with Budget(seconds=0, clock=count().__next__).entered():
-        assert code_of(Budget().spend) == "SF506"
+        assert code_of(Budget().besides().spend) == "SF506"
 
 
 def test_a_budget_inside_another_replaces_it_until_it_is_left():

@@ -30,7 +30,7 @@ from symflex.analysis.rational.networks import NetworkSides, Taylor
 from symflex.budget import spend
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.model.loss_factors import check_causal
-from symflex.roots import Budget, Region, Root, precision
+from symflex.roots import Region, Root, precision
 from symflex.roots.counting.local_series import (
     BITS_A_POINT,
     REACH,
@@ -412,18 +412,17 @@ class PrincipalPart:
 
 
 def find_residues(
-    bound: AnyBoundFunction, region: Region | None = None, digits: int = 15, budget: Budget | None = None
+    bound: AnyBoundFunction, region: Region | None = None, digits: int = 15
 ) -> tuple[PrincipalPart, ...]:
     """Return the principal parts at the poles in a region, in their order; both members of a conjugate pair.
 
-    The region is one of :func:`symflex.roots.locate.locate`; the budget limits the search for poles, which
-    raises SF505 or SF506 when it takes too long. SF405 when poles cannot be told apart, or the behaviour at
-    one cannot be told.
+    The region is one of :func:`symflex.roots.locate.locate`; SF505 or SF506 where the search for poles takes
+    too long, SF405 when poles cannot be told apart, or the behaviour at one cannot be told.
     """
     check_causal(bound.source.model, "a residue")
     if not isinstance(bound, BoundNested):
         bound = without_lengths_of_zero(bound)
-    return residues_at(bound, locate(bound, region, digits, budget).complete().all_poles, digits)
+    return residues_at(bound, locate(bound, region, digits).complete().all_poles, digits)
 
 
 def residues_at(bound: AnyBoundFunction, poles: Sequence[Root], digits: int) -> tuple[PrincipalPart, ...]:

@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING
 
 from flint import acb, ctx
 
-from symflex.budget import entered_budget
 from symflex.errors import Diagnostic, UncertifiedError
 from symflex.roots.locate import equations_of
 from symflex.roots.networks.cramer import CramerEquations, EssentialSingularityError
@@ -52,7 +51,7 @@ class NetworkSides:
     def _search(self, digits: int) -> tuple[DiscSearch, float]:
         """Return a search to so many digits, and the radius of its disc."""
         bits = SERIES_BITS + 2 * bits_for_digits(digits)
-        search = DiscSearch(self._cramer, digits, entered_budget(), (False, False), bits)
+        search = DiscSearch(self._cramer, digits, (False, False), bits)
         return search, WIDER * self.reach or search.radius_of(FEWEST_MODES)
 
     @contextmanager

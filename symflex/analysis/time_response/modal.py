@@ -26,7 +26,6 @@ from symflex.analysis.time_response.lossy_modes import lossy_bound
 from symflex.analysis.time_response.partial_fractions import ExponentialTerm, values_of
 from symflex.analysis.time_response.passive_modes import passive_bound
 from symflex.analysis.time_response.sampled import PartialSum, Refused
-from symflex.budget import entered_budget
 from symflex.errors import BudgetError, UncertifiedError
 from symflex.roots.counting.argument_principle import CertifiedWinding
 from symflex.roots.counting.winding import RootOnPathError
@@ -103,7 +102,7 @@ class BoundedModes:
     def __init__(self, bounding: ModesBound, integrations: int, times: SampleTimes) -> None:
         self._bounding, self._integrations, self._times = bounding, integrations, times
         self._bound = bounding.bound
-        self._side = Side(self._bound, self._bound.den, EFFORT.pole_digits, entered_budget())
+        self._side = Side(self._bound, self._bound.den, EFFORT.pole_digits)
         self._rings: dict[Cell, Ring] = {}
         self._known: dict[float, PartialSum] = {}
         # What one count of modes found serves the next: roots from one reach on, and terms of roots.
@@ -217,7 +216,7 @@ class BoundedModes:
         chain = [root for root in begun if not root.im < 0 and not root.re > 0 and not root.is_zero]
         if len(chain) < len(CONTINUATION):
             return None
-        winding = CertifiedWinding(side.function, entered_budget())
+        winding = CertifiedWinding(side.function)
         try:
             within = winding.count_within(side.reached, pi)
             if self._begun != side.reached:

@@ -21,7 +21,6 @@ from symflex.roots.functions.kernel_function import ROOM, angle
 from symflex.roots.precision import precision
 
 if TYPE_CHECKING:
-    from symflex.budget import Budget
     from symflex.roots.functions.kernel_function import KernelFunction
 
 BITS = 64
@@ -65,15 +64,15 @@ class LogarithmicLine:
 
 
 class CertifiedWinding(Winding):
-    """Follows one function along paths with proof; every step spends from the budget.
+    """Follows one function along paths with proof; every step spends.
 
     With ``tries_series``, where steps are too long for sums of exponentials, power series are tried before
     shorter steps: next to points where wavenumbers meet these would have to be very short. They are tried
     anyway on a path where a step turned far less than it might have.
     """
 
-    def __init__(self, function: KernelFunction, budget: Budget, *, tries_series: bool = False) -> None:
-        super().__init__(function, budget)
+    def __init__(self, function: KernelFunction, *, tries_series: bool = False) -> None:
+        super().__init__(function)
         self._tries_series = tries_series
         self._bits = BITS
         self._turns: dict[tuple[complex, complex], arb] = {}

@@ -16,14 +16,13 @@ from typing import TYPE_CHECKING
 
 from flint import arb
 
-from symflex.budget import spend
+from symflex.budget import entered_budget, spend
 from symflex.errors import BudgetError, Diagnostic
 from symflex.roots.functions.kernel_function import ROOM
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symflex.budget import Budget
     from symflex.roots.functions.kernel_function import KernelFunction, Sample
 
 
@@ -118,11 +117,10 @@ class Cell:
 
 
 class Winding:
-    """Follows one function along paths, remembering its values, each of which spends from the budget."""
+    """Follows one function along paths, remembering its values, each of which spends."""
 
-    def __init__(self, function: KernelFunction, budget: Budget) -> None:
+    def __init__(self, function: KernelFunction) -> None:
         self.function = function
-        self.budget = budget
         self._samples: dict[complex, Sample | None] = {}
         self._reaches: dict[float, float] = {}
         self._edges: dict[tuple[complex, complex], float] = {}
@@ -132,8 +130,8 @@ class Winding:
 
         SF505 when the search has become too long and no time was given, SF506 when that is over.
         """
-        self.budget.spend()
-        if not self.budget.is_timed and self.function.work > WORK_LIMIT:
+        spend()
+        if not entered_budget().is_timed and self.function.work > WORK_LIMIT:
             raise BudgetError(Diagnostic("SF505", TOO_LONG, None, SHORTER))
 
     def sample(self, z: complex) -> Sample:

@@ -30,7 +30,6 @@ from symflex.roots.root import FLOAT_BITS, Root, are_apart, root_at_zero
 
 if TYPE_CHECKING:
     from symflex.algebra import Factored
-    from symflex.budget import Budget
     from symflex.roots.axes.lossless import LosslessSearch
 
 
@@ -125,13 +124,13 @@ class Count:
             counted += sum(root.multiplicity for root in at_zero)
         return Proof(counted, found)
 
-    def right(self, high: float, budget: Budget) -> int:
+    def right(self, high: float) -> int:
         """Return how many roots lie right of the imaginary axis, with ln(abs(s)) below ``high``: proved.
 
         RootOnPathError where a root lies on the path, which follows the imaginary axis, or too close to it;
         SF505, SF506.
         """
-        winding = CertifiedWinding(self.winding.function, budget, tries_series=True)
+        winding = CertifiedWinding(self.winding.function, tries_series=True)
         low = min(winding.smallest(pi, self.holes), high - 1.0)
         if winding.count_within(low, pi) != self.order:
             raise RootOnPathError

@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from symflex.algebra import Factored
-    from symflex.budget import Budget
     from symflex.roots.region import Region
     from symflex.roots.root import Root
     from symflex.transfer import BoundTransferFunction
@@ -58,7 +57,6 @@ def search_right(
     known: Sequence[Root],
     reached: float,
     digits: int,
-    budget: Budget,
     limit: float | None = None,
 ) -> RightHalfPlane:
     """Count the roots of a function with kernels right of the imaginary axis, and find them.
@@ -93,7 +91,7 @@ def search_right(
         region: Region = Rectangle(Fraction(0), end, -end, end)
         if is_even and not is_mirrored:
             region = Band(Fraction(0), Fraction(radius * MARGIN / (2 * pi)))
-        again = Side(bound, part, digits, budget)
+        again = Side(bound, part, digits)
         try:
             again.search(region)
             # Roots of lossless systems lie on the border, and beyond what was asked for it is not followed.

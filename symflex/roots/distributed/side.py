@@ -48,7 +48,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from symflex.algebra import Dispersion
-    from symflex.budget import Budget
     from symflex.transfer import BoundTransferFunction
 
 ACCUMULATION_DIGITS = 20
@@ -72,7 +71,6 @@ class Side:
         bound: BoundTransferFunction,
         part: Factored,
         digits: int,
-        budget: Budget,
         *,
         is_hidden: bool = False,
         engines: Iterable[str] = SEARCHES,
@@ -80,7 +78,6 @@ class Side:
         self._bound = bound
         self._engines = tuple(engines)
         self._digits = digits
-        self._budget = budget
         self.holes = holes_about(accumulation_points(bound))
         part = without_reflections(bound, part)
         plain, mixed = split_off_kernels(part, bound.kernels)
@@ -97,11 +94,11 @@ class Side:
             # Kernels may have poles where polynomials vanish: only together are they entire.
             self.function = KernelFunction(*without_squares(bound, _without_laplace(plain) * mixed))
             require_lowest(bound)
-            self._winding = CertifiedWinding(self.function, budget)
+            self._winding = CertifiedWinding(self.function)
             self._origin, self._order = roots_at_zero(
                 self._winding, part, self._left, self.holes, is_hidden=is_hidden
             )
-            self._sought = Sought(self.function, self._winding, self._order, self.holes, digits, budget)
+            self._sought = Sought(self.function, self._winding, self._order, self.holes, digits)
             self._attempts = ((e, attempt) for e in self._engines for attempt in SEARCHES[e](self._sought))
             self._next_search()
             if self.is_finite:
@@ -361,7 +358,7 @@ class Side:
 
     def count_right(self, high: float) -> int:
         """Return how many roots lie right of the imaginary axis, with ln(abs(s)) below ``high``: proved."""
-        return self._count.right(high, self._budget)
+        return self._count.right(high)
 
 
 def _without_laplace(value: Factored) -> Factored:

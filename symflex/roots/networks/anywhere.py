@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from math import hypot, pi
 from typing import TYPE_CHECKING
 
+from symflex.budget import entered_budget
 from symflex.roots.networks.blocks import most_zeros
 from symflex.roots.networks.disc_search import DiscSearch
 from symflex.roots.pole_zero_map import take_out_shared
@@ -18,7 +19,6 @@ from symflex.roots.region import Band, Mode, Modes, Rectangle, Region
 from symflex.roots.root import Root, count_modes, overlap, root_at_zero
 
 if TYPE_CHECKING:
-    from symflex.budget import Budget
     from symflex.roots.networks.cramer import CramerEquations
 
 CRAMER = "cramer"
@@ -50,7 +50,6 @@ def roots_in_disc(
     cramer: CramerEquations,
     region: Region,
     digits: int,
-    budget: Budget,
     *,
     symmetric: tuple[bool, bool],
 ) -> DiscRoots:
@@ -58,7 +57,7 @@ def roots_in_disc(
 
     UndecidedError where they are not all proved; EssentialSingularityError where roots accumulate.
     """
-    search = DiscSearch(cramer, digits, budget, symmetric, most_zeros=most_zeros(cramer))
+    search = DiscSearch(cramer, digits, symmetric, most_zeros=most_zeros(cramer))
     match region:
         case Band(_, high):
             return _roots(search, 2 * pi * float(high) * WIDER, digits)
@@ -66,8 +65,8 @@ def roots_in_disc(
             across = max(abs(float(x)) for x in (region.re_low, region.re_high))
             along = max(abs(float(x)) for x in (region.im_low, region.im_high))
             return _roots(search, hypot(across, along) * WIDER, digits)
-    wanted = region.count if isinstance(region, Modes) else region.number if isinstance(region, Mode) else 1
-    budget.progress.report(0.0, "sizing the disc")
+    wanted = wanted_modes(region)
+    entered_budget().progress.report(0.0, "sizing the disc")
     radius = search.radius_of(2 * wanted + SPARE)
     for _ in range(ROUNDS):
         found = _roots(search, radius, digits)
@@ -77,10 +76,15 @@ def roots_in_disc(
     return found
 
 
+def wanted_modes(region: Region) -> int:
+    """Return how many of the lowest modes a region asks for; 0 where it asks by place."""
+    return region.count if isinstance(region, Modes) else region.number if isinstance(region, Mode) else 0
+
+
 def _roots(search: DiscSearch, radius: float, digits: int) -> DiscRoots:
-    search.budget.progress.report(0.3, "evaluating determinants on a circle")
+    entered_budget().progress.report(0.3, "evaluating determinants on a circle")
     den, num = search.sides(radius)
-    search.budget.progress.report(0.7, "enclosing roots")
+    entered_budget().progress.report(0.7, "enclosing roots")
     poles, zeros = den.all_roots(digits), num.all_roots(digits)
     closer: tuple[list[Root], list[Root]] | None = None
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb, ctx
 
+from symflex.budget import spend
 from symflex.roots.networks.at_rest import order_at_zero
 from symflex.roots.networks.cramer import MOST_LOST, CramerEquations, CramerValue, EssentialSingularityError
 from symflex.roots.networks.disc_series import (
@@ -29,7 +30,6 @@ from symflex.roots.root import Root, mirror_images
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from symflex.budget import Budget
 
 RATIOS = (1.1, 1.25, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 32.0)
 """Of the circle where a bound is taken to that where values are."""
@@ -131,7 +131,6 @@ class DiscSearch:
 
     equations: CramerEquations
     digits: int
-    budget: Budget
     symmetric: tuple[bool, bool]  # whether roots of den and num mirror each other in the imaginary axis
     series_bits: int = SERIES_BITS  # to which a series tells the function where it is least
     most_zeros: int | None = None  # where there are not infinitely many
@@ -194,7 +193,7 @@ class DiscSearch:
     def _grown(self, radius: float) -> tuple[float, float]:
         """Return the mean of ln abs of denominator and numerator on a circle."""
         if radius not in self._sizes:
-            self.budget.spend()
+            spend()
             totals = [0.0, 0.0]
             for k in range(SAMPLES):
                 value = self._value((acb(0, pi * (k + 0.5) / SAMPLES).exp() * radius).mid(), ROUGH_BITS)

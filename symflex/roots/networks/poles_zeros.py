@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING
 
 from flint import arb, ctx
 
+from symflex.budget import entered_budget
 from symflex.errors import BudgetError
-from symflex.roots.networks.anywhere import CRAMER, roots_in_disc
+from symflex.roots.networks.anywhere import CRAMER, roots_in_disc, wanted_modes
 from symflex.roots.networks.at_rest import order_at_zero
 from symflex.roots.networks.counting import Counter
 from symflex.roots.networks.cramer import CramerEquations, EssentialSingularityError, is_zero
@@ -36,9 +37,8 @@ from symflex.roots.region import Band, Mode, Modes, Rectangle, Region
 from symflex.roots.root import Root, count_modes, root_at_zero
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
-    from symflex.budget import Budget
     from symflex.equations import Equations
     from symflex.roots.networks.network import Network
 
@@ -65,7 +65,6 @@ def locate_in_network(
     pair: tuple[str, str],
     region: Region,
     digits: int,
-    budget: Budget,
     *,
     is_default: bool,
     proof: str,
@@ -76,145 +75,114 @@ def locate_in_network(
     the imaginary axis, or is empty. Of a function that is zero, nothing is searched.
     """
     if is_zero(equations, *pair):
-        return _with_certificate(_nothing(ZERO, ""), name, region, digits, is_default=is_default)
+        return _Sought(name, region, digits, is_default).nothing(ZERO)
     network: Network | None
     try:
         network = network_of(equations, *pair)
     except OtherNetworkError:
         network = None
+    symmetric = (False, False) if network is None else network.symmetric
+    sought = _Sought(name, region, digits, is_default, proof, symmetric)
     cramer = CramerEquations.of(equations, *pair)
-    in_disc = partial(
-        _in_disc,
-        cramer,
-        region,
-        digits,
-        budget,
-        symmetric=(False, False) if network is None else network.symmetric,
-        proof=proof,
-    )
     if network is None or not (network.driven and network.read):
-        found = in_disc()
-    else:
-        found = _without_losses(_NetworkSearch(network, cramer, region, digits, budget), in_disc, proof)
-    return _with_certificate(found, name, region, digits, is_default=is_default)
+        return sought.in_disc(cramer)
+    return sought.without_losses(_NetworkSearch(network, cramer, region, digits))
 
 
-def locate_quotient(
-    cramer: CramerEquations, name: str, region: Region, digits: int, budget: Budget
-) -> PoleZeroMap:
+def locate_quotient(cramer: CramerEquations, name: str, region: Region, digits: int) -> PoleZeroMap:
     """Find poles and zeros of a quotient of determinants, in a disc that holds the region."""
-    found = _in_disc(cramer, region, digits, budget, symmetric=(False, False))
-    return _with_certificate(found, name, region, digits)
-
-
-def _with_certificate(
-    found: LocatedRoots, name: str, region: Region, digits: int, *, is_default: bool = False
-) -> PoleZeroMap:
-    every = (*found.poles, *found.zeros, *(h.root for h in found.hidden))
-    reasons = list(found.reasons)
-    if not all(root.certified for root in every):
-        reasons.append(UNTOLD)
-    count = sum(root.multiplicity for root in (*every, *found.unstable))
-    reason = "; ".join(dict.fromkeys(reasons)) or None
-    certificate = Certificate(
-        found.engine,
-        reason is None,
-        count,
-        count,
-        reason,
-        is_exceeded=found.code is not None,
-        code=found.code,
-    )
-    return PoleZeroMap(
-        name,
-        region,
-        found.poles,
-        found.zeros,
-        found.hidden,
-        certificate,
-        digits,
-        is_default_region=is_default,
-        is_infinite=True,
-        verdict=found.verdict,
-        unstable=found.unstable,
-    )
+    return _Sought(name, region, digits).in_disc(cramer)
 
 
 @dataclass(frozen=True, slots=True)
-class LocatedRoots:
-    """What a search has come to."""
+class _Sought:
+    """Which poles and zeros are asked for, and what is known before they are searched."""
 
-    engine: str
-    poles: tuple[Root, ...]
-    zeros: tuple[Root, ...]
-    hidden: tuple[HiddenRoot, ...]
-    verdict: StabilityVerdict
-    reasons: tuple[str, ...] = ()  # what is not proved
-    unstable: tuple[Root, ...] = ()
-    code: str | None = None  # of what was exceeded
+    name: str
+    region: Region
+    digits: int
+    is_default: bool = False
+    proof: str = ""  # why no pole lies right of the imaginary axis
+    symmetric: tuple[bool, bool] = (False, False)  # poles, and zeros, mirror each other in the axis
 
+    def found(
+        self,
+        engine: str,
+        roots: tuple[tuple[Root, ...], tuple[Root, ...], tuple[HiddenRoot, ...]],
+        verdict: StabilityVerdict,
+        reasons: Sequence[str] = (),
+        unstable: tuple[Root, ...] = (),
+        code: str | None = None,
+    ) -> PoleZeroMap:
+        """Return poles, zeros and hidden modes, what is not proved, and the code of what was exceeded."""
+        poles, zeros, hidden = roots
+        every = (*poles, *zeros, *(h.root for h in hidden))
+        untold = () if all(root.certified for root in every) else (UNTOLD,)
+        count = sum(root.multiplicity for root in (*every, *unstable))
+        reason = "; ".join(dict.fromkeys((*reasons, *untold))) or None
+        return PoleZeroMap(
+            self.name,
+            self.region,
+            *roots,
+            Certificate(engine, count, count, reason, code),
+            self.digits,
+            is_default_region=self.is_default,
+            is_infinite=True,
+            verdict=verdict,
+            unstable=unstable,
+        )
 
-def _without_losses(search: _NetworkSearch, in_disc: Callable[[], LocatedRoots], proof: str) -> LocatedRoots:
-    """Count the poles, and the zeros where the output is what the input drives.
+    def nothing(self, reason: str, code: str | None = None) -> PoleZeroMap:
+        """Return that no root was found: of a passive network some may still lie on the imaginary axis."""
+        said = f"{self.proof}, but it may vibrate forever; {reason}" if self.proof else reason
+        return self.found(CRAMER, ((), (), ()), judge([], said), [reason], code=code)
 
-    Else all are found in a disc, and where that comes to nothing the poles are counted nevertheless.
-    """
-    found = None if search.network.is_colocated else in_disc()
-    if found is not None and not found.reasons:
-        return found
-    reasons: list[str] = []
-    code: str | None = None
-    try:
-        search.find()
-    except BudgetError as error:
-        reasons.append("; ".join(d.message for d in error.diagnostics))
-        code = error.diagnostics[0].code
-    except UndecidedError:
-        reasons.append(NOT_COUNTED)
-    poles, zeros, hidden = search.roots()
-    engine = WITTRICK_WILLIAMS
-    if found is not None:
-        engine, zeros = f"{WITTRICK_WILLIAMS}, {CRAMER}", found.zeros or zeros
-        reasons += found.reasons
-    known = [*poles, *(h.root for h in hidden if not h.is_proved)]
-    unseen = [h.root for h in hidden if h.is_proved]
-    verdict = judge(known, NONE_ON_AXIS if proof else NOT_PASSIVE, proof, unseen)
-    reasons += search.reasons
-    return LocatedRoots(engine, poles, zeros, hidden, verdict, tuple(reasons), (), code)
+    def without_losses(self, search: _NetworkSearch) -> PoleZeroMap:
+        """Count the poles, and the zeros where the output is what the input drives.
 
+        Else all are found in a disc, and where that comes to nothing the poles are counted nevertheless.
+        """
+        in_disc = None if search.network.is_colocated else self.in_disc(search.cramer)
+        if in_disc is not None and in_disc.certificate.reason in (None, UNTOLD):
+            return in_disc
+        reasons: list[str] = []
+        code: str | None = None
+        try:
+            search.find()
+        except BudgetError as error:
+            reasons.append("; ".join(d.message for d in error.diagnostics))
+            code = error.diagnostics[0].code
+        except UndecidedError:
+            reasons.append(NOT_COUNTED)
+        poles, zeros, hidden = search.roots()
+        engine = WITTRICK_WILLIAMS
+        if in_disc is not None:
+            engine, zeros = f"{WITTRICK_WILLIAMS}, {CRAMER}", in_disc.zeros or zeros
+            reasons.append(in_disc.certificate.reason or "")
+        known = [*poles, *(h.root for h in hidden if not h.is_proved)]
+        unseen = [h.root for h in hidden if h.is_proved]
+        verdict = judge(known, NONE_ON_AXIS if self.proof else NOT_PASSIVE, self.proof, unseen)
+        return self.found(engine, (poles, zeros, hidden), verdict, reasons + search.reasons, code=code)
 
-def _in_disc(
-    cramer: CramerEquations,
-    region: Region,
-    digits: int,
-    budget: Budget,
-    *,
-    symmetric: tuple[bool, bool],
-    proof: str = "",
-) -> LocatedRoots:
-    """Find all roots in a disc that holds the region; ``proof`` says why no pole lies right of the axis."""
-    try:
-        found = roots_in_disc(cramer, region, digits, budget, symmetric=symmetric)
-    except BudgetError as error:
-        code, message = error.diagnostics[0].code, "; ".join(d.message for d in error.diagnostics)
-        return _nothing(message, proof, code)
-    except EssentialSingularityError:
-        return _nothing(ACCUMULATE, proof)
-    except UndecidedError:
-        return _nothing(NOT_COUNTED, proof)
-    poles, zeros = (chosen(roots, region) for roots in (found.poles, found.zeros))
-    reasons = []
-    if isinstance(region, Modes | Mode):
-        wanted = region.count if isinstance(region, Modes) else region.number
-        if not found.holds(wanted):
-            reasons.append(TOO_FEW)
-    known = [*found.poles, *(r for r in found.shared if not r.is_zero)]
-    beyond = REACHED.format(found.radius / (2 * pi))
-    at_rest = [r for r in found.shared if r.is_zero]
-    verdict = judge(known, NONE_ON_AXIS if proof else beyond, proof, at_rest)
-    hidden = _hidden(found.shared, poles, region)
-    unstable = right_beyond(found.poles, poles)
-    return LocatedRoots(CRAMER, poles, zeros, hidden, verdict, tuple(reasons), unstable)
+    def in_disc(self, cramer: CramerEquations) -> PoleZeroMap:
+        """Find all roots in a disc that holds the region."""
+        region = self.region
+        try:
+            found = roots_in_disc(cramer, region, self.digits, symmetric=self.symmetric)
+        except BudgetError as error:
+            return self.nothing("; ".join(d.message for d in error.diagnostics), error.diagnostics[0].code)
+        except EssentialSingularityError:
+            return self.nothing(ACCUMULATE)
+        except UndecidedError:
+            return self.nothing(NOT_COUNTED)
+        poles, zeros = (chosen(roots, region) for roots in (found.poles, found.zeros))
+        known = [*found.poles, *(r for r in found.shared if not r.is_zero)]
+        beyond = REACHED.format(found.radius / (2 * pi))
+        at_rest = [r for r in found.shared if r.is_zero]
+        verdict = judge(known, NONE_ON_AXIS if self.proof else beyond, self.proof, at_rest)
+        roots = (poles, zeros, _hidden(found.shared, poles, region))
+        reasons = () if found.holds(wanted_modes(region)) else (TOO_FEW,)
+        return self.found(CRAMER, roots, verdict, reasons, right_beyond(found.poles, poles))
 
 
 def _hidden(shared: Sequence[Root], poles: Sequence[Root], region: Region) -> tuple[HiddenRoot, ...]:
@@ -227,20 +195,12 @@ def _hidden(shared: Sequence[Root], poles: Sequence[Root], region: Region) -> tu
     return tuple(HiddenRoot(r, "cancelled" if r.is_zero else "coincident") for r in shared)
 
 
-def _nothing(reason: str, proof: str, code: str | None = None) -> LocatedRoots:
-    """Return that no root was found: of a passive network some may still lie on the imaginary axis."""
-    verdict = judge([], f"{proof}, but it may vibrate forever; {reason}" if proof else reason)
-    return LocatedRoots(CRAMER, (), (), (), verdict, (reason,), (), code)
-
-
 class _NetworkSearch:
     """Eigenvalues of a network, and of what is held at input and output: borders 0 and 1, poles' is None."""
 
-    def __init__(
-        self, network: Network, cramer: CramerEquations, region: Region, digits: int, budget: Budget
-    ) -> None:
+    def __init__(self, network: Network, cramer: CramerEquations, region: Region, digits: int) -> None:
         self.network, self.cramer = network, cramer
-        self.region, self.digits, self.budget = region, digits, budget
+        self.region, self.digits = region, digits
         borders = (network.driven,) if network.is_colocated else (network.driven, network.read)
         self.counter = Counter(network, borders)
         self.reasons: list[str] = []
@@ -280,7 +240,7 @@ class _NetworkSearch:
         raise TypeError(message)
 
     def _find(self, first: int, last: int | None, limits: tuple[float, float] | None) -> None:
-        self.budget.progress.report(0.0, "counting poles")
+        entered_budget().progress.report(0.0, "counting poles")
         self.visible, self.held, self.shared = [], [], []
         poles = self._spectrum(None, first, last, limits)
         for each in poles.ordered():
@@ -289,7 +249,7 @@ class _NetworkSearch:
             self.visible += _pair(each, each.multiplicity - unseen)
         zeros: EigenvalueSearch | None = None
         if self.network.is_colocated:
-            self.budget.progress.report(0.5, "counting zeros")
+            entered_budget().progress.report(0.5, "counting zeros")
             zeros = self._spectrum(0, first, last, limits)
             self.held = [root for each in zeros.ordered() for root in self._apart(each)]
         self._at_zero(poles, zeros)
@@ -312,7 +272,7 @@ class _NetworkSearch:
         """Return a search that has found eigenvalues by number, or between two omega [rad/s]."""
         search = self.searched.get(border)
         if search is None:
-            search = EigenvalueSearch(self.counter, border, self.digits, self.budget)
+            search = EigenvalueSearch(self.counter, border, self.digits)
             self.searched[border] = search
             start = search.start(partial(self._nullity, border))
         else:
@@ -346,12 +306,12 @@ class _NetworkSearch:
 
     def _held_within(self, each: Eigenvalue, border: int) -> int:
         """Return how many eigenvalues of the network held at a border lie in the same interval."""
-        search = EigenvalueSearch(self.counter, border, self.digits, self.budget)
+        search = EigenvalueSearch(self.counter, border, self.digits)
         return search.count(each.high) - search.count(each.low)
 
     def _closer(self, each: Eigenvalue, border: int | None) -> Eigenvalue:
         """Return an eigenvalue to twice the digits."""
-        search = EigenvalueSearch(self.counter, border, 2 * self.digits, self.budget)
+        search = EigenvalueSearch(self.counter, border, 2 * self.digits)
         search.base = search.count(each.low) - each.number + 1
         search.isolate(each.low, each.high, each.number, None)
         return search.found[min(search.found)]
@@ -366,7 +326,7 @@ class _NetworkSearch:
 
     def _poles_within(self, zero: Eigenvalue) -> Eigenvalue | None:
         """Return the poles in the interval of a zero as one; ``None`` where there are none."""
-        search = EigenvalueSearch(self.counter, None, self.digits, self.budget)
+        search = EigenvalueSearch(self.counter, None, self.digits)
         found = search.count(zero.high) - search.count(zero.low)
         return Eigenvalue(zero.low, zero.high, 0, found) if found else None
 

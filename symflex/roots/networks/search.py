@@ -15,13 +15,13 @@ from typing import TYPE_CHECKING
 
 from flint import arb, ctx
 
+from symflex.budget import spend
 from symflex.roots.networks.members import UndecidedError
 from symflex.roots.precision import bits_for_digits
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from symflex.budget import Budget
     from symflex.roots.networks.counting import Counter, NetworkSample
 
 GUARD_BITS = 64
@@ -62,7 +62,6 @@ class EigenvalueSearch:
     counter: Counter
     border: int | None  # which motion is held
     digits: int
-    budget: Budget
     found: dict[int, Eigenvalue] = field(default_factory=dict)
     base: int = 0  # count just above 0
     at_zero: int = 0  # how many eigenvalues lie between the samples about 0
@@ -95,7 +94,7 @@ class EigenvalueSearch:
 
     def at(self, value: arb, room: arb) -> NetworkSample:
         """Return the network at a lambda, or within some room of it where that is an eigenvalue."""
-        self.budget.spend()
+        spend()
         bits = self.bits
         for _ in range(3):
             try:

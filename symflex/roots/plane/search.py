@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from flint import acb
 
+from symflex.budget import entered_budget
 from symflex.errors import BudgetError, Diagnostic
 from symflex.roots.axes.axis_scan import sign_changes
 from symflex.roots.counting.winding import RING, Cell, RootOnPathError, Winding
@@ -113,7 +114,7 @@ class RootSearch:
                 self.reached = inf
                 break
             if self.reached >= radius:
-                self._winding.budget.progress.report(known / modes, f"{known} of {modes} modes located")
+                entered_budget().progress.report(known / modes, f"{known} of {modes} modes located")
             reach = self._winding.reach
             width = RING if reach(self.reached + FADED) > reach(self.reached) else FADED
             high, found = self._ring(self.reached, self.passing(self.reached + width))
@@ -136,7 +137,7 @@ class RootSearch:
                 break
             known = self._modes()
             if self.reached >= radius:
-                self._winding.budget.progress.report(known / modes, f"{known} of {modes} modes located")
+                entered_budget().progress.report(known / modes, f"{known} of {modes} modes located")
             high = self.reached + (RING if known < FEW else RING / 4)
             try:
                 self.roots.extend(self.on_axes(self.reached, high))

@@ -20,14 +20,14 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
 from flint import acb, acb_poly, arb, arb_poly, ctx
 
-from symflex.budget import Budget, entered_budget
+from symflex.budget import spend
 from symflex.roots.precision import precision
 
 Proposer = Callable[[acb_poly], tuple[acb, ...] | None]
@@ -67,12 +67,11 @@ class LevelPolynomial:
     value: acb_poly
     slope: acb_poly
     degree: int  # of the polynomial, known exactly
-    budget: Budget = field(default_factory=Budget)  # heeded between evaluations: no limit by default
 
     @classmethod
-    def of(cls, polynomial: acb_poly, budget: Budget | None = None) -> LevelPolynomial:
+    def of(cls, polynomial: acb_poly) -> LevelPolynomial:
         """Return the polynomial with its derivative."""
-        return cls(polynomial, polynomial.derivative(), int(polynomial.degree()), budget or entered_budget())
+        return cls(polynomial, polynomial.derivative(), int(polynomial.degree()))
 
     def shifted(self, centre: acb) -> acb_poly:
         """Return p(centre + x) as a polynomial in x."""
@@ -83,7 +82,7 @@ class LevelPolynomial:
         best = Disc(guess, arb("+inf"))
         centre = guess
         for _ in range(NEWTON_STEPS):
-            self.budget.spend()
+            spend()
             step = self.value(centre) / self.slope(centre)
             if not step.is_finite():
                 break
@@ -104,7 +103,7 @@ class LevelPolynomial:
         shifted = self.shifted(centre)
         last = arb("+inf")
         for _ in range(CENTRE_STEPS):
-            self.budget.spend()
+            spend()
             step = shifted[count - 1] / (count * shifted[count])
             if not step.is_finite():
                 return None
@@ -259,12 +258,12 @@ def propose_by_laguerre(polynomial: acb_poly) -> tuple[acb, ...] | None:
     >>> [f"{float(g.imag):.12f}" for g in propose_by_laguerre(acb_poly([-2, 1, -2, 1]))]
     ['1.000000000000', '0.000000000000']
     """
-    guesses = tuple(guess_by_laguerre(polynomial, entered_budget()))
+    guesses = tuple(guess_by_laguerre(polynomial))
     found = sum(1 if guess.imag == 0 else 2 for guess in guesses)
     return guesses if found == polynomial.degree() else None
 
 
-def guess_by_laguerre(polynomial: acb_poly, budget: Budget) -> Iterator[acb]:
+def guess_by_laguerre(polynomial: acb_poly) -> Iterator[acb]:
     """Yield one guess after the other, until there are all or it does not settle; SF506 when time is over."""
     degree = int(polynomial.degree())
     shift = _central_exponent(polynomial, degree)
@@ -278,7 +277,7 @@ def guess_by_laguerre(polynomial: acb_poly, budget: Budget) -> Iterator[acb]:
     while known < degree:
         # A start next to a cluster drowns in rounding; the Newton polygon tells where the next root may lie.
         starts = (start, *(cmath.rect(moduli[known], angle) for angle in FRESH_ANGLES))
-        attempts = (_find_one((scaled, first, second), found[:known], each, budget) for each in starts)
+        attempts = (_find_one((scaled, first, second), found[:known], each) for each in starts)
         root = next((each for each in attempts if each is not None), None)
         if root is None:
             return
@@ -331,14 +330,13 @@ def _find_one(
     derivatives_of: tuple[acb_poly, acb_poly, acb_poly],
     found: npt.NDArray[np.complex128],
     start: complex,
-    budget: Budget,
 ) -> complex | None:
     """Return one more root than those found, snapped to the real axis when it is nearly real."""
     p, first, second = derivatives_of
     remaining = int(p.degree()) - len(found)
     z, last = start, complex(math.inf)
     for iteration in range(ITERATIONS):
-        budget.spend()
+        spend()
         derivatives = _log_derivatives(p, first, second, z)
         if derivatives is None:
             break

@@ -27,7 +27,6 @@ from symflex.roots.precision import bits_for_digits, precision
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from symflex.budget import Budget
     from symflex.roots.problem import PolynomialInS
 
     Goal = Callable[[acb], arb]
@@ -48,7 +47,6 @@ def isolations(
     *,
     in_square: bool,
     proposers: Sequence[Proposer],
-    budget: Budget | None = None,
 ) -> Iterator[tuple[Disc, ...]]:
     """Enclose every root of a square-free polynomial, ever closer.
 
@@ -66,7 +64,7 @@ def isolations(
     known: tuple[acb, ...] | None = None
     while True:
         with precision(bits):
-            level = LevelPolynomial.of(acb_poly(polynomial.enclosure()), budget)
+            level = LevelPolynomial.of(acb_poly(polynomial.enclosure()))
             discs = _solve(level, goal, proposers, known, last=bits >= limit)
             enough = discs is not None and all(disc.radius <= goal(disc.centre) for disc in discs)
         if discs is not None:

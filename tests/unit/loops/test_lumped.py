@@ -13,7 +13,7 @@ from symflex.algebra import Factored, Ring
 from symflex.loops.loop import GainPolynomial
 from symflex.loops.lumped import LumpedFactor
 from symflex.loops.stability_map import PoleCount
-from symflex.roots import Budget, precision
+from symflex.roots import precision
 
 RING = Ring(("s", "c"))
 
@@ -41,13 +41,13 @@ def crossings(of):
             c.is_infinite,
             c.is_symmetric,
         )
-        for c in of.crossings(12, Budget())
+        for c in of.crossings(12)
     ]
     return sorted(found, key=lambda c: c[0].expected)
 
 
 def count(of, gain):
-    return of.count(Fraction(gain), Budget())
+    return of.count(Fraction(gain))
 
 
 # (s + 1)^3 + K: by Routh 1 + K > 0 and 3 * 3 > 1 + K.
@@ -145,7 +145,7 @@ def test_numbers_that_are_symbols_count_with_their_value():
     assert crossings(of) == [(sqrt(2), [1], False, False)]
     assert [count(of, k).right for k in ("7/5", "3/2")] == [2, 0]
     with precision(100):
-        (only,) = of.crossings(20, Budget())
+        (only,) = of.crossings(20)
         assert only.gain.overlaps(arb(2).sqrt())
 
 

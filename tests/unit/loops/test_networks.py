@@ -122,15 +122,15 @@ def test_stability_of_a_network_is_that_at_its_own_gain():
 def test_a_locus_of_a_search_whose_time_is_over_is_refused(monkeypatch):
     monkeypatch.setattr(of_model, "is_large_network", lambda model: True)
     loop = of_model.characteristic_loop(pipeline.loads(chain(1)), "K")
-    found = replace(loop.located(Fraction(0), Modes(1), Budget()), poles=(), unstable=(), hidden=())
+    found = replace(loop.located(Fraction(0), Modes(1)), poles=(), unstable=(), hidden=())
 
-    def nothing(self, gain, region, budget):
+    def nothing(self, gain, region):
         return found
 
     monkeypatch.setattr(NetworkLoop, "located", nothing)
     assert refusal(trace_locus, loop, (Fraction(0), Fraction(20)), 1) == "UncertifiedError SF807"
-    over = Budget(1, clock=iter(range(0, 1000, 10)).__next__)
-    assert refusal(trace_locus, loop, (Fraction(0), Fraction(20)), 1, over) == "BudgetError SF506"
+    with Budget(1, clock=iter(range(0, 1000, 10)).__next__).entered():
+        assert refusal(trace_locus, loop, (Fraction(0), Fraction(20)), 1) == "BudgetError SF506"
 
 
 @pytest.mark.slow

@@ -115,7 +115,7 @@ def test_poles_and_zeros_are_rows_with_radius_and_certificate(bound):
 def test_what_is_not_proved_says_so():
     pole = Root(arb(-1, 0.1), arb(0), 2, on_imaginary_axis=False, is_real=True, certified=False)
     found = PoleZeroMap(
-        "X/F", Everything(), (pole,), (), (HiddenRoot(pole),), Certificate("x", False, 3, 2, "<one> is lost")
+        "X/F", Everything(), (pole,), (), (HiddenRoot(pole),), Certificate("x", 3, 2, "<one> is lost")
     )
     text = roots_html(found)
     assert "NOT CERTIFIED: &lt;one&gt; is lost" in text

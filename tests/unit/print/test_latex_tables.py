@@ -112,7 +112,7 @@ MAP = PoleZeroMap(
     (root(-3, 4), root(-3, -4), root(-2, 0)),
     (root(0, 0, 2),),
     (HiddenRoot(root(0, 5)),),
-    Certificate("polynomial", True, 6, 6),
+    Certificate("polynomial", 6, 6),
 )
 
 
@@ -140,7 +140,7 @@ def enclosed(re, im, radius):
 
 
 def of_poles(*poles):
-    return PoleZeroMap("V/F", Everything(), poles, (), (), Certificate("polynomial", True, 2, 2))
+    return PoleZeroMap("V/F", Everything(), poles, (), (), Certificate("polynomial", 2, 2))
 
 
 def test_a_table_has_the_digits_that_the_enclosure_certifies_and_no_more():

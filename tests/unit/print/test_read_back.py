@@ -203,7 +203,7 @@ def test_roots_that_a_budget_leaves_out_are_not_printed_as_if_they_were_none(mon
 
     def partly(*arguments):
         found = locate(*arguments)
-        return replace(found, poles=(), certificate=replace(found.certificate, is_exceeded=True))
+        return replace(found, poles=(), certificate=replace(found.certificate, reason="over", code="SF506"))
 
     monkeypatch.setattr(zpk, "locate", partly)
     with pytest.raises(BudgetError, match="not all roots of y/u were found"):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from flint import arb
 
-from symflex.budget import Budget
 from symflex.errors import BudgetError, Diagnostic
 from symflex.roots import Mode, Position
 from symflex.roots.distributed.side import Side
@@ -12,7 +11,6 @@ from symflex.roots.engines import LOSSLESS
 from symflex.roots.root import Root
 from tests.unit.roots.distributed_models import ROD, bound
 
-UNLIMITED = Budget()
 OVER = BudgetError(Diagnostic("SF506", "the time budget is used up"))
 
 
@@ -32,9 +30,9 @@ def places(roots):
     return [(float(r.re), float(r.im), r.multiplicity) for r in roots]
 
 
-def poles_by(engine, source, region, digits, budget=UNLIMITED):
+def poles_by(engine, source, region, digits):
     """Return the poles in a region that one engine finds, none where it does not prove that they are all."""
-    one = Side(source, source.den, digits, budget, engines=(engine,))
+    one = Side(source, source.den, digits, engines=(engine,))
     if isinstance(region, Mode):
         one.numbered(region.number)
         return one.in_order() if one.engine == LOSSLESS else ()
@@ -49,4 +47,4 @@ def poles_by(engine, source, region, digits, budget=UNLIMITED):
 def side(text=ROD, **options):
     """Return the denominator's side of a specification's first transfer function."""
     source = bound(text, 0)
-    return Side(source, source.den, 20, Budget(), **options)
+    return Side(source, source.den, 20, **options)

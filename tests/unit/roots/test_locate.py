@@ -66,7 +66,9 @@ def test_what_cancels_is_hidden_with_its_multiplicity():
 def test_a_region_and_a_budget_are_passed_on():
     assert places(locate(of("u/((s + 1)*(s + 20))"), Modes(1)).poles) == [(-1, 0, 1)]
     clock = iter(range(1000)).__next__
-    certificate = locate(of("u/((s + 1)*(s + 20))"), budget=Budget(seconds=0, clock=clock)).certificate
+    source = of("u/((s + 1)*(s + 20))")
+    with Budget(seconds=0, clock=clock).entered():
+        certificate = locate(source).certificate
     assert (certificate.is_exceeded, certificate.code) == (True, "SF506")
 
 
@@ -82,8 +84,8 @@ def test_without_zeros_the_poles_are_those_of_the_textbook():
 def test_an_engine_heeds_its_budget():
     clock = iter(range(10**6)).__next__
     source = bound(DELAY_LOOP)
-    with pytest.raises(BudgetError, match="SF506"):
-        poles_by("guess-and-prove", source, Modes(3), 15, Budget(seconds=1, clock=clock))
+    with Budget(seconds=1, clock=clock).entered(), pytest.raises(BudgetError, match="SF506"):
+        poles_by("guess-and-prove", source, Modes(3), 15)
 
 
 def test_kernels_of_length_zero_are_numbers():

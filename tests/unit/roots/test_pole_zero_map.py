@@ -95,30 +95,28 @@ class StandIn:
     def __init__(self, *answers):
         self.answers = list(answers)
         self.digits = []
-        self.budgets = []
 
-    def __call__(self, problem, digits, budget=None):
+    def __call__(self, problem, digits):
         self.digits.append(digits)
-        self.budgets.append(budget)
         answer = self.answers.pop(0)
         if isinstance(answer, BudgetError):
             raise answer
         return answer
 
 
-def mapped(*answers, degrees=(2, 1), hidden=(), region=None, budget=None):
+def mapped(*answers, degrees=(2, 1), hidden=(), region=None):
     poles, zeros, *others = (problem(*([1] * (n + 1))) for n in (*degrees, *hidden))
     finder = StandIn(*answers)
     causes = [(each, f"cause {i}") for i, each in enumerate(others)]
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(pole_zero_map, "find_polynomial_roots", finder)
-        shown = find_pole_zero_map("x/F", poles, zeros, region, 10, causes, budget)
+        shown = find_pole_zero_map("x/F", poles, zeros, region, 10, causes)
     return shown, finder
 
 
 def test_all_found_and_apart_is_certified_and_zeros_right_of_the_axis_make_nothing_unstable():
     shown, _ = mapped(real(-1, 2), real(-3))
-    assert shown.certificate == Certificate("polynomial", True, 3, 3)
+    assert shown.certificate == Certificate("polynomial", 3, 3)
     assert (shown.verdict.word, shown.verdict.right) == ("unstable", 1)
     assert mapped(real(-1, -2), real(3))[0].verdict.word == "stable"
 
@@ -137,7 +135,7 @@ def test_a_root_that_is_missing_or_not_told_apart_is_no_certificate():
         answers[which] = answers[which][1:]
         shown, _ = mapped(*answers)
         why = "3 roots exist, 2 were found"
-        assert shown.certificate == Certificate("polynomial", False, 3, 2, why), which
+        assert shown.certificate == Certificate("polynomial", 3, 2, why), which
         assert shown.verdict.reason == why, which
         found = mapped(*blurred)[0].certificate
         why = "some roots could not be told apart; each such group is enclosed as one"
@@ -189,13 +187,14 @@ def test_what_was_proved_until_the_budget_was_spent_is_shown_with_its_code():
     shown, finder = mapped(failed, hidden=(1,))
     assert [float(root.re) for root in shown.poles] == [-1]
     assert (shown.zeros, shown.hidden, finder.digits) == ((), (), [10])
-    expected = Certificate("polynomial", False, 4, 1, "too many steps", is_exceeded=True, code="SF505")
+    expected = Certificate("polynomial", 4, 1, "too many steps", code="SF505")
     assert shown.certificate == expected
     assert shown.verdict.reason == "too many steps"
     assert mapped(BudgetError(SPENT, found=real(-1)), region=Mode(1))[0].poles == ()
     assert mapped(BudgetError(SPENT))[0].poles == ()
     clock = iter(range(100)).__next__
-    shown, _ = mapped(real(-1, -2), budget=Budget(seconds=0, clock=clock))
+    with Budget(seconds=0, clock=clock).entered():
+        shown, _ = mapped(real(-1, -2))
     assert (shown.poles, shown.certificate.code) == ((), "SF506")
 
 
@@ -208,30 +207,25 @@ def test_progress_is_told_by_polynomials():
             self.said.append((done, text))
 
     told = Told()
-    budget = Budget(progress=told)
-    _, finder = mapped(real(-1, -2), real(-3), real(-4), real(-5), hidden=(1, 1), budget=budget)
-    assert finder.budgets == [budget] * 4
+    with Budget(progress=told).entered():
+        mapped(real(-1, -2), real(-3), real(-4), real(-5), hidden=(1, 1))
     assert told.said == [(i / 4, f"polynomial {i + 1} of 4") for i in range(4)]
 
 
 def test_an_exceeded_budget_is_an_error_that_holds_the_map():
-    for reason, code, said, coded in [
-        ("too many", "SF505", "too many", "SF505"),
-        (None, None, "the budget was exceeded", "SF506"),
-    ]:
-        certificate = Certificate("e", False, 3, 1, reason, is_exceeded=True, code=code)
-        shown = PoleZeroMap("x/F", Everything(), (), (), (), certificate)
-        with pytest.raises(BudgetError) as failed:
-            shown.complete()
-        (diagnostic,) = failed.value.diagnostics
-        assert (diagnostic.message, diagnostic.code) == (said, coded)
-        assert diagnostic.hint == "the attribute 'found' of this error has what was proved until then", code
-        assert failed.value.found is shown, (reason, code)
+    certificate = Certificate("e", 3, 1, "too many", code="SF505")
+    shown = PoleZeroMap("x/F", Everything(), (), (), (), certificate)
+    with pytest.raises(BudgetError) as failed:
+        shown.complete()
+    (diagnostic,) = failed.value.diagnostics
+    assert (diagnostic.message, diagnostic.code) == ("too many", "SF505")
+    assert diagnostic.hint == "the attribute 'found' of this error has what was proved until then"
+    assert failed.value.found is shown
 
 
 def test_all_of_a_map_is_in_its_data():
     hole = Exclusion(-2.0, 0.0, 0.5, "poles accumulate")
-    certificate = Certificate("e", False, 3, 1, "too many", is_exceeded=True, code="SF505")
+    certificate = Certificate("e", 3, 1, "too many", code="SF505")
     data = PoleZeroMap(
         "x/F", Everything(), real(-1), real(-2), (), certificate, 5, (hole,), unstable=real(4)
     ).to_json_dict()

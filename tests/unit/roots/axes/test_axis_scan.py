@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 from mpmath import cos, findroot, mp, mpf, sin, sinh, sqrt, tan, tanh
 
-from symflex.budget import Budget
 from symflex.roots import Modes
 from symflex.roots.axes.axis_scan import (
     LONGEST,
@@ -41,7 +40,7 @@ class InBalls(KernelFunction):
 
 def searched(text, kind=KernelFunction):
     source = bound(text, 0)
-    return Winding(kind(source, source.den), Budget())
+    return Winding(kind(source, source.den))
 
 
 def bending_part(function):

@@ -236,7 +236,7 @@ def test_a_cell_holds_as_many_roots_as_were_put_there():
         function = Followed(PRODUCTS[name], power=power)
         expected = function.count_inside(lambda root, cell=cell: root != 0 and cell.holds(log(root)))
         try:
-            assert kind(function, Budget()).count(cell) == expected, (power, name)
+            assert kind(function).count(cell) == expected, (power, name)
         except RootOnPathError:
             # The cell's edge at pi is the negative real axis.
             assert cell.left == pi, (power, name, kind)
@@ -249,13 +249,13 @@ def test_a_disc_about_0_holds_as_many_roots_as_were_put_there():
     for name, radius in product(PRODUCTS, [0.5, 1.5, 2.5, 3.05, 10]):
         function = Followed(PRODUCTS[name])
         expected = function.count_inside(lambda root, radius=radius: abs(root) < radius)
-        found = CertifiedWinding(function, Budget()).count_within(float(log(radius).real), pi)
+        found = CertifiedWinding(function).count_within(float(log(radius).real), pi)
         assert found == expected, (name, radius)
 
 
 def test_an_edge_followed_before_is_followed_back_by_the_same_turn():
     function = Followed(PRODUCTS["double"])
-    winding = CertifiedWinding(function, Budget())
+    winding = CertifiedWinding(function)
     there = winding.certified_turn(1j, complex(2, 1))
     evaluations = len(function.levels)
     back = winding.certified_turn(complex(2, 1), 1j)
@@ -274,8 +274,8 @@ def test_a_turn_is_the_change_of_the_argument():
             )
             for z in (start, end)
         ]
-        certified = CertifiedWinding(function, Budget()).certified_turn(start, end)
-        plain = Winding(function, Budget()).turn(start, end)
+        certified = CertifiedWinding(function).certified_turn(start, end)
+        plain = Winding(function).turn(start, end)
         difference = values[1] - values[0]
         assert (float(certified) - difference) / (2 * pi) == pytest.approx(
             round((float(certified) - difference) / (2 * pi)), abs=1e-9
@@ -536,7 +536,7 @@ def test_series_help_where_steps_are_too_long_for_exponentials():
 
     for tries_series, is_analytic in product((True, False), repeat=2):
         function = Function(PRODUCTS["double"], is_analytic=is_analytic)
-        winding = CertifiedWinding(function, Budget(), tries_series=tries_series)
+        winding = CertifiedWinding(function, tries_series=tries_series)
         assert winding.count(CELL) == in_cell(function), (tries_series, is_analytic)
         assert function.levels or not tries_series, is_analytic
 
@@ -549,7 +549,7 @@ def test_series_are_tried_where_exponentials_say_far_too_little():
 
     # By exponentials alone the boundary, some 20 long, would take more than ten thousand steps.
     function = Function(PRODUCTS["double"], longest=1e-3)
-    assert CertifiedWinding(function, Budget()).count(CELL) == in_cell(function)
+    assert CertifiedWinding(function).count(CELL) == in_cell(function)
     assert len(function.levels) < 2000
 
 
@@ -563,9 +563,9 @@ def test_series_serve_alone_where_no_step_is_short_enough_for_exponentials():
 
     for wrong in (77, -77):
         function = Hopeless(PRODUCTS["double"], wrong=wrong)
-        assert CertifiedWinding(function, Budget(), tries_series=True).count(CELL) == in_cell(function), wrong
+        assert CertifiedWinding(function, tries_series=True).count(CELL) == in_cell(function), wrong
         with pytest.raises(RootOnPathError):
-            CertifiedWinding(function, Budget()).count(CELL)
+            CertifiedWinding(function).count(CELL)
 
 
 def test_small_cells_and_functions_without_a_formula_are_counted():
@@ -575,9 +575,9 @@ def test_small_cells_and_functions_without_a_formula_are_counted():
         cell = Cell(around.real - half, around.real + half, around.imag - half, around.imag + half)
         expected = function.count_inside(lambda root, cell=cell: cell.holds(log(root)))
         assert expected >= 1, name
-        assert CertifiedWinding(function, Budget()).count(cell) == expected, name
+        assert CertifiedWinding(function).count(cell) == expected, name
     function = Followed(PRODUCTS["double"], cancels=True)
-    assert CertifiedWinding(function, Budget()).count(CELL) == in_cell(function)
+    assert CertifiedWinding(function).count(CELL) == in_cell(function)
 
 
 def test_a_step_on_which_nothing_is_known_proves_nothing():
@@ -592,7 +592,7 @@ def test_a_step_on_which_nothing_is_known_proves_nothing():
             return [(acb(arb(0, 1)), d, e) for v, d, e in found]
 
     for broken in ("value", "slope"):
-        winding = CertifiedWinding(Unknown(PRODUCTS["double"], broken=broken), Budget())
+        winding = CertifiedWinding(Unknown(PRODUCTS["double"], broken=broken))
         assert winding._change(LogarithmicLine(1j, 2 + 1j), 0.0, 0.01, 64)[0] == inf, broken
 
 
@@ -616,10 +616,10 @@ class Lost(Followed):
 def test_the_precision_is_raised_where_a_factor_is_lost_and_the_path_ends_where_it_stays_lost():
     for least in (200, 1000):
         function = Lost(PRODUCTS["simple"], least=least)
-        assert CertifiedWinding(function, Budget()).count(Cell(-1, 0.5, -1, 1)) == 1
+        assert CertifiedWinding(function).count(Cell(-1, 0.5, -1, 1)) == 1
         assert max(function.levels) < 4 * least
     with pytest.raises(RootOnPathError):
-        CertifiedWinding(Lost(PRODUCTS["simple"]), Budget()).count(Cell(-1, 0.5, -1, 1))
+        CertifiedWinding(Lost(PRODUCTS["simple"])).count(Cell(-1, 0.5, -1, 1))
 
 
 # ----------------------------------------------------------------------------------- cells and samples
@@ -689,12 +689,12 @@ def test_a_step_is_told_where_slopes_agree_with_values():
 def test_within_the_smallest_radius_are_only_roots_at_0_and_it_stays_away_from_holes():
     for name, given in PRODUCTS.items():
         function = Followed(given)
-        z = Winding(function, Budget()).smallest(pi)
+        z = Winding(function).smallest(pi)
         least = min(abs(complex(r)) for roots, _ in function.roots for r in roots if r != 0)
         assert log(least).real - 8 < z < log(least).real, name
     function = Followed(PRODUCTS["simple"])
     hole = Cell(-9, -8, 0, 1)
-    assert Winding(function, Budget()).smallest(pi, [hole]) <= -9 - log(2).real
+    assert Winding(function).smallest(pi, [hole]) <= -9 - log(2).real
 
 
 def refused(call):
@@ -714,22 +714,23 @@ def test_a_function_without_a_lowest_root_is_said_to_have_none():
             return 5
 
     hint = "ask for a band, which needs no lowest root"
-    winding = Winding(Wrong(PRODUCTS["simple"]), Budget())
+    winding = Winding(Wrong(PRODUCTS["simple"]))
     assert refused(lambda: winding.smallest(pi)) == ("SF505", "the lowest root cannot be found", hint)
 
 
 def test_work_has_an_end_where_no_time_is_given():
     too_long = "SF505", "the search for roots takes too long", FEWER
-    assert refused(Winding(Followed(PRODUCTS["simple"], work=5_000_001), Budget()).spend) == too_long
-    Winding(Followed(PRODUCTS["simple"], work=5_000_000), Budget()).spend()
-    Winding(Followed(PRODUCTS["simple"], work=5_000_001), Budget(1000.0)).spend()
-    winding = Winding(Followed(PRODUCTS["simple"]), Budget())
+    assert refused(Winding(Followed(PRODUCTS["simple"], work=5_000_001)).spend) == too_long
+    Winding(Followed(PRODUCTS["simple"], work=5_000_000)).spend()
+    with Budget(1000.0).entered():
+        Winding(Followed(PRODUCTS["simple"], work=5_000_001)).spend()
+    winding = Winding(Followed(PRODUCTS["simple"]))
     code, _, hint = refused(lambda: winding.turn(0j, complex(0, 3e6)))
     assert (code, hint) == ("SF505", FEWER)
 
 
 def test_a_sample_at_a_root_says_so_each_time():
-    winding = Winding(Followed(((((1, 0),), 1),)), Budget())
+    winding = Winding(Followed(((((1, 0),), 1),)))
     for _ in range(2):
         with pytest.raises(RootOnPathError):
             winding.sample(0j)

@@ -192,7 +192,9 @@ def test_a_search_beyond_its_budget_says_what_it_found(monkeypatch):
 def test_no_time_is_said_to_be_over_and_keeps_what_was_found():
     times = iter([0.0] * 400 + [10.0] * 100_000)
     region = Modes(30)
-    result = locate(bound(DELAY_LOOP), region, 12, Budget(5, clock=lambda: next(times)))
+    source = bound(DELAY_LOOP)
+    with Budget(5, clock=lambda: next(times)).entered():
+        result = locate(source, region, 12)
     assert result.certificate.is_exceeded
     assert "the time budget is used up" in result.certificate.reason
 
@@ -357,7 +359,8 @@ def test_a_search_repeated_with_proof_keeps_hidden_modes_hidden(monkeypatch, is_
 def test_no_root_of_a_search_broken_off_is_a_pole_and_a_zero():
     source = resting_hub()
     for looks in (140, 440):
-        shown = locate(source, Modes(3), 12, Budget(looks, clock=itertools.count().__next__))
+        with Budget(looks, clock=itertools.count().__next__).entered():
+            shown = locate(source, Modes(3), 12)
         with precision(128):
             assert not any(overlap(pole, zero) for pole in shown.poles for zero in shown.zeros), looks
 

@@ -95,27 +95,26 @@ def world(monkeypatch):
 
     class World:
         def __init__(self):
-            self.made, self.judged, self.budgets = [], [], []
+            self.made, self.judged = [], []
             self.sides = {"poles": Known([]), "zeros": Known([]), "hidden": Known([], is_finite=True)}
             self.beyond = {"poles": RightHalfPlane(()), "hidden": RightHalfPlane(())}
 
-        def side(self, source, part, digits, budget, *, is_hidden=False):
+        def side(self, source, part, digits, *, is_hidden=False):
             name = "hidden" if is_hidden else "poles" if part is source.den else "zeros"
-            self.made.append((name, part, digits, budget))
+            self.made.append((name, part, digits))
             return self.sides[name]
 
-        def search_right(self, source, part, side, known, reached, digits, budget, limit=None):
+        def search_right(self, source, part, side, known, reached, digits, limit=None):
             name = "hidden" if side is self.sides["hidden"] else "poles"
             self.judged.append((name, places(known), reached, digits))
-            self.budgets.append(budget)
             result = self.beyond[name]
             if isinstance(result, Exception):
                 raise result
             return replace(result, roots=(*known, *result.roots))
 
-        def locate(self, text=DELAY_LOOP, region=BAND, budget=None):
+        def locate(self, text=DELAY_LOOP, region=BAND):
             source = text if not isinstance(text, str) else bound(text)
-            return locate_distributed(source, region, 15, budget or Budget())
+            return locate_distributed(source, region, 15)
 
     made = World()
     monkeypatch.setattr(room, "Side", made.side)
@@ -144,12 +143,11 @@ def test_everything_found_is_told_and_certified(world):
 
 def test_all_sides_are_searched_and_proved_in_the_region_and_with_the_digits_asked_for(world):
     told = Told()
-    budget = Budget(progress=told)
-    world.locate(budget=budget)
-    assert [(name, digits) for name, _, digits, _ in world.made] == [
+    with Budget(progress=told).entered():
+        world.locate()
+    assert [(name, digits) for name, _, digits in world.made] == [
         (name, 15) for name in ("poles", "zeros", "hidden")
     ]
-    assert all(given is budget for *_, given in world.made)
     assert all(side.asked == [("search", BAND), ("prove", BAND)] for side in world.sides.values())
     assert told.said == [(k / 3, "proving that no root is missing") for k in range(3)]
 
@@ -303,12 +301,11 @@ def test_a_mode_by_its_number_is_asked_of_poles_and_zeros(world):
 
 
 def test_whether_what_cancelled_is_stable_is_searched_as_all_else(world):
-    source, budget = bound(DELAY_LOOP), Budget()
+    source = bound(DELAY_LOOP)
     s = source.ratio.ring.context.gen(0)
-    world.locate(replace(source, hidden=(HiddenFactor(s + 1, 2),)), Mode(3), budget)
-    name, part, digits, given = world.made[-1]
+    world.locate(replace(source, hidden=(HiddenFactor(s + 1, 2),)), Mode(3))
+    name, part, digits = world.made[-1]
     assert (name, part.factors, digits) == ("hidden", ((s + 1, 2),), 15)
-    assert all(each is budget for each in (given, *world.budgets))
 
 
 def test_the_number_of_a_lossless_mode_needs_no_other_proof(world):
@@ -546,4 +543,4 @@ y = "w(l/2)"
 
 
 def test_before_a_search_it_came_nowhere():
-    assert _Searched(bound(DELAY_LOOP), Modes(2), 15, Budget()).extent() == ""
+    assert _Searched(bound(DELAY_LOOP), Modes(2), 15).extent() == ""

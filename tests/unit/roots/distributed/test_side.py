@@ -12,7 +12,6 @@ import pytest
 from symflex import pipeline
 from symflex.algebra import Factored
 from symflex.algebra.vanishing import OriginSeries
-from symflex.budget import Budget
 from symflex.errors import BudgetError, UncertifiedError
 from symflex.roots import Band, Modes, Rectangle
 from symflex.roots.counting.winding import Cell, RootOnPathError
@@ -422,7 +421,7 @@ def test_what_kernels_vanish_like_at_0_is_a_root_there():
         source = bound(ROD)
         ring = source.ratio.ring
         (cosh,) = (ring.generator(k.generator) for k in source.kernels.kernels if k.function == "cosh")
-        one = Side(source, Factored.polynomial(ring, cosh - 1), 20, Budget(), engines=(engine,))
+        one = Side(source, Factored.polynomial(ring, cosh - 1), 20, engines=(engine,))
         one.extend(4)
         (zero,) = (r for r in one.roots if r.is_zero)
         assert zero.multiplicity == 2, engine

@@ -10,7 +10,6 @@ import pytest
 from flint import acb
 
 from symflex import pipeline
-from symflex.budget import Budget
 from symflex.errors import BudgetError, Diagnostic
 from symflex.roots.counting.winding import RootOnPathError
 from symflex.roots.distributed import right_half_plane
@@ -199,7 +198,7 @@ def searching(monkeypatch):
     """Search right of the axis, given tails of the factors and what a search of the half plane finds."""
 
     def search(side, known=(), reached=0.0, tails=ENDING, again=None):
-        every, budget = iter(tails), Budget()
+        every = iter(tails)
 
         def tail(bound, polynomials, numbers, start):
             # Of one factor, whole, from where the largest argument of a kernel is 1.
@@ -208,12 +207,12 @@ def searching(monkeypatch):
             return next(every)
 
         def another(*given):
-            assert given == ("bound", "part", 10, budget)
+            assert given == ("bound", "part", 10)
             return again
 
         monkeypatch.setattr(right_half_plane, "right_tail", tail)
         monkeypatch.setattr(right_half_plane, "Side", another)
-        return search_right("bound", "part", side, known, reached, 10, budget)
+        return search_right("bound", "part", side, known, reached, 10)
 
     return search
 

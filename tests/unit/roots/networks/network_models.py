@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from symflex import pipeline
-from symflex.budget import Budget
 from symflex.model import with_numbers
 from symflex.model.signs import is_passive
 from symflex.roots.networks.counting import Counter
@@ -42,9 +41,7 @@ def located(text, region=None, digits=12, output="X", source="F"):
     where = region or Modes(4)
     equations = equations_of(text)
     proof = "passive" if is_passive(equations.model) else ""
-    return locate_in_network(
-        equations, "/".join(pair), pair, where, digits, Budget(), is_default=False, proof=proof
-    )
+    return locate_in_network(equations, "/".join(pair), pair, where, digits, is_default=False, proof=proof)
 
 
 def omegas(roots):

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from flint import acb, arb
 
-from symflex.budget import Budget
 from symflex.roots import Modes
 from symflex.roots.counting.local_series import local_series
 from symflex.roots.distributed.side import Side
@@ -108,7 +107,7 @@ def test_a_timoshenko_cantilever_on_a_damped_foundation_against_shooting():
 
 def test_a_series_at_a_branch_point_has_the_functions_values_and_counts_its_root():
     function = bound(beam('k_f = "10 kN/m^2", c_f = "40 N*s/m^2"', '["tip", "end"]'))
-    searched = Side(function, function.den, 12, Budget()).function
+    searched = Side(function, function.den, 12).function
     centre = acb(-5, arb(2475).sqrt()).mid()
     series = local_series(searched, centre, arb(2), 300, 40)
     with precision(300):
@@ -121,7 +120,7 @@ def test_a_series_at_a_branch_point_has_the_functions_values_and_counts_its_root
 
 def test_a_series_about_another_point_has_the_same_values():
     function = bound(beam('k_f = "10 kN/m^2", c_f = "40 N*s/m^2"', '["tip", "end"]'))
-    searched = Side(function, function.den, 12, Budget()).function
+    searched = Side(function, function.den, 12).function
     series = local_series(searched, acb(-4, 50), arb(2), 300, 40)
     with precision(300):
         coefficients, missed = series.around(acb(-4.25, 50.125), arb(0.25))
@@ -132,6 +131,6 @@ def test_a_series_about_another_point_has_the_same_values():
 
 def test_a_series_is_refused_where_waves_have_an_essential_singularity():
     function = bound(beam('k_f = "10 kN/m^2", eta = "20 ms"', '["tip", "ground"]'))
-    searched = Side(function, function.den, 12, Budget()).function
+    searched = Side(function, function.den, 12).function
     assert local_series(searched, acb(-49), arb(2), 200, 20) is None
     assert local_series(searched, acb(-47), arb(2), 200, 20) is not None

@@ -31,7 +31,7 @@ class Told:
         self.said.append((done, text))
 
 
-def search(make, holes=(), budget=None, kind=Winding):
+def search(make, holes=(), kind=Winding):
     """Return a search of a product of polynomials in s, each given with its exponent."""
     source = bound(DELAY_LOOP)
     ring = source.ratio.ring
@@ -39,8 +39,7 @@ def search(make, holes=(), budget=None, kind=Winding):
     for polynomial, exponent in make(ring.context.gen(0)):
         part = part * Factored.polynomial(ring, polynomial) ** exponent
     function = KernelFunction(source, part)
-    used = budget or Budget()
-    return RootSearch(kind(function, used), holes, DIGITS)
+    return RootSearch(kind(function), holes, DIGITS)
 
 
 def mixed(s):
@@ -155,12 +154,14 @@ def test_modes_are_found_outwards_until_there_are_enough_or_to_a_radius():
 
 def test_modes_located_are_reported_and_a_scan_for_more_than_there_are_ends():
     told = Told()
-    search(even, budget=Budget(progress=told)).extend(3)
+    with Budget(progress=told).entered():
+        search(even).extend(3)
     assert told.said
     assert all(text == f"{round(3 * done)} of 3 modes located" for done, text in told.said)
     told = Told()
-    one = search(lambda s: [(4 * s**2 + 25, 1)], budget=Budget(progress=told))
-    assert one.scan(2, -inf, lambda: True) is True
+    one = search(lambda s: [(4 * s**2 + 25, 1)])
+    with Budget(progress=told).entered():
+        assert one.scan(2, -inf, lambda: True) is True
     assert one.reached == inf
     assert {text for _, text in told.said} == {"0 of 2 modes located", "1 of 2 modes located"}
 
@@ -218,7 +219,7 @@ def test_where_no_circle_passes_it_is_said_where():
             raise RootOnPathError
 
     one = search(mixed, kind=Winding)
-    one._winding = Blocked(one.function, Budget())
+    one._winding = Blocked(one.function)
     with pytest.raises(BudgetError, match=r"SF505.*: roots do not separate near 2 rad/s") as failed:
         one._ring(log(1), log(2))
     assert failed.value.diagnostics[0].hint == "ask for a band that ends elsewhere"

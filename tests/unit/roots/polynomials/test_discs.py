@@ -141,11 +141,13 @@ def test_polishing_and_looking_for_a_centre_spend_their_budget_and_end():
 
     with precision(10000):
         budget = Counted()
-        LevelPolynomial.of(acb_poly([-2, 0, 1]), budget).polish(acb(10) ** 900, nothing)
+        with budget.entered():
+            LevelPolynomial.of(acb_poly([-2, 0, 1])).polish(acb(10) ** 900, nothing)
         assert budget.spent == NEWTON_STEPS
     with precision(30000):
         budget = Counted()
-        LevelPolynomial.of(acb_poly([-2, 0, 0, 1]), budget).surround(acb(10) ** 4000, 1)
+        with budget.entered():
+            LevelPolynomial.of(acb_poly([-2, 0, 0, 1])).surround(acb(10) ** 4000, 1)
         assert budget.spent == CENTRE_STEPS
 
 

@@ -142,9 +142,5 @@ def test_a_spent_budget_ends_the_isolation():
     polynomial = PolynomialInS.from_integers(COEFFICIENTS)
     clock = iter(range(1000)).__next__
     propose, _ = proposing(1.01, -1.99, -3 + 3.9j)
-    with pytest.raises(BudgetError, match="SF506"):
-        list(
-            isolations(
-                polynomial, 10, in_square=False, proposers=[propose], budget=Budget(seconds=1, clock=clock)
-            )
-        )
+    with Budget(seconds=1, clock=clock).entered(), pytest.raises(BudgetError, match="SF506"):
+        list(isolations(polynomial, 10, in_square=False, proposers=[propose]))

@@ -37,7 +37,8 @@ def budget(calls):
 def broken_off(polynomials, calls, digits=20):
     """The roots found until then, ``None`` when the search ended before."""
     try:
-        find_polynomial_roots(polynomials, digits, budget=budget(calls))
+        with budget(calls).entered():
+            find_polynomial_roots(polynomials, digits)
     except BudgetError as error:
         assert error.diagnostics[0].code == "SF506"
         return error.found
@@ -57,7 +58,8 @@ def holders(root, values):
 
 def test_enough_time_finds_all():
     polynomial = problem_of(CHEBYSHEV)
-    assert len(find_polynomial_roots(polynomial, 20, budget=budget(100_000))) == DEGREE
+    with budget(100_000).entered():
+        assert len(find_polynomial_roots(polynomial, 20)) == DEGREE
 
 
 def test_multiplicities_are_right_though_parts_are_missing():
@@ -90,7 +92,8 @@ DONE = RootProblem(tuple((PolynomialInS.from_integers(c), 1) for c in ([4, 0, 1]
 
 def mapped(region, zeros=NEVER):
     both = RootProblem((*DONE.factors, *problem_of(SHIFTED).factors))
-    return find_pole_zero_map("y/u", both, zeros, region, 20, budget=budget(100))
+    with budget(100).entered():
+        return find_pole_zero_map("y/u", both, zeros, region, 20)
 
 
 def test_a_map_says_what_it_lost_and_keeps_to_its_region():
@@ -110,6 +113,7 @@ def test_a_map_says_what_it_lost_and_keeps_to_its_region():
 
 def test_poles_are_complete_when_only_the_zeros_took_too_long():
     zeros = problem_of(SHIFTED)
-    result = find_pole_zero_map("y/u", problem(4, 0, 1), zeros, Everything(), 20, budget=budget(100))
+    with budget(100).entered():
+        result = find_pole_zero_map("y/u", problem(4, 0, 1), zeros, Everything(), 20)
     assert [root.decimal(3).im for root in result.poles] == ["2.00", "-2.00"]
     assert result.zeros == ()
