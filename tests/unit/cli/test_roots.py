@@ -97,7 +97,7 @@ def test_what_is_not_certified_ends_with_code_4(shell, monkeypatch):
 
     def doubtful(*arguments):
         found = find(*arguments)
-        return replace(found, certificate=replace(found.certificate, certified=False, reason="for this test"))
+        return replace(found, certificate=replace(found.certificate, reason="for this test"))
 
     monkeypatch.setattr(pipeline, "roots", doubtful)
     done = shell("roots", "x.toml")
