@@ -179,13 +179,10 @@ class Exponentials:
 
     def split(self, polynomial: fmpz_mpoly) -> tuple[fmpz_mpoly, fmpz_mpoly]:
         """Return a polynomial over the coordinates as one free of kernels times the rest."""
-        return split_content(self.coordinates, polynomial, len(self._kept) - len(self._plain_kernels))
-
-    @property
-    def _plain_kernels(self) -> tuple[str, ...]:
-        """The kernels that are coordinates themselves; they stand last among the generators that are kept."""
         kernels = {k.generator for k in self.table.kernels}
-        return tuple(n for n in self._kept if n in kernels)
+        # Kernels that are coordinates themselves stand last among the generators that are kept.
+        free = sum(n not in kernels for n in self._kept)
+        return split_content(self.coordinates, polynomial, free)
 
     def parity(self, polynomial: fmpz_mpoly) -> tuple[int, ...]:
         """Return per angle whether the degree is odd: then only half the angle's kernels can express it."""
@@ -235,8 +232,10 @@ def lift(ring: Ring, polynomial: fmpz_mpoly, angle: KernelPair, n: int) -> Facto
         if o > 1:
             return None
         part = coefficient * 2 ** (highest - k)
-        for i, weight in _harmonics(k, o):
-            harmonics[i, o] = harmonics.get((i, o), zero) + part * weight
+        # 2^k cos^k x, or 2^k sin x cos^k x: exponentials of opposite multiples make one cosine or sine.
+        for i, weight in spread(k, o).items():
+            if i > 0 or not o:
+                harmonics[abs(i), o] = harmonics.get((abs(i), o), zero) + part * weight
     c, s = ring.generator(angle.even.generator), ring.generator(angle.odd.generator)
     total = zero
     for (i, o), part in harmonics.items():
@@ -247,14 +246,6 @@ def lift(ring: Ring, polynomial: fmpz_mpoly, angle: KernelPair, n: int) -> Facto
         c_i, s_i = _multiple(ring, c, s, i // n)
         total = total + part * (s_i if o else c_i)
     return Factored.polynomial(ring, total) * Fraction(1, 2**highest)
-
-
-def _harmonics(k: int, odd: int) -> list[tuple[int, int]]:
-    """Return ``2^k cos^k x``, or ``2^k sin x cos^k x``, by cosines, or sines, of multiples.
-
-    Exponentials of opposite multiples make one cosine or sine.
-    """
-    return [(abs(i), weight) for i, weight in spread(k, odd).items() if i > 0 or not odd]
 
 
 def _multiple(ring: Ring, c: fmpz_mpoly, s: fmpz_mpoly, times: int) -> tuple[fmpz_mpoly, fmpz_mpoly]:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from flint import Ordering, fmpz_mpoly_ctx
 
 from symflex.algebra.factored import Factored, common_denominator
-from symflex.algebra.ring import by_powers
+from symflex.algebra.ring import by_powers, degree_in
 from symflex.budget import spend
 from symflex.errors import BudgetError, Diagnostic
 
@@ -161,24 +161,10 @@ class NormalForm:
             case "wave" | "bending":
                 degree = 2 if dispersion.kind == "wave" else 4
                 index = self.ring.index[dispersion.wavenumbers[0]]
-                return self._rational_powers(polynomial, index, degree, self.power_of(dispersion))
+                return with_image(self.ring, polynomial, index, self.power_of(dispersion), degree)
             case "pair":
                 return self._pair(polynomial, dispersion)
         return polynomial, one
-
-    def _rational_powers(
-        self, polynomial: fmpz_mpoly, index: int, degree: int, image: Factored
-    ) -> tuple[fmpz_mpoly, Factored]:
-        highest = int(polynomial.degrees()[index]) // degree
-        if not highest:
-            return polynomial, Factored.number(self.ring, 1)
-        above, below = image.numerator().expand(), image.denominator().expand()
-        x = self.ring.context.gen(index)
-        total = self.ring.constant(0)
-        for power, part in by_powers(self.ring, polynomial, index).items():
-            times = power // degree
-            total = total + part * x ** (power % degree) * above**times * below ** (highest - times)
-        return total, image.denominator() ** highest
 
     def _pair(self, polynomial: fmpz_mpoly, dispersion: Dispersion) -> tuple[fmpz_mpoly, Factored]:
         """Use ``lambda_1^2 = -c_2 - lambda_2^2``, then ``lambda_2^4 = -c_2 lambda_2^2 - c_0``."""
@@ -211,3 +197,19 @@ class NormalForm:
                     total = total + part * y**power * d
             polynomial, scale = total, scale * below
         return polynomial, scale
+
+
+def with_image(
+    ring: Ring, polynomial: fmpz_mpoly, i: int, image: Factored, degree: int
+) -> tuple[fmpz_mpoly, Factored]:
+    """Return a polynomial with an image for a power of generator number i, and what it is divided by."""
+    most = degree_in(polynomial, i) // degree
+    if not most:
+        return polynomial, Factored.number(ring, 1)
+    above, below, generator = image.numerator().expand(), image.denominator(), ring.context.gen(i)
+    total, scale = ring.constant(0), below.expand()
+    for power, part in by_powers(ring, polynomial, i).items():
+        spend()
+        whole, rest = divmod(power, degree)
+        total = total + part * generator**rest * above**whole * scale ** (most - whole)
+    return total, below**most

@@ -303,7 +303,7 @@ class _Shape:
             found += [(0, s), (1, c)]
         elif law.kind == "bending":
             ch, sh = self._hyperbolic(ring, law.wavenumbers[0], multiples)
-            co, si = self._circular(ring, law.wavenumbers[0], multiples)
+            co, si = self._added(ring, ("cos", "sin"), law.wavenumbers[0], multiples, -1)
             found += [(0, ch * si - sh * co), (1, sh * si), (2, ch * si + sh * co), (3, ch * co)]
         elif law.kind == "pair":
             c1, s1 = self._hyperbolic(ring, law.wavenumbers[0], multiples)
@@ -328,9 +328,6 @@ class _Shape:
     def _hyperbolic(self, ring: Ring, w: str, multiples: tuple[int, ...]) -> tuple[fmpz_mpoly, fmpz_mpoly]:
         """Return cosh and sinh of a wavenumber times a combination of base lengths."""
         return self._added(ring, ("cosh", "sinh"), w, multiples, 1)
-
-    def _circular(self, ring: Ring, w: str, multiples: tuple[int, ...]) -> tuple[fmpz_mpoly, fmpz_mpoly]:
-        return self._added(ring, ("cos", "sin"), w, multiples, -1)
 
     @staticmethod
     def _added(

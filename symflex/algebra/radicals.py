@@ -22,6 +22,7 @@ from flint import fmpz
 from flint.utils.flint_exceptions import DomainError
 
 from symflex.algebra.factored import PRIME, Factored, residue
+from symflex.algebra.normal_form import with_image
 from symflex.algebra.ring import by_powers, coefficients_of, degree_in
 from symflex.budget import spend
 
@@ -204,27 +205,12 @@ class Radicals:
             return Factored.polynomial(self.ring, polynomial)
         below = Factored.number(self.ring, 1)
         for i, image in self.images.items():
-            if degree_in(polynomial, i):
-                polynomial, scale = self._put_in(polynomial, i, image, 1)
-                below = below * scale
+            polynomial, scale = with_image(self.ring, polynomial, i, image, 1)
+            below = below * scale
         for i, square in reversed(tuple(self.squares.items())):
-            if degree_in(polynomial, i) > 1:
-                polynomial, scale = self._put_in(polynomial, i, square, 2)
-                below = below * scale
+            polynomial, scale = with_image(self.ring, polynomial, i, square, 2)
+            below = below * scale
         return Factored.polynomial(self.ring, polynomial) / below
-
-    def _put_in(
-        self, polynomial: fmpz_mpoly, i: int, image: Factored, step: int
-    ) -> tuple[fmpz_mpoly, Factored]:
-        """Return a polynomial with ``image`` for a power of a generator, and what it is divided by."""
-        above, below = image.numerator().expand(), image.denominator()
-        most, generator = degree_in(polynomial, i) // step, self.ring.context.gen(i)
-        total, scale = self.ring.constant(0), below.expand()
-        for power, part in by_powers(self.ring, polynomial, i).items():
-            spend()
-            whole, rest = divmod(power, step)
-            total = total + part * generator**rest * above**whole * scale ** (most - whole)
-        return total, below**most
 
     @cached_property
     def _rooted(self) -> tuple[int, ...]:

@@ -79,7 +79,8 @@ def find_on_axis(
             return AxisRoots(tuple(roots), _joined(undecided))
         spend()
         start, end = pending.pop()
-        ball = _between(start, end)
+        with precision(BITS):
+            ball = (arb(start) + arb(end)) / 2 + arb(0, ((arb(end) - arb(start)) / 2).upper())
         around, centre = function.on(ball, BITS)
         with precision(BITS):
             if is_excluded(around):
@@ -103,11 +104,6 @@ def find_on_axis(
         pending += [(cut, end), (start, cut)]
     message = "the search for crossings of the imaginary axis takes too long"
     raise BudgetError(Diagnostic("SF505", message, None, "narrow the range of the gain, or lower --up-to"))
-
-
-def _between(start: float, end: float) -> arb:
-    with precision(BITS):
-        return (arb(start) + arb(end)) / 2 + arb(0, ((arb(end) - arb(start)) / 2).upper())
 
 
 def _refined(

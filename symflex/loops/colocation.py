@@ -9,7 +9,8 @@ A tip sensor may be away from the joint actuator, and yet respond as the joint d
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from flint import acb, arb
@@ -159,18 +160,14 @@ class _ColocationSearch:
     phase: float
     magnitude: float
 
-    def __post_init__(self) -> None:
-        self._ratio = self._ratio_function()
-
-    def _ratio_function(self) -> Callable[[acb], acb]:
-        """Return the ratio with poles that both have cancelled, as far as their factors show."""
+    @cached_property
+    def _ratio(self) -> Callable[[acb], acb]:
+        """The ratio with poles that both have cancelled, as far as their factors show."""
         # Numerator over numerator where the denominators are the same: no 0/0 at a resonance.
         ratio = self.tip.ratio / self.joint.ratio if self.tip.ratio.ring == self.joint.ratio.ring else None
         if ratio is None:
             one, other = self.tip.enclosed(BITS), self.joint.enclosed(BITS)
             return lambda s: one(s) / other(s)
-        from dataclasses import replace
-
         if not self.tip.kernels:
             whole = replace(self.tip, ratio=ratio)
             return whole.enclosed(BITS)

@@ -98,13 +98,10 @@ def find_stable_gains(
         boundaries,
         intervals,
         nominal,
-        (),
-        (),
-        radius,
-        is_complete,
-        tuple(reasons),
-        digits,
-        None,
+        radius=radius,
+        is_complete=is_complete,
+        reasons=tuple(reasons),
+        digits=digits,
         method="polynomials" if along is None else along.method,
         apart=apart,
         tf=loop.bound.name,
@@ -144,16 +141,10 @@ def _at_nominal(loop: AnyLoop, limits: Limits, digits: int, reason: str) -> Stab
         loop.gain.name,
         loop.gain.unit,
         limits,
-        (),
-        (),
-        loop.nominal,
-        (),
-        (),
-        None,
-        False,
-        (reason,),
-        digits,
-        None,
+        nominal=loop.nominal,
+        is_complete=False,
+        reasons=(reason,),
+        digits=digits,
         method="roots",
         at_nominal=verdict,
         tf=loop.bound.name if isinstance(loop, Loop) else "",
@@ -242,11 +233,6 @@ class _GainSearch:
     def __post_init__(self) -> None:
         self.reasons: list[str] = []
 
-    @property
-    def _is_open(self) -> bool:
-        """Poles are counted up to a frequency only."""
-        return self.along is not None and not self.along.radius[1]
-
     def between(self, crossings: Sequence[Crossing]) -> tuple[tuple[Boundary, ...], tuple[GainInterval, ...]]:
         """Return the boundaries inside the range, and the intervals they part it into.
 
@@ -256,16 +242,15 @@ class _GainSearch:
         groups: list[list[Crossing]] = []
         with precision(BITS * 4):
             for crossing in sorted(crossings, key=lambda c: float(c.gain.mid())):
-                if (low is not None and not crossing.gain > low) or (
-                    high is not None and not crossing.gain < high
-                ):
+                gain = crossing.gain
+                if (low is not None and not gain > low) or (high is not None and not gain < high):
                     # At an end of the range, or beyond it; what straddles an end narrows the range.
-                    if low is not None and crossing.gain.overlaps(low):
-                        low = _upper(low, crossing.gain)
-                    if high is not None and crossing.gain.overlaps(high):
-                        high = _lower(high, crossing.gain)
+                    if low is not None and gain.overlaps(low):
+                        low = low if low.upper() >= gain.upper() and low.is_exact() else low.union(gain)
+                    if high is not None and gain.overlaps(high):
+                        high = high if high.lower() <= gain.lower() and high.is_exact() else high.union(gain)
                     continue
-                if groups and any(c.gain.overlaps(crossing.gain) for c in groups[-1]):
+                if groups and any(c.gain.overlaps(gain) for c in groups[-1]):
                     groups[-1].append(crossing)
                 else:
                     groups.append([crossing])
@@ -278,6 +263,7 @@ class _GainSearch:
             )
             counts.append(self._count(_sample(below, above)))
         boundaries, intervals = [], []
+        is_open = self.along is not None and not self.along.radius[1]  # counted up to a frequency only
         start: arb | None = ends[0]
         for i, (gain, group) in enumerate(zip(gains, groups, strict=True)):
             # A stable loop is not stable at one gain alone where poles touch the axis and turn back.
@@ -286,7 +272,7 @@ class _GainSearch:
             intervals.append(GainInterval(start, gain, counts[i]))
             boundaries.append(Boundary(gain, tuple(group)))
             known = sum((4 if c.is_symmetric else 2) * len(c.frequencies) for c in group)
-            if self._is_open and abs(counts[i + 1].right - counts[i].right) > max(known, 2):
+            if is_open and abs(counts[i + 1].right - counts[i].right) > max(known, 2):
                 where = f"near a gain of {float(gain.mid()):.6g}"
                 self.reasons.append(f"poles enter from above the highest frequency counted, {where}")
             start = gain
@@ -306,14 +292,6 @@ class _GainSearch:
 def _ball(value: Fraction) -> arb:
     with precision(BITS):
         return ball(value)
-
-
-def _upper(one: arb, other: arb) -> arb:
-    return one if one.upper() >= other.upper() and one.is_exact() else one.union(other)
-
-
-def _lower(one: arb, other: arb) -> arb:
-    return one if one.lower() <= other.lower() and one.is_exact() else one.union(other)
 
 
 def _hull(group: Sequence[Crossing]) -> arb:

@@ -223,6 +223,9 @@ def trace_locus(
                 entering.append(tuple(reversed(_before(end.excluded, branch))))
             elif s not in ended:
                 branches.append((poles[near], *reversed(branch)))
+    nominal = None
+    if loop.nominal is not None and low < loop.nominal < high:
+        nominal = loop.nominal, closed_loop_roots(loop, loop.nominal, region)
     return RootLocus(
         loop.gain.name,
         (low, high),
@@ -232,16 +235,8 @@ def trace_locus(
         matched is not None,
         tuple(kept),
         tuple(entering),
-        _at_nominal(loop, (low, high), region),
+        nominal,
     )
-
-
-def _at_nominal(
-    loop: AnyLoop, limits: tuple[Fraction, Fraction], region: Region | None
-) -> tuple[Fraction, PoleZeroMap] | None:
-    if loop.nominal is None or not limits[0] < loop.nominal < limits[1]:
-        return None
-    return loop.nominal, closed_loop_roots(loop, loop.nominal, region)
 
 
 def _range(

@@ -134,16 +134,16 @@ class StabilityMap:
     gain: str
     unit: str
     limits: tuple[Fraction | None, Fraction | None]
-    boundaries: tuple[Boundary, ...]
-    intervals: tuple[GainInterval, ...]
-    nominal: Fraction | None
-    gain_margins: tuple[GainMargin, ...]
-    phase_margins: tuple[PhaseMargin, ...]
-    radius: float | None
-    is_complete: bool
-    reasons: tuple[str, ...]
-    digits: int
-    bandwidth: AllowedBandwidth | None
+    boundaries: tuple[Boundary, ...] = ()
+    intervals: tuple[GainInterval, ...] = ()
+    nominal: Fraction | None = None
+    gain_margins: tuple[GainMargin, ...] = ()
+    phase_margins: tuple[PhaseMargin, ...] = ()
+    radius: float | None = None
+    is_complete: bool = True
+    reasons: tuple[str, ...] = ()
+    digits: int = 15
+    bandwidth: AllowedBandwidth | None = None
     margin_beyond: float | None = None
     method: str = ""
     apart: PolesApart = NOTHING_APART

@@ -48,7 +48,7 @@ from symflex.roots.pole_zero_map import (
     take_out_shared,
 )
 from symflex.roots.polynomial_roots import in_order
-from symflex.roots.problem import problem_of
+from symflex.roots.problem import cancelled, problem_of
 from symflex.roots.region import Band, Everything, Mode, Modes, Rectangle, Region
 from symflex.roots.root import ROUNDING, Root, overlap, root_at_zero
 from symflex.transfer import BoundNested, bind
@@ -89,8 +89,7 @@ def locate(
         return known
     bound = without_lengths_of_zero(bound)
     if IMAGINARY in bound.ratio.ring.index:
-        is_open = region is None or (bound.is_distributed and isinstance(region, Everything))
-        where = default_region(bound) if is_open and bound.is_distributed else region or Everything()
+        where = _region_of(bound, region)[0] if bound.is_distributed else region or Everything()
         return locate_lossy(bound, where, digits, locate)
     if bound.is_distributed:
         return locate_distributed(bound, region, digits, with_zeros=with_zeros)
@@ -159,8 +158,7 @@ def _locate_nested(bound: BoundNested, region: Region | None, digits: int) -> Po
     pair = (source.output.name, source.input.name)
     if not model.is_distributed:
         return locate(lumped(bound), region, digits)
-    is_default = region is None or isinstance(region, Everything)
-    where = default_region(bound) if region is None or isinstance(region, Everything) else region
+    where, is_default = _region_of(bound, region)
     found = locate_in_network(
         equations_of(bound),
         bound.name,
@@ -202,6 +200,13 @@ def default_region(bound: AnyBoundFunction) -> Region:
     return Modes(DEFAULT_MODES) if analysis.band is None else Band(*analysis.band)
 
 
+def _region_of(bound: AnyBoundFunction, region: Region | None) -> tuple[Region, bool]:
+    """Return where to search, and whether nobody said where."""
+    if region is None or isinstance(region, Everything):
+        return default_region(bound), True
+    return region, False
+
+
 def locate_distributed(
     bound: BoundTransferFunction,
     region: Region | None,
@@ -216,8 +221,7 @@ def locate_distributed(
     proved so far is returned. Certified if every root in the region was counted, found, and told apart from
     the others.
     """
-    is_default = region is None or isinstance(region, Everything)
-    where = default_region(bound) if region is None or isinstance(region, Everything) else region
+    where, is_default = _region_of(bound, region)
     searched = _Searched(bound, where, digits, with_zeros=with_zeros)
     reason, code = None, None
     try:
@@ -305,31 +309,28 @@ class _Searched:
         highest = max((root.frequency_hz() for root in self.chosen()[0]), default=0.0) * (1 + 4 * ROUNDING)
         # Modes are of the poles; what cancelled has none of its own.
         within = Band(Fraction(0), Fraction(highest)) if isinstance(where, Modes) and highest else where
-        factors = tuple((h.polynomial, h.multiplicity) for h in bound.hidden)
-        product = Factored(bound.ratio.ring, Fraction(1), factors)
-        cancelled = Side(bound, product, digits, is_hidden=True)
+        hidden = Side(bound, cancelled(bound), digits, is_hidden=True)
         self._within = within
-        self.sides.append(cancelled)
-        _find((cancelled,), within)
+        self.sides.append(hidden)
+        _find((hidden,), within)
         self._hide(shared)
 
     def _hide(self, shared: Sequence[Root]) -> None:
         """List what cancelled, and what poles and zeros share, as hidden."""
         within = self._within
-        cancelled = [root for side in self.sides[2:] for root in side.roots]
-        if self.bound.ratio.is_zero:
-            cancelled = [root for side in self.sides for root in side.roots]
+        sides = self.sides if self.bound.ratio.is_zero else self.sides[2:]
+        gone = [root for side in sides for root in side.roots]
         degenerate = _degenerate_points(self.bound)
         self.hidden = [
             HiddenRoot(root)
-            for root in _chosen(cancelled, within)
+            for root in _chosen(gone, within)
             # Where two wavenumbers meet or vanish, what cancels belongs to how the function is written.
             if root.is_zero or not any(overlap(root, other) for other in degenerate)
         ]
         self.hidden += [
             HiddenRoot(root, "coincident")
             for root in _chosen(shared, within)
-            if not any(overlap(root, other) for other in (*degenerate, *cancelled))
+            if not any(overlap(root, other) for other in (*degenerate, *gone))
         ]
 
     def prove(self) -> str | None:
@@ -401,9 +402,7 @@ class _Searched:
         searched.
         """
         bound = self.bound
-        product = Factored(
-            bound.ratio.ring, Fraction(1), tuple((h.polynomial, h.multiplicity) for h in bound.hidden)
-        )
+        product = cancelled(bound)
         poles = [] if bound.ratio.is_zero else [(0, bound.den)]
         coincident = [h for h in self.hidden if h.cause == "coincident"]
         degenerate = _degenerate_points(bound)
@@ -447,15 +446,10 @@ class _Searched:
             unsure = "" if rests else "none of those found lies on the imaginary axis"
         seen = [root for each in found[:-1] for root in each]
         # Where wavenumbers vanish, a factor may have a root that is no pole: s itself tells how many are.
-        unseen = [r for r in found[-1] if not r.is_zero] + self._at_rest()
+        at_rest = product.exponent_of(bound.ratio.ring.context.gen(0))
+        unseen = [r for r in found[-1] if not r.is_zero] + root_at_zero(at_rest)
         verdict = judge(seen, unsure, proof, unseen)
         return verdict, found[0] if poles else (), found[-1]
-
-    def _at_rest(self) -> list[Root]:
-        """Return the hidden pole at 0, where there is one."""
-        ring = self.bound.ratio.ring
-        gen = ring.context.gen(0)
-        return root_at_zero(sum(h.multiplicity for h in self.bound.hidden if h.polynomial == gen))
 
     def _reached(self, side: Side) -> float:
         """Return up to which abs(s) all roots of a side are known [rad/s]."""

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from functools import partial, reduce
+from functools import partial
 from itertools import accumulate
 from math import inf, log, pi
 from typing import TYPE_CHECKING, Final
@@ -36,7 +36,7 @@ from symflex.roots.functions.kernel_function import KernelFunction, has_kernels,
 from symflex.roots.pole_zero_map import Certificate, HiddenRoot, PoleZeroMap, StabilityVerdict
 from symflex.roots.polynomial_roots import find_polynomial_roots
 from symflex.roots.precision import precision
-from symflex.roots.problem import problem_of
+from symflex.roots.problem import cancelled, problem_of
 from symflex.roots.region import Band, Mode, Modes, Position, Rectangle
 from symflex.roots.root import FLOAT_BITS, ROUNDING, Root, overlap
 from symflex.transfer import bind
@@ -99,11 +99,6 @@ def locate_lossy(
     Raises UncertifiedError: SF402 a root cannot be told from the mirror image of another.
     """
     sides = (bound.ratio.denominator(), bound.ratio.numerator())
-    hidden = reduce(
-        lambda a, h: a * Factored.polynomial(bound.ratio.ring, h.polynomial) ** h.multiplicity,
-        bound.hidden,
-        Factored.number(bound.ratio.ring, 1),
-    )
     reason: str | None = None
     engine, missing = POLYNOMIAL, 0
     if bound.is_distributed:
@@ -112,7 +107,7 @@ def locate_lossy(
         missing = sum(side.missing for side in followed)
         reason = "; ".join(dict.fromkeys(side.reason for side in followed if side.reason)) or None
     else:
-        found = [_of_polynomials(bound, side.factors, digits) for side in (*sides, hidden)]
+        found = [_of_polynomials(bound, side.factors, digits) for side in (*sides, cancelled(bound))]
     cause = "coincident" if bound.is_distributed and followed[2].is_shared else "cancelled"
     poles, zeros = (_inside(region, roots) for roots in found[:2])
     concealed = _inside(_among(poles, region) if bound.is_distributed else region, found[2])
@@ -218,9 +213,7 @@ def _followed(
     (plain,) = derive_all(without, [(source.output.name, source.input.name)])
     values = {n: v for n, v in bound.values if n != IMAGINARY}
     known = locate(bind(plain, values), _wider(region), digits)
-    product = Factored(
-        bound.ratio.ring, Fraction(1), tuple((h.polynomial, h.multiplicity) for h in bound.hidden)
-    )
+    product = cancelled(bound)
     roots = [h.root for h in known.hidden]
     cancels = has_kernels(product, bound.kernels)
     side = partial(_side, bound, digits=digits, reason=known.certificate.reason)

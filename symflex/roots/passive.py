@@ -102,8 +102,9 @@ def passive_loop(model: Model, gain: str, values: Iterable[tuple[str, ExactValue
     named, signals = list(rest), list(model.signals)
     for number, source in enumerate(sources):
         ((quantity, supplied),) = source.values
-        named.append(replace(source, values=((quantity, Name(_supply(number))),)))
-        signals.append(Signal(_supply(number), supplied))
+        name = str(number)  # what a source supplies, as a signal; no name of a specification begins so
+        named.append(replace(source, values=((quantity, Name(name)),)))
+        signals.append(Signal(name, supplied))
     equations = assemble(
         replace(model, elements=tuple(named), signals=tuple(signals), outputs=(), figures=(), published=())
     )
@@ -121,7 +122,8 @@ def fastest_growth(model: Model, values: Iterable[tuple[str, ExactValue]]) -> fl
     """
     known = list(values)
     line = line_of(model, known)
-    pressed = [use for use in model.elements if _is_pressed(use, line)]
+    beams = [use for use in model.elements if isinstance(use.element, Beam)]
+    pressed = [use for use in beams if parameter_signs(use, line).get("N") == -1]
     rest = [_unloaded(use) if use in pressed else use for use in model.elements]
     if not pressed or not is_passive(replace(model, elements=tuple(rest)), known):
         return None
@@ -135,10 +137,6 @@ def fastest_growth(model: Model, values: Iterable[tuple[str, ExactValue]]) -> fl
                 return None
             squares.append(float((-force / mass * (12 / length**2 - force / bending)).upper()))
     return float(max(squares) ** 0.5) * (1 + ROUNDING)
-
-
-def _is_pressed(use: PlacedElement, line: Line) -> bool:
-    return isinstance(use.element, Beam) and parameter_signs(use, line).get("N") == -1
 
 
 def _unloaded(use: PlacedElement) -> PlacedElement:
@@ -162,11 +160,6 @@ class _Acting:
     @staticmethod
     def of(source: PlacedElement, model: Model) -> _Acting:
         return _Acting(_ends(source, model), int(any(d in CIRCUITS for _, d in source.domains)))
-
-
-def _supply(number: int) -> str:
-    """Return the name of what a source supplies, as a signal; no name of a specification begins so."""
-    return f"{number}"
 
 
 def _ends(use: PlacedElement, model: Model) -> Ends:
@@ -214,7 +207,7 @@ class _Structure:
     def _law(self, number: int, at: _Acting) -> Powers | None:
         """Return the polynomial with which minus the motion is multiplied, where none of it is negative."""
         ends = at.ends
-        effort = Variable("signal", _supply(number))
+        effort = Variable("signal", str(number))
         rows = [form for role, form in self._forms if role in ("signal", "constraint")]
         for variable in {v for row in rows for v in row} - {effort, *ends}:
             rows = _without(variable, rows)

@@ -16,7 +16,7 @@ from functools import reduce
 
 from flint import arb, arb_poly, fmpz_mpoly, fmpz_mpoly_ctx
 
-from symflex.algebra import Ring, degree_in, square_free_factors
+from symflex.algebra import Factored, Ring, degree_in, square_free_factors
 from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError
 from symflex.roots.precision import precision
@@ -160,6 +160,12 @@ def problem_of(bound: BoundTransferFunction, factors: Iterable[tuple[fmpz_mpoly,
         factors = bound.radicals.split(factors)
     polynomials = [(polynomial_in_s(bound, f), e) for f, e in factors]
     return RootProblem(tuple((p, e) for p, e in polynomials if p.degree > 0))
+
+
+def cancelled(bound: BoundTransferFunction) -> Factored:
+    """Return the product of what cancelled between numerator and denominator."""
+    hidden = tuple((h.polynomial, h.multiplicity) for h in bound.hidden)
+    return Factored(bound.ratio.ring, Fraction(1), hidden)
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,11 +5,10 @@ Input: a model. Output: a :class:`Constraint`, the same model with one constrain
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from symflex.analysis.explanation.coordinates import Coordinates, driven_source, holds
+from symflex.analysis.explanation.coordinates import Coordinates, driven_source, expressions_of, holds
 from symflex.expressions import (
     Attribute,
     Call,
@@ -133,12 +132,8 @@ def open_circuit(model: Model, source: Input) -> Constraint | None:
 
 def _is_read(model: Model, owner: str) -> bool:
     """Tell whether a quantity of an element or input is read by anything but an output."""
-    found = [
-        *(signal.expression for signal in model.signals),
-        *(e for use in model.elements for _, e in use.values),
-        *(c for field in model.fields for c in field.conditions),
-    ]
-    return any(isinstance(n, Attribute) and n.owner == owner for e in found for n in names(e))
+    found = (n for _, e in expressions_of(model, with_outputs=False) for n in names(e))
+    return any(isinstance(n, Attribute) and n.owner == owner for n in found)
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,7 +191,7 @@ def replace_condition(model: Model, source: Input, output: Expression) -> Replac
         for i, condition in enumerate(field.conditions)
         if holds(condition, source.name)
     ]
-    if len(places) != 1 or _is_elsewhere(model, source.name):
+    if len(places) != 1 or sum(holds(e, source.name) for _, e in expressions_of(model)) != 1:
         return None
     ((field, number),) = places
     zero = Equation(calls[0], Number(Fraction(0)))
@@ -207,13 +202,3 @@ def replace_condition(model: Model, source: Input, output: Expression) -> Replac
     words = f"{held} in place of {format_expression(field.conditions[number])}"
     constraint = Constraint(replace(model, fields=fields), held, words, f'"{held}"')
     return ReplacedCondition(field, number, calls[0], constraint)
-
-
-def _is_elsewhere(model: Model, name: str) -> bool:
-    found: Sequence[Expression] = [
-        *(e for use in model.elements for _, e in use.values),
-        *(signal.expression for signal in model.signals),
-        *(output.expression for output in model.outputs),
-        *(e for field in model.fields for e in field.equations),
-    ]
-    return any(holds(e, name) for e in found)

@@ -79,32 +79,27 @@ def driven_source(model: Model, source: Input) -> PlacedElement | None:
     if source.kind != "signal":
         return None
     constants = {p.name for p in model.parameters} | {d.name for d in model.definitions} | {"pi"}
-    users = [use for use, e in _element_values(model) if _mentions(e, source.name)]
-    others = [e for e in _other_expressions(model) if _mentions(e, source.name)]
-    if len(users) != 1 or others:
+    users = [
+        use
+        for use, e in expressions_of(model)
+        if any(getattr(n, "name", "") == source.name for n in names(e))
+    ]
+    use = users[0] if len(users) == 1 else None
+    if use is None or not isinstance(use.element, ForceSource | TorqueSource | CurrentSource | VoltageSource):
         return None
-    (use,) = users
-    if not isinstance(use.element, ForceSource | TorqueSource | CurrentSource | VoltageSource):
-        return None
-    written = {str(getattr(n, "name", "")) for _, e in use.values for n in names(e)}
-    return use if written <= constants | {source.name} else None
+    named = {str(getattr(n, "name", "")) for _, e in use.values for n in names(e)}
+    return use if named <= constants | {source.name} else None
 
 
-def _element_values(model: Model) -> Iterator[tuple[PlacedElement, Expression]]:
-    for use in model.elements:
-        for _, expression in use.values:
-            yield use, expression
-
-
-def _other_expressions(model: Model) -> Iterator[Expression]:
-    yield from (signal.expression for signal in model.signals)
-    yield from (output.expression for output in model.outputs)
+def expressions_of(
+    model: Model, *, with_outputs: bool = True
+) -> Iterator[tuple[PlacedElement | None, Expression]]:
+    """Yield all expressions but definitions."""
+    yield from ((use, e) for use in model.elements for _, e in use.values)
+    yield from ((None, signal.expression) for signal in model.signals)
+    yield from ((None, output.expression) for output in model.outputs if with_outputs)
     for field in model.fields:
-        yield from (*field.equations, *field.conditions)
-
-
-def _mentions(expression: Expression, name: str) -> bool:
-    return any(getattr(n, "name", "") == name for n in names(expression))
+        yield from ((None, e) for e in (*field.equations, *field.conditions))
 
 
 def holds(expression: Expression, name: str) -> bool:

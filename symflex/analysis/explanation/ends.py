@@ -63,13 +63,12 @@ def _end(
 ) -> str:
     if reference.is_ground:
         return f"{'clamped' if is_planar else 'held'} at ground"
+    own = tuple(v for v in coordinates_of(model, use) if v.owner == reference.node)
     if is_planar:
-        own = tuple(v for v in coordinates_of(model, use) if v.owner == reference.node)
         *across, theta = (v in resting for v in own)
         held = " and ".join(v.component for v in own if v in resting)
         word = f"held in {held}" if any(across) != all(across) else BENDING[any(across), theta]
     else:
-        own = tuple(v for v in coordinates_of(model, use) if v.owner == reference.node)
         word = "held" if all(v in resting for v in own) else "free"
     free = [v for v in own if v not in resting]
     carried = [

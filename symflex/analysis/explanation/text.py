@@ -139,11 +139,8 @@ def _statement(explained: ZeroExplanation) -> str:
         where = f"{source} acts where {output} measures."
     else:
         where = f"{source} does not act where {output} measures, but has the same effect up to a factor."
-    verb = {
-        "proved": f"{zeros} are",
-        "not shown": f"{zeros} should be",
-    }[explained.status]
-    return f"{where} {verb} the poles of {system}."
+    verb = "are" if explained.status == "proved" else "should be"
+    return f"{where} {zeros} {verb} the poles of {system}."
 
 
 def _proof(explained: ZeroExplanation) -> str:
@@ -151,25 +148,14 @@ def _proof(explained: ZeroExplanation) -> str:
         return "Not proved: the exact forms could not be compared."
     own = _own(explained)
     more = f"*({explained.transmission})" if explained.transmission else ""
-    if explained.kind == "partly":
-        said = [
-            f"Proved: num = c{own}{more}*det, where det belongs to those parts and c does not depend on s."
-        ]
-    else:
-        more += f"/({explained.extra})" if explained.extra else ""
-        said = [
-            (
-                f"Proved: num = c{own}{more}*det, where det belongs to the constrained system and c does not "
-                "depend on s."
-            )
-        ]
+    more += f"/({explained.extra})" if explained.extra and explained.kind != "partly" else ""
+    whole = "those parts" if explained.kind == "partly" else "the constrained system"
+    said = [f"Proved: num = c{own}{more}*det, where det belongs to {whole} and c does not depend on s."]
     if own:
         said.append(f"{own[1:]} is the factor that {explained.output} applies to what it measures.")
     if explained.extra:
-        said.append(
-            f"{explained.extra if explained.extra != '...' else 'What is divided by'} is the "
-            "driven part's own."
-        )
+        divisor = explained.extra if explained.extra != "..." else "What is divided by"
+        said.append(f"{divisor} is the driven part's own.")
     if explained.is_delayed:
         said.append("num also holds exponentials of s, which have no zeros.")
     if explained.has_hidden:

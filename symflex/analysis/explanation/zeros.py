@@ -233,12 +233,9 @@ def explain_zeros(model: Model, bound: BoundTransferFunction, found: PoleZeroMap
     case = _Case(given, pair, equations, Determinants.of(equations))
     explained = _by_coordinate(case) or _by_condition(case) or _by_terminals(case)
     plain = ZeroExplanation(bound.name, "noncolocated", "proved", *pair)
-    complete = replace(explained or plain, has_zeros=_has_zeros(bound), has_hidden=bool(bound.hidden))
+    has_zeros = bound.is_distributed or any(e > 0 and degree_in(f, 0) for f, e in bound.ratio.factors)
+    complete = replace(explained or plain, has_zeros=has_zeros, has_hidden=bool(bound.hidden))
     return _with_roots(case, complete, found)
-
-
-def _has_zeros(bound: BoundTransferFunction) -> bool:
-    return bound.is_distributed or any(e > 0 and degree_in(f, 0) for f, e in bound.ratio.factors)
 
 
 # ------------------------------------------------------------------------------ what the zeros are poles of

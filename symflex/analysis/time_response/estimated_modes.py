@@ -15,8 +15,8 @@ from flint import acb, arb
 from symflex.analysis.rational.laurent import expand_at_zero, residues_at
 from symflex.analysis.time_response.effort import EFFORT
 from symflex.analysis.time_response.function_size import ring_about
-from symflex.analysis.time_response.modal import BITS, at_origin, over_powers
-from symflex.analysis.time_response.partial_fractions import ExponentialTerm, values_of
+from symflex.analysis.time_response.modal import BITS, at_origin, term_of
+from symflex.analysis.time_response.partial_fractions import values_of
 from symflex.analysis.time_response.sampled import PartialSum, Sampled
 from symflex.budget import spend
 from symflex.errors import Diagnostic, UncertifiedError
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symflex.analysis.time_response.function_size import Annulus
+    from symflex.analysis.time_response.partial_fractions import ExponentialTerm
     from symflex.analysis.time_response.sample_times import SampleTimes
     from symflex.roots import Root
     from symflex.transfer import AnyBoundFunction
@@ -71,11 +72,7 @@ def _summed(bound: AnyBoundFunction, integrations: int, times: SampleTimes, coun
     parts = residues_at(bound, apart, EFFORT.pole_digits)
     with precision(BITS):
         origin = at_origin(expand_at_zero(bound, integrations - 1, EFFORT.pole_digits), integrations)
-        terms = []
-        for part in parts:
-            share = 1 if part.root.is_real else 2
-            found = over_powers(part.pole, part.coefficients, integrations)
-            terms.append(ExponentialTerm(part.pole, tuple(share * c for c in found)))
+        terms = [term_of(part, integrations) for part in parts]
         sizes = [float(abs(term.coefficients[0]).upper()) for term in terms]
         upper = [term.rate.real for term in terms[len(terms) // 2 :]]
         terms += [term for _, around in rings for term in around]

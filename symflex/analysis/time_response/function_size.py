@@ -15,12 +15,12 @@ from typing import TYPE_CHECKING, ClassVar, Final
 
 from flint import acb, acb_series, arb
 
-from symflex.algebra.exponential_sum import REAL, arguments_of, exponential_sum
+from symflex.algebra.exponential_sum import REAL
 from symflex.analysis.time_response.effort import EFFORT
 from symflex.analysis.time_response.partial_fractions import ExponentialTerm
 from symflex.budget import spend
 from symflex.roots.counting.argument_principle import LogarithmicLine
-from symflex.roots.functions.exponential_values import ExponentialValues
+from symflex.roots.functions.exponential_values import ExponentialValues, exponential_sums
 from symflex.roots.functions.kernel_function import KernelFunction
 from symflex.roots.precision import precision
 from symflex.transfer.balls import at_centre, ball
@@ -61,17 +61,11 @@ class SizeOfExponentials:
     @classmethod
     def of(cls, bound: BoundTransferFunction) -> SizeOfExponentials | None:
         """Return the evaluator of a function; None where a wavenumber has no formula, or for long sums."""
-        arguments = arguments_of(bound.kernels)
-        if arguments is None:
+        found = exponential_sums(bound.ratio, bound.kernels)
+        if found is None:
             return None
-        found = []
-        for factor, exponent in bound.ratio.factors:
-            terms = exponential_sum(bound.ratio.ring, bound.kernels, arguments, factor)
-            if terms is None:
-                return None
-            found.append((terms, exponent))
         with precision(EFFORT.bits):
-            return cls(bound, ExponentialValues(bound.kernel_values(), arguments, tuple(found)))
+            return cls(bound, ExponentialValues(bound.kernel_values(), *found))
 
     @cached_property
     def is_even(self) -> bool:

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 
 from flint import acb, arb
 
-from symflex.analysis.rational.laurent import LaurentSeries, expand_at_zero, residues_at
+from symflex.analysis.rational.laurent import LaurentSeries, PrincipalPart, expand_at_zero, residues_at
 from symflex.analysis.time_response.effort import EFFORT
 from symflex.analysis.time_response.lossless_modes import lossless_modes
 from symflex.analysis.time_response.lossy_modes import lossy_bound
@@ -258,9 +258,12 @@ def term_at(bound: BoundTransferFunction, root: Root, integrations: int) -> Expo
         (part,) = residues_at(bound, [root], EFFORT.pole_digits)
     except UncertifiedError:
         return None
-    if part.is_estimate:
-        return None
-    share = 1 if root.is_real else 2
+    return None if part.is_estimate else term_of(part, integrations)
+
+
+def term_of(part: PrincipalPart, integrations: int) -> ExponentialTerm:
+    """Return what a principal part and that of the conjugate pole add."""
+    share = 1 if part.root.is_real else 2
     found = over_powers(part.pole, part.coefficients, integrations)
     return ExponentialTerm(part.pole, tuple(share * c for c in found))
 

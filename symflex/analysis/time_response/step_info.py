@@ -17,6 +17,7 @@ from __future__ import annotations
 import heapq
 import itertools
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Final
 
 from flint import acb, arb
@@ -32,6 +33,7 @@ from symflex.analysis.time_response.partial_fractions import (
 from symflex.analysis.time_response.sample_times import SampleTimes, default_until
 from symflex.analysis.time_response.settling import late_response, pieces_of
 from symflex.budget import spend
+from symflex.loops.stability_map import real_json
 from symflex.model.loss_factors import check_causal
 from symflex.print.text import Passage
 from symflex.roots.functions.simplified import without_lengths_of_zero
@@ -139,8 +141,7 @@ class StepInfo:
         found: dict[str, object] = {}
         for name in ("final", "peak", "peak_time", "overshoot", "rise_time", "settling_time"):
             ball = getattr(self, name)
-            told = None if ball is None else decimals(ball, arb(0), digits)
-            found[name] = None if told is None else {"value": told.re, "radius": told.radius}
+            found[name] = None if ball is None else real_json(ball, digits)
         return found
 
 
@@ -291,27 +292,23 @@ def _told(final: arb, motion: NormalisedResponse) -> StepInfo:
     return StepInfo(final, height * final if height > 1 else None, when, height - 1, rise, settling)
 
 
+@dataclass(frozen=True)
 class Piece:
     """A sum of exponentials of the time from its origin on, besides a constant, and at most ``rest``."""
 
-    def __init__(
-        self,
-        terms: tuple[ExponentialTerm, ...],
-        begins: arb,
-        origin: arb = ZERO,
-        constant: int = 0,
-        rest: arb = ZERO,
-    ) -> None:
-        self.terms = terms
-        self.begins = begins
-        self.rest = rest
-        self._slopes = tuple(_derivative(term) for term in terms)
-        self._origin = origin
-        self._constant = constant
+    terms: tuple[ExponentialTerm, ...]
+    begins: arb
+    origin: arb = ZERO
+    constant: int = 0
+    rest: arb = ZERO
+
+    @cached_property
+    def _slopes(self) -> tuple[ExponentialTerm, ...]:
+        return tuple(map(_derivative, self.terms))
 
     def at(self, t: arb) -> arb:
         """Return the value of the sum on a ball of times."""
-        return self._constant + _sum_of(self.terms, t - self._origin)
+        return self.constant + _sum_of(self.terms, t - self.origin)
 
     def over(self, low: arb, high: arb) -> arb:
         """Return a ball around the values between two times: the middle one, and the slope's ball."""
@@ -319,7 +316,7 @@ class Piece:
 
     def slope(self, low: arb, high: arb) -> arb:
         """Return a ball around the slopes between two times."""
-        return _sum_of(self._slopes, low.union(high) - self._origin)
+        return _sum_of(self._slopes, low.union(high) - self.origin)
 
 
 def _sum_of(terms: Sequence[ExponentialTerm], t: arb) -> arb:

@@ -72,7 +72,8 @@ class WaveQuotient:
             radius, largest, echoes = known
             reach = radius * last
             bits = bits_for_digits(digits) + EFFORT.wave_guard_bits
-            shift = self._fall + integrations
+            # With this power of 1/s the function may begin.
+            shift = integrations - sum(d * e for d, (_, e) in zip(self.degrees, self.sums, strict=True))
             missing = largest * radius ** (1 - shift)
             count = 1
             # Of sum(M R^k t^(k - 1)/(k - 1)!) from some k on.
@@ -94,11 +95,6 @@ class WaveQuotient:
                 max(sum(e for _, e in powers) for terms in factor for _, powers in terms)
                 for factor in self.values.coefficients
             )
-
-    @property
-    def _fall(self) -> int:
-        """With which power of 1/s the function may begin."""
-        return -sum(d * e for d, (_, e) in zip(self.degrees, self.sums, strict=True))
 
     @property
     def values(self) -> ExponentialValues:

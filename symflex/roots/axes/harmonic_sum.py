@@ -392,13 +392,14 @@ def lossless_function(function: KernelFunction, bits: int) -> LosslessFunction |
 
     ``bits`` are the precision of its numbers; up to this it can be evaluated.
     """
-    sums = function.exponentials
-    if sums is None:
+    found = function.exponentials
+    if found is None:
         return None
+    arguments, sums = found
     bound = function.bound
     index = bound.ratio.ring.index
     laws: dict[str, _Law] = {}
-    for argument in function.arguments:
+    for argument in arguments:
         law = _law_of(bound, argument)
         if law is None:
             return None
@@ -409,7 +410,7 @@ def lossless_function(function: KernelFunction, bits: int) -> LosslessFunction |
     position = {index[name]: (i, 0) for i, (name, _) in enumerate(bound.constants)}
     for name, law in laws.items():
         position[index[name]] = (len(position), law.degree)
-    enclosures = _enclosures(bound, laws, function.arguments, bits)
+    enclosures = _enclosures(bound, laws, arguments, bits)
     # Where a factor of s^2 has the other sign, waves do not travel.
     wavenumbers = enclosures.constants[len(bound.constants) :]
     if not all(rate.is_finite() and rate > 0 for rate in wavenumbers):

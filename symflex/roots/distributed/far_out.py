@@ -396,13 +396,12 @@ def _at_infinity(kernels: KernelValues, value: Factored, radius: float) -> tuple
 
 @dataclass(frozen=True, slots=True)
 class _Dominant:
-    """What outweighs all else: over ``exp(exponent) abs(s)^power`` a sum is between two numbers in size."""
+    """What outweighs all else: over ``exp(exponent) abs(s)^power`` a sum has a least size."""
 
     exponent: Exponent
     power: Fraction
     lead: acb
     least: arb
-    most: arb
 
 
 _DominantTerms = tuple[list[_Power], list[_Dominant]]
@@ -447,4 +446,4 @@ def _dominant(terms: Terms, arguments: Sequence[_Power], radius: arb) -> _Domina
     lead = own[highest]
     if not others < abs(lead).lower():
         return None
-    return _Dominant(chosen, highest, lead, (abs(lead) - others).lower(), (abs(lead) + others).upper())
+    return _Dominant(chosen, highest, lead, (abs(lead) - others).lower())

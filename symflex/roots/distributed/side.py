@@ -298,10 +298,6 @@ class Side:
         """Put back what was taken out of :attr:`roots`."""
         self.roots = list(self._located)
 
-    def in_order(self) -> tuple[Root, ...]:
-        """Return the roots by natural frequency."""
-        return in_order(self.roots)
-
     def refined(self, root: Root) -> Root:
         """Return a root to more than twice the digits, itself where that is not proved."""
         if self._search is None or root.is_zero or not root.certified:

@@ -24,6 +24,8 @@ from symflex.algebra.exponential_sum import (
     Exponent,
     ExponentialSum,
     amplitude_of,
+    arguments_of,
+    exponential_sum,
     parts,
 )
 from symflex.transfer.balls import Value, at_centre, ball, raised
@@ -32,11 +34,30 @@ from symflex.transfer.enclose_kernels import KernelValues
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from symflex.algebra import Dispersion, Factored
+    from symflex.algebra import Dispersion, Factored, KernelTable
 
 
+Summed = tuple[tuple[Argument, ...], tuple[tuple[ExponentialSum, int], ...]]
+"""Arguments of exponentials, and sums of these with their exponents."""
 Valued = tuple[tuple[acb, tuple[tuple[str, int], ...]], ...]
 """Terms of a polynomial in s and wavenumbers: a number, and what it is multiplied with."""
+
+
+def exponential_sums(value: Factored, table: KernelTable) -> Summed | None:
+    """Return the arguments of exponentials, and the factors of a product as sums of these.
+
+    None where a wavenumber has no formula, or for long sums.
+    """
+    arguments = arguments_of(table)
+    if arguments is None:
+        return None
+    sums = []
+    for factor, exponent in value.factors:
+        terms = exponential_sum(value.ring, table, arguments, factor)
+        if terms is None:
+            return None
+        sums.append((terms, exponent))
+    return arguments, tuple(sums)
 
 
 @dataclass(frozen=True, eq=False)
@@ -268,14 +289,10 @@ class _SampledTerms:
             for i, factor in factors.items():
                 self.combinations[row, i] = factor
 
-    @cached_property
-    def _has_exponentials(self) -> bool:
-        return bool(self.combinations.any())
-
     def sampled(self, values: Mapping[str, Numbers], arguments: Numbers) -> SampledSum:
         terms = self._amplitudes.value(values)
         scale = np.zeros(terms.shape[1])
-        if self._has_exponentials:
+        if self.combinations.any():
             exponents = self.combinations @ arguments
             scale = exponents.real.max(axis=0)
             terms = terms * np.exp(exponents - scale)

@@ -21,17 +21,19 @@ from flint import acb, acb_series, arb, fmpz_mpoly
 from symflex.algebra import Dispersion, Factored, KernelTable, degree_in
 from symflex.algebra.exponential_sum import (
     REAL,
-    Argument,
     Exponent,
-    ExponentialSum,
-    arguments_of,
     combination,
-    exponential_sum,
 )
 from symflex.algebra.vanishing import OriginSeries
 from symflex.budget import spend
 from symflex.errors import Diagnostic, ModelError, UncertifiedError
-from symflex.roots.functions.exponential_values import DoubleSums, ExponentialValues, Place
+from symflex.roots.functions.exponential_values import (
+    DoubleSums,
+    ExponentialValues,
+    Place,
+    Summed,
+    exponential_sums,
+)
 from symflex.roots.precision import precision
 from symflex.transfer.balls import Value, at_centre, expansion
 
@@ -255,25 +257,12 @@ class KernelFunction:
         return widest, total * self.power
 
     def _exponential_values(self, bits: int) -> ExponentialValues:
-        return ExponentialValues(self._values(bits), self.arguments, self.exponentials or ())
+        return ExponentialValues(self._values(bits), *(self.exponentials or ((), ())))
 
     @cached_property
-    def arguments(self) -> tuple[Argument, ...]:
-        """What the exponentials of :attr:`exponentials` are taken of."""
-        return arguments_of(self.bound.kernels) or ()
-
-    @cached_property
-    def exponentials(self) -> tuple[tuple[ExponentialSum, int], ...] | None:
+    def exponentials(self) -> Summed | None:
         """The factors as sums of exponentials, where all wavenumbers have formulas and the sums are short."""
-        if arguments_of(self.bound.kernels) is None:
-            return None
-        found = []
-        for factor, exponent in self.part.factors:
-            terms = exponential_sum(self.part.ring, self.bound.kernels, self.arguments, factor)
-            if terms is None:
-                return None
-            found.append((terms, exponent))
-        return tuple(found)
+        return exponential_sums(self.part, self.bound.kernels)
 
     @cached_property
     def in_doubles(self) -> DoubleSums | None:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from symflex.algebra import LAPLACE, PRIME, random_point
 from symflex.algebra.propagators import EXPONENTIAL
 from symflex.algebra.vanishing import TaylorField
+from symflex.roots.networks.cramer import columns_of
 from symflex.transfer.balls import rational_value
 
 if TYPE_CHECKING:
@@ -126,10 +127,7 @@ def _fundamental(
 
 def _order(rows: list[dict[int, nmod_poly]], field: TaylorField) -> int | None:
     """Return the order of the determinant, by pivots of least order in their columns."""
-    columns: list[set[int]] = [set() for _ in rows]
-    for i, row in enumerate(rows):
-        for j in row:
-            columns[j].add(i)
+    columns = columns_of(rows)
     left, total, terms = set(range(len(rows))), 0, field.terms
     while left:
         ranked = [

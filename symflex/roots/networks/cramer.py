@@ -23,7 +23,7 @@ from symflex.algebra.factored import least_common_multiple
 from symflex.algebra.propagators import EXPONENTIAL
 from symflex.budget import spend
 from symflex.library.elements import LinearForm
-from symflex.roots.networks.members import MOST_BITS, UndecidedError, settled
+from symflex.roots.networks.members import UndecidedError, settled
 from symflex.transfer.balls import Value, at_centre, balancing, binary_exponent, later, summed
 from symflex.transfer.enclose_kernels import fundamental_functions
 
@@ -95,19 +95,7 @@ class CramerEquations:
 
         UndecidedError where the equations are singular.
         """
-        bits = max(bits, self._least_bits)
-        while True:
-            try:
-                with ctx.workprec(bits):
-                    found = self._at(s)
-            except UndecidedError:
-                bits *= 2
-                if bits > MOST_BITS:
-                    raise
-            else:
-                if bits <= MOST_LOST * len(self.entries):
-                    self._least_bits = max(self._least_bits, bits // 2)
-                return found
+        return settled(lambda: self._at(s), max(bits, self._least_bits))
 
     def _at(self, s: acb) -> CramerValue:
         spend()
@@ -115,6 +103,8 @@ class CramerEquations:
         factors: dict[int, acb] = {}
         rows = self._rows(values, factors)
         den, last = self._eliminated(rows, len(rows) - 1)
+        if ctx.prec <= MOST_LOST * len(self.entries):
+            self._least_bits = max(self._least_bits, ctx.prec // 2)
         return CramerValue(den * self._value(self.divisor, values, factors), den * last)
 
     def _rows(self, values: Mapping[str, acb], factors: dict[int, acb]) -> list[dict[int, acb]]:
@@ -394,10 +384,7 @@ def pivot_order(rows: Sequence[Mapping[int, acb]], size: int) -> list[tuple[int,
     """
     work = [{j: x for j, x in row.items() if j < size} for row in rows[:size]]
     scale, _ = balancing([{j: _size(x) for j, x in row.items()} for row in work], size, 4)
-    columns: list[set[int]] = [set() for _ in range(size)]
-    for i, row in enumerate(work):
-        for j in row:
-            columns[j].add(i)
+    columns = columns_of(work)
     left = set(range(size))
     order: list[tuple[int, int]] = []
     while left:
@@ -458,7 +445,7 @@ def _eliminate(rows: list[dict[int, acb]], order: Sequence[tuple[int, int]]) -> 
 
     Where there is none, the last pivot may vanish.
     """
-    columns = _columns(rows)
+    columns = columns_of(rows)
     determinant = acb(sign_of(order))
     size = len(order)
     for number, (i, j) in enumerate(order, 1):
@@ -471,7 +458,7 @@ def _eliminate(rows: list[dict[int, acb]], order: Sequence[tuple[int, int]]) -> 
     return determinant, rows[size].get(size, ZERO)
 
 
-def _columns(rows: Sequence[Mapping[int, acb]]) -> list[set[int]]:
+def columns_of(rows: Sequence[Mapping[int, object]]) -> list[set[int]]:
     """Return which rows have an entry in each column."""
     columns: list[set[int]] = [set() for _ in rows]
     for i, row in enumerate(rows):

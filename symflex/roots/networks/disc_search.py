@@ -285,10 +285,6 @@ class DiscSearch:
             if extra > 16 * self.series_bits:
                 break
 
-    def _order_at_zero(self, name: str, least: int) -> int | None:
-        size = len(self.equations.entries) - (name == "den")
-        return order_at_zero(self.equations, size, least)
-
     def _least(self, radius: float, *, largest: bool = False) -> tuple[float, float]:
         points = [(acb(0, pi * (k + 0.3) / SAMPLES).exp() * radius).mid() for k in range(SAMPLES)]
         values = [self._value(point, ROUGH_BITS) for point in points]
@@ -300,7 +296,8 @@ class DiscSearch:
         is_even = self.symmetric[name == "num"]
         count = series.count()
         at_zero = series.order_at_zero()
-        exact = not at_zero or self._order_at_zero(name, at_zero) == at_zero
+        size = len(self.equations.entries) - (name == "den")
+        exact = not at_zero or order_at_zero(self.equations, size, at_zero) == at_zero
         boxes = enclosed_roots(series, at_zero, is_even=is_even)
 
         def value(x: acb, bits: int) -> acb:

@@ -116,11 +116,11 @@ class DiscSeries:
     def _turns(self, centre: acb, size: float, stop: float, unit: Callable[[], arb]) -> int:
         """Follow the argument along a circle in steps on which the function stays close to an exponential."""
         with ctx.workprec(self.bits):
-            angle, total = 0.0, arb(0)
+            angle, total, end = 0.0, arb(0), acb(-1 if stop == pi else 1)
             before: tuple[acb, acb, acb] | None = None
             while True:
                 spend()
-                point = centre + size * (acb(0, angle).exp() if angle < stop else _end(unit()))
+                point = centre + size * (acb(0, angle).exp() if angle < stop else end)
                 local = self.about(point)
                 value = local[0] + ball_about_zero(self.off)
                 if before is not None:
@@ -208,11 +208,6 @@ class DiscSeries:
                     return box
                 reach = (reach * 4).abs_upper()
         return None
-
-
-def _end(unit: arb) -> acb:
-    """Return where a path round half a circle, or a whole one, ends."""
-    return acb(-1) if unit < 4 else acb(1)  # noqa: PLR2004  (between pi and 2 pi)
 
 
 def _polynomial_at(sizes: Sequence[float], x: float) -> float:

@@ -8,6 +8,7 @@ from symflex.errors import BudgetError, Diagnostic
 from symflex.roots import Mode, Position
 from symflex.roots.distributed.side import Side
 from symflex.roots.engines import LOSSLESS
+from symflex.roots.polynomial_roots import in_order
 from symflex.roots.root import Root
 from tests.unit.roots.distributed_models import ROD, bound
 
@@ -35,11 +36,11 @@ def poles_by(engine, source, region, digits):
     one = Side(source, source.den, digits, engines=(engine,))
     if isinstance(region, Mode):
         one.numbered(region.number)
-        return one.in_order() if one.engine == LOSSLESS else ()
+        return in_order(one.roots) if one.engine == LOSSLESS else ()
     one.search(region)
     if not one.prove(region).is_complete:
         return ()
-    ordered = one.in_order()
+    ordered = in_order(one.roots)
     positions = zip(ordered, region.classify(ordered), strict=True)
     return tuple(root for root, position in positions if position is not Position.OUTSIDE)
 

@@ -45,7 +45,7 @@ def searched(text, kind=KernelFunction):
 
 def bending_part(function):
     """Return the number of the factor with kernels."""
-    (number,) = (i for i, (terms, _) in enumerate(function.exponentials) if len(terms.terms) > 1)
+    (number,) = (i for i, (terms, _) in enumerate(function.exponentials[1]) if len(terms.terms) > 1)
     return number
 
 
