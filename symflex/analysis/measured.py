@@ -31,10 +31,7 @@ if TYPE_CHECKING:
 def fit(measured: Sequence[MeasuredResponse], given: FitOptions) -> ResonanceFit:
     """Fit resonances to measured responses, which share their poles; see :func:`.fitting.fit_resonances`.
 
-    Raises
-    ------
-    UsageError
-        SF902 for a name the base does not have, or more or fewer of them than responses.
+    SF902 for a name the base does not have, or more or fewer of them than responses.
     """
     if given.base is None:
         return fit_resonances(measured, None, given)

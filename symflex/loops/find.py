@@ -388,10 +388,7 @@ class LoopGain:
 
     def ratio(self, omega: arb) -> acb:
         """Return an enclosure of B/A at a frequency [rad/s]."""
-        around, _ = self.function.on(omega, BITS)
-        with precision(BITS):
-            ratio: acb = around.b / around.a
-            return ratio
+        return _ratio(self.function, omega, BITS)
 
 
 def lumped_crossovers(function: LoopFunction, nominal: Fraction, digits: int) -> list[tuple[arb, acb]]:
@@ -405,14 +402,16 @@ def lumped_crossovers(function: LoopFunction, nominal: Fraction, digits: int) ->
     squared = a * nominal.denominator**2 - b * nominal.numerator**2
     if squared.is_zero():
         return []
-    problem, found = problem_of(function.bound, [(squared, 1)]), []
-    for root in find_polynomial_roots(problem, digits):
-        if root.on_imaginary_axis and root.im > 0:
-            bits = 2 * root.working_bits()
-            around, _ = function.on(root.im, bits)
-            with precision(bits):
-                found.append((root.im, around.b / around.a))
-    return found
+    roots = find_polynomial_roots(problem_of(function.bound, [(squared, 1)]), digits)
+    above = [root for root in roots if root.on_imaginary_axis and root.im > 0]
+    return [(root.im, _ratio(function, root.im, 2 * root.working_bits())) for root in above]
+
+
+def _ratio(function: LoopFunction, omega: arb, bits: int) -> acb:
+    """Return an enclosure of B/A at a frequency [rad/s]."""
+    around, _ = function.on(omega, bits)
+    with precision(bits):
+        return around.b / around.a
 
 
 def distributed_crossovers(
@@ -445,14 +444,8 @@ def distributed_crossovers(
             first = start
     last = along.last_crossover(function, gain)
     result = along.on_axis(function, equation, lambda value: False, (first, last), digits)
-    found = []
-    for omega in result.roots:
-        bits = max(BITS, 2 * omega.bits())
-        around, _ = function.on(omega, bits)
-        with precision(bits):
-            if not around.a.contains(0):
-                found.append((omega, around.b / around.a))
-    return found
+    found = [(omega, _ratio(function, omega, max(BITS, 2 * omega.bits()))) for omega in result.roots]
+    return [(omega, ratio) for omega, ratio in found if ratio.is_finite()]
 
 
 MARGIN: Final = 2

@@ -255,17 +255,14 @@ class StabilityMap:
                 }
                 for m in self.phase_margins
             ],
-            "margin_beyond": self._beyond(),
+            "margin_beyond": None
+            if self.margin_beyond is None or self.radius is None
+            else {
+                "omega": self.radius,
+                "frequency_hz": self.radius / (2 * pi),
+                "degrees": self.least_degrees_beyond,
+            },
             "bandwidth": self._bandwidth(),
-        }
-
-    def _beyond(self) -> dict[str, float] | None:
-        if self.margin_beyond is None or self.radius is None:
-            return None
-        return {
-            "omega": self.radius,
-            "frequency_hz": self.radius / (2 * pi),
-            "degrees": self.least_degrees_beyond,
         }
 
     @property

@@ -179,14 +179,8 @@ def _vanishes(bound: BoundTransferFunction, g: fmpz_mpoly, h: fmpz_mpoly, root: 
 
 
 def _lossy(root: Root) -> Root:
-    return LossyRoot(
-        root.re,
-        root.im,
-        root.multiplicity,
-        on_imaginary_axis=root.on_imaginary_axis,
-        is_real=root.is_real,
-        certified=root.certified,
-    )
+    on_axis, is_real, certified = root.on_imaginary_axis, root.is_real, root.certified
+    return LossyRoot(root.re, root.im, root.multiplicity, on_axis, is_real, certified)
 
 
 @dataclass(frozen=True, slots=True)

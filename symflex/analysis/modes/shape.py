@@ -91,41 +91,24 @@ class VaryingCarrier:
 
 @dataclass(frozen=True, slots=True)
 class DistributedShape:
-    """What a distributed element or field does along x.
-
-    Parameters
-    ----------
-    name, kind : str
-        The element's name and type; of a field, ``field``.
-    states : tuple of str
-        What is known along x. Of an element, displacements first, then what the part beyond x exerts on the
-        part before it: ``y theta f tau`` of a beam, ``x y theta f_x f_y tau`` of a frame, ``u f`` of a rod,
-        ``theta tau`` of a shaft, ``w f`` of a string. Of a field, its unknowns and their derivatives:
-        ``w w' w''``.
-    matrix, load, initial : tuples of acb
-        ``dz/dx = matrix z + load``, from ``initial`` on. Where coefficients vary along x there is no matrix,
-        and ``load`` is the values of the loads.
-    start, length : arb
-        Where x begins, and how far it reaches [m].
-    bits : int
-        The precision everything is computed at.
-    direction : tuple of arb
-        Cosine and sine of the angle of a member in the plane; else empty.
-    varying : VaryingCarrier or None
-        What takes the state along where coefficients vary along x.
-    """
+    """What a distributed element or field does along x."""
 
     name: str
-    kind: str
+    kind: str  # the element's type; of a field, ``field``
+    # What is known along x. Of an element, displacements first, then what the part beyond x exerts on the
+    # part before it: ``y theta f tau`` of a beam, ``x y theta f_x f_y tau`` of a frame, ``u f`` of a rod,
+    # ``theta tau`` of a shaft, ``w f`` of a string. Of a field, its unknowns and derivatives: ``w w' w''``.
     states: tuple[str, ...]
+    # ``dz/dx = matrix z + load``, from ``initial`` on. Where coefficients vary along x there is no matrix,
+    # and ``load`` is the values of the loads.
     matrix: tuple[tuple[acb, ...], ...]
     load: tuple[acb, ...]
     initial: tuple[acb, ...]
-    start: arb
-    length: arb
-    bits: int
-    direction: tuple[arb, ...] = ()
-    varying: VaryingCarrier | None = None
+    start: arb  # where x begins [m]
+    length: arb  # how far it reaches [m]
+    bits: int  # of the precision everything is computed at
+    direction: tuple[arb, ...] = ()  # cosine and sine of the angle of a member in the plane
+    varying: VaryingCarrier | None = None  # what takes the state along where coefficients vary along x
 
     @property
     def displacements(self) -> tuple[int, ...]:
@@ -133,13 +116,7 @@ class DistributedShape:
         return (0, 1) if self.direction else (0,)
 
     def position(self, quantity: str | None = None) -> int:
-        """Return the place of a quantity among the states, of the first for None.
-
-        Raises
-        ------
-        UsageError
-            SF902 when there is no such quantity.
-        """
+        """Return the place of a quantity among the states, of the first for None; SF902 without such."""
         if quantity is None:
             return 0
         if quantity not in self.states:
@@ -238,26 +215,14 @@ def _log2(value: acb) -> float:
 
 @dataclass(frozen=True, slots=True)
 class EnclosedModeShape:
-    """The motion of everything at one pole, up to a complex factor.
-
-    Parameters
-    ----------
-    pole : Root
-        Where.
-    motions : tuple of Motion
-        Of every unknown of the equations: nodes, forces and currents, signals, and the constants of fields.
-    distributed : tuple of DistributedShape
-        Of every beam, rod, shaft, string and field.
-    reference : str
-        What is 1: a node, or ``element(x)`` with the place along it; of a frame ``element.y(x)``.
-    certified : bool
-        The pole is proved, and the shape is the only one it has: then every ball holds the true amplitude.
-    """
+    """The motion of everything at one pole, up to a complex factor."""
 
     pole: Root
+    # Of every unknown of the equations: nodes, forces and currents, signals, and the constants of fields.
     motions: tuple[Motion, ...]
-    distributed: tuple[DistributedShape, ...]
-    reference: str
+    distributed: tuple[DistributedShape, ...]  # of every beam, rod, shaft, string and field
+    reference: str  # what is 1: a node, or ``element(x)`` with the place; of a frame ``element.y(x)``
+    # The pole is proved, and the shape is the only one it has: then every ball holds the true amplitude.
     certified: bool
 
     def __repr__(self) -> str:
@@ -273,13 +238,7 @@ class EnclosedModeShape:
         return self.pole.on_imaginary_axis and all(value.imag.contains(0) for value in moving)
 
     def motion(self, name: str) -> Motion:
-        """Return what a node, element quantity or signal does.
-
-        Raises
-        ------
-        UsageError
-            SF902 when there is none of that name.
-        """
+        """Return what a node, element quantity or signal does; SF902 when there is none of that name."""
         known = {m.name: m for m in reversed(self.motions)}
         if name not in known and f"{name}.y" in known:
             name = f"{name}.y"
@@ -289,13 +248,7 @@ class EnclosedModeShape:
         return known[name]
 
     def along(self, name: str) -> DistributedShape:
-        """Return the shape of a distributed element or field.
-
-        Raises
-        ------
-        UsageError
-            SF902 when there is none of that name.
-        """
+        """Return the shape of a distributed element or field; SF902 when there is none of that name."""
         known = {part.name: part for part in self.distributed}
         if name not in known:
             hint = nearest(name, known) or ("available: " + ", ".join(known) if known else None)

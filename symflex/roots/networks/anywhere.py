@@ -7,6 +7,7 @@ numerator and denominator share, to twice the digits, is hidden.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from math import hypot, pi
 from typing import TYPE_CHECKING
 
@@ -85,16 +86,11 @@ def _roots(search: DiscSearch, radius: float, digits: int) -> DiscRoots:
     entered_budget().progress.report(0.3, "evaluating determinants on a circle")
     den, num = search.sides(radius)
     entered_budget().progress.report(0.7, "enclosing roots")
-    poles, zeros = den.all_roots(digits), num.all_roots(digits)
-    closer: tuple[list[Root], list[Root]] | None = None
+    closer = cache(lambda side: side.all_roots(2 * digits))
 
     def coincide(pole: Root, zero: Root) -> bool:
         """Tell whether a pole and a zero are among those that still overlap to twice the digits."""
-        nonlocal closer
-        closer = closer or (den.all_roots(2 * digits), num.all_roots(2 * digits))
-        near = [
-            [r for r in roots if overlap(r, own)] for roots, own in zip(closer, (pole, zero), strict=True)
-        ]
+        near = [[r for r in closer(side) if overlap(r, own)] for side, own in ((den, pole), (num, zero))]
         return any(overlap(a, b) for a in near[0] for b in near[1])
 
     poles, zeros, shared = take_out_shared(den.all_roots(digits), num.all_roots(digits), coincide)

@@ -28,7 +28,7 @@ from symflex.transfer.balls import Value, at_centre, balancing, binary_exponent,
 from symflex.transfer.enclose_kernels import fundamental_functions
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
     from symflex.algebra import Factored
     from symflex.equations import Equations
@@ -150,23 +150,30 @@ class CramerEquations:
         for name, value in equations.definitions:
             if name in self.moving_names:
                 values[name] = self._value(value, values, factors)
-        propagation = equations.propagation
+        values.update(self._along_members(lambda x: self._value(x, values, factors)))
+        return values
+
+    def _along_members(
+        self, value: Callable[[Factored], acb], *, is_growing: bool = False
+    ) -> Iterator[tuple[str, acb]]:
+        """Yield the generators that are fundamental functions and exponentials, with their values.
+
+        All coefficients may be turned to grow: what solves the equation then is larger, term by term.
+        """
+        propagation, sign = self.equations.propagation, -1 if is_growing else 1
         if propagation is None:
-            return values
+            return
         for (number, place), group in self.waves.items():
             law = propagation.table.dispersions[number]
-            length = self._value(propagation.lengths[number][place], values, factors)
+            length = value(propagation.lengths[number][place])
             plain: tuple[Value, ...] = ()
             if any(order >= 0 for _, order in group):
-                plain = fundamental_functions(
-                    [self._value(c, values, factors) for c in law.characteristic], length
-                )
+                plain = fundamental_functions([value(c) * sign for c in law.characteristic], length)
             for name, order in group:
                 if order == EXPONENTIAL:
-                    values[name] = (-self._value(law.shift, values, factors) * length).exp()
+                    yield name, (value(law.shift) * -sign * length).exp()
                 else:
-                    values[name] = at_centre(plain[order])
-        return values
+                    yield name, at_centre(plain[order])
 
     @cached_property
     def waves(self) -> dict[tuple[int, int], list[tuple[str, int]]]:
@@ -250,23 +257,8 @@ class CramerEquations:
                 values[name] = (_bound(value, values), False)
             else:
                 values[name] = constants[name]
-        propagation = equations.propagation
-        if propagation is None:
-            return values
-        for (number, place), group in self.waves.items():
-            law = propagation.table.dispersions[number]
-            length = _bound(propagation.lengths[number][place], values)
-            plain: tuple[Value, ...] = ()
-            if any(order >= 0 for _, order in group):
-                # What solves the equation with all coefficients turned to grow is larger, term by term.
-                plain = fundamental_functions(
-                    [acb(-_bound(c, values)) for c in law.characteristic], acb(length)
-                )
-            for name, order in group:
-                if order == EXPONENTIAL:
-                    values[name] = ((_bound(law.shift, values) * length).exp(), False)
-                else:
-                    values[name] = (at_centre(plain[order]).real.abs_upper(), False)
+        for name, x in self._along_members(lambda x: acb(_bound(x, values)), is_growing=True):
+            values[name] = (x.real.abs_upper(), False)
         return values
 
 
